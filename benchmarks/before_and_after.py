@@ -1,14 +1,14 @@
-"""Loads and wheel angles of a commit and of the tree as it is: shipped drives on all engines, random reducers on half-spaces.
+"""Compare loads and wheel angles of a commit with the working tree: shipped drives on all engines, random reducers.
 
     python benchmarks/before_and_after.py HEAD                  # 500 random reducers
     python benchmarks/before_and_after.py HEAD --count 60 --keep answers
 
-What is rebuilt moves round-off alone: loads stay within 1e-9 of the largest of the drive, the wheel angle within 1e-12 rad, and
-what has no answer keeps having none. Shipped drives run in every case on tables, on contact grids, by the paper's iteration, and
-under ``fe`` and ``hybrid`` on closed-form bodies (`ltca.testing.closed_form_bodies`); random reducers are of all kinds (several
-discs and cranks, loose and bending pins, friction, preload). Both sides read the same files by ``ltca.load_drive`` and answer by
-``ltca.analyse``. ``--keep`` keeps the commit's answers in a folder, for the next step. Exit status 1 where more than round-off
-moved, 2 for a commit that is not there.
+A refactoring may change results by round-off only: loads by 1e-9 of the largest load of the drive, the wheel angle by 1e-12
+rad; drives that are refused have to remain refused. All cases of the shipped drives run with tables, with contact grids, by
+the paper's iteration, and with ``fe`` and ``hybrid`` on closed-form bodies (`ltca.testing.closed_form_bodies`). Random
+reducers, on half-spaces, are of all kinds (several discs and cranks, loose and bending pins, friction, preload). Both versions
+read the same files by ``ltca.load_drive`` and solve them by ``ltca.analyse``. ``--keep`` stores the results of the commit for
+later comparisons. Exit status 1 if a difference exceeds round-off, 2 for an unknown commit.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ from ltca.testing.practical_drives import preloaded_drive
 from ltca.testing.random_drives import random_reducer
 
 LOAD_BOUND, WHEEL_BOUND = 1e-9, 1e-12
-"""What round-off may move: loads, as a part of the largest of the drive, and the wheel angle, rad."""
+"""Permitted change by round-off: of loads, relative to the largest of the drive, and of the wheel angle, rad."""
 LOADS, WHEEL = ("pin_load", "roller_load", "pin_shaft_load"), "wheel_angle"
 GENERATORS = (random_reducer, crank_drive, pin_drive, friction_drive, preloaded_drive)
 ENGINES: tuple[dict[str, str], ...] = (
@@ -50,8 +50,8 @@ ENGINES: tuple[dict[str, str], ...] = (
     {"compliance": "hybrid"},
 )
 SHIPPED_ANGLES = (0.1, 1.4, 2.6, 3.9, 5.2)
-BESIDE = 0.7
-"""From the crank angle of a random reducer to its second one, rad."""
+SECOND_ANGLE_OFFSET = 0.7
+"""Difference between the two crank angles of a random reducer, rad."""
 
 WORKER = """
 import json, sys
@@ -74,7 +74,7 @@ np.savez(sys.argv[2], **answers)
 
 
 def shipped_jobs(folder: Path) -> list[dict[str, Any]]:
-    """Return every shipped case on every engine; write the bodies that ``fe`` and ``hybrid`` take."""
+    """Return jobs for all shipped cases on all engines; write the coefficient files of ``fe`` and ``hybrid``."""
     jobs = []
     for source in sorted(path.name for path in files("ltca.drives").iterdir() if path.name.endswith(".toml")):
         name, written = source.removesuffix(".toml"), folder / source
@@ -96,7 +96,7 @@ def shipped_jobs(folder: Path) -> list[dict[str, Any]]:
 
 
 def random_jobs(folder: Path, count: int) -> list[dict[str, Any]]:
-    """Return so many random reducers on half-spaces, of all generators in turn; write their drive files."""
+    """Return jobs for random reducers on half-spaces, from all generators in turn; write their drive files."""
     jobs, seed = list[dict[str, Any]](), 0
     while len(jobs) < count:
         generator = GENERATORS[seed % len(GENERATORS)]
@@ -105,14 +105,14 @@ def random_jobs(folder: Path, count: int) -> list[dict[str, Any]]:
             drive, angle = drawn
             path = folder / f"{generator.__name__}-{seed}.toml"
             path.write_text(drive_text(drive), encoding="utf-8")
-            angles = (angle, angle + BESIDE)
+            angles = (angle, angle + SECOND_ANGLE_OFFSET)
             jobs.append({"name": path.stem, "file": str(path), "case": "nominal", "angles": angles, "options": {}})
         seed += 1
     return jobs
 
 
 def answers_of(source: Path, jobs: list[dict[str, Any]], path: Path) -> dict[str, NDArray[Any]]:
-    """Return what the packages of a folder answer, by job and variable."""
+    """Return the results computed by the packages in a folder, by job and variable."""
     asked = path.with_suffix(".json")
     asked.write_text(json.dumps(jobs), encoding="utf-8")
     environment = os.environ | {"PYTHONPATH": str(source), "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
@@ -123,7 +123,7 @@ def answers_of(source: Path, jobs: list[dict[str, Any]], path: Path) -> dict[str
 
 
 def differences(job: str, before: dict[str, NDArray[Any]], after: dict[str, NDArray[Any]]) -> tuple[float, float]:
-    """Return how far loads, by the largest of them, and wheel angle of a job moved; infinite where one side alone answers."""
+    """Return the relative change of the loads and the change of the wheel angle; infinite if only one version has a solution."""
     pairs = {name: (before.get(f"{job}|{name}"), after.get(f"{job}|{name}")) for name in ("refused", WHEEL, *LOADS)}
     if pairs["refused"] != (None, None):
         return (0.0, 0.0) if pairs["refused"][0] == pairs["refused"][1] else (np.inf, np.inf)
@@ -139,11 +139,13 @@ def differences(job: str, before: dict[str, NDArray[Any]], after: dict[str, NDAr
 
 
 def main() -> int:
-    """Compare, print what moved, and how far what did not."""
+    """Compare, print the differences, and the largest change within round-off."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("before", help="commit")
-    parser.add_argument("--count", type=int, default=500, help="random reducers (500)")
-    parser.add_argument("--keep", type=Path, metavar="FOLDER", help="keep the commit's answers here and use those kept")
+    parser.add_argument("--count", type=int, default=500, help="number of random reducers (500)")
+    parser.add_argument(
+        "--keep", type=Path, metavar="FOLDER", help="store the results of the commit here and reuse them"
+    )
     arguments = parser.parse_args()
     commit = commit_of(parser, arguments.before)
     with tempfile.TemporaryDirectory() as name:

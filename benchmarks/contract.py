@@ -1,10 +1,10 @@
-"""Every leaf field of a drive against full finite elements and the commands as programs: used, or refused by name.
+"""Check that full finite elements and the commands use every leaf field of a drive or refuse it by name.
 
     python benchmarks/contract.py [full-fe curves tolerance sweep optimise run-fe run-hybrid]
 
-The walk of ``tests/contract`` in earnest: each field of a small drive is changed as a person could have changed it and
-every command is run on it, coarsely. Prints what is ignored; exit status 1 if anything is. Full finite elements take
-some minutes, ``run-fe`` and ``run-hybrid`` derive the coefficients of every changed shape and take half an hour.
+The same check as in ``tests/contract``, but with complete commands: every field of a small drive is changed by a realistic
+amount, and every command is run on it with coarse settings. Prints ignored fields; exit status 1 if there are any. Full finite
+elements take some minutes; ``run-fe`` and ``run-hybrid`` derive the coefficients of every changed shape and take half an hour.
 """
 
 from __future__ import annotations
@@ -29,12 +29,13 @@ import numpy as np
 
 sys.path[0] = str(Path(__file__).resolve().parents[1])  # the package fem, not the benchmark of that name
 
+from fem.options import SolutionOptions
 from fem.reducer.solution import solve_reducer
 from ltca.analysis.loaded_analysis import analyse
 from ltca.commands.program import main as cyclo
+from ltca.drive.engine_support import refusal
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Drive
-from ltca.drive.reference.engine_support import refusal
 from ltca.errors import CycloError, DriveError
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
@@ -58,7 +59,7 @@ kind = "grid"
 
 
 def numbers_of(content: Any) -> list[float]:
-    """Every number of nested lists and tables, in order."""
+    """Return all numbers of nested lists and tables, in order."""
     if isinstance(content, dict):
         return [value for name, entry in content.items() if "seconds" not in name for value in numbers_of(entry)]
     if isinstance(content, list):
@@ -67,7 +68,7 @@ def numbers_of(content: Any) -> list[float]:
 
 
 def program(words: list[str], answer: str, extra: str = "", study: bool = False) -> Callable[[Drive], np.ndarray]:
-    """Return what runs a command on a drive in a folder of its own and reads the numbers of one JSON file."""
+    """Return a function that runs a command on a drive in a temporary folder and returns the numbers of one JSON file."""
 
     def run(drive: Drive) -> np.ndarray:
         with tempfile.TemporaryDirectory() as folder:
@@ -80,7 +81,7 @@ def program(words: list[str], answer: str, extra: str = "", study: bool = False)
                 status = cyclo([words[0], str(source), *words[1:], "--out", str(path / "out"), "--no-figures"])
             partial = status == 1 and "partial:" in errors.getvalue()
             content = json.loads((path / "out" / answer).read_text(encoding="utf-8")) if partial or status == 0 else {}
-            if status != 0 and not content.get("quantities"):  # some samples of a study answer for it
+            if status != 0 and not content.get("quantities"):  # a study with some solved samples is sufficient
                 raise DriveError([errors.getvalue()])
             return np.array(numbers_of(content))
 
@@ -88,8 +89,8 @@ def program(words: list[str], answer: str, extra: str = "", study: bool = False)
 
 
 def full_solution(drive: Drive) -> np.ndarray:
-    """Full finite elements, coarse."""
-    found = solve_reducer(warm_drive(drive), 0.5, scale=4.0)
+    """Return results of full finite elements on a coarse mesh."""
+    found = solve_reducer(warm_drive(drive), 0.5, SolutionOptions(size=4.0))
     numbers = [np.array([found.wheel_angle, found.transmission_error, *found.disc_torques])]
     for disc in found.discs:
         contacts, pose = disc.contacts, disc.pose
@@ -99,18 +100,18 @@ def full_solution(drive: Drive) -> np.ndarray:
 
 
 def is_told(engine: str, path: str) -> bool:
-    """Tell whether the refusal of a field, or of what it goes with, stands in the table of engines."""
+    """Return whether the table of engines lists the refusal of a field, or of the field that it is changed with."""
     return any(refusal(engine, name) is not None for name in (path.replace(".0.", ".N."), goes_with(path)))
 
 
 def tables(drive: Drive) -> None:
-    """Half-spaces, for what no engine takes."""
+    """Analyse on half-spaces, to detect drives that no engine accepts."""
     analyse(drive, np.array([0.5]))
 
 
 def optimum(drive: Drive) -> np.ndarray:
-    """What an optimisation computes of a candidate, with every quantity aimed at or limited."""
-    from ltca.studies.optimiser import Limit, Problem, batch_analysis, parse_variable
+    """Return all quantities that an optimisation computes for a candidate."""
+    from ltca.studies.optimiser import Bound, Problem, batch_analysis, parse_variable
     from ltca.studies.quantities import quantities_for
 
     problem = Problem(
@@ -118,7 +119,7 @@ def optimum(drive: Drive) -> np.ndarray:
         variables=(parse_variable("disc.equidistant_offset", drive),),
         aims=("max_pin_load",),
         limits=tuple(
-            Limit(quantity=name, sense=1, value=1e9)
+            Bound(quantity=name, sense=1, value=1e9)
             for name in quantities_for(drive, ("all",))
             if name != "max_pin_load"
         ),
@@ -141,10 +142,12 @@ COMMANDS: dict[str, tuple[str, Callable[[Drive], np.ndarray]]] = {
 
 
 def main() -> int:
-    """Walk the commands asked for."""
+    """Run the check for the given commands."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("commands", nargs="*", metavar="COMMAND", help=f"of {', '.join(COMMANDS)}; default: no run-…")
-    parser.add_argument("--fields", type=int, default=0, help="the first so many alone; default: all")
+    parser.add_argument(
+        "commands", nargs="*", metavar="COMMAND", help=f"one of {', '.join(COMMANDS)}; default: all except run-…"
+    )
+    parser.add_argument("--fields", type=int, default=0, help="number of fields, from the first; default: all")
     arguments = parser.parse_args()
     asked = arguments.commands or [name for name in COMMANDS if not name.startswith("run-")]
     unknown = set(asked) - set(COMMANDS)
@@ -168,15 +171,15 @@ def main() -> int:
             except CycloError as error:
                 refused += 1
                 if name == "full-fe" and not is_told(kind, path):
-                    # Refused of a drive as such, or `cyclo fields` does not tell that full finite elements refuse it.
+                    # Either no engine accepts the drive, or `cyclo fields` does not list the refusal by full finite elements.
                     with contextlib.suppress(CycloError):
                         tables(with_fields(base, change))
-                        ignored.append(f"{path}: refused, which ltca.drive.reference.engine_support does not tell")
+                        ignored.append(f"{path}: refused, but not listed in ltca.drive.engine_support")
                 if not is_refused_by_name(path, str(error)):
                     ignored.append(f"{path}: refused without its name: {' '.join(str(error).split())[:200]}")
                 continue
             if name == "full-fe" and refusal(kind, path.replace(".0.", ".N.")) is not None:
-                ignored.append(f"{path}: taken, though ltca.drive.reference.engine_support tells it as refused")
+                ignored.append(f"{path}: accepted, but listed as refused in ltca.drive.engine_support")
             key = repr(base)
             if key not in known:
                 known[key] = answer(base)

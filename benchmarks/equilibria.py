@@ -2,10 +2,10 @@
 
     python benchmarks/equilibria.py [--coefficients FILE] [--positions 360] [--rounds 3]
 
-Then of other reducers on tables: discs, a held wheel, cranks, supports (times by that of the paper's drive).
-``fe`` and ``hybrid`` start from the solution on tables as the engines do (their time includes it). Without a file of
-``cyclo derive paper --case CS-1`` the bodies are those in closed form (`ltca.testing.closed_form_bodies`), on fewer stations.
-Each figure is the best of the rounds; compare ratios of one run.
+A second table has other reducers on tables: several discs, fixed wheel, cranks, supports (time relative to the paper's drive).
+``fe`` and ``hybrid`` start from the solution on tables as the engines do (included in their time). Without a file of
+``cyclo derive paper --case CS-1`` closed-form bodies with fewer stations are used (`ltca.testing.closed_form_bodies`).
+Values are the best of several rounds; compare ratios within one run.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ from ltca.testing.closed_form_bodies import closed_form_coefficients
 
 
 def best(rounds: int, function: Callable[[], Equilibrium]) -> tuple[Equilibrium, float]:
-    """Return the last answer and the fewest processor seconds."""
+    """Return the last result and the smallest processor time, s."""
     seconds = np.inf
     for _ in range(rounds):
         start = time.process_time()
@@ -51,7 +51,7 @@ def best(rounds: int, function: Callable[[], Equilibrium]) -> tuple[Equilibrium,
 
 
 def one_evaluation(model: Reducer, angles: np.ndarray, pose: np.ndarray) -> float:
-    """Return processor seconds of one evaluation at poses, from its neighbour's start."""
+    """Return the processor time, s, of one evaluation started from the solution at neighbouring poses."""
     start = Start.after(model.respond(angles, pose))
     began = time.process_time()
     model.respond(angles, pose + 1e-6, start)
@@ -59,7 +59,7 @@ def one_evaluation(model: Reducer, angles: np.ndarray, pose: np.ndarray) -> floa
 
 
 def other_reducers(paper: Drive) -> dict[str, Drive]:
-    """Drives whose cost should grow in line with discs and cranks."""
+    """Return drives whose cost should be proportional to the numbers of discs and cranks."""
     rv = parse_drive(shipped_drive("rv"), "rv").cases["nominal"]
     rigid = replace(rv, crank=replace(rv.crank, support=None))
     held = Installation(held="pin-shaft", first_stage_ratio=2.0)
@@ -82,16 +82,16 @@ def measure_others(paper: Drive, angles: np.ndarray, rounds: int, base: float) -
     print(f"\n{'':<24}{'equilibria/s':>14}{'iterations':>12}{'time by one disc':>20}")
     for name, drive in other_reducers(paper).items():
         model = HalfSpace().prepare(drive).model
-        found, seconds = best(rounds, partial(solve_at_output, model, drive, angles, drive.load.torque))
+        found, seconds = best(rounds, partial(solve_at_output, model, [drive], angles, drive.load.torque))
         print(f"{name:<24}{angles.size / seconds:>14.0f}{found.iterations.mean():>12.1f}{seconds / base:>20.1f}")
 
 
 def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--coefficients", type=Path, help="of cyclo derive paper --case CS-1")
-    parser.add_argument("--positions", type=int, default=360, help="positions of a batch; default 360")
-    parser.add_argument("--rounds", type=int, default=3, help="of which the best counts; default 3")
+    parser.add_argument("--coefficients", type=Path, help="file of cyclo derive paper --case CS-1")
+    parser.add_argument("--positions", type=int, default=360, help="number of positions; default 360")
+    parser.add_argument("--rounds", type=int, default=3, help="number of rounds; default 3")
     arguments = parser.parse_args()
     drive = load_drive("paper").cases["CS-1"]
     angles, moment = position_angles(arguments.positions), drive.wheel_moment()

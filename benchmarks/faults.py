@@ -1,4 +1,4 @@
-"""Faults as they happen, by the hundred: what was tried, what went right, what went wrong.
+"""Fault injection: malformed input, killed processes, full disks, concurrent runs and cluster failures.
 
 python benchmarks/faults.py malformed [--count 1000] [--seed 1]
 python benchmarks/faults.py kills [--kills 20] [--commands run fem …] [--signal KILL | TERM]
@@ -18,7 +18,7 @@ KINDS = {"malformed": malformed, "kills": kills, "discs": discs, "folders": fold
 
 
 def main() -> int:
-    """Run one kind of faults."""
+    """Run the trials of one kind of fault."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     kinds = parser.add_subparsers(metavar="KIND", required=True)
     for name, module in KINDS.items():

@@ -1,19 +1,19 @@
 """Time and memory of the full finite-element solution against the number of unknowns.
 
-``python benchmarks/fem.py [--sizes 4 2 1 0.7 0.4] [--ccx [6 4 3 2 1]] [--out FILE]``: one position from nothing for each
-size, each in a process of its own (peak memory is that of the process), then a further load and a further position at
-the default size; with ``--ccx`` CalculiX solves the decks of these sizes (the default one) in the same run.
+``python benchmarks/fem.py [--sizes 4 2 1 0.7 0.4] [--ccx [6 4 3 2 1]] [--out FILE]``: one position for each element
+size, in separate processes (for the peak memory), then a further load and a further position at
+the default size; with ``--ccx`` CalculiX solves the decks of these sizes (default size 1) in the same run.
 
-``--sizes --series 12 [--series-size 1] [--refereed 12] [--keep FOLDER]``: a whole turn of the crank in so many positions,
-each taking from the one before what it can; CalculiX solves the decks of the refereed ones (evenly spread). What it
-answers is kept in the folder, by the deck: a series that was stopped goes on where it was, and ours is solved anew.
+``--sizes --series 12 [--series-size 1] [--refereed 12] [--keep FOLDER]``: a series of positions over a turn of the crank,
+which reuses data of the previous position; CalculiX solves the decks of the refereed positions (evenly spaced). Its
+solutions are stored in the folder by deck, so that an interrupted series can be continued; the series itself is solved again.
 
-Both print the processor time of either code, their ratio, and by how much loads and wheel angle differ.
+Both print the processor time of the two codes, their ratio, and the differences of loads and wheel angle.
 
-``--sizes --ccx 6 4 3 2`` (no timing) shows what coarse meshes do to the wheel's angle: ours, ours on the same mesh with
-every other pressure alone (both ways to choose them), CalculiX's. With every other pressure the mesh of size 3 has as few of
-them as that of size 6 (1.3 for each half-width) and its displacements stay: what then moves, the pressures move.
-``--penalty 50 100 200`` shows what CalculiX's penalty gives way.
+``--sizes --ccx 6 4 3 2`` (without timing) shows the effect of coarse meshes on the wheel angle: for `fem`, for `fem` on the same
+mesh with every other pressure unknown (both choices), and for CalculiX. With every other unknown the mesh of size 3 has as few
+pressures as that of size 6 (1.3 per half-width) but the same displacements, which separates the effect of the pressure
+discretisation. ``--penalty 50 100 200`` shows the effect of the penalty of CalculiX.
 """
 
 from __future__ import annotations
@@ -35,21 +35,22 @@ if TYPE_CHECKING:
     from fem.drive.full_solution import FullSolution
 
 CASE, ANGLE = "CS-1", 0.5
-HEADINGS = f"{'times':>8}{'loads, %':>10}{'wheel, ″':>10}"
+HEADINGS = f"{'ratio':>8}{'loads, %':>10}{'wheel, ″':>10}"
 STAGES = ("guess", "coarse", "mesh", "assembly and factorisation", "contact and pose", "check")
 
 
 def measure(size: float, further: bool) -> dict:
-    """Solve in this process and return unknowns, seconds (wall and CPU) and peak memory."""
+    """Solve in this process and return unknowns, wall and processor time, s, and peak memory."""
     import resource
     import time
 
     from fem.drive.solution import solve_drive, solve_load
+    from fem.options import SolutionOptions
     from ltca.reading.drive_file import load_drive
 
     drive = load_drive("paper").cases[CASE]
     cpu = time.process_time()
-    solution = solve_drive(drive, ANGLE, scale=size)
+    solution = solve_drive(drive, ANGLE, SolutionOptions(size=size))
     row = {
         "size": size,
         "unknowns": solution.unknowns,
@@ -69,18 +70,19 @@ def measure(size: float, further: bool) -> dict:
                 "same_meshes": more.model is solution.model,
             }
         start, cpu = time.perf_counter(), time.process_time()
-        solve_drive(drive, ANGLE + 0.3, scale=size, rounds=solution.rounds)
+        solve_drive(drive, ANGLE + 0.3, SolutionOptions(size=size), rounds=solution.rounds)
         row["further position"] = {"seconds": time.perf_counter() - start, "cpu_seconds": time.process_time() - cpu}
     return row
 
 
 def solve_series(size: float, positions: int, refereed: int, keep: Path | None) -> dict:
-    """Solve a turn of the crank in this process and let CalculiX solve some positions; return what both took and differ by."""
+    """Solve a turn of the crank in this process and some positions by CalculiX; return times and differences."""
     import math
     import resource
     import tempfile
     import time
 
+    from fem.options import SolutionOptions
     from fem.reducer.series import solve_positions
     from ltca.errors import CycloError
     from ltca.reading.drive_file import load_drive
@@ -88,7 +90,7 @@ def solve_series(size: float, positions: int, refereed: int, keep: Path | None) 
     angles = [ANGLE + 2.0 * math.pi * position / positions for position in range(positions)]
     chosen = {round(place * positions / refereed) for place in range(refereed)}
     rows: list[dict] = []
-    solutions = solve_positions(load_drive("paper").cases[CASE], angles, scale=size)
+    solutions = solve_positions(load_drive("paper").cases[CASE], angles, SolutionOptions(size=size))
     with tempfile.TemporaryDirectory() as folder:
         for position in range(positions):
             start, cpu = time.perf_counter(), time.process_time()
@@ -102,13 +104,13 @@ def solve_series(size: float, positions: int, refereed: int, keep: Path | None) 
                 except CycloError as error:
                     row["ccx_failed"] = str(error)
             rows.append(row)
-            # The last line of the output is the answer; these show a long run how far it is.
+            # The last line of stdout is the result; progress goes to stderr.
             print(describe_position(row), file=sys.stderr, flush=True)
     return {"size": size, "memory_MB": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0, "rows": rows}
 
 
 def describe_position(row: dict) -> str:
-    """Return a line about one position of a series."""
+    """Return the table row of one position of a series."""
     line = f"{row['position']:>4}{row['unknowns']:>10,}{row['cpu_seconds']:>9.2f}"
     if "ccx_failed" in row:
         return f"{line}  CalculiX: {row['ccx_failed']}"
@@ -116,7 +118,7 @@ def describe_position(row: dict) -> str:
 
 
 def describe_referee(row: dict) -> str:
-    """Return processor seconds of CalculiX, their ratio to ours, and the differences."""
+    """Return columns with the processor time of CalculiX, its ratio to that of `fem`, and the differences."""
     ccx = row["ccx"]
     return (
         f"{ccx['cpu_seconds']:>10.1f}{ccx['cpu_seconds'] / row['cpu_seconds']:>8.0f}"
@@ -125,13 +127,13 @@ def describe_referee(row: dict) -> str:
 
 
 def ask_referee(solution: FullSolution, folder: Path, keep: Path | None, penalty: float | None = None) -> dict:
-    """Let CalculiX solve the position of a solution, or read what it answered to the same deck before.
+    """Solve the position of a solution by CalculiX, or read its stored solution of the same deck.
 
     Returns
     -------
     dict
-        Its processor and wall seconds, the largest difference of a load (part of the largest of its kind), ours less its
-        wheel angle (arc seconds) and its answer.
+        Processor and wall time, s; largest difference of a load relative to the largest of its kind; difference of the
+        wheel angle, `fem` minus CalculiX, arc seconds; solution of CalculiX.
     """
     import hashlib
     import resource
@@ -161,17 +163,18 @@ def ask_referee(solution: FullSolution, folder: Path, keep: Path | None, penalty
 
 
 def compare(size: float, penalties: list[float], keep: Path | None) -> dict:
-    """Solve one position, let CalculiX solve it, and return times, differences, table and wheel angles (arc seconds)."""
+    """Solve one position by both codes; return times, differences, table and wheel angles (arc seconds)."""
     import tempfile
     import time
 
     from fem.drive.solution import solve_drive
+    from fem.options import SolutionOptions
     from fem.referee.calculix import RefereeAnswer, tabulate_answers
     from fem.referee.calculix_deck import PENALTY_FACTOR
     from ltca.reading.drive_file import load_drive
 
     cpu = time.process_time()
-    solution = solve_drive(load_drive("paper").cases[CASE], ANGLE, scale=size)
+    solution = solve_drive(load_drive("paper").cases[CASE], ANGLE, SolutionOptions(size=size))
     row: dict = {"size": size, "unknowns": solution.unknowns, "cpu_seconds": time.process_time() - cpu}
     row["ours"] = arcseconds(solution.pose.wheel_angle)
     row["half_the_pressures"] = [arcseconds(halve_pressures(solution, first)) for first in (1, 2)]
@@ -191,9 +194,9 @@ def arcseconds(angle: float) -> float:
 
 
 def halve_pressures(solution: FullSolution, first: int) -> float:
-    """Return the wheel's angle, rad, with pressures at every other vertex alone, linear between: `first` is 1 or 2.
+    """Return the wheel angle, rad, with pressure unknowns at every other vertex, linear in between; `first` is 1 or 2.
 
-    Meshes, compliances and gaps stay; pressures are a subspace of what they were, so only the contact is coarser.
+    Meshes, compliances and gaps are unchanged; only the space of the pressures is coarser.
     """
     import numpy as np
 
@@ -218,22 +221,26 @@ def halve_pressures(solution: FullSolution, first: int) -> float:
         external=whole.external,
     )
     found = solve_floating_contact(part, basis.T @ solution.state.contact.pressure > 0.0)
-    # The fourth motion is the turn of the wheel from the pose.
+    # The fourth motion is the rotation of the wheel relative to the pose.
     return float(solution.pose.wheel_angle + found.motion[3])
 
 
 def main() -> None:
-    """Measure every size in a process of its own and print the table."""
+    """Run the measurements in separate processes and print the tables."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--sizes", type=float, nargs="*", default=[6.0, 2.0, 1.0, 0.5, 0.38])
-    parser.add_argument("--ccx", type=float, nargs="*", metavar="SIZE", help="CalculiX on decks of these sizes (1)")
-    parser.add_argument("--penalty", type=float, nargs="+", default=[], help="its penalty factors (the deck's)")
-    parser.add_argument("--series", type=int, metavar="N", help="a turn of the crank in N positions")
-    parser.add_argument("--series-size", type=float, default=1.0, help="their element edge (1)")
+    parser.add_argument("--ccx", type=float, nargs="*", metavar="SIZE", help="element sizes of decks for CalculiX (1)")
     parser.add_argument(
-        "--refereed", type=int, default=0, metavar="N", help="how many of them CalculiX solves, too (0)"
+        "--penalty", type=float, nargs="+", default=[], help="penalty factors of CalculiX (that of the deck)"
     )
-    parser.add_argument("--keep", type=Path, metavar="FOLDER", help="keep CalculiX's answers here and use those kept")
+    parser.add_argument("--series", type=int, metavar="N", help="number of positions over a turn of the crank")
+    parser.add_argument("--series-size", type=float, default=1.0, help="element size of the series (1)")
+    parser.add_argument(
+        "--refereed", type=int, default=0, metavar="N", help="number of these positions solved by CalculiX (0)"
+    )
+    parser.add_argument(
+        "--keep", type=Path, metavar="FOLDER", help="store the solutions of CalculiX here and reuse them"
+    )
     parser.add_argument("--out", type=Path)
     parser.add_argument("--worker", help=argparse.SUPPRESS)
     arguments = parser.parse_args()
@@ -269,11 +276,11 @@ def main() -> None:
 
 
 def run_worker(task: str, size: float, *options: str) -> dict:
-    """Do one task in a process of its own."""
+    """Run one task in a separate process."""
     words = [sys.executable, __file__, "--worker", f"{task}:{size}", *options]
     done = subprocess.run(words, stdout=subprocess.PIPE, text=True, check=False)
     if done.returncode != 0:
-        # It has said why.
+        # The worker has printed the reason.
         raise SystemExit(done.returncode)
     return json.loads(done.stdout.splitlines()[-1])
 
@@ -298,7 +305,7 @@ def time_sizes(sizes: list[float]) -> list[dict]:
 
 
 def time_series(size: float, options: list[str]) -> dict:
-    """Time a series and print it, with the ratio to CalculiX where that solved some of it."""
+    """Time a series and print it, with the ratio to CalculiX for the positions that it solved."""
     done = run_worker("series", size, *options)
     rows = done["rows"]
     solved = [row for row in rows if "ccx" in row]
@@ -309,13 +316,13 @@ def time_series(size: float, options: list[str]) -> dict:
     own = sum(row["cpu_seconds"] for row in rows)
     print(
         f"{len(rows)} positions of size {size:g}: CPU {own:.1f} s, "
-        f"{sum(row['seconds'] for row in rows):.1f} s by the clock, {done['memory_MB']:.0f} MB"
+        f"{sum(row['seconds'] for row in rows):.1f} s wall time, {done['memory_MB']:.0f} MB"
     )
     if solved:
         theirs = sum(row["ccx"]["cpu_seconds"] for row in solved)
         same = sum(row["cpu_seconds"] for row in solved)
         print(
-            f"CalculiX, {len(solved)} of them: CPU {theirs:.0f} s, {theirs / same:.0f} times ours of the same ones; largest "
+            f"CalculiX, {len(solved)} of them: CPU {theirs:.0f} s, {theirs / same:.0f} times that of fem; largest "
             f"difference of a load {100.0 * max(row['ccx']['load_difference'] for row in solved):.3f} % of the largest of its "
             f"kind, of the wheel angle {max(abs(row['ccx']['wheel_difference']) for row in solved):.3f}″"
         )
@@ -325,7 +332,7 @@ def time_series(size: float, options: list[str]) -> dict:
 
 
 def compare_sizes(sizes: list[float], options: list[str]) -> list[dict]:
-    """Compare every size with CalculiX and print the tables, times and differences last."""
+    """Compare with CalculiX for all sizes and print tables, times and differences."""
     rows = []
     for size in sizes:
         rows.append(run_worker("ccx", size, *options))
@@ -334,7 +341,7 @@ def compare_sizes(sizes: list[float], options: list[str]) -> list[dict]:
             print(f"  {line}")
     print(
         f"\n{'size':>5}{'unknowns':>10}{'penalty':>9}{'CPU s':>9}{'ccx CPU s':>10}{HEADINGS}"
-        f"{'wheel, ″':>12}{'every other pressure':>22}"
+        f"{'wheel, ″':>12}{'half the pressures':>22}"
     )
     for row in rows:
         first, second = row["half_the_pressures"]

@@ -1,9 +1,9 @@
-"""How long the program and the package take to start: processor and wall seconds of fresh processes.
+"""Start-up time of program and package: processor and wall time of fresh processes.
 
     python benchmarks/imports.py [--rounds 5]
 
-The smallest of the rounds counts; compare ratios with a bare interpreter and with numpy, the first rows. What takes
-the time of a row: ``python -X importtime -m ltca.commands.program --help``.
+Values are the smallest of several rounds; compare with the bare interpreter and numpy in the first rows. For the import time
+of single modules: ``python -X importtime -m ltca.commands.program --help``.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ ROWS = {
 
 
 def spent(words: list[str]) -> tuple[float, float]:
-    """Return processor and wall seconds of a fresh interpreter."""
+    """Return processor and wall time, s, of a fresh interpreter."""
     with tempfile.TemporaryDirectory() as folder:
         command = [sys.executable, *words, *(["--out", f"{folder}/run"] if "--no-figures" in words else [])]
         before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
@@ -42,7 +42,7 @@ def spent(words: list[str]) -> tuple[float, float]:
 def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--rounds", type=int, default=5, help="of which the best counts; default 5")
+    parser.add_argument("--rounds", type=int, default=5, help="number of rounds; default 5")
     rounds = parser.parse_args().rounds
     print(f"{'':<34}{'processor s':>12}{'wall s':>9}")
     for name, words in ROWS.items():

@@ -1,9 +1,9 @@
-"""``tables`` against ``direct``: cost per position and agreement, in one run.
+"""Compare ``tables`` with ``direct``: cost per position and differences, in one run.
 
     python benchmarks/methods.py [--positions 360]
 
-Both methods solve the same positions in the same process; tables in one batch, direct with contact grids in every
-iteration from the solution on tables (its time includes that) and from first contact (nothing borrowed).
+Both methods solve the same positions in the same process: tables in one batch; direct, with contact grids in every
+iteration, from the solution on tables (included in its time) and from first contact (cold start).
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ from ltca.reading.drive_file import load_drive
 def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--positions", type=int, default=360, help="positions of the tables' batch; default 360")
-    parser.add_argument("--every", type=int, default=30, help="direct solves every so many of them; default 30")
+    parser.add_argument("--positions", type=int, default=360, help="number of positions for tables; default 360")
+    parser.add_argument("--every", type=int, default=30, help="interval of the positions solved by direct; default 30")
     arguments = parser.parse_args()
     cases = load_drive("paper").cases
     angles = position_angles(arguments.positions)
@@ -46,7 +46,7 @@ def main() -> None:
             Reducer(discs=(HalfSpaceCompliance.of_drive(drive),)),
             Reducer(discs=(GridCompliance.of_drive(drive),)),
         )
-        solve_equilibrium(grids, few[:1], moment)  # the matrices of the grids are kept, as tables are
+        solve_equilibrium(grids, few[:1], moment)  # fills the cache of grid matrices
         start = time.perf_counter()
         balanced = solve_equilibrium(tables, angles, moment)
         tabled = (time.perf_counter() - start) / angles.size

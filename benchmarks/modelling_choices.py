@@ -1,13 +1,13 @@
-"""What choices of the model move that both sides of a comparison share: ``python benchmarks/modelling_choices.py``.
+"""Effect of assumptions common to LTCA and full finite elements: ``python benchmarks/modelling_choices.py``.
 
-LTCA ``fe`` and full finite elements hold the wheel pins by the same rigid core, the race by the same bore, and are both in plane
-strain; what they differ by is precision. How far such a choice moves the answer is part of accuracy, and is measured here on the
-paper's drive over some positions of a turn:
+LTCA ``fe`` and full finite elements support the wheel pins by the same rigid core and the race by the same bore, and both assume
+plane strain, so their difference measures precision only. The effect of these assumptions is part of the accuracy and is measured
+here on the paper's drive for some positions of a turn:
 
-- the radius of the rigid core of the wheel pins and the fixed bore of the inner race, by ``fe`` on coefficients derived for each,
-- plane stress for plane strain, and shaft pins that yield at their holes, by full finite elements.
+- radius of the rigid core of the wheel pins and of the fixed bore of the inner race, by ``fe`` with coefficients for each,
+- plane stress instead of plane strain, and elastic contact of the shaft pins, by full finite elements.
 
-Meshes are coarse and stated: both sides of a difference have the same.
+Meshes are coarse, and equal on both sides of a difference.
 """
 
 from __future__ import annotations
@@ -30,7 +30,9 @@ from ltca.arrays import FloatArray
 
 sys.path[0] = str(Path(__file__).resolve().parents[1])  # the package fem, not the benchmark of that name
 
+from fem.body.elasticity import PlaneState
 from fem.coefficients.dataset import derive_coefficients
+from fem.options import SolutionOptions
 from fem.reducer.series import solve_positions
 from fem.shapes import DriveShapes
 from ltca.analysis.engines import PlaneStrain
@@ -43,14 +45,14 @@ from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
 
 CORES = (0.3, 1.0, 3.5)
-"""Radii of the rigid core of the wheel pins beside the default, mm."""
+"""Radii of the rigid core of the wheel pins, compared with the default, mm."""
 BORES = (5.0, 15.0)
-"""Radii of the fixed bore of the inner race beside the default, mm."""
+"""Radii of the fixed bore of the inner race, compared with the default, mm."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Answer:
-    """Loads of all contacts (N), largest pressures of flank and holes (MPa) and wheel angle (″), position by position."""
+    """Loads of all contacts, N, largest pressures of flank and holes, MPa, and wheel angle, arc seconds, at every position."""
 
     load: FloatArray
     flank: FloatArray
@@ -59,7 +61,7 @@ class Answer:
 
 
 def by_coefficients(drive: Drive, angles: FloatArray, size: float, stations: float, **chosen: Any) -> Answer:
-    """Return the answer of ``fe`` on coefficients derived for a choice."""
+    """Return the results of ``fe`` with coefficients derived for given options."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "coefficients.nc"
         derive_coefficients(drive, stations=stations, size=size, **chosen).to_netcdf(path, engine="h5netcdf")
@@ -73,10 +75,10 @@ def by_coefficients(drive: Drive, angles: FloatArray, size: float, stations: flo
     )
 
 
-def by_full_solution(drive: Drive, angles: FloatArray, scale: float, **chosen: Any) -> Answer:
-    """Return the answer of full finite elements."""
+def by_full_solution(drive: Drive, angles: FloatArray, size: float, plane: PlaneState = "strain") -> Answer:
+    """Return the results of full finite elements."""
     loads, flank, hole, wheel = [], [], [], []
-    for solution in solve_positions(drive, angles.tolist(), scale=scale, **chosen):
+    for solution in solve_positions(drive, angles.tolist(), SolutionOptions(size=size, plane=plane)):
         (disc,) = solution.discs
         contacts = disc.contacts
         loads.append(np.concatenate((contacts.pin_load, contacts.roller_load, contacts.pin_shaft_load)))
@@ -87,7 +89,7 @@ def by_full_solution(drive: Drive, angles: FloatArray, scale: float, **chosen: A
 
 
 def row(name: str, base: Answer, other: Answer) -> str:
-    """Return what a choice moves, the farthest over the positions, each with its sign."""
+    """Return a table row with the largest signed changes over the positions."""
 
     def farthest(change: FloatArray) -> float:
         return float(change.flat[np.argmax(np.abs(change))])
@@ -101,18 +103,20 @@ def row(name: str, base: Answer, other: Answer) -> str:
 
 
 def main() -> None:
-    """Print what each choice moves."""
+    """Print the effect of every assumption."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--case", default="CS-1", help="case of the paper's drive (default %(default)s)")
-    parser.add_argument("--positions", type=int, default=4, help="over a turn of the crank (default %(default)s)")
+    parser.add_argument(
+        "--positions", type=int, default=4, help="positions over a turn of the crank (default %(default)s)"
+    )
     parser.add_argument(
         "--size",
         type=float,
         default=2.0,
-        help="multiple of the default element edges, on all meshes (default %(default)s)",
+        help="element edge relative to the default, for all meshes (default %(default)s)",
     )
     parser.add_argument(
-        "--stations", type=float, default=0.5, help="multiple of the default stations (default %(default)s)"
+        "--stations", type=float, default=0.5, help="number of stations relative to the default (default %(default)s)"
     )
     arguments = parser.parse_args()
     drive, angles = load_drive("paper").cases[arguments.case], position_angles(arguments.positions)
@@ -123,7 +127,7 @@ def main() -> None:
         f"paper {arguments.case}, {drive.load_words()}, {angles.size} positions; meshes of {size:g} times the default edge,"
     )
     print(
-        f"{stations:g} times the default stations; the farthest over the positions, loads of the largest of each position"
+        f"{stations:g} times the default stations; largest change over the positions, loads relative to the largest at a position"
     )
     print(f"{'':<44}{'load, %':>9}{'flank, %':>9}{'hole, %':>9}{'wheel, ″':>9}", flush=True)
     base = by_coefficients(drive, angles, size, stations)
@@ -135,7 +139,7 @@ def main() -> None:
         print(row(f"{name} (fe)", base, by_coefficients(drive, angles, size, stations, **chosen)), flush=True)
     full = by_full_solution(drive, angles, size)
     print(
-        row("plane strain -> stress (full FE)", full, by_full_solution(drive, angles, size, state="stress")), flush=True
+        row("plane strain -> stress (full FE)", full, by_full_solution(drive, angles, size, plane="stress")), flush=True
     )
     elastic = with_fields(drive, {"pin_shaft.elastic_contact": True})
     print(row("shaft pins rigid -> elastic (full FE)", full, by_full_solution(elastic, angles, size)), flush=True)

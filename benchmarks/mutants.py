@@ -1,18 +1,17 @@
-"""Break random formulas one at a time and see whether a test notices: ``python benchmarks/mutants.py --count 100``.
+"""Mutation testing: break random formulas one at a time and run the tests: ``python benchmarks/mutants.py --count 100``.
 
-Formulas of `ltca`, `fem` and `validation` are broken in copies of the tree, never in place (``mutation/formulas.py``).
-Every mutant meets tests until one fails that passes on the original:
+Formulas of `ltca`, `fem` and `validation` are changed in copies of the tree, never in place (``mutation/formulas.py``).
+Tests are run on a mutant until one fails that passes on the original:
 
-1. quick tests of the files nearest to its own: the file named after it, its folder's, those that import it;
-2. what survives, all quick tests that run its line. Which do, tells a map (``mutation/covered_lines.py``) that takes a few
-   times the tests themselves and is kept, test file by test file, until sources or tests change;
-3. what survives, slow tests of the nearest files.
+1. quick tests of the nearest files: named after the source file, in the mirrored folder, or importing it;
+2. for survivors, all quick tests that execute the mutated line, from a coverage map (``mutation/covered_lines.py``). The map
+   takes a few times as long as the tests and is stored per test file until sources or tests change;
+3. for survivors, slow tests of the nearest files.
 
-Survivors are printed with their lines; those that no answer can tell from the original are explained in
-``mutation/equivalent.toml``. Answers are kept line by line in ``<out>/log.jsonl``: a run that was stopped goes on where it
-was, and ``--again`` asks only the survivors once more.
+Survivors are printed with their lines; equivalent mutants are listed with a reason in ``mutation/equivalent.toml``. Results
+are appended to ``<out>/log.jsonl``, so that an interrupted run can be continued; ``--again`` tests only the survivors again.
 
-Exit status 1 when 3 % survive or more, or one survives without an explanation.
+Exit status 1 if 3 % or more survive, or if a survivor is not listed as equivalent.
 """
 
 from __future__ import annotations
@@ -57,12 +56,12 @@ from mutation.processes import PYTEST_WORDS, in_fork, warm_up
 ROOT = Path(__file__).resolve().parents[1]
 EXPLAINED = Path(__file__).parent / "mutation" / "equivalent.toml"
 FIRST_LOOK, SECOND_LOOK = 20.0, 120.0
-"""Processor seconds of the tests a mutant meets first, and of those it meets when it survives them."""
+"""Processor time, s, of the tests in the first and in the second batch of stage 2."""
 MAP_SECONDS = 3000.0
 NEAREST = 12
-"""Files of tests that a mutant meets before the map is asked."""
+"""Number of nearest test files in stages 1 and 3."""
 NEAR_SECONDS = 300.0
-"""Processor seconds of one of them; ten times as much where slow tests are asked."""
+"""Processor time limit of one of these files, s; ten times as much for slow tests."""
 ACCEPTED = 0.03
 
 _tree: Path | None = None
@@ -72,36 +71,36 @@ _passed: dict[tuple[str, bool], bool] = {}
 
 
 class Failures:
-    """Plugin of pytest that remembers what failed."""
+    """Plugin of pytest that records failed tests."""
 
     def __init__(self) -> None:
         self.failed: list[str] = []
 
     def pytest_runtest_logreport(self, report: Any) -> None:
-        """Remember who noticed."""
+        """Record a failed test."""
         if report.failed:
             self.failed.append(report.nodeid)
 
     def pytest_collectreport(self, report: Any) -> None:
-        """A file that cannot be imported any more has noticed, too."""
+        """Record a test file that cannot be imported."""
         if report.failed:
             self.failed.append(f"{report.nodeid} (import)")
 
 
 class Chosen(Failures):
-    """Plugin of pytest that keeps some tests, in their order."""
+    """Plugin of pytest that selects tests and sets their order."""
 
     def __init__(self, names: list[str]) -> None:
         super().__init__()
         self.place = {name: number for number, name in enumerate(names)}
 
     def pytest_collection_modifyitems(self, items: list[Any]) -> None:
-        """Keep and sort."""
+        """Select and sort the tests."""
         items[:] = sorted((item for item in items if item.nodeid in self.place), key=lambda x: self.place[x.nodeid])
 
 
 def copy_tree(source: Path, to: Path) -> None:
-    """Copy what git knows or would know of a tree: what is edited meanwhile changes nothing."""
+    """Copy all tracked and unignored files of a tree, so that later edits have no effect."""
     words = ["git", "ls-files", "--cached", "--others", "--exclude-standard"]
     listed = subprocess.run(words, cwd=source, capture_output=True, text=True, check=True).stdout.splitlines()
     for name in listed:
@@ -111,12 +110,12 @@ def copy_tree(source: Path, to: Path) -> None:
 
 
 def prepare(snapshot: Path) -> None:
-    """Give this process a tree of its own and import what every run needs."""
+    """Create a copy of the tree for this process and import third-party packages."""
     global _tree
     _tree = Path(tempfile.mkdtemp(prefix="own-", dir=snapshot.parent))
     shutil.copytree(snapshot, _tree, dirs_exist_ok=True)
     for package in PACKAGES:
-        # By content: a broken file differs from its neighbour in time by nothing.
+        # Invalidate by content: mutated files may have the same time stamp.
         mode = py_compile.PycInvalidationMode.CHECKED_HASH
         compileall.compile_dir(_tree / package, quiet=1, invalidation_mode=mode)
     warm_up()
@@ -129,7 +128,7 @@ def own_tree() -> Path:
 
 
 def map_one(path: str, *, slow: bool) -> tuple[str, dict[str, Any] | None, str]:
-    """Return the part of the map that a test file gives, or its last words."""
+    """Return the part of the coverage map for a test file, or the end of its output."""
     tree = own_tree()
     how, answer = in_fork(partial(map_file, tree, path, slow=slow), tree, seconds=MAP_SECONDS)
     if how != "done":
@@ -138,7 +137,7 @@ def map_one(path: str, *, slow: bool) -> tuple[str, dict[str, Any] | None, str]:
 
 
 def run_tests(names: list[str]) -> dict[str, Any]:
-    """Run some tests until one fails; to be called in a fork."""
+    """Run given tests until one fails; to be called in a fork."""
     import pytest
 
     chosen = Chosen(names)
@@ -157,7 +156,7 @@ def run_file(path: str, *, slow: bool) -> dict[str, Any]:
 
 
 def try_nearest(job: tuple[Mutant, list[str]], *, slow: bool) -> dict[str, Any]:
-    """Return what the tests of some files say of a mutant."""
+    """Return the result of the tests of given files for a mutant."""
     mutant, files = job
     tree, began = own_tree(), time.monotonic()
     seconds = NEAR_SECONDS * (10.0 if slow else 1.0)
@@ -166,7 +165,7 @@ def try_nearest(job: tuple[Mutant, list[str]], *, slow: bool) -> dict[str, Any]:
         with broken(tree, mutant):
             how, answer = in_fork(partial(run_file, path, slow=slow), tree, seconds=seconds)
         met += 1
-        if how == "done" and answer["code"] in (0, 5):  # all passed, or none is that slow
+        if how == "done" and answer["code"] in (0, 5):  # all passed, or no test selected
             continue
         if not passes(tree, path, answer["failed"][0] if how == "done" and answer["failed"] else "", slow=slow):
             continue
@@ -178,7 +177,7 @@ def try_nearest(job: tuple[Mutant, list[str]], *, slow: bool) -> dict[str, Any]:
 
 @contextmanager
 def broken(tree: Path, mutant: Mutant) -> Iterator[None]:
-    """Break a formula of this process's tree for a while."""
+    """Apply a mutant to the tree of this process within the context."""
     place = tree / mutant.path
     original = place.read_text(encoding="utf-8")
     place.write_text(mutant.apply(tree), encoding="utf-8")
@@ -189,7 +188,7 @@ def broken(tree: Path, mutant: Mutant) -> Iterator[None]:
 
 
 def passes(tree: Path, path: str, name: str, *, slow: bool) -> bool:
-    """Whether a test, or all of its file, passes on the original: asked once."""
+    """Return whether a test, or a whole file, passes on the original; cached."""
     key = (name or path, slow)
     if key not in _passed:
         work = partial(run_tests, [name]) if "::" in name else partial(run_file, path, slow=slow)
@@ -199,7 +198,7 @@ def passes(tree: Path, path: str, name: str, *, slow: bool) -> bool:
 
 
 def answer_on(mutant: Mutant, outcome: str, noticed: str, met: int, began: float) -> dict[str, Any]:
-    """Return the entry of the log on a mutant."""
+    """Return the log entry of a mutant."""
     fields = {
         name: value for name, value in asdict(mutant).items() if name in ("path", "line", "before", "after", "text")
     }
@@ -208,7 +207,7 @@ def answer_on(mutant: Mutant, outcome: str, noticed: str, met: int, began: float
 
 
 def try_mutant(job: tuple[Mutant, list[tuple[str, float]]]) -> dict[str, Any]:
-    """Return what the tests that run its line say of a mutant."""
+    """Return the result of the tests that execute the line of a mutant."""
     mutant, tests = job
     tree, began = own_tree(), time.monotonic()
     outcome, noticed, met = ("survived" if tests else "no test runs it"), "", 0
@@ -228,7 +227,7 @@ def try_mutant(job: tuple[Mutant, list[tuple[str, float]]]) -> dict[str, Any]:
 
 
 def _looks(tests: list[tuple[str, float]]) -> Iterable[tuple[list[str], float]]:
-    """Cut the tests into those of the first and of the second look."""
+    """Divide the tests into a first and a second batch."""
     looks: list[tuple[list[str], float]] = [([], 0.0), ([], 0.0)]
     for name, seconds in tests:
         for number, bound in enumerate((FIRST_LOOK, SECOND_LOOK)):
@@ -241,7 +240,7 @@ def _looks(tests: list[tuple[str, float]]) -> Iterable[tuple[list[str], float]]:
 
 
 def make_map(tree: Path, folder: Path, pool: Any, *, slow: bool) -> CoverageMap:
-    """Return the map of covered lines, made where it is missing or no longer holds."""
+    """Return the coverage map; missing or outdated parts are computed."""
     found = {path: read_part(folder, tree, path, slow=slow) for path in test_files(tree)}
     parts = {path: part for path, part in found.items() if part is not None}
     left = [path for path in found if path not in parts]
@@ -257,7 +256,7 @@ def make_map(tree: Path, folder: Path, pool: Any, *, slow: bool) -> CoverageMap:
 
 
 def read_log(path: Path) -> dict[str, dict[str, Any]]:
-    """Return the last answer on every mutant met so far."""
+    """Return the last result of every mutant tested so far."""
     if not path.exists():
         return {}
     entries = [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines() if line.endswith("}")]
@@ -265,14 +264,14 @@ def read_log(path: Path) -> dict[str, dict[str, Any]]:
 
 
 def explanations() -> dict[str, str]:
-    """Return why mutants give the same answers, by their keys."""
+    """Return the reasons of equivalent mutants by key."""
     return {
         entry["mutant"]: entry["why"] for entry in tomllib.loads(EXPLAINED.read_text(encoding="utf-8")).get("same", [])
     }
 
 
 def report(entries: list[dict[str, Any]]) -> int:
-    """Print what survived and the counts; return the exit status."""
+    """Print survivors and counts; return the exit status."""
     why = explanations()
     alive = [entry for entry in entries if not entry["outcome"].startswith("killed")]
     for entry in sorted(alive, key=lambda entry: (entry["path"], entry["line"])):
@@ -290,18 +289,16 @@ def report(entries: list[dict[str, Any]]) -> int:
 
 
 def main() -> int:
-    """Map, break, report."""
+    """Run the mutation tests and print the report."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--count", type=int, default=100, help="formulas to break; default 100")
-    parser.add_argument("--seed", type=int, default=1, help="of the choice; default 1")
+    parser.add_argument("--count", type=int, default=100, help="number of mutants; default 100")
+    parser.add_argument("--seed", type=int, default=1, help="seed of the selection; default 1")
     parser.add_argument("--package", choices=PACKAGES, action="append", help="default: all three")
     parser.add_argument("--processes", type=int, default=2, help="default 2")
-    parser.add_argument("--slow", action="store_true", help="slow tests in the map, too: a longer map, fewer survivors")
-    parser.add_argument(
-        "--near-only", action="store_true", help="no map: the nearest files alone, quick tests, then slow"
-    )
-    parser.add_argument("--again", action="store_true", help="ask survivors of the log once more")
-    parser.add_argument("--map-only", action="store_true", help="make the map and stop")
+    parser.add_argument("--slow", action="store_true", help="include slow tests in the map")
+    parser.add_argument("--near-only", action="store_true", help="use only the nearest files, quick tests, then slow")
+    parser.add_argument("--again", action="store_true", help="test survivors of the log again")
+    parser.add_argument("--map-only", action="store_true", help="compute the map only")
     parser.add_argument("--out", type=Path, default=Path("out/mutants"), help="map and log; default out/mutants")
     arguments = parser.parse_args()
     if importlib.util.find_spec("coverage") is None:
@@ -316,7 +313,7 @@ def main() -> int:
 
 
 def break_one_by_one(tree: Path, arguments: argparse.Namespace) -> list[dict[str, Any]] | None:
-    """Return what the tests say of the mutants drawn; None when only the map was wanted."""
+    """Return the results for the selected mutants; None if only the map was requested."""
     drawn = draw_mutants(tree, tuple(arguments.package or PACKAGES), arguments.count, arguments.seed)
     context = multiprocessing.get_context("spawn")
     with context.Pool(arguments.processes, initializer=prepare, initargs=(tree,)) as pool:
@@ -328,7 +325,7 @@ def break_one_by_one(tree: Path, arguments: argparse.Namespace) -> list[dict[str
             known = {key: entry for key, entry in known.items() if entry["outcome"].startswith("killed")}
 
         def alive(stage: int) -> list[Mutant]:
-            """Return those that survive and have not met the tests of a stage."""
+            """Return survivors that have not been tested in a stage."""
             entries = [(mutant, known.get(mutant.key, {"outcome": "", "stage": 0})) for mutant in drawn]
             return [m for m, entry in entries if not entry["outcome"].startswith("killed") and entry["stage"] < stage]
 

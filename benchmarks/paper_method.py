@@ -1,9 +1,10 @@
-"""How often and where the paper's iteration fails from the paper's own start, and what it costs near a solution.
+"""Convergence of the paper's iteration from the paper's starting pose and from poses near the solution.
 
     python benchmarks/paper_method.py [--positions 72]
 
-The paper starts every case from its clearance-free analysis (Sect. 3.5: the displacements of Sect. 2), Newton's method
-undamped with finite-difference tangents. The same is tried from our solution at 95 % and at 50 % of the torque.
+The paper starts every case from its clearance-free analysis (Sect. 3.5: the displacements of Sect. 2) and uses Newton's method
+without damping, with finite-difference tangents. The iteration is also started from the solution of `ltca` at 95 % and 50 % of
+the torque.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ from validation.methods.paper_method import iterate_held_wheel, lead_of_pose, po
 
 
 def main() -> None:
-    """Print, for every case and start, convergence, failures and where they happen."""
+    """Print convergence, failures and their crank angles for every case and starting pose."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--positions", type=int, default=72, help="crank angles over one turn; default 72")
     arguments = parser.parse_args()
@@ -42,8 +43,8 @@ def main() -> None:
         model, moment = Reducer(discs=(HalfSpaceCompliance.of_drive(drive),)), drive.wheel_moment()
         starts = {
             "clearance-free solution (the paper's start)": paper_start,
-            "our solution at 95 % of the torque": solve_equilibrium(model, angles, 0.95 * moment).pose,
-            "our solution at 50 % of the torque": solve_equilibrium(model, angles, 0.50 * moment).pose,
+            "solution at 95 % of the torque": solve_equilibrium(model, angles, 0.95 * moment).pose,
+            "solution at 50 % of the torque": solve_equilibrium(model, angles, 0.50 * moment).pose,
         }
         for title, pose in starts.items():
             wheel, unknowns = lead_of_pose(model, angles, pose)
@@ -56,7 +57,9 @@ def main() -> None:
                 ours = solve_equilibrium(model, actual[good], moment)
                 theirs = model.respond(actual[good], at[good])
                 apart = np.max(np.abs(ours.response.pin_load - theirs.pin_load)) / np.max(theirs.pin_load)
-                line += f"; {np.mean(found.iterations[good]):.1f} steps, loads within {100.0 * apart:.1e} % of ours"
+                line += (
+                    f"; {np.mean(found.iterations[good]):.1f} steps, loads within {100.0 * apart:.1e} % of the solution"
+                )
             print(line)
             if np.any(failed):
                 for reason, count in Counter(reason for reason in found.failure if reason).items():

@@ -1,10 +1,9 @@
-"""Practical drives by the dearer models: ``python benchmarks/practical_models.py --direct 50 --hybrid 20 --fe 20 --full 5``.
+"""Practical drives by expensive models: ``python benchmarks/practical_models.py --direct 50 --hybrid 20 --fe 20 --full 5``.
 
-The drives are those of `ltca.testing.practical_drives`, by seed. Each has to be answered; beside it stand the largest
-residual as a part of the load and the largest wheel-pin load as a multiple of that of the tables, which differ by what each
-model adds. ``fe`` and ``hybrid`` derive their coefficients, 15 to 110 s a shape, once for both;
-``fe`` and full finite elements take drives whose rollers are as long as the disc is thick. Exit status 1 when a drive had no
-answer.
+The drives are those of `ltca.testing.practical_drives`, by seed. All of them have to be solved. Printed are the residual relative
+to the load and the largest wheel-pin load relative to that of the tables. ``fe`` and ``hybrid`` share derived coefficients, 15 to
+110 s per shape; ``fe`` and full finite elements use drives whose roller length equals the disc thickness. Exit status 1 if a
+drive has no solution.
 """
 
 from __future__ import annotations
@@ -30,14 +29,14 @@ ENGINES: dict[str, Engine] = {"direct": HalfSpace(method="direct"), "hybrid": Hy
 
 
 def largest_pin(engine: Engine, drive: Drive, angle: float) -> tuple[float, float]:
-    """Return the largest load of a wheel pin, N, and the residual as a part of the moment by its lever."""
+    """Return the largest wheel-pin load, N, and the residual times e u relative to the moment on the wheel."""
     found = engine.prepare(drive).balance(np.array([angle]), drive.load.torque)
     lever = drive.crank.eccentricity * drive.reduction_ratio
     return float(np.max(found.response.pin_load)), float(found.residual[0] * lever / abs(found.wheel_moment[0]))
 
 
 def try_model(name: str, drive: Drive, angle: float) -> dict[str, Any]:
-    """Return what one model says of one drive."""
+    """Return the results of one model for one drive."""
     tables, _ = largest_pin(HalfSpace(), drive, angle)
     began = time.perf_counter()
     try:
@@ -55,10 +54,12 @@ def try_model(name: str, drive: Drive, angle: float) -> dict[str, Any]:
 
 
 def main() -> int:
-    """Walk the drives of each model; exit status 1 when one had no answer."""
+    """Solve the drives with every model; exit status 1 if one has no solution."""
     parser = argparse.ArgumentParser(description=__doc__)
     for name in ("direct", "hybrid", "fe", "full"):
-        parser.add_argument(f"--{name}", type=int, default=0, metavar="N", help=f"drives by {name}; default 0")
+        parser.add_argument(
+            f"--{name}", type=int, default=0, metavar="N", help=f"number of drives for {name}; default 0"
+        )
     parser.add_argument("--out", type=Path, default=Path("out/practical_models.json"))
     arguments = parser.parse_args()
     arguments.out.parent.mkdir(parents=True, exist_ok=True)
@@ -79,7 +80,7 @@ def main() -> int:
             ratios = [row["pin_load_by_tables"] for row in rows.values() if row["answered"]]
             low, high = min(ratios), max(ratios)
             print(
-                f"{name}: {len(ratios)} of {len(rows)} answered, largest pin load {low:.3f} … {high:.3f} of the tables'"
+                f"{name}: {len(ratios)} of {len(rows)} answered, largest pin load {low:.3f} … {high:.3f} relative to tables"
             )
     return 1 if unanswered else 0
 

@@ -1,13 +1,13 @@
-"""Random valid drives, each balanced and checked by energies alone: ``python benchmarks/random_drives.py --count N``.
+"""Equilibrium of random valid drives, checked by energies alone: ``python benchmarks/random_drives.py --count N``.
 
-``--practical`` takes drives as people draw them instead (`ltca.testing.practical_drives`), ``--preloaded`` such whose parts
-overlap as drawn, ``--cranks`` reducers of all kinds (`ltca.testing.crank_drives`), ``--pins`` such whose pins are loose,
-sleeved or bend, ``--friction`` such that rub, each with its motion reversed as well (`ltca.testing.pin_drives`); none of them
-may be refused.
+``--practical`` generates drives with practical proportions (`ltca.testing.practical_drives`), ``--preloaded`` drives whose parts
+overlap as drawn, ``--cranks`` reducers of all kinds (`ltca.testing.crank_drives`), ``--pins`` reducers with loose, sleeved or
+bending pins, ``--friction`` reducers with friction, also with reversed motion (`ltca.testing.pin_drives`). All of these must
+be solved.
 
-Every answer is either confirmed by `ltca.testing.balance_check` (residual, complementarity, minimum of the potential) or a
-`ConvergenceError` with its history; anything else ends as a wrong answer, named with its seed. The result is
-written as JSON, also in between, so that a long run may be watched or stopped.
+A solution has to be confirmed by `ltca.testing.balance_check` (residual, complementarity, minimum of the potential) or be a
+`ConvergenceError` with its history; anything else counts as wrong and is reported with its seed. Results are written as JSON
+regularly, so that a long run can be monitored and interrupted.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ from ltca.testing.random_drives import random_reducer
 
 
 def try_friction_drive(seed: int) -> tuple[str, str, int]:
-    """Return outcome, detail and iterations of a drive with friction, moved by its input and by its output."""
+    """Return outcome, details and iterations of a drive with friction, driven by its input and by its output."""
     drive, angle = friction_drive(seed)
     model = HalfSpace().prepare(drive).model
     friction, outcome, problems, iterations = model.friction, "balanced", [], 0
@@ -47,7 +47,7 @@ def try_friction_drive(seed: int) -> tuple[str, str, int]:
         rubs = friction if driven_by == drive.load.driven_by else friction.reversed()
         moving = replace(model, friction=rubs)
         try:
-            balanced = solve_at_output(moving, own, np.array([angle]), drive.load.torque)
+            balanced = solve_at_output(moving, [own], np.array([angle]), drive.load.torque)
         except ConvergenceError as error:
             kind = "convergence error" if error.history else "error without history"
             return kind, f"driven by its {driven_by}: {error}", 0
@@ -63,7 +63,7 @@ def try_friction_drive(seed: int) -> tuple[str, str, int]:
 
 
 def try_drive(seed: int, draw: Callable[[int], tuple[Drive, float] | None]) -> tuple[str, str, int]:
-    """Return outcome, detail and iterations of the drive of a seed."""
+    """Return outcome, details and iterations of the drive of a seed."""
     if draw is friction_drive:
         return try_friction_drive(seed)
     drawn = draw(seed)
@@ -72,7 +72,7 @@ def try_drive(seed: int, draw: Callable[[int], tuple[Drive, float] | None]) -> t
     drive, angle = drawn
     try:
         model = HalfSpace().prepare(drive).model
-        balanced = solve_at_output(model, drive, np.array([angle]), drive.load.torque)
+        balanced = solve_at_output(model, [drive], np.array([angle]), drive.load.torque)
     except ConvergenceError as error:
         return ("convergence error" if error.history else "error without history"), str(error), 0
     problems = find_imbalance(drive, model, balanced, torque=drive.load.torque)
@@ -80,17 +80,17 @@ def try_drive(seed: int, draw: Callable[[int], tuple[Drive, float] | None]) -> t
 
 
 def main() -> int:
-    """Run the count asked for; exit status 1 when an answer was wrong."""
+    """Solve the drives; exit status 1 if a solution is wrong."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--count", type=int, default=2000, help="drives to draw; default 2000")
+    parser.add_argument("--count", type=int, default=2000, help="number of drives; default 2000")
     kind = parser.add_mutually_exclusive_group()
-    kind.add_argument("--practical", action="store_true", help="drives as people draw them")
+    kind.add_argument("--practical", action="store_true", help="drives with practical proportions")
     kind.add_argument(
         "--cranks", action="store_true", help="reducers of all kinds: several cranks, supports, first stages"
     )
-    kind.add_argument("--preloaded", action="store_true", help="such drives whose parts overlap as drawn")
-    kind.add_argument("--pins", action="store_true", help="such reducers with loose, sleeved and bent pins")
-    kind.add_argument("--friction", action="store_true", help="such reducers with friction, moved either way")
+    kind.add_argument("--preloaded", action="store_true", help="practical drives whose parts overlap as drawn")
+    kind.add_argument("--pins", action="store_true", help="reducers with loose, sleeved and bending pins")
+    kind.add_argument("--friction", action="store_true", help="reducers with friction, driven in both directions")
     parser.add_argument("--first", type=int, default=0, help="first seed; default 0")
     parser.add_argument("--out", type=Path, default=Path("out/random_drives.json"))
     arguments = parser.parse_args()
@@ -114,7 +114,7 @@ def main() -> int:
         start = time.perf_counter()
         outcome, detail, steps = try_drive(seed, draw)
         taken = time.perf_counter() - start
-        if number > 1 and taken > slowest:  # the first one builds the table of the contact law
+        if number > 1 and taken > slowest:  # the first drive includes the construction of the contact-law table
             slowest, slowest_seed = taken, seed
         outcomes[outcome] += 1
         iterations[steps] += 1

@@ -1,8 +1,8 @@
-"""Where the time of ``cyclo run paper`` goes, positions per second, and how cost grows with positions.
+"""Time of the parts of ``cyclo run paper``, positions per second, and cost against number of positions.
 
     python benchmarks/run_paper.py [--rounds 3]
 
-Times are wall seconds on whatever machine this runs; compare ratios.
+Times are wall times; compare ratios within one run.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ import numpy as np
 
 
 def cold_run(extra: list[str]) -> float:
-    """Return the wall seconds of a fresh process running the six cases."""
+    """Return the wall time, s, of a fresh process that runs the six cases."""
     with tempfile.TemporaryDirectory() as folder:
         command = [sys.executable, "-m", "ltca.commands.program", "run", "paper", "--out", folder, *extra]
         start = time.perf_counter()
@@ -34,7 +34,9 @@ def cold_run(extra: list[str]) -> float:
 def main() -> None:
     """Print the tables."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--rounds", type=int, default=3, help="of which the quickest counts; default 3")
+    parser.add_argument(
+        "--rounds", type=int, default=3, help="number of rounds, of which the fastest is used; default 3"
+    )
     rounds = parser.parse_args().rounds
     print("cold start, six cases x 360 positions, full and light torque")
     for name, extra in (
@@ -44,7 +46,7 @@ def main() -> None:
     ):
         print(f"  {name:<34}{min(cold_run(extra) for _ in range(rounds)):8.2f} s")
 
-    print("\nwhere it goes, warm process")
+    print("\ntime of the parts, warm process")
     start = time.perf_counter()
     import ltca.analysis.loaded_analysis
     import ltca.analysis.results

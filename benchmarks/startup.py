@@ -1,7 +1,7 @@
-"""Processor time of what every user meets first: ``cyclo run paper`` as typed, bare, ``check``, ``fem``, imports.
+"""Processor time of common commands in fresh processes: ``cyclo run paper``, ``check``, ``fem``, imports.
 
-Each line is the median of user and system time of fresh processes, with bytecode written before; beside another checkout the
-two take turns (A B A B), so that what else the machine does falls on both.
+Every value is the median of user plus system time, with bytecode compiled before. Two checkouts are measured alternately
+(A B A B), so that other load of the machine affects both equally.
 
     python benchmarks/startup.py
     python benchmarks/startup.py --runs 5 --against ../before
@@ -32,14 +32,14 @@ COMMANDS = {
 
 
 def processor_time(checkout: Path, words: list[str]) -> float:
-    """Return user and system time of a fresh process of a checkout, with its children, s."""
+    """Return user plus system time, s, of a fresh process of a checkout and its children."""
     own = checkout / ".venv" / "bin" / "python"
     python = str(own) if own.exists() else sys.executable
     environment = os.environ | {"PYTHONPATH": str(checkout), "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
     with tempfile.TemporaryDirectory() as folder:
         out = ["--out", f"{folder}/out"] if words[:2] == CYCLO and words[-1] != "--help" else []
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        # From elsewhere: a script's own folder comes first on the path, and hides modules of the same name.
+        # Run in another folder: the folder of a script is first on the path and would hide modules of the same name.
         subprocess.run([python, *words, *out], cwd=folder, env=environment, check=True, capture_output=True)
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
     return after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
@@ -53,9 +53,9 @@ def _median(values: list[float]) -> float:
 def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--runs", metavar="N", type=int, default=3, help="processes of each command; default 3")
-    parser.add_argument("--against", metavar="PATH", type=Path, help="another checkout, to take turns with")
-    parser.add_argument("--only", metavar="TEXT", default="", help="commands that hold a text")
+    parser.add_argument("--runs", metavar="N", type=int, default=3, help="processes per command; default 3")
+    parser.add_argument("--against", metavar="PATH", type=Path, help="another checkout, measured alternately")
+    parser.add_argument("--only", metavar="TEXT", default="", help="only commands that contain this text")
     arguments = parser.parse_args()
     checkouts = [HERE] if arguments.against is None else [HERE, arguments.against.resolve()]
     chosen = {name: words for name, words in COMMANDS.items() if arguments.only in name}
@@ -63,7 +63,7 @@ def main() -> None:
     print(f"{'':<42}" + "".join(f"{head:>13}" for head in heads))
     for name, words in chosen.items():
         for checkout in checkouts:
-            processor_time(checkout, words)  # writes bytecode, derives what is kept
+            processor_time(checkout, words)  # writes bytecode and fills the cache
         taken: list[list[float]] = [[] for _ in checkouts]
         for _ in range(arguments.runs):
             for own, checkout in zip(taken, checkouts, strict=True):

@@ -2,9 +2,9 @@
 
     python benchmarks/suite_times.py [--only "not slow"] [--processes 2] [--write]
 
-Processor seconds of a test are its own and those of the programs it starts, fixtures counted with the test that meets them
-first. ``--write`` puts the totals and the fifty slowest into ``tests/budget.toml``, where a review sees what a change costs;
-nothing asserts them. Words behind ``--`` go to pytest (files, ``-k``).
+The processor time of a test includes the programs that it starts; fixtures count for the first test that uses them.
+``--write`` writes the totals and the fifty slowest tests to ``tests/budget.toml``, for reviews; they are not asserted. Arguments
+after ``--`` are passed to pytest (files, ``-k``).
 """
 
 from __future__ import annotations
@@ -27,18 +27,18 @@ ROOT = Path(__file__).resolve().parents[1]
 BUDGET = ROOT / "tests" / "budget.toml"
 LISTED = 50
 FOLDER = "CYCLO_SUITE_TIMES"
-"""Environment variable with the folder that takes the times: by it the plugin knows that it is wanted."""
+"""Environment variable with the folder for the times; it activates the plugin."""
 
 
 def processor_seconds() -> float:
-    """Return the processor time of this process and of its ended children."""
+    """Return the processor time of this process and its terminated children."""
     times = os.times()
     return times.user + times.system + times.children_user + times.children_system
 
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, Any, Any]:
-    """Time a test with its set-up, and write it down at once: a killed worker loses nothing."""
+    """Time a test with its set-up and write the time immediately, so that it survives a killed worker."""
     began = processor_seconds()
     try:
         return (yield)
@@ -55,7 +55,7 @@ def set_of(marks: list[str]) -> str:
 
 
 def measure(only: str, processes: int, words: list[str]) -> tuple[list[tuple[str, float, list[str]]], float, int]:
-    """Return name, processor seconds and marks of every test that ran, the time on the clock and pytest's exit status."""
+    """Return name, processor time, s, and marks of all tests, the wall time, s, and the exit status of pytest."""
     with tempfile.TemporaryDirectory(prefix="suite-times-") as folder:
         environment = dict(os.environ, **{FOLDER: folder, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"})
         environment["PYTHONPATH"] = os.pathsep.join(
@@ -101,13 +101,13 @@ def main() -> int:
     parser.add_argument("--only", default="", help="expression of pytest's -m; default: all but nightly")
     parser.add_argument("--processes", type=int, default=2, help="workers of pytest-xdist; default 2")
     parser.add_argument("--write", action="store_true", help="write tests/budget.toml")
-    parser.add_argument("words", nargs="*", help="what pytest is given besides, behind --")
+    parser.add_argument("words", nargs="*", help="further arguments of pytest, after --")
     arguments = parser.parse_args()
     found, lasted, status = measure(arguments.only, arguments.processes, arguments.words)
     text = text_of(found, lasted)
     print(text)
-    if status not in (0, 1):  # stopped before the end, or nothing found: these are not the times of the set
-        print(f"pytest ended with status {status}: this is not all of it", file=sys.stderr)
+    if status not in (0, 1):  # interrupted, or no tests found: the times are incomplete
+        print(f"pytest ended with status {status}: the times are incomplete", file=sys.stderr)
         return 2
     if arguments.write:
         BUDGET.write_text(text, encoding="utf-8")

@@ -1,12 +1,12 @@
-"""What a release moves: summaries of all shipped drives by two versions of the code, side by side.
+"""Compare the summaries of all shipped drives between two versions of the code.
 
-    python benchmarks/summary_numbers.py HEAD~1            # against the tree as it is
+    python benchmarks/summary_numbers.py HEAD~1            # against the working tree
     python benchmarks/summary_numbers.py HEAD~2 HEAD~1 --positions 36
 
-A version is any commit that git knows by a name: a hash, a tag, a branch. Each is installed apart, without what it depends on
-(``pip install --target``: both run on the libraries that are installed here), and runs the drives that it ships and the other
-one reads; a line for every scalar of ``summary.json`` that moved by more than ``--beyond`` (a part of itself), as Markdown.
-Exit status 2 for a commit that is not there.
+A version is any git revision: a hash, a tag, a branch. Both are installed separately without dependencies
+(``pip install --target``; they use the libraries installed here) and run the drives that they ship and that the other version can
+read. Output is a Markdown table of the scalars of ``summary.json`` whose relative change exceeds ``--beyond``.
+Exit status 2 for an unknown commit.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ PROGRAM = (
 
 
 def commit_of(parser: argparse.ArgumentParser, revision: str) -> str:
-    """Return the hash of a commit by any name that git knows; end with a line where there is none."""
+    """Return the hash of a git revision; exit with a message if it does not exist."""
     words = ["git", "rev-parse", "--verify", "--quiet", "--end-of-options", f"{revision}^{{commit}}"]
     try:
         found = subprocess.run(words, cwd=ROOT, check=False, capture_output=True, text=True)
@@ -42,7 +42,7 @@ def commit_of(parser: argparse.ArgumentParser, revision: str) -> str:
 
 
 def install(revision: str | None, folder: Path) -> Path:
-    """Install a commit, or the tree as it is, into a folder of its own."""
+    """Install a commit, or the working tree, into a separate folder."""
     tree = folder / "tree"
     if revision is None:
         tree = ROOT
@@ -66,7 +66,7 @@ def install(revision: str | None, folder: Path) -> Path:
 
 
 def summaries(site: Path, drive: Path, positions: int, folder: Path) -> dict[str, dict[str, Any]] | None:
-    """Return the summary of every case of a drive file; None where this version cannot read it."""
+    """Return the summaries of all cases of a drive file; None if this version cannot read it."""
     environment = os.environ | {"PYTHONPATH": str(site), "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
     words = ["run", str(drive), "--no-figures", "--positions", str(positions), "--out", str(folder)]
     done = subprocess.run(
@@ -81,12 +81,12 @@ def summaries(site: Path, drive: Path, positions: int, folder: Path) -> dict[str
 
 
 def is_number(value: object) -> TypeGuard[float]:
-    """Tell a number; true and false are none."""
+    """Return whether a value is a number; booleans are not."""
     return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
 def rows(before: dict[str, Any], after: dict[str, Any], beyond: float) -> list[str]:
-    """Return a line for every scalar that both have and that moved."""
+    """Return table rows for the scalars of both versions that have changed."""
     lines = []
     for name, old in before.items():
         new = after.get(name)
@@ -104,9 +104,9 @@ def main() -> None:
     """Print the tables."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("before", help="commit")
-    parser.add_argument("after", nargs="?", help="commit; the tree as it is by default")
+    parser.add_argument("after", nargs="?", help="commit; default the working tree")
     parser.add_argument("--positions", type=int, default=360)
-    parser.add_argument("--beyond", type=float, default=1e-9, help="part of itself that a scalar has to move by")
+    parser.add_argument("--beyond", type=float, default=1e-9, help="relative change from which a scalar is listed")
     arguments = parser.parse_args()
     before = commit_of(parser, arguments.before)
     after = None if arguments.after is None else commit_of(parser, arguments.after)

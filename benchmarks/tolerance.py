@@ -1,10 +1,10 @@
-"""Throughput of the tolerance study of issue 6: the paper's CS-6, all deviations random, 28 positions over one turn.
+"""Throughput of a tolerance study: the paper's CS-6, all deviations random, 28 positions over one turn.
 
     python benchmarks/tolerance.py [--samples 10000] [--scheduler tcp://host:port]
 
-Prints positions per second with one and two workers (starting processes included, and the steady rate after the first
-batch of every worker), CPU time per position of the one worker, failures, and whether the files are the same byte for
-byte. On a machine with other work the wall times are theirs as well: look at the CPU time and the load printed beside.
+Prints positions per second with one and two workers (including the start of processes, and the steady rate after the first
+batch of every worker), processor time per position, failures, and whether the output files are byte-identical. On a machine with
+other load the wall times are affected by it: compare the processor time and the printed load.
 """
 
 from __future__ import annotations
@@ -26,11 +26,12 @@ from ltca.studies.execution.storage import StudyFolder
 from ltca.studies.execution.workers import Workers, solve_batches
 from ltca.studies.run_study import run_study
 from ltca.studies.study import Study
+from ltca.studies.study_results import read_failures
 from ltca.studies.tolerance_study import tolerance_study
 
 
 def cpu_seconds() -> float:
-    """CPU time of this process and its finished children."""
+    """Return the processor time, s, of this process and its terminated children."""
     return sum(
         usage.ru_utime + usage.ru_stime
         for usage in (resource.getrusage(resource.RUSAGE_SELF), resource.getrusage(resource.RUSAGE_CHILDREN))
@@ -38,7 +39,7 @@ def cpu_seconds() -> float:
 
 
 def measure(study: Study, where: Workers, folder: StudyFolder) -> tuple[float, float]:
-    """Run the study and return its positions per second, whole and steady (nan where each worker had one batch alone)."""
+    """Run the study and return positions per second, whole and steady (NaN if every worker had a single batch)."""
     workers = max(where.processes, 1)
     began, load = time.perf_counter(), os.getloadavg()[0]
     cpu = cpu_seconds()
@@ -71,8 +72,8 @@ def main() -> None:
         load_drive("paper"), case="CS-6", samples=arguments.samples, positions=arguments.positions, seed=1
     )
     print(f"{study.name}: {arguments.samples} samples × {arguments.positions} positions, {os.cpu_count()} cores")
-    print(f"  {'':<24}{'whole':>10}{'steady':>10}{'CPU µs':>12}{'machine load':>16}")
-    print(f"  {'':<24}{'pos./s':>10}{'pos./s':>10}{'a position':>12}")
+    print(f"  {'':<24}{'whole':>10}{'steady':>10}{'CPU µs':>13}{'machine load':>16}")
+    print(f"  {'':<24}{'pos./s':>10}{'pos./s':>10}{'per position':>13}")
     places = [Workers(), Workers(processes=2)]
     if arguments.scheduler:
         places.append(Workers(scheduler=arguments.scheduler))
@@ -80,10 +81,10 @@ def main() -> None:
         folders = [StudyFolder(path=Path(folder) / str(number)) for number in range(len(places))]
         rates = [measure(study, where, part) for where, part in zip(places, folders, strict=True)]
         print(f"  two workers by one: {rates[1][0] / rates[0][0]:.2f} whole, {rates[1][1] / rates[0][1]:.2f} steady")
-        failed = folders[0].failures(study)
+        failed = read_failures(folders[0].results)
         print(f"  failed samples: {len(failed)}")
         first = folders[0].results.read_bytes()
-        print(f"  the same files: {all(folder.results.read_bytes() == first for folder in folders[1:])}")
+        print(f"  identical files: {all(folder.results.read_bytes() == first for folder in folders[1:])}")
 
 
 if __name__ == "__main__":

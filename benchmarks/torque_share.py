@@ -1,14 +1,14 @@
-"""How several discs share the torque, by the kind and size of errors: ``python benchmarks/torque_share.py``.
+"""Torque shares of several discs, by kind and size of manufacturing errors: ``python benchmarks/torque_share.py``.
 
-For the robot joint of two and of three discs and for the paper's drive (CS-3) with two, each disc at the torque of the shipped
-drive and at a tenth of it: one error at a time on disc 1 (or one pin of the wheel), over one turn of the crank, and random
-drives by the shipped tolerances. Beside the equilibrium stands what springs say: disc k alone, under an equal part of the
-moment T, would take the wheel to w_k; with its slope K_k there the wheel goes to w = Σ K_k w_k/Σ K_k, and
+Drives: robot joint with two and with three discs and the paper's drive (CS-3) with two, at the shipped torque per disc
+and at a tenth of it. Errors: a single error of disc 1 (or of one wheel pin), over one turn of the crank, and random errors
+from the shipped tolerances. The equilibrium is compared with a spring model: w_k is the wheel angle of disc k alone under an
+equal share of the moment T, and K_k its torsional stiffness there. The common wheel angle is w = Σ K_k w_k/Σ K_k, and
 
     T_k = T/n + K_k (w − w_k),
 
-for two discs T_0 − T_1 = K (w_1 − w_0). So a disc carries 10 % more than its equal part (0.55 of two) where its w_k is off the
-common one by a tenth of the wind-up T/(n K).
+for two discs T_0 − T_1 = K (w_1 − w_0). A disc carries 10 % more than its equal share (0.55 of two) if its w_k differs from
+the common angle by a tenth of the wind-up T/(n K).
 """
 
 from __future__ import annotations
@@ -39,17 +39,17 @@ from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
 
 SIZES = (1.0, 2.0, 5.0, 10.0)
-"""Of errors, µm."""
+"""Sizes of errors, µm."""
 OVERLOAD = 0.1
-"""Of the disc that carries most, of its equal part: 0.55 of two discs."""
+"""Overload of the most heavily loaded disc relative to its equal share: 0.55 for two discs."""
 LARGEST = 50.0
-"""Size up to which that overload is looked for, µm."""
-STEP = 0.01
-"""Part of the moment by which slopes are taken."""
+"""Largest error in the search for that overload, µm."""
+RELATIVE_MOMENT_STEP = 0.01
+"""Relative change of the moment for finite-difference stiffnesses."""
 
 
 def error_fields(drive: Drive) -> dict[str, Callable[[float], dict[str, object]]]:
-    """Return the fields of each kind of error by its size, mm."""
+    """Return for each kind of error a function from its size, mm, to the fields of the drive."""
     pins, e = drive.pin_wheel.number_of_pins, drive.crank.eccentricity
 
     def pin(size: float) -> dict[str, object]:
@@ -73,37 +73,40 @@ def error_fields(drive: Drive) -> dict[str, Callable[[float], dict[str, object]]
 
 
 def shares(drive: Drive, angle: FloatArray, torque: float) -> FloatArray:
-    """Return the part of the torque that each disc carries, shape (positions, discs)."""
+    """Return the torque shares of the discs, shape (positions, discs)."""
     carried = disc_torques(HalfSpace().prepare(drive).balance(angle, torque).response)
     return np.asarray(carried / carried.sum(axis=1, keepdims=True))
 
 
 def alone(drive: Drive, angle: FloatArray, torque: float) -> tuple[FloatArray, FloatArray]:
-    """Return wheel angles and slopes of each disc alone under an equal part, shape (positions, discs), rad and N·mm/rad."""
+    """Return wheel angle, rad, and stiffness, N·mm/rad, of every disc alone under an equal share, shape (positions, discs)."""
     singles = single_discs(drive)
     part = drive.wheel_moment(torque) / len(singles)
     wheel, slope = [], []
     for single in singles:
         model = HalfSpace().prepare(single).model
-        at = [solve_equilibrium(model, angle, factor * part) for factor in (1.0 - STEP, 1.0, 1.0 + STEP)]
+        at = [
+            solve_equilibrium(model, angle, factor * part)
+            for factor in (1.0 - RELATIVE_MOMENT_STEP, 1.0, 1.0 + RELATIVE_MOMENT_STEP)
+        ]
         low, middle, high = (found.pose[:, WHEEL_ANGLE] for found in at)
         wheel.append(middle)
-        slope.append(2.0 * STEP * part / (high - low))
+        slope.append(2.0 * RELATIVE_MOMENT_STEP * part / (high - low))
     return np.stack(wheel, axis=1), np.stack(slope, axis=1)
 
 
 def spring_shares(drive: Drive, angle: FloatArray, torque: float) -> FloatArray:
-    """Return what springs in parallel say of the shares, shape (positions, discs)."""
+    """Return the shares of springs in parallel, shape (positions, discs)."""
     wheel, slope = alone(drive, angle, torque)
     common = (slope * wheel).sum(axis=1, keepdims=True) / slope.sum(axis=1, keepdims=True)
     return np.asarray(1.0 / wheel.shape[1] + slope * (common - wheel) / drive.wheel_moment(torque))
 
 
 def size_of_overload(largest: Callable[[float], float], discs: int) -> float | None:
-    """Return the size in µm at which the largest share is 1.1/n within 1 % of the overload, None beyond `LARGEST`.
+    """Return the error, µm, at which the largest share is 1.1/n within 1 % of the overload; None above `LARGEST`.
 
-    Shares grow nearly in proportion to errors: the size is scaled until it fits. Where contacts come and go they jump, and
-    halving what is left finds the size at which they pass it.
+    The share is nearly proportional to the error, so the error is scaled iteratively. Where opening or closing contacts make the
+    share discontinuous, bisection is used instead.
     """
     goal, size = OVERLOAD / discs, SIZES[0]
     low, high = 0.0, math.inf
@@ -121,7 +124,7 @@ def size_of_overload(largest: Callable[[float], float], discs: int) -> float | N
 
 
 def print_errors(drive: Drive, angle: FloatArray, torque: float) -> None:
-    """Print a row for each kind and size of error."""
+    """Print one row per kind and size of error."""
     discs = drive.disc.number_of_discs
     wheel, slope = alone(drive, angle, torque)
     spring = abs(drive.wheel_moment(torque)) / discs / slope
@@ -147,13 +150,13 @@ def print_errors(drive: Drive, angle: FloatArray, torque: float) -> None:
 
         needed = size_of_overload(largest, discs)
         told = f"beyond {LARGEST:g}" if needed is None else f"{needed:.1f}"
-        print(f"  {name:<34}{told:>5} µm  give a largest share of {(1.0 + OVERLOAD) / discs:.3f}", flush=True)
+        print(f"  {name:<34}{told:>5} µm  for a largest share of {(1.0 + OVERLOAD) / discs:.3f}", flush=True)
 
 
 def print_scatter(
     drive: Drive, tolerances: Tolerances, what: str, samples: int, angle: FloatArray, torque: float
 ) -> None:
-    """Print the largest and mean shares of random drives."""
+    """Print statistics of the largest and mean shares of random drives."""
     factors = Factors.of_tolerances(drive, tolerances)
     drawn = factors.draw(np.random.default_rng(1).random((samples, len(factors.paths))))
     each = [shares(with_fields(drive, factors.values(row)), angle, torque) for row in drawn]
@@ -169,7 +172,7 @@ def print_scatter(
 
 
 def drives() -> dict[str, tuple[Drive, Tolerances]]:
-    """Return the drives and how they scatter; the torque of a disc is that of the shipped drive's."""
+    """Return the drives with their tolerances; the torque per disc is that of the shipped drive."""
     joint = parse_drive(shipped_drive("robot-joint"), "robot-joint")
     nominal = joint.cases["nominal"]
     three = {"disc.number_of_discs": 3, "disc.phases": (), "disc.planes": (), "load.torque": 1.5 * nominal.load.torque}
@@ -188,9 +191,9 @@ def main() -> None:
     """Print the tables."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument(
-        "--positions", type=int, default=41, help="over a turn, no factor in common with teeth and holes"
+        "--positions", type=int, default=41, help="positions over a turn, coprime to the numbers of teeth and holes"
     )
-    parser.add_argument("--samples", type=int, default=200, help="random drives of each kind; default 200")
+    parser.add_argument("--samples", type=int, default=200, help="random drives per table; default 200")
     arguments = parser.parse_args()
     angle = position_angles(arguments.positions)
     began = time.perf_counter()
@@ -200,7 +203,7 @@ def main() -> None:
             torque = part * drive.load.torque
             print(f"\n{name}, {arguments.positions} positions")
             print_errors(drive, angle, torque)
-            print_scatter(drive, pins, "wheel pins by their tolerances", arguments.samples, angle, torque)
+            print_scatter(drive, pins, "tolerances of the wheel pins", arguments.samples, angle, torque)
             print_scatter(drive, tolerances, "all tolerances", arguments.samples, angle, torque)
     print(f"\n{time.perf_counter() - began:.0f} s")
 

@@ -1,11 +1,11 @@
-"""The way of a drive through the code: files in the order in which functions that take the drive are first called.
+"""Path of a drive through the code: files in the order in which functions that take the drive are first called.
 
     python benchmarks/walk.py [analyse|run|study] [--files]
 
-Every function of the packages is counted once, when it is first handed a `Drive`, or something that holds one. A stay is a run
-of such calls within one file; a return is a stay in a file that was left before. What a drive is asked itself (its methods and
-properties) is no stay, nor what a cache answers. The way of an analysis begins at `ltca.analyse`, those of a run and of a study
-at the command line.
+Every function of the packages is counted once, when it is first called with a `Drive` or a collection of drives. A stay is a
+sequence of such calls within one file; a return is a stay in a file that was left before. Methods and properties of the drive
+itself and cached calls are not counted. The path of an analysis begins at `ltca.analyse`, those of a run and of a study at the
+command line.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ def of_an_analysis() -> None:
 
 
 def of_a_run() -> None:
-    """Run all cases of a drive, the page left out."""
+    """Run all cases of a drive without the page."""
     with tempfile.TemporaryDirectory() as folder:
         cyclo(["run", "paper", "--positions", "4", "--no-page", "--out", f"{folder}/out"])
 
@@ -50,7 +50,7 @@ ENTRIES: dict[str, Callable[[], None]] = {"analyse": of_an_analysis, "run": of_a
 
 
 def holds_a_drive(value: Any) -> bool:
-    """Tell whether an argument is a drive or a plain collection of drives."""
+    """Return whether an argument is a drive or a collection of drives."""
     if isinstance(value, Drive):
         return True
     if isinstance(value, dict):
@@ -59,7 +59,7 @@ def holds_a_drive(value: Any) -> bool:
 
 
 def visits(work: Callable[[], None]) -> list[str]:
-    """Return the file of every function that is handed a drive, in the order of their first calls."""
+    """Return the files of all functions called with a drive, in the order of their first calls."""
     seen: set[CodeType] = set()
     files: list[str] = []
 
@@ -83,15 +83,15 @@ def visits(work: Callable[[], None]) -> list[str]:
 
 
 def stays_of(files: list[str]) -> list[str]:
-    """Return the files stayed in, one after the other."""
+    """Return the sequence of files, with consecutive duplicates removed."""
     return [name for place, name in enumerate(files) if place == 0 or files[place - 1] != name]
 
 
 def main() -> None:
     """Print stays and returns."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("entry", nargs="?", choices=[*ENTRIES], help="which way; all by default")
-    parser.add_argument("--files", action="store_true", help="the files stayed in")
+    parser.add_argument("entry", nargs="?", choices=[*ENTRIES], help="which path; default all")
+    parser.add_argument("--files", action="store_true", help="print the files")
     arguments = parser.parse_args()
     for name in [arguments.entry] if arguments.entry else ENTRIES:
         stays = stays_of(visits(ENTRIES[name]))

@@ -1,8 +1,8 @@
-"""Where the assumptions of the tables end: errors of a half-plane against an elastic cylinder with its true boundary.
+"""Errors of the half-plane for wide contacts, compared with an elastic cylinder with its true boundary.
 
-``python benchmarks/wide_contacts.py``: load, half-width and largest pressure at the same approach, per cent of
-`ltca.testing.elastic_cylinder.press_cylinder`, over the half-width by the radius. ``parabola`` is what the tables take for the
-separation, ``circle`` what ``direct`` takes.
+``python benchmarks/wide_contacts.py`` prints the errors of load, half-width and largest pressure at equal approach, in per
+cent of `ltca.testing.elastic_cylinder.press_cylinder`, over the ratio of half-width to radius. ``parabola`` is the separation
+used by the tables, ``circle`` that of ``direct``.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ def errors(found: CylinderContact, right: CylinderContact) -> str:
 
 
 def main() -> None:
-    """Print the curve."""
+    """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--widths", type=float, nargs="+", default=WIDTHS, help="b/r; default 0.02 to 0.3")
     arguments = parser.parse_args()

@@ -30,7 +30,7 @@ root_doc = "index"
 exclude_patterns = ["build", "gallery/**/*.ipynb", "gallery/**/*.py", "gallery/**/*.json"]
 suppress_warnings = ["config.cache"]
 nitpicky = True
-# Nothing is fetched: names of other libraries stay plain text.
+# No inventories are downloaded: names of other libraries remain plain text.
 nitpick_ignore_regex: list[tuple[str, str]] = []
 default_role = "code"
 
@@ -57,9 +57,9 @@ sphinx_gallery_conf = {
     "matplotlib_animations": False,
     "write_computation_times": False,
 }
-# Other folders of examples/ hold files for commands, not scripts: their README.md would be taken for a gallery's.
+# Subfolders of examples/ hold input files of commands, not scripts of the gallery.
 gen_gallery.get_subsections = lambda *_, **__: []
-# Warnings of the library in an example are faults of the example.
+# A warning of the library in an example is treated as an error.
 warnings.filterwarnings("error", category=RuntimeWarning)
 
 html_theme = "pydata_sphinx_theme"
@@ -85,7 +85,7 @@ html_sidebars: dict[str, list[str]] = {"index": [], "start/index": []}
 
 
 def add_single_pages(app: Any, docname: str, source: list[str]) -> None:
-    """Put pages of single features, which stand beside the folders (``docs/*.md``), at the end of the how-to list."""
+    """Append the pages of single features (``docs/*.md``) to the how-to list."""
     if docname != "how-to/index":
         return
     pages = sorted(path for path in HERE.glob("*.md") if path.stem != root_doc)
@@ -97,7 +97,7 @@ def add_single_pages(app: Any, docname: str, source: list[str]) -> None:
 
 
 def setup(app: Any) -> None:
-    """Write the pages that the program itself tells, before the sources are read."""
+    """Write the generated pages before the sources are read."""
     app.connect("builder-inited", lambda _: generated_pages.write_pages(HERE / "reference" / "generated"))
     app.connect("source-read", add_single_pages)
     app.connect("env-get-outdated", lambda *_: ["how-to/index"])

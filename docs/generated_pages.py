@@ -1,7 +1,7 @@
-"""Reference pages that the program itself tells: the drive file, the commands, the dataset, names of results.
+"""Generated reference pages: drive file, commands, dataset, names of results.
 
-``conf.py`` writes them before Sphinx reads its sources; they are no part of the repository. Nothing is listed here: fields come
-from their definitions, options from the parsers, variables from what writes them.
+``conf.py`` writes them before Sphinx reads its sources; they are not in the repository. Fields are read from their definitions,
+options from the parsers, variables and scalars from the registry of quantities.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ NOTE = "<!-- Written by docs/generated_pages.py: do not edit. -->\n"
 
 
 def write_pages(folder: Path) -> None:
-    """Write every page that differs from what is there, so that builds are not repeated for nothing."""
+    """Write the pages whose text has changed, so that Sphinx does not rebuild unchanged ones."""
     folder.mkdir(parents=True, exist_ok=True)
     pages = {
         "drive_file.md": drive_file_page(),
@@ -30,47 +30,47 @@ def write_pages(folder: Path) -> None:
 
 
 def table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
-    """A Markdown table; bars within cells are no borders."""
+    """Return a Markdown table, with vertical bars in cells escaped."""
     titles = list(head)
     lines = [titles, ["---"] * len(titles), *rows]
     return "".join("| " + " | ".join(str(cell).replace("|", "\\|") for cell in row) + " |\n" for row in lines) + "\n"
 
 
 def drive_file_page() -> str:
-    """Every field of a drive file."""
-    from ltca.drive.reference.engine_support import ENGINES, refusals
-    from ltca.drive.reference.field_descriptions import by_table, describe_fields, gathered, table_description
+    """Return the page of all fields of a drive file."""
+    from ltca.drive.declaration import by_table, gathered, table_of
+    from ltca.drive.engine_support import ENGINES, refusals
 
     text = """# The drive file
 
-Every field, table by table, as `cyclo fields` prints them; this page is written from the definitions themselves. A drive file
-is TOML. Plain numbers are in the unit of the field, a text carries its own ([Quantities and units](../units.md)).
-A field that is no field, a value out of its bounds and parts that cannot be together are refused with one sentence each.
+All fields by table, as printed by `cyclo fields`; this page is generated from the definitions. A drive file
+is TOML. Plain numbers are in the unit of the field, a string carries a unit ([Quantities and units](../units.md)).
+Unknown fields, values outside their bounds and geometrically impossible combinations are refused with one sentence per error.
 
-Fields of all discs may stand in `[[disc.of]]` and `[[crank.of]]` for a single disc or eccentric, `N` being its number
-from 0. Beside the drive itself a file may hold
+Values for a single disc or eccentric are given in `[[disc.of]]` and `[[crank.of]]`, where `N` is its number
+from 0. In addition a file may contain
 
-- `[[case]]`: a `name` and any of the tables below, whose fields take the place of those of the common part,
-- [`[limits]`](../../how-to/verdict.md): what results may reach,
-- [`[tolerances]`](../../how-to/tolerances.md): how fields scatter, for studies alone.
+- `[[case]]`: a `name` and any of the tables below, whose fields replace those of the common part,
+- [`[limits]`](../../how-to/verdict.md): limits of results,
+- [`[tolerances]`](../../how-to/tolerances.md): scatter of fields, used by studies only.
 
-Engines take every field or refuse it by name. They are
+Engines use every field or refuse it by name. They are
 
 """
-    text += table(("engine", "what it is"), ENGINES.items())
-    text += "A test changes each field in each engine and looks for the answer to move (`tests/contract`).\n\n"
-    for name, fields in by_table(gathered(describe_fields())).items():
-        told = table_description(name) if name else None
-        text += f"## {name}\n\n" if name else "## At the head of the file\n\n"
+    text += table(("engine", "meaning"), ENGINES.items())
+    text += "A test changes every field in every engine and checks that the result changes (`tests/contract`).\n\n"
+    for name, fields in by_table(gathered()).items():
+        told = table_of(name) if name else None
+        text += f"## {name}\n\n" if name else "## Top level of the file\n\n"
         if told is not None:
-            text += f"{told.meaning.replace('``', '`')}{' May be left out.' if told.optional else ''}\n\n"
+            text += f"{told.meaning.replace('``', '`')}{' Optional.' if told.optional else ''}\n\n"
         refused = [refusals(field.path) for field in fields]
         alike = len(fields) > 1 and all(one == refused[0] for one in refused)
         if alike and refused[0]:
             text += "".join(f"Refused by {', '.join(by)}: {why}.\n\n" for why, by in refused[0].items())
         rows = []
         for field, by in zip(fields, refused, strict=True):
-            unit = field.unit or {"quantity": "number", "count": "whole number"}.get(field.kind, field.kind)
+            unit = field.label or {"quantity": "number", "count": "whole number"}.get(field.kind, field.kind)
             meaning = field.meaning.replace("``", "`")
             if not alike:
                 meaning += "".join(f" Refused by {', '.join(engines)}: {why}." for why, engines in by.items())
@@ -88,7 +88,7 @@ Engines take every field or refuse it by name. They are
 
 
 def _ticks(text: str) -> str:
-    """Words as they stand in a file; nothing as a dash."""
+    """Return a default or bound as it is written in a file; a dash if there is none."""
     if text in ("", LEFT_OUT):
         return "–"
     return f"`{text}`" if text.startswith('"') else text
@@ -107,7 +107,7 @@ def _signs(bounds: str) -> str:
 
 
 def commands_page() -> str:
-    """Every command with its options and examples."""
+    """Return the page of all commands with their options and examples."""
     from importlib.metadata import entry_points
 
     from ltca.commands.program import GROUP, ORDER, build_parser
@@ -117,15 +117,15 @@ def commands_page() -> str:
     modules = {entry.name: entry.load() for entry in entry_points(group=GROUP)}
     text = """# Commands
 
-`cyclo COMMAND --help` says what stands here. Numbers of options may carry a unit (`--torque "377.3 N m"`,
-[Quantities and units](../units.md)); `DRIVE` is a drive file, or `paper` for the shipped one.
-Angles may be several, separated by spaces, negative ones too. Every printed table names torque, direction of the crank,
-model, positions and case. Exit statuses, folders and what happens when a run is interrupted:
+This page has the contents of `cyclo COMMAND --help`. Numerical options may carry a unit (`--torque "377.3 N m"`,
+[Quantities and units](../units.md)); `DRIVE` is a drive file, or `paper` for the shipped drive.
+Several angles are separated by spaces and may be negative. Every printed table names torque, direction of the crank,
+model, positions and case. Exit statuses, output folders and interrupted runs:
 [Exit statuses, files and processes](../files_and_processes.md).
 
 """
     text += table(
-        ("command", "what it does"),
+        ("command", "purpose"),
         ((f"[`cyclo {name}`](#cyclo-{name})", _cell(modules[name].SUMMARY)) for name in names),
     )
     for name in names:
@@ -157,12 +157,12 @@ def _broken(usage: str) -> str:
 
 
 def _cell(text: str) -> str:
-    """Help as a cell: what looks like markup is none."""
+    """Return help text as a table cell, with markup escaped."""
     return text.replace("<", "&lt;").replace("*", "\\*").replace("_", "\\_")
 
 
 def dataset_page() -> str:
-    """Every variable and coordinate of ``results.nc``, and what ``summary.json`` holds."""
+    """Return the page of all variables and coordinates of ``results.nc`` and all keys of ``summary.json``."""
     from ltca.analysis.loaded_analysis import analyse
     from ltca.analysis.results import build_dataset
     from ltca.geometry.placement import position_angles
@@ -171,17 +171,17 @@ def dataset_page() -> str:
 
     text = """# The dataset
 
-`results.nc` of `cyclo run` is netCDF, `result.dataset` in Python is the same for one case; `pressure.nc` (`--pressure`) and
-`fem.nc` (`cyclo fem`) have the same names. Dimensions stand in the order `case`, `disc`, `crank`, `position`, then `pin`,
-`roller`, `hole` or `lobe`, always all that a variable has, also where they are of size 1.
-Units are in the attribute `units`, what a variable is in `long_name`. Discs, cranks, pins, rollers and holes are numbered from 0,
-counter-clockwise; signs and frames: [Conventions](../../theory/conventions.md).
+`results.nc` of `cyclo run` is a netCDF file; `result.dataset` in Python has the same contents for one case. `pressure.nc`
+(`--pressure`) and `fem.nc` (`cyclo fem`) use the same names. Dimensions are in the order `case`, `disc`, `crank`, `position`,
+then `pin`, `roller`, `hole` or `lobe`; dimensions of size 1 are kept.
+The attribute `units` has the unit of a variable, `long_name` its meaning. Discs, cranks, pins, rollers and holes are
+numbered from 0, counter-clockwise; signs and frames: [Conventions](../../theory/conventions.md).
 
-A variable is there where the drive has it: of friction with `[friction]`, of seats with loose pins and sleeves, of walls
-with `--compliance fe` and `hybrid`. What one case has and another has not is not a number there.
+Variables exist if they apply to the drive: those of friction with `[friction]`, of seats with loose pins and sleeves, of walls
+with `--compliance fe` and `hybrid`. Variables that exist in only some of the cases are NaN in the others.
 
-The attribute `schema_version`, a whole number, says which names, units and dimensions a dataset has: it grows when one of
-them changes or goes, not when one is added. This is version {version}.
+The attribute `schema_version`, an integer, identifies names, units and dimensions of a dataset. It increases when one of
+them is changed or removed, not when one is added. The present version is {version}.
 
 ## Arrays and coordinates
 
@@ -199,17 +199,17 @@ them changes or goes, not when one is added. This is version {version}.
     analysis = analyse(drive, position_angles(2))
     dataset = build_dataset("paper", {"CS-1": analysis})
     text += "## Attributes\n\n" + table(
-        ("attribute", "of the paper's CS-1"),
+        ("attribute", "value for the paper's CS-1"),
         ((f"`{name}`", _attribute(name, value)) for name, value in dataset.attrs.items()),
     )
-    text += """No clock and no folder is among them: same input, same bytes. `code_hash` is that of the code, `fingerprint`
-that of each case's drive, `status` is `complete`, or `partial` where a position has no answer.
+    text += """Times and paths are not stored, so that the same input gives the same bytes. `code_hash` is the hash of the code,
+`fingerprint` that of the drives of the cases, and `status` is `complete`, or `partial` if a position has no solution.
 
 ## summary.json
 
-Scalars of each case, their units at the end of their names (`_N`, `_MPa`, `_mm`, `_Nmm`, `_arcmin`, `_arcsec`, `_deg`, `_W`).
-Means and peaks run over the positions, `refined_…` are extremes over the whole turn, refined between them; null is what the
-engine or the positions cannot say. `#` is the number of a disc or crank.
+Scalars of every case, with the unit at the end of the name (`_N`, `_MPa`, `_mm`, `_Nmm`, `_arcmin`, `_arcsec`, `_deg`, `_W`).
+Means and peaks are taken over the positions, `refined_…` are extremes over the whole turn, refined between positions; null means
+that engine or positions do not provide the value. `#` is the number of a disc or crank.
 
 """
     text += table(
@@ -218,7 +218,7 @@ engine or the positions cannot say. `#` is the number of a disc or crank.
     )
     text += FEM_SUMMARY
     return text + table(
-        ("key of `cyclo fem`", "the same, older", "meaning"),
+        ("key of `cyclo fem`", "older key", "meaning"),
         (
             (f"`{one.fem_key}`", f"`{one.older_fem_key}`", one.in_fem or one.description)
             for one in arrays
@@ -230,10 +230,10 @@ engine or the positions cannot say. `#` is the number of a disc or crank.
 FEM_SUMMARY = """
 ## summary.json of cyclo fem
 
-Arrays of `fem.nc` under their names with the unit behind them, lists by disc and part. In datasets and in the summary of
+Arrays of `fem.nc`, with the unit appended to the name, as lists by disc and part. In datasets and in the summary of
 `cyclo run`, `pressure_mid` is the largest pressure at mid-width, where a contact is in plane strain, and `pressure_max` the
-largest anywhere along the width, its ends included. Full finite elements are plane and know the first alone. Their older keys
-call it `pressure_max` and stay beside the new ones, with the same values.
+largest along the width, including its ends. Full finite elements are plane and have only the first. Their older keys
+name it `pressure_max` and are kept beside the new ones, with the same values.
 
 """
 
@@ -257,18 +257,19 @@ def _attribute(name: str, value: object) -> str:
 
 
 def quantities_page() -> str:
-    """Names that studies, aims and limits take."""
+    """Return the page of the quantities of studies, optimisation and limits."""
     from ltca.quantities import LIMITED, SCALARS
     from ltca.studies.quantities import DEFAULT_QUANTITIES, STAGES
 
     text = """# Names of results
 
-`cyclo quantities` prints them; with `--drive DRIVE` it says which of them the drive has not, and the limits of its file.
+`cyclo quantities` prints these names; with `--drive DRIVE` it also prints which quantities do not exist for the drive,
+and the limits of its file.
 
-## Of studies
+## Quantities of studies
 
 `cyclo tolerance --quantities`, `quantities` of a [study file](../../how-to/studies.md), `cyclo optimise --minimise` and
-`--subject`. Those with a star cost another solution and come when named, or with `all`.
+`--subject`. Quantities with a star require an additional solution and are computed only if named, or with `all`.
 
 """
     text += table(
@@ -278,7 +279,7 @@ def quantities_page() -> str:
             for name in STAGES
         ),
     )
-    text += """## Of limits
+    text += """## Quantities of limits
 
 `[limits]` of a drive file and the rows of `cyclo check` ([Limits, verdict, advice](../../how-to/verdict.md)): `max_` or `min_`
 before the name.

@@ -2,7 +2,7 @@
 A first analysis
 ================
 
-Load a drive, analyse it over a turn of the crank, look at what came out. The drive is the one that ships, in the case without
+Load a drive, analyse it over a turn of the crank, and plot the results. The drive is that of the paper, in the case without
 clearances.
 """
 
@@ -16,8 +16,8 @@ result = ltca.analyse(drive, positions=52)
 print(result)
 
 # %%
-# The dataset has every quantity with names and units. Each wheel pin carries for a part of the turn; the next one follows a
-# tooth pitch later.
+# The dataset has all quantities with names and units. A wheel pin carries load over a part of the turn; the next pin follows
+# a tooth pitch later.
 
 data = result.dataset.isel(case=0, disc=0)
 turn = np.degrees(data["crank_angle"])
@@ -30,12 +30,12 @@ axes.legend(ncols=4, fontsize=8, loc="upper center", bbox_to_anchor=(0.5, 1.22),
 figure.tight_layout()
 
 # %%
-# Whatever the clearances, the bearing force at a right angle to the eccentricity is T/(u e) in the mean: the balance of work.
+# The mean bearing force perpendicular to the eccentricity is T/(u e) for any clearances, by the balance of work.
 
 mean = float(data["bearing_tangential"].mean())
 print(f"{mean:.1f} N, and T/(u e) = {drive.load.torque / (drive.reduction_ratio * drive.crank.eccentricity):.1f} N")
 
 # sphinx_gallery_start_ignore
-# The paper prints 6737.5 N; 52 positions see four a tooth pitch.
+# The paper prints 6737.5 N; 52 positions are four per tooth pitch.
 assert abs(mean - 6737.5) < 2.0
 # sphinx_gallery_end_ignore

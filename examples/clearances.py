@@ -1,9 +1,9 @@
 """
-What clearances do
-==================
+Effect of clearances
+====================
 
-The six cases of the paper differ in bearing and pin-hole clearance alone. Less of the turn carries, and the load of the crank
-bearing turns about the disc.
+The six cases of the paper differ only in bearing and pin-hole clearance. Clearances reduce the range of crank angle over which a
+contact is loaded, and change the direction of the crank-bearing load.
 """
 
 import matplotlib.pyplot as plt
@@ -24,7 +24,7 @@ right.set(ylabel="largest load of a shaft pin [N]", ylim=(4000.0, None))
 figure.tight_layout()
 
 # %%
-# CS-3 has a bearing clearance of 0.03 mm. Its bearing carries less, its shaft pins carry more.
+# CS-3 has a bearing clearance of 0.03 mm, which reduces the bearing load and increases the load of the shaft pins.
 
 change = mean["CS-3"] / mean["CS-1"] - 1.0
 print(f"mean bearing load, CS-3 against CS-1: {100.0 * change:+.1f} %")

@@ -1,8 +1,9 @@
 """
-Friction, efficiency, moving back
-=================================
+Friction, efficiency, self-locking
+==================================
 
-Each joint has its coefficient. Efficiency follows either way; where it reaches zero against the load the drive locks itself.
+Coefficients of friction are given for every kind of joint. The efficiency is computed in both directions; the drive is
+self-locking if the efficiency with the load driving reaches zero.
 """
 
 import matplotlib.pyplot as plt
@@ -28,13 +29,13 @@ axes.legend(frameon=False)
 figure.tight_layout()
 
 # %%
-# Without friction nothing is lost.
+# Without friction the efficiency is 1.
 
 print([f"{value:.3f}" for value in forward])
 
 # sphinx_gallery_start_ignore
 assert abs(forward[0] - 1.0) < 1e-9
 assert all(np.diff(forward) < 0.0)
-# For small losses the efficiency back is 2 - 1/efficiency forward, as of any drive whose losses are the same either way.
+# For small losses the reverse efficiency is 2 - 1/forward efficiency, as for any drive with equal losses in both directions.
 assert abs(back[1] - (2.0 - 1.0 / forward[1])) < 5e-3
 # sphinx_gallery_end_ignore

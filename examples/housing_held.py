@@ -1,8 +1,8 @@
 """
-Housing held, two discs
-=======================
+Fixed housing, two discs
+========================
 
-A robot joint's drive: the housing with its pins stands still, the pin shaft is the output, two discs half a turn apart share the
+The drive of a robot joint: the housing with the wheel pins is fixed, the pin shaft is the output, and two discs at 180° share the
 torque.
 """
 
@@ -25,14 +25,14 @@ axes.legend(loc="lower left", bbox_to_anchor=(-0.08, -0.08), frameon=False)
 figure.tight_layout()
 
 # %%
-# Two equal discs without errors carry one half each. The housing bears the torques of output and input.
+# Two identical discs without errors carry equal shares. The moment on the housing is the sum of output and input torque.
 
 share = result.loaded.torque_share[0]
 moment = float(data["wheel_moment"]) / 1000.0
-print(f"parts of the torque {share[0]:.3f}, {share[1]:.3f}; the housing is held by {-moment:.2f} N·m")
+print(f"torque shares {share[0]:.3f}, {share[1]:.3f}; moment on the housing {-moment:.2f} N·m")
 
 # sphinx_gallery_start_ignore
-assert abs(share[0] - 0.5) < 1e-6  # half a turn apart, 40 pins: each is the other's image
+assert abs(share[0] - 0.5) < 1e-6  # at 180° with 40 pins, by symmetry
 teeth, pins = drive.disc.number_of_teeth, drive.pin_wheel.number_of_pins
 assert abs(-moment - 400.0 * pins / teeth) < 0.1  # without friction, in the mean
 # sphinx_gallery_end_ignore

@@ -1,8 +1,9 @@
 """
-The law of a line contact
-=========================
+Load-approach law of a line contact
+===================================
 
-Load over approach of two cylinders of finite length. Plane strain has no answer to how far they approach; the length gives it.
+Load over approach of two cylinders of finite length. In plane strain the approach is undetermined; it follows from the finite
+length.
 """
 
 import matplotlib.pyplot as plt
@@ -23,14 +24,14 @@ axes.legend(frameon=False)
 figure.tight_layout()
 
 # %%
-# Under an even load along the length the approach differs from place to place (Lundberg). Its mean is an upper bound: a real
-# contact evens the approach out and moves load to the ends.
+# Under a uniform line load the approach varies along the length (Lundberg). Its mean is an upper bound: in a real
+# contact the approach is constant and load is transferred to the ends.
 
 law = LineContactLaw(16.0, MODULUS)
 load, _ = law.load_and_stiffness(0.008, RADIUS)
 width = line_half_width(load / 16.0, RADIUS, MODULUS)
 middle, mean = strip_approach(load / 16.0, width, 16.0, MODULUS)
-print(f"8 µm; Lundberg {1e3 * float(middle):.2f} µm in the middle, {1e3 * float(mean):.2f} µm in the mean")
+print(f"8 µm; Lundberg {1e3 * float(middle):.2f} µm in the middle, mean {1e3 * float(mean):.2f} µm")
 
 # sphinx_gallery_start_ignore
 assert 0.97 * float(mean) < 0.008 < float(mean) < float(middle)

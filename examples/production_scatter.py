@@ -1,9 +1,9 @@
 """
-What production scatter does
-============================
+Manufacturing scatter
+=====================
 
-Two hundred drives, drawn from the tolerances of the file. ``cyclo tolerance`` does the same for thousands, ranks the
-deviations and keeps the worst one.
+Two hundred drives with random errors from the tolerances of the file. ``cyclo tolerance`` does the same for thousands, ranks
+the deviations and stores the worst sample.
 """
 
 import matplotlib.pyplot as plt
@@ -36,12 +36,12 @@ axes.legend(frameon=False)
 figure.tight_layout()
 
 # %%
-# Radial errors of the wheel pins alone:
+# Radial errors of the wheel pins only:
 
-print(f"as drawn {nominal:.0f} N; mean {load.mean():.0f} N, 99 % below {np.quantile(load, 0.99):.0f} N")
+print(f"nominal {nominal:.0f} N; mean {load.mean():.0f} N, 99 % below {np.quantile(load, 0.99):.0f} N")
 
 # sphinx_gallery_start_ignore
-# Normal, C_pk 1 about zero: a standard deviation of a third of the tolerance.
+# Normal distribution with C_pk 1 and mean 0: the standard deviation is a third of the tolerance.
 drawn = np.array([sample.pin_wheel.pin_errors.radial for sample in samples])
 assert abs(drawn.std() / (radial.tolerance / 3.0) - 1.0) < 0.05
 assert nominal < load.mean() < 1.2 * nominal

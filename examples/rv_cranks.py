@@ -2,7 +2,7 @@
 The cranks of an RV reducer
 ===========================
 
-Three cranks on the carrier turn in bores of two discs. Which crank carries how much goes round with the turn.
+Three cranks on the carrier run in bores of two discs. The distribution of the load over the cranks varies with the crank angle.
 """
 
 import matplotlib.pyplot as plt
@@ -25,7 +25,7 @@ axes.legend(frameon=False, ncols=3, loc="lower center", bbox_to_anchor=(0.5, 1.0
 figure.tight_layout()
 
 # %%
-# Which part yields how much of what the output yields under a little more torque:
+# Contributions of the parts to the incremental compliance at the output:
 
 shares = {key[17:]: value for key, value in result.summary.items() if key.startswith("compliance_share_")}
 figure, axes = plt.subplots(figsize=(6.4, 2.8))
@@ -34,13 +34,13 @@ axes.set(xlabel="share of the compliance at the output")
 figure.tight_layout()
 
 # %%
-# The force of the cranks on a disc balances its pins: three cranks alike carry alike over a turn.
+# The mean loads of three identical cranks over a turn are equal.
 
 mean = load.isel(disc=0).mean("position").to_numpy()
 print(np.round(mean, 1), "N")
 
 # sphinx_gallery_start_ignore
-assert np.ptp(mean) / mean.mean() < 0.01  # a third of a turn apart, 24 positions: the same for each
+assert np.ptp(mean) / mean.mean() < 0.01  # cranks at 120°, 24 positions: equal by symmetry
 assert abs(sum(shares.values()) - 1.0) < 1e-6
 assert abs(shares["cranks"] - 0.55) < 0.02  # docs/how-to/several_cranks.md, `cyclo run`
 # sphinx_gallery_end_ignore

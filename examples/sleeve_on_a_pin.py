@@ -1,8 +1,9 @@
 """
-A pin in its seat: where Hertz ends
-===================================
+Conforming contact of a pin in a bore
+=====================================
 
-A pin in a bore that is hardly larger touches over an arc. Hertz takes the arc for narrow, and is wrong before it looks wrong.
+A pin in a bore of nearly equal radius touches over a wide arc. Hertz theory assumes a narrow contact; its error is significant
+even at moderate loads.
 """
 
 import matplotlib.pyplot as plt
@@ -30,11 +31,11 @@ right.legend(frameon=False)
 figure.tight_layout()
 
 # %%
-# At 1150 N on 12 mm:
+# Peak pressure at 1150 N over a length of 12 mm:
 
 at = float(law.largest_pressure(1150.0, bore - pin))
 off = float(line_peak_pressure(1150.0 / length, pin * bore / (bore - pin), contact_modulus(steel, steel))) / at - 1.0
-print(f"{at:.2f} MPa, Hertz is {100.0 * off:+.1f} % off")
+print(f"{at:.2f} MPa, error of Hertz theory {100.0 * off:+.1f} %")
 
 # sphinx_gallery_start_ignore
 assert abs(at / 32.37 - 1.0) < 1e-3  # finite elements, docs/theory/seats.md

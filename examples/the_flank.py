@@ -2,8 +2,8 @@
 The flank and its offsets
 =========================
 
-The flank is the parallel curve of a trochoid. Two offsets make room for pins: one grinds with thicker pins, one on a larger
-circle. No load, no contact: geometry alone.
+The flank is the parallel curve of a trochoid. Two offsets determine its clearance: the equidistant offset corresponds to
+grinding with larger pins, the shifting offset to grinding on a larger pin circle. Geometry only, without load.
 """
 
 import matplotlib.pyplot as plt
@@ -48,14 +48,14 @@ axes.set(xlabel="equidistant offset Δr$_P$ [mm]", ylabel="backlash at the wheel
 figure.tight_layout()
 
 # %%
-# With its own offsets the drive has about ten minutes, as the paper says.
+# With the offsets of the paper the backlash is about ten arc minutes, as stated in the paper.
 
 own = np.degrees(np.mean(backlash(geometry, angle, WHEEL))) * 60.0
 print(f"{own:.2f}′")
 
 # sphinx_gallery_start_ignore
-assert 9.5 < own < 10.5  # the print: about 10
-# The tip of a trochoid's parallel curve lies at R + e less the offset of the flank from it.
+assert 9.5 < own < 10.5  # about 10 in the paper
+# The tip of the parallel curve of a trochoid is at R + e minus its distance from the trochoid.
 assert (
     abs(
         profile.tip_radius

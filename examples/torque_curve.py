@@ -2,7 +2,7 @@
 Torque curve, lost motion, stiffness
 ====================================
 
-The crank held, the output loaded one way and the other: backlash, lost motion and stiffness are read off the curve.
+With the crank held, the output is loaded in both directions. Backlash, lost motion and stiffness are read from the curve.
 """
 
 import matplotlib.pyplot as plt
@@ -22,15 +22,15 @@ axes.grid(alpha=0.3)
 figure.tight_layout()
 
 # %%
-# Lost motion is read at ±3 % of the rated torque, stiffness from half the torque to all of it.
+# Lost motion is read at ±3 % of the rated torque, stiffness between half and full torque.
 
 lost, play = curve.lost_motion[0] * ARCMIN, curve.backlash[0] * ARCMIN
 stiffness = curve.stiffness[0].mean() / 1000.0 / ARCMIN
 print(f"backlash {play:.2f}′, lost motion {lost:.2f}′, stiffness {stiffness:.1f} N·m/arcmin")
 
 # sphinx_gallery_start_ignore
-assert play < lost  # the play and what a little torque winds up
-# The curve itself gives the stiffness: the slope from half the torque to all of it.
+assert play < lost  # lost motion is the backlash plus the wind-up at a small torque
+# The stiffness is the slope of the curve between half and full torque.
 half, full = np.searchsorted(curve.torque, [0.5 * drive.load.torque, 0.9999 * drive.load.torque])
 slope = (curve.torque[full] - curve.torque[half]) / (curve.output_angle[0, full] - curve.output_angle[0, half])
 assert abs(slope / 1000.0 / ARCMIN / stiffness - 1.0) < 0.1

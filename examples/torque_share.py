@@ -1,9 +1,9 @@
 """
-What each of two discs carries
-==============================
+Torque shares of two discs
+==========================
 
-It is custom to give the harder loaded disc 0.55 of the torque. What it carries follows from errors and compliance; here one disc
-runs out.
+It is customary to assume a share of 0.55 for the more heavily loaded of two discs. The actual share depends on errors and
+compliance; here one disc has runout.
 """
 
 import matplotlib.pyplot as plt
@@ -32,13 +32,13 @@ axes.legend(frameon=False)
 figure.tight_layout()
 
 # %%
-# At the full torque some 3 µm of runout make it 0.55, at a tenth of it a fraction of a micrometre does: 0.55 is no property of a
-# drive. :doc:`/how-to/several_discs` says when it is right.
+# At full torque a runout of about 3 µm gives a share of 0.55, at a tenth of the torque a fraction of a micrometre is
+# sufficient: the share is not a property of the drive alone. See :doc:`/how-to/several_discs`.
 
 print({torque: shares.round(3).tolist() for torque, shares in largest.items()})
 
 # sphinx_gallery_start_ignore
-# From ``benchmarks/torque_share.py`` at 41 positions: 0.55 at 3.0 µm; eight positions see a little less of the turn.
+# From ``benchmarks/torque_share.py`` at 41 positions: 0.55 at 3.0 µm; eight positions resolve the turn less well.
 assert abs(largest["400 N m"][1] - 0.55) < 0.006
 assert abs(largest["400 N m"][0] - 0.5) < 1e-5
 # sphinx_gallery_end_ignore

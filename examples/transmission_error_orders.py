@@ -1,8 +1,9 @@
 """
-Where the transmission error comes from
-=======================================
+Orders of the transmission error
+================================
 
-The error repeats with the teeth of the disc and with its pin holes. Fitting known orders at once tells which part is whose.
+The transmission error has the periods of the disc teeth and of the pin holes. A simultaneous fit of the known orders
+separates these contributions.
 """
 
 import matplotlib.pyplot as plt
@@ -24,7 +25,7 @@ axes.set(xlabel="crank angle [°]", ylabel="transmission error less its mean [�
 figure.tight_layout()
 
 # %%
-# Orders a turn of the crank: 13 of the flank, 8 of the pin holes, and their multiples.
+# Orders per turn of the crank: 13 of the flank, 8 of the pin holes, and their multiples.
 
 orders = tuple(order for order in known_orders(drive) if order.value in (8.0, 13.0, 16.0, 26.0))
 spectrum = fit_orders(angle, error, orders)
@@ -33,11 +34,11 @@ for order, amplitude in zip(spectrum.orders, spectrum.amplitude, strict=True):
 
 figure, axes = plt.subplots(figsize=(6.0, 3.0))
 axes.bar([f"{order.value:.0f}" for order in spectrum.orders], spectrum.amplitude * ARCSEC, color="#55a868")
-axes.set(xlabel="order [a turn of the crank]", ylabel="amplitude [″]")
+axes.set(xlabel="order [per turn of the crank]", ylabel="amplitude [″]")
 figure.tight_layout()
 
 # sphinx_gallery_start_ignore
-# docs/validation/paper.md, by ``cyclo curves paper --case CS-1``: 1.3″ of the flank and 1.1″ of the holes.
+# docs/validation/paper.md, by ``cyclo curves paper --case CS-1``: 1.3″ (flank) and 1.1″ (holes).
 assert abs(spectrum.of(13.0) * ARCSEC - 1.3) < 0.1
 assert abs(spectrum.of(8.0) * ARCSEC - 1.1) < 0.1
 # sphinx_gallery_end_ignore

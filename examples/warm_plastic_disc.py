@@ -1,8 +1,8 @@
 """
-A disc of plastic grows
-=======================
+Thermal expansion of a plastic disc
+===================================
 
-PA12 expands ten times as much as steel. How warm may a plastic disc become before its play is gone?
+PA12 expands ten times as much as steel. At which temperature is the clearance of a plastic disc lost?
 """
 
 import matplotlib.pyplot as plt
@@ -34,10 +34,10 @@ axes.set(xlabel="temperature of the disc [°C], housing at 20 °C", ylabel="leas
 figure.tight_layout()
 
 # %%
-# Each degree takes what the disc grows by at the radius of its pins, about 110e-6/K times 88 mm.
+# The clearance decreases per kelvin by the expansion of the disc at the pin circle, about 110e-6/K times 88 mm.
 
 slope = np.polyfit(warmth, np.array(gap) * 1e3, 1)[0]
-print(f"{slope:.1f} µm for each degree")
+print(f"{slope:.1f} µm/K")
 
 # sphinx_gallery_start_ignore
 largest = 1e3 * 110e-6 * drive.pin_wheel.pin_circle_radius

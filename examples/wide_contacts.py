@@ -1,8 +1,9 @@
 """
-How wide a contact half-spaces bear
-===================================
+Error of half-spaces for wide contacts
+======================================
 
-Half-spaces are flat. A cylinder with its true boundary, solved by Fourier series in plane strain, says how far off they are.
+Half-space models neglect the curvature of the bodies. A cylinder with its true boundary, solved by Fourier series in plane
+strain, gives their error.
 """
 
 import matplotlib.pyplot as plt
@@ -28,7 +29,7 @@ axes.legend(frameon=False)
 figure.tight_layout()
 
 # %%
-# Beyond b/r = 0.3 a run refuses the drive and says which torque could be carried.
+# Beyond b/r = 0.3 a run refuses the drive and gives the torque that can be carried.
 
 print({name: np.round(error, 2).tolist() for name, error in off.items()})
 

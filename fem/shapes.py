@@ -15,8 +15,8 @@ from scipy.spatial import cKDTree
 
 from fem.errors import MeshError
 from ltca.arrays import ComplexArray, FloatArray
+from ltca.drive.hole_contact import shaft_pins_yield
 from ltca.drive.parts import Drive
-from ltca.drive.plane_strain import shaft_pins_yield
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.placement import Placement
 

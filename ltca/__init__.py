@@ -20,7 +20,7 @@ contact        One contact between half-spaces: from influence coefficients to t
 reading        Files that are read: drives, checked against physics, changed and written; coefficients, by their laws;
                arguments
 laws           Load–approach laws of single contacts: tables of the half-space, plane strain, springs
-compliance     Loads of all pairs at a pose: how the bodies yield, three models behind one interface
+compliance     Loads of all pairs at a pose: how the bodies yield, two kinds of models behind one interface
 equilibrium    The pose that balances
 analysis       An analysis of a drive and what is read from it
 studies        Studies at scale: tolerances, sweeps, optimiser

@@ -179,23 +179,31 @@ def batch_layout(model: Any, known: dict[int, Hashable] | None = None) -> Hashab
     known : dict, optional
         Layouts of parts met before, by identity, for models that share parts; they must outlive it.
     """
-    return _layout(model, None, {} if known is None else known)
+    return _layout(model, {} if known is None else known)
 
 
-def _layout(value: Any, axes: int | None, known: dict[int, Hashable]) -> Hashable:
-    if axes is not None:
-        shape: tuple[int, ...] = np.shape(value)
-        return shape
+def _layout(value: Any, known: dict[int, Hashable]) -> Hashable:
     kind = type(value)
     if kind is tuple:
-        return tuple(_layout(item, None, known) for item in value)
+        return tuple([_layout(item, known) for item in value])
     if kind is np.ndarray:
         return value.shape, value.tobytes()
-    if not (names := _declared(kind)):
-        named: Hashable = value if isinstance(value, Hashable) else id(value)
-        return named
+    names = _declared(kind)
+    if all(own is None for _, own in names):
+        try:
+            hash(value)  # what holds nothing but plain values says itself what it is
+        except TypeError:
+            if not names:
+                return id(value)
+        else:
+            plain: Hashable = value
+            return plain
     if id(value) not in known:
-        known[id(value)] = (kind, *(_layout(getattr(value, name), own, known) for name, own in names))
+        parts: list[Any] = [kind]
+        for name, own in names:
+            part = getattr(value, name)
+            parts.append(_layout(part, known) if own is None else getattr(part, "shape", ()))
+        known[id(value)] = tuple(parts)
     return known[id(value)]
 
 

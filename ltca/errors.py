@@ -7,11 +7,11 @@ from functools import lru_cache
 from typing import Any, ClassVar
 
 MOST_TOLD = 10
-"""Mistakes that are told one by one; of more there is a count."""
+"""Mistakes that are listed; of more the number is given."""
 
 
 class CycloError(Exception):
-    """Base of every error that carries a message for the user."""
+    """Base class of errors with a message for the user."""
 
     exit_status: ClassVar[int] = 2
     """What the program ends with: 2 for wrong input, 1 for a fault or what has no answer."""
@@ -27,7 +27,7 @@ class DriveError(CycloError):
     source : str, optional
         Where the definition came from (a file name).
     beside : str, optional
-        What was not looked at.
+        What was not checked.
     """
 
     def __init__(self, problems: Sequence[str], source: str = "", beside: str = "") -> None:
@@ -45,7 +45,7 @@ class DriveError(CycloError):
 
 
 class FaultError(CycloError):
-    """Something beside the input failed: the disc is full, workers died."""
+    """A fault that is not of the input, as a full disc or workers that died."""
 
     exit_status = 1
 

@@ -77,6 +77,8 @@ class Scalar:
         Whether ``summary.json`` has it: others are of studies, of limits or of requirements alone.
     more_is_better : bool
         Whether the worst sample of a study is that of the least value.
+    by_load : bool
+        Whether more torque or speed raises it, so that the largest of all entries of a duty counts; of those with a limit.
     how : str
         How it sums the array up, a key of `ltca.analysis.summary.SUMS`; the first word of its name when left out.
     of : str
@@ -92,6 +94,7 @@ class Scalar:
     refined: bool = False
     in_summary: bool = True
     more_is_better: bool = False
+    by_load: bool = True
     how: str = ""
     of: str = ""
 
@@ -173,9 +176,14 @@ def _scalar(unit: str, scalar: Scalar) -> Quantity:
     return Quantity(scalar.name, "", unit, scalars=(scalar,))
 
 
-def _checked(name: str, unit: str, title: str, limit: tuple[float | None, float | None] = AT_LEAST_0) -> Quantity:
+def _checked(name: str, unit: str, title: str) -> Quantity:
     """A value of the verdict that the summary has not."""
-    return _scalar(unit, Scalar(name, title, limit=limit, in_summary=False))
+    return _scalar(unit, Scalar(name, title, limit=AT_LEAST_0, in_summary=False))
+
+
+def _of_design(name: str, unit: str, title: str, limit: tuple[float | None, float | None] = AT_LEAST_0) -> Quantity:
+    """A value of the verdict that no entry of a duty raises: of the shape, or of the whole duty."""
+    return _scalar(unit, Scalar(name, title, limit=limit, in_summary=False, by_load=False))
 
 
 def _asked(name: str, unit: str, title: str) -> Quantity:
@@ -237,17 +245,22 @@ def _anywhere(title: str) -> tuple[Scalar, ...]:
 
 _DECLARED = (
     # shape and assembly
-    _checked("carried_torque", "1", "part of the torque that is carried", FROM_0_TO_1),
-    _checked("undercut_margin", "mm", "undercut: pin radius to spare", ANY_NUMBER),
-    _checked("wall", "mm", "thinnest wall", ANY_NUMBER),
-    _checked("pin_hollow_margin", "mm", "hollow of the flank against the pin", ANY_NUMBER),
-    _checked("roller_gap", "mm", "gap between rollers", ANY_NUMBER),
-    _scalar("mm", Scalar("interference", "assembly: overlap at rest", digits=".4f", limit=AT_LEAST_0)),
-    _scalar("arcmin", Scalar("backlash_disc", "backlash of the flank alone, at the disc", digits="z.2f", limit=AT_LEAST_0)),
+    _of_design("carried_torque", "1", "part of the torque that is carried", FROM_0_TO_1),
+    _of_design("undercut_margin", "mm", "undercut: pin radius to spare", ANY_NUMBER),
+    _of_design("wall", "mm", "thinnest wall", ANY_NUMBER),
+    _of_design("pin_hollow_margin", "mm", "hollow of the flank against the pin", ANY_NUMBER),
+    _of_design("roller_gap", "mm", "gap between rollers", ANY_NUMBER),
+    _scalar("mm", Scalar("interference", "assembly: overlap at rest", digits=".4f", limit=AT_LEAST_0, by_load=False)),
+    _scalar(
+        "arcmin",
+        Scalar("backlash_disc", "backlash of the flank alone, at the disc", digits="z.2f", limit=AT_LEAST_0, by_load=False),
+    ),
     Quantity(
         "backlash_wheel", "", "arcmin",
         scalars=(
-            Scalar("{}", "backlash of the flank alone, at the wheel", digits="z.2f", limit=AT_LEAST_0),
+            Scalar(
+                "{}", "backlash of the flank alone, at the wheel", digits="z.2f", limit=AT_LEAST_0, by_load=False
+            ),
             Scalar("mean_{}", "backlash of the flank alone, at the wheel, mean", in_summary=False),
             Scalar("min_{}", "backlash of the flank alone, at the wheel, least", in_summary=False),
         ),
@@ -257,14 +270,14 @@ _DECLARED = (
         scalars=(
             Scalar(
                 "{}", "backlash at the output, all clearances, largest", digits="z.2f", limit=AT_LEAST_0,
-                judged="backlash at the output, all clearances",
+                judged="backlash at the output, all clearances", by_load=False,
             ),
             Scalar("max_{}", "backlash at the output, all clearances, largest", in_summary=False),
             Scalar("min_{}", "backlash at the output, all clearances, least"),
         ),
     ),
     _scalar("1", Scalar("preloaded_part_of_turn", "part of the turn where parts overlap in every pose", digits=".2f")),
-    _checked("play_at_temperature", "mm", "least play at temperature", ANY_NUMBER),
+    _of_design("play_at_temperature", "mm", "least play at temperature", ANY_NUMBER),
     # contacts
     Quantity("pin_load", "pin", "N", "load of wheel pin and flank", (_peak("largest load of a wheel pin"),)),
     Quantity(
@@ -339,7 +352,7 @@ _DECLARED = (
         "1",
         Scalar(
             "mean_loaded_pins", "loaded wheel pins, mean", digits=".2f", limit=AT_LEAST_0,
-            judged="contact ratio: loaded wheel pins, mean",
+            judged="contact ratio: loaded wheel pins, mean", by_load=False,
         ),
     ),
     _scalar("1", Scalar("mean_loaded_rollers", "loaded rollers, mean", digits=".2f")),
@@ -363,10 +376,10 @@ _DECLARED = (
         ),
     ),
     _scalar("N", Scalar("max_bearing_load_crank_#", "bearing load of crank #, largest")),
-    _checked("bearing_life_hours", "h", "life of the crank bearings in hours"),
-    _checked("bearing_life_modified_hours", "h", "life of the crank bearings by a_ISO in hours"),
-    _checked("bearing_life_million_turns", "1", "life of the crank bearings, million turns"),
-    _checked("static_safety_S0", "1", "static safety S0 of the crank bearings"),
+    _of_design("bearing_life_hours", "h", "life of the crank bearings in hours"),
+    _of_design("bearing_life_modified_hours", "h", "life of the crank bearings by a_ISO in hours"),
+    _of_design("bearing_life_million_turns", "1", "life of the crank bearings, million turns"),
+    _of_design("static_safety_S0", "1", "static safety S0 of the crank bearings"),
     # seats, pins that bend
     *_seat("pin_seat", "wheel-pin seats", "load of the wheel pin in its slot, or of the sleeve on the wheel pin"),
     Quantity(
@@ -434,7 +447,10 @@ _DECLARED = (
     Quantity(
         "transmission_error", "drive", "rad", "deviation of the output at the torque of the run, ccw positive",
         (
-            Scalar("ptp_{}", "transmission error, peak to peak", "arcsec", ".2f", limit=AT_LEAST_0, refined=True),
+            Scalar(
+                "ptp_{}", "transmission error, peak to peak", "arcsec", ".2f", limit=AT_LEAST_0, refined=True,
+                by_load=False,
+            ),
             Scalar("mean_{}", "transmission error, mean", "arcsec", in_summary=False),
         ),
         in_fem="deviation of the output, ccw positive",
@@ -464,7 +480,12 @@ _DECLARED = (
     Quantity("status_light", "drive", "1", "the same at the light torque"),
     _scalar("1", Scalar("positions", "positions of the crank", digits=".0f")),
     _scalar("1", Scalar("positions_per_mesh_period", "positions in the passage of a tooth")),
-    _scalar("1", Scalar("distinct_mesh_phases", "different places in a mesh period", digits=".0f", limit=AT_LEAST_0)),
+    _scalar(
+        "1",
+        Scalar(
+            "distinct_mesh_phases", "different places in a mesh period", digits=".0f", limit=AT_LEAST_0, by_load=False
+        ),
+    ),
     _checked("half_width_ratio", "1", "half-width by radius"),
     _checked("contact_strain", "1", "strain of the flank contact, p/E"),
     # friction
@@ -507,19 +528,22 @@ _DECLARED = (
     Quantity(
         "efficiency", "drive", "1", "1 − loss/input",
         (
-            Scalar("mean_{}", "efficiency, mean", digits=".4f", limit=FROM_0_TO_1, more_is_better=True),
+            Scalar(
+                "mean_{}", "efficiency, mean", digits=".4f", limit=FROM_0_TO_1, more_is_better=True, by_load=False
+            ),
             Scalar("min_{}", "efficiency, least", digits=".4f"),
         ),
     ),
     Quantity(
         "efficiency_back", "drive", "1", "the same with the motion reversed",
-        (Scalar("mean_{}", "efficiency, motion reversed", digits=".4f", limit=AT_MOST_1),),
+        (Scalar("mean_{}", "efficiency, motion reversed", digits=".4f", limit=AT_MOST_1, by_load=False),),
     ),
     Quantity(
         "moves_back", "drive", "1", "1: the load at the output turns the input without help, 0: it does not",
         (
             Scalar(
-                "{}", "moves back (1) or locks itself (0)", digits=".0f", how="min", limit=FROM_0_TO_1, judged="moves back"
+                "{}", "moves back (1) or locks itself (0)", digits=".0f", how="min", limit=FROM_0_TO_1,
+                judged="moves back", by_load=False,
             ),
         ),
     ),

@@ -22,8 +22,8 @@ FLOORS = (
     "ltca.errors", "ltca.arrays", "ltca.quantities", "ltca.output", "ltca.drive", "ltca.geometry", "ltca.contact",
     "ltca.reading", "ltca.laws", "ltca.compliance", "ltca.equilibrium", "ltca.analysis", "ltca.studies", "ltca.figures",
     "ltca.page", "ltca.export", "ltca.testing", "ltca",
-    "fem.errors", "fem.shapes", "fem.mesh", "fem.body", "fem.contact", "fem.drive", "fem.reducer", "fem.coefficients",
-    "fem.referee", "fem.pictures", "fem.export", "fem.testing", "fem",
+    "fem.errors", "fem.shapes", "fem.mesh", "fem.body", "fem.options", "fem.contact", "fem.drive", "fem.reducer",
+    "fem.coefficients", "fem.referee", "fem.pictures", "fem.export", "fem.testing", "fem",
     "validation.methods", "validation.rows", "validation.compare", "validation.levels", "validation.study", "validation.report",
     "ltca.commands", "fem.commands", "validation.commands", "validation",
 )  # fmt: skip
@@ -184,8 +184,8 @@ def heavy_imports(path, tree):
 
 
 def test_commands_import_lightly():
-    """`cyclo --help` loads every command: at their head they may import light modules only."""
-    commands = sorted(ROOT.glob("*/commands/**/*.py"))
+    """`cyclo --help` loads every command: at their head they may import light modules only; actions come when they start."""
+    commands = sorted(path for path in ROOT.glob("*/commands/**/*.py") if path.parent.name != "actions")
     assert len(commands) > 10
     heavy = {relative(path): heavy_imports(path, ast.parse(path.read_text(encoding="utf-8"))) for path in commands}
     assert {path: modules for path, modules in heavy.items() if modules} == {}
@@ -213,4 +213,4 @@ def test_the_check_itself_sees_every_kind_of_import():
     assert imports(path, relative_import) == {"ltca.geometry.pairs", "ltca.geometry.placement"}
     assert circle({"a": {"b"}, "b": {"a"}})
     assert floor("ltca.errors") == 0
-    assert floor("ltca.compliance.half_space") > floor("ltca.laws.series") > floor("ltca.drive.parts")
+    assert floor("ltca.compliance.half_space") > floor("ltca.laws.spring") > floor("ltca.drive.parts")

@@ -449,8 +449,9 @@ def made_small(words: list[str]) -> list[str]:
         small.remove("--no-figures")
     if kind == "derive" and "--check" in words:  # derives nothing
         small = []
-    if kind in ("derive", "run") and "paper" in words and "--case" not in words:
-        small += ["--case", "CS-1"] * (kind == "derive" or "--coefficients" in words)  # clearances are those of a case
+    of_the_paper = (kind == "derive" and "paper" in words) or (kind == "run" and "--coefficients" in words)
+    if of_the_paper and "--case" not in words:  # clearances are those of a case
+        small += ["--case", "CS-1"]
     return [*words, *small]
 
 

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 from fem.drive.disc_stress import STRESSES, recover_disc_stress, stress_variables, summarise_stress
+from fem.options import SolutionOptions
 from fem.reducer.solution import solve_reducer
 from fem.reducer.solution_files import ARRAYS, build_dataset as build_fem_dataset, summarise as summarise_fem
 from ltca.analysis.loaded_analysis import analyse
@@ -109,7 +110,7 @@ def test_runs_write_what_is_declared_and_nothing_else(drives):
         judged |= {value.quantity for value in find_values(analysis, summary)}
     analyses = {"CS-1": analyse(drives["paper"], np.array([0.0]))}
     arrays |= check_arrays(build_pressure_dataset("paper", analyses, cells=4), kept)
-    solution = solve_reducer(drives["paper"], 0.5, scale=6.0)
+    solution = solve_reducer(drives["paper"], 0.5, SolutionOptions(size=6.0))
     stresses = [recover_disc_stress(disc) for disc in solution.discs]
     arrays |= check_arrays(build_fem_dataset(solution, "CS-1").assign(stress_variables(stresses)), kept)
     assert arrays == set(kept["arrays"])

@@ -3,10 +3,10 @@
 Folders in the order data passes; each one's docstring lists its modules.
 
 ========  ============================================================
-methods   The paper's iteration and its system without clearance
-rows      Rows of the report: one compared figure each, with its limit and why the limit has that size
+methods   The iteration of the paper and its system without clearance
+rows      Rows of the report: a compared figure with its limit and the reason for the limit
 compare   One position in any model, and all metrics of a difference
-levels    The levels of the validation, from closed forms to what the flexible disc changes
+levels    The levels of the validation, from closed forms to the effect of the flexible disc
 study     The whole validation of a drive: which positions, in which order, and the rows of all six levels
 seats     Figures of docs/theory/seats.md: laws of conforming seats against finite elements, Persson and Hertz
 report    The page and files of a validation

@@ -1,4 +1,4 @@
-"""Rows of the report: one compared figure each, with its limit and why the limit has that size."""
+"""Rows of the report: a compared figure with its limit and the reason for the limit."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ class Row:
 
     @property
     def passed(self) -> bool:
-        """Whether the difference is within the limit; a difference that is no number is not."""
+        """Whether the difference is within the limit; NaN is not."""
         return self.limit is None or abs(self.difference) <= self.limit
 
     def content(self) -> dict[str, Any]:
@@ -139,14 +139,9 @@ def range_row(
     reason: str,
     **place: Any,
 ) -> Row:
-    """Return a row whose value must lie in a range about the reference.
+    """Return a row whose value must lie in a range that holds the reference.
 
     The difference is value less reference; its limit is the distance of the reference from the bound on that side.
-
-    Raises
-    ------
-    ValueError
-        When the reference lies outside the range.
     """
     if not lowest <= reference <= highest:
         raise ValueError(f"{quantity}: reference {reference:g} outside {lowest:g} to {highest:g}")
@@ -165,7 +160,7 @@ def range_row(
 
 
 def positive_row(level: int, quantity: str, value: float, unit: str, reason: str, **place: Any) -> Row:
-    """Return a row whose value must not be negative: the difference is what it falls short of zero by."""
+    """Return a row whose value must not be negative: the difference is the amount below zero."""
     return Row(
         level=level,
         quantity=quantity,

@@ -12,13 +12,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fem.contact.hertz import hertz_half_width, hertz_peak_pressure
 from fem.testing.seated_pin import SleeveOnPin, press_pin_into_bore, squeeze_sleeve
 from ltca.arrays import FloatArray
+from ltca.contact.hertz import line_half_width, line_peak_pressure
 from ltca.drive.parts import Material, contact_modulus
 from ltca.laws.conforming import ConformingLaw
 from ltca.laws.line_contact import LineContactLaw
-from ltca.laws.series import approach_at_load
 from ltca.output.files import whole_file
 
 STEEL = Material(youngs_modulus=206_000.0, poisson_ratio=0.3)
@@ -55,15 +54,7 @@ def persson_load(half_width: ArrayLike) -> FloatArray:
 
 
 def persson_pressure(angle: ArrayLike, half_width: ArrayLike) -> FloatArray:
-    """Return p a L/F of equal materials.
-
-    Parameters
-    ----------
-    angle : array
-        From the line of load, rad, within the arc.
-    half_width : array
-        b = tan(α/2).
-    """
+    """Return p a L/F of equal materials at an angle from the line of load, rad, within the arc; b = tan(α/2)."""
     b, y = np.asarray(half_width, dtype=float), np.tan(0.5 * np.asarray(angle, dtype=float))
     root, edge = np.sqrt(b**2 - y**2), np.sqrt(b**2 + 1.0)
     logarithm = np.log((edge + root) / (edge - root))
@@ -71,13 +62,13 @@ def persson_pressure(angle: ArrayLike, half_width: ArrayLike) -> FloatArray:
 
 
 def hertz_rows() -> Iterator[str]:
-    """Yield a line for each load of the issue's slot: what Hertz makes of arc, peak pressure and approach."""
+    """Yield a line for each load of the issue's slot: arc, peak pressure and approach by Hertz and by the law."""
     yield "where Hertz ends: pin 4.0 mm, slot 4.004 mm, datum 6 mm, 12 mm long, steel"
     law = _bore_law(*SEATS[1])
     play, radius = 0.004, 4.0 * 4.004 / 0.004
     for load in (10.0, 30.0, 100.0, 300.0, 1150.0, 3000.0, 20_000.0):
-        width = float(hertz_half_width(load / LENGTH, radius, law.contact_modulus))
-        peak = float(hertz_peak_pressure(load / LENGTH, radius, law.contact_modulus))
+        width = float(line_half_width(load / LENGTH, radius, law.contact_modulus))
+        peak = float(line_peak_pressure(load / LENGTH, radius, law.contact_modulus))
         # The law's own logarithm continued from loads where both agree, with Hertz' arc in it.
         light = 1e-9
         at_light = float(law.approach_and_compliance(light, play)[0]) / light
@@ -127,7 +118,7 @@ def seat_rows() -> Iterator[str]:
 
 
 def sleeve_rows() -> Iterator[str]:
-    """Yield a line for each sleeve: its law, and the sum of laws that know no wall, against finite elements.
+    """Yield a line for each sleeve: its law, and the sum of laws without a wall, against finite elements.
 
     All are the travel between the pin and a flat flank's patch outside, the flank's own half left out: the mean
     displacement under the patch and half the mean separation.
@@ -146,7 +137,7 @@ def sleeve_rows() -> Iterator[str]:
         )
         no_wall = _bore_law(pin_radius, bore_radius, outer_radius, load, sleeve)
         modulus = contact_modulus(STEEL, sleeve)
-        width = float(hertz_half_width(load / LENGTH, outer_radius, modulus))
+        width = float(line_half_width(load / LENGTH, outer_radius, modulus))
         seat = SleeveOnPin(
             pin=STEEL,
             sleeve=sleeve,
@@ -162,7 +153,7 @@ def sleeve_rows() -> Iterator[str]:
         share = sleeve.plane_strain_compliance * modulus
         travel = found.approach + share * width**2 / (8.0 * outer_radius)
         plane = 2.0 * load / LENGTH / (np.pi * modulus) * (np.log(2.0 * outer_radius / width) + 0.5)
-        line = float(approach_at_load(LineContactLaw(LENGTH, modulus), np.array([load]), outer_radius)[0][0])
+        line = float(LineContactLaw(LENGTH, modulus).approach_at_load(np.array([load]), outer_radius)[0][0])
         walled = share * plane + float(law.approach_and_compliance(load, play)[0])
         bare = float(no_wall.approach_and_compliance(load, play)[0])
         flank = (1.0 - share) * line
@@ -180,13 +171,7 @@ def sleeve_rows() -> Iterator[str]:
 
 
 def draw(path: Path) -> None:
-    """Draw arc and peak pressure over the load and the pressure over the arc, against Persson and Hertz.
-
-    Parameters
-    ----------
-    path : Path
-        SVG file.
-    """
+    """Draw arc and peak pressure over the load and the pressure over the arc, against Persson and Hertz, as SVG."""
     import matplotlib as mpl
     from matplotlib.figure import Figure
 

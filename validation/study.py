@@ -9,19 +9,15 @@ from typing import Literal
 
 import numpy as np
 
+from fem.options import SolutionOptions
+from ltca.drive.engine_support import require
 from ltca.drive.members.limits import Limits
 from ltca.drive.parts import Drive
-from ltca.drive.plane_strain import (
-    require_fixed_pins,
-    require_frictionless,
-    require_plane_strain,
-    require_rigid_members,
-)
 from ltca.drive.single_discs import single_discs
 from ltca.reading.drive_file import DriveFile
 from validation.compare.compared_positions import ComparedPosition, compare_case
 from validation.compare.derived_coefficients import coefficients_of, disc_coefficients_of, nominal_coefficients_of
-from validation.compare.finite_element_positions import FullPosition, Settings, solve_positions
+from validation.compare.finite_element_positions import FullPosition, solve_positions
 from validation.compare.model_positions import DiscCoefficients
 from validation.levels.closed_forms import check_closed_forms
 from validation.levels.coefficients import check_file, halved_mesh_row
@@ -36,6 +32,8 @@ from validation.rows import Row
 Level = Literal["quick", "full"]
 
 QUICK_ANGLES, FULL_ANGLES = 2, 12
+VALIDATION = "validation by full finite elements"
+"""What refusals call this analysis."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,7 +50,7 @@ class Plan:
         rad.
     level : {"quick", "full"}
         How much is computed beside the positions.
-    settings : Settings
+    options : SolutionOptions
         Of the full solutions.
     limits : dict of str to dict of str to Limit
         Of the drive file, by case; none by default.
@@ -62,7 +60,7 @@ class Plan:
     drives: dict[str, Drive]
     crank_angles: tuple[float, ...]
     level: Level
-    settings: Settings
+    options: SolutionOptions
     limits: dict[str, Limits] = field(default_factory=dict)
 
     @property
@@ -101,7 +99,7 @@ def plan_study(
     cases: list[str] | None,
     crank_angles: list[float] | None,
     level: Level,
-    settings: Settings,
+    options: SolutionOptions,
 ) -> Plan:
     """Return what a validation compares.
 
@@ -118,10 +116,7 @@ def plan_study(
         cases = list(dict.fromkeys([names[0], names[(len(names) - 1) // 2], names[-1]]))
     drives = file.select_warm(cases)
     for drive in drives.values():
-        require_plane_strain(drive, "validation by full finite elements")
-        require_rigid_members(drive, "validation by full finite elements")
-        require_frictionless(drive, "validation by full finite elements")
-        require_fixed_pins(drive, "validation by full finite elements")
+        require(drive, "full FE")
     if not crank_angles:
         count = QUICK_ANGLES if level == "quick" else FULL_ANGLES
         teeth = next(iter(drives.values())).disc.number_of_teeth
@@ -131,7 +126,7 @@ def plan_study(
         drives=drives,
         crank_angles=tuple(dict.fromkeys(crank_angles)),
         level=level,
-        settings=settings,
+        options=options,
         limits={case: file.limits.get(case, {}) for case in drives},
     )
 
@@ -209,7 +204,7 @@ def _model_rows(
     folder: Path,
     say: Callable[[str], None],
 ) -> list[Row]:
-    """Return the rows of level 5; what the models owe each other is shown by the first disc alone."""
+    """Return the rows of level 5; relations between the models are checked on the first disc alone."""
     first, last = next(iter(plan.drives)), list(plan.drives)[-1]
     positions = [item for items in compared.values() for item in items]
     rows = [row for item in positions for row in (*compare_position_rows(item), *disc_stress_rows(item))]
@@ -225,15 +220,7 @@ def _model_rows(
 
 
 def first_disc(drive: Drive, case: str) -> tuple[str, Drive]:
-    """Return the first disc alone under an equal part of the torque, and what rows call it: the drive itself if it is all.
-
-    Parameters
-    ----------
-    drive : Drive
-        In the case.
-    case : str
-        Its name.
-    """
+    """Return a label and the first disc alone under an equal part of the torque; the drive itself if it has no other disc."""
     single, *others = single_discs(drive)
     if not others:
         return case, single
@@ -251,7 +238,7 @@ def _solve_positions(
             case,
             plan.crank_angles,
             folder,
-            plan.settings,
+            plan.options,
             pictured=pictured,
             title=f"{plan.name}, {case}",
             begin=step,

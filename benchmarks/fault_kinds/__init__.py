@@ -1,13 +1,13 @@
-"""Faults of `benchmarks/faults.py`, a module for each kind with ``configure(parser)`` and ``execute(arguments)``.
+"""Fault kinds of `benchmarks/faults.py`, one module per kind with ``configure(parser)`` and ``execute(arguments)``.
 
 =========  ============================================================
-programs   Commands as programs: started, watched, their folders compared
-malformed  Malformed drives and studies: refused in a few lines, or solved
-kills      Commands killed anywhere, by SIGKILL and SIGTERM, and started again: the same bytes, no child, no temporary file
-           left
-discs      Full and read-only discs, small file systems of their own: one line, nothing half-written
-folders    Two programs in one folder: one goes on as if alone, the other is refused in a line
-clusters   A dask cluster whose worker or scheduler is killed: the study ends with the same bytes, or in a line and then
-           resumes
+programs   Start commands as processes and compare their output folders
+malformed  Malformed drives and studies: refused with a short message, or solved
+kills      Commands killed at random times by SIGKILL or SIGTERM and restarted: identical output, no remaining processes or
+           temporary files
+discs      Full and read-only disks: a one-line message, no incomplete files
+folders    Two runs in one folder: one completes, the other is refused with a one-line message
+clusters   A dask cluster whose worker or scheduler is killed: identical output, or a one-line message and a successful
+           resume
 =========  ============================================================
 """

@@ -1,4 +1,4 @@
-"""A dask cluster whose worker or scheduler is killed: the study ends with the same bytes, or in a line and then resumes."""
+"""A dask cluster whose worker or scheduler is killed: identical output, or a one-line message and a successful resume."""
 
 from __future__ import annotations
 
@@ -19,7 +19,9 @@ STUDY = "tolerance paper --samples 3000 --positions 8 --no-figures --out {out}"
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the kind."""
-    parser.add_argument("--kills", type=int, default=3, help="of a worker, and as many of the scheduler; default 3")
+    parser.add_argument(
+        "--kills", type=int, default=3, help="kills of a worker, and as many of the scheduler; default 3"
+    )
 
 
 def execute(arguments: argparse.Namespace) -> int:

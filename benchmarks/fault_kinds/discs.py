@@ -1,6 +1,6 @@
-"""Full and read-only discs, small file systems of their own: one line, nothing half-written.
+"""Full and read-only disks (temporary file systems): a one-line message, no incomplete files.
 
-Exit status 1 where the disc fills up, 2 where that is foreseen or nobody may write, 0 where it is enough.
+Exit status 1 if the disk fills up, 2 if this is foreseen or the disk is read-only, 0 if the space is sufficient.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ from fault_kinds.programs import COMMANDS, Counts, content, is_one_line, start
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the kind."""
-    parser.add_argument("--sizes", nargs="+", default=["4k", "64k", "256k"], help="of the full discs")
+    parser.add_argument("--sizes", nargs="+", default=["4k", "64k", "256k"], help="sizes of the small disks")
     parser.add_argument("--commands", nargs="+", choices=COMMANDS, default=list(COMMANDS), help="default all")
 
 
 def execute(arguments: argparse.Namespace) -> int:
-    """Run the commands on discs that are too small, and on one that is read-only."""
+    """Run the commands on disks that are too small, and on a read-only disk."""
     counts = Counts()
     with tempfile.TemporaryDirectory(prefix="faults-") as name:
         place = Path(name) / "disc"

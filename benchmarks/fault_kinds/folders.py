@@ -1,4 +1,4 @@
-"""Two programs in one folder: one goes on as if alone, the other is refused in a line."""
+"""Two runs in one folder: one completes, the other is refused with a one-line message."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from fault_kinds.programs import COMMANDS, Counts, content, is_one_line, start
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the kind."""
-    parser.add_argument("--pairs", type=int, default=5, help="of each command; default 5")
+    parser.add_argument("--pairs", type=int, default=5, help="pairs per command; default 5")
     parser.add_argument("--commands", nargs="+", choices=COMMANDS, default=list(COMMANDS), help="default all")
 
 
 def execute(arguments: argparse.Namespace) -> int:
-    """Start each command twice at once."""
+    """Start every command twice at the same time."""
     counts = Counts()
     with tempfile.TemporaryDirectory(prefix="faults-") as name:
         folder = Path(name)

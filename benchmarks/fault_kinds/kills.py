@@ -1,4 +1,4 @@
-"""Commands killed anywhere, by SIGKILL and SIGTERM, and started again: the same bytes, no child, no temporary file left."""
+"""Commands killed at random times and restarted: identical output, no remaining processes or temporary files."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from fault_kinds.programs import COMMANDS, Counts, content, left_over, start
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the kind."""
-    parser.add_argument("--kills", type=int, default=20, help="of each command; default 20")
+    parser.add_argument("--kills", type=int, default=20, help="kills per command; default 20")
     parser.add_argument("--commands", nargs="+", choices=COMMANDS, default=list(COMMANDS), help="default all")
     parser.add_argument("--signal", choices=("KILL", "TERM"), default="KILL", help="default KILL")
-    parser.add_argument("--seed", type=int, default=1, help="of the times; default 1")
+    parser.add_argument("--seed", type=int, default=1, help="seed of the random times; default 1")
 
 
 def execute(arguments: argparse.Namespace) -> int:
-    """Kill and start again."""
+    """Kill and restart every command."""
     counts, number = Counts(), signal.Signals[f"SIG{arguments.signal}"]
     with tempfile.TemporaryDirectory(prefix="faults-") as name:
         folder = Path(name)
@@ -53,7 +53,7 @@ def execute(arguments: argparse.Namespace) -> int:
 def _whole(command: str, out: Path, scratch: Path) -> str:
     with start(COMMANDS[command], out, scratch) as process:
         said = process.communicate()[1]
-    # 1 is a failed check: coarse meshes do not meet the limits of fine ones.
+    # Status 1 is a failed check: coarse meshes do not meet the limits.
     return "" if process.returncode in (0, 1) and "cyclo: error" not in said else f"{process.returncode}: {said[-300:]}"
 
 

@@ -1,8 +1,8 @@
-"""Malformed drives and studies: refused in a few lines, or solved.
+"""Malformed drives and studies: refused with a short message, or solved.
 
-``malformed`` gives drives to ``cyclo run`` and studies to ``cyclo sweep --sample 0``: a file that is surely wrong ends in
-exit status 2 and a few printable lines, any other in those or in a result; none in a traceback or a warning, and none
-takes more than two seconds to be refused (the imports of a process, some half a second of an idle processor, left out).
+``malformed`` passes drives to ``cyclo run`` and studies to ``cyclo sweep --sample 0``. A file that is certainly wrong must give
+exit status 2 and a few printable lines, any other file the same or a result. Tracebacks and warnings are faults, and so are
+refusals that take more than two seconds (without the imports of a process, about half a second on an idle processor).
 """
 
 from __future__ import annotations
@@ -21,17 +21,17 @@ from ltca.errors import MOST_TOLD
 from ltca.testing.malformed import Malformed, malformed_drives, malformed_studies
 
 LIMIT = 2.0
-"""Seconds a refusal may take."""
+"""Permitted time of a refusal, s."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
-    parser.add_argument("--count", type=int, default=1000, help="drives, and as many studies; default 1000")
-    parser.add_argument("--seed", type=int, default=1, help="of the files; default 1")
+    parser.add_argument("--count", type=int, default=1000, help="number of drives, and of studies; default 1000")
+    parser.add_argument("--seed", type=int, default=1, help="seed of the generator; default 1")
 
 
 def execute(arguments: argparse.Namespace) -> int:
-    """Try the files and print the counts and every fault; return 1 when there is one."""
+    """Run all files, print counts and faults, and return 1 if there is a fault."""
     tried: Counter[str] = Counter()
     slowest = 0.0
     with tempfile.TemporaryDirectory() as folder:
@@ -41,7 +41,7 @@ def execute(arguments: argparse.Namespace) -> int:
             "studies": (malformed_studies, ["sweep", str(path), "--sample", "0", "--out", out]),
         }
         for kind, (generate, words) in kinds.items():
-            _run([words[0], str(path), *words[2:]])  # not there yet: the first call of a process pays for the imports
+            _run([words[0], str(path), *words[2:]])  # missing file: includes the imports in the first call
             for sample in generate(arguments.seed, arguments.count):
                 path.write_bytes(sample.content)
                 status, message, seconds = _run(words)
@@ -58,7 +58,7 @@ def execute(arguments: argparse.Namespace) -> int:
 
 
 def _run(words: list[str]) -> tuple[int, str, float]:
-    """Exit status, what was told on stderr (warnings included) and seconds."""
+    """Return exit status, stderr (including warnings) and duration, s."""
     told, start = io.StringIO(), time.perf_counter()
     with contextlib.redirect_stderr(told), contextlib.redirect_stdout(io.StringIO()), warnings.catch_warnings():
         warnings.simplefilter("always")
@@ -70,7 +70,7 @@ def _run(words: list[str]) -> tuple[int, str, float]:
 
 
 def _fault(sample: Malformed, status: int, message: str, seconds: float) -> str:
-    """What is wrong with an answer, empty when nothing is."""
+    """Return a description of the fault of a response; empty if there is none."""
     lines = message.rstrip("\n").split("\n")
     if sample.wrong and status != 2:
         return f"exit status {status}"

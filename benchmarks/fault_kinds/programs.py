@@ -1,4 +1,4 @@
-"""Commands as programs: started, watched, their folders compared."""
+"""Start commands as processes and compare their output folders."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pathlib import Path
 from ltca.output.process_pools import remove_stale_folders
 from ltca.output.run_folder import MANIFEST
 
-# Small sizes: what a command does is the same, how long it takes is not. {out} is the folder or file.
+# Commands with small problem sizes; {out} is the output folder or file.
 COMMANDS = {
     "run": "run paper --case CS-1 --positions 28 --no-figures --out {out}",
     "tolerance": "tolerance paper --samples 400 --positions 4 --out {out}",
@@ -23,12 +23,12 @@ COMMANDS = {
     "fem": "fem paper --case CS-3 --angle 0.5 --size 4 --no-pictures --out {out}",
     "validate": "validate paper --case CS-3 --angles 0.5 --size 4 --out {out}",
 }
-# What is kept between runs.
+# Folders kept between runs.
 BESIDE = ("kept", "batches")
 
 
 def start(words: str, out: Path, scratch: Path) -> subprocess.Popen[str]:
-    """Start a command in a session of its own, its temporary files in a folder of its own."""
+    """Start a command in a new session with a separate folder for temporary files."""
     scratch.mkdir(parents=True, exist_ok=True)
     environment = {**os.environ, "TMPDIR": str(scratch), "MPLBACKEND": "Agg"}
     resume = ["--resume"] if (out / "study.json").exists() and any(out.glob("batches/*.npz")) else []
@@ -44,7 +44,7 @@ def start(words: str, out: Path, scratch: Path) -> subprocess.Popen[str]:
 
 
 def content(folder: Path) -> dict[str, bytes]:
-    """Return the files of a run by name, without what it keeps beside them and without times."""
+    """Return the files of a run by name, without kept folders and without times."""
     found = {}
     for path in sorted(folder.rglob("*")):
         name = path.relative_to(folder).as_posix()
@@ -62,10 +62,10 @@ def _timeless(value: object) -> object:
 
 
 def left_over(scratch: Path, seconds: float = 15.0) -> str:
-    """Return which processes and temporary files outlive a program, empty when there are none after a while."""
+    """Return processes and temporary files that remain after a program has ended; empty if there are none."""
     end = time.monotonic() + seconds
     while True:
-        remove_stale_folders(scratch, 0.0)  # as the next pool does, of those whose workers were killed as well
+        remove_stale_folders(scratch, 0.0)  # as at the start of the next pool
         processes = []
         for path in Path("/proc").glob("[0-9]*"):
             try:
@@ -83,20 +83,20 @@ def left_over(scratch: Path, seconds: float = 15.0) -> str:
 
 
 def is_one_line(said: str) -> bool:
-    """Tell whether what was said ends in one line of an error, without a traceback."""
+    """Return whether the output has exactly one error line and no traceback."""
     lines = [line for line in said.splitlines() if line.startswith("cyclo: ")]
     return len(lines) == 1 and "Traceback" not in said
 
 
 class Counts:
-    """Tried, right and wrong, by name."""
+    """Counts of trials and failures by name."""
 
     def __init__(self) -> None:
         self._tried: Counter[str] = Counter()
         self._wrong: Counter[str] = Counter()
 
     def add(self, name: str, complaint: str) -> None:
-        """Enter one trial; an empty complaint is right."""
+        """Record a trial; an empty complaint means success."""
         self._tried[name] += 1
         if complaint:
             self._wrong[name] += 1

@@ -1,6 +1,6 @@
-"""What ``benchmarks/mutants.py`` is made of, in the order it is used.
+"""Modules of ``benchmarks/mutants.py``, in the order of their use.
 
-formulas       Places in the packages' numerics where one formula can be broken, and the broken source.
-processes      A warm process that forks for every run of pytest: seconds saved each time, limits on time and memory.
-covered_lines  Which tests run which lines, test file by test file, kept until a source or the test file changes.
+formulas       Mutations of formulas in the numerical code.
+processes      Forks of a process with imported packages for every run of pytest, with limits of time and memory.
+covered_lines  Coverage map from lines to tests, stored per test file until a source or the test file changes.
 """

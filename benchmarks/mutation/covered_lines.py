@@ -1,7 +1,7 @@
-"""Which tests run which lines: a map made test file by test file, kept until a source or the test file changes.
+"""Coverage map from lines to tests, computed per test file and stored until a source or the test file changes.
 
-A line that runs while a fixture of a module or session is made counts for every test that uses the fixture. Each test file
-has a process of its own, so what a package remembers between calls (tables, grids) is made anew in each.
+Lines executed by a fixture of module or session scope count for all tests that use the fixture. Every test file runs in a
+separate process, so that caches of the packages (tables, grids) are built again.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ def processor_seconds() -> float:
 
 
 class LineWatch:
-    """Plugin of pytest that tells `coverage` which test is running."""
+    """Plugin of pytest that passes the name of the running test to `coverage`."""
 
     def __init__(self, watch: Any) -> None:
         self.watch = watch
@@ -39,7 +39,7 @@ class LineWatch:
 
     @staticmethod
     def fixture_name(definition: pytest.FixtureDef[Any]) -> str:
-        """Return the context of a fixture."""
+        """Return the coverage context of a fixture."""
         return f"fixture {definition.baseid}::{definition.argname}"
 
     def _switch(self, context: str) -> str:
@@ -49,7 +49,7 @@ class LineWatch:
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_protocol(self, item: pytest.Item) -> Generator[None, object, object]:
-        """Time a test and note its fixtures."""
+        """Time a test and record its fixtures."""
         for definitions in getattr(item, "_fixtureinfo", None).name2fixturedefs.values():  # type: ignore[union-attr]
             for definition in definitions:
                 if definition.scope != "function":
@@ -65,7 +65,7 @@ class LineWatch:
 
     @pytest.hookimpl(wrapper=True)
     def pytest_fixture_setup(self, fixturedef: pytest.FixtureDef[Any]) -> Generator[None, object, object]:
-        """Let a shared fixture have a context of its own."""
+        """Use a separate context for a shared fixture."""
         if fixturedef.scope == "function":
             return (yield)
         before = self._switch(self.fixture_name(fixturedef))
@@ -75,7 +75,7 @@ class LineWatch:
             self._switch(before)
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
-        """Note what does not pass as it is."""
+        """Record tests that do not pass on the original."""
         if report.outcome != "passed":
             self.tests[report.nodeid] = (0.0, report.outcome)
 
@@ -116,7 +116,7 @@ def map_file(tree: Path, path: str, *, slow: bool) -> dict[str, Any]:
 
 
 def test_files(tree: Path) -> list[str]:
-    """Return the files that hold tests: those of `tests` and the packages' own doctests."""
+    """Return the test files: those of `tests` and modules with doctests."""
     found = [str(path.relative_to(tree)) for path in sorted((tree / "tests").rglob("test_*.py"))]
     for package in PACKAGES:
         sources = sorted((tree / package).rglob("*.py"))
@@ -125,9 +125,9 @@ def test_files(tree: Path) -> list[str]:
 
 
 def nearest_files(tree: Path, path: str, count: int) -> list[str]:
-    """Return the files of tests nearest to a source: named after it, of its folder, that import it; at most so many.
+    """Return at most `count` test files nearest to a source: named after it, in the mirrored folder, or importing it.
 
-    Of each kind smaller files come first, which are quicker.
+    Within these groups smaller files, which are faster, come first.
     """
     source = Path(path)
     module = ".".join(source.with_suffix("").parts)
@@ -150,7 +150,7 @@ def nearest_files(tree: Path, path: str, count: int) -> list[str]:
 
 
 def fingerprints(tree: Path, path: str, ran: Iterable[str]) -> dict[str, str]:
-    """Return what a part of the map depends on: the test file, what its folder shares, the sources it ran."""
+    """Return hashes of all files that a part of the map depends on: test file, conftest files, executed sources."""
     folders = list(Path(path).parents)
     shared = [str(folder / "conftest.py") for folder in folders if (tree / folder / "conftest.py").exists()]
     return {
@@ -161,12 +161,12 @@ def fingerprints(tree: Path, path: str, ran: Iterable[str]) -> dict[str, str]:
 
 @dataclass
 class CoverageMap:
-    """The whole map.
+    """Coverage map of all test files.
 
     Attributes
     ----------
     seconds : dict
-        Processor time of every test that passes.
+        Processor time of all passing tests, s.
     lines : dict
         Names of tests by source file and line.
     """
@@ -176,7 +176,7 @@ class CoverageMap:
 
     @classmethod
     def of_parts(cls, parts: Iterable[dict[str, Any]]) -> CoverageMap:
-        """Join the parts of the test files; what does not pass unbroken is left out."""
+        """Join the parts of the test files, without tests that fail on the original."""
         found = cls()
         for part in parts:
             names = list(part["tests"])
@@ -189,11 +189,11 @@ class CoverageMap:
         return found
 
     def tests_of(self, mutant: Mutant, tree: Path) -> list[str]:
-        """Return the tests that can see a mutant, those most likely to first: its own file's, then quick ones."""
+        """Return the tests that can detect a mutant: those of the mirrored test file first, then by run time."""
         chosen = self._on_lines(mutant.path, range(mutant.line, mutant.end_line + 1))
-        if not chosen and mutant.scope != (0, 0):  # the default of an argument: the function's own lines
+        if not chosen and mutant.scope != (0, 0):  # default of an argument: use the lines of the function
             chosen = self._on_lines(mutant.path, range(mutant.scope[0], mutant.scope[1] + 1))
-        if mutant.scope == (0, 0):  # runs at import, before any test
+        if mutant.scope == (0, 0):  # executed at import, before any test
             chosen = self._users_of(mutant, tree)
         mirrored = f"test_{Path(mutant.path).stem}.py"
         return sorted(chosen, key=lambda name: ((0.3 if mirrored in name else 1.0) * self.seconds[name], name))
@@ -203,7 +203,7 @@ class CoverageMap:
         return {name for line in lines for name in own.get(line, ())}
 
     def _users_of(self, mutant: Mutant, tree: Path) -> set[str]:
-        """Return tests of the lines that name what a statement at import binds; of the whole file where that is nothing."""
+        """Return the tests of lines that use a name bound at import; of the whole file if there are none."""
         words = re.findall(r"\w+", mutant.name)
         chosen: set[str] = set()
         if words:
@@ -215,7 +215,7 @@ class CoverageMap:
 
 
 def read_part(folder: Path, tree: Path, path: str, *, slow: bool) -> dict[str, Any] | None:
-    """Return a kept part of the map that still holds."""
+    """Return a stored part of the map that is still valid."""
     try:
         part: dict[str, Any] = json.loads(_place(folder, path).read_text(encoding="utf-8"))
     except (OSError, ValueError):
@@ -225,7 +225,7 @@ def read_part(folder: Path, tree: Path, path: str, *, slow: bool) -> dict[str, A
 
 
 def write_part(folder: Path, path: str, part: dict[str, Any]) -> None:
-    """Keep a part of the map."""
+    """Store a part of the map."""
     folder.mkdir(parents=True, exist_ok=True)
     _place(folder, path).write_text(json.dumps(part), encoding="utf-8")
 

@@ -1,7 +1,7 @@
-"""Places where a formula can be broken, and the source with one of them broken.
+"""Mutations of formulas in the sources.
 
-Only numerics are broken: no strings, messages, annotations, figures, pages or arguments of commands. Every replacement keeps
-the lines of the file, so that a map of covered lines stays true.
+Only numerical code is mutated: no strings, messages, annotations, figures, pages or arguments of commands. Line numbers of the
+file are preserved, so that the coverage map remains valid.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from pathlib import Path
 
 PACKAGES = ("ltca", "fem", "validation")
 LEFT_OUT = ("commands", "figures", "pictures", "page", "report", "output", "testing", "export")
-"""Folders without formulas of their own: text, pictures, files; ``testing`` holds what checks the others."""
+"""Folders that are not mutated: text, pictures, files, and the test utilities in ``testing``."""
 
 ARITHMETIC = {
     ast.Add: ast.Sub,
@@ -37,31 +37,31 @@ EXCHANGED = {
     "sum": "max", "mean": "max", "exp": "sqrt", "log": "sqrt", "hypot": "maximum", "cumsum": "sort", "tan": "sin",
 }  # fmt: skip
 DROPPED = {"abs", "sqrt", "conj", "sign", "sort", "log1p", "expm1"}
-"""Functions of one argument that may be left out."""
+"""Functions of one argument that are replaced by their argument."""
 ORDER_MATTERS = {"arctan2", "divide", "subtract", "clip", "where", "power", "cross", "searchsorted"}
 TOLERANCES_BELOW = 2e-4
 
 
 @dataclass(frozen=True, slots=True)
 class Mutant:
-    """One broken formula.
+    """A mutated formula.
 
     Attributes
     ----------
     path : str
         File, relative to the tree.
     line, end_line : int
-        Lines of the statement that holds it (of the header, where that is compound).
+        Lines of the statement; of its header for a compound statement.
     start, stop : int
-        Place of the replaced text in the file, in characters.
+        Position of the replaced text in the file, in characters.
     before, after : str
-        The text and what replaces it.
+        Original text and replacement.
     text : str
-        The line as it stands in the file.
+        Source line.
     name : str
-        Name that the statement binds where it runs at import; "" elsewhere.
+        Name bound by a statement executed at import; "" otherwise.
     scope : tuple of int
-        First and last line of the function around it; (0, 0) at module and class level.
+        First and last line of the enclosing function; (0, 0) at module and class level.
     """
 
     path: str
@@ -77,11 +77,11 @@ class Mutant:
 
     @property
     def key(self) -> str:
-        """Identity that survives changes elsewhere in the file."""
+        """Identifier that does not depend on changes elsewhere in the file."""
         return f"{self.path} | {self.text} | {self.before} → {self.after}"
 
     def apply(self, tree: Path) -> str:
-        """Return the source of the file with the formula broken."""
+        """Return the mutated source of the file."""
         source = (tree / self.path).read_text(encoding="utf-8")
         if source[self.start : self.stop] != self.before:
             raise ValueError(f"{self.path}:{self.line} is not the source this mutant was made from")
@@ -89,7 +89,7 @@ class Mutant:
 
 
 def source_files(tree: Path, packages: tuple[str, ...] = PACKAGES) -> list[Path]:
-    """Return the files with numerics, sorted, relative to the tree."""
+    """Return the files with numerical code, sorted, relative to the tree."""
     found = [path.relative_to(tree) for package in packages for path in sorted((tree / package).rglob("*.py"))]
     return [path for path in found if not set(path.parts[:-1]) & set(LEFT_OUT) and path.name != "__init__.py"]
 
@@ -100,7 +100,7 @@ def all_mutants(tree: Path, packages: tuple[str, ...] = PACKAGES) -> list[Mutant
 
 
 def draw_mutants(tree: Path, packages: tuple[str, ...], count: int, seed: int) -> list[Mutant]:
-    """Return a random choice, at most one for each line: the same for the same sources, packages, count and seed."""
+    """Return a reproducible random selection, with at most one mutant per line."""
     everything = all_mutants(tree, packages)
     order = random.Random(seed).sample(range(len(everything)), len(everything))
     chosen: dict[tuple[str, int], Mutant] = {}
@@ -148,7 +148,7 @@ class _Walker(ast.NodeVisitor):
             self._add(node, after)
         super().visit(node)
 
-    # What is no formula.
+    # Nodes that are not mutated.
     def visit_JoinedStr(self, node: ast.JoinedStr) -> None:
         """Text."""
 
@@ -275,7 +275,7 @@ class _Walker(ast.NodeVisitor):
         start = self._place(lineno, node.col_offset)  # type: ignore[attr-defined]
         stop = self._place(end, node.end_col_offset)  # type: ignore[attr-defined]
         before = self.source[start:stop]
-        # Lines stay where they are, whatever unparse makes of a long expression.
+        # Preserve the number of lines.
         after += "\n" * before.count("\n") if before.count("\n") and self._closed(start) else ""
         if after.count("\n") != before.count("\n") or _same(before, after):
             return
@@ -290,14 +290,14 @@ class _Walker(ast.NodeVisitor):
         return self.begins[line - 1] + len(self.encoded[line - 1][:column].decode())
 
     def _closed(self, start: int) -> bool:
-        """Whether a place is inside brackets of its statement, where line breaks mean nothing."""
+        """Return whether a position is inside brackets, where line breaks are permitted."""
         ahead = self.source[self.begins[self.statement[0] - 1] : start]
         ahead = re.sub(r"#[^\n]*|\"[^\"\n]*\"", "", ahead)
         return sum(ahead.count(opening) for opening in "([{") > sum(ahead.count(closing) for closing in ")]}")
 
 
 def _of_number(value: complex) -> Iterator[str]:
-    """One more of a whole number, two per cent more of another; small ones are tolerances: a thousand times as much."""
+    """Yield changed constants: integers + 1, floats × 1.02, and small floats, which are tolerances, × 1000."""
     if isinstance(value, int):
         yield str(value + 1)
     elif isinstance(value, float):

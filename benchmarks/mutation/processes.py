@@ -1,6 +1,6 @@
-"""Runs of pytest in forks of one warm process: third-party packages are imported once, the tree's own in every fork.
+"""Run pytest in forks of a process: third-party packages are imported once, those of the tree in every fork.
 
-A fork works in a tree of its own choice, has limits on time and memory, and hands back what its work returns as JSON.
+A fork works in a given tree, with limits of time and memory, and returns its result as JSON.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ WARM = (
     "h5netcdf", "h5py", "pydantic", "threadpoolctl", "jinja2", "rich.progress", "matplotlib.figure",
     "pytest", "hypothesis",
 )  # fmt: skip
-# Third-party plugins are not loaded in forks, so the project's own options have none of theirs (``--dist``).
+# Third-party plugins are not loaded in forks, so their options (``--dist``) are omitted.
 PYTEST_WORDS = (
     "-q", "-p", "no:cacheprovider", "--no-header",
     "-o", "addopts=--import-mode=importlib --doctest-modules --strict-markers",
@@ -36,30 +36,30 @@ PARENT_DEATH_SIGNAL = 1  # of prctl, Linux
 
 
 def warm_up() -> None:
-    """Import what every run needs and what does not belong to the tree."""
+    """Import the third-party packages that all runs need."""
     for name in WARM:
         with contextlib.suppress(ImportError):
             importlib.import_module(name)
 
 
 def in_fork(work: Callable[[], Any], tree: Path, *, seconds: float) -> tuple[str, Any]:
-    """Do some work in a fork that stands in a tree and imports from it.
+    """Run a function in a fork whose working directory and first import path is a tree.
 
     Parameters
     ----------
     work : callable
-        Returns what JSON can hold.
+        Function with a JSON-serialisable result.
     tree : Path
         Working directory, first on the path.
     seconds : float
-        Limit of processor time; wall time may be eight times as long.
+        Limit of processor time, s; the limit of wall time is eight times as long.
 
     Returns
     -------
     how : {"done", "time", "crash"}
         How it ended.
     answer
-        What the work returned, or its last words.
+        Result of the function, or the end of its output.
     """
     with tempfile.TemporaryDirectory(prefix="mutants-") as folder:
         answer, words = Path(folder) / "answer.json", Path(folder) / "words.txt"
@@ -76,7 +76,7 @@ def in_fork(work: Callable[[], Any], tree: Path, *, seconds: float) -> tuple[str
             else:
                 time.sleep(0.02)
         with contextlib.suppress(ProcessLookupError):
-            os.killpg(child, signal.SIGKILL)  # what it has started and left
+            os.killpg(child, signal.SIGKILL)  # remaining child processes
         if answer.exists():
             return "done", json.loads(answer.read_text(encoding="utf-8"))
         killed = os.WIFSIGNALED(status) and os.WTERMSIG(status) in (signal.SIGXCPU, signal.SIGKILL)
@@ -85,7 +85,7 @@ def in_fork(work: Callable[[], Any], tree: Path, *, seconds: float) -> tuple[str
 
 
 def _stand_in(work: Callable[[], Any], tree: Path, folder: Path, answer: Path, words: Path, seconds: float) -> None:
-    """Be the child: never returns."""
+    """Run as the child process; never returns."""
     code = 1
     try:
         os.setpgid(0, 0)
@@ -99,13 +99,13 @@ def _stand_in(work: Callable[[], Any], tree: Path, folder: Path, answer: Path, w
         sys.path.insert(0, str(tree))
         sys.dont_write_bytecode = True
         os.environ.update(PYTHONPATH=str(tree), XDG_CACHE_HOME=str(folder / "cache"), PYTHONDONTWRITEBYTECODE="1")
-        os.environ["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"  # rewriting the asserts of plugins costs a second each time
+        os.environ["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"  # assertion rewriting of plugins takes a second
         found = work()
         part = answer.with_suffix(".part")
         part.write_text(json.dumps(found), encoding="utf-8")
         part.replace(answer)
         code = 0
-    except BaseException:  # noqa: BLE001 - whatever it is, the parent reads it
+    except BaseException:  # noqa: BLE001 - reported to the parent
         traceback.print_exc()
     finally:
         os._exit(code)

@@ -20,21 +20,10 @@ from fem.mesh.body_mesh import BodyMesh
 from ltca.arrays import FloatArray, IntArray
 
 
-def element_nodes(body: BodyMesh) -> IntArray:
-    """Return the nodes of every element, vertices first, then mid-side nodes; shape (3 or 6, elements)."""
-    mesh = body.mesh
-    return np.asarray(np.vstack([mesh.t, mesh.nvertices + mesh.t2f]) if body.order == 2 else mesh.t, dtype=np.int64)
-
-
 def shape_functions(body: BodyMesh, quadrature: int) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return shape functions (points, nodes), their gradients (points, nodes, 2) and weights at quadrature points.
 
-    Parameters
-    ----------
-    body : BodyMesh
-        Of order 1 or 2.
-    quadrature : int
-        Degree of the polynomials that are integrated exactly.
+    Polynomials of degree `quadrature` are integrated exactly.
     """
     element = ElementTriP2() if body.order == 2 else ElementTriP1()
     points, weights = get_quadrature(element, quadrature)
@@ -46,34 +35,18 @@ def shape_functions(body: BodyMesh, quadrature: int) -> tuple[FloatArray, FloatA
 
 def jacobians(body: BodyMesh, elements: IntArray, slopes: FloatArray) -> FloatArray:
     """Return J = ∂x_a/∂ξ_c, shape (points, 2 (c), 2 (a), elements), for gradients of shape (points, nodes, 2)."""
-    places = body.mesh.doflocs[:, element_nodes(body)[:, elements]]
+    places = body.mesh.doflocs[:, body.element_nodes.T[:, elements]]
     return np.asarray(np.einsum("qnc,ane->qcae", slopes, places, optimize=True))
 
 
 def elastic_blocks(
     body: BodyMesh, elements: IntArray, quadrature: int, *, lam: float, mu: float, straight: bool
 ) -> FloatArray:
-    r"""Return the stiffness of elements.
+    r"""Return the stiffness of some elements, shape (nodes (i), nodes (j), 2 (a), 2 (b), elements), N/mm by mm of thickness.
 
     .. math:: \int \lambda N_{i,a} N_{j,b} + \mu (N_{i,b} N_{j,a} + \delta_{ab} \nabla N_i \cdot \nabla N_j)\,dA
 
-    Parameters
-    ----------
-    body : BodyMesh
-        The mesh.
-    elements : array of int
-        Which elements.
-    quadrature : int
-        Degree of the quadrature.
-    lam, mu : float
-        Lamé's constants, MPa.
-    straight : bool
-        Whether J is the same all over each of them.
-
-    Returns
-    -------
-    array, shape (nodes (i), nodes (j), 2 (a), 2 (b), elements)
-        N/mm for each mm of thickness.
+    `lam` and `mu` are Lamé's constants, MPa, `quadrature` the degree of the rule; `straight` elements have a constant Jacobian.
     """
     _, slopes, weights = shape_functions(body, quadrature)
     nodes = slopes.shape[1]
@@ -98,23 +71,12 @@ def elastic_blocks(
 
 
 def sum_by_nodes(body: BodyMesh, elements: IntArray, blocks: FloatArray) -> sp.csc_matrix:
-    """Return the sum of element matrices.
+    """Return the sum of element matrices as a matrix of shape (unknowns, unknowns) with sorted indices.
 
-    Parameters
-    ----------
-    body : BodyMesh
-        The mesh.
-    elements : array of int
-        Which elements, in the order of the last axis of the blocks.
-    blocks : array, shape (nodes (i), nodes (j), 2 (a), 2 (b), elements)
-        Component a of the force on node i for a unit of component b at node j.
-
-    Returns
-    -------
-    csc_matrix, shape (unknowns, unknowns)
-        With sorted indices.
+    Blocks have the shape (nodes (i), nodes (j), 2 (a), 2 (b), elements): component a of the force on node i for a unit of
+    component b at node j, in the order of `elements`.
     """
-    nodes = element_nodes(body)[:, elements]
+    nodes = body.element_nodes.T[:, elements]
     count = body.node_count
     keys = (nodes[None, :, :] * count + nodes[:, None, :]).ravel()  # by column, then by row
     order = np.argsort(keys)

@@ -24,7 +24,6 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 from scipy.spatial import cKDTree
 
-from fem.body.assembly import element_nodes
 from fem.body.elasticity import area_loads, rigid_modes
 from fem.mesh.body_mesh import BodyMesh
 from ltca.arrays import FloatArray, IntArray
@@ -36,7 +35,7 @@ PROXY_DIAGONAL = 200.0
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CondensedBody:
-    """A body as its contact sees it.
+    """A body reduced to its unit loads: compliance between them and nodal displacements under them.
 
     Attributes
     ----------
@@ -60,21 +59,14 @@ class CondensedBody:
 
     @property
     def entries(self) -> int:
-        """Numbers that it holds: those of the factor, most of all."""
+        """Number of stored values, most of them those of the factor."""
         return int(self._factor.lower.nnz) + self.compliance.size + self._trailing.size
 
     def displacement(self, amounts: FloatArray) -> FloatArray:
-        """Return the nodal displacement under amounts of the unit loads.
+        """Return the nodal displacement under amounts of the unit loads, mm.
 
-        Parameters
-        ----------
-        amounts : array, shape (m,) or (m, k)
-            Amount of each load shape; k load cases.
-
-        Returns
-        -------
-        array, shape (unknowns,) or (unknowns, k)
-            mm; for a free body relative to its area-mean rigid motion.
+        That of a free body is relative to its area-mean rigid motion. Amounts have the shape (m,), or (m, k) for k load
+        cases; the displacement (unknowns,) or (unknowns, k).
         """
         amounts = np.asarray(amounts, dtype=float)
         columns = amounts[:, None] if amounts.ndim == 1 else amounts
@@ -116,7 +108,7 @@ def order_nodes(body: BodyMesh) -> IntArray:
 def _nested_dissection(body: BodyMesh) -> IntArray:
     import pymetis
 
-    graph = _graph(element_nodes(body), body.node_count)
+    graph = _graph(body.element_nodes.T, body.node_count)
     graph.setdiag(0.0)
     graph.eliminate_zeros()
     order, _ = pymetis.nested_dissection(pymetis.CSRAdjacency(graph.indptr, graph.indices))
@@ -248,7 +240,7 @@ def _factorise(stiffness: sp.csc_matrix, loads: sp.csc_matrix, kept: IntArray) -
     count = len(kept)
     matrix = sp.vstack([sp.hstack([inner, border]), sp.hstack([border.T, sp.csr_matrix((loads.shape[1],) * 2)])])
     factor = spla.splu(matrix.tocsc(), permc_spec="NATURAL", diag_pivot_thresh=0.0, options=SYMMETRIC)
-    # SuperLU's object would keep three copies of the factors alive; one of them holds all there is to know.
+    # SuperLU's object would keep three copies of the factors alive; L and the diagonal of U are enough.
     lower, diagonal = factor.L, factor.U.diagonal()
     trailing = lower[count:, count:].toarray()
     schur = -(trailing * diagonal[count:]) @ trailing.T

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from skfem import ElementTriP1, ElementTriP2, ElementVector, FacetBasis, LinearForm, MeshTri2
 from skfem.models.elasticity import lame_parameters
 
-from fem.body.assembly import elastic_blocks, element_nodes, jacobians, shape_functions, sum_by_nodes
+from fem.body.assembly import elastic_blocks, jacobians, shape_functions, sum_by_nodes
 from fem.mesh.body_mesh import BodyMesh
 from ltca.arrays import FloatArray, IntArray
 from ltca.drive.parts import Material
@@ -32,20 +32,7 @@ CURVED_OFFSET = 1e-9
 
 
 def plane_lame_parameters(material: Material, state: PlaneState) -> tuple[float, float]:
-    """Return Lamé's λ and μ of the plane problem, MPa.
-
-    Parameters
-    ----------
-    material : Material
-        E and ν.
-    state : {"strain", "stress"}
-        Plane strain, or plane stress with λ replaced by 2λμ/(λ + 2μ).
-
-    Returns
-    -------
-    lam, mu : float
-        MPa.
-    """
+    """Return Lamé's λ and μ of the plane problem, MPa; in plane stress λ is replaced by 2λμ/(λ + 2μ)."""
     lam, mu = lame_parameters(material.youngs_modulus, material.poisson_ratio)
     if state == "stress":
         lam = 2.0 * lam * mu / (lam + 2.0 * mu)
@@ -72,23 +59,9 @@ def curved_elements(body: BodyMesh) -> NDArray[np.bool_]:
 def assemble_stiffness(
     body: BodyMesh, material: Material, *, thickness: float, state: PlaneState = "strain"
 ) -> sp.csc_matrix:
-    """Assemble the stiffness matrix.
+    """Return the stiffness matrix, shape (2 nodes, 2 nodes), N/mm: symmetric, with the three rigid modes as null space.
 
-    Parameters
-    ----------
-    body : BodyMesh
-        Mesh of order 1 or 2.
-    material : Material
-        Of the body.
-    thickness : float
-        mm.
-    state : {"strain", "stress"}
-        Plane strain or plane stress.
-
-    Returns
-    -------
-    csc_matrix, shape (2 nodes, 2 nodes)
-        N/mm, symmetric, with the three rigid modes as null space.
+    The thickness is in mm.
     """
     lam, mu = plane_lame_parameters(material, state)
     curved = curved_elements(body)
@@ -106,13 +79,7 @@ def assemble_stiffness(
 
 
 def rigid_modes(body: BodyMesh, centre: complex = 0j) -> FloatArray:
-    """Return nodal displacements of unit translations in x and y and of a unit rotation about a centre.
-
-    Returns
-    -------
-    array, shape (2 nodes, 3)
-        mm for mm, mm for mm, mm for rad.
-    """
+    """Return nodal displacements of unit translations in x and y and of a unit rotation about a centre, shape (2 nodes, 3)."""
     x, y = body.mesh.doflocs
     modes = np.zeros((2 * len(x), 3))
     modes[0::2, 0] = 1.0
@@ -123,17 +90,13 @@ def rigid_modes(body: BodyMesh, centre: complex = 0j) -> FloatArray:
 
 
 def area_loads(body: BodyMesh, centre: complex = 0j) -> FloatArray:
-    r"""Return nodal loads of body forces shaped like the rigid modes: :math:`\int N_i r_j\,dA`.
+    r"""Return nodal loads of body forces shaped like the rigid modes: :math:`\int N_i r_j\,dA`, shape (2 nodes, 3).
 
     Their transpose measures the area mean of a displacement (up to the Gram matrix
-    ``rigid_modes(body).T @ area_loads(body)``); they also spread a reaction evenly over the body.
-
-    Returns
-    -------
-    array, shape (2 nodes, 3)
-        mm², mm², mm³ for each unit of body force.
+    ``rigid_modes(body).T @ area_loads(body)``); they also spread a reaction evenly over the body. Units are mm², mm² and mm³
+    for a unit of body force.
     """
-    nodes = element_nodes(body)
+    nodes = body.element_nodes.T
     values, slopes, weights = shape_functions(body, CURVED_QUADRATURE)
     jacobian = jacobians(body, np.arange(nodes.shape[1]), slopes)
     area = weights[:, None] * (jacobian[:, 0, 0] * jacobian[:, 1, 1] - jacobian[:, 0, 1] * jacobian[:, 1, 0])
@@ -157,13 +120,7 @@ def unknowns_of_nodes(nodes: IntArray) -> IntArray:
 
 
 def unknowns_of_boundary(body: BodyMesh, name: str) -> IntArray:
-    """Return all displacement unknowns on a named boundary.
-
-    Raises
-    ------
-    MeshError
-        When the mesh has no such boundary.
-    """
+    """Return all displacement unknowns on a named boundary; MeshError when the mesh has none of that name."""
     facets = body.require_boundary(name)
     nodes = np.unique(body.mesh.facets[:, facets])
     if body.order == 2:
@@ -184,28 +141,9 @@ def traction_load(
     *,
     thickness: float,
 ) -> FloatArray:
-    """Return nodal forces of a traction on a named boundary.
+    """Return the nodal forces of a traction on a named boundary, N, shape (2 nodes,).
 
-    Parameters
-    ----------
-    body : BodyMesh
-        The mesh.
-    boundary : str
-        Name of the boundary.
-    traction : callable
-        Takes places (x, y) and outward normals, arrays of shape (2, …) each, mm; returns tx, ty, MPa.
-    thickness : float
-        mm.
-
-    Returns
-    -------
-    array, shape (2 nodes,)
-        N.
-
-    Raises
-    ------
-    MeshError
-        When the mesh has no such boundary.
+    `traction` takes places (x, y) and outward normals, arrays of shape (2, …), mm, and returns tx, ty in MPa.
     """
     facets = body.require_boundary(boundary)
     basis = FacetBasis(body.mesh, _vector_element(body), facets=facets, intorder=2 * CURVED_QUADRATURE)

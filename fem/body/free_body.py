@@ -17,26 +17,10 @@ from fem.mesh.body_mesh import BodyMesh
 
 
 def boundary_motion_loads(body: BodyMesh, boundary: str, centre: complex = 0j) -> sp.csc_matrix:
-    r"""Return W: nodal loads shaped like the rigid modes along a boundary, :math:`\int N_i r\,ds`.
+    r"""Return W: nodal loads shaped like the rigid modes along a closed boundary, :math:`\int N_i r\,ds`, shape (unknowns, 3).
 
-    Parameters
-    ----------
-    body : BodyMesh
-        Quadratic mesh.
-    boundary : str
-        Name of a closed boundary.
-    centre : complex
-        Centre of the rotation, mm.
-
-    Returns
-    -------
-    csc_matrix, shape (unknowns, 3)
-        mm, mm, mm²; their transpose times a displacement gives its weighted means over the boundary.
-
-    Raises
-    ------
-    MeshError
-        When the mesh has no such boundary.
+    Their transpose times a displacement gives its means over the boundary times its length (mm, mm, and mm² for the rotation
+    about `centre`).
     """
     nodes = body.boundary_nodes(boundary)
     x, y = body.mesh.doflocs

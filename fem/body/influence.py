@@ -1,7 +1,7 @@
-r"""Influence between very many loads of a free body: only the blocks that are asked for, none of them by a dense factor.
+r"""Influence between very many loads of a free body: only the requested blocks, without a dense factor.
 
 Behind the stiffness as in `fem.body.condensation`, m loads end in a dense trailing matrix of m columns: with several
-thousand of them its factorisation is nearly all the work, and most of its blocks nobody wants. Here the loads border the
+thousand of them its factorisation is nearly all the work, and most of its blocks are not needed. Here the loads border the
 stiffness below only,
 
 .. math:: \begin{pmatrix} K & 0 \\ B^T & 1 \end{pmatrix} = \begin{pmatrix} L & 0 \\ Z & 1 \end{pmatrix}
@@ -36,7 +36,7 @@ PANEL = 96
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Datum:
-    """Force shapes that balance loads, and by which rigid motions are measured.
+    """Force shapes that balance loads and measure rigid motions.
 
     Attributes
     ----------
@@ -45,7 +45,7 @@ class Datum:
     measured : array, shape (m, 3)
         Displacement measured by each load for a unit of each shape, held.
     own : array, shape (3, 3)
-        That measured by the shapes themselves.
+        Displacement measured by the shapes under themselves.
     """
 
     motion: FloatArray
@@ -55,7 +55,7 @@ class Datum:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LoadInfluence:
-    """Displacements that the loads of a free body measure of one another.
+    """Displacements measured by the loads of a free body under one another.
 
     Attributes
     ----------
@@ -73,32 +73,22 @@ class LoadInfluence:
     _carried: sp.csc_matrix
 
     def block(self, measuring: slice, loading: slice, datum: int = 0) -> FloatArray:
-        """Return what some loads measure under others, both balanced by a datum.
+        """Return the displacements that some loads measure under a unit of others, both balanced by a datum.
 
-        Parameters
-        ----------
-        measuring, loading : slice
-            Of the loads; symmetric to the last bit where both are the same.
-        datum : int
-            Number of the datum.
-
-        Returns
-        -------
-        array, shape (measuring, loading)
-            Displacement for a unit of each load.
+        The shape is (measuring, loading); symmetric to the last bit where both slices are the same.
         """
         rows = self._carried[measuring]
         found = sum_products(rows, rows if measuring == loading else self._carried[loading])
         return self._refer(found, measuring, loading, self.datums[datum])
 
     def in_every_datum(self, loads: slice) -> tuple[FloatArray, ...]:
-        """Return what some loads measure of one another, for each datum; the product is taken once."""
+        """Return the displacements that some loads measure under one another, by datum; the product is computed once."""
         rows = self._carried[loads]
         held = sum_products(rows, rows)
         return tuple(self._refer(held.copy(), loads, loads, datum) for datum in self.datums)
 
     def own(self, loads: slice, datum: int = 0) -> FloatArray:
-        """Return what each load measures of itself, shape (loads,)."""
+        """Return the displacement that each load measures under itself, shape (loads,)."""
         rows, by = self._carried[loads], self.datums[datum]
         held = np.asarray(rows.power(2).sum(axis=1)).ravel()
         motion, measured = by.motion[:, loads], by.measured[loads]
@@ -118,17 +108,9 @@ class LoadInfluence:
 
 
 def sum_products(rows: sp.csc_matrix, columns: sp.csc_matrix) -> FloatArray:
-    """Return rows · columnsᵀ of sparse factors with few long columns as a dense matrix.
+    """Return rows · columnsᵀ of sparse factors with few long columns, shapes (p, n) and (q, n), as a dense matrix.
 
-    Parameters
-    ----------
-    rows, columns : csc_matrix, shapes (p, n) and (q, n)
-        The factors; the product is symmetric to the last bit when they are the same object.
-
-    Returns
-    -------
-    array, shape (p, q)
-        The product.
+    The product is symmetric to the last bit when both are the same object.
     """
     total = np.zeros((rows.shape[0], columns.shape[0]))
     same = rows is columns
@@ -170,25 +152,10 @@ def influence_of_loads(
     datums: list[FloatArray],
     sampled: IntArray,
 ) -> LoadInfluence:
-    """Factorise a free body with many loads behind it.
+    """Factorise a free body with many loads behind it; the factor of the stiffness is not kept.
 
-    Parameters
-    ----------
-    body : BodyMesh
-        The mesh.
-    stiffness : csc_matrix, shape (unknowns, unknowns)
-        From `fem.body.elasticity.assemble_stiffness`.
-    loads : sparse matrix, shape (unknowns, m)
-        Nodal forces of each unit load.
-    datums : list of array, shape (unknowns, 3)
-        Force shapes of each datum, with a regular Gram matrix with the rigid modes.
-    sampled : array of int
-        Loads under which the displacement is solved for.
-
-    Returns
-    -------
-    LoadInfluence
-        Without the factor of the stiffness, which is let go.
+    `loads` are nodal forces, shape (unknowns, m). Each datum is three force shapes, shape (unknowns, 3), whose Gram matrix
+    with the rigid modes is regular. Under the `sampled` loads the displacement is solved for.
     """
     loads = sp.csc_matrix(loads)
     factor, kept = _factorise(body, stiffness, loads)

@@ -13,9 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from skfem import Basis, ElementTriP1, ElementTriP2, ElementVector
 
-from fem.body.elasticity import PlaneState
+from fem.body.elasticity import PlaneState, plane_lame_parameters
 from fem.mesh.body_mesh import BodyMesh
-from fem.mesh.mesh_file import element_nodes
 from ltca.arrays import FloatArray
 from ltca.drive.parts import Material
 
@@ -61,35 +60,17 @@ def stress_of_strain(
     exx: FloatArray, eyy: FloatArray, exy: FloatArray, material: Material, state: PlaneState = "strain"
 ) -> Stress:
     """Return the stress of plane strains (exy = ½γ) by Hooke's law."""
-    modulus, nu = material.youngs_modulus, material.poisson_ratio
-    mu = 0.5 * modulus / (1.0 + nu)
-    lam = modulus * nu / (1.0 - nu**2) if state == "stress" else modulus * nu / ((1.0 + nu) * (1.0 - 2.0 * nu))
+    lam, mu = plane_lame_parameters(material, state)
     volume = exx + eyy
     xx, yy = lam * volume + 2.0 * mu * exx, lam * volume + 2.0 * mu * eyy
-    return Stress(xx=xx, yy=yy, xy=2.0 * mu * exy, zz=nu * (xx + yy) if state == "strain" else np.zeros_like(xx))
+    zz = material.poisson_ratio * (xx + yy) if state == "strain" else np.zeros_like(xx)
+    return Stress(xx=xx, yy=yy, xy=2.0 * mu * exy, zz=zz)
 
 
 def recover_stress(
     body: BodyMesh, displacement: FloatArray, material: Material, *, state: PlaneState = "strain"
 ) -> Stress:
-    """Return averaged stresses at the nodes.
-
-    Parameters
-    ----------
-    body : BodyMesh
-        The mesh.
-    displacement : array, shape (2 nodes,)
-        Node by node, mm.
-    material : Material
-        Of the body.
-    state : {"strain", "stress"}
-        Plane strain or plane stress.
-
-    Returns
-    -------
-    Stress
-        Arrays of shape (nodes,).
-    """
+    """Return stresses at the nodes, averaged over elements, shape (nodes,), of nodal displacements of shape (2 nodes,), mm."""
     order = body.order
     basis = Basis(body.mesh, ElementVector(ElementTriP2() if order == 2 else ElementTriP1()), quadrature=SAMPLES)
     gradient = np.asarray(basis.interpolate(displacement).grad)
@@ -100,7 +81,7 @@ def recover_stress(
     spread = np.column_stack([np.ones(corners.shape[1]), corners.T]) @ np.linalg.inv(
         np.column_stack([np.ones(3), x, y])
     )
-    nodes = element_nodes(body)
+    nodes = body.element_nodes
     weight = np.repeat(np.abs(np.asarray(basis.dx)).sum(axis=1)[:, None], nodes.shape[1], axis=1).ravel()
     total = np.bincount(nodes.ravel(), weights=weight, minlength=body.node_count)
 
@@ -109,5 +90,5 @@ def recover_stress(
         return np.asarray(np.bincount(nodes.ravel(), weights=weight * at_nodes, minlength=body.node_count) / total)
 
     xx, yy, xy = averaged(sampled.xx), averaged(sampled.yy), averaged(sampled.xy)
-    nu = material.poisson_ratio
-    return Stress(xx=xx, yy=yy, xy=xy, zz=nu * (xx + yy) if state == "strain" else np.zeros_like(xx))
+    zz = material.poisson_ratio * (xx + yy) if state == "strain" else np.zeros_like(xx)
+    return Stress(xx=xx, yy=yy, xy=xy, zz=zz)

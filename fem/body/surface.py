@@ -37,28 +37,10 @@ def quadratic_slopes(xi: FloatArray) -> FloatArray:
 
 
 def run_of_edges(body: BodyMesh, boundary: str, place: complex, reach: float) -> IntArray:
-    """Return the edges of a boundary within a distance of a place, as one run in chain order.
+    """Return the edges of a closed boundary whose middles lie within `reach` (mm) of a place, as one run in chain order.
 
-    Parameters
-    ----------
-    body : BodyMesh
-        Quadratic mesh.
-    boundary : str
-        Name of a closed boundary.
-    place : complex
-        Place on or near the boundary, mm.
-    reach : float
-        Distance of the middle of the edges, mm.
-
-    Returns
-    -------
-    array of int, shape (edges, 3)
-        Nodes (first, middle, last) of each edge, body on the left.
-
-    Raises
-    ------
-    MeshError
-        When the boundary is missing or has fewer than four edges there.
+    The result has the shape (edges, 3): first, middle and last node of each edge, body on the left. MeshError when the
+    boundary is missing or has fewer than four edges there.
     """
     if body.order != 2:
         raise MeshError(f"mesh of {body.name} has straight elements; contact needs second-order ones")
@@ -161,15 +143,7 @@ class PressureZone:
     def load_shapes(self, unknowns: int) -> sp.csc_matrix:
         """Return nodal forces on the body of a unit of each pressure unknown (1 MPa at a vertex).
 
-        Parameters
-        ----------
-        unknowns : int
-            Number of displacement unknowns of the body.
-
-        Returns
-        -------
-        csc_matrix, shape (unknowns, pressure unknowns)
-            N for each MPa; forces act against the outward normal.
+        The shape is (unknowns, pressure unknowns); forces are in N by MPa and act against the outward normal.
         """
         edges = np.repeat(np.arange(self.edge_count), len(GAUSS_POINTS))
         xi = np.tile(GAUSS_POINTS, self.edge_count)

@@ -39,27 +39,7 @@ class WallStress:
 
 
 def stress_along_wall(body: BodyMesh, stress: Stress, curve: Curve) -> WallStress:
-    """Return the stress along a boundary.
-
-    Parameters
-    ----------
-    body : BodyMesh
-        Quadratic mesh.
-    stress : Stress
-        At its nodes, in its own frame.
-    curve : Curve
-        Exact curve of the boundary; tangents are taken from it.
-
-    Returns
-    -------
-    WallStress
-        At vertices and middles of the edges.
-
-    Raises
-    ------
-    MeshError
-        When the mesh has no such boundary.
-    """
+    """Return the stress along a boundary at vertices and mid-side nodes; tangents are those of the exact curve."""
     nodes = body.boundary_nodes(curve.name)[:, :2].ravel()
     points = body.mesh.doflocs[0, nodes] + 1j * body.mesh.doflocs[1, nodes]
     parameter = curve.parameter_of(points)

@@ -5,10 +5,9 @@ Modules in the order data passes:
 ===========  ============================================================
 stations     Stations: the places of a disc at which influence coefficients are derived, and the patches they carry
 patch_loads  Patches with semi-elliptic pressure on meshed boundaries: loads, and the means by which they measure
-wall_strain  Tangential strain of walls as a measure of the displacement: what stress stations read
+wall_strain  Tangential strain of walls as a linear measure of the displacement, for the stress stations
 bodies       Normal approach influence coefficients of the bodies of a drive, derived by finite elements
 dataset      All influence coefficients of a drive as one labelled dataset, the content of ``coefficients.nc``
-fit          Whose bodies a file of influence coefficients belongs to: its numbers and its stations against those of a
-             drive
+fit          Check that a file of influence coefficients belongs to the bodies of a drive: dimensions and stations
 ===========  ============================================================
 """

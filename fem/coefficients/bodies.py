@@ -8,7 +8,7 @@ smooth in the place and does not depend on the width. So a mesh far coarser than
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import reduce
 from operator import add
 
@@ -27,7 +27,7 @@ from fem.mesh.body_mesh import BodyMesh
 from fem.mesh.element_size import Refinement
 from fem.mesh.memory_need import require_memory, solution_memory
 from fem.mesh.triangulation import default_coarse_size, estimate_unknowns, mesh_circle, mesh_disc, mesh_ring
-from fem.shapes import CircleShape, DiscShape, RingShape, Shape
+from fem.shapes import CircleShape, DiscShape, RingShape
 from ltca.arrays import ComplexArray, FloatArray, IntArray
 from ltca.drive.parts import Material
 from ltca.output.resources import available_memory
@@ -40,16 +40,16 @@ GROWTH = 0.4
 # Pins, rollers and race are small: a mesh of half the size costs nothing.
 ROUND_SIZE = 0.5
 # Elements stay small to this distance from the middle of a patch, in half-widths.
-ZONE = 1.2
+REFINED_RADIUS = 1.2
 # Every 16th station also gets a patch twice as wide: both together show the closed form of the near field.
 WIDE_STEP = 16
 WIDE_RATIO = 2.0
 # Stations whose displacement is solved for once more, to measure reciprocity by another way than the matrix.
-SAMPLED = 12
+RECIPROCITY_SAMPLES = 12
 # Faster growth distorts triangles (smallest angle below 15° on one of six random discs at 1.0).
-LARGEST_GROWTH = 0.7
+MAX_GROWTH = 0.7
 # Beyond this the edges are longer than the patches are wide.
-LARGEST_SIZE = 4.0
+MAX_SIZE = 4.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -120,17 +120,11 @@ class DerivedRound:
 
 def _refinements(points: ComplexArray, half_width: float, size: float) -> list[Refinement]:
     edge = EDGE_SHARE * size * half_width
-    return [Refinement(float(point.real), float(point.imag), edge, ZONE * half_width) for point in points]
+    return [Refinement(float(point.real), float(point.imag), edge, REFINED_RADIUS * half_width) for point in points]
 
 
-def require_element_size(size: float, largest: float = LARGEST_SIZE) -> None:
-    """Check a multiple of the default element edge.
-
-    Raises
-    ------
-    MeshError
-        When it is not positive or above the largest.
-    """
+def require_element_size(size: float, largest: float = MAX_SIZE) -> None:
+    """Raise MeshError for a multiple of the default element edge that is not positive or above the largest."""
     if not (np.isfinite(size) and 0.0 < size <= largest):
         raise MeshError(
             f"element size {size:g}: must be greater than 0 and at most {largest:g} (a multiple of the default edge)"
@@ -138,27 +132,13 @@ def require_element_size(size: float, largest: float = LARGEST_SIZE) -> None:
 
 
 def _growth(size: float) -> float:
-    return min(GROWTH * size, LARGEST_GROWTH)
+    return min(GROWTH * size, MAX_GROWTH)
 
 
 def require_disc_memory(shape: DiscShape, stations: DiscStations, size: float = 1.0, processes: int = 1) -> None:
-    """Check that the disc's mesh and solution will fit into memory.
+    """Raise MemoryLimitError when the disc's mesh and solution would not fit into memory shared by some processes.
 
-    Parameters
-    ----------
-    shape : DiscShape
-        The disc.
-    stations : DiscStations
-        Places of the patches.
-    size : float
-        Multiple of all element edges and of their growth.
-    processes : int
-        How many such derivations share the memory.
-
-    Raises
-    ------
-    MemoryLimitError
-        With the numbers.
+    `size` is a multiple of all element edges and of their growth.
     """
     refinements = _refinements(stations.points, float(stations.half_width.min()), size)
     coarse = default_coarse_size(shape, size)
@@ -168,24 +148,7 @@ def require_disc_memory(shape: DiscShape, stations: DiscStations, size: float = 
 
 
 def mesh_disc_for_stations(shape: DiscShape, stations: DiscStations, size: float = 1.0) -> BodyMesh:
-    """Mesh a disc for its stations.
-
-    Parameters
-    ----------
-    shape : DiscShape
-        The disc.
-    stations : DiscStations
-        Places of the patches.
-    size : float
-        Multiple of all element edges and of their growth.
-
-    Raises
-    ------
-    MeshError
-        When the size is out of bounds or meshing fails.
-    MemoryLimitError
-        When mesh and solution would not fit into memory.
-    """
+    """Mesh a disc for its stations; `size` is a multiple of all element edges and of their growth."""
     require_element_size(size)
     require_disc_memory(shape, stations, size)
     refinements = _refinements(stations.points, float(stations.half_width.min()), size)
@@ -203,32 +166,8 @@ def derive_disc(
 ) -> DerivedDisc:
     """Derive the coefficients of the disc, all contacts coupled.
 
-    Parameters
-    ----------
-    shape : DiscShape
-        The disc.
-    stations : DiscStations
-        Places of the patches.
-    material : Material
-        Of the disc.
-    thickness : float
-        mm.
-    state : {"strain", "stress"}
-        Plane strain or plane stress.
-    size : float
-        Multiple of the element edges.
-
-    Returns
-    -------
-    DerivedDisc
-        Coefficients.
-
-    Raises
-    ------
-    MeshError
-        When the size is out of bounds or meshing fails.
-    MemoryLimitError
-        When mesh and solution would not fit into memory.
+    Thickness in mm; `size` is a multiple of the element edges. MeshError when that is out of bounds or meshing fails,
+    MemoryLimitError when mesh and solution would not fit into memory.
     """
     body = mesh_disc_for_stations(shape, stations, size)
     count, places = stations.count, stations.refined(shape)
@@ -253,7 +192,7 @@ def derive_disc(
     measures = wall_modulus(material, state) * sp.hstack(strains)
     loads = sp.hstack([*patches, *wide_patches, *pressures, measures], format="csc")
     stiffness = assemble_stiffness(body, material, thickness=thickness, state=state)
-    sampled = np.unique(np.linspace(0, count - 1, SAMPLED).astype(int))
+    sampled = np.unique(np.linspace(0, count - 1, RECIPROCITY_SAMPLES).astype(int))
     by_area, by_bores = area_loads(body), motions.toarray()
     influence = influence_of_loads(body, stiffness, loads, [by_area, by_bores], sampled)
     del stiffness
@@ -284,11 +223,7 @@ def derive_pin(
     shape: CircleShape, material: Material, *, thickness: float, state: PlaneState = "strain", size: float = 1.0
 ) -> DerivedRound:
     """Derive the coefficient of a wheel pin whose rigid core is held; parameters as for `derive_disc`."""
-    body, width = _mesh_round(shape, np.array([0.0]), size)
-    loads = _round_loads(body, shape, np.array([0.0]), width)
-    stiffness = assemble_stiffness(body, material, thickness=thickness, state=state)
-    condensed = condense_body(body, stiffness, loads, fixed=unknowns_of_boundary(body, "core"))
-    return _round_result(condensed.compliance, condensed.displacement(np.eye(2)), loads, 1, width, body)
+    return _derive_round(shape, [0.0], material, thickness, state, size, held="core")[0]
 
 
 def derive_roller(
@@ -299,12 +234,7 @@ def derive_roller(
     Area-mean displacement and mean rotation are removed, unit loads balanced by uniform body force; parameters as
     for `derive_disc`.
     """
-    angles = np.array([np.pi, 0.0])
-    body, width = _mesh_round(shape, angles, size)
-    loads = _round_loads(body, shape, angles, width)
-    stiffness = assemble_stiffness(body, material, thickness=thickness, state=state)
-    condensed = condense_body(body, stiffness, loads)
-    return _round_result(condensed.compliance, condensed.displacement(np.eye(3)), loads, 2, width, body)
+    return _derive_round(shape, [np.pi, 0.0], material, thickness, state, size)[0]
 
 
 def derive_race(
@@ -318,30 +248,52 @@ def derive_race(
 ) -> DerivedRound:
     """Derive the approach of the inner race at uniform angles from a unit load; its bore is held.
 
-    The ring is the same all around, so one load tells all; parameters as for `derive_disc`.
+    The ring has no preferred direction, so one load is enough; parameters as for `derive_disc`.
     """
-    body, width = _mesh_round(shape, np.array([0.0]), size)
-    loads = _round_loads(body, shape, np.array([0.0]), width)
-    stiffness = assemble_stiffness(body, material, thickness=thickness, state=state)
-    condensed = condense_body(body, stiffness, loads, fixed=unknowns_of_boundary(body, "inner"))
-    displacement = condensed.displacement(np.eye(2))
+    result, body, displacement = _derive_round(shape, [0.0], material, thickness, state, size, held="inner")
     parameters = 2.0 * np.pi * np.arange(angles) / angles
-    everywhere = patch_loads(body, shape.curves[0], parameters, width)
+    everywhere = patch_loads(body, shape.curves[0], parameters, result.half_width)
     measured = np.asarray(everywhere.T @ displacement[:, 0])
-    # Reciprocity and the symmetry of the ring make "at +φ" and "at −φ" one number; the mesh knows neither side.
+    # Reciprocity and the symmetry of the ring make "at +φ" and "at −φ" one number; the mesh has neither symmetry.
     mirrored = np.roll(measured[::-1], 1)
-    result = _round_result(condensed.compliance, displacement, loads, 1, width, body)
-    return DerivedRound(
-        approach=0.5 * (measured + mirrored),
+    mirror = float(np.max(np.abs(measured - mirrored)) / np.max(np.abs(measured)))
+    return replace(result, approach=0.5 * (measured + mirrored), mirror=mirror)
+
+
+def _derive_round(
+    shape: CircleShape | RingShape,
+    angles: list[float],
+    material: Material,
+    thickness: float,
+    state: PlaneState,
+    size: float,
+    held: str = "",
+) -> tuple[DerivedRound, BodyMesh, FloatArray]:
+    """Return the coefficients at polar angles, the mesh and the nodal displacements under the unit loads.
+
+    The last load is a patch twice as wide at the first angle; `held` is a boundary that does not move.
+    """
+    places = np.array(angles)
+    body, width = _mesh_round(shape, places, size)
+    curve = shape.curves[0]
+    wide = patch_loads(body, curve, places[:1], WIDE_RATIO * width)
+    loads = sp.hstack([patch_loads(body, curve, places, width), wide], format="csc")
+    stiffness = assemble_stiffness(body, material, thickness=thickness, state=state)
+    condensed = condense_body(body, stiffness, loads, fixed=unknowns_of_boundary(body, held) if held else None)
+    compliance, displacement = condensed.compliance, condensed.displacement(np.eye(len(places) + 1))
+    measured = np.asarray(loads.T @ displacement)
+    result = DerivedRound(
+        approach=compliance[: len(places), : len(places)],
         half_width=width,
-        wide_approach=result.wide_approach,
-        reciprocity=result.reciprocity,
-        mirror=float(np.max(np.abs(measured - mirrored)) / np.max(np.abs(measured))),
+        wide_approach=float(compliance[-1, -1]),
+        reciprocity=float(np.max(np.abs(measured - compliance.T)) / np.max(np.abs(compliance))),
+        mirror=float(np.ptp(np.diag(compliance)[: len(places)]) / np.max(compliance)),
         unknowns=body.unknowns,
     )
+    return result, body, displacement
 
 
-def _mesh_round(shape: Shape, angles: FloatArray, size: float) -> tuple[BodyMesh, float]:
+def _mesh_round(shape: CircleShape | RingShape, angles: FloatArray, size: float) -> tuple[BodyMesh, float]:
     require_element_size(size)
     finer = ROUND_SIZE * size
     width = patch_half_width(shape)
@@ -349,26 +301,4 @@ def _mesh_round(shape: Shape, angles: FloatArray, size: float) -> tuple[BodyMesh
     coarse = default_coarse_size(shape, finer)
     if isinstance(shape, RingShape):
         return mesh_ring(shape, refinements, coarse_size=coarse, growth=_growth(finer)), width
-    assert isinstance(shape, CircleShape)
     return mesh_circle(shape, refinements, coarse_size=coarse, growth=_growth(finer)), width
-
-
-def _round_loads(body: BodyMesh, shape: Shape, angles: FloatArray, width: float) -> sp.csc_matrix:
-    """Return the patches at the angles and, last, a wide one at the first angle."""
-    curve = shape.curves[0]
-    wide = patch_loads(body, curve, angles[:1], WIDE_RATIO * width)
-    return sp.hstack([patch_loads(body, curve, angles, width), wide], format="csc")
-
-
-def _round_result(
-    compliance: FloatArray, displacement: FloatArray, loads: sp.csc_matrix, places: int, width: float, body: BodyMesh
-) -> DerivedRound:
-    measured = np.asarray(loads.T @ displacement)
-    return DerivedRound(
-        approach=compliance[:places, :places],
-        half_width=width,
-        wide_approach=float(compliance[-1, -1]),
-        reciprocity=float(np.max(np.abs(measured - compliance.T)) / np.max(np.abs(compliance))),
-        mirror=float(np.ptp(np.diag(compliance)[:places]) / np.max(compliance)),
-        unknowns=body.unknowns,
-    )

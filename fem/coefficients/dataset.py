@@ -14,7 +14,7 @@ from fem.body.elasticity import PlaneState
 from fem.coefficients.bodies import (
     EDGE_SHARE,
     GROWTH,
-    LARGEST_SIZE,
+    MAX_SIZE,
     ROUND_SIZE,
     WIDE_RATIO,
     DerivedDisc,
@@ -45,7 +45,7 @@ DATUM = (
     "unit load balanced by forces over {} dual to that motion; wheel pin: rigid core held; roller: relative to "
     "area-mean displacement and rotation, unit loads balanced by uniform body force; inner race: bore held"
 )
-COARSER = 2.0
+COARSE_RATIO = 2.0
 
 
 def derive_coefficients(
@@ -81,7 +81,7 @@ def derive_coefficients(
         Rigid core of the wheel pins and fixed bore of the race, mm; defaults of `DriveShapes.of_drive`.
     keep_clearance : bool
         Derive the disc with the bearing and pin-hole clearance of this case; without them on purpose, one dataset serves
-        all clearance cases about alike, and says so.
+        all clearance cases approximately, and says so.
     processes : int
         How many derivations share the memory of the machine.
     progress : callable, optional
@@ -101,7 +101,7 @@ def derive_coefficients(
     MemoryLimitError
         When mesh and solution would not fit into memory.
     """
-    require_element_size(size, LARGEST_SIZE / COARSER)
+    require_element_size(size, MAX_SIZE / COARSE_RATIO)
     nominal = nominal_shape(drive, keep_clearance=keep_clearance)
     shapes = DriveShapes.of_drive(nominal, core_radius=core_radius, race_bore_radius=race_bore_radius)
     places = DiscStations.of_disc(shapes.disc, stations)
@@ -117,7 +117,7 @@ def derive_coefficients(
         state=state,
         tell=progress or (lambda step: None),
     )
-    coarse = bodies.derive(COARSER * size, ", twice the size")
+    coarse = bodies.derive(COARSE_RATIO * size, ", twice the size")
     fine = bodies.derive(size, "")
     disc, _, roller, race = fine
     dataset = _label(places, places.refined(shapes.disc), *fine)
@@ -165,7 +165,7 @@ class _Derived(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Bodies:
-    """What stays the same on all meshes."""
+    """Shapes, materials and options shared by the meshes of both sizes."""
 
     shapes: DriveShapes
     places: DiscStations

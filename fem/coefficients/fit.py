@@ -1,4 +1,4 @@
-"""Whose bodies a file of influence coefficients belongs to: its numbers and its stations against those of a drive."""
+"""Check that a file of influence coefficients belongs to the bodies of a drive: dimensions and stations."""
 
 from __future__ import annotations
 
@@ -27,26 +27,10 @@ class _Fit:
 
 
 def check_against_drive(dataset: xr.Dataset, drive: Drive, source: str) -> tuple[Check, ...]:
-    """Check that coefficients belong to the bodies of a drive.
+    """Check that coefficients belong to the bodies of a drive: places and normals of the stations.
 
-    Parameters
-    ----------
-    dataset : Dataset
-        Of the right schema.
-    drive : Drive
-        The drive in the case they are for.
-    source : str
-        Name of the file, for the message.
-
-    Returns
-    -------
-    tuple of Check
-        Places and normals of the stations.
-
-    Raises
-    ------
-    CycloError
-        When the numbers that its bodies are made of are not the drive's, or the numbers of boundaries differ.
+    CycloError, naming the file `source`, when the numbers that its bodies are made of are not the drive's, or the numbers of
+    boundaries differ.
     """
     nominal = _served_by(dataset, drive, source)
     fit = _fit(dataset, nominal)
@@ -74,7 +58,7 @@ def check_against_drive(dataset: xr.Dataset, drive: Drive, source: str) -> tuple
 
 
 def _served_by(dataset: xr.Dataset, drive: Drive, source: str) -> Drive:
-    """Return the drive whose bodies a file has: with its clearances, or without them where the file leaves them out."""
+    """Return the nominal drive that a file was derived for, with its clearances or, where the file leaves them out, without."""
     theirs = shape_of(dataset)
     for keep in (True, False) if float(dataset.attrs["clearances_left_out"]) else (True,):
         nominal = nominal_shape(drive, keep_clearance=keep)

@@ -30,7 +30,7 @@ GAUSS = np.polynomial.legendre.leggauss(10)
 # Length of a quadratic edge whose speed varies by some per cent: four points leave 1e-12.
 LENGTH_GAUSS = np.polynomial.legendre.leggauss(4)
 # A patch must be small against its boundary: it may cover this part of it.
-LARGEST_SHARE = 0.25
+MAX_BOUNDARY_SHARE = 0.25
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -56,13 +56,7 @@ class BoundaryArc:
 
     @classmethod
     def of_boundary(cls, body: BodyMesh, curve: Curve) -> BoundaryArc:
-        """Return the boundary of a quadratic mesh that follows a curve.
-
-        Raises
-        ------
-        MeshError
-            When the mesh is of first order or has no such boundary.
-        """
+        """Return the boundary of a quadratic mesh that follows a curve; MeshError for a mesh of first order."""
         if body.order != 2:
             raise MeshError(f"mesh of {body.name} has straight elements; patches need second-order ones")
         nodes = body.boundary_nodes(curve.name)
@@ -159,10 +153,10 @@ def patch_loads(
     parameters = np.atleast_1d(np.asarray(parameters, dtype=float))
     width = np.broadcast_to(np.asarray(half_width, dtype=float), parameters.shape)
     boundary = BoundaryArc.of_boundary(body, curve)
-    if not (np.all(width > 0.0) and np.all(2.0 * width < LARGEST_SHARE * boundary.length)):
+    if not (np.all(width > 0.0) and np.all(2.0 * width < MAX_BOUNDARY_SHARE * boundary.length)):
         raise MeshError(
             f"patch half-width {width.min():.4g} to {width.max():.4g} mm on {curve.name!r} of {body.name}: must be "
-            f"greater than 0 and less than {0.5 * LARGEST_SHARE * boundary.length:.4g} mm"
+            f"greater than 0 and less than {0.5 * MAX_BOUNDARY_SHARE * boundary.length:.4g} mm"
         )
     middle = boundary.arc_of(curve.points(parameters))
     phi, weight, owner = divide_patches(boundary, middle, width)
@@ -174,11 +168,17 @@ def patch_loads(
         normals = curve.normals(curve.parameter_of(np.sum(boundary.places[edge].T * shapes, axis=0)))
     # p t ds = (2/π) cos²φ dφ
     force = -2.0 / np.pi * np.cos(phi) ** 2 * weight * normals
-    nodes = boundary.nodes[edge].T
+    return sum_at_nodes(boundary.nodes[edge].T, force * shapes, owner, (body.unknowns, len(parameters)))
+
+
+def sum_at_nodes(nodes: IntArray, vectors: ComplexArray, owner: IntArray, shape: tuple[int, int]) -> sp.csc_matrix:
+    """Return the sums of vectors at nodes, a column for each patch: x in the even rows, y in the odd ones.
+
+    `nodes` and `vectors` have the shape (3, points); `owner` is the patch of each point.
+    """
     rows = np.concatenate([(2 * nodes).ravel(), (2 * nodes + 1).ravel()])
-    values = np.concatenate([(force.real * shapes).ravel(), (force.imag * shapes).ravel()])
-    columns = np.tile(owner, 6)
-    return sp.csc_matrix(sp.coo_matrix((values, (rows, columns)), shape=(body.unknowns, len(parameters))))
+    values = np.concatenate([vectors.real.ravel(), vectors.imag.ravel()])
+    return sp.csc_matrix(sp.coo_matrix((values, (rows, np.tile(owner, 6))), shape=shape))
 
 
 def divide_patches(
@@ -186,18 +186,9 @@ def divide_patches(
 ) -> tuple[FloatArray, FloatArray, IntArray]:
     """Divide patches at the vertices they cover.
 
-    Parameters
-    ----------
-    boundary : BoundaryArc
-        The boundary.
-    middle, width : array, shape (n,)
-        Arc length of the middle of each patch, and its half-width, mm.
-
-    Returns
-    -------
-    phi, weight, owner : array
-        Gauss points between neighbouring vertices, s = b sin φ from the middle of the patch, their weights for ∫ dφ, and
-        the patch of each.
+    `middle` and `width` are the arc length of the middle of each patch and its half-width, mm. Returned are Gauss points φ
+    between neighbouring vertices (s = b sin φ from the middle of the patch), their weights for ∫ dφ, and the patch of each
+    point.
     """
     nodes, weights = GAUSS
     phis, steps, owners = [], [], []

@@ -9,7 +9,7 @@ import numpy as np
 from fem.errors import MeshError
 from fem.shapes import Curve, DiscShape, Shape
 from ltca.arrays import ComplexArray, FloatArray, IntArray
-from ltca.reading.held_ring import LARGEST_DISTANCE, missed_between_stations
+from ltca.reading.station_walls import LARGEST_DISTANCE, missed_between_stations
 
 # Error of cubic interpolation on the paper's disc, in units of 2(1 − ν²)/(πEt), of approaches of 10 to 14: with 32
 # for each lobe 0.045 in the roots and 0.005 along the working flank (with 16 0.45 and 0.05); with 32 in a hole 0.02,
@@ -54,19 +54,9 @@ class DiscStations:
 
     @classmethod
     def of_disc(cls, shape: DiscShape, scale: float = 1.0) -> DiscStations:
-        """Return the stations of a disc.
+        """Return the stations of a disc: `scale` times 32 for each lobe, 48 on each bore and 24 on each hole.
 
-        Parameters
-        ----------
-        shape : DiscShape
-            The disc.
-        scale : float
-            Multiple of the default numbers: 32 for each lobe, 48 on each bore, 24 on each hole.
-
-        Raises
-        ------
-        MeshError
-            When the scale is out of bounds.
+        MeshError when the scale is out of bounds.
         """
         if not (np.isfinite(scale) and 0.25 <= scale <= 8.0):
             raise MeshError(
@@ -96,15 +86,10 @@ class DiscStations:
         return len(self.boundary)
 
     def refined(self, shape: DiscShape) -> DiscStations:
-        """Return the places at which stresses are measured: these on the flank, twice as many on bores and holes.
+        """Return the places at which stresses are measured: the stations on the flank, twice as many on bores and holes.
 
-        Between thin ligaments the stress along a hole changes over a tenth of its length. Patches and measured arcs on
-        one wall keep apart but where they coincide.
-
-        Parameters
-        ----------
-        shape : DiscShape
-            The disc they stand on.
+        Between thin ligaments the stress along a hole changes over a tenth of its length. Patches and measured arcs on one
+        wall either coincide or do not overlap.
         """
         parameters, widths = [], []
         for index, curve in enumerate(shape.curves):
@@ -125,7 +110,7 @@ class DiscStations:
 
     @property
     def coarse_walls(self) -> str | None:
-        """What to know before anything is derived at stations too far apart for a wall; None where they follow all walls."""
+        """Warning about walls on which the stations are too far apart; None where they are close enough everywhere."""
         missed, wall, distance = missed_between_stations(self.boundary, self.points)
         if missed < 1.0:
             return None

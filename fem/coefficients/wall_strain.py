@@ -1,4 +1,4 @@
-r"""Tangential strain of walls as a measure of the displacement: what stress stations read.
+r"""Tangential strain of walls as a linear measure of the displacement, for the stress stations.
 
 At a wall without load the stress has one component, along the wall, :math:`\sigma_t = E' \epsilon_t` with
 :math:`E' = E/(1 - \nu^2)` in plane strain (E in plane stress). The strain :math:`\epsilon_t = t \cdot du/ds` at a
@@ -9,7 +9,7 @@ point of a mesh is as rough as the mesh; its mean over a short arc of half-width
 
 is a smooth functional of the displacement: integrated by parts it is the work of a traction :math:`-(w\,t)'`, which
 balances itself and has no singularity, so its value converges with the square of the energy error. One solution for that
-traction (the adjoint) tells, by reciprocity, the mean strain under any load. The mean differs from the value in the
+traction (the adjoint) gives, by reciprocity, the mean strain under any load. The mean differs from the value in the
 middle by :math:`\epsilon_t''\, b^2/14`.
 """
 
@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from fem.body.elasticity import PlaneState
 from fem.body.surface import quadratic_slopes
-from fem.coefficients.patch_loads import BoundaryArc, divide_patches
+from fem.coefficients.patch_loads import BoundaryArc, divide_patches, sum_at_nodes
 from fem.mesh.body_mesh import BodyMesh
 from fem.shapes import Curve
 from ltca.arrays import FloatArray
@@ -37,23 +37,10 @@ def wall_modulus(material: Material, state: PlaneState = "strain") -> float:
 def wall_strain_measures(
     body: BodyMesh, curve: Curve, parameters: FloatArray, half_width: FloatArray | float
 ) -> sp.csc_matrix:
-    """Return weights on nodal displacements that give mean tangential strains of a wall.
+    """Return weights on nodal displacements that give mean tangential strains of a wall, 1/mm, shape (unknowns, n).
 
-    Parameters
-    ----------
-    body : BodyMesh
-        Quadratic mesh.
-    curve : Curve
-        Exact curve of a closed boundary of the mesh.
-    parameters : array, shape (n,)
-        Middles of the arcs as parameters of the curve, rad.
-    half_width : float or array, shape (n,)
-        Of the arcs, mm.
-
-    Returns
-    -------
-    csc_matrix, shape (unknowns, n)
-        1/mm; the transpose times a displacement is the strain. A rigid motion has none, to round-off.
+    `parameters` are the middles of the arcs on the exact curve, rad, `half_width` their half-widths, mm. The transpose times a
+    displacement is the strain; that of a rigid motion is zero to round-off.
     """
     parameters = np.atleast_1d(np.asarray(parameters, dtype=float))
     width = np.broadcast_to(np.asarray(half_width, dtype=float), parameters.shape)
@@ -65,31 +52,21 @@ def wall_strain_measures(
     # The tangent is that of the meshed edge, not of the exact curve: then a rotation strains nothing.
     tangent = np.sum(boundary.places[edge].T * slopes, axis=0)
     weight = 15.0 / 16.0 * np.cos(phi) ** 5 * step * tangent / np.abs(tangent) ** 2
-    nodes = boundary.nodes[edge].T
-    rows = np.concatenate([(2 * nodes).ravel(), (2 * nodes + 1).ravel()])
-    values = np.concatenate([(weight.real * slopes).ravel(), (weight.imag * slopes).ravel()])
-    columns = np.tile(owner, 6)
-    return sp.csc_matrix(sp.coo_matrix((values, (rows, columns)), shape=(body.unknowns, len(parameters))))
+    return sum_at_nodes(boundary.nodes[edge].T, weight * slopes, owner, (body.unknowns, len(parameters)))
 
 
 def continue_under_patches(
     stress: FloatArray, stress_boundary: NDArray[np.int64], boundary: NDArray[np.int64]
 ) -> FloatArray:
-    """Return stresses without what each patch does right under itself, −p: continued from its neighbours.
+    """Return stresses without the local part under each patch, −p, interpolated from neighbouring patches.
 
-    Under its own patch a wall carries the patch's pressure along itself, too, and outside, on a half-plane, nothing at
-    all: what is left varies smoothly along the wall, through the patch. So the entry of a place by the patch upon it is
-    replaced by the polynomial through those of up to four patches on either side.
+    Under a patch the wall is compressed along itself by the pressure, which outside, on a half-plane, has no effect at all. The
+    rest varies smoothly along the wall. So the entry of a place under its own patch is replaced by the polynomial through the
+    entries of up to four patches on either side.
 
-    Parameters
-    ----------
-    stress : array, shape (stress stations, stations)
-        At each stress station by a newton on each patch, MPa/N.
-    stress_boundary : array of int, shape (stress stations,)
-        Number of the boundary of each stress station; uniform and in order along each, a whole number of them for each
-        patch, the first of them upon it.
-    boundary : array of int, shape (stations,)
-        Likewise of the patches.
+    `stress` has the shape (stress stations, stations), MPa/N. `stress_boundary` and `boundary` are the numbers of the
+    boundaries of stress stations and patches; both are uniform along a boundary, with a whole number of stress stations for
+    each patch and the first of them at its middle.
     """
     found = stress.copy()
     for number in np.unique(boundary).tolist():

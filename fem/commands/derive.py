@@ -29,7 +29,7 @@ EXAMPLES = (
     ("cyclo derive paper --case CS-1 --out coefficients.nc", "for cyclo run --compliance fe or hybrid"),
     ("cyclo derive --check coefficients.nc paper", "any file of coefficients against schema and laws"),
 )
-# Options that say how to derive, and their defaults.
+# Options of a derivation, and their defaults.
 DERIVING = {"stations": 1.0, "size": 1.0, "plane": "strain", "without_clearance": False, "out": None}
 COEFFICIENTS = "coefficients.nc"
 
@@ -109,7 +109,7 @@ def execute(arguments: argparse.Namespace) -> int:
 
 
 def _distinct_discs(drive: Drive, *, keep_clearance: bool) -> list[tuple[Drive, list[int]]]:
-    """The drives of one disc whose bodies differ, and the numbers of the discs that each stands for."""
+    """Return the drives of one disc whose bodies differ, and the numbers of the discs that have the bodies of each."""
     from ltca.drive.single_discs import nominal_shape, single_discs
 
     shapes: dict[str, tuple[Drive, list[int]]] = {}
@@ -176,7 +176,7 @@ def _check_file(arguments: argparse.Namespace) -> int:
 
 
 def _check_against_discs(dataset: xr.Dataset, drive: Drive, source: str) -> tuple[Check, ...]:
-    """Check a file against the disc of a drive that it belongs to; of several it must be one of them."""
+    """Check a file against the disc of a drive that it belongs to; of several discs it must belong to one."""
     from fem.coefficients.fit import check_against_drive
 
     shapes = _distinct_discs(drive, keep_clearance=True)
@@ -194,7 +194,7 @@ def _check_against_discs(dataset: xr.Dataset, drive: Drive, source: str) -> tupl
 
 
 def _print_checks(dataset: xr.Dataset, checks: tuple[Check, ...]) -> None:
-    """Print each law with its value, limit and verdict; then those that the file says nothing about."""
+    """Print the laws with value, limit and verdict, then those that the file has no data for."""
     from ltca.reading.coefficient_laws import unstated_laws
 
     unstated = unstated_laws(dataset)

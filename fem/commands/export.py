@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ltca.errors import DriveError
 from ltca.reading.arguments import (
     add_case_argument,
     add_drive_argument,
@@ -73,7 +74,6 @@ def execute(arguments: argparse.Namespace) -> int:
     """
     from glob import escape
 
-    from ltca.errors import DriveError
     from ltca.export.parts import make_parts
     from ltca.output.run_folder import claimed_folder
     from ltca.reading.drive_file import load_drive
@@ -98,7 +98,7 @@ def execute(arguments: argparse.Namespace) -> int:
 
 
 def _require_libraries(kind: str) -> None:
-    """Fail before anything is made."""
+    """Raise an error before any work when a library is missing."""
     from fem.mesh.gmsh_session import load_gmsh
     from ltca.export.drawing import load_ezdxf
 
@@ -109,9 +109,7 @@ def _require_libraries(kind: str) -> None:
 
 
 def _require_straight(part: Part, kind: str) -> None:
-    """Refuse what straight bodies cannot say."""
-    from ltca.errors import DriveError
-
+    """Refuse profiles along the length, which straight bodies do not have."""
     if kind in SOLID and part.profiled:
         raise DriveError(
             [
@@ -132,7 +130,7 @@ def _paths(part: Part, kind: str, out: Path) -> list[Path]:
 
 
 def _write(part: Part, arguments: argparse.Namespace, out: Path) -> None:
-    """Write the files of one part, and say what is in them."""
+    """Write the files of one part and print their content."""
     kind, paths = arguments.format, _paths(part, arguments.format, out)
     for remark in part.remarks[2:]:
         print(f"  {part.name}: {remark}", flush=True)

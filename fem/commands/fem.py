@@ -100,6 +100,7 @@ def _solve_and_write(
     referee: Callable[[FullSolution, Path], None] | None,
 ) -> tuple[ReducerSolution, list[Check]]:
     from fem.drive.fields import recover_fields
+    from fem.options import SolutionOptions
     from fem.reducer.solution import solve_reducer
     from fem.reducer.solution_files import write_solution
     from ltca.drive.members.verdict_words import verdict_table
@@ -110,14 +111,12 @@ def _solve_and_write(
         solution = solve_reducer(
             drive,
             arguments.angle,
+            SolutionOptions(size=arguments.size, plane=arguments.plane, fine_walls=arguments.fine_walls),
             torque=arguments.torque,
-            scale=arguments.size,
-            state=arguments.plane,
-            fine_walls=arguments.fine_walls,
             progress=show,
         )
         show("files")
-        fields = [recover_fields(disc.model, disc.state, state=arguments.plane) for disc in solution.discs]
+        fields = [recover_fields(disc) for disc in solution.discs]
         checks = write_solution(solution, fields, case, out, limits)
     load = drive.load_words(arguments.torque)
     print(
@@ -152,11 +151,12 @@ def _solve_and_write(
 
 
 def _print_contacts(solution: FullSolution) -> None:
+    from fem.drive.contact_kinds import CONTACT_KINDS
+
     cranks = solution.model.placement.cranks
-    names = {"pin": "pin", "roller_outer": "roller outer", "roller_inner": "roller inner", "hole": "shaft pin"}
     print(f"{'contact':<16}{'load, N':>10}{'peak, MPa':>11}{'half-width, µm':>16}")
     for kind, index, load, peak, width in solution.contacts.loaded:
-        print(f"{f'{names[kind]} {index}':<16}{load:>10.1f}{peak:>11.1f}{1e3 * width:>16.1f}")
+        print(f"{CONTACT_KINDS[kind].name.format(index):<16}{load:>10.1f}{peak:>11.1f}{1e3 * width:>16.1f}")
     for crank, (radial, tangential) in enumerate(solution.bearing_components.tolist()):
         which = "" if cranks == 1 else f" at crank {crank}"
         print(f"bearing force on the disc{which}: radial {radial:.1f} N, tangential {tangential:.1f} N")
@@ -171,7 +171,7 @@ def _print_drive(solution: ReducerSolution) -> None:
 
 
 def _referee(name: str | None) -> Callable[[FullSolution, Path], None] | None:
-    """Return a function that runs and prints the referee; complain before any work when it is missing."""
+    """Return a function that runs and prints the referee; CycloError before any work when it is not installed."""
     if name is None:
         return None
     from fem.referee.calculix import compare_with_calculix

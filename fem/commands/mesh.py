@@ -63,12 +63,10 @@ def execute(arguments: argparse.Namespace) -> int:
 
 def _mesh_and_write(name: str, case: str, drive: Drive, arguments: argparse.Namespace, out: Path) -> None:
     from fem.reducer.solution import expect_shares
-    from ltca.drive.plane_strain import require_fixed_pins, require_frictionless, require_rigid_members
+    from ltca.drive.engine_support import require
     from ltca.drive.single_discs import single_discs
 
-    require_rigid_members(drive, "full finite elements")
-    require_frictionless(drive, "full finite elements")
-    require_fixed_pins(drive, "full finite elements")
+    require(drive, "FE mesh")
     print(f"{name} {case}, {drive.load_words()}, φ_C = {arguments.angle:g} rad", flush=True)
     title = f"{name}, {case}, crank angle {arguments.angle:g} rad"
     singles = single_discs(drive)
@@ -85,12 +83,13 @@ def _mesh_and_write(name: str, case: str, drive: Drive, arguments: argparse.Name
 def _mesh_disc(
     drive: Drive, wheel_moment: float, title: str, place: tuple[int, int], arguments: argparse.Namespace, out: Path
 ) -> None:
-    """Mesh one disc, `place` being its number and how many there are."""
+    """Mesh one disc; `place` is its number and the number of discs."""
     import time
 
     from fem.drive.expected_contacts import expect_contacts
     from fem.drive.meshes import mesh_drive
     from fem.mesh.quality import measure_quality
+    from fem.options import SolutionOptions
     from fem.shapes import DriveShapes
 
     def report(body: BodyMesh) -> None:
@@ -99,7 +98,7 @@ def _mesh_disc(
     start = time.perf_counter()
     contacts = expect_contacts(drive, arguments.angle, wheel_moment=wheel_moment)
     shapes = DriveShapes.of_drive(drive)
-    meshes = mesh_drive(shapes, contacts, scale=arguments.size, order=arguments.order, report=report)
+    meshes = mesh_drive(shapes, contacts, SolutionOptions(size=arguments.size), order=arguments.order, report=report)
     print(
         f"{meshes.unknowns:,} unknowns in {len(meshes.bodies)} bodies, {time.perf_counter() - start:.2f} s", flush=True
     )

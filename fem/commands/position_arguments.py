@@ -1,4 +1,4 @@
-"""Arguments that the commands of one position share: which drive, case, crank angle and element edge."""
+"""Arguments shared by the commands of one position: drive, case, crank angle and element edge."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from ltca.reading.arguments import (
     add_case_argument,
     add_drive_argument,
     add_size_argument,
+    tell_unit_mistakes,
 )
 
 if TYPE_CHECKING:
@@ -22,20 +23,12 @@ BODIES = ("disc", "inner_race", *(f"{part}_[0-9]*" for part in ("inner_race", "p
 
 
 def disc_prefix(disc: int, discs: int) -> str:
-    """Return what the names of files of one disc begin with: nothing where it is the only one."""
+    """Return the prefix of the names of files of one disc, empty where it is the only one."""
     return "" if discs == 1 else f"disc_{disc}_"
 
 
 def body_files(ending: str, discs: int) -> list[str]:
-    """Return the names of all files of bodies, those of pins and rollers as patterns.
-
-    Parameters
-    ----------
-    ending : str
-        Of the files.
-    discs : int
-        How many discs have such files.
-    """
+    """Return the names of all files of bodies with an ending, those of pins and rollers as patterns."""
     names = BODIES if discs == 1 else ("disc_[0-9]*",)
     return [f"{name}.{ending}" for name in names]
 
@@ -55,14 +48,7 @@ def chosen_drive(arguments: argparse.Namespace) -> tuple[str, str, Drive]:
 
 
 def chosen_case(arguments: argparse.Namespace) -> tuple[DriveFile, str, Drive]:
-    """Return the drive file, the name of the case and its drive.
-
-    Raises
-    ------
-    CycloError
-        When the file is broken or has no such case.
-    """
-    from ltca.reading.arguments import tell_unit_mistakes
+    """Return the drive file, the name of the case and its drive."""
     from ltca.reading.drive_file import load_drive
 
     file = load_drive(arguments.drive)

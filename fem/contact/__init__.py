@@ -3,8 +3,6 @@
 Modules in the order data passes:
 
 =================  ============================================================
-hertz              Hertz line contact of two cylinders: half-width and peak pressure (Johnson, Contact Mechanics,
-                   1985, 4.2(c))
 coupling           Integrals over one contact pair: exact gaps, resultants and loads on the side opposite
 unilateral         Unilateral contact on condensed bodies: pressures that never pull and gaps that never close below
                    zero

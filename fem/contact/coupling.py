@@ -72,17 +72,10 @@ class PairIntegrals:
 
 
 def gap_to_opposite(points: ComplexArray, normals: ComplexArray, pose: Pose, radius: float) -> FloatArray:
-    """Return the distance along unit normals to the body opposite, mm; negative inside it.
+    """Return the distance along unit normals to the body opposite, mm; negative inside it. Points are in the fixed frame.
 
-    Parameters
-    ----------
-    points, normals : array of complex
-        Fixed frame, mm.
-    pose : Pose
-        Of the body opposite: centre of its circle, or a point of its flat whose outward normal is the y axis of
-        the body.
-    radius : float
-        Of the circle, mm; infinite for a flat.
+    `pose` is that of the body opposite: the centre of its circle of `radius` (mm), or for an infinite radius a point of its flat,
+    whose outward normal is the y axis of the body.
     """
     if np.isinf(radius):
         outward = 1j * np.exp(1j * pose.rotation)
@@ -101,23 +94,8 @@ def integrate_pair(
 ) -> PairIntegrals:
     """Integrate gaps and loads of a pair over mortar segments.
 
-    Parameters
-    ----------
-    zone : PressureZone
-        The side that carries the pressure.
-    pose : Pose
-        Of its body.
-    opposite_pose : Pose
-        Of the body opposite, see `gap_to_opposite`; turns its mesh.
-    radius : float
-        Exact radius of the circle, mm; infinite for a flat.
-    opposite : OppositeZone or None
-        Its meshed zone; None for a rigid one.
-
-    Returns
-    -------
-    PairIntegrals
-        At these poses.
+    `zone` carries the pressure on a body at `pose`; the body opposite has the exact radius `radius` (mm, infinite for a flat) at
+    `opposite_pose` (see `gap_to_opposite`), and the meshed zone `opposite`, None for a rigid one.
     """
     breaks = np.arange(zone.edge_count + 1, dtype=float)
     if opposite is not None:

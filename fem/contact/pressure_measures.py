@@ -7,22 +7,14 @@ import numpy as np
 from ltca.arrays import FloatArray
 
 PEAK_WINDOW = 0.5
+"""Part of the half-width about the largest pressure over which the parabola for the peak is fitted: single values wiggle by some
+tenths of a per cent and the largest of them lies beside the peak."""
 
 
 def pressure_moments(arc: FloatArray, pressure: FloatArray) -> tuple[float, float, float]:
-    """Return ∫p ds, centre and second moment ⟨x²⟩ about it of a piecewise linear pressure.
+    """Return ∫p ds (N/mm), centre (mm) and second moment ⟨x²⟩ about it (mm²) of a piecewise linear pressure.
 
-    Parameters
-    ----------
-    arc : array, shape (n,)
-        Places of the vertices, mm.
-    pressure : array, shape (n,)
-        MPa.
-
-    Returns
-    -------
-    total, centre, square : float
-        N/mm, mm, mm²; zeros without pressure. Simpson's rule is exact for these cubics.
+    `arc` holds the places of the vertices, mm. All are zero without pressure. Simpson's rule is exact for these cubics.
     """
     left, right = arc[:-1], arc[1:]
     length = right - left

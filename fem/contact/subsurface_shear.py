@@ -10,48 +10,28 @@ from fem.errors import MeshError
 from fem.mesh.body_mesh import BodyMesh
 
 # Depths looked at, in half-widths: a Hertz contact has its largest shear at 0.786.
-SHALLOWEST, DEEPEST, DEPTHS = 0.3, 2.0, 171
+MIN_DEPTH, MAX_DEPTH, DEPTH_COUNT = 0.3, 2.0, 171
 # Nodes this near take part, in half-widths: enough to hold the line of depths.
-REACH = 2.5
+NEIGHBOURHOOD_RADIUS = 2.5
 
 
 def largest_shear_below(
     body: BodyMesh, stress: Stress, place: complex, inward: complex, half_width: float
 ) -> tuple[float, float]:
-    r"""Return the largest shear stress in the plane on the normal below a contact, and its depth.
+    r"""Return the largest shear stress in the plane on the normal below a contact, MPa, and its depth, mm.
 
-    Parameters
-    ----------
-    body : BodyMesh
-        Mesh that resolves the contact; at 8 elements for the half-width nodes lie b/16 apart, and what a straight
-        line between them leaves of the stress is below 0.1 %.
-    stress : Stress
-        At its nodes, in its own frame.
-    place : complex
-        Centre of the pressure on the boundary, mm.
-    inward : complex
-        Unit normal into the body.
-    half_width : float
-        b, mm.
-
-    Returns
-    -------
-    shear, depth : float
-        :math:`\tfrac12 (\sigma_1 - \sigma_2)`, MPa, and mm.
-
-    Raises
-    ------
-    MeshError
-        When the contact does not lie on the body.
+    The shear is :math:`\tfrac12 (\sigma_1 - \sigma_2)`; `place` is the centre of the pressure and `inward` the unit normal
+    into the body. On a mesh with 8 elements for the half-width nodes lie b/16 apart, and linear interpolation between them is
+    within 0.1 %. MeshError when the contact does not lie on the body.
     """
     nodes = body.mesh.doflocs
-    near = np.flatnonzero(np.hypot(nodes[0] - place.real, nodes[1] - place.imag) < REACH * half_width)
+    near = np.flatnonzero(np.hypot(nodes[0] - place.real, nodes[1] - place.imag) < NEIGHBOURHOOD_RADIUS * half_width)
     if len(near) < 4:
         raise MeshError(
-            f"{body.name}: has {len(near)} nodes within {REACH * half_width:.3g} mm of a contact, needs 4 or more"
+            f"{body.name}: has {len(near)} nodes within {NEIGHBOURHOOD_RADIUS * half_width:.3g} mm of a contact, needs 4 or more"
         )
     components = np.column_stack([stress.xx[near], stress.yy[near], stress.xy[near]])
-    depth = half_width * np.linspace(SHALLOWEST, DEEPEST, DEPTHS)
+    depth = half_width * np.linspace(MIN_DEPTH, MAX_DEPTH, DEPTH_COUNT)
     line = place + depth * inward
     xx, yy, xy = LinearNDInterpolator(nodes[:, near].T, components)(np.column_stack([line.real, line.imag])).T
     shear = np.hypot(0.5 * (xx - yy), xy)

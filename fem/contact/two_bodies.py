@@ -1,6 +1,6 @@
 """Two bodies pressed together along one direction: the smallest use of the contact machinery.
 
-The drive is many such pairs; closed forms and other codes know this one.
+A drive consists of many such pairs; for this one there are closed forms and answers of other codes.
 """
 
 from __future__ import annotations

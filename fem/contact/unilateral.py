@@ -8,7 +8,7 @@ equilibrium are the rigid motions q,
 A primal–dual active set (a semi-smooth Newton method: Hintermüller, Ito & Kunisch 2002) solves it; every
 step is one small dense system, and at the end equilibrium holds to round-off. From a bad first guess it may
 cycle; then an interior-point method (Nocedal & Wright, *Numerical Optimization*, 16.6), which converges from
-anywhere but ends a little inside, finds the active set to go on with.
+anywhere but ends slightly inside the bounds, provides the active set to continue with.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ from ltca.errors import ConvergenceError
 # A rigid motion whose pivot is this much smaller than the others is not held by the active contacts.
 SINGULAR_MOTION = 1e-12
 # Active-set steps before the interior-point method is asked; a good start needs fewer than ten.
-PATIENCE = 30
-INTERIOR_STEPS = 120
+MAX_PLAIN_STEPS = 30
+MAX_INTERIOR_STEPS = 120
 CENTRING = 0.1
 
 
@@ -108,7 +108,7 @@ def solve_floating_contact(problem: ContactProblem, start: BoolArray, *, limit: 
     restarted = False
     for iteration in range(1, limit + 1):
         key = np.packbits(active).tobytes()
-        if not restarted and (key in seen or iteration > PATIENCE or not np.any(active)):
+        if not restarted and (key in seen or iteration > MAX_PLAIN_STEPS or not np.any(active)):
             active = find_active_set(problem)
             restarted = True
         seen.add(key)
@@ -128,7 +128,7 @@ def solve_floating_contact(problem: ContactProblem, start: BoolArray, *, limit: 
                 residual=_imbalance(problem, pressure),
                 iterations=iteration,
             )
-        if restarted and iteration > PATIENCE and iteration % 2:
+        if restarted and iteration > MAX_PLAIN_STEPS and iteration % 2:
             # What still flips are unknowns that hardly touch: exchange them one by one (Murty's rule).
             changed[: int(np.flatnonzero(changed)[-1])] = False
         active = active ^ changed
@@ -136,12 +136,9 @@ def solve_floating_contact(problem: ContactProblem, start: BoolArray, *, limit: 
 
 
 def find_active_set(problem: ContactProblem) -> BoolArray:
-    """Return the active set that an interior-point method finds, whatever the start.
+    """Return the active set by an interior-point method, from any start.
 
-    Raises
-    ------
-    ConvergenceError
-        When no pressures balance the external load; the history holds the relative imbalance.
+    ConvergenceError when no pressures balance the external load; the history holds the relative imbalance.
     """
     unit = 1.0 / np.sqrt(np.diag(problem.compliance))
     stiffness = problem.compliance * np.outer(unit, unit)
@@ -156,7 +153,7 @@ def find_active_set(problem: ContactProblem) -> BoolArray:
     opening = np.full(count, max(load / np.sqrt(count), float(np.max(np.abs(gap)))))
     motion = np.zeros(motions.shape[1])
     history: list[float] = []
-    for _ in range(INTERIOR_STEPS):
+    for _ in range(MAX_INTERIOR_STEPS):
         dual = stiffness @ pressure + gap + motions @ motion - opening
         primal = motions.T @ pressure - external
         history.append(float(np.max(np.abs(primal))) / load)

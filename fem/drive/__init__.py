@@ -3,6 +3,8 @@
 Modules in the order data passes:
 
 =================  ============================================================
+contact_kinds      The kinds of contacts, and what each is called in results, tables and pictures
+rigid_bodies       The bodies as rigid ones: places, approaches, gaps
 expected_contacts  Where contacts are to be expected at a crank angle, with which load and half-width: a guess, for
                    grading meshes
 meshes             Meshes of all bodies of a drive, graded for the contacts expected at a crank angle
@@ -14,8 +16,7 @@ pose               Iteration of the pose: contact solved about the pose of the b
                    rebuilt
 contact_results    From contact unknowns to the numbers of each part: loads, peak pressures, half-widths, forces on
                    the disc
-grading            Where the contacts of rigid bodies lie at a given pose, how far open they are, how to grade
-                   meshes for them, and why meshes do not serve a solution
+grading            The contacts to grade meshes for at a given pose, and why meshes do not serve a solution
 full_solution      Solution of one disc with wheel, crank and pin shaft at one crank angle, and what follows from it
 solution           The way to it: coarse, graded anew, fine, checked
 fields             Fields of a full solution on the nodes of every body, in the fixed frame at the loaded pose

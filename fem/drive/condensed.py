@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from fem.body.condensation import CondensedBody, condense_body
 from fem.body.elasticity import PlaneState, assemble_stiffness, unknowns_of_boundary
 from fem.body.surface import OppositeZone, PressureZone
+from fem.drive.contact_kinds import PairKind
 from fem.drive.expected_contacts import ContactGroup, ExpectedContacts
 from fem.drive.meshes import DriveMeshes, RoundMesh
-from fem.drive.model import ContactPair, DriveModel, PairKind, RoundBody, RoundGroup
+from fem.drive.model import ContactPair, DriveModel, RoundBody, RoundGroup
 from fem.mesh.body_mesh import BodyMesh
 from fem.shapes import Curve, DriveShapes
 from ltca.arrays import ComplexArray, FloatArray
@@ -35,37 +36,15 @@ def condense_drive(
     contacts: ExpectedContacts,
     meshes: DriveMeshes,
     *,
-    state: PlaneState = "strain",
+    plane: PlaneState = "strain",
     known: tuple[RoundGroup, ...] = (),
 ) -> DriveModel:
-    """Assemble, factorise and condense all bodies.
+    """Assemble, factorise and condense all bodies on meshes graded for the expected contacts.
 
-    Parameters
-    ----------
-    drive : Drive
-        The drive in one case.
-    shapes : DriveShapes
-        Its shapes.
-    contacts : ExpectedContacts
-        Expected contacts; those with a half-width become candidates.
-    meshes : DriveMeshes
-        Meshes graded for them.
-    state : {"strain", "stress"}
-        Plane strain or plane stress.
-    known : tuple of RoundGroup
-        Pins and rollers condensed before; those of the same make are taken as they are.
-
-    Returns
-    -------
-    DriveModel
-        Ready for any load and pose near the expected one.
-
-    Raises
-    ------
-    MeshError
-        When a boundary is missing or too coarse for a contact zone.
+    Contacts with an expected half-width become candidates. Pins and rollers condensed before (`known`) are reused where grading,
+    material, thickness and plane state are the same. MeshError when a boundary is missing or too coarse for a contact zone.
     """
-    place, slab = Placement.of_drive(drive), _Slab(thickness=drive.disc.thickness, state=state)
+    place, slab = Placement.of_drive(drive), _Slab(thickness=drive.disc.thickness, state=plane)
     materials, holes = drive.materials, contacts.holes
     outer, inner = contacts.rollers_outer, contacts.rollers_inner
     stock = {group.made_of: group for group in known}
@@ -104,14 +83,9 @@ def condense_drive(
 
 
 def keep_rounds(known: tuple[RoundGroup, ...], used: tuple[RoundGroup, ...]) -> tuple[RoundGroup, ...]:
-    """Return the condensed pins and rollers to go on with: those just used last, the oldest of others dropped.
+    """Return the condensed pins and rollers to keep for further solutions.
 
-    Parameters
-    ----------
-    known : tuple of RoundGroup
-        Those so far.
-    used : tuple of RoundGroup
-        Of the last model.
+    Those just used are last; the oldest of the others are dropped beyond `ENTRIES_KEPT` numbers in all.
     """
     just_used = {group.made_of for group in used}
     room = ENTRIES_KEPT - sum(group.entries for group in used)
@@ -126,7 +100,7 @@ def keep_rounds(known: tuple[RoundGroup, ...], used: tuple[RoundGroup, ...]) -> 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Slab:
-    """What all bodies share: thickness in mm and plane state."""
+    """Thickness, mm, and plane state of all bodies."""
 
     thickness: float
     state: PlaneState
@@ -134,7 +108,7 @@ class _Slab:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _RoundBodies:
-    """Condensed round bodies of one kind: the groups, and of every candidate body its group and its turn there."""
+    """Condensed round bodies of one kind: the groups, and group and rotation of every candidate body."""
 
     groups: tuple[RoundGroup, ...] = ()
     places: dict[int, tuple[int, float]] = field(default_factory=dict)
@@ -171,20 +145,7 @@ def _condense_round(
 
 
 def condense_round_body(made_of: RoundBody, body: BodyMesh) -> RoundGroup:
-    """Condense a pin or roller to unit forces on the nodes of its zones.
-
-    Parameters
-    ----------
-    made_of : RoundBody
-        What it is made of.
-    body : BodyMesh
-        Its mesh, first contact at polar angle 0.
-
-    Returns
-    -------
-    RoundGroup
-        For all bodies of that make.
-    """
+    """Condense a pin or roller, its first contact at polar angle 0, to unit forces on the nodes of its zones."""
     grading = made_of.grading
     zones = tuple(
         OppositeZone.on_circle(body, "surface", complex(side * grading.radius), OPPOSITE_REACH * end.half_width)
@@ -212,8 +173,8 @@ def _condense_carrier(
 def _distinct_loads(pairs: list[ContactPair]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """Return the unit load of each pressure unknown of the inner races, and of each unit load its first unknown.
 
-    Rollers of several cranks press on the same places of one body that stands for all races: what is loaded about a vertex
-    is one unit load, whoever presses there.
+    Rollers of several cranks press on the same places of one body that stands for all races: the load about a vertex
+    is one unit load for all of them.
     """
     vertices = np.concatenate([pair.zone.nodes[1:, 0] for pair in pairs])
     _, first, number = np.unique(vertices, return_index=True, return_inverse=True)

@@ -9,12 +9,10 @@ from numpy.typing import NDArray
 
 from fem.body.surface import PressureZone
 from fem.contact.pressure_measures import peak_of, pressure_moments
-from fem.drive.model import ContactPair, DriveModel, PairKind
+from fem.drive.contact_kinds import CONTACT_KINDS, PairKind
+from fem.drive.model import ContactPair, DriveModel
 from fem.drive.pose import PoseSolution, pair_forces
 from ltca.arrays import FloatArray
-
-# The peak is that of a parabola through the pressures within this part of the half-width about the largest one:
-# single values wiggle by some tenths of a per cent and the largest of them lies beside the peak.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -89,15 +87,13 @@ class ContactResults:
     @property
     def loaded(self) -> list[tuple[PairKind, int, float, float, float]]:
         """Kind, number, load, largest pressure and half-width of every contact that carries, by kinds."""
-        kinds: dict[PairKind, tuple[FloatArray, FloatArray, FloatArray]] = {
-            "pin": (self.pin_load, self.pin_pressure_mid, self.pin_half_width),
-            "roller_outer": (self.roller_load, self.roller_pressure_mid_outer, self.roller_half_width_outer),
-            "roller_inner": (self.roller_load_inner, self.roller_pressure_mid_inner, self.roller_half_width_inner),
-            "hole": (self.pin_shaft_load, self.pin_shaft_pressure_mid, self.pin_shaft_half_width),
+        arrays: dict[PairKind, list[FloatArray]] = {
+            kind: [getattr(self, name) for name in (names.load, names.pressure, names.half_width)]
+            for kind, names in CONTACT_KINDS.items()
         }
         return [
             (kind, index, float(load[index]), float(pressure[index]), float(half_width[index]))
-            for kind, (load, pressure, half_width) in kinds.items()
+            for kind, (load, pressure, half_width) in arrays.items()
             for index in np.flatnonzero(load > 0.0).tolist()
         ]
 

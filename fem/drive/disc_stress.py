@@ -66,10 +66,10 @@ class DiscStress:
 
 def recover_disc_stress(solution: FullSolution) -> DiscStress:
     """Return the stress in the disc of a full solution."""
-    model, state = solution.model, solution.plane_state
+    model = solution.model
     body, shape = model.meshes.disc, model.shapes.disc
-    displacement = model.disc.displacement(solution.state.contact.pressure[: model.disc.compliance.shape[0]])
-    stress = recover_stress(body, displacement, model.drive.materials.disc, state=state)
+    displacement = model.disc_displacement(solution.state.contact.pressure)
+    stress = recover_stress(body, displacement, model.drive.materials.disc, state=solution.options.plane)
     loaded = [
         (pair, detail, *_centre_of_pressure(pair, detail))
         for pair, detail in zip(model.pairs, solution.contacts.details, strict=True)
@@ -128,13 +128,13 @@ def _largest_of_all(values: list[float]) -> float:
 STRESSES = (
     "root_stress", "bore_stress", "hole_stress", "pin_shear_max", "roller_shear_max_outer", "pin_shaft_shear_max",
 )  # fmt: skip
-"""What of `DiscStress` files hold, by name in ``fem.nc``."""
+"""Attributes of `DiscStress` that files hold, by their names in ``fem.nc``."""
 
 
 def summarise_stress(discs: Sequence[DiscStress]) -> dict[str, Any]:
-    """Return what ``summary.json`` says about the stress in each disc: lists by disc, then by part.
+    """Return the stress in the discs for ``summary.json``: lists by disc, then by part.
 
-    None stands for what is no number.
+    None replaces what is not a number.
     """
 
     def plain(values: Any) -> Any:

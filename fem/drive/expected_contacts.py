@@ -11,30 +11,20 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fem.contact.hertz import hertz_half_width
-from ltca.arrays import ComplexArray, FloatArray
+from fem.drive.rigid_bodies import DISC_ROTATION, WHEEL_ANGLE, RigidBodies, X, Y
+from ltca.arrays import BoolArray, ComplexArray, FloatArray
+from ltca.drive.engine_support import require
+from ltca.drive.hole_contact import hole_modulus, shaft_pins_yield
 from ltca.drive.parts import Drive, contact_modulus
-from ltca.drive.plane_strain import (
-    hole_modulus,
-    require_fixed_pins,
-    require_frictionless,
-    require_rigid_members,
-    shaft_pins_yield,
-)
 from ltca.drive.unit_mistakes import names_unit_mistakes
 from ltca.errors import ConvergenceError, DriveError
-from ltca.geometry.flank import FlankProfile
-from ltca.geometry.placement import Placement
 
 # Contacts under this share of the largest load get elements as if they carried it (design.md: 5 %).
 SMALLEST_LOAD_SHARE = 0.05
 # A contact open by less than this share of the largest approach may close in the real solution: refine it too.
 OPEN_MARGIN = 0.25
 APPROACH_LOGARITHM = 8.0
-# Places of the coordinates in a pose.
-X, Y, DISC_ROTATION, WHEEL_ANGLE = range(4)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -56,40 +46,90 @@ class ContactGroup:
     half_width: FloatArray
     direction: FloatArray
 
-    @classmethod
-    def of_loads(
-        cls,
-        load: FloatArray,
-        candidate: NDArray[np.bool_],
-        direction: ComplexArray,
-        *,
-        smallest_share: float,
-        length: float,
-        effective_radius: FloatArray,
-        modulus: float,
-    ) -> ContactGroup:
-        """Return contacts with the half-widths that Hertz gives their loads.
 
-        Parameters
-        ----------
-        load : array
-            N.
-        candidate : array of bool
-            Which of them get a half-width.
-        direction : array of complex
-            Toward the contact, of any length.
-        smallest_share : float
-            Share of the largest load for which candidates get a half-width at least.
-        length : float
-            Of the line contacts, mm.
-        effective_radius : array
-            mm.
-        modulus : float
-            E*, MPa.
-        """
-        graded = np.maximum(load, smallest_share * float(load.max(initial=0.0)))
-        width = hertz_half_width(graded / length, effective_radius, modulus)
-        return cls(load=load, half_width=np.where(candidate, width, 0.0), direction=np.angle(direction))
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HertzContacts:
+    """Half-widths of all contacts of a drive by the formula of Hertz.
+
+    Attributes
+    ----------
+    drive : Drive
+        For materials and lengths.
+    rigid : RigidBodies
+        For curvature and radii.
+    smallest_share : float
+        Candidates get the half-width of at least this share of the largest load of their kind.
+    """
+
+    drive: Drive
+    rigid: RigidBodies
+    smallest_share: float
+
+    @property
+    def pin_modulus(self) -> float:
+        """E* of wheel pin and flank, MPa."""
+        return contact_modulus(self.drive.materials.disc, self.drive.materials.wheel_pin)
+
+    @property
+    def outer_modulus(self) -> float:
+        """E* of roller and bore, MPa."""
+        return contact_modulus(self.drive.materials.disc, self.drive.materials.roller)
+
+    @property
+    def inner_modulus(self) -> float:
+        """E* of roller and inner race, MPa."""
+        return contact_modulus(self.drive.materials.inner_race, self.drive.materials.roller)
+
+    def on_flank(
+        self, load: FloatArray, candidate: BoolArray, theta: FloatArray, direction: ComplexArray
+    ) -> ContactGroup:
+        """Return the contacts of wheel pins with the flank at θ; directions toward them, of any length."""
+        radius = self.rigid.profile.effective_radius(theta, self.rigid.placement.wheel_pin_radii)
+        return self._group(load, candidate, direction, radius, self.pin_modulus, self.drive.disc.thickness)
+
+    def on_bore(self, load: FloatArray, candidate: BoolArray, direction: ComplexArray) -> ContactGroup:
+        """Return the contacts of rollers with the bores."""
+        roller, bore = self.rigid.placement.roller_radii, self.rigid.placement.bore_radius
+        radius, length = roller * bore / (bore - roller), self.drive.crank_bearing.roller_length
+        return self._group(load, candidate, direction, radius, self.outer_modulus, length)
+
+    def on_race(self, load: FloatArray, candidate: BoolArray, direction: ComplexArray) -> ContactGroup:
+        """Return the contacts of rollers with the inner races."""
+        roller, race = self.rigid.placement.roller_radii, self.rigid.placement.inner_race_radius
+        radius, length = roller * race / (race + roller), self.drive.crank_bearing.roller_length
+        return self._group(load, candidate, direction, radius, self.inner_modulus, length)
+
+    def in_holes(self, load: FloatArray, candidate: BoolArray, direction: ComplexArray) -> ContactGroup:
+        """Return the contacts of shaft pins with the holes."""
+        pin, hole = self.rigid.placement.shaft_pin_radii, self.rigid.placement.hole_radii
+        modulus = hole_modulus(self.drive, rigid_shaft_pins=not shaft_pins_yield(self.drive))
+        return self._group(load, candidate, direction, pin * hole / (hole - pin), modulus, self.drive.disc.thickness)
+
+    def _group(
+        self,
+        load: FloatArray,
+        candidate: BoolArray,
+        direction: ComplexArray,
+        radius: FloatArray,
+        modulus: float,
+        length: float,
+    ) -> ContactGroup:
+        graded = np.maximum(load, self.smallest_share * float(load.max(initial=0.0)))
+        width = hertz_half_width(graded / length, radius, modulus)
+        return ContactGroup(load=load, half_width=np.where(candidate, width, 0.0), direction=np.angle(direction))
+
+
+def hertz_half_width(line_load: FloatArray, radius: FloatArray, modulus: float) -> FloatArray:
+    r"""Return the half-width of a line contact, mm: :math:`\sqrt{4 q R/(\pi E^*)}` (Johnson, 1985, Eq. 4.43).
+
+    q is the load by length, N/mm, R the effective radius, mm, and E* the contact modulus, MPa.
+
+    Examples
+    --------
+    >>> round(float(hertz_half_width(100.0, 10.0, 113187.0)), 5)
+    0.10606
+    """
+    return np.asarray(np.sqrt(4.0 * line_load * radius / (np.pi * modulus)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -133,113 +173,14 @@ class ExpectedContacts:
     hole_points: ComplexArray
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _RigidDrive:
-    """Approaches of all contacts of rigid bodies at a pose (x, y, disc rotation, wheel angle)."""
-
-    profile: FlankProfile
-    placement: Placement
-    crank_angle: float
-
-    def wheel_pins(self, wheel_angle: float) -> ComplexArray:
-        turn = self.crank_angle / self.placement.reduction_ratio + wheel_angle
-        return np.asarray(self.placement.wheel_pin_centres * np.exp(1j * turn))
-
-    def flank_parameters(self, pose: FloatArray) -> FloatArray:
-        centre = self.disc_centre(pose)
-        in_disc = (self.wheel_pins(pose[WHEEL_ANGLE]) - centre) * np.exp(-1j * pose[DISC_ROTATION])
-        count = len(self.placement.wheel_pin_radii)
-        start = self.crank_angle / self.placement.reduction_ratio + 2.0 * np.pi * np.arange(count) / count
-        return self.profile.nearest_parameter(in_disc, on_turned_flank(self.profile, start))
-
-    def disc_centre(self, pose: FloatArray) -> complex:
-        return complex(self.placement.race_centre(np.asarray(self.crank_angle))) + complex(pose[X], pose[Y])
-
-    def roller_rays(self) -> ComplexArray:
-        return np.asarray(np.exp(1j * self.placement.roller_angles(np.asarray(self.crank_angle))))
-
-    def hole_rays(self, pose: FloatArray) -> ComplexArray:
-        """Vectors from hole centres to shaft-pin centres."""
-        centres = self.disc_centre(pose) + self.placement.hole_centres * np.exp(1j * pose[DISC_ROTATION])
-        return np.asarray(self.placement.shaft_pin_centres - centres)
-
-    def approaches(self, pose: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return approaches (pins, rollers, holes in a row) and their gradients, shape (contacts, 4)."""
-        place, centre, turn = self.placement, self.disc_centre(pose), np.exp(1j * pose[DISC_ROTATION])
-        pins = self.wheel_pins(pose[WHEEL_ANGLE])
-        theta = self.flank_parameters(pose)
-        in_disc = (pins - centre) / turn
-        n = self.profile.normal(theta) * turn
-        flank = place.wheel_pin_radii - self.profile.distance(in_disc, theta)
-        flank_gradient = np.column_stack(
-            [n.real, n.imag, (n.conjugate() * 1j * (pins - centre)).real, -(n.conjugate() * 1j * pins).real]
-        )
-        d = self.roller_rays()
-        play = place.bore_radius - place.inner_race_radius - 2.0 * place.roller_radii
-        shift = complex(pose[X], pose[Y])
-        bores = bore_displacements(place, self.crank_angle, shift, pose[DISC_ROTATION])[place.roller_cranks]
-        bearing = -(bores.real * d.real + bores.imag * d.imag) - play
-        arm = (1j * place.bore_centres * turn)[place.roller_cranks]
-        bearing_gradient = np.column_stack([-d.real, -d.imag, -(d.conjugate() * arm).real, np.zeros(len(d))])
-        ray = self.hole_rays(pose)
-        m = ray / np.abs(ray)
-        hole = np.abs(ray) + place.shaft_pin_radii - place.hole_radii
-        arm = 1j * place.hole_centres * turn
-        zero = np.zeros(len(m))
-        hole_gradient = np.column_stack([-m.real, -m.imag, -(m.conjugate() * arm).real, zero])
-        return (
-            np.concatenate([flank, bearing, hole]),
-            np.vstack([flank_gradient, bearing_gradient, hole_gradient]),
-        )
-
-
-def bore_displacements(
-    placement: Placement, crank_angle: float, displacement: complex, rotation: float
-) -> ComplexArray:
-    """Return where the centre of each bore stands from that of the inner race in it, fixed axes, mm, shape (cranks,).
-
-    Parameters
-    ----------
-    placement : Placement
-        Places of the parts.
-    crank_angle : float
-        φ_C, rad.
-    displacement : complex
-        Of the disc from its nominal place, fixed axes, mm.
-    rotation : float
-        Of the disc, rad.
-    """
-    races = placement.race_centres(np.asarray(crank_angle))
-    return np.asarray(races.mean() - races + displacement + placement.bore_centres * np.exp(1j * rotation))
-
-
-def on_turned_flank(profile: FlankProfile, direction: FloatArray) -> FloatArray:
-    """Return about which θ of the flank lies in a direction of the disc frame: θ counts from a root, which may be turned.
-
-    Parameters
-    ----------
-    profile : FlankProfile
-        The flank.
-    direction : array
-        Polar angle in the frame of the disc, rad.
-    """
-    return np.asarray(direction - np.angle(profile.turn)) if profile.is_turned else direction
-
-
 def require_one_disc(drive: Drive) -> None:
-    """Refuse a drive of several discs where each is a problem of its own.
-
-    Raises
-    ------
-    DriveError
-        Naming their number.
-    """
+    """Raise DriveError for a drive of several discs, where each disc is a problem by itself."""
     count = drive.disc.number_of_discs
     if count != 1:
         raise DriveError([f"disc.number_of_discs = {count}: must be 1 for finite elements of one disc alone"])
 
 
-def _minimise(rigid: _RigidDrive, stiffness: FloatArray, moment: float) -> tuple[FloatArray, FloatArray]:
+def _minimise(rigid: RigidBodies, stiffness: FloatArray, moment: float) -> tuple[FloatArray, FloatArray]:
     """Return pose and approaches at the minimum of ½ Σ k δ₊² − T_load·wheel_angle (damped Newton)."""
     length = abs(rigid.placement.wheel_pin_centres[0])
     scale = np.array([1.0, 1.0, 1.0 / length, 1.0 / length])  # every unknown a length
@@ -277,17 +218,6 @@ def _minimise(rigid: _RigidDrive, stiffness: FloatArray, moment: float) -> tuple
     )
 
 
-def _refuse_wheel_axis(drive: Drive) -> None:
-    offset = drive.pin_wheel.axis_offset
-    if offset.place != 0.0:
-        raise DriveError(
-            [
-                f"pin_wheel.axis_offset = ({offset.x:g}, {offset.y:g}) mm: must be (0, 0) mm for finite elements, which turn "
-                "the wheel about the axis of the pin shaft (the LTCA takes it)"
-            ]
-        )
-
-
 @names_unit_mistakes
 def expect_contacts(
     drive: Drive, crank_angle: float, *, torque: float | None = None, wheel_moment: float | None = None
@@ -315,26 +245,16 @@ def expect_contacts(
     ConvergenceError
         When nothing can carry the load.
     DriveError
-        When the wheel turns about another axis than the pin shaft's: the finite elements have one axis for both; for
-        several discs; where cranks or the wheel's axis yield, or pins are loose, sleeved or beams.
+        For several discs, and for what full finite elements refuse at any length (`ltca.drive.engine_support`).
     """
-    profile, placement = FlankProfile.of_drive(drive), Placement.of_drive(drive)
-    _refuse_wheel_axis(drive)
-    require_rigid_members(drive, "full finite elements")
-    require_frictionless(drive, "full finite elements")
-    require_fixed_pins(drive, "full finite elements")
-    rigid = _RigidDrive(profile=profile, placement=placement, crank_angle=float(crank_angle))
-    materials, thickness = drive.materials, drive.disc.thickness
-    roller_length = drive.crank_bearing.roller_length
-    pin_modulus = contact_modulus(materials.disc, materials.wheel_pin)
-    outer_modulus = contact_modulus(materials.disc, materials.roller)
-    inner_modulus = contact_modulus(materials.inner_race, materials.roller)
-    at_hole = hole_modulus(drive, rigid_shaft_pins=not shaft_pins_yield(drive))
-
+    rigid = RigidBodies.of_drive(drive, crank_angle)
+    require(drive, "FE mesh")
+    profile, placement = rigid.profile, rigid.placement
+    hertz = HertzContacts(drive=drive, rigid=rigid, smallest_share=SMALLEST_LOAD_SHARE)
     pins, rollers = len(placement.wheel_pin_radii), len(placement.roller_radii)
-    flank_stiffness = np.pi * pin_modulus * thickness / APPROACH_LOGARITHM
-    roller_modulus = 1.0 / (1.0 / outer_modulus + 1.0 / inner_modulus)
-    roller_stiffness = np.pi * roller_modulus * roller_length / APPROACH_LOGARITHM
+    flank_stiffness = np.pi * hertz.pin_modulus * drive.disc.thickness / APPROACH_LOGARITHM
+    roller_modulus = 1.0 / (1.0 / hertz.outer_modulus + 1.0 / hertz.inner_modulus)
+    roller_stiffness = np.pi * roller_modulus * drive.crank_bearing.roller_length / APPROACH_LOGARITHM
     counts = [pins, rollers, len(placement.hole_radii)]
     stiffness = np.repeat([flank_stiffness, roller_stiffness, drive.hole_stiffness], counts)
     moment = drive.wheel_moment(torque) if wheel_moment is None else wheel_moment
@@ -346,22 +266,6 @@ def expect_contacts(
     theta = rigid.flank_parameters(pose)
     n = profile.normal(theta) * np.exp(1j * pose[DISC_ROTATION])
     rays, hole_rays = rigid.roller_rays(), rigid.hole_rays(pose)
-    radius, hole_radius = placement.roller_radii, placement.hole_radii
-    hole_effective = placement.shaft_pin_radii * hole_radius / (hole_radius - placement.shaft_pin_radii)
-    outer_effective = radius * placement.bore_radius / (placement.bore_radius - radius)
-    inner_effective = radius * placement.inner_race_radius / (placement.inner_race_radius + radius)
-
-    def group(kind: int, effective: FloatArray, modulus: float, length: float, ray: ComplexArray) -> ContactGroup:
-        return ContactGroup.of_loads(
-            loads[kind],
-            nearly[kind],
-            ray,
-            smallest_share=SMALLEST_LOAD_SHARE,
-            length=length,
-            effective_radius=effective,
-            modulus=modulus,
-        )
-
     turn_back = np.exp(-1j * pose[DISC_ROTATION])
     hole_direction = hole_rays / np.abs(hole_rays)
     return ExpectedContacts(
@@ -370,12 +274,12 @@ def expect_contacts(
         disc_y=float(pose[Y]),
         disc_rotation=float(pose[DISC_ROTATION]),
         wheel_angle=float(pose[WHEEL_ANGLE]),
-        pins=group(0, profile.effective_radius(theta, placement.wheel_pin_radii), pin_modulus, thickness, -n),
+        pins=hertz.on_flank(loads[0], nearly[0], theta, -n),
         flank_points=profile.flank(theta),
-        rollers_outer=group(1, outer_effective, outer_modulus, roller_length, rays),
-        rollers_inner=group(1, inner_effective, inner_modulus, roller_length, -rays),
+        rollers_outer=hertz.on_bore(loads[1], nearly[1], rays),
+        rollers_inner=hertz.on_race(loads[1], nearly[1], -rays),
         bore_points=placement.bore_centres[placement.roller_cranks] + placement.bore_radius * rays * turn_back,
         race_points=placement.inner_race_radius * rays,
-        holes=group(2, hole_effective, at_hole, thickness, hole_direction),
-        hole_points=placement.hole_centres + hole_radius * hole_direction * turn_back,
+        holes=hertz.in_holes(loads[2], nearly[2], hole_direction),
+        hole_points=placement.hole_centres + placement.hole_radii * hole_direction * turn_back,
     )

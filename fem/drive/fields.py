@@ -6,11 +6,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fem.body.elasticity import PlaneState
 from fem.body.stress import Stress, recover_stress
 from fem.contact.coupling import Pose
 from fem.contact.pressure_measures import vertex_means
-from fem.drive.model import DriveModel, PairKind
+from fem.drive.contact_kinds import PairKind
+from fem.drive.full_solution import FullSolution
+from fem.drive.model import DriveModel
 from fem.drive.pose import PoseSolution
 from fem.mesh.body_mesh import BodyMesh
 from fem.mesh.placed_body import PlacedBody
@@ -52,7 +53,7 @@ class BodyField:
     @property
     def places(self) -> ComplexArray:
         """Nodes of the rigid body in the loaded pose, mm."""
-        return self.pose.place(self.body.mesh.doflocs[0] + 1j * self.body.mesh.doflocs[1])
+        return self.pose.place(self.body.places)
 
     @property
     def placed_mesh(self) -> BodyMesh:
@@ -66,31 +67,16 @@ class BodyField:
         return PlacedBody(body=self.body, centre=self.pose.centre, rotation=self.pose.rotation, kind=self.kind)
 
 
-def recover_fields(model: DriveModel, solution: PoseSolution, *, state: PlaneState = "strain") -> tuple[BodyField, ...]:
-    """Return the fields of disc, wheel pins, rollers and inner races.
-
-    Parameters
-    ----------
-    model : DriveModel
-        Condensed drive.
-    solution : PoseSolution
-        Its solution.
-    state : {"strain", "stress"}
-        As the model was condensed.
-
-    Returns
-    -------
-    tuple of BodyField
-        In the order of `fem.drive.meshes.DriveMeshes.bodies`, then the inner race of each crank.
-    """
+def recover_fields(full: FullSolution) -> tuple[BodyField, ...]:
+    """Return the fields of disc, wheel pins, rollers, elastic shaft pins, and then the inner race of each crank."""
+    model, solution = full.model, full.state
     pressure = solution.contact.pressure
-    on_disc = model.disc.compliance.shape[0]
     meshes, materials, pose = model.meshes, model.drive.materials, solution.pose
     ideal = model.start_pose((0.0, 0.0, 0.0, 0.0))
     fields = []
 
     def add(kind: str, body: BodyMesh, at: Pose, nominal: Pose, elastic: FloatArray, crank: int = 0) -> None:
-        local = body.mesh.doflocs[0] + 1j * body.mesh.doflocs[1]
+        local = body.places
         material = {
             "disc": materials.disc,
             "pin": materials.wheel_pin,
@@ -98,7 +84,7 @@ def recover_fields(model: DriveModel, solution: PoseSolution, *, state: PlaneSta
             "inner_race": materials.inner_race,
             "shaft_pin": materials.shaft_pin,
         }[kind]
-        stress = turn_stress(recover_stress(body, elastic, material, state=state), at.rotation)
+        stress = turn_stress(recover_stress(body, elastic, material, state=full.options.plane), at.rotation)
         carried = np.zeros(body.node_count)
         if kind in ("disc", "inner_race"):
             carried = _pressure_on(model, pressure, body.node_count, crank if kind == "inner_race" else None)
@@ -114,7 +100,7 @@ def recover_fields(model: DriveModel, solution: PoseSolution, *, state: PlaneSta
             )
         )
 
-    add("disc", meshes.disc, model.disc_pose(pose), model.disc_pose(ideal), model.disc.displacement(pressure[:on_disc]))
+    add("disc", meshes.disc, model.disc_pose(pose), model.disc_pose(ideal), model.disc_displacement(pressure))
     round_displacements = _round_displacements(model, solution)
     centres: tuple[tuple[str, PairKind, tuple[BodyMesh, ...]], ...] = (
         ("pin", "pin", meshes.wheel_pins),
@@ -182,15 +168,7 @@ def turn_stress(stress: Stress, angle: float) -> Stress:
 
 
 def fit_rigid_motion(places: ComplexArray, displacement: ComplexArray, weight: FloatArray) -> tuple[complex, float]:
-    """Return the translation of the origin (mm) and rotation (rad) that fit displacements best.
-
-    Parameters
-    ----------
-    places, displacement : array of complex, shape (n,)
-        Points about the origin and their displacements, mm.
-    weight : array, shape (n,)
-        Of each point.
-    """
+    """Return the translation of the origin (mm) and rotation (rad) that fit weighted displacements best (least squares)."""
     x, y, one = places.real, places.imag, np.ones(len(places))
     rows = np.vstack([np.column_stack([one, 0 * one, -y]), np.column_stack([0 * one, one, x])])
     root = np.sqrt(np.concatenate([weight, weight]))
@@ -199,12 +177,13 @@ def fit_rigid_motion(places: ComplexArray, displacement: ComplexArray, weight: F
     return complex(found[0], found[1]), float(found[2])
 
 
-def bore_motion(model: DriveModel, solution: PoseSolution) -> tuple[complex, float]:
+def bore_motion(full: FullSolution) -> tuple[complex, float]:
     """Return displacement (fixed axes, mm) and rotation (rad) of the disc fitted to its bore circle, or to all of them."""
+    model, solution = full.model, full.state
     body = model.meshes.disc
     chain = np.concatenate([body.boundary_nodes(bore.name) for bore in model.shapes.disc.bores])
-    nodes = body.mesh.doflocs[0] + 1j * body.mesh.doflocs[1]
-    u = model.disc.displacement(solution.contact.pressure[: model.disc.compliance.shape[0]])
+    nodes = body.places
+    u = model.disc_displacement(solution.contact.pressure)
     elastic = u[0::2] + 1j * u[1::2]
     weight = np.zeros(len(nodes))
     length = np.abs(nodes[chain[:, 2]] - nodes[chain[:, 0]])

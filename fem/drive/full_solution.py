@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fem.body.elasticity import PlaneState
 from fem.drive.contact_results import ContactResults
 from fem.drive.model import DriveModel, DrivePose, RoundGroup
 from fem.drive.pose import PoseSolution, pair_forces
+from fem.options import SolutionOptions
 from ltca.arrays import FloatArray
 
 
@@ -25,12 +25,8 @@ class FullSolution:
         Pressures at the loaded pose.
     contacts : ContactResults
         Loads, peak pressures, half-widths of all parts, and forces on the disc.
-    scale : float
-        Element edge as a multiple of an eighth of each half-width.
-    plane_state : {"strain", "stress"}
-        Plane strain or plane stress.
-    fine_walls : bool
-        Whether the walls of the disc are meshed finely enough for the stress along them.
+    options : SolutionOptions
+        How it was solved.
     pose_iterations : int
         Steps on the final meshes.
     rounds : tuple of RoundGroup
@@ -42,9 +38,7 @@ class FullSolution:
     model: DriveModel
     state: PoseSolution
     contacts: ContactResults
-    scale: float
-    plane_state: PlaneState
-    fine_walls: bool
+    options: SolutionOptions
     pose_iterations: int
     rounds: tuple[RoundGroup, ...]
     seconds: dict[str, float]
@@ -56,7 +50,7 @@ class FullSolution:
 
     @property
     def bearing_components(self) -> FloatArray:
-        """Bearing force of each crank on the disc along its own eccentric and 90° ahead of it, N, shape (cranks, 2)."""
+        """Bearing force of each crank on the disc along its eccentric and 90° ahead of it, N, shape (cranks, 2)."""
         model = self.model
         directions = model.placement.eccentric_directions(np.asarray(model.crank_angle))
         along = self.contacts.bearing_force * directions.conjugate()

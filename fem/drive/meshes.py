@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from fem.drive.expected_contacts import ContactGroup, ExpectedContacts
-from fem.errors import MeshError
 from fem.mesh.body_mesh import BodyMesh
 from fem.mesh.element_size import DEFAULT_GROWTH, Refinement
 from fem.mesh.memory_need import require_memory, solution_memory
 from fem.mesh.triangulation import default_coarse_size, estimate_unknowns, mesh_circle, mesh_disc, mesh_ring
+from fem.options import DEFAULT_OPTIONS, SolutionOptions
 from fem.shapes import CircleShape, DiscShape, DriveShapes, Shape
 from ltca.arrays import ComplexArray, FloatArray
 
@@ -45,7 +45,7 @@ class RoundEnd:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RoundGrading:
-    """All that the mesh of a pin or roller depends on; equal gradings have equal meshes, to the last bit.
+    """Everything that determines the mesh of a pin or roller: equal gradings have equal meshes, to the last bit.
 
     Attributes
     ----------
@@ -85,14 +85,14 @@ class RoundGrading:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RoundMesh:
-    """Mesh of a pin or roller with its first contact at polar angle 0, and how it stands in the drive.
+    """Mesh of a pin or roller with its first contact at polar angle 0, and its rotation in the drive.
 
     Attributes
     ----------
     grading : RoundGrading
         By which it was meshed.
     body : BodyMesh
-        Before it is turned; may serve several bodies.
+        Before the rotation; may be shared by several bodies.
     turn : float
         Polar angle of the first contact in fixed axes, rad.
     """
@@ -140,22 +140,22 @@ class DriveMeshes:
         return sum(body.unknowns for body in self.bodies)
 
 
-def _spots(points: ComplexArray, half_width: FloatArray, scale: float) -> list[Refinement]:
+def _spots(points: ComplexArray, half_width: FloatArray, size: float) -> list[Refinement]:
     return [
         Refinement(
-            float(point.real), float(point.imag), scale * width / ELEMENTS_PER_HALF_WIDTH, ZONE_HALF_WIDTHS * width
+            float(point.real), float(point.imag), size * width / ELEMENTS_PER_HALF_WIDTH, ZONE_HALF_WIDTHS * width
         )
         for point, width in zip(points, half_width.tolist(), strict=True)
         if width > 0.0
     ]
 
 
-def disc_refinements(contacts: ExpectedContacts, scale: float = 1.0) -> tuple[Refinement, ...]:
-    """Return the refinements of the disc: b/8 within 1.5 b of each contact, times `scale`."""
+def disc_refinements(contacts: ExpectedContacts, size: float = 1.0) -> tuple[Refinement, ...]:
+    """Return the refinements of the disc: elements of `size` times b/8 within 1.5 b of each contact."""
     return (
-        *_spots(contacts.flank_points, contacts.pins.half_width, scale),
-        *_spots(contacts.bore_points, contacts.rollers_outer.half_width, scale),
-        *_spots(contacts.hole_points, contacts.holes.half_width, scale),
+        *_spots(contacts.flank_points, contacts.pins.half_width, size),
+        *_spots(contacts.bore_points, contacts.rollers_outer.half_width, size),
+        *_spots(contacts.hole_points, contacts.holes.half_width, size),
     )
 
 
@@ -175,9 +175,9 @@ def wall_refinements(shape: DiscShape) -> tuple[Refinement, ...]:
     return tuple(spots)
 
 
-def race_refinements(contacts: ExpectedContacts, scale: float = 1.0) -> tuple[Refinement, ...]:
+def race_refinements(contacts: ExpectedContacts, size: float = 1.0) -> tuple[Refinement, ...]:
     """Return the refinements of the inner race."""
-    return tuple(_spots(contacts.race_points, contacts.rollers_inner.half_width, scale))
+    return tuple(_spots(contacts.race_points, contacts.rollers_inner.half_width, size))
 
 
 def _class_of(half_width: float) -> float:
@@ -187,16 +187,16 @@ def _class_of(half_width: float) -> float:
     return float(CLASS_RATIO ** np.floor(np.log(half_width) / np.log(CLASS_RATIO)))
 
 
-def coarse_edge(shape: Shape, scale: float) -> float:
+def coarse_edge(shape: Shape, size: float) -> float:
     """Return the element edge far from all contacts, mm.
 
-    The interior is smooth and far from its limit of accuracy: it need not follow a finer scale in full.
+    The displacement is smooth there: below a size of 1 the edge goes with its square root only.
     """
-    return default_coarse_size(shape, min(1.0, float(np.sqrt(scale))) if scale < 1.0 else scale)
+    return default_coarse_size(shape, min(1.0, float(np.sqrt(size))) if size < 1.0 else size)
 
 
 def _plan_circles(
-    shapes: tuple[CircleShape, ...], groups: tuple[ContactGroup, ...], scale: float, order: int, growth: float
+    shapes: tuple[CircleShape, ...], groups: tuple[ContactGroup, ...], options: SolutionOptions, order: int
 ) -> list[tuple[str, RoundGrading, float]]:
     """Return name, grading and turn of each pin or roller; a roller's contacts lie opposite each other."""
     plan = []
@@ -204,44 +204,30 @@ def _plan_circles(
         classes = [_class_of(float(group.half_width[index])) for group in groups]
         # Elements for the lower end of a class, a zone for its upper end.
         ends = tuple(
-            RoundEnd(edge=scale * width / ELEMENTS_PER_HALF_WIDTH, half_width=float(CLASS_RATIO * width))
+            RoundEnd(edge=options.size * width / ELEMENTS_PER_HALF_WIDTH, half_width=float(CLASS_RATIO * width))
             for width in classes
         )
         grading = RoundGrading(
             radius=shape.radius,
             core_radius=shape.core_radius,
             ends=ends,
-            coarse_size=coarse_edge(shape, scale),
+            coarse_size=coarse_edge(shape, options.size),
             order=order,
-            growth=growth,
+            growth=options.growth,
         )
         plan.append((shape.name, grading, float(groups[0].direction[index])))
     return plan
 
 
-def require_model_memory(models: Sequence[tuple[DriveShapes, ExpectedContacts]], scale: float) -> None:
-    """Refuse models that would not fit into memory together, before any meshing; discs and races alone decide.
+def require_model_memory(models: Sequence[tuple[DriveShapes, ExpectedContacts]], options: SolutionOptions) -> None:
+    """Raise MemoryLimitError when the models of several discs would not fit into memory together, before any meshing.
 
-    Parameters
-    ----------
-    models : sequence of DriveShapes and ExpectedContacts
-        Of each disc.
-    scale : float
-        Element edge as a multiple of an eighth of each Hertz half-width.
-
-    Raises
-    ------
-    MemoryLimitError
-        With the numbers.
-    MeshError
-        When the scale is no positive number.
+    Only the meshes of discs and inner races are counted: pins and rollers are small beside them.
     """
-    if not (np.isfinite(scale) and scale > 0.0):
-        raise MeshError(f"element size {scale:g}: must be greater than 0 (a multiple of the default edge)")
-    sizes = []
+    size, sizes = options.size, []
     for shapes, guess in models:
-        unknowns = estimate_unknowns(shapes.disc, disc_refinements(guess, scale))
-        sizes.append(unknowns + estimate_unknowns(shapes.inner_race, race_refinements(guess, scale)))
+        unknowns = estimate_unknowns(shapes.disc, disc_refinements(guess, size))
+        sizes.append(unknowns + estimate_unknowns(shapes.inner_race, race_refinements(guess, size)))
     what = (
         "the model of disc and inner race" if len(sizes) == 1 else f"the models of {len(sizes)} discs and inner races"
     )
@@ -251,11 +237,9 @@ def require_model_memory(models: Sequence[tuple[DriveShapes, ExpectedContacts]],
 def mesh_drive(
     shapes: DriveShapes,
     contacts: ExpectedContacts,
+    options: SolutionOptions = DEFAULT_OPTIONS,
     *,
-    scale: float = 1.0,
     order: int = 2,
-    growth: float = DEFAULT_GROWTH,
-    fine_walls: bool = False,
     known: Mapping[RoundGrading, BodyMesh] | None = None,
     report: Callable[[BodyMesh], None] | None = None,
 ) -> DriveMeshes:
@@ -270,16 +254,12 @@ def mesh_drive(
         Shapes of the bodies.
     contacts : ExpectedContacts
         From `fem.drive.expected_contacts.expect_contacts`.
-    scale : float
-        Element edge as a multiple of the default, 8 elements for each half-width.
+    options : SolutionOptions
+        Size and growth of the elements, and whether the walls of the disc are refined (`wall_refinements`).
     order : int
         1 or 2.
-    growth : float
-        Growth of the edge by distance from a contact.
-    fine_walls : bool
-        Whether the disc's walls are fine enough for the stress along them (`wall_refinements`).
     known : mapping of RoundGrading to BodyMesh, optional
-        Meshes of pins and rollers that are there already.
+        Meshes of pins and rollers made before, used where the grading is the same.
     report : callable, optional
         Called with each mesh as soon as it is made.
 
@@ -291,19 +271,18 @@ def mesh_drive(
     Raises
     ------
     MeshError
-        When a mesh cannot be made or is bad, or the scale is no positive number.
+        When a mesh cannot be made or is bad.
     MemoryLimitError
         When meshes and solution would not fit into memory; checked before any meshing.
     """
-    if not (np.isfinite(scale) and scale > 0.0):
-        raise MeshError(f"element size {scale:g}: must be greater than 0 (a multiple of the default edge)")
-    disc_spots, race_spots = disc_refinements(contacts, scale), race_refinements(contacts, scale)
-    if fine_walls:
+    size, growth = options.size, options.growth
+    disc_spots, race_spots = disc_refinements(contacts, size), race_refinements(contacts, size)
+    if options.fine_walls:
         disc_spots += wall_refinements(shapes.disc)
-    pins = _plan_circles(shapes.wheel_pins, (contacts.pins,), scale, order, growth)
+    pins = _plan_circles(shapes.wheel_pins, (contacts.pins,), options, order)
     ends = (contacts.rollers_outer, contacts.rollers_inner)
-    rollers = _plan_circles(shapes.rollers, ends, scale, order, growth)
-    shaft_pins = _plan_circles(shapes.shaft_pins, (contacts.holes,), scale, order, growth)
+    rollers = _plan_circles(shapes.rollers, ends, options, order)
+    shaft_pins = _plan_circles(shapes.shaft_pins, (contacts.holes,), options, order)
     planned: list[tuple[Shape, tuple[Refinement, ...]]] = [(shapes.disc, disc_spots), (shapes.inner_race, race_spots)]
     planned += [
         (shape, grading.refinements)
@@ -312,7 +291,7 @@ def mesh_drive(
         )
     ]
     total = sum(
-        estimate_unknowns(shape, spots, coarse_size=coarse_edge(shape, scale), growth=growth, order=order)
+        estimate_unknowns(shape, spots, coarse_size=coarse_edge(shape, size), growth=growth, order=order)
         for shape, spots in planned
     )
     require_memory(total, solution_memory(total), "the drive's mesh")
@@ -329,7 +308,7 @@ def mesh_drive(
             made[grading] = grading.mesh(name)
         return RoundMesh(grading=grading, body=made[grading], turn=turn)
 
-    disc_edge, race_edge = coarse_edge(shapes.disc, scale), coarse_edge(shapes.inner_race, scale)
+    disc_edge, race_edge = coarse_edge(shapes.disc, size), coarse_edge(shapes.inner_race, size)
     disc = announce(mesh_disc(shapes.disc, disc_spots, coarse_size=disc_edge, growth=growth, order=order))
 
     def placed(meshes: tuple[RoundMesh, ...], plan: list[tuple[str, RoundGrading, float]]) -> tuple[BodyMesh, ...]:

@@ -1,13 +1,12 @@
 """Condensed finite-element model of a drive on given meshes: bodies, contact pairs, compliance at a pose.
 
-Which body carries the pressure: the disc toward wheel pins, rollers and shaft pins, the inner race toward the
+The pressure is carried by the disc toward wheel pins, rollers and shaft pins, the inner race toward the
 rollers. Pins and rollers that share a mesh share one factorisation and one compliance, turned.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,15 +16,15 @@ from fem.body.elasticity import PlaneState
 from fem.body.surface import OppositeZone, PressureZone
 from fem.contact.coupling import PairIntegrals, Pose, integrate_pair
 from fem.contact.unilateral import ContactProblem
-from fem.drive.expected_contacts import ExpectedContacts, bore_displacements
+from fem.drive.contact_kinds import PairKind
+from fem.drive.expected_contacts import ExpectedContacts
 from fem.drive.meshes import DriveMeshes, RoundGrading
+from fem.drive.rigid_bodies import bore_displacements
 from fem.mesh.body_mesh import BodyMesh
 from fem.shapes import DriveShapes
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.drive.parts import Drive, Material
 from ltca.geometry.placement import Placement
-
-PairKind = Literal["pin", "roller_outer", "roller_inner", "hole"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -59,7 +58,7 @@ class DrivePose:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RoundBody:
-    """All that the condensed pin or roller depends on.
+    """Everything that determines a condensed pin or roller.
 
     Attributes
     ----------
@@ -89,7 +88,7 @@ class RoundGroup:
     Attributes
     ----------
     made_of : RoundBody
-        What it was made of: equal ones are equal to the last bit.
+        What determines it: equal ones are equal to the last bit.
     body : BodyMesh
         The mesh in the frame in which it was condensed.
     condensed : CondensedBody
@@ -105,7 +104,7 @@ class RoundGroup:
 
     @property
     def entries(self) -> int:
-        """Numbers that it holds."""
+        """Number of stored values."""
         return self.condensed.entries
 
 
@@ -165,7 +164,7 @@ class DriveModel:
     disc : CondensedBody
         Unit loads are the pressure unknowns on it.
     race : CondensedBody
-        One body that stands for the inner races of all cranks; unit loads are the pressures about its boundary vertices,
+        One body that represents the inner races of all cranks; unit loads are the pressures about its boundary vertices,
         each once.
     groups : tuple of RoundGroup
         Pins and rollers.
@@ -224,6 +223,10 @@ class DriveModel:
         own, first = self.race_unknowns(crank), self.disc.compliance.shape[0]
         return self.race_loads[own.start - first : own.stop - first]
 
+    def disc_displacement(self, pressure: FloatArray) -> FloatArray:
+        """Return the nodal displacements of the disc in its own frame, mm, at all pressures of the drive, MPa."""
+        return self.disc.displacement(pressure[: self.disc.compliance.shape[0]])
+
     def race_displacement(self, crank: int, pressure: FloatArray) -> FloatArray:
         """Return the nodal displacements of the inner race of a crank, fixed axes, mm, at all pressures of the drive, MPa."""
         carried = np.zeros(self.race.compliance.shape[0])
@@ -268,10 +271,7 @@ class DriveModel:
     def start_pose(self, start: tuple[float, float, float, float] | None = None) -> DrivePose:
         """Return a pose with rollers midway between race and bore and shaft pins unloaded.
 
-        Parameters
-        ----------
-        start : tuple of four floats, optional
-            Disc x, y (mm), disc rotation, wheel angle (rad); those the meshes were graded for by default.
+        `start` is disc x, y (mm), disc rotation and wheel angle (rad); by default the pose the meshes were graded for.
         """
         contacts, place = self.contacts, self.placement
         x, y, rotation, wheel = start or (

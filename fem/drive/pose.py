@@ -19,16 +19,16 @@ from fem.drive.model import DriveModel, DrivePose
 from ltca.arrays import FloatArray
 from ltca.errors import ConvergenceError
 
-# design.md asks for 0.5 µm and 0.1 %; one more step of a linearly converging iteration costs a tenth of a second.
+# Well below the accuracy wanted, 0.5 µm and 0.1 %: one more step of a linearly converging iteration takes a tenth of a second.
 POSE_TOLERANCE = 5.0e-5
 LOAD_TOLERANCE = 2.0e-4
 # Farthest a body may travel in one step, mm: normals are those of the old pose.
-LARGEST_STEP = 0.05
+MAX_STEP = 0.05
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PoseSolution:
-    """Contact solution at its own loaded pose.
+    """Contact solution at the loaded pose that belongs to it.
 
     Attributes
     ----------
@@ -89,7 +89,7 @@ def solve_pose(
     limit : int
         Pose steps.
     pose_tolerance : float
-        Largest increment of a pose at rest, mm.
+        Largest rigid increment of a converged pose, mm.
     progress : callable, optional
         Called with one line for each step.
 
@@ -152,7 +152,7 @@ def _move(
     reach[2] = shapes.disc.flank.profile.tip_radius
     reach[3] = float(np.abs(model.placement.wheel_pin_centres).max())
     largest = float(np.max(np.abs(motion * reach)))
-    motion *= min(1.0, LARGEST_STEP / largest) if largest > 0.0 else 1.0
+    motion *= min(1.0, MAX_STEP / largest) if largest > 0.0 else 1.0
     distances = pose.roller_distances.copy()
     for column, roller in enumerate(model.rollers, start=4):
         distances[roller] += motion[column]

@@ -15,93 +15,84 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fem.body.elasticity import PlaneState
 from fem.drive.condensed import condense_drive, keep_rounds
 from fem.drive.contact_results import DeformedContacts, deformed_contacts, summarise_contacts
-from fem.drive.expected_contacts import ExpectedContacts, expect_contacts, require_one_disc
+from fem.drive.expected_contacts import (
+    ExpectedContacts,
+    expect_contacts,
+    require_one_disc,
+)
 from fem.drive.full_solution import FullSolution
-from fem.drive.grading import FINE_SHARE, find_shortcoming, grade_contacts, measure_gaps
-from fem.drive.meshes import mesh_drive, require_model_memory
+from fem.drive.grading import FINE_SHARE, find_shortcoming, grade_contacts
+from fem.drive.meshes import DriveMeshes, mesh_drive, require_model_memory
 from fem.drive.model import DriveModel, RoundGroup
 from fem.drive.pose import POSE_TOLERANCE, PoseSolution, solve_pose
+from fem.drive.rigid_bodies import RigidBodies
 from fem.errors import MeshError
-from fem.mesh.element_size import DEFAULT_GROWTH
+from fem.options import DEFAULT_OPTIONS, SolutionOptions
 from fem.shapes import DriveShapes
 from ltca.arrays import FloatArray
+from ltca.drive.engine_support import require
 from ltca.drive.parts import Drive
-from ltca.drive.plane_strain import (
-    require_fixed_pins,
-    require_frictionless,
-    require_plane_strain,
-    require_rigid_members,
-)
 from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import names_unit_mistakes
 from ltca.errors import ConvergenceError, DriveError
 
 # The coarse stage looks for loads only: 8/3.5 elements for each half-width, zones for contacts that are open by as
 # much as bodies approach each other, sized for at least a quarter of the largest load.
-COARSE_SCALE = 3.5
+COARSE_SIZE = 3.5
 # Elements of the coarse stage grow twice as fast away from the contacts: half as many, loads still good to 0.5 %.
 COARSE_GROWTH = 0.6
 COARSE_SHARE = 0.25
 COARSE_MARGIN = 1.0
 # Open contacts within this part of the largest approach stay candidates of the fine stage.
 FINE_MARGIN = 0.15
-LARGEST_GRADINGS = 5
+MAX_GRADINGS = 5
 # Meshes are graded a little finer than asked, so that loads that still change by some per cent do not matter.
-RESERVE = 0.96
+SIZE_RESERVE = 0.96
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Task:
-    """What stays the same through all stages of one solution."""
+    """What stays the same through all stages of one solution; `approach` is the largest overlap in the guess, mm."""
 
     drive: Drive
-    crank_angle: float
+    rigid: RigidBodies
     shapes: DriveShapes
     moment: float
-    scale: float
-    state: PlaneState
+    options: SolutionOptions
     approach: float
     say: Callable[[str], None]
+    watch: _Stopwatch
 
     def solve_guess(
-        self,
-        guess: ExpectedContacts,
-        start: tuple[float, float, float, float] | None,
-        rounds: tuple[RoundGroup, ...],
-        watch: _Stopwatch,
+        self, guess: ExpectedContacts, start: tuple[float, float, float, float] | None, rounds: tuple[RoundGroup, ...]
     ) -> tuple[DriveModel, PoseSolution]:
         """Solve on coarse meshes wherever the guess has a load."""
         place = (complex(guess.disc_x, guess.disc_y), guess.disc_rotation, guess.wheel_angle)
         loads = (guess.pins.load, guess.rollers_outer.load, guess.holes.load)
         contacts = self.grade(place, loads, margin=COARSE_MARGIN, share=COARSE_SHARE)
-        watch.lap("guess")
+        self.watch.lap("guess")
         self.say("coarse meshes")
-        model = self._condense_coarse(contacts, rounds)
+        model = self.condense_coarse(contacts, rounds)
         first = None if start is None else model.start_pose(start)
         solution = solve_pose(model, self.moment, start=first, progress=self.say)
-        watch.lap("coarse")
+        self.watch.lap("coarse")
         return model, solution
 
-    def _condense_coarse(self, contacts: ExpectedContacts, rounds: tuple[RoundGroup, ...]) -> DriveModel:
-        scale = max(COARSE_SCALE, self.scale)
+    def condense_coarse(self, contacts: ExpectedContacts, rounds: tuple[RoundGroup, ...]) -> DriveModel:
+        coarse = SolutionOptions(
+            size=max(COARSE_SIZE, self.options.size), plane=self.options.plane, growth=COARSE_GROWTH
+        )
         try:
-            return self.condense(contacts, scale, rounds, _Stopwatch(), growth=COARSE_GROWTH)
+            return self.condense(contacts, self.mesh(contacts, coarse, rounds), rounds)
         except MeshError:
             # Fast growth in a narrow place may end in too flat triangles; a drive is not refused for that.
-            return self.condense(contacts, scale, rounds, _Stopwatch())
+            slow = replace(coarse, growth=self.options.growth)
+            return self.condense(contacts, self.mesh(contacts, slow, rounds), rounds)
 
     def solve_graded(
-        self,
-        model: DriveModel,
-        solution: PoseSolution,
-        grading: int,
-        rounds: tuple[RoundGroup, ...],
-        watch: _Stopwatch,
-        *,
-        fine_walls: bool,
+        self, model: DriveModel, solution: PoseSolution, grading: int, rounds: tuple[RoundGroup, ...]
     ) -> tuple[DriveModel, PoseSolution]:
         """Solve on meshes graded for the contacts of another solution."""
         results, pose = summarise_contacts(model, solution), solution.pose
@@ -111,26 +102,20 @@ class _Task:
         margin, deformed = FINE_MARGIN * 2.0 ** (grading - 1), deformed_contacts(model, solution)
         contacts = self.grade(place, loads, margin=margin, share=FINE_SHARE, deformed=deformed)
         self.say("meshes")
-        graded = self.condense(contacts, self.scale * RESERVE, rounds, watch, fine_walls=fine_walls)
-        watch.lap("assembly and factorisation")
+        meshes = self.mesh(contacts, replace(self.options, size=self.options.size * SIZE_RESERVE), rounds)
+        self.watch.lap("mesh")
+        graded = self.condense(contacts, meshes, rounds)
+        self.watch.lap("assembly and factorisation")
         found = solve_pose(graded, self.moment, start=solution.pose, progress=self.say)
-        watch.lap("contact and pose")
+        self.watch.lap("contact and pose")
         return graded, found
 
-    def condense(
-        self,
-        contacts: ExpectedContacts,
-        scale: float,
-        rounds: tuple[RoundGroup, ...],
-        watch: _Stopwatch,
-        *,
-        growth: float = DEFAULT_GROWTH,
-        fine_walls: bool = False,
-    ) -> DriveModel:
+    def mesh(self, contacts: ExpectedContacts, options: SolutionOptions, rounds: tuple[RoundGroup, ...]) -> DriveMeshes:
         known = {group.made_of.grading: group.body for group in rounds}
-        meshes = mesh_drive(self.shapes, contacts, scale=scale, growth=growth, fine_walls=fine_walls, known=known)
-        watch.lap("mesh")
-        return condense_drive(self.drive, self.shapes, contacts, meshes, state=self.state, known=rounds)
+        return mesh_drive(self.shapes, contacts, options, known=known)
+
+    def condense(self, contacts: ExpectedContacts, meshes: DriveMeshes, rounds: tuple[RoundGroup, ...]) -> DriveModel:
+        return condense_drive(self.drive, self.shapes, contacts, meshes, plane=self.options.plane, known=rounds)
 
     def grade(
         self,
@@ -143,7 +128,7 @@ class _Task:
     ) -> ExpectedContacts:
         return grade_contacts(
             self.drive,
-            self.crank_angle,
+            self.rigid,
             *pose,
             loads,
             margin=margin * self.approach,
@@ -162,21 +147,23 @@ class _Stopwatch:
         self.seconds[stage] = self.seconds.get(stage, 0.0) + now - self._last
         self._last = now
 
+    def total(self) -> dict[str, float]:
+        """Return the seconds of each stage and their sum."""
+        return self.seconds | {"total": sum(self.seconds.values())}
+
 
 @names_unit_mistakes
 def solve_drive(
     drive: Drive,
     crank_angle: float,
+    options: SolutionOptions = DEFAULT_OPTIONS,
     *,
     torque: float | None = None,
-    scale: float = 1.0,
-    state: PlaneState = "strain",
-    fine_walls: bool = False,
     start: tuple[float, float, float, float] | None = None,
     rounds: tuple[RoundGroup, ...] = (),
     progress: Callable[[str], None] | None = None,
 ) -> FullSolution:
-    """Solve a drive of one disc with the pin shaft held at one crank angle from nothing.
+    """Solve a drive of one disc with the pin shaft held at one crank angle.
 
     Parameters
     ----------
@@ -184,9 +171,11 @@ def solve_drive(
         The drive in one case; any drive is solved by `fem.reducer.solution.solve_reducer`.
     crank_angle : float
         φ_C, rad.
+    options : SolutionOptions
+        Element size, plane state, fine walls.
     torque : float, optional
         Output torque, N·mm; the drive's own by default.
-    scale, state, fine_walls, start, rounds, progress
+    start, rounds, progress
         As for `solve_disc`.
 
     Returns
@@ -210,17 +199,8 @@ def solve_drive(
             ]
         )
     (single,) = single_discs(drive)
-    return solve_disc(
-        single,
-        crank_angle,
-        drive.wheel_moment(torque),
-        scale=scale,
-        state=state,
-        fine_walls=fine_walls,
-        start=start,
-        rounds=rounds,
-        progress=progress,
-    )
+    moment = drive.wheel_moment(torque)
+    return solve_disc(single, crank_angle, moment, options, start=start, rounds=rounds, progress=progress)
 
 
 @names_unit_mistakes
@@ -228,15 +208,13 @@ def solve_disc(
     drive: Drive,
     crank_angle: float,
     wheel_moment: float,
+    options: SolutionOptions = DEFAULT_OPTIONS,
     *,
-    scale: float = 1.0,
-    state: PlaneState = "strain",
-    fine_walls: bool = False,
     start: tuple[float, float, float, float] | None = None,
     rounds: tuple[RoundGroup, ...] = (),
     progress: Callable[[str], None] | None = None,
 ) -> FullSolution:
-    """Solve one disc with wheel, crank and pin shaft at one crank angle from nothing.
+    """Solve one disc with wheel, crank and pin shaft at one crank angle.
 
     Parameters
     ----------
@@ -246,12 +224,8 @@ def solve_disc(
         φ_C, rad.
     wheel_moment : float
         External moment on the wheel that the disc carries, ccw positive, N·mm.
-    scale : float
-        Element edge as a multiple of an eighth of each Hertz half-width.
-    state : {"strain", "stress"}
-        Plane strain or plane stress.
-    fine_walls : bool
-        Whether the walls of the disc are meshed finely enough for the stress along them, whatever the scale.
+    options : SolutionOptions
+        Element size, plane state, fine walls.
     start : tuple of four floats, optional
         First pose (disc x, y, mm; disc rotation, wheel angle, rad); that of the guess by default.
     rounds : tuple of RoundGroup
@@ -270,53 +244,46 @@ def solve_disc(
     ConvergenceError
         When nothing can carry the load or an iteration does not settle.
     DriveError
-        When the drive is not the same all along its thickness: shorter rollers, crown or relief; for several discs; where
-        cranks or the wheel's axis yield, or pins are loose, sleeved or beams.
+        For several discs, and for what full finite elements refuse (`ltca.drive.engine_support`).
     MemoryLimitError
         When the meshes would not fit into memory.
     """
-    require_plane_strain(drive, "full finite elements")
-    require_rigid_members(drive, "full finite elements")
-    require_frictionless(drive, "full finite elements")
-    require_fixed_pins(drive, "full finite elements")
-    say, watch = progress or _silent, _Stopwatch()
-    shapes = DriveShapes.of_drive(drive)
+    require(drive, "full FE")
+    say, watch = progress or (lambda _: None), _Stopwatch()
+    shapes, rigid = DriveShapes.of_drive(drive), RigidBodies.of_drive(drive, crank_angle)
     guess = expect_contacts(drive, crank_angle, wheel_moment=wheel_moment)
     task = _Task(
         drive=drive,
-        crank_angle=crank_angle,
+        rigid=rigid,
         shapes=shapes,
         moment=wheel_moment,
-        scale=scale,
-        state=state,
-        approach=_largest_approach(drive, guess),
+        options=options,
+        approach=_largest_approach(rigid, guess),
         say=say,
+        watch=watch,
     )
-    require_model_memory([(shapes, guess)], scale)
-    model, solution = task.solve_guess(guess, start, rounds, watch)
+    require_model_memory([(shapes, guess)], options)
+    model, solution = task.solve_guess(guess, start, rounds)
     rounds, complaint = keep_rounds(rounds, model.groups), ""
-    for grading in range(1, LARGEST_GRADINGS + 1):
-        model, solution = task.solve_graded(model, solution, grading, rounds, watch, fine_walls=fine_walls)
+    for grading in range(1, MAX_GRADINGS + 1):
+        model, solution = task.solve_graded(model, solution, grading, rounds)
         rounds = keep_rounds(rounds, model.groups)
-        complaint = find_shortcoming(model, solution, scale)
         results = summarise_contacts(model, solution)
+        complaint = find_shortcoming(model, solution, results, options.size)
         watch.lap("check")
         if not complaint:
-            watch.seconds["total"] = sum(watch.seconds.values())
             return FullSolution(
                 model=model,
                 state=solution,
                 contacts=results,
-                scale=scale,
-                plane_state=state,
-                fine_walls=fine_walls,
+                options=options,
                 pose_iterations=solution.iterations,
                 rounds=rounds,
-                seconds=watch.seconds,
+                seconds=watch.total(),
             )
         say(f"meshes graded anew ({grading}): {complaint}")
-    hint = "; use smaller elements" if scale > COARSE_SCALE else ""
-    raise ConvergenceError(f"meshes do not fit the contacts after {LARGEST_GRADINGS} gradings: {complaint}{hint}")
+    hint = "; use smaller elements" if options.size > COARSE_SIZE else ""
+    raise ConvergenceError(f"meshes do not fit the contacts after {MAX_GRADINGS} gradings: {complaint}{hint}")
 
 
 def solve_load(previous: FullSolution, torque: float, *, progress: Callable[[str], None] | None = None) -> FullSolution:
@@ -333,7 +300,7 @@ def solve_moment(
 ) -> FullSolution:
     """Solve for another moment on the wheel, N·mm, on the meshes of a solution at the same crank angle where they serve.
 
-    Poses rest when no increment is larger than `pose_tolerance`, mm.
+    The pose has converged when no increment is larger than `pose_tolerance`, mm.
     """
     watch = _Stopwatch()
     model = previous.model
@@ -346,34 +313,21 @@ def solve_moment(
         progress=progress,
     )
     watch.lap("contact and pose")
-    if find_shortcoming(model, solution, previous.scale):
+    results = summarise_contacts(model, solution)
+    if find_shortcoming(model, solution, results, previous.options.size):
         return solve_disc(
-            model.drive,
-            model.crank_angle,
-            wheel_moment,
-            scale=previous.scale,
-            state=previous.plane_state,
-            fine_walls=previous.fine_walls,
-            rounds=previous.rounds,
-            progress=progress,
+            model.drive, model.crank_angle, wheel_moment, previous.options, rounds=previous.rounds, progress=progress
         )
-    watch.seconds["total"] = sum(watch.seconds.values())
     return replace(
         previous,
         state=solution,
-        contacts=summarise_contacts(model, solution),
+        contacts=results,
         pose_iterations=solution.iterations,
-        seconds=watch.seconds,
+        seconds=watch.total(),
     )
 
 
-def _largest_approach(drive: Drive, guess: ExpectedContacts) -> float:
+def _largest_approach(rigid: RigidBodies, guess: ExpectedContacts) -> float:
     """Return the largest overlap of rigid bodies in the guess, mm."""
-    gaps = measure_gaps(
-        drive, guess.crank_angle, complex(guess.disc_x, guess.disc_y), guess.disc_rotation, guess.wheel_angle
-    )
+    gaps = rigid.gaps(complex(guess.disc_x, guess.disc_y), guess.disc_rotation, guess.wheel_angle)
     return float(-np.concatenate([gaps.pins, gaps.rollers, gaps.holes]).min())
-
-
-def _silent(_: str) -> None:
-    pass

@@ -20,13 +20,13 @@ from ltca.output.files import whole_file
 
 DEFAULT_CHORD = 1e-3
 """mm."""
-LEAST_AROUND = 360
-"""Edges of a circle at the least: its area is then 5e-5 off, however small it is."""
-LEAST_SHARE = 1.0 / 40
-"""Of a lobe, longest edge of a flank by its length."""
-NO_STEP = 0.381966
-"""Of the step between corners of a circle, where the first one stands: bodies that touch (rollers and races) share no corner, or
-readers would take them for one that is not closed."""
+MIN_CIRCLE_EDGES = 360
+"""Least number of edges of a circle: the error of its area is then 5e-5, however small it is."""
+MAX_EDGE_BY_LOBE = 1.0 / 40
+"""Longest edge of a flank by the length of a lobe."""
+START_OFFSET = 0.381966
+"""Place of the first corner of a circle, as a part of the step between corners: bodies that touch (rollers and races) then share
+no corner, which readers would take for one body that is not closed."""
 INITIAL_MESH_ONLY = 3
 TRIANGLE, LINE = 2, 1
 HEADER = 80
@@ -34,23 +34,10 @@ _FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute
 
 
 def write_facets(part: Part, path: Path, chord: float = DEFAULT_CHORD) -> int:
-    """Write a part as a binary STL file in mm and return how many triangles it has.
+    """Write a part of straight bodies as a binary STL file in mm and return the number of triangles.
 
-    Parameters
-    ----------
-    part : Part
-        From `ltca.export.parts.make_parts`, of straight bodies; its walls are no bodies and left out.
-    path : Path
-        The file.
-    chord : float
-        Largest distance of a triangle from the exact surface, mm.
-
-    Raises
-    ------
-    MeshError
-        When gmsh cannot be loaded or fill a section.
-    FaultError
-        When the file cannot be written.
+    `chord` is the largest distance of a triangle from the exact surface, mm. Walls of the part bound no body and are left out.
+    MeshError when gmsh cannot be loaded or fill a section.
     """
     with gmsh_model(part.name) as gmsh:
         corners = [body_facets(gmsh, body, chord) for body in part.bodies]
@@ -67,17 +54,7 @@ def write_facets(part: Part, path: Path, chord: float = DEFAULT_CHORD) -> int:
 
 
 def body_facets(gmsh: ModuleType, body: Body, chord: float) -> FloatArray:
-    """Return the triangles of a body, corners counter-clockwise seen from outside, shape (n, 3, 3).
-
-    Parameters
-    ----------
-    gmsh : module
-        With an open model.
-    body : Body
-        The body.
-    chord : float
-        mm.
-    """
+    """Return the triangles of a body within a chord, mm, corners counter-clockwise seen from outside, shape (n, 3, 3)."""
     loops = [divide(body.outer, chord), *(divide(circle, chord) for circle in body.inner)]
     # What the file can hold is 32 bits: rounded before, so that corners of neighbours are equal.
     loops = [loop.astype(np.complex64).astype(complex) for loop in loops]
@@ -96,8 +73,8 @@ def divide(curve: FlankSpline | Circle, chord: float) -> ComplexArray:
     """Return corners on a closed curve, counter-clockwise, whose edges are no further from it than a chord, mm."""
     if isinstance(curve, Circle):
         half = np.arccos(max(1.0 - chord / curve.radius, 0.0))
-        count = max(LEAST_AROUND, int(np.ceil(np.pi / half)))
-        return np.asarray(curve.centre + curve.radius * np.exp(2j * np.pi * (np.arange(count) + NO_STEP) / count))
+        count = max(MIN_CIRCLE_EDGES, int(np.ceil(np.pi / half)))
+        return np.asarray(curve.centre + curve.radius * np.exp(2j * np.pi * (np.arange(count) + START_OFFSET) / count))
     # On a fine table: the chord of an edge of length s is κ s²/8.
     flank = curve.flank
     fine = np.linspace(0.0, 2.0 * np.pi, 16 * curve.parameter.size + 1)
@@ -106,7 +83,7 @@ def divide(curve: FlankSpline | Circle, chord: float) -> ComplexArray:
     middle = 0.5 * (fine[:-1] + fine[1:])
     # A tenth less than allowed, for edges over which the curvature changes.
     edges = np.sqrt(0.9 * chord * 8.0 / np.maximum(np.abs(flank.curvature(middle)), 1e-12))
-    edges = np.minimum(edges, LEAST_SHARE * lengths.sum() / flank.lobes)
+    edges = np.minimum(edges, MAX_EDGE_BY_LOBE * lengths.sum() / flank.lobes)
     needed = np.concatenate([[0.0], np.cumsum(lengths / edges)])
     count = int(np.ceil(needed[-1]))
     parameter = np.interp(np.arange(count) * needed[-1] / count, needed, fine)
@@ -165,7 +142,7 @@ def _fill(gmsh: ModuleType, name: str, loops: list[ComplexArray]) -> IntArray:
 
 
 def _numbers_of(found: ComplexArray, points: ComplexArray) -> IntArray:
-    """Which of the points stand where nodes were found."""
+    """Return the numbers of the points at which the nodes lie, −1 for none."""
     known = {point: number for number, point in enumerate(points.tolist())}
     return np.array([known.get(place, -1) for place in found.tolist()], dtype=np.int64)
 

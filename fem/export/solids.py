@@ -35,21 +35,9 @@ _OCCURRENCE = re.compile(r"NEXT_ASSEMBLY_USAGE_OCCURRENCE\('[0-9]+','[^']*'")
 
 
 def write_solids(part: Part, path: Path) -> None:
-    """Write a part as a STEP file in mm.
+    """Write a part of straight bodies as a STEP file in mm.
 
-    Parameters
-    ----------
-    part : Part
-        From `ltca.export.parts.make_parts`, of straight bodies.
-    path : Path
-        The file.
-
-    Raises
-    ------
-    MeshError
-        When gmsh cannot be loaded, or makes a solid of a wrong volume.
-    FaultError
-        When the file cannot be written.
+    MeshError when gmsh cannot be loaded or makes a solid of a wrong volume.
     """
     with gmsh_model(part.name) as gmsh:
         for body in part.bodies:
@@ -109,7 +97,7 @@ def _add_wall(gmsh: ModuleType, wall: Wall) -> None:
 
 
 def _require_volumes(gmsh: ModuleType, bodies: Sequence[Body]) -> None:
-    """What a loop that does not close, or a hole that is none, would spoil."""
+    """Check the volumes, which a loop that does not close or a missing hole would change."""
     solids = gmsh.model.getEntities(VOLUME)
     if len(solids) != len(bodies):
         raise MeshError(f"gmsh made {len(solids)} solids of {len(bodies)} bodies")
@@ -156,7 +144,7 @@ def _quoted(text: str) -> str:
 
 @contextmanager
 def _quiet_kernel() -> Iterator[None]:
-    """Let the kernel's statistics, which no option of gmsh silences, go nowhere."""
+    """Discard the kernel's statistics, which no option of gmsh silences."""
     sys.stdout.flush()
     kept = os.dup(1)
     nowhere = os.open(os.devnull, os.O_WRONLY)

@@ -8,7 +8,7 @@ import numpy as np
 from skfem import MeshTri1, MeshTri2
 
 from fem.errors import MeshError
-from ltca.arrays import FloatArray, IntArray
+from ltca.arrays import ComplexArray, FloatArray, IntArray
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,35 +51,25 @@ class BodyMesh:
         """Number of displacement unknowns."""
         return 2 * self.node_count
 
-    def facets_of(self, name: str) -> IntArray:
-        """Return the facets of a boundary in the order in which `boundary_nodes` walks along it.
+    @property
+    def places(self) -> ComplexArray:
+        """Places of the nodes in the frame of the body, mm."""
+        return np.asarray(self.mesh.doflocs[0] + 1j * self.mesh.doflocs[1])
 
-        The rows of both match; the walk starts at the rightmost vertex, so it is the same after a file.
-        """
-        return self._chain(name)[0]
+    @property
+    def element_nodes(self) -> IntArray:
+        """Nodes of each element, shape (elements, 3 or 6): vertices, then mid-sides of (0,1), (1,2), (2,0)."""
+        mesh = self.mesh
+        nodes = np.vstack([mesh.t, mesh.nvertices + mesh.t2f]) if self.order == 2 else mesh.t
+        return np.asarray(nodes, dtype=np.int64).T
 
     def boundary_nodes(self, name: str) -> IntArray:
-        """Return the nodes of a closed boundary, edge by edge, with the body on the left.
+        """Return the nodes of a closed boundary edge by edge, body on the left, shape (edges, 3), or (edges, 2) for order 1.
 
-        Parameters
-        ----------
-        name : str
-            Name of the boundary.
-
-        Returns
-        -------
-        array of int, shape (edges, 3) or (edges, 2) for order 1
-            First vertex, mid-side node, last vertex of each edge; the last vertex of an edge is the first of
-            the next one, cyclically. The outward normal points to the right of the direction of travel.
-
-        Raises
-        ------
-        MeshError
-            When the mesh has no such boundary, or it is not one closed line.
+        First vertex, mid-side node and last vertex of each edge, from the rightmost vertex on (the same after a file); the
+        last vertex of an edge is the first of the next one, cyclically. The outward normal points to the right of the
+        direction of travel. MeshError when the mesh has no such boundary, or it is not one closed line.
         """
-        return self._chain(name)[1]
-
-    def _chain(self, name: str) -> tuple[IntArray, IntArray]:
         facets = self.require_boundary(name)
         mesh = self.mesh
         elements = mesh.f2t[0, facets]
@@ -104,17 +94,11 @@ class BodyMesh:
         if len(np.unique(order)) != len(facets):
             raise MeshError(f"boundary {name!r} of {self.name} is not one closed line")
         if self.order == 1:
-            return facets[order], np.column_stack([first, last])[order]
-        return facets[order], np.column_stack([first, mesh.nvertices + facets, last])[order]
+            return np.column_stack([first, last])[order]
+        return np.column_stack([first, mesh.nvertices + facets, last])[order]
 
     def require_boundary(self, name: str) -> IntArray:
-        """Return the facets of a boundary as stored.
-
-        Raises
-        ------
-        MeshError
-            When the mesh has no such boundary.
-        """
+        """Return the facets of a boundary as stored; MeshError when the mesh has no such boundary."""
         boundaries = self.mesh.boundaries or {}
         if name not in boundaries or len(boundaries[name]) == 0:
             known = ", ".join(boundaries) or "none"
@@ -122,13 +106,7 @@ class BodyMesh:
         return np.asarray(boundaries[name], dtype=np.int64)
 
     def require_complete_boundaries(self) -> None:
-        """Check that every outer facet belongs to exactly one named boundary.
-
-        Raises
-        ------
-        MeshError
-            With the number of facets that belong to none or to several.
-        """
+        """Raise MeshError unless every outer facet belongs to exactly one named boundary."""
         count = np.zeros(self.mesh.nfacets, dtype=np.int64)
         for name in self.boundary_names:
             np.add.at(count, self.require_boundary(name), 1)
@@ -148,36 +126,14 @@ class BodyMesh:
             mesh=replace(self.mesh, doflocs=np.ascontiguousarray(rotation @ self.mesh.doflocs)),
         )
 
-    def renamed(self, name: str) -> BodyMesh:
-        """Return the same mesh under another name."""
-        return BodyMesh(name=name, mesh=self.mesh)
-
 
 def triangle_mesh(
     vertices: FloatArray, triangles: IntArray, boundary_edges: dict[str, IntArray], *, order: int
 ) -> MeshTri1:
-    """Return a straight-sided mesh with named boundaries.
+    """Return a straight-sided mesh with named boundaries; for order 2 the mid-side nodes lie at the middle of the edges.
 
-    Parameters
-    ----------
-    vertices : array, shape (2, vertices)
-        mm.
-    triangles : array of int, shape (3, triangles)
-        Counter-clockwise.
-    boundary_edges : dict of str to array of int, shape (edges, 2)
-        Vertex pairs of each boundary.
-    order : int
-        1 or 2; for 2 the mid-side nodes lie at the middle of the edges.
-
-    Returns
-    -------
-    MeshTri1 or MeshTri2
-        With boundaries; facets of boundary k are in the order of its edges.
-
-    Raises
-    ------
-    MeshError
-        When a boundary edge is no edge of a triangle.
+    `vertices` has the shape (2, vertices), mm, `triangles` (3, triangles), counter-clockwise, and each of `boundary_edges`
+    (edges, 2), pairs of vertices. Facets of a boundary are in the order of its edges.
     """
     if order not in (1, 2):
         raise MeshError(f"element order {order}: must be 1 or 2")
@@ -191,13 +147,7 @@ def triangle_mesh(
 
 
 def facets_of_edges(mesh: MeshTri1, edges: IntArray, name: str) -> IntArray:
-    """Return the facet index of each vertex pair.
-
-    Raises
-    ------
-    MeshError
-        When a pair is no edge of the mesh, or an edge inside it.
-    """
+    """Return the facet index of each vertex pair; MeshError when a pair is no edge of the mesh, or an edge inside it."""
     stride = np.int64(mesh.nvertices)
     facets = np.sort(mesh.facets.astype(np.int64), axis=0)
     keys = facets[0] * stride + facets[1]

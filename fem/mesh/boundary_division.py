@@ -12,7 +12,7 @@ from ltca.arrays import FloatArray
 
 # Largest angle α a boundary edge may turn through. Between its nodes, which are exact, a quadratic edge leaves a
 # circle by up to (1 − cos(α/2))²/8 = 9e-6 of the radius; at contacts edges are shorter and the rest is nil.
-LARGEST_TURN = np.pi / 12.0
+MAX_TURN = np.pi / 12.0
 SAMPLES_PER_EDGE = 4.0
 
 
@@ -79,10 +79,10 @@ def divide_curve(curve: Curve, field: SizeField) -> DividedCurve:
     """Divide a closed curve into edges whose lengths follow the size field and the curvature."""
     parameters = sample_parameters(curve, field)
     points = curve.points(parameters)
-    wanted = np.minimum(field.at(points), LARGEST_TURN * curve.curvature_radius(parameters))
+    wanted = np.minimum(field.at(points), MAX_TURN * curve.curvature_radius(parameters))
     density = 1.0 / wanted
     count = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]) * np.abs(np.diff(points)))])
-    edges = max(int(np.ceil(count[-1])), round(2.0 * np.pi / LARGEST_TURN))
+    edges = max(int(np.ceil(count[-1])), round(2.0 * np.pi / MAX_TURN))
     places = np.arange(edges) * (count[-1] / edges)
     return DividedCurve(curve=curve, parameters=np.interp(places, count, parameters))
 
@@ -92,7 +92,7 @@ def serve_curvature(curves: tuple[Curve, ...], field: SizeField) -> SizeField:
     added: list[Refinement] = []
     for curve in curves:
         parameters = np.linspace(0.0, 2.0 * np.pi, 4 * curve.samples, endpoint=False)
-        limit = LARGEST_TURN * curve.curvature_radius(parameters)
+        limit = MAX_TURN * curve.curvature_radius(parameters)
         so_far = SizeField(balls=field.balls + tuple(added), coarse_size=field.coarse_size, growth=field.growth)
         added += cover_small_edges(curve.points(parameters), limit, so_far)
     return SizeField(balls=field.balls + tuple(added), coarse_size=field.coarse_size, growth=field.growth)

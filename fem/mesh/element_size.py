@@ -150,19 +150,9 @@ def cover_small_edges(
 ) -> Sequence[Refinement]:
     """Return balls that carry small boundary edges into the interior.
 
-    Without them the interior next to a tightly curved boundary would be meshed as coarsely as the middle.
-    The smallest edges come first; places already served within `slack` are left out.
-
-    Parameters
-    ----------
-    points : array of complex
-        Places on the boundary.
-    edges : array of float, same shape
-        Wanted edge there, mm.
-    field : SizeField
-        The field so far.
-    slack : float
-        Accepted ratio of the edge in the interior to that on the boundary.
+    Without them the interior next to a tightly curved boundary would be meshed as coarsely as the middle. `edges` are the wanted
+    edges at points of the boundary, mm. The smallest come first; where the field so far asks for no more than `slack` times the
+    wanted edge no ball is added.
     """
     served = field.at(points)
     balls: list[Refinement] = []

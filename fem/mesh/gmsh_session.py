@@ -17,13 +17,7 @@ _lock = threading.Lock()
 
 
 def load_gmsh() -> ModuleType:
-    """Import gmsh.
-
-    Raises
-    ------
-    MeshError
-        When gmsh or one of its system libraries is missing.
-    """
+    """Import gmsh; MeshError when it or one of its system libraries is missing."""
     try:
         import gmsh
     except OSError as error:
@@ -38,7 +32,7 @@ def load_gmsh() -> ModuleType:
 
 
 def _hear_signals() -> None:
-    """Give the signals back that gmsh takes when it starts: SIGTERM would end the process without any cleaning up."""
+    """Restore the signal handlers that gmsh replaces when it starts: SIGTERM would end the process without clean-up."""
     if threading.current_thread() is threading.main_thread():
         for number in (signal.SIGTERM, signal.SIGINT):
             handler = signal.getsignal(number)
@@ -48,13 +42,7 @@ def _hear_signals() -> None:
 
 @contextmanager
 def gmsh_model(name: str) -> Iterator[ModuleType]:
-    """Open a silent, single-threaded gmsh with an empty model of a given name.
-
-    Raises
-    ------
-    MeshError
-        When gmsh cannot be loaded.
-    """
+    """Open a silent, single-threaded gmsh with an empty model of a given name."""
     gmsh = load_gmsh()
     with _lock:
         # readConfigFiles=False: options in the user's ~/.gmsh-options would change the mesh.

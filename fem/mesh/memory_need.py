@@ -30,24 +30,7 @@ def solution_memory(unknowns: int) -> float:
 
 
 def require_memory(unknowns: int, needed: float, what: str, *, available: float | None = None) -> None:
-    """Refuse work that would not fit into memory.
-
-    Parameters
-    ----------
-    unknowns : int
-        Estimated number of unknowns.
-    needed : float
-        Bytes, from `mesh_memory` or `solution_memory`.
-    what : str
-        Subject of the message, e.g. "the mesh of disc".
-    available : float, optional
-        Bytes; those of the machine by default.
-
-    Raises
-    ------
-    MemoryLimitError
-        With the numbers.
-    """
+    """Raise MemoryLimitError when `needed` bytes are not available; `what` is the subject of the message."""
     limit = available_memory() if available is None else available
     if needed > limit:
         raise MemoryLimitError(unknowns, needed, limit, what)

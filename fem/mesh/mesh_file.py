@@ -41,14 +41,7 @@ _PARSER_ERRORS = (
 
 
 def body_stem(name: str, disc: int, discs: int) -> str:
-    """Return what files of a body are called: of several discs with the number of the disc.
-
-    Parameters
-    ----------
-    name : str
-        Of the body.
-    disc, discs : int
-        Which disc of how many it belongs to.
+    """Return the stem of the files of a body: of several discs with the number of the disc.
 
     Examples
     --------
@@ -58,15 +51,6 @@ def body_stem(name: str, disc: int, discs: int) -> str:
     if discs == 1:
         return name
     return f"disc_{disc}" if name == "disc" else f"disc_{disc}_{name}"
-
-
-def element_nodes(body: BodyMesh) -> IntArray:
-    """Return the nodes of each element, shape (elements, 3 or 6): vertices, then mid-sides of (0,1), (1,2), (2,0)."""
-    mesh = body.mesh
-    if body.order == 1:
-        return np.asarray(mesh.t.T, dtype=np.int64)
-    middles = mesh.nvertices + mesh.t2f[[0, 1, 2]]
-    return np.vstack([mesh.t, middles]).T.astype(np.int64)
 
 
 def _boundary_lines(body: BodyMesh, name: str) -> IntArray:
@@ -79,30 +63,12 @@ def _points(body: BodyMesh) -> FloatArray:
 
 
 def write_msh(body: BodyMesh, path: str | Path) -> Path:
-    """Write a mesh with its named boundaries as gmsh 2.2 text, coordinates in full precision.
-
-    Parameters
-    ----------
-    body : BodyMesh
-        Order 1 or 2.
-    path : str or Path
-        Ends in ``.msh``.
-
-    Returns
-    -------
-    Path
-        The file.
-
-    Raises
-    ------
-    CycloError
-        When the file cannot be written.
-    """
+    """Write a mesh with its named boundaries as gmsh 2.2 text (``.msh``), coordinates in full precision; return the path."""
     import meshio
 
     names = sorted(body.boundary_names)
     triangles, lines = ("triangle", "line") if body.order == 1 else ("triangle6", "line3")
-    cells: list[tuple[str, IntArray]] = [(triangles, element_nodes(body))]
+    cells: list[tuple[str, IntArray]] = [(triangles, body.element_nodes)]
     cells += [(lines, _boundary_lines(body, name)) for name in names]
     tags = [np.full(len(block), BODY_TAG + index, dtype=np.int32) for index, (_, block) in enumerate(cells)]
     groups = {body.name: np.array([BODY_TAG, 2])}
@@ -117,28 +83,9 @@ def write_msh(body: BodyMesh, path: str | Path) -> Path:
 
 
 def write_vtu(body: BodyMesh, path: str | Path, point_data: Mapping[str, FloatArray] | None = None) -> Path:
-    """Write a mesh, and fields on its nodes, for ParaView: quadratic cells for order 2.
+    """Write a mesh, and fields on its nodes, for ParaView (``.vtu``): quadratic cells for order 2; return the path.
 
-    Parameters
-    ----------
-    body : BodyMesh
-        The mesh.
-    path : str or Path
-        Ends in ``.vtu``.
-    point_data : mapping of str to array, shape (nodes,) or (nodes, components), optional
-        Fields on the nodes.
-
-    Returns
-    -------
-    Path
-        The file.
-
-    Raises
-    ------
-    MeshError
-        When a field does not fit the nodes.
-    CycloError
-        When the file cannot be written.
+    Fields have the shape (nodes,) or (nodes, components); MeshError when one does not fit the nodes.
     """
     import meshio
 
@@ -147,7 +94,7 @@ def write_vtu(body: BodyMesh, path: str | Path, point_data: Mapping[str, FloatAr
         if len(values) != body.node_count:
             raise MeshError(f"field {key!r} has {len(values)} values, but {body.name} has {body.node_count} nodes")
     cell = "triangle" if body.order == 1 else "triangle6"
-    content = meshio.Mesh(_points(body), [(cell, element_nodes(body))], point_data=fields)
+    content = meshio.Mesh(_points(body), [(cell, body.element_nodes)], point_data=fields)
     path = Path(path)
     with whole_file(path) as part:
         meshio.vtu.write(part, content, binary=True)

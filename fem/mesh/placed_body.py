@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from fem.mesh.body_mesh import BodyMesh
-from fem.mesh.mesh_file import element_nodes
 from ltca.arrays import ComplexArray, IntArray
 
 POINTS_PER_EDGE = 5
@@ -16,7 +15,7 @@ POINTS_PER_EDGE = 5
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlacedBody:
-    """A body where it stands in the fixed frame.
+    """A body at its place in the fixed frame.
 
     Attributes
     ----------
@@ -38,8 +37,7 @@ class PlacedBody:
     @property
     def nodes(self) -> ComplexArray:
         """Nodes in the fixed frame, mm."""
-        places = self.body.mesh.doflocs[0] + 1j * self.body.mesh.doflocs[1]
-        return np.asarray(self.centre + places * np.exp(1j * self.rotation))
+        return np.asarray(self.centre + self.body.places * np.exp(1j * self.rotation))
 
     def edge_lines(self) -> ComplexArray:
         """Return points along every (curved) edge, shape (facets, 2 or 5)."""
@@ -53,7 +51,7 @@ class PlacedBody:
 
     def faces(self) -> IntArray:
         """Return straight triangles that fill the body: each quadratic element as four."""
-        elements = element_nodes(self.body)
+        elements = self.body.element_nodes
         if self.body.order == 1:
             return elements
         return np.vstack([elements[:, part] for part in ([0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5])])

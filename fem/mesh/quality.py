@@ -56,18 +56,10 @@ class MeshQuality:
 
 
 def jacobian_determinants(body: BodyMesh) -> FloatArray:
-    """Return the signed Jacobian determinant of every element, mm².
+    """Return the Jacobian determinant of every element, mm², shape (points, elements).
 
-    Parameters
-    ----------
-    body : BodyMesh
-        The mesh.
-
-    Returns
-    -------
-    array of float, shape (points, elements)
-        At the vertices, mid-sides and integration points of degree 6. Signed, unlike ``mapping.detDF`` of
-        scikit-fem, which takes the absolute value into its integrals.
+    Points are vertices, mid-sides and integration points. The determinant is signed, unlike ``mapping.detDF`` of scikit-fem,
+    which takes the absolute value into its integrals.
     """
     nodes = np.array([[0.0, 1.0, 0.0, 0.5, 0.5, 0.0], [0.0, 0.0, 1.0, 0.0, 0.5, 0.5]])
     inner, _ = get_quadrature(RefTri, INTEGRATION_DEGREE)
@@ -114,13 +106,7 @@ def measure_quality(body: BodyMesh) -> MeshQuality:
 
 
 def require_valid_elements(body: BodyMesh) -> None:
-    """Check that no element is inverted.
-
-    Raises
-    ------
-    MeshError
-        With the number of inverted elements and the place of the worst.
-    """
+    """Raise MeshError, with the number of inverted elements and the place of the worst, when there are any."""
     determinants = np.minimum.reduce(jacobian_determinants(body), axis=0)
     inverted = np.flatnonzero(~(determinants > 0.0))
     if inverted.size:
@@ -133,13 +119,7 @@ def require_valid_elements(body: BodyMesh) -> None:
 
 
 def require_quality(body: BodyMesh) -> MeshQuality:
-    """Measure a mesh and check it against the bounds of this module.
-
-    Raises
-    ------
-    MeshError
-        When an element is inverted, an angle is under 15° or the scaled Jacobian is under 0.3.
-    """
+    """Measure a mesh; MeshError when an element is inverted, an angle is under 15° or the scaled Jacobian is under 0.3."""
     require_valid_elements(body)
     quality = measure_quality(body)
     if quality.smallest_angle < SMALLEST_ANGLE or quality.scaled_jacobian < SMALLEST_SCALED_JACOBIAN:

@@ -3,10 +3,10 @@
 Modules in the order data passes:
 
 =================  ============================================================
-offscreen          Whether pyvista can render off-screen here, found out in a subprocess
-flat_view          What all off-screen pictures of flat things share: surfaces and lines of pyvista, a camera that
+offscreen          Whether pyvista can render off-screen here, tried in a subprocess
+flat_view          Common parts of off-screen pictures of plane bodies: surfaces and lines of pyvista, a camera that
                    looks down
-scene              Flat scenes of triangles and lines: fields by pyvista off-screen or, without GL, matplotlib; words
+scene              Flat scenes of triangles and lines: fields by pyvista off-screen or, without GL, matplotlib; text
                    by matplotlib
 mesh_picture       Picture of the mesh of a whole drive with zooms at its contacts: pyvista off-screen, or matplotlib
 solution_pictures  Pictures of a full solution: von Mises over the drive, the most loaded contact of each kind, the

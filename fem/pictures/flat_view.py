@@ -1,4 +1,4 @@
-"""What all off-screen pictures of flat things share: surfaces and lines of pyvista, a camera that looks down."""
+"""Common parts of off-screen pictures of plane bodies: surfaces and lines of pyvista, a camera that looks down."""
 
 from __future__ import annotations
 
@@ -15,13 +15,7 @@ if TYPE_CHECKING:
 
 
 def open_plotter(**options: Any) -> Any:
-    """Return an off-screen plotter.
-
-    Parameters
-    ----------
-    **options : Any
-        Of `pyvista.Plotter`.
-    """
+    """Return an off-screen plotter with options of `pyvista.Plotter`."""
     import pyvista
     from vtkmodules.vtkCommonCore import vtkLogger
 
@@ -31,15 +25,7 @@ def open_plotter(**options: Any) -> Any:
 
 
 def flat_surface(points: ComplexArray, faces: IntArray) -> pyvista.PolyData:
-    """Return a surface of polygons at height 0.
-
-    Parameters
-    ----------
-    points : array of complex, shape (n,)
-        mm.
-    faces : array of int, shape (polygons, corners)
-        Rows of points.
-    """
+    """Return a surface of polygons at height 0: points, mm, and rows of their numbers, shape (polygons, corners)."""
     import pyvista
 
     count, corners = faces.shape
@@ -47,15 +33,7 @@ def flat_surface(points: ComplexArray, faces: IntArray) -> pyvista.PolyData:
 
 
 def flat_lines(points: ComplexArray, height: float) -> pyvista.PolyData:
-    """Return polylines of equal length above the surfaces.
-
-    Parameters
-    ----------
-    points : array of complex, shape (lines, points)
-        mm.
-    height : float
-        Toward the camera, mm.
-    """
+    """Return polylines of equal length, shape (lines, points), at a height toward the camera, mm."""
     import pyvista
 
     count, length = points.shape
@@ -71,22 +49,9 @@ def _at_height(points: ComplexArray, height: float) -> FloatArray:
 def snapshot(
     layers: Sequence[tuple[Any, dict[str, Any]]], centre: complex, half_side: float, side: int
 ) -> NDArray[np.uint8]:
-    """Return a square window on flat things as pixels, nothing written on them.
+    """Return a square window of `side` pixels as an image without annotations, shape (side, side, 3).
 
-    Parameters
-    ----------
-    layers : sequence of (mesh, options)
-        From below, options of `pyvista.Plotter.add_mesh`.
-    centre : complex
-        Of the window, mm.
-    half_side : float
-        Of the window, mm.
-    side : int
-        Pixels.
-
-    Returns
-    -------
-    array, shape (side, side, 3)
+    `layers` are pairs of a mesh and options of `pyvista.Plotter.add_mesh`, from below; centre and half side are in mm.
     """
     plotter = open_plotter(window_size=[side, side])
     plotter.set_background("white")
@@ -100,18 +65,9 @@ def snapshot(
 
 
 def look_down(plotter: Any, centre: complex, half_side: float, distance: float) -> None:
-    """Show a square window of the plane in the active panel.
+    """Show a square window of the plane, mm, in the active panel, from a camera at a distance.
 
-    Parameters
-    ----------
-    plotter : pyvista.Plotter
-        From `open_plotter`.
-    centre : complex
-        Of the window, mm.
-    half_side : float
-        Of the window, mm.
-    distance : float
-        Of the camera, mm; what is shown lies between half of it and twice of it away.
+    What is shown lies between half the distance and twice the distance away.
     """
     plotter.enable_parallel_projection()
     plotter.camera.focal_point = (centre.real, centre.imag, 0.0)
@@ -122,17 +78,7 @@ def look_down(plotter: Any, centre: complex, half_side: float, distance: float) 
 
 
 def may_show(points: ComplexArray, centre: complex, half_side: float) -> NDArray[np.bool_]:
-    """Return which rows of points may show in a square window.
-
-    Parameters
-    ----------
-    points : array of complex, shape (rows, points)
-        mm.
-    centre : complex
-        Of the window, mm.
-    half_side : float
-        Of the window, mm.
-    """
+    """Return which rows of points, shape (rows, points), may be visible in a square window, mm."""
     away = points - centre
     return np.asarray(
         (away.real.min(axis=1) < half_side)

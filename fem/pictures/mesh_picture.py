@@ -10,8 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fem.drive.expected_contacts import ContactGroup, ExpectedContacts, bore_displacements
+from fem.drive.contact_kinds import CONTACT_KINDS, PairKind
+from fem.drive.expected_contacts import ContactGroup, ExpectedContacts
 from fem.drive.meshes import DriveMeshes
+from fem.drive.rigid_bodies import bore_displacements
 from fem.mesh.placed_body import PlacedBody
 from fem.pictures.flat_view import (
     coordinate_pairs,
@@ -101,14 +103,14 @@ def choose_zooms(contacts: ExpectedContacts, placement: Placement) -> list[Zoom]
     angle = np.asarray(contacts.crank_angle)
     disc_centre = complex(placement.race_centre(angle)) + complex(contacts.disc_x, contacts.disc_y)
     races, turn = placement.race_centres(angle)[placement.roller_cranks], np.exp(1j * contacts.disc_rotation)
-    kinds: Sequence[tuple[str, ContactGroup, ComplexArray]] = (
-        ("pin {} on the flank", contacts.pins, disc_centre + contacts.flank_points * turn),
-        ("roller {} on the bore", contacts.rollers_outer, disc_centre + contacts.bore_points * turn),
-        ("roller {} on the race", contacts.rollers_inner, races + contacts.race_points),
-        ("shaft pin {} in its hole", contacts.holes, disc_centre + contacts.hole_points * turn),
-    )
+    kinds: dict[PairKind, tuple[ContactGroup, ComplexArray]] = {
+        "pin": (contacts.pins, disc_centre + contacts.flank_points * turn),
+        "roller_outer": (contacts.rollers_outer, disc_centre + contacts.bore_points * turn),
+        "roller_inner": (contacts.rollers_inner, races + contacts.race_points),
+        "hole": (contacts.holes, disc_centre + contacts.hole_points * turn),
+    }
     zooms = []
-    for title, group, points in kinds:
+    for kind, (group, points) in kinds.items():
         if not len(points):
             continue
         index = int(np.argmax(group.load))
@@ -117,7 +119,7 @@ def choose_zooms(contacts: ExpectedContacts, placement: Placement) -> list[Zoom]
         if width > 0.0:
             zooms.append(
                 Zoom(
-                    title=f"{title.format(index)}\n"
+                    title=f"{CONTACT_KINDS[kind].title.format(index)}\n"
                     f"expected half-width {1000.0 * width:.3g} µm, window {2.0 * reach:.3g} mm",
                     centre=complex(points[index]),
                     half_side=reach,
@@ -133,30 +135,9 @@ def draw_drive_mesh(
     shaft_pins: Sequence[tuple[complex, float]],
     title: str,
 ) -> str:
-    """Draw the mesh of a drive, zooms on the right.
+    """Draw the mesh of a drive as PNG, with up to four zooms on the right; return why matplotlib drew it, "" when pyvista did.
 
-    Parameters
-    ----------
-    path : str or Path
-        PNG file.
-    placed : sequence of PlacedBody
-        Bodies in the fixed frame.
-    zooms : sequence of Zoom
-        Up to four windows.
-    shaft_pins : sequence of (complex, float)
-        Centres (fixed frame) and radii of rigid shaft pins, drawn as outlines, mm.
-    title : str
-        Headline.
-
-    Returns
-    -------
-    str
-        "" when pyvista drew it, else why matplotlib did.
-
-    Raises
-    ------
-    CycloError
-        When the file cannot be written.
+    `shaft_pins` are centres (fixed frame) and radii of rigid shaft pins, mm, drawn as outlines.
     """
     import matplotlib as mpl
 

@@ -1,4 +1,4 @@
-"""Whether pyvista can render off-screen here, found out in a subprocess.
+"""Whether pyvista can render off-screen here, tried in a subprocess.
 
 Where the GL libraries are missing VTK does not raise, it ends the process; so a child process tries first.
 """
@@ -25,7 +25,7 @@ PROBE_SECONDS = 60.0
 def rendering_problem() -> str:
     """Return why pyvista cannot render off-screen in this process's environment, "" when it can.
 
-    The answer of the first call is kept: the probe costs about a second.
+    The result of the first call is cached: the probe takes about a second.
     """
     # A way out for a machine whose driver passes the trial and fails later.
     if os.environ.get("CYCLO_NO_PYVISTA"):

@@ -1,4 +1,4 @@
-"""Flat scenes of triangles and lines: fields by pyvista off-screen or, without GL, matplotlib; words by matplotlib."""
+"""Flat scenes of triangles and lines: fields by pyvista off-screen or, without GL, matplotlib; text by matplotlib."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ if TYPE_CHECKING:
 
 
 PIXELS_PER_INCH = 200.0
-"""Of pictures: words keep their size, so they read larger on a smaller one."""
-BESIDE, ABOVE = 1.25, 0.85
+"""Of pictures; the text keeps its size, so it is relatively larger on a smaller picture."""
+BAR_INCHES, TITLE_INCHES = 1.25, 0.85
 """Inches for the scales beside a panel, and for its title and the scale below."""
 LETTERS_PER_INCH = 12.5
-LEAST_INCHES = 4.0
+MIN_INCHES = 4.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -105,27 +105,7 @@ class Panel:
 
 
 def render(path: Path, panels: Sequence[Panel], *, side: int = 1100) -> str:
-    """Render panels side by side into a PNG file.
-
-    Parameters
-    ----------
-    path : Path
-        The file; it appears only when complete.
-    panels : sequence of Panel
-        From left to right.
-    side : int
-        Pixels of each panel.
-
-    Returns
-    -------
-    str
-        "" when pyvista drew it, else why matplotlib did.
-
-    Raises
-    ------
-    CycloError
-        When the file cannot be written.
-    """
+    """Render panels of `side` pixels side by side into a PNG file; return why matplotlib drew it, "" when pyvista did."""
     import matplotlib as mpl
 
     problem = rendering_problem()
@@ -152,16 +132,9 @@ def _clip(panel: Panel) -> Panel:
 
 
 def compose(panels: Sequence[Panel], side: int, paint: Callable[[Any, Panel, Any, int], None]) -> Figure:
-    """Return panels side by side: title above, scales of mm, the colours' scale beside the field.
+    """Return panels side by side: title above, axes in mm, colour bar beside the field.
 
-    Parameters
-    ----------
-    panels : sequence of Panel
-        From left to right.
-    side : int
-        Pixels of each panel.
-    paint : callable
-        Draws a panel into axes by a norm of colours, at so many pixels.
+    `paint` draws a panel into axes by a norm of colours, with `side` pixels.
     """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.cm import ScalarMappable
@@ -170,7 +143,7 @@ def compose(panels: Sequence[Panel], side: int, paint: Callable[[Any, Panel, Any
     from matplotlib.ticker import MaxNLocator
 
     width = _inches(side)
-    figure = Figure(figsize=((width + BESIDE) * len(panels), width + ABOVE), layout="constrained")
+    figure = Figure(figsize=((width + BAR_INCHES) * len(panels), width + TITLE_INCHES), layout="constrained")
     FigureCanvasAgg(figure)
     for axes, panel in zip(figure.subplots(1, len(panels), squeeze=False)[0], panels, strict=True):
         norm = LogNorm(*panel.limits, clip=True) if panel.logarithmic else Normalize(*panel.limits)
@@ -200,8 +173,8 @@ def compose(panels: Sequence[Panel], side: int, paint: Callable[[Any, Panel, Any
 
 
 def _inches(side: int) -> float:
-    """Side of a panel on paper: on one of few pixels words shrink with it."""
-    return max(side / PIXELS_PER_INCH, LEAST_INCHES)
+    """Return the side of a panel, inches; below `MIN_INCHES` the text shrinks with the panel."""
+    return max(side / PIXELS_PER_INCH, MIN_INCHES)
 
 
 def _round_values(low: float, high: float) -> list[float]:

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from fem.contact.pressure_measures import vertex_means
+from fem.drive.contact_kinds import CONTACT_KINDS
 from fem.drive.fields import BodyField
 from fem.drive.full_solution import FullSolution
 from fem.pictures.scene import Lines, Panel, Triangles, render
@@ -16,18 +17,12 @@ from ltca.arrays import ComplexArray, FloatArray
 # Colours over the whole drive run over ratios, from where this share of its area is below up to the largest stress: on an
 # even scale the spots under the contacts would leave the rest of the drive in one colour.
 COLOUR_AREA = 0.10
-MOST_RATIO = 500.0
+MAX_COLOUR_RATIO = 500.0
 # The largest elastic displacement is drawn as this part of the drive's radius.
 DEFORMED_SHARE = 0.04
 ZOOM_HALF_WIDTHS = 3.5
 # The peak pressure is drawn as long as this many half-widths.
 PRESSURE_HALF_WIDTHS = 1.5
-NAMES = {
-    "pin": "pin {} on the flank",
-    "roller_outer": "roller {} on the bore",
-    "roller_inner": "roller {} on the race",
-    "hole": "shaft pin {} in its hole",
-}
 
 
 def draw_solution(
@@ -39,32 +34,14 @@ def draw_solution(
     side: int = 1600,
     prefix: str = "",
 ) -> str:
-    """Draw ``von_mises.png``, ``contacts.png`` and ``deformed.png``.
+    """Draw ``von_mises.png``, ``contacts.png`` and ``deformed.png``; return why matplotlib drew them, "" when pyvista did.
 
-    Parameters
-    ----------
-    solution : FullSolution
-        The solution.
-    fields : sequence of BodyField
-        Its fields.
-    headline : str
-        Drive, case and angle.
-    folder : Path
-        Where to.
-    side : int
-        Pixels of each picture of the whole drive; texts keep their size, so they read larger on a smaller one.
-    prefix : str
-        Put before the names of the files.
-
-    Returns
-    -------
-    str
-        "" when pyvista drew them, else why matplotlib did.
+    The pictures of the whole drive have `side` pixels; text keeps its size. `prefix` is put before the names of the files.
     """
     everything = np.concatenate([field.places for field in fields])
     reach = 1.03 * float(np.max(np.abs(everything)))
     highest = max(float(np.max(field.stress.von_mises)) for field in fields)
-    lowest = _round_down(max(_stress_below(fields, COLOUR_AREA), highest / MOST_RATIO))
+    lowest = _round_down(max(_stress_below(fields, COLOUR_AREA), highest / MAX_COLOUR_RATIO))
     shaft = _shaft_pins(solution)
     whole = Panel(
         title=f"{headline}\nvon Mises stress, largest {highest:.3g} MPa (logarithmic scale)",
@@ -175,7 +152,7 @@ def _zooms(solution: FullSolution, fields: Sequence[BodyField]) -> list[Panel]:
         panels.append(
             Panel(
                 title=(
-                    f"{NAMES[pair.kind].format(pair.index)}: {detail.load:.0f} N\n"
+                    f"{CONTACT_KINDS[pair.kind].title.format(pair.index)}: {detail.load:.0f} N\n"
                     f"white: pressure, peak {detail.peak_pressure:.0f} MPa, half-width {1e3 * detail.half_width:.1f} µm"
                 ),
                 centre=middle,

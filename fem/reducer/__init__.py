@@ -1,10 +1,10 @@
-"""A drive of any number of discs by full finite elements: each disc a problem of its own, one wheel angle between them.
+"""A drive of any number of discs by full finite elements: a separate problem for each disc, with one common wheel angle.
 
 ==============  ===============================================================
-shares          Which part of the wheel's moment each disc carries: rounds of moments until the angles agree
+shares          Part of the wheel's moment that each disc carries: iteration of the moments until the wheel angles agree
 solution        Solution of a drive at one crank angle with either member held
-series          Solutions at one crank angle after the other, what they share made once
-verdict         What a solution reaches, judged by the same limits as the LTCA
+series          Solutions at one crank angle after the other; condensed pins and rollers are reused
+verdict         Largest loads, pressures and stresses of a solution, judged by the same limits as the LTCA
 solution_files  Files of such a solution: ``summary.json``, ``fem.nc``, one ``.vtu`` for each body and ``fem.vtm`` over
                 them all
 solution_page   Its page

@@ -1,6 +1,6 @@
-"""A series of positions: condensed pins and rollers travel from each to the next.
+"""A series of positions: condensed pins and rollers are handed from each position to the next.
 
-What travels depends on shape, grading and material alone, never on the crank angle, so every solution is equal to the last bit
+They depend on shape, grading and material alone, never on the crank angle, so every solution is equal to the last bit
 to the one found alone, in whatever order the positions come and wherever a series was broken off.
 """
 
@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 
-from fem.body.elasticity import PlaneState
 from fem.drive.model import RoundGroup
+from fem.options import DEFAULT_OPTIONS, SolutionOptions
 from fem.reducer.solution import ReducerSolution, solve_reducer
 from ltca.drive.parts import Drive
 
@@ -17,14 +17,12 @@ from ltca.drive.parts import Drive
 def solve_positions(
     drive: Drive,
     crank_angles: Iterable[float],
+    options: SolutionOptions = DEFAULT_OPTIONS,
     *,
     torque: float | None = None,
-    scale: float = 1.0,
-    state: PlaneState = "strain",
-    fine_walls: bool = False,
     progress: Callable[[str], None] | None = None,
 ) -> Iterator[ReducerSolution]:
-    """Solve a drive at one crank angle after the other; a solution is found when it is asked for and not kept.
+    """Solve a drive at one crank angle after the other; a solution is computed when it is asked for and not kept.
 
     Parameters
     ----------
@@ -32,7 +30,7 @@ def solve_positions(
         The drive in one case, of any number of discs, either member held.
     crank_angles : iterable of float
         φ_C, rad.
-    torque, scale, state, fine_walls, progress
+    options, torque, progress
         As for `fem.reducer.solution.solve_reducer`.
 
     Yields
@@ -47,15 +45,6 @@ def solve_positions(
     """
     rounds: tuple[RoundGroup, ...] = ()
     for crank_angle in crank_angles:
-        solution = solve_reducer(
-            drive,
-            crank_angle,
-            torque=torque,
-            scale=scale,
-            state=state,
-            fine_walls=fine_walls,
-            rounds=rounds,
-            progress=progress,
-        )
+        solution = solve_reducer(drive, crank_angle, options, torque=torque, rounds=rounds, progress=progress)
         rounds = solution.rounds
         yield solution

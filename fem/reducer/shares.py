@@ -1,7 +1,7 @@
-r"""Which part of the wheel's moment each disc carries: rounds of moments until the wheel angles of all discs agree.
+r"""Part of the wheel's moment that each disc carries: iteration of the moments until all wheel angles agree.
 
 Disc k alone turns the wheel to :math:`\theta_k(M_k)`, nearly a straight line. Each round takes the lines as they are known
-and finds the moments whose angles agree and whose sum is what it shall be; what comes of them makes the lines of the next.
+and finds the moments whose angles agree and whose sum is the required one; their result updates the lines.
 """
 
 from __future__ import annotations
@@ -14,25 +14,25 @@ import numpy as np
 from ltca.arrays import FloatArray
 from ltca.errors import ConvergenceError
 
-ROUNDS = 12
+MAX_ROUNDS = 12
 ANGLE_TOLERANCE = 1e-9
-"""Largest difference of wheel angles, rad: a hundred thousandth of what a drive winds up by."""
+"""Largest difference of wheel angles, rad: a hundred thousandth of the wind-up of a drive."""
 MOMENT_TOLERANCE = 1e-8
 """Largest moment left over as a part of the wheel's."""
-LEAST_SHARE = 1e-3
-"""A disc below this part of the mean share floats in its play: nothing says where it rests."""
+MIN_SHARE = 1e-3
+"""A disc below this part of the mean share floats in its play: its place is indeterminate."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SharedAnswer:
-    """What the discs do under moments of theirs.
+    """Wheel angles of the discs under given moments.
 
     Attributes
     ----------
     wheel_angle : array, shape (discs,)
-        Where each alone turns the wheel to, rad.
+        To which each disc alone turns the wheel, rad.
     left_over : float
-        Moment by which the sum of all is more than it shall be, N·mm.
+        Excess of the sum of all moments over the required one, N·mm.
     """
 
     wheel_angle: FloatArray
@@ -68,38 +68,18 @@ def share_moment(
     *,
     rise: float = 1.0,
     angle_tolerance: float = ANGLE_TOLERANCE,
-    rounds: int = ROUNDS,
+    rounds: int = MAX_ROUNDS,
 ) -> Shares:
-    """Find the moments of all discs.
+    """Find the moments under which all discs turn the wheel to one angle.
 
-    Parameters
-    ----------
-    answer : callable
-        What the discs do under moments, shape (discs,), N·mm.
-    moment : array, shape (discs,)
-        First guess, N·mm; its sum has the sign of the wheel's moment.
-    slope : array, shape (discs,)
-        First guess of dθ/dM, rad/(N·mm).
-    rise : float
-        By how much the moment left over grows with the sum of the moments.
-    angle_tolerance : float
-        Largest difference of the wheel angles, rad.
-    rounds : int
-        Rounds at most.
-
-    Returns
-    -------
-    Shares
-        Those of the last answer.
-
-    Raises
-    ------
-    ConvergenceError
-        When a disc would carry nothing, or the angles do not agree; the history holds their differences, rad.
+    `answer` gives wheel angles for moments of shape (discs,), N·mm. `moment` and `slope` (dθ/dM, rad/(N·mm)) are first
+    estimates; the moments must add up to the sign of the wheel's moment. `rise` is the derivative of the moment left over by
+    the sum of the moments. ConvergenceError when a disc would carry nothing or the angles do not agree; the history holds
+    their differences, rad.
     """
     moment, slope = np.array(moment, dtype=float), np.array(slope, dtype=float)
     sign, size = np.sign(moment.sum()), abs(moment.sum())
-    least = LEAST_SHARE * size / moment.size
+    least = MIN_SHARE * size / moment.size
     spread: list[float] = []
     left: list[float] = []
     before: tuple[FloatArray, FloatArray] | None = None
@@ -120,7 +100,7 @@ def share_moment(
         if np.any(short & (sign * moment <= least)):
             disc = int(np.argmin(sign * wanted))
             raise ConvergenceError(
-                f"disc {disc} carries less than {LEAST_SHARE:g} of the mean share of the wheel's moment: finite elements "
+                f"disc {disc} carries less than {MIN_SHARE:g} of the mean share of the wheel's moment: finite elements "
                 "cannot say where a disc without load rests; differences of the wheel angles in rad",
                 spread,
             )
@@ -131,7 +111,7 @@ def share_moment(
 
 
 def _secants(slope: FloatArray, moments: FloatArray, angles: FloatArray, least: float) -> FloatArray:
-    """Slopes over the last step, where it was long enough to tell and makes sense."""
+    """Return secants over the last step, where it was long enough and the secant is plausible, else the slopes before."""
     told = np.abs(moments) > least
     secant = angles / np.where(told, moments, 1.0)
     return np.where(told & (secant > 0.1 * slope) & (secant < 10.0 * slope), secant, slope)

@@ -1,6 +1,6 @@
 """Full solution of a drive of any number of discs at one crank angle, whichever member is held.
 
-Each disc with its pins, rollers and race is a finite-element problem of its own (`fem.drive.solution`); they share the
+Each disc with its pins, rollers and race is a separate finite-element problem (`fem.drive.solution`); the discs share the
 wheel's angle and its moment (`fem.reducer.shares`). Where the wheel is held, its moment is what balances the output's torque
 and the moment of the input, which follows from the bearing forces found.
 """
@@ -12,26 +12,26 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from fem.body.elasticity import PlaneState
 from fem.drive.condensed import keep_rounds
 from fem.drive.expected_contacts import expect_contacts
 from fem.drive.full_solution import FullSolution
 from fem.drive.meshes import require_model_memory
 from fem.drive.model import RoundGroup
 from fem.drive.solution import solve_disc, solve_moment
+from fem.options import DEFAULT_OPTIONS, SolutionOptions
 from fem.reducer.shares import SharedAnswer, share_moment
 from fem.shapes import DriveShapes
 from ltca.arrays import FloatArray
+from ltca.drive.engine_support import require
 from ltca.drive.parts import Drive
-from ltca.drive.plane_strain import require_fixed_pins, require_frictionless, require_rigid_members
 from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import names_unit_mistakes
 from ltca.errors import ConvergenceError
 
 POSE_TOLERANCE = 1e-7
-"""Largest increment of a pose at rest, mm: of the wheel, 1e-9 rad at a pin circle of 0.1 m."""
-STEP = 0.01
-"""Part of a moment over which the springs' slope is taken."""
+"""Largest rigid increment of a converged pose, mm: of the wheel, 1e-9 rad at a pin circle of 0.1 m."""
+RELATIVE_MOMENT_STEP = 0.01
+"""Step of a central difference of the springs' wheel angle, as a part of the moment."""
 SPRING_TOLERANCE = 1e-7
 
 
@@ -125,15 +125,13 @@ class ReducerSolution:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Task:
-    """What stays the same through all rounds."""
+    """Drive, load and options of one solution."""
 
     drive: Drive
     crank_angle: float
     singles: tuple[Drive, ...]
     torque: float
-    scale: float
-    state: PlaneState
-    fine_walls: bool
+    options: SolutionOptions
     say: Callable[[str], None]
     seconds: dict[str, float] = field(default_factory=dict)
 
@@ -143,9 +141,7 @@ class _Task:
                 self.singles[disc],
                 self.crank_angle,
                 moment,
-                scale=self.scale,
-                state=self.state,
-                fine_walls=self.fine_walls,
+                self.options,
                 rounds=rounds,
                 progress=self.saying(disc),
             )
@@ -154,7 +150,7 @@ class _Task:
     def settle(
         self, disc: int, previous: FullSolution | None, moment: float, rounds: tuple[RoundGroup, ...]
     ) -> FullSolution:
-        """Solve one disc under a moment to the last digit that its pose has."""
+        """Solve one disc under a moment until its pose has converged to `POSE_TOLERANCE`."""
         found = self.start(disc, moment, rounds) if previous is None else previous
         while found.state.wheel_moment != moment or found.state.increments[-1] > POSE_TOLERANCE:
             found = self.timed(solve_moment(found, moment, pose_tolerance=POSE_TOLERANCE, progress=self.saying(disc)))
@@ -183,11 +179,9 @@ class _Task:
 def solve_reducer(
     drive: Drive,
     crank_angle: float,
+    options: SolutionOptions = DEFAULT_OPTIONS,
     *,
     torque: float | None = None,
-    scale: float = 1.0,
-    state: PlaneState = "strain",
-    fine_walls: bool = False,
     rounds: tuple[RoundGroup, ...] = (),
     progress: Callable[[str], None] | None = None,
 ) -> ReducerSolution:
@@ -199,14 +193,10 @@ def solve_reducer(
         The drive in one case, of any number of discs, either member held.
     crank_angle : float
         φ_C, rad.
+    options : SolutionOptions
+        Element size, plane state, fine walls.
     torque : float, optional
         Output torque, N·mm; the drive's own by default.
-    scale : float
-        Element edge as a multiple of an eighth of each Hertz half-width.
-    state : {"strain", "stress"}
-        Plane strain or plane stress.
-    fine_walls : bool
-        Whether the walls of the discs are meshed finely enough for the stress along them, whatever the scale.
     rounds : tuple of RoundGroup
         Condensed pins and rollers of another solution (`ReducerSolution.rounds`): they save time and change no bit of the
         result.
@@ -223,31 +213,26 @@ def solve_reducer(
     ConvergenceError
         When nothing can carry the load, an iteration does not settle, or a disc carries nothing.
     DriveError
-        When the drive is not the same all along its thickness; where cranks or the wheel's axis yield, or pins are loose,
-        sleeved or beams.
+        For what full finite elements refuse (`ltca.drive.engine_support`).
     MemoryLimitError
         When the meshes would not fit into memory.
     """
-    require_rigid_members(drive, "full finite elements")
-    require_frictionless(drive, "full finite elements")
-    require_fixed_pins(drive, "full finite elements")
+    require(drive, "full FE")
     singles = single_discs(drive)
     task = _Task(
         drive=drive,
         crank_angle=float(crank_angle),
         singles=singles,
         torque=drive.load.torque if torque is None else torque,
-        scale=scale,
-        state=state,
-        fine_walls=fine_walls,
-        say=progress or _silent,
+        options=options,
+        say=progress or (lambda _: None),
     )
     if len(singles) == 1 and not drive.wheel_is_held:
         return replace(
             ReducerSolution.of_disc(task.start(0, drive.wheel_moment(torque), rounds)), drive=drive, torque=task.torque
         )
     if len(singles) > 1:
-        require_solution_memory(drive, crank_angle, scale)
+        require_solution_memory(drive, crank_angle, options)
     moment, slope = expect_shares(drive, crank_angle, drive.wheel_moment(torque))
     discs: list[FullSolution | None] = [None] * len(singles)
 
@@ -277,21 +262,9 @@ def solve_reducer(
 
 
 def expect_shares(drive: Drive, crank_angle: float, wheel_moment: float) -> tuple[FloatArray, FloatArray]:
-    """Guess the moment that each disc carries, by springs between rigid bodies; equal ones where those leave a disc idle.
+    """Estimate the moment that each disc carries, N·mm, and dθ/dM there, rad/(N·mm), from springs between rigid bodies.
 
-    Parameters
-    ----------
-    drive : Drive
-        The drive in one case.
-    crank_angle : float
-        φ_C, rad.
-    wheel_moment : float
-        External moment on the wheel, N·mm.
-
-    Returns
-    -------
-    moment, slope : arrays, shape (discs,)
-        N·mm, and dθ/dM of each disc there, rad/(N·mm).
+    Equal moments where the springs leave a disc without load.
     """
     singles = single_discs(drive)
 
@@ -307,7 +280,8 @@ def expect_shares(drive: Drive, crank_angle: float, wheel_moment: float) -> tupl
         return SharedAnswer(wheel_angle=angles(moments), left_over=0.0)
 
     def slopes(moments: FloatArray) -> FloatArray:
-        return (angles((1.0 + STEP) * moments) - angles((1.0 - STEP) * moments)) / (2.0 * STEP * moments)
+        step = RELATIVE_MOMENT_STEP
+        return (angles((1.0 + step) * moments) - angles((1.0 - step) * moments)) / (2.0 * step * moments)
 
     equal = np.full(len(singles), wheel_moment / len(singles))
     try:
@@ -317,23 +291,8 @@ def expect_shares(drive: Drive, crank_angle: float, wheel_moment: float) -> tupl
         return equal, slopes(equal)
 
 
-def require_solution_memory(drive: Drive, crank_angle: float, scale: float) -> None:
-    """Refuse a full solution that would not fit into memory, before any work that comes first.
-
-    Parameters
-    ----------
-    drive : Drive
-        The drive in one case.
-    crank_angle : float
-        φ_C, rad.
-    scale : float
-        Element edge as a multiple of an eighth of each Hertz half-width.
-
-    Raises
-    ------
-    MemoryLimitError
-        With the numbers.
-    """
+def require_solution_memory(drive: Drive, crank_angle: float, options: SolutionOptions) -> None:
+    """Raise MemoryLimitError when the full solution of a drive would not fit into memory, before any meshing."""
     singles = single_discs(drive)
     moment = drive.wheel_moment() / len(singles)
     require_model_memory(
@@ -341,9 +300,5 @@ def require_solution_memory(drive: Drive, crank_angle: float, scale: float) -> N
             (DriveShapes.of_drive(single), expect_contacts(single, crank_angle, wheel_moment=moment))
             for single in singles
         ],
-        scale,
+        options,
     )
-
-
-def _silent(_: str) -> None:
-    pass

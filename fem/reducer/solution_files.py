@@ -14,16 +14,17 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from fem.contact.pressure_measures import vertex_means
+from fem.drive.contact_kinds import CONTACT_KINDS
 from fem.drive.disc_stress import recover_disc_stress, stress_variables, summarise_stress
 from fem.drive.fields import BodyField, bore_motion
 from fem.drive.full_solution import FullSolution
 from fem.mesh.mesh_file import body_stem, write_vtu
 from fem.reducer.solution import ReducerSolution
 from fem.reducer.verdict import judge_solution
+from ltca.drive.hole_contact import RIGID_SHAFT_PINS, shaft_pins_yield
 from ltca.drive.members.judgement import Check
 from ltca.drive.members.limits import Limit
 from ltca.drive.members.verdict_words import check_content
-from ltca.drive.plane_strain import RIGID_SHAFT_PINS, shaft_pins_yield
 from ltca.errors import CycloError
 from ltca.geometry.placement import place_coordinates
 from ltca.output.files import whole_file, write_json
@@ -35,19 +36,15 @@ from ltca.reading.writing import drive_text
 if TYPE_CHECKING:
     import xarray as xr
 
-ARRAYS = (
-    "pin_load", "roller_load", "roller_load_inner", "pin_shaft_load",
-    "pin_pressure_mid", "roller_pressure_mid_outer", "roller_pressure_mid_inner", "pin_shaft_pressure_mid",
-    "pin_half_width", "roller_half_width_outer", "roller_half_width_inner", "pin_shaft_half_width",
-)  # fmt: skip
-"""What of `fem.drive.contact_results.ContactResults` files hold, by name in ``fem.nc``."""
+ARRAYS = tuple(getattr(kind, name) for name in ("load", "pressure", "half_width") for kind in CONTACT_KINDS.values())
+"""Arrays of `fem.drive.contact_results.ContactResults` that files hold, by their names in ``fem.nc``."""
 MULTI_BLOCK = "fem.vtm"
 
 
 def summarise(solution: ReducerSolution) -> dict[str, Any]:
     """Return the content of ``summary.json``: lists by disc, then by part; of full length, zeros included.
 
-    What a disc has one of is a number with one disc, else a list by disc; of several cranks bearing forces are lists by
+    A value of a disc is a number with one disc, else a list by disc; with several cranks bearing forces are lists by
     crank. Rollers follow each other crank after crank.
     """
     discs = solution.discs
@@ -69,7 +66,7 @@ def summarise(solution: ReducerSolution) -> dict[str, Any]:
         "torque_share": [float(value) for value in solution.torque_share],
         QUANTITIES["wheel_angle"].fem_key: solution.wheel_angle,
         QUANTITIES["transmission_error"].fem_key: solution.transmission_error,
-        "disc_displacement": each([_motion(*bore_motion(disc.model, disc.state)) for disc in discs]),
+        "disc_displacement": each([_motion(*bore_motion(disc)) for disc in discs]),
         "disc_displacement_area": each(
             [_motion(disc.pose.disc_displacement, disc.pose.disc_rotation) for disc in discs]
         ),
@@ -78,8 +75,8 @@ def summarise(solution: ReducerSolution) -> dict[str, Any]:
         QUANTITIES["equilibrium_residual"].fem_key: solution.equilibrium_residual,
         "pose_iterations": each([disc.pose_iterations for disc in discs]),
         "dof": solution.unknowns,
-        "size": discs[0].scale,
-        "plane_state": discs[0].plane_state,
+        "size": discs[0].options.size,
+        "plane_state": discs[0].options.plane,
         "held": solution.drive.installation.held,
         "fingerprint": solution.drive.fingerprint(),
         "seconds": solution.seconds["total"],
@@ -96,7 +93,7 @@ def build_dataset(solution: ReducerSolution, case: str) -> xr.Dataset:
     """Return the solution as a labelled dataset, with the pressure of every loaded contact."""
     import xarray as xr
 
-    discs, first = solution.discs, solution.discs[0]
+    discs, options = solution.discs, solution.discs[0].options
     sizes = {"case": 1, "disc": len(discs), "crank": solution.drive.crank.number, "position": 1}
     data: dict[str, Any] = {}
 
@@ -111,7 +108,7 @@ def build_dataset(solution: ReducerSolution, case: str) -> xr.Dataset:
     if not shaft_pins_yield(solution.drive):
         data["pin_shaft_pressure_mid"][2]["long_name"] += f"; {RIGID_SHAFT_PINS}"
     bearings = np.array([disc.bearing_components for disc in discs])
-    motions = [bore_motion(disc.model, disc.state) for disc in discs]
+    motions = [bore_motion(disc) for disc in discs]
     bore, bore_rotation = np.array([shift for shift, _ in motions]), [rotation for _, rotation in motions]
     poses = [disc.pose for disc in discs]
     for name, value in (
@@ -145,10 +142,10 @@ def build_dataset(solution: ReducerSolution, case: str) -> xr.Dataset:
         "drive_file": drive_text(solution.drive),
         "fingerprint": solution.drive.fingerprint(),
         "held": solution.drive.installation.held,
-        "model": f"finite elements, plane {first.plane_state}",
-        "plane": first.plane_state,
-        "elastic_shaft_pins": int(bool(first.model.meshes.shaft_pins)),
-        "size": first.scale,
+        "model": f"finite elements, plane {options.plane}",
+        "plane": options.plane,
+        "elastic_shaft_pins": int(bool(discs[0].model.meshes.shaft_pins)),
+        "size": options.size,
         "unknowns": solution.unknowns,
     }
     return xr.Dataset(data, coords=coordinates, attrs=attributes)

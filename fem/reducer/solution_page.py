@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from math import degrees
 
+from fem.drive.contact_kinds import CONTACT_KINDS
 from fem.drive.full_solution import FullSolution
 from fem.reducer.solution import ReducerSolution
 from ltca.drive.members.judgement import Check
@@ -15,7 +16,7 @@ from ltca.page.verdict_tables import verdict_of, verdict_tables
 
 
 def solution_page(solution: ReducerSolution, checks: Sequence[Check], case: str, told: str, text: str) -> StudyPage:
-    """Return the page of a full solution: its verdict, `told` of what was solved, `text` the drive file."""
+    """Return the page of a full solution with its verdict; `told` describes the problem, `text` is the drive file."""
     sentence, state = verdict_of({case: checks})
     sections = [Section(heading="Verdict at this position", tables=verdict_tables({case: checks}))]
     several = len(solution.discs) > 1
@@ -47,16 +48,10 @@ def solution_page(solution: ReducerSolution, checks: Sequence[Check], case: str,
 
 
 def _contacts(solution: FullSolution) -> Iterator[list[Cell]]:
-    """Loaded contacts, a row each."""
-    names = {
-        "pin": "wheel pin",
-        "roller_outer": "roller in the bore,",
-        "roller_inner": "roller on the race,",
-        "hole": "shaft pin",
-    }
+    """Yield a row for each loaded contact."""
     for kind, index, load, peak, width in solution.contacts.loaded:
         yield [
-            word(f"{names[kind]} {index}"),
+            word(CONTACT_KINDS[kind].title.format(index)),
             number(load, "{:.1f}"),
             number(peak, "{:.1f}"),
             number(1e3 * width, "{:.1f}"),

@@ -3,7 +3,7 @@
 CalculiX may end an increment while contact points still pull and append one of size zero that frees them; it prints
 both, and only the last one is the answer. Without what the deck asks of its contact (`fem.referee.calculix_deck`) it did so
 on the paper's drive with three times the default size (CS-1, 0.5 rad): 402 of 17,544 points of the first one pull with up
-to 9,440 MPa, and its wheel stands 0.27″ away from the last one's. With the default size the last one itself pulled.
+to 9,440 MPa, and its wheel angle is 0.27″ off that of the last one. With the default size even points of the last one pulled.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from ltca.errors import CycloError
 from ltca.output.files import whole_file
 from ltca.output.processes import supervised
 
-LONGEST_RUN = 3600.0
+TIME_LIMIT = 3600.0
 CONTACT_STRESS = "contact stress"
 # The points have come to rest (see `fem.referee.calculix_deck`), so none pulls but those that changed sides in the last
 # iteration as many one way as the other: these are next to the rim, where there is next to no pressure.
@@ -34,7 +34,7 @@ PULLING_SHARE = 0.01
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RefereeAnswer:
-    """What CalculiX found.
+    """Answer of CalculiX.
 
     Attributes
     ----------
@@ -54,13 +54,10 @@ class RefereeAnswer:
     seconds: float
 
 
-def run_calculix(deck: Path, program: str, *, limit: float = LONGEST_RUN) -> tuple[str, float]:
-    """Run ccx on a deck in a folder of its own; return the text of its .dat file and the seconds it took.
+def run_calculix(deck: Path, program: str, *, limit: float = TIME_LIMIT) -> tuple[str, float]:
+    """Run ccx on a deck in a temporary folder; return the text of its .dat file and the seconds it took.
 
-    Raises
-    ------
-    CycloError
-        When ccx fails, does not end in time or leaves no results.
+    CycloError when ccx fails, does not end within `limit` seconds or leaves no results.
     """
     with tempfile.TemporaryDirectory(prefix="cyclo-ccx-", ignore_cleanup_errors=True) as name:
         folder = Path(name)
@@ -91,12 +88,9 @@ def run_calculix(deck: Path, program: str, *, limit: float = LONGEST_RUN) -> tup
 
 
 def last_output(text: str) -> str:
-    """Return what a .dat file says about the last increment: from its contact stresses on.
+    """Return the part of a .dat file on the last increment, from its contact stresses on.
 
-    Raises
-    ------
-    CycloError
-        When nothing was printed, or contact points still pull by more than `PULLING_SHARE` of the largest pressure.
+    CycloError when nothing was printed, or contact points still pull by more than `PULLING_SHARE` of the largest pressure.
     """
     place = text.rfind(CONTACT_STRESS)
     if place < 0:
@@ -152,13 +146,7 @@ def read_wheel_turn(text: str) -> float:
 
 
 def ask_calculix(solution: FullSolution, deck: Path, program: str) -> RefereeAnswer:
-    """Let CalculiX solve the deck of a solution and read its answer.
-
-    Raises
-    ------
-    CycloError
-        When it fails.
-    """
+    """Let CalculiX solve the deck of a solution and read its answer."""
     text, seconds = run_calculix(deck, program)
     with whole_file(deck.with_suffix(".dat")) as part:
         part.write_text(text, encoding="utf-8")
@@ -179,21 +167,9 @@ def ask_calculix(solution: FullSolution, deck: Path, program: str) -> RefereeAns
 
 
 def compare_with_calculix(solution: FullSolution, deck: Path, program: str) -> list[str]:
-    """Run CalculiX and return a table of both answers, line by line.
+    """Write the deck of a solution (``.inp``), run CalculiX and return a table of both answers, line by line.
 
-    Parameters
-    ----------
-    solution : FullSolution
-        Ours.
-    deck : Path
-        Where to write it, ends in ``.inp``; what CalculiX prints stands beside it in ``.dat``.
-    program : str
-        From `fem.referee.calculix_deck.find_calculix`.
-
-    Raises
-    ------
-    CycloError
-        When CalculiX fails.
+    What CalculiX prints is written beside the deck as ``.dat``.
     """
     return tabulate_answers(solution, ask_calculix(solution, write_deck(solution, deck), program))
 

@@ -1,8 +1,8 @@
 """Input deck of the same problem for CalculiX: CPE6 elements, surface-to-surface penalty contact.
 
-The deck stands at the loaded pose that `cyclo fem` found, with all bodies undeformed: they overlap by their
-approaches and CalculiX presses them apart; any rigid motion it still finds is the difference of the two
-codes. What differs from our own model:
+The deck has the loaded pose of `cyclo fem`, with all bodies undeformed: they overlap by their
+approaches and CalculiX presses them apart; the rigid motion it adds is the difference of the two
+codes. Differences from our model:
 
 - rollers are held sideways at two nodes near their axis instead of in the mean (frictionless contacts
   leave these supports with next to nothing to carry, and a mean over all nodes would fill the matrix);
@@ -21,8 +21,8 @@ the same, it is the same but next to these places: that moves the pin by 0.2 % o
 pull, closes those that overlap and solves again. It ends as soon as the *number* of points changes by less than a
 thousandth (its parameter delcon); no residual is left to ask for. At the default size that are 51 of 51,000 points: with
 the first penalty of this deck it ended an increment after 28 iterations with 16 points that pulled, by up to 184 of
-1549 MPa, and went on with another (paper's CS-1, 0.5 rad). The points must come to rest, so delcon is nought here, the
-iterations may be as many as that takes, and none is removed at random (alea).
+1549 MPa, and went on with another (paper's CS-1, 0.5 rad). The points must come to rest, so delcon is zero here, the
+number of iterations is not limited, and no point is removed at random (alea).
 
 **Why the penalty goes by the half-width.** Two quadratic surfaces whose nodes do not meet cannot follow each other at the
 hundred points of a face: the stiffer the penalty against the elements, the longer points change sides, up and down in
@@ -47,7 +47,6 @@ from fem.contact.coupling import Pose
 from fem.drive.full_solution import FullSolution
 from fem.drive.model import ContactPair, DriveModel
 from fem.mesh.body_mesh import BodyMesh
-from fem.mesh.mesh_file import element_nodes
 from ltca.arrays import ComplexArray, FloatArray, IntArray
 from ltca.drive.parts import Material
 from ltca.errors import CycloError
@@ -61,17 +60,11 @@ CONTACT_CONTROLS = "0.,0.,100,200"
 # Half-angle of the rigid shaft-pin arcs is this many times the zone they face.
 RIGID_REACH = 1.3
 # Nodes that carry an elastic shaft pin, see above.
-SUPPORTS = 100
+SUPPORT_NODES = 100
 
 
 def find_calculix() -> str:
-    """Return the program ``ccx``.
-
-    Raises
-    ------
-    CycloError
-        When it is not installed.
-    """
+    """Return the path of the program ``ccx``; CycloError when it is not installed."""
     program = shutil.which("ccx")
     if program is None:
         raise CycloError("--referee calculix: the program ccx is not installed (Debian: apt install calculix-ccx)")
@@ -143,9 +136,8 @@ class _Deck:
 
     def add_body(self, name: str, body: BodyMesh, at: Pose, material: Material, thickness: float) -> None:
         """Write a body at its place."""
-        local = body.mesh.doflocs[0] + 1j * body.mesh.doflocs[1]
-        nodes = self.add_nodes(at.centre + local * np.exp(1j * at.rotation))
-        elements = self.add_elements("CPE6", name, nodes + 1 + element_nodes(body), material, thickness)
+        nodes = self.add_nodes(at.centre + body.places * np.exp(1j * at.rotation))
+        elements = self.add_elements("CPE6", name, nodes + 1 + body.element_nodes, material, thickness)
         self.placed[name] = (body, nodes, elements)
 
     def equate(self, terms: list[tuple[int, int, float]]) -> None:
@@ -165,28 +157,11 @@ def _faces(body: BodyMesh, middles: IntArray, elements: int) -> list[str]:
 
 
 def write_deck(solution: FullSolution, path: Path, *, penalty: float = PENALTY_FACTOR) -> Path:
-    """Write a complete input deck of the problem that a full solution solved.
+    """Write a complete input deck (``.inp``) of the problem that a full solution in plane strain solved; return the path.
 
-    Parameters
-    ----------
-    solution : FullSolution
-        Plane strain.
-    path : Path
-        Ends in ``.inp``.
-    penalty : float
-        Penalty stiffness times expected half-width over E.
-
-    Returns
-    -------
-    Path
-        The file.
-
-    Raises
-    ------
-    CycloError
-        For plane stress, which the deck does not have; when the file cannot be written.
+    `penalty` is the penalty stiffness times the expected half-width over E.
     """
-    if solution.plane_state != "strain":
+    if solution.options.plane != "strain":
         raise CycloError("the CalculiX deck is plane strain; solve with --plane strain")
     model = solution.model
     deck = _Deck()
@@ -388,26 +363,14 @@ def _carry_shaft_pin(deck: _Deck, solution: FullSolution, pair: ContactPair) -> 
     deck.equate(sorted(terms, key=lambda term: -abs(term[2])))
 
 
-def even_support(body: BodyMesh, count: int = SUPPORTS) -> tuple[IntArray, FloatArray]:
-    """Return some nodes of a round body, and forces on them that stand for one spread evenly over its area.
+def even_support(body: BodyMesh, count: int = SUPPORT_NODES) -> tuple[IntArray, FloatArray]:
+    """Return up to `count` nodes of a circle about the origin, evenly spread, and the share of a force on each.
 
-    Parameters
-    ----------
-    body : BodyMesh
-        Circle about the origin.
-    count : int
-        About so many nodes.
-
-    Returns
-    -------
-    nodes : array of int, shape (k,)
-        Evenly spread; no more than `count`.
-    shares : array, shape (k,)
-        Of the force: areas nearest to each node, resultant through the origin. They sum to one.
+    Shares are the areas nearest to each node, corrected so that their resultant passes through the origin; they sum to one.
     """
     areas = area_loads(body)[::2, 0]
     areas = areas / np.sum(areas)
-    places = body.mesh.doflocs[0] + 1j * body.mesh.doflocs[1]
+    places = body.places
     number = np.arange(count)
     # A sunflower's seeds have equal areas.
     seeds = np.abs(places).max() * np.sqrt((number + 0.5) / count) * np.exp(1j * np.pi * (3.0 - np.sqrt(5.0)) * number)
@@ -423,6 +386,6 @@ def even_support(body: BodyMesh, count: int = SUPPORTS) -> tuple[IntArray, Float
 
 def _nodes_beside_centre(body: BodyMesh, direction: complex) -> tuple[int, int]:
     """Return the nodes nearest to 0.3 of the radius on both sides of the centre of a round body."""
-    places = body.mesh.doflocs[0] + 1j * body.mesh.doflocs[1]
+    places = body.places
     reach = 0.3 * float(np.abs(places).max()) * direction
     return int(np.argmin(np.abs(places + reach))), int(np.argmin(np.abs(places - reach)))

@@ -65,11 +65,8 @@ class Fixture:
 def make_fixtures() -> list[Fixture]:
     """Make all fixture meshes.
 
-    Returns
-    -------
-    list of Fixture
-        Disc, pin 3, roller 2 and race of the paper's drive (CS-1, 0.5 rad), two cylinders, a disc with three bores, and a
-        sleeve on its pin.
+    Disc, pin 3, roller 2 and race of the paper's drive (CS-1, 0.5 rad), two cylinders, a disc with three bores, and a sleeve
+    on its pin.
     """
     drive = load_drive("paper").cases[CASE]
     shapes, contacts = DriveShapes.of_drive(drive), expect_contacts(drive, CRANK_ANGLE)
@@ -153,13 +150,7 @@ fixed seed); it writes this file too. A change in them is to be reviewed like a 
 
 
 def write_fixtures(folder: Path) -> list[Path]:
-    """Write all fixture meshes and their README into a folder.
-
-    Returns
-    -------
-    list of Path
-        The files.
-    """
+    """Write all fixture meshes and their README into a folder; return the paths."""
     fixtures = make_fixtures()
     paths = [write_msh(fixture.body, folder / f"{fixture.body.name}.msh") for fixture in fixtures]
     hashes = {path.stem: hashlib.sha256(path.read_bytes()).hexdigest() for path in paths}

@@ -1,6 +1,6 @@
-"""A round pin in a hardly larger bore in plane strain: the reference that laws of conforming seats are held against.
+"""A round pin in a hardly larger bore in plane strain: the reference for laws of conforming seats.
 
-The bore is in a ring so wide that it stands for an infinite body (its outside is fixed; the datum is the mean displacement
+The bore is in a ring so wide that it represents an infinite body (its outside is fixed; the datum is the mean displacement
 of a circle about the bore), or in a sleeve that is pressed from outside. The pin is a free body: its force is balanced by
 a uniform body force and its place is the mean of its section.
 """
@@ -70,7 +70,7 @@ def press_pin_into_bore(
     width: float = 60.0,
     growth: float = DEFAULT_GROWTH,
 ) -> SeatedPin:
-    """Press a pin into the bore of a body that is as good as infinite.
+    """Press a pin into the bore of a very wide body.
 
     Parameters
     ----------
@@ -190,12 +190,8 @@ class SleeveOnPin:
     def meshes(self, elements: float, growth: float = DEFAULT_GROWTH) -> tuple[BodyMesh, BodyMesh]:
         """Return meshes of pin and sleeve, the arc and the patch outside on the x axis.
 
-        Parameters
-        ----------
-        elements : float
-            Over the expected arc; over the patch a third of them.
-        growth : float
-            Of the elements from the arc and the patch into the bodies.
+        `elements` is their number over the expected arc (over the patch a third of it), `growth` that of the element edge
+        into the bodies.
         """
         place, _ = _refinement(self.pin_radius, self.half_angle, elements)
         width = self.patch_half_width
@@ -208,17 +204,7 @@ class SleeveOnPin:
 
 
 def squeeze_sleeve(seat: SleeveOnPin, disc: BodyMesh, ring: BodyMesh, load: float) -> SqueezedSleeve:
-    """Squeeze a sleeve between its pin and the pressure outside.
-
-    Parameters
-    ----------
-    seat : SleeveOnPin
-        Both bodies.
-    disc, ring : BodyMesh
-        Meshes of pin and sleeve.
-    load : float
-        N.
-    """
+    """Squeeze a sleeve between its pin and the pressure outside under a load, N, on meshes of pin and sleeve."""
     _, reach = _refinement(seat.pin_radius, seat.half_angle, 1.0)
     bore_radius, length = seat.bore_radius, seat.length
     curve = CircleCurve(name="inner", radius=bore_radius, encloses_body=False)

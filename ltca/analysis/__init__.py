@@ -8,6 +8,8 @@ engines                    Engines: how the bodies of a drive yield and how its 
 friction                   Losses of a drive that turns, the loop of one whose input is locked
 loaded_analysis            Loaded tooth contact analysis of one drive at many crank angles: equilibrium, then
                            pressures and bearing forces
+contact_arrays             Arrays of all contacts by their names in the registry
+light_torque               The answer of an analysis at its light torque, as an analysis at that torque
 half_width_guard           Where half-spaces and the parabolas of tables end: contacts wider than the bodies are curved are
                            refused, by name
 extremes                   Extremes of an analysis between its positions: peak-to-peak values and largest loads that do not

@@ -35,7 +35,6 @@ from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.balance import Equilibrium, lever_arms
-from ltca.equilibrium.friction.turning import TurningFriction
 from ltca.equilibrium.output_torque import input_moment
 from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError, DriveError
@@ -48,10 +47,10 @@ CHANGE = 1e-3
 power."""
 FIRST_STEP = 1e-7
 """First step of a field relative to its value, or in its unit where the value is zero."""
-CORRECTIONS = 12
-SETTLED = 1e-9
+MAX_CORRECTIONS = 12
+SLOPE_TOLERANCE = 1e-9
 """Relative derivative of the residual at which the iteration stops."""
-KEPT_SLOPE = 1e-6
+FAILED_SLOPE = 1e-6
 """Relative derivative of the residual above which the iteration has failed."""
 ROUND_OFF = 1e-10
 """Change of the residual over one step, relative to the load, that counts as round-off of the inner unknowns."""
@@ -155,14 +154,14 @@ class _Position:
         """Return dz/dp, shape (positions, unknowns)."""
         direction = np.zeros((self.found.pose.shape[0], self.inverse.shape[1]))
         history: list[float] = []
-        for _ in range(CORRECTIONS):
+        for _ in range(MAX_CORRECTIONS):
             slopes = [self.along(node, direction, node.step) for node in nodes]
             left = np.tensordot(weights, np.stack(slopes), 1) / step
             history.append(float(np.max(np.abs(left))))
-            if history[-1] <= SETTLED * history[0] or (len(history) > 3 and history[-1] >= 0.5 * history[-2]):
+            if history[-1] <= SLOPE_TOLERANCE * history[0] or (len(history) > 3 and history[-1] >= 0.5 * history[-2]):
                 break
             direction = direction - np.matmul(self.inverse, left[..., None])[..., 0]
-        if history[-1] > max(KEPT_SLOPE * history[0], ROUND_OFF * self.load / step):
+        if history[-1] > max(FAILED_SLOPE * history[0], ROUND_OFF * self.load / step):
             raise ConvergenceError(
                 "derivatives do not settle; slopes of the residual that are left, N by the field's unit", history
             )
@@ -325,6 +324,6 @@ def _shapes(drive: Drive) -> list[str]:
 def _reversed(node: _Node) -> _Node:
     """A drive whose motion is turned back."""
     friction = node.model.friction
-    if not isinstance(friction, TurningFriction):
+    if friction is None:
         raise AssertionError("motion is turned back where something rubs")
     return replace(node, model=replace(node.model, friction=friction.reversed()))

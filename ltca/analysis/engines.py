@@ -21,12 +21,9 @@ from ltca.compliance.grids import GridCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.near_field import NEAR_FIELDS
 from ltca.compliance.response import Start
+from ltca.drive.engine_support import require
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Drive
-from ltca.drive.plane_strain import (
-    require_fixed_pins,
-    require_frictionless,
-)
 from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.output_torque import solve_at_output
@@ -50,6 +47,11 @@ class PreparedEngine(Protocol):
     @property
     def model(self) -> Reducer:
         """The compliance whose loads balance."""
+        ...
+
+    @property
+    def batches(self) -> bool:
+        """Whether the model is balanced directly, so that several drives may be rows of one batch."""
         ...
 
     def balance(self, crank_angle: FloatArray, torque: float, start: FloatArray | None = None) -> Equilibrium:
@@ -89,30 +91,34 @@ class Engine(Protocol):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class OnTables:
+class _OnTables:
     """Equilibrium on a model whose loads come cheaply from anywhere; several drives may be balanced as one batch."""
+
+    batches: ClassVar[bool] = True
 
     drive: Drive
     model: Reducer
 
     def balance(self, crank_angle: FloatArray, torque: float, start: FloatArray | None = None) -> Equilibrium:
         """Return balanced positions at an output torque, N·mm, from poses near by if given."""
-        return solve_at_output(self.model, self.drive, crank_angle, torque, start)
+        return solve_at_output(self.model, [self.drive], crank_angle, torque, start)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _FromTables:
     """Equilibrium on a dearer model, started from the solution on tables."""
 
+    batches: ClassVar[bool] = False
+
     drive: Drive
     tables: Reducer
     model: Reducer
 
     def balance(self, crank_angle: FloatArray, torque: float, start: FloatArray | None = None) -> Equilibrium:
-        near = solve_at_output(self.tables, self.drive, crank_angle, torque, start)
+        near = solve_at_output(self.tables, [self.drive], crank_angle, torque, start)
         # Grids wider than the bodies are curved have no separation: refused before they are laid.
         check_half_widths(self.drive, near.response, self.tables.pressures(near.response), torque)
-        return solve_at_output(self.model, self.drive, crank_angle, torque, near.pose, Start.after(near.response))
+        return solve_at_output(self.model, [self.drive], crank_angle, torque, near.pose, Start.after(near.response))
 
 
 def _on_tables(drive: Drive, singles: Sequence[Drive], *, in_batch: bool = False) -> Reducer:
@@ -182,8 +188,7 @@ class HalfSpace:
         """Return the engine built for a drive."""
         drive = warm_drive(drive)
         if self.method != "tables":
-            require_frictionless(drive, f"method {self.method}")
-            require_fixed_pins(drive, f"method {self.method}")
+            require(drive, self.method)
         singles = single_discs(drive)
         tables = model = _on_tables(drive, singles)
         if self.contacts == "grids":
@@ -193,7 +198,7 @@ class HalfSpace:
             return _method("paper")(drive, tables, model)
         if self.method == "direct":
             return _FromTables(drive=drive, tables=tables, model=model)
-        return OnTables(drive=drive, model=tables)
+        return _OnTables(drive=drive, model=tables)
 
     def model(self, drive: Drive, *, in_batch: bool = False) -> Reducer:
         """Return the tables of a drive."""
@@ -219,6 +224,7 @@ class _Coupled:
         When an option is of another kind.
     """
 
+    compliance: ClassVar[Compliance]
     batches: ClassVar[bool] = False
 
     coefficients: Given = field(default=None, repr=False)
@@ -246,9 +252,8 @@ class _Coupled:
     @property
     def options(self) -> dict[str, str]:
         """Compliance, and whether hole walls yield."""
-        compliance: Compliance = self.compliance  # type: ignore[attr-defined]  # of the engines below
         near = "yes" if self.hole_near_field else "no"
-        return {"compliance": compliance, "method": "tables", "contacts": "tables", "hole_near_field": near}
+        return {"compliance": self.compliance, "method": "tables", "contacts": "tables", "hole_near_field": near}
 
     @property
     def _of_discs(self) -> tuple[InfluenceCoefficients, ...]:
@@ -263,7 +268,7 @@ class _Coupled:
             return self
         drive = warm_drive(drive)
         files: Any = self.coefficients
-        near_field = NEAR_FIELDS[self.compliance]  # type: ignore[attr-defined]  # of the engines below
+        near_field = NEAR_FIELDS[self.compliance]
         found = tuple(find_coefficients(single, files, near_field=near_field) for single in single_discs(drive))
         return replace(self, coefficients=found[0] if len(found) == 1 else found)
 
@@ -284,7 +289,7 @@ class _Coupled:
             raise DriveError(
                 [f"coefficients: are those of {len(found)} discs, must be those of {len(singles)} (or of one, for all)"]
             )
-        near_field = NEAR_FIELDS[self.compliance]  # type: ignore[attr-defined]  # of the engines below
+        near_field = NEAR_FIELDS[self.compliance]
         each = found if len(found) == len(singles) else found * len(singles)
         discs = [
             CoupledCompliance.of_drive(single, own, near_field, hole_near_field=self.hole_near_field)

@@ -13,6 +13,7 @@ from math import ceil, gcd
 
 import numpy as np
 
+from ltca.analysis.contact_arrays import array_of, contact_arrays
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse
 from ltca.arrays import FloatArray
 from ltca.compliance.response import ContactPressures
@@ -29,18 +30,19 @@ from ltca.quantities import REFINED
 
 TURN = 2.0 * np.pi
 RESOLVED = 8
-"""Positions in a passage from which its highest places can be told, and phases of the mesh below which we warn."""
-SCANNED = 24
-"""Positions in a passage that the search starts from, as far as `SCAN` goes."""
-SCAN = 720
-"""Positions of a turn that are enough to start from with many teeth; never fewer than `RESOLVED` a passage."""
-GAIN = 1e-3
-"""What is not looked for any more, as a part of the range of a signed quantity, of the largest load or pressure."""
-ROUNDS = 6
-PLACES = 4
-"""Places that are tried for each extreme on either side of its highest samples in a round, the most promising."""
-NEAREST = 1e-3
-"""Places nearer to a sample than this part of a passage are not tried."""
+"""Positions per passage of a tooth, hole or roller that resolve its peaks; fewer phases of the mesh give a warning."""
+SCAN_POSITIONS_PER_PASSAGE = 24
+"""Positions per passage at which the search starts, as far as `SCAN_POSITIONS` in total allow."""
+SCAN_POSITIONS = 720
+"""Most positions of a turn at which the search starts; never fewer than `RESOLVED` per passage."""
+RELATIVE_REFINEMENT_TOLERANCE = 1e-3
+"""Gain below which an extreme is not refined further, relative to the range of a signed quantity or to the largest load or
+pressure."""
+MAX_REFINEMENTS = 6
+MAX_TRIALS_PER_SIDE = 4
+"""Trial positions for each extreme on either side of its highest samples, per refinement."""
+LEAST_SPACING = 1e-3
+"""Least distance of a trial position from a sample, relative to a passage."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -86,14 +88,7 @@ def is_full_turn(crank_angle: FloatArray) -> bool:
 
 
 def sampling(drive: Drive, crank_angle: FloatArray) -> Sampling:
-    """Return how crank angles sample the mesh of a drive.
-
-    Parameters
-    ----------
-    drive : Drive
-        For its teeth.
-    crank_angle : array, shape (positions,)
-        φ_C, rad.
+    """Return how crank angles, rad, sample the mesh of a drive.
 
     Examples
     --------
@@ -213,7 +208,7 @@ def _searched(analysis: LoadedAnalysis) -> tuple[_Stage, _Stage]:
     """Fill the turn up and search it, both torques together."""
     full, light = _stages(analysis)
     places = light_places = scan_angles(analysis.full.crank_angle.size, passages_per_turn(analysis.drive))
-    for _ in range(ROUNDS + 1):
+    for _ in range(MAX_REFINEMENTS + 1):
         start = np.concatenate([full.start(places), light.start(light_places)])
         _solve(analysis, full, light, places, light_places, start)
         places, light_places = full.search.promising(), light.search.promising()
@@ -238,7 +233,7 @@ def scan_angles(positions: int, passages: int) -> FloatArray:
     >>> scan_angles(13, 13).size, scan_angles(360, 13).size
     (300, 1)
     """
-    parts = ceil(max(RESOLVED * passages, min(SCANNED * passages, SCAN)) / positions)
+    parts = ceil(max(RESOLVED * passages, min(SCAN_POSITIONS_PER_PASSAGE * passages, SCAN_POSITIONS)) / positions)
     places = np.arange(positions * parts + 1)
     return np.asarray(TURN * places[(places % parts > 0) | (places == places[-1])] / (positions * parts))
 
@@ -284,15 +279,15 @@ class PeakSearch:
         return np.asarray(self.angle[np.unique(rows)])
 
     def promising(self) -> FloatArray:
-        """Return the places where an extreme may be larger than every sample by more than `GAIN`, ascending, rad."""
+        """Return the places where an extreme may exceed every sample by more than the tolerance, ascending, rad."""
         found = [np.zeros(0)]
         estimates = _kinks_on_both_sides(self.angle, self.values)
         for columns, is_end in self.groups.values():
             values = self.values[:, columns]
-            least = np.max(values) + GAIN * (np.ptp(values) if is_end else np.max(values))
+            least = np.max(values) + RELATIVE_REFINEMENT_TOLERANCE * (np.ptp(values) if is_end else np.max(values))
             for places, heights in estimates:
                 height = heights[:, columns].ravel()
-                first = np.argsort(-height, kind="stable")[:PLACES]
+                first = np.argsort(-height, kind="stable")[:MAX_TRIALS_PER_SIDE]
                 found.append(places[:, columns].ravel()[first[height[first] > least]])
         kept: list[float] = []
         for place in np.sort(np.concatenate(found)):
@@ -343,7 +338,7 @@ class _Stage:
             angle=found.crank_angle,
             values=np.hstack(list(signals.values())),
             groups=groups,
-            nearest=NEAREST * TURN / passages,
+            nearest=LEAST_SPACING * TURN / passages,
         )
         return cls(
             search=search, angle=found.crank_angle, pose=found.pose, torque=torque, coordinates=model.coordinates
@@ -371,7 +366,7 @@ def _solve(
     """Balance new positions of both torques in one batch and give them to their stages."""
     joined = np.concatenate([angles, light_angles])
     torque = np.repeat([full.torque, light.torque], [angles.size, light_angles.size])
-    found = solve_at_output(analysis.model, analysis.drive, joined, torque, start)
+    found = solve_at_output(analysis.model, [analysis.drive], joined, torque, start)
     if angles.size:
         signals = _full_signals(analysis, found, analysis.model.pressures(found.response))
         loaded = slice(angles.size)
@@ -388,7 +383,7 @@ def _wheel_signals(analysis: LoadedAnalysis, found: Equilibrium) -> dict[str, Fl
 
 
 def _full_signals(analysis: LoadedAnalysis, found: Equilibrium, pressures: ContactPressures) -> dict[str, FloatArray]:
-    rollers, outer, inner = found.response.rollers, pressures.outer, pressures.inner
+    arrays = contact_arrays(found.response, pressures)
     push = bearing_forces(analysis.model, found.crank_angle, found.response).reshape(found.crank_angle.size, -1)
     tangential = push.imag
     return {
@@ -396,13 +391,5 @@ def _full_signals(analysis: LoadedAnalysis, found: Equilibrium, pressures: Conta
         **{f"tangential_{bearing}": column[:, None] for bearing, column in enumerate(tangential.T)},
         **{f"tangential_negative_{bearing}": -column[:, None] for bearing, column in enumerate(tangential.T)},
         "max_bearing_load": np.abs(push),
-        "max_pin_load": found.response.pin_load,
-        "max_roller_load": rollers.outer_load,
-        "max_pin_shaft_load": found.response.hole_load,
-        "max_pin_pressure_mid": pressures.pins.mid,
-        "max_pin_pressure_max": pressures.pins.largest,
-        "max_roller_pressure_mid": np.hstack([outer.mid, inner.mid]),
-        "max_roller_pressure_max": np.hstack([outer.largest, inner.largest]),
-        "max_pin_shaft_pressure_mid": pressures.holes.mid,
-        "max_pin_shaft_pressure_max": pressures.holes.largest,
+        **{name: values for name, scalar in REFINED.items() if (values := array_of(arrays, scalar.of)) is not None},
     }

@@ -18,10 +18,8 @@ import numpy as np
 
 from ltca.arrays import FloatArray
 from ltca.compliance.grids import GridCompliance
-from ltca.compliance.half_space import HalfSpaceCompliance
-from ltca.compliance.response import ContactPressures, Response, split_shifts
+from ltca.compliance.response import ContactPressures, DiscModel, Response, split_shifts
 from ltca.drive.parts import Drive
-from ltca.drive.plane_strain import pins_are_fixed
 from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import BORNE
 from ltca.equilibrium.balance import Equilibrium
@@ -35,16 +33,16 @@ from ltca.laws.backed import own_flexibility, shaft_pin_beam, wheel_pin_beam
 HALF_WIDTH_BOUND = 0.3
 """Largest contact half-width as a part of the smallest radius in contact: beyond it the bodies are no half-spaces
 and the separation is no parabola."""
-DEPARTURE = 0.02
+PARABOLA_DEPARTURE = 0.02
 """Departure from the parabola at the edge of a contact, as a part of it (squared where it leans to one side), below which
 tables and true separation differ by less than 0.4 % of the load: 0.39 % was the most among 592 pins of thirty drives."""
-LARGE_DEPARTURE = 0.05
-"""The same from which it is told where grids cannot say what it does to loads: by the figure above some 1 % of them."""
-DIFFERENCE = 0.01
-"""Difference of both by the largest load of their kind from which it is told."""
+LARGE_PARABOLA_DEPARTURE = 0.05
+"""The same from which a warning is given where grids cannot check the loads, which then are off by some 1 %."""
+LOAD_DIFFERENCE = 0.01
+"""Difference of loads by tables and by grids, relative to the largest of their kind, from which a warning is given."""
 SMALL_DISPLACEMENT = 0.1
-"""Displacement of a pin, crank or wheel by what holds it, as a part of the eccentricity, from which it is told: directions of
-forces change by about that angle, rad."""
+"""Displacement of a pin, crank or wheel by what holds it, as a part of the eccentricity, from which a warning is given:
+directions of forces change by about that angle, rad."""
 PIN, OUTER, INNER = "wheel pin", "roller on the bore", "roller on the inner race"
 
 
@@ -113,16 +111,9 @@ def _cause(drive: Drive, contacts: Response, name: str, worst: tuple[np.intp, ..
 
 
 def wide_holes_warning(drive: Drive, pressures: ContactPressures) -> str | None:
-    """Return what to say where shaft pins lie wider in their holes than half-spaces stand for, None where they do not.
+    """Return a warning where shaft pins touch their holes over more than a half-space stands for; None elsewhere.
 
-    Their loads go through springs and stay what they are; the pressures are those of bodies less curved.
-
-    Parameters
-    ----------
-    drive : Drive
-        For the radius.
-    pressures : ContactPressures
-        Of the solved positions.
+    Their loads go through springs and hold; the pressures are those of bodies that are less curved.
     """
     if drive.pin_shaft is None:
         return None
@@ -136,13 +127,7 @@ def wide_holes_warning(drive: Drive, pressures: ContactPressures) -> str | None:
 
 
 def unborne_warning(pressures: ContactPressures) -> str | None:
-    """Return what to say of pressures that no gear bears, None below them.
-
-    Parameters
-    ----------
-    pressures : ContactPressures
-        Of the solved positions.
-    """
+    """Return a warning where pressures are higher than any steel bears; None below."""
     kinds = (pressures.pins, pressures.outer, pressures.inner, pressures.holes)
     largest = max(float(np.nanmax(kind.mid)) for kind in kinds if kind.mid.size)
     if largest <= BORNE:
@@ -151,36 +136,27 @@ def unborne_warning(pressures: ContactPressures) -> str | None:
 
 
 def separation_warning(
-    model: HalfSpaceCompliance, drive: Drive, balanced: Equilibrium, pressures: ContactPressures
+    model: DiscModel, drive: Drive, balanced: Equilibrium, pressures: ContactPressures
 ) -> str | None:
-    """Return what to say where tables and the true separation of the surfaces disagree, None where they do not.
+    """Return a warning where tables and the true separation of the surfaces disagree; None elsewhere.
 
-    Parameters
-    ----------
-    model : HalfSpaceCompliance
-        The tables.
-    drive : Drive
-        Their drive.
-    balanced : Equilibrium
-        Solved positions.
-    pressures : ContactPressures
-        Of them.
+    The model of the disc, its drive, balanced positions and their pressures are those of one disc alone.
     """
     contacts = balanced.response
     largest = max(float(np.max(contacts.pin_load)), 1e-300)
     departure = _departures(model, contacts, pressures) * contacts.pin_load / largest
     row, _ = np.unravel_index(int(np.argmax(departure)), departure.shape)
     rollers = _roller_departure(drive, pressures)
-    if max(departure[row].max(), rollers) < DEPARTURE:
+    if max(departure[row].max(), rollers) < PARABOLA_DEPARTURE:
         return None
     angle, pose = balanced.crank_angle[row : row + 1], balanced.pose[row : row + 1]
     at = f"φ_C = {angle[0]:.4g} rad"
-    if not pins_are_fixed(drive):
+    if not drive.pins_are_fixed:
         most = max(float(departure[row].max()), rollers)
         name = "rollers" if most == rollers else f"{PIN} {int(np.argmax(departure[row]))}"
         told = f"at {at} the surfaces at {name} depart from the parabola of the tables by {100.0 * most:.2g} % at the edge of"
         more = "the contact: loads may be a percent off, or more (grids, which would say, know fixed pins alone)"
-        return f"{told} {more}" if most >= LARGE_DEPARTURE else None
+        return f"{told} {more}" if most >= LARGE_PARABOLA_DEPARTURE else None
     try:
         found = GridCompliance.of_drive(drive).respond(angle, pose)
     except ConvergenceError:
@@ -193,7 +169,7 @@ def separation_warning(
         difference = np.abs(tables - grids) / max(float(np.max(grids)), 1e-300)
         if np.max(difference) > worst:
             worst, name, number = float(np.max(difference)), kind, int(np.argmax(difference))
-    if worst < DIFFERENCE:
+    if worst < LOAD_DIFFERENCE:
         return None
     return (
         f"at {at} the load of {name} {number} differs by {100.0 * worst:.2g} % of the largest between the parabola of the "
@@ -201,8 +177,8 @@ def separation_warning(
     )
 
 
-def _departures(model: HalfSpaceCompliance, contacts: Response, pressures: ContactPressures) -> FloatArray:
-    """Departure of pin and flank from their parabola at the edges of the contact, as `DEPARTURE` counts it."""
+def _departures(model: DiscModel, contacts: Response, pressures: ContactPressures) -> FloatArray:
+    """Departure of pin and flank from their parabola at the edges of the contact, as `PARABOLA_DEPARTURE` counts it."""
     profile, flank, half_width = model.geometry.profile, contacts.flank, pressures.pins.half_width
     radius = np.broadcast_to(model.geometry.placement.wheel_pin_radii, half_width.shape)
     closed = half_width > 0.0
@@ -237,19 +213,7 @@ def _roller_departure(drive: Drive, pressures: ContactPressures) -> float:
 def pin_deflections(drive: Drive, model: Reducer, found: Equilibrium) -> dict[str, FloatArray]:
     """Return how far pins that are beams move at a disc under the forces of all discs, mm, shape (positions, pairs).
 
-    Parameters
-    ----------
-    drive : Drive
-        Of one disc.
-    model : Reducer
-        Of that disc.
-    found : Equilibrium
-        Of that disc.
-
-    Returns
-    -------
-    dict of str to array
-        By name in the dataset; empty where no pins are beams.
+    Drive, model and balanced positions are those of one disc; keys are names of the dataset, none where no pins are beams.
     """
     contacts, geometry = found.response, model.discs[0].geometry
     moved, by_ring = split_shifts(contacts.shifts, geometry), geometry.moved_by_ring(found.pose)
@@ -266,14 +230,10 @@ def pin_deflections(drive: Drive, model: Reducer, found: Equilibrium) -> dict[st
 
 
 def displacement_warning(eccentricity: float, moved: Mapping[str, tuple[str, FloatArray]]) -> str | None:
-    """Return a warning where displacements are no small ones any more, None elsewhere.
+    """Return a warning where displacements are no longer small; None elsewhere.
 
-    Parameters
-    ----------
-    eccentricity : float
-        mm.
-    moved : mapping of str to (str, array)
-        What moves by a field: the field that says how it yields, and displacements, mm; not a number where there is no answer.
+    `moved` has, by what moves, the field that says how it yields and the displacements, mm, not a number where there is no
+    answer; the eccentricity is in mm.
     """
     told = []
     for name, (field, values) in moved.items():

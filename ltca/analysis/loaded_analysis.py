@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.analysis.engines import Engine, HalfSpace, OnTables, PreparedEngine
+from ltca.analysis.engines import Engine, HalfSpace, PreparedEngine
 from ltca.analysis.friction.losses import Losses, losses
 from ltca.analysis.half_width_guard import (
     check_half_widths,
@@ -19,20 +19,17 @@ from ltca.analysis.half_width_guard import (
     wide_holes_warning,
 )
 from ltca.arrays import ComplexArray, FloatArray, batch_layout, freeze, stack_drives, take_positions
-from ltca.compliance.coupled import CoupledCompliance
-from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.response import ContactPressures
 from ltca.compliance.wall_stress import WallStresses, wall_stresses
+from ltca.drive.hole_contact import hole_words
 from ltca.drive.members.named_materials import strength_warning
 from ltca.drive.members.temperatures import temperature_words, warm_drive
 from ltca.drive.parts import Drive, Temperature
-from ltca.drive.plane_strain import hole_words
 from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import names_unit_mistakes, unit_warnings
 from ltca.drive.units.table import range_of
 from ltca.equilibrium.balance import Equilibrium, equilibrium_of_disc
 from ltca.equilibrium.compliance_shares import PARTS, compliance_shares
-from ltca.equilibrium.friction.turning import TurningFriction
 from ltca.equilibrium.output_torque import cage_moments, crank_moments, solve_at_output
 from ltca.equilibrium.partial_balance import (
     PartlyBalanced,
@@ -45,10 +42,10 @@ from ltca.errors import ConvergenceError, DriveError, shortened
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.interference import lost_play, preload_warning
 
-SHARED = 24
-"""Positions at which shares of the compliance are looked at: they change slowly over the turn."""
-MOST_ROWS = 20_000
-"""Positions of all cases that are balanced as one batch: more gain nothing and take memory."""
+COMPLIANCE_SHARE_POSITIONS = 24
+"""Number of positions at which shares of the compliance are evaluated: they change slowly over the turn."""
+MAX_BATCH_POSITIONS = 20_000
+"""Most positions that are balanced as one batch: more take memory and save no time."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -160,7 +157,7 @@ class LoadedAnalysis:
     def losses_back(self) -> Losses | None:
         """The same with the motion reversed."""
         friction = self.model.friction
-        if self.back is None or not isinstance(friction, TurningFriction):
+        if self.back is None or friction is None:
             return None
         return losses(replace(self.model, friction=friction.reversed()), self.drive, self.back, self.torque)
 
@@ -191,10 +188,12 @@ class LoadedAnalysis:
     def compliance_shares(self) -> dict[str, FloatArray]:
         """Which part yields how much of the output's compliance (`ltca.equilibrium.compliance_shares`).
 
-        At up to `SHARED` of the positions, evenly chosen; not a number where one has no answer.
+        At up to `COMPLIANCE_SHARE_POSITIONS` of the positions, evenly chosen; not a number where one has no answer.
         """
         positions = self.full.crank_angle.size
-        rows = np.unique(np.linspace(0, positions, min(positions, SHARED), endpoint=False).astype(int))
+        rows = np.unique(
+            np.linspace(0, positions, min(positions, COMPLIANCE_SHARE_POSITIONS), endpoint=False).astype(int)
+        )
         if not np.all(self.balanced[rows]):
             return dict.fromkeys(PARTS, np.full(rows.size, np.nan))
         return compliance_shares(self.model, take_positions(self.full, rows))
@@ -238,7 +237,7 @@ class LoadedAnalysis:
         discs = self.discs if np.all(self.balanced) else ()
         for number, disc in enumerate(discs):
             (contacts,) = disc.model.discs
-            if isinstance(contacts, HalfSpaceCompliance):
+            if contacts.grids_can_check:
                 of = "" if len(discs) == 1 else f"disc {number}: "
                 told = separation_warning(contacts, disc.drive, disc.full, disc.pressures)
                 found.append(None if told is None else of + told)
@@ -268,13 +267,7 @@ class LoadedAnalysis:
 
 
 def seizing_words(written: Drive) -> str | None:
-    """Return which plays of a drive its warmth has taken, in words; None where it has taken none.
-
-    Parameters
-    ----------
-    written : Drive
-        As given, with its temperatures.
-    """
+    """Return which plays of a drive, as given with its temperatures, its warmth has taken; None where it has taken none."""
     if written.temperature is None:
         return None
     gone = lost_play(warm_drive(replace(written, temperature=Temperature())), warm_drive(written))
@@ -345,7 +338,7 @@ def analyse_cases(
         As `analyse` does.
     """
     angle, names = check_positions(crank_angle), list(cases)
-    many = max(1, MOST_ROWS // angle.size)
+    many = max(1, MAX_BATCH_POSITIONS // angle.size)
     for part in (names[first : first + many] for first in range(0, len(names), many)):
         prepared = [_prepared(cases[name], torque, engine) for name in part]
         for name, case, known in zip(part, prepared, _balanced_together(prepared, angle), strict=True):
@@ -379,7 +372,7 @@ def _balanced_together(cases: Sequence[_Case], angle: FloatArray) -> list[tuple[
     found: list[tuple[Equilibrium, Equilibrium] | None] = [None] * len(cases)
     groups: dict[Hashable, list[int]] = {}
     for number, case in enumerate(cases):
-        if isinstance(case.prepared, OnTables):
+        if case.prepared.batches:
             groups.setdefault(batch_layout(case.prepared.model), []).append(number)
     for members in (group for group in groups.values() if len(group) > 1):
         drives = [cases[number].drive for number in members]
@@ -496,12 +489,12 @@ def _turned_back(
 ) -> Equilibrium | None:
     """The positions of a drive with friction, its motion reversed."""
     friction = model.friction
-    if not isinstance(friction, TurningFriction):
+    if friction is None:
         return None
     other, near = replace(model, friction=friction.reversed()), full.found
 
     def at_torque(rows: NDArray[np.intp], start: FloatArray | None) -> Equilibrium:
-        return solve_at_output(other, drive, near.crank_angle[rows], torque, near.pose[rows])
+        return solve_at_output(other, [drive], near.crank_angle[rows], torque, near.pose[rows])
 
     try:
         found = balance_what_can_be(at_torque, near.crank_angle.size)
@@ -517,7 +510,7 @@ def _wall_stresses(model: Reducer, full: Equilibrium, pressures: ContactPressure
     return tuple(
         wall_stresses(disc, response, own, full.pose[:, model.coordinates.columns(number)[DISC_ROTATION]])
         for number, (disc, response, own) in enumerate(parts)
-        if isinstance(disc, CoupledCompliance)
+        if disc.coefficients is not None
     )
 
 

@@ -14,23 +14,17 @@ MEMORY_PER_PAIR = 900.0
 DISC_PER_PAIR = 60.0
 
 
-TOGETHER = 2e8
-"""Memory of an analysis that is done part by part, bytes: all turns of the paper's drive are one part."""
+MEMORY_PER_PART = 2e8
+"""Memory for one part of an analysis that is solved part by part, bytes: all turns of the paper's drive are one part."""
 
 
 KEPT_PER_POSITION = 1e3
-"""Memory of what is kept of a position that was solved part by part, bytes: 0.9 kB measured of a drive of 100 pins."""
+"""Memory for the kept results of one position, bytes: 0.9 kB measured for a drive of 100 pins."""
 
 
 def positions_together(drive: Drive) -> int:
-    """Return how many positions of a drive are solved at once where they are solved part by part.
-
-    Parameters
-    ----------
-    drive : Drive
-        The drive.
-    """
-    return max(1, int(TOGETHER / (MEMORY_PER_PAIR * _pairs(drive))))
+    """Return how many positions of a drive are solved at once where an analysis is solved part by part."""
+    return max(1, int(MEMORY_PER_PART / (MEMORY_PER_PAIR * _pairs(drive))))
 
 
 def _pairs(drive: Drive) -> int:

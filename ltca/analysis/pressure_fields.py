@@ -23,7 +23,6 @@ from ltca.analysis.results import coordinates, provenance
 from ltca.analysis.summary import LOADED_FRACTION
 from ltca.arrays import FloatArray
 from ltca.contact.end_pressure import largest_pressure
-from ltca.contact.pressure_cells import PatchSolution
 from ltca.contact.subsurface import find_subsurface_shear
 from ltca.contact.tracked_grid import ContactKind, ContactKinds, Departure, solve_fitted
 from ltca.geometry.separation import circle_departure, flank_departure
@@ -74,7 +73,7 @@ def recover_pressure(
     """
     solved = solve_fitted(kind, approach, effective_radius, departure)
     shear = find_subsurface_shear(solved, poisson_ratio)
-    x, y, pressure = _unfolded(solved)
+    x, y, pressure = solved.unfolded()
     return PressureField(
         x_edges=x,
         y_edges=y,
@@ -86,15 +85,6 @@ def recover_pressure(
         max_shear=shear.max_shear,
         max_shear_depth=shear.depth,
     )
-
-
-def _unfolded(solved: PatchSolution) -> tuple[FloatArray, FloatArray, FloatArray]:
-    x, y, pressure = solved.grid.x_edges, solved.grid.y_edges, solved.pressure
-    if solved.grid.symmetric_x:
-        x, pressure = np.concatenate([-x[:0:-1], x]), np.concatenate([pressure[::-1], pressure])
-    if solved.grid.symmetric_y:
-        y, pressure = np.concatenate([-y[:0:-1], y]), np.concatenate([pressure[:, ::-1], pressure], axis=1)
-    return x, y, pressure
 
 
 def pin_fields(analysis: LoadedAnalysis, position: int, cells: int = FIELD_CELLS) -> dict[int, PressureField]:

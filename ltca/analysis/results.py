@@ -13,11 +13,11 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from ltca.analysis.contact_arrays import contact_arrays
 from ltca.analysis.friction.variables import friction_values
 from ltca.analysis.half_width_guard import pin_deflections
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.arrays import FloatArray
-from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.response import ContactPressures
 from ltca.compliance.wall_stress import WallStresses
 from ltca.contact.subsurface import line_contact_shear
@@ -76,26 +76,7 @@ def _disc_values(analysis: LoadedAnalysis) -> dict[str, Any]:
     place = analysis.model.discs[0].geometry.placement
     displacement = disc_displacement(full.pose) * place.eccentric_direction(full.crank_angle).conjugate()
     values = {
-        "pin_load": contacts.pin_load,
-        "roller_load": contacts.rollers.outer_load,
-        "roller_load_inner": contacts.rollers.inner_load,
-        "pin_shaft_load": contacts.hole_load,
-        "pin_approach": contacts.flank.approach,
-        "roller_approach_outer": contacts.rollers.outer_approach,
-        "roller_approach_inner": contacts.rollers.inner_approach,
-        "pin_shaft_approach": contacts.holes.approach,
-        "pin_pressure_mid": pressures.pins.mid,
-        "roller_pressure_mid_outer": pressures.outer.mid,
-        "roller_pressure_mid_inner": pressures.inner.mid,
-        "pin_pressure_max": pressures.pins.largest,
-        "roller_pressure_max_outer": pressures.outer.largest,
-        "roller_pressure_max_inner": pressures.inner.largest,
-        "pin_shaft_pressure_mid": pressures.holes.mid,
-        "pin_shaft_pressure_max": pressures.holes.largest,
-        "pin_half_width": pressures.pins.half_width,
-        "roller_half_width_outer": pressures.outer.half_width,
-        "roller_half_width_inner": pressures.inner.half_width,
-        "pin_shaft_half_width": pressures.holes.half_width,
+        **contact_arrays(contacts, pressures),
         "pin_contact_parameter": np.mod(contacts.flank.parameter, 2.0 * np.pi),
         "bearing_radial": analysis.bearing_radial[:, 0],
         "bearing_tangential": analysis.bearing_tangential[:, 0],
@@ -260,10 +241,8 @@ def _of_cases(words: Mapping[str, str]) -> str:
 
 def _bodies(analyses: Mapping[str, LoadedAnalysis]) -> dict[str, list[int] | list[str]]:
     """Whether coefficients of each case are its own or, on somebody's word, of bodies that differ a little; who derived them."""
-    models = [
-        [disc for disc in analysis.model.discs if isinstance(disc, CoupledCompliance)] for analysis in analyses.values()
-    ]
-    used = [[disc.coefficients for disc in model] for model in models]
+    models = [analysis.model.discs for analysis in analyses.values()]
+    used = [[disc.coefficients for disc in discs if disc.coefficients is not None] for discs in models]
     if not all(used):
         return {}
     return {

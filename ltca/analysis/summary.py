@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ltca.analysis.contact_arrays import array_of
 from ltca.analysis.extremes import Sampling, is_full_turn, refine_extremes, sampling
 from ltca.analysis.friction.losses import KINDS
 from ltca.analysis.loaded_analysis import LoadedAnalysis
@@ -24,6 +25,10 @@ from ltca.quantities import REFINED, SCALARS, scalar_named
 LOADED_FRACTION = 1e-3
 """A contact counts as loaded above this part of the largest load of its kind in the case."""
 
+OF_CONTACTS = tuple(
+    f"max_{part}_{kind}" for part in ("pin", "roller", "pin_shaft") for kind in ("load", "pressure_mid", "pressure_max")
+)
+"""Largest loads and pressures of the contacts."""
 OF_PINS = ("max_pin_seat_pressure", "max_hole_seat_pressure", "max_pin_deflection", "max_shaft_pin_deflection")
 """What loose pins, sleeves and pins that bend have."""
 OF_RANGES = (
@@ -89,25 +94,16 @@ def summarise(analysis: LoadedAnalysis) -> dict[str, float | None]:
 def scalars_of_positions(analysis: LoadedAnalysis, arrays: Mapping[str, FloatArray]) -> dict[str, float]:
     """Return the scalars that follow loads, poses and pressures of the positions smoothly, by their names in the registry.
 
-    Parameters
-    ----------
-    analysis : LoadedAnalysis
-        The case.
-    arrays : mapping of str to array
-        Its arrays, from `ltca.analysis.results.case_arrays`.
+    `arrays` are those of the case, from `ltca.analysis.results.case_arrays`.
     """
-    radial, tangential, pressures = analysis.bearing_radial, analysis.bearing_tangential, analysis.pressures
+    radial, tangential = analysis.bearing_radial, analysis.bearing_tangential
     values = {
         "mean_bearing_load": np.mean(np.hypot(radial, tangential)),
         "mean_radial_bearing_load": np.mean(radial),
         "mean_tangential_bearing_load": np.mean(tangential),
         "ptp_tangential_bearing_load": np.max(np.ptp(tangential, axis=0)),
         "max_bearing_load": np.max(np.hypot(radial, tangential)),
-        **_sums(arrays, "max_pin_load", "max_pin_pressure_mid", "max_pin_pressure_max", "max_roller_load"),
-        "max_roller_pressure_mid": max(np.max(pressures.outer.mid), np.max(pressures.inner.mid)),
-        "max_roller_pressure_max": max(np.max(pressures.outer.largest), np.max(pressures.inner.largest)),
-        **_sums(arrays, "max_pin_shaft_load", "max_pin_shaft_pressure_mid", "max_pin_shaft_pressure_max"),
-        **_sums(arrays, "ptp_transmission_error", "ptp_transmission_error_light"),
+        **_sums(arrays, *OF_CONTACTS, "ptp_transmission_error", "ptp_transmission_error_light"),
     }
     share = analysis.torque_share
     for disc in range(share.shape[1]):
@@ -152,8 +148,10 @@ SUMS: dict[str, Callable[[FloatArray], Any]] = {
 def _sums(arrays: Mapping[str, FloatArray], *names: str) -> dict[str, float]:
     """Scalars of the arrays that there are, by name; not a number of an array without parts, as without a pin shaft."""
     found = {}
-    for scalar in (SCALARS[name] for name in names if SCALARS[name].of in arrays):
-        values, how = arrays[scalar.of], scalar.how or scalar.name.partition("_")[0]
+    for scalar in (SCALARS[name] for name in names):
+        values, how = array_of(arrays, scalar.of), scalar.how or scalar.name.partition("_")[0]
+        if values is None:
+            continue
         known = np.any(np.isfinite(values)) if how == "largest known" else values.size
         factor = ARCSEC if scalar.unit == "arcsec" else 1.0
         found[scalar.name] = factor * float(SUMS[how](values)) if known else np.nan

@@ -25,8 +25,8 @@ from ltca.errors import DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.play import free_play
 
-SMALLEST = 1e-4
-"""Smallest torque as a part of the rated one: elastic wind-up is some 1e-4 of its rated value there."""
+LEAST_TORQUE_RATIO = 1e-4
+"""Smallest torque relative to the rated one: elastic wind-up is some 1e-4 of its rated value there."""
 LOST_MOTION = 0.03
 """Lost motion is read between ± this part of the rated torque unless another is asked for, as makers of precision reducers do."""
 LEAST_PART, MOST_PART = 0.001, 0.5
@@ -115,7 +115,9 @@ def torque_curve(
     angles = np.atleast_1d(np.asarray(crank_angle, dtype=float))
     rated = drive.load.torque
     parts = np.unique(
-        np.concatenate([np.linspace(SMALLEST**0.5, 1.0, points) ** 2, [SMALLEST, lost_motion, STIFF_FROM]])
+        np.concatenate(
+            [np.linspace(LEAST_TORQUE_RATIO**0.5, 1.0, points) ** 2, [LEAST_TORQUE_RATIO, lost_motion, STIFF_FROM]]
+        )
     )
     torque = rated * np.concatenate([-parts[::-1], parts])
     held = np.repeat(angles, torque.size)
@@ -124,10 +126,10 @@ def torque_curve(
     opposing = (1.0 if drive.wheel_is_held else -1.0) * drive.driving_sign
     loads = np.tile(opposing * torque, angles.size)
     tables = replace(HalfSpace().prepare(drive).model, friction=None)
-    found = solve_at_output(tables, drive, held, loads)
+    found = solve_at_output(tables, [drive], held, loads)
     if not (engine is None or engine == HalfSpace()):
         model = replace(engine.prepare(drive).model, friction=None)
-        found = solve_at_output(model, drive, held, loads, found.pose)
+        found = solve_at_output(model, [drive], held, loads, found.pose)
     wheel = found.pose[:, WHEEL_ANGLE].reshape(angles.size, torque.size)
     output = drive.output_per_wheel_angle * wheel
 

@@ -19,10 +19,10 @@ from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
 from ltca.geometry.placement import Placement
 
-APART = 1e-3
-"""Of the largest singular value the least that orders told apart leave."""
-TOGETHER = 20_000
-"""Positions whose columns are in memory at once."""
+LEAST_SINGULAR_RATIO = 1e-3
+"""Least singular value, relative to the largest, at which orders can be distinguished."""
+POSITIONS_PER_CHUNK = 20_000
+"""Positions whose columns are held in memory at once."""
 
 
 class Order(NamedTuple):
@@ -130,7 +130,7 @@ def least_turns(orders: tuple[Order, ...], positions: int, most: int) -> int:
         columns = _columns(angle, values)
         gram += columns.T @ columns
         sizes = np.linalg.eigvalsh(gram)
-        if turn * positions >= len(gram) and sizes[0] >= APART**2 * sizes[-1]:
+        if turn * positions >= len(gram) and sizes[0] >= LEAST_SINGULAR_RATIO**2 * sizes[-1]:
             return turn
     return most
 
@@ -164,13 +164,13 @@ def fit_orders(crank_angle: FloatArray, error: FloatArray, orders: tuple[Order, 
     angle, error = np.asarray(crank_angle), np.asarray(error)
     # The triangle of columns and error side by side, block by block: its solution and its last corner are theirs.
     triangle: Any = np.zeros((0, 2 * len(orders) + 2))
-    for first in range(0, angle.size, TOGETHER):
-        few = slice(first, first + TOGETHER)
+    for first in range(0, angle.size, POSITIONS_PER_CHUNK):
+        few = slice(first, first + POSITIONS_PER_CHUNK)
         block = np.column_stack([_columns(angle[few], values), error[few]])
         triangle = np.linalg.qr(np.vstack([triangle, block]), mode="r")
     count = 2 * len(orders) + 1
     solution, _, rank, singular = np.linalg.lstsq(triangle[:, :count], triangle[:, count], rcond=None)
-    if rank < count or singular[-1] < APART * singular[0]:
+    if rank < count or singular[-1] < LEAST_SINGULAR_RATIO * singular[0]:
         raise ValueError(
             f"{angle.size} positions cannot tell {len(orders)} orders apart; give more of them over more turns"
         )

@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ltca.errors import DamagedFileError
 from ltca.reading.arguments import DifferentValues, refuse_idle_options
 
 if TYPE_CHECKING:
@@ -38,15 +39,7 @@ def add_compliance_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def check_compliance(arguments: argparse.Namespace) -> None:
-    """Check the arguments as far as that goes before the engines are imported, which takes a second.
-
-    Raises
-    ------
-    CycloError
-        When an option does not belong to the compliance, or a file is not there.
-    """
-    from ltca.errors import DamagedFileError
-
+    """Check the arguments as far as that goes before the engines are imported, which takes a second."""
     refuse_idle_options(
         arguments.compliance,
         method=getattr(arguments, "method", None),
@@ -60,13 +53,7 @@ def check_compliance(arguments: argparse.Namespace) -> None:
 
 
 def compliance_of(arguments: argparse.Namespace) -> Engine:
-    """Return the engine that the arguments ask for, method and contacts among them where a command has these.
-
-    Raises
-    ------
-    DriveError
-        When an option does not belong to the compliance.
-    """
+    """Return the engine that the arguments ask for, method and contacts among them where a command has these."""
     from ltca.analysis.engines import engine_named
 
     return engine_named(
@@ -79,13 +66,7 @@ def compliance_of(arguments: argparse.Namespace) -> Engine:
 
 
 def find_coefficients_of(cases: dict[str, Drive], arguments: argparse.Namespace) -> None:
-    """Check the files given against all cases, or derive all that is missing together: the engine finds each again.
-
-    Raises
-    ------
-    CycloError
-        When a case has no file, a file no case, or nothing can be derived.
-    """
+    """Check the files given against all cases, or derive all that is missing together: the engine finds each again."""
     from ltca.compliance.coefficient_files import find_case_coefficients
     from ltca.compliance.near_field import NEAR_FIELDS
     from ltca.drive.members.temperatures import warm_drive

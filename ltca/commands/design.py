@@ -1,4 +1,4 @@
-"""``cyclo design``: from requirements to drive files, or what stands in the way."""
+"""``cyclo design``: from requirements to drive files, or to the relaxations that would make a design feasible."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ltca.commands.study_arguments import add_worker_arguments, check_worker_arguments
+from ltca.errors import FaultError
 from ltca.reading.arguments import add_out_argument, count_argument, default_folder, path_argument
 
 if TYPE_CHECKING:
@@ -46,7 +47,6 @@ def execute(arguments: argparse.Namespace) -> int:
     """Search, write and print what was found; exit status 1 when nothing fits."""
     from concurrent.futures.process import BrokenProcessPool
 
-    from ltca.errors import FaultError
     from ltca.output.run_folder import claimed_folder, require_folder
     from ltca.studies.design_search.requirements import load_requirements
 

@@ -7,6 +7,7 @@ import json
 import shlex
 from pathlib import Path
 
+from ltca.errors import CycloError, DriveError, shortened
 from ltca.reading.arguments import path_argument
 
 SUMMARY = (
@@ -34,7 +35,6 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def execute(arguments: argparse.Namespace) -> int:
     """Write the file."""
     from ltca.drive.names import NAMING, names_a_file
-    from ltca.errors import CycloError, DriveError, shortened
     from ltca.output.files import whole_file
     from ltca.reading.drive_file import shipped_drive
 

@@ -100,13 +100,7 @@ def _installed() -> dict[str, EntryPoint]:
 
 
 def build_parser(wanted: str = "") -> argparse.ArgumentParser:
-    """Return the parser of ``cyclo``.
-
-    Parameters
-    ----------
-    wanted : str
-        Command to be run: if it is installed, it alone is loaded; otherwise all are, for the help.
-    """
+    """Return the parser of ``cyclo``: of the command `wanted` alone where that is installed, otherwise of all, for the help."""
     parser = _Parser(
         prog="cyclo",
         description="Loaded tooth contact analysis of cycloidal gear drives, checked against finite elements.",
@@ -133,11 +127,6 @@ def build_parser(wanted: str = "") -> argparse.ArgumentParser:
 
 def examples_text(examples: Sequence[tuple[str, str]]) -> str | None:
     """Return the end of a command's help; None without examples.
-
-    Parameters
-    ----------
-    examples : sequence of (str, str)
-        Command lines, each with what it does.
 
     Examples
     --------

@@ -5,7 +5,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from ltca.commands.study_arguments import add_study_arguments
+from ltca.commands.compliance_arguments import check_compliance, compliance_of
+from ltca.commands.study_arguments import add_study_arguments, check_study_arguments
 from ltca.reading.arguments import default_folder
 
 MISSING = "no such file; docs/how-to/studies.md says what a study file holds"
@@ -24,8 +25,6 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Solve the samples, write and print the results."""
-    from ltca.commands.compliance_arguments import check_compliance, compliance_of
-    from ltca.commands.study_arguments import check_study_arguments, execute_study
     from ltca.output.run_folder import require_folder
     from ltca.reading.toml_text import read_text
 
@@ -34,6 +33,7 @@ def execute(arguments: argparse.Namespace) -> int:
     read_text(arguments.study, MISSING)
     out = arguments.out or default_folder(arguments.study.stem, "sweep")
     require_folder(out)
+    from ltca.commands.actions.study import execute_study
     from ltca.studies.execution.storage import StudyFolder
     from ltca.studies.sweep_file import load_sweep
 

@@ -4,7 +4,13 @@ from __future__ import annotations
 
 import argparse
 
-from ltca.commands.study_arguments import add_positions_argument, add_seed_argument, add_study_arguments
+from ltca.commands.compliance_arguments import check_compliance, compliance_of
+from ltca.commands.study_arguments import (
+    add_positions_argument,
+    add_seed_argument,
+    add_study_arguments,
+    check_study_arguments,
+)
 from ltca.reading.arguments import add_case_argument, add_drive_argument, count_argument, default_folder
 
 SUMMARY = "tolerance study: percentiles, worst sample, what matters"
@@ -49,8 +55,6 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Draw the samples, solve them, write and print the results."""
-    from ltca.commands.compliance_arguments import check_compliance, compliance_of
-    from ltca.commands.study_arguments import check_study_arguments, execute_study
     from ltca.output.run_folder import require_folder
     from ltca.reading.drive_file import load_drive
 
@@ -60,6 +64,7 @@ def execute(arguments: argparse.Namespace) -> int:
     file.select([arguments.case] if arguments.case is not None else None)
     out = arguments.out or default_folder(file.name, "tolerance")
     require_folder(out)
+    from ltca.commands.actions.study import execute_study
     from ltca.studies.execution.storage import StudyFolder
     from ltca.studies.tolerance_study import tolerance_study
 

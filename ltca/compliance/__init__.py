@@ -1,4 +1,4 @@
-"""Loads of all pairs at a pose: how the bodies yield, three models behind one interface.
+"""Loads of all pairs at a pose: how the bodies yield, two kinds of models behind one interface.
 
 Modules in the order data passes:
 
@@ -9,6 +9,7 @@ response             What a compliance model answers: loads of all contact pairs
                      its tangent
 pressures            Pressures behind the loads found: read from the laws of the contacts, for shaft pins from their
                      loads
+uncoupled            Contacts that do not feel each other: every load follows from its approach alone
 half_space           Half-space compliance: pairs that do not feel each other (the paper's model)
 grids                Contact grids solved inside every iteration of the equilibrium: the ``direct`` method
 stress_coefficients  Stress along the walls of the disc by the loads on it: reading from the coefficient file, and the

@@ -21,8 +21,8 @@ from typing import Any
 
 from ltca.compliance.coefficients import InfluenceCoefficients, load_coefficients
 from ltca.compliance.near_field import NearField
+from ltca.drive.engine_support import require
 from ltca.drive.parts import Drive
-from ltca.drive.plane_strain import require_plane_strain
 from ltca.drive.single_discs import single_discs
 from ltca.errors import CycloError, DamagedFileError
 from ltca.output.process_pools import process_pool
@@ -35,26 +35,26 @@ GROUP = "cyclo.derivations"
 DERIVATION = "finite-elements"
 INSTEAD = "CYCLO_TEMPORARY_CACHE"
 """Variable that names a cache that cannot be written and, on a line of its own, the folder of this run instead of it."""
-ROOM = 1 << 20
-"""Bytes that a cache must have room for; a file of the paper's disc takes 8 MB."""
-PROCESSES = 2
-"""Derivations at once: one takes 1.1 GB for a disc like the paper's, 3.5 GB with 75 teeth."""
+LEAST_CACHE_ROOM = 1 << 20
+"""Least free space of a folder that is used as cache, bytes."""
+MAX_DERIVATIONS = 2
+"""Most derivations at the same time: one takes 1.1 GB for a disc like the paper's, 3.5 GB with 75 teeth."""
 SECONDS, SECONDS_PER_TOOTH, SECONDS_PER_HOLE, SECONDS_PER_BORE = 5.0, 0.8, 0.6, 1.2
-"""What a derivation takes on one core: the mesh is fine along the boundaries and all else follows its size."""
+"""Time of a derivation on one core, s: the mesh is fine along the boundaries and the rest follows its size."""
 
 
-def cached_file(drive: Drive, plane: str = "strain") -> Path:
+def cached_file(drive: Drive) -> Path:
     """Return where the coefficients of a drive's shape are kept: under ``$XDG_CACHE_HOME`` or ``~/.cache``.
 
     The folder carries version and hash of the code that derived them: other code derives its own. Where it cannot be
     written and has not got them, it is a temporary one of this run (`require_cache`).
     """
-    new, kept = (folder / _name(drive, plane) for folder in (cache_folder(), _kept_folder()))
+    new, kept = (folder / _name(drive) for folder in (cache_folder(), _kept_folder()))
     return kept if kept.exists() and not new.exists() else new
 
 
-def _name(drive: Drive, plane: str) -> str:
-    return f"coefficients-{drive.shape_fingerprint()}-{plane}.nc"
+def _name(drive: Drive) -> str:
+    return f"coefficients-{drive.shape_fingerprint()}-strain.nc"
 
 
 def cache_folder() -> Path:
@@ -76,7 +76,7 @@ def require_cache() -> None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder) as probe:
-            probe.write(bytes(ROOM))
+            probe.write(bytes(LEAST_CACHE_ROOM))
             probe.flush()
     except OSError as error:
         print(
@@ -97,8 +97,7 @@ def _forget(folder: str, process: int) -> None:
 
 def find_coefficients(
     drive: Drive,
-    files: Path | Sequence[Path] | None = None,
-    plane: str = "strain",
+    files: Sequence[Path] | None = None,
     *,
     near_field: NearField = "half-space",
 ) -> InfluenceCoefficients:
@@ -108,10 +107,8 @@ def find_coefficients(
     ----------
     drive : Drive
         The drive; its load and single-part errors do not matter.
-    files : Path or sequence of Path, optional
+    files : sequence of Path, optional
         Files of ``cyclo derive``, one of which must belong to the drive.
-    plane : {"strain", "stress"}
-        State of the body part when it has to be derived.
     near_field : {"plane-strain", "half-space"}
         What they are wanted for.
 
@@ -126,20 +123,19 @@ def find_coefficients(
         When no file fits the drive, plane strain cannot say what the drive has, or nothing is installed that derives.
     """
     if near_field == "plane-strain":
-        require_plane_strain(drive, "compliance fe")
+        require(drive, "fe")
     if files is not None:
-        return _load_first_that_fits([files] if isinstance(files, Path) else files, drive)[1]
-    found = _kept(drive, plane)
+        return _load_first_that_fits(files, drive)[1]
+    found = _kept(drive)
     if found is None:
-        _derive_missing({drive.name: drive}, plane)
-        found = load_coefficients(cached_file(drive, plane), drive)
+        _derive_missing({drive.name: drive})
+        found = load_coefficients(cached_file(drive), drive)
     return found
 
 
 def find_case_coefficients(
     cases: Mapping[str, Drive],
     files: Sequence[Path] = (),
-    plane: str = "strain",
     *,
     near_field: NearField = "half-space",
 ) -> dict[str, InfluenceCoefficients]:
@@ -152,8 +148,6 @@ def find_case_coefficients(
     files : sequence of Path
         Files of ``cyclo derive``: each must serve a case, and each case must be served by one. Without any, those that
         are not in the cache are derived and kept there.
-    plane : {"strain", "stress"}
-        State of the body part where it has to be derived.
     near_field : {"plane-strain", "half-space"}
         What they are wanted for.
 
@@ -169,13 +163,13 @@ def find_case_coefficients(
     """
     for drive in cases.values():
         if near_field == "plane-strain":
-            require_plane_strain(drive, "compliance fe")
+            require(drive, "fe")
     cases = {label: single for name, drive in cases.items() for label, single in _discs(name, drive)}
     if files:
         return _load_each(cases, files)
-    kept = {name: _kept(drive, plane) for name, drive in cases.items()}
-    _derive_missing({name: drive for name, drive in cases.items() if kept[name] is None}, plane)
-    return {name: own or load_coefficients(cached_file(cases[name], plane), cases[name]) for name, own in kept.items()}
+    kept = {name: _kept(drive) for name, drive in cases.items()}
+    _derive_missing({name: drive for name, drive in cases.items() if kept[name] is None})
+    return {name: own or load_coefficients(cached_file(cases[name]), cases[name]) for name, own in kept.items()}
 
 
 def _discs(name: str, drive: Drive) -> list[tuple[str, Drive]]:
@@ -213,9 +207,9 @@ def _load_first_that_fits(files: Sequence[Path], drive: Drive) -> tuple[Path, In
     raise CycloError("; ".join(refusals) or "no file of influence coefficients is given")
 
 
-def _kept(drive: Drive, plane: str) -> InfluenceCoefficients | None:
+def _kept(drive: Drive) -> InfluenceCoefficients | None:
     """Return the coefficients in the cache; None where there are none, or a damaged file that has to be made again."""
-    path = cached_file(drive, plane)
+    path = cached_file(drive)
     if not path.exists():
         return None
     try:
@@ -249,16 +243,16 @@ def told_seconds(seconds: float) -> str:
     return f"some {10 * max(round(0.1 * seconds), 1)} s" if seconds < 180.0 else f"some {round(seconds / 60.0)} min"
 
 
-def _derive_missing(cases: Mapping[str, Drive], plane: str) -> None:
+def _derive_missing(cases: Mapping[str, Drive]) -> None:
     """Derive the coefficients of cases into the cache, those of one shape once, and say so."""
     missing: dict[Path, str] = {}
     for name, drive in cases.items():
-        missing.setdefault(cached_file(drive, plane), name)
+        missing.setdefault(cached_file(drive), name)
     if not missing:
         return
     _derivation()
     require_cache()
-    missing = {cache_folder() / _name(cases[name], plane): name for name in missing.values()}
+    missing = {cache_folder() / _name(cases[name]): name for name in missing.values()}
     each = expected_seconds(cases[name] for name in missing.values())
     whole = max(sum(each) / _processes(len(missing)), *each)
     print(
@@ -267,37 +261,35 @@ def _derive_missing(cases: Mapping[str, Drive], plane: str) -> None:
         file=sys.stderr,
     )
     with progress("coefficients", len(missing)) as advance:
-        for path in _derive({path: cases[name] for path, name in missing.items()}, plane):
+        for path in _derive({path: cases[name] for path, name in missing.items()}):
             advance(missing[path])
 
 
-def _derive(drives: Mapping[Path, Drive], plane: str) -> Iterator[Path]:
+def _derive(drives: Mapping[Path, Drive]) -> Iterator[Path]:
     """Derive coefficients into their files, two at once, and yield each file that is there."""
     processes = _processes(len(drives))
     alone = dict(drives)
     if processes > 1:
         with process_pool(processes) as pool:
             with interrupts_held():
-                flying = {
-                    pool.submit(_derive_file, drive, plane, path, processes): path for path, drive in drives.items()
-                }
+                flying = {pool.submit(_derive_file, drive, path, processes): path for path, drive in drives.items()}
             for future in as_completed(flying):
                 # What fails for want of memory (or of a process that was killed for it) may still fit alone.
                 if future.exception() is None:
                     del alone[flying[future]]
                     yield flying[future]
     for path, drive in alone.items():
-        _derive_file(drive, plane, path, 1)
+        _derive_file(drive, path, 1)
         yield path
 
 
 def _processes(derivations: int) -> int:
-    return min(PROCESSES, derivations, os.cpu_count() or 1)
+    return min(MAX_DERIVATIONS, derivations, os.cpu_count() or 1)
 
 
-def _derive_file(drive: Drive, plane: str, path: Path, processes: int) -> None:
+def _derive_file(drive: Drive, path: Path, processes: int) -> None:
     """Derive the coefficients of one drive into a file, one of some processes that share the memory."""
-    dataset = _derivation()(drive, state=plane, processes=processes)
+    dataset = _derivation()(drive, state="strain", processes=processes)
     write_coefficients(dataset, path)
 
 

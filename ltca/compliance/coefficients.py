@@ -37,8 +37,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-MISPLACED = 1e-3
-"""Of a half-width: coefficients change by that part of the near field's unit."""
+PLACE_TOLERANCE = 1e-3
+"""Largest misplacement of a station relative to a half-width: coefficients change by that part of the near field's unit."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -324,10 +324,10 @@ def _require_places(path: Path, data: xr.Dataset, drive: Drive) -> None:
         circle = centres[number - 1] + radii[number - 1] * np.exp(1j * parameter[own]) if number else None
         expected = flank.flank(parameter[own]) if circle is None else circle
         away = np.max(np.abs(place[own] - expected) / data["station_half_width"].values[own])
-        if not away <= MISPLACED:
+        if not away <= PLACE_TOLERANCE:
             raise DamagedFileError(
                 f"{path}: a station of boundary {number} stands {away:.3g} half-widths of its patch from the wall of "
-                f"{drive.name}: must be within {MISPLACED:g}"
+                f"{drive.name}: must be within {PLACE_TOLERANCE:g}"
             )
 
 

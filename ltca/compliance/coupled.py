@@ -11,7 +11,7 @@ zero where ε is negative, so that no contact has to be switched on or off, and 
 
 .. math:: R(\epsilon) = \epsilon + C f(\epsilon) - \delta(q) = 0 .
 
-Only contacts that may carry are unknowns: those pressed together, and open ones within `MARGIN`. The others' ε follows
+Only contacts that may carry are unknowns: those pressed together, and open ones within `CANDIDATE_MARGIN`. The others' ε follows
 from the loads; where one of them is positive after all, every contact is taken.
 
 Of a roller the outer contact is the unknown. Its inner contact carries F_i = F_o (n_o·n) and yields with the race,
@@ -21,6 +21,7 @@ the roller and the inner contacts of the other rollers; the place of the roller 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,29 +34,29 @@ from ltca.compliance.response import (
     ContactPressures,
     DiscResponse,
     KindPressures,
+    PairSlopes,
     Start,
     bearing_bend,
-    coupled_slopes,
     resultant,
     split_shifts,
 )
 from ltca.compliance.rollers import RollerState
 from ltca.compliance.undeformed import UndeformedBodies
 from ltca.contact.tracked_grid import ContactKind
+from ltca.drive.hole_contact import shaft_pins_yield
 from ltca.drive.parts import Drive
-from ltca.drive.plane_strain import shaft_pins_yield
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.coordinates import DISC_ROTATION
 from ltca.geometry.pairs import ContactGeometry
-from ltca.laws.backed import back_shaft_pins, of_pairs, shaft_pin_stiffness, tip_share
-from ltca.laws.contact_law import ContactLaw, EnergyLaw
-from ltca.laws.series import SpringLaw, approach_at_load
+from ltca.laws.backed import back_shaft_pins, shaft_pin_stiffness, tip_share
+from ltca.laws.contact_law import ContactLaw
+from ltca.laws.spring import SpringLaw
 
-ITERATIONS = 60
-CHUNK = 256
-"""Positions solved at once: the matrices of more would fall out of the cache."""
-MARGIN = 0.25
-"""Gap within which an open contact may carry, as a part of the largest overlap of its position."""
+MAX_ITERATIONS = 60
+POSITIONS_PER_CHUNK = 256
+"""Positions solved at once: the matrices of more would not fit into the processor's cache."""
+CANDIDATE_MARGIN = 0.25
+"""Gap within which an open contact is taken for a candidate to carry, relative to the largest overlap at its position."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -70,7 +71,7 @@ class CoupledCompliance:
         Body parts, rollers as long as they are.
     near_field : NearFieldLaws
         Laws of the near fields.
-    hole_law : EnergyLaw
+    hole_law : ContactLaw
         Near field of the hole's wall, or the spring of the shaft pin where the wall does not yield.
     hole_spring : float
         What the spring of the shaft pin yields behind the near field, mm/N; zero where it is the law.
@@ -84,10 +85,12 @@ class CoupledCompliance:
         What each contact's own body parts add to the diagonal of C.
     """
 
+    grids_can_check: ClassVar[bool] = False
+
     geometry: ContactGeometry
     coefficients: InfluenceCoefficients
     near_field: NearFieldLaws
-    hole_law: EnergyLaw
+    hole_law: ContactLaw
     hole_spring: float
     race: FloatArray
     outer_radius: FloatArray
@@ -156,7 +159,7 @@ class CoupledCompliance:
     def respond(
         self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None, shifts: ComplexArray | None = None
     ) -> DiscResponse:
-        """Return the contact forces at the poses of a batch of positions; see `ltca.compliance.half_space`.
+        """Return the contact forces at the poses of a batch of positions; see `ltca.compliance.uncoupled`.
 
         Raises
         ------
@@ -167,7 +170,7 @@ class CoupledCompliance:
         flank = self.geometry.flank(crank_angle, pose, None if start is None else start.parameter, moved[0])
         holes = self.geometry.holes(crank_angle, pose, moved[1])
         pins, parts = (flank, holes, shifts), []
-        for rows in np.array_split(np.arange(crank_angle.size), max(1, -(-crank_angle.size // CHUNK))):
+        for rows in np.array_split(np.arange(crank_angle.size), max(1, -(-crank_angle.size // POSITIONS_PER_CHUNK))):
             bodies = UndeformedBodies(self.geometry, *take_positions((crank_angle, pose, pins), rows))
             parts.append(self._solve(bodies, start, rows))
         joined: DiscResponse = join_positions(parts)
@@ -179,7 +182,7 @@ class CoupledCompliance:
             for row, warm in enumerate(start.warm_start[rows]):
                 if warm is not None:
                     guess[row] = warm
-        for margin in (MARGIN, np.inf):
+        for margin in (CANDIDATE_MARGIN, np.inf):
             batch = _Batch(self, bodies, margin)
             response = batch.response(batch.solve(guess))
             if response is not None:
@@ -190,8 +193,8 @@ class CoupledCompliance:
         """Return pressures and half-widths from the near fields."""
         laws, near = self.near_field, np.stack(list(response.warm_start))
         pins, rollers = response.pin_load.shape[1], self.outer_radius.size
-        inner, _ = approach_at_load(laws.inner, response.rollers.inner_load, self.inner_radius)
-        hole, _ = approach_at_load(laws.hole, response.hole_load, self.hole_radius)
+        inner, _ = laws.inner.approach_at_load(response.rollers.inner_load, self.inner_radius)
+        hole, _ = laws.hole.approach_at_load(response.hole_load, self.hole_radius)
 
         def read(law: ContactLaw, kind: ContactKind, approach: FloatArray, radius: FloatArray) -> KindPressures:
             return pressures_of_law(law, kind if laws.has_ends else None, approach, radius)
@@ -232,7 +235,8 @@ class _Batch:
         self.effective_radius = np.take_along_axis(flank.effective_radius, on_flank, axis=1)
         self.outer_radius, self.inner_radius = model.outer_radius[in_bore], model.inner_radius[in_bore]
         self.hole_radius = model.hole_radius[in_holes]
-        self.pin_law, self.hole_law = of_pairs(model.near_field.pin, on_flank), of_pairs(model.hole_law, in_holes)
+        self.pin_law = model.near_field.pin.take(flank.approach.shape, (rows, on_flank))
+        self.hole_law = model.hole_law.take((rows.size, model.hole_radius.size), (rows, in_holes))
         self.inner_near = self.inner_compliance = self.inner_load = np.zeros(in_bore.shape)
         self.placed = False
         self.place_rollers(np.zeros((rows.size, rollers)))
@@ -282,8 +286,8 @@ class _Batch:
             inner_load = outer_load * self.cosine
             expected = self.inner_near + self.inner_compliance * (inner_load - self.inner_load)
             self.inner_load = inner_load
-            self.inner_near, self.inner_compliance = approach_at_load(
-                m.near_field.inner, inner_load, self.inner_radius, expected
+            self.inner_near, self.inner_compliance = m.near_field.inner.approach_at_load(
+                inner_load, self.inner_radius, expected
             )
             inner = self.of_all(self.inner_load, in_bore, m.race.shape[0]) @ m.race
             inner += self.of_all(self.inner_near + cross * outer_load, in_bore, m.race.shape[0])
@@ -304,7 +308,7 @@ class _Batch:
         residual, matrix = self.evaluate(near)
         size = np.max(np.abs(residual), axis=1)
         history: list[float] = []
-        for _ in range(ITERATIONS):
+        for _ in range(MAX_ITERATIONS):
             history.append(float(np.max(size, initial=0.0)))
             if history[-1] < 1e-13:
                 return near, matrix
@@ -393,5 +397,35 @@ class _Batch:
             shifts=bodies.shifts,
             slopes=None
             if bodies.shifts is None
-            else coupled_slopes(root, inside, np.asarray(changed), self.chosen, kept),
+            else _coupled_slopes(root, inside, np.asarray(changed), self.chosen, kept),
         )
+
+
+def _coupled_slopes(
+    root: FloatArray, inside: FloatArray, changed: FloatArray, chosen: NDArray[np.intp], kept: NDArray[np.intp]
+) -> PairSlopes:
+    """Return how the loads follow approaches and pose where contacts feel each other: dF = r (1 + r C r)⁻¹ r dδ.
+
+    Parameters
+    ----------
+    root : array, shape (positions, chosen)
+        r, square root of the stiffness of each contact that may carry.
+    inside : array, shape (positions, chosen, chosen)
+        1 + r C r.
+    changed : array, shape (positions, chosen, coordinates)
+        (1 + r C r)⁻¹ r ∂δ/∂q.
+    chosen : array of int, shape (positions, chosen)
+        Which of all contacts they are.
+    kept : array of int
+        Numbers of wheel pins and shaft pins among all contacts, the last of which is the last of these.
+    """
+    positions, contacts, rows = (
+        root.shape[0],
+        max(int(kept[-1]), int(chosen.max())) + 1,
+        np.arange(root.shape[0])[:, None],
+    )
+    by_pose, by_approach = np.zeros((positions, contacts, changed.shape[2])), np.zeros((positions, contacts, contacts))
+    by_pose[rows, chosen] = root[..., None] * changed
+    between = root[..., None] * np.linalg.solve(inside, root[..., None] * np.eye(root.shape[1]))
+    by_approach[rows[..., None], chosen[:, :, None], chosen[:, None, :]] = between
+    return PairSlopes(by_approach=by_approach[:, kept[:, None], kept], by_pose=by_pose[:, kept])

@@ -10,15 +10,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ltca.arrays import ComplexArray, FloatArray
-from ltca.compliance.pressures import elastic_hole_pressures
-from ltca.compliance.response import ContactPressures, DiscResponse, KindPressures, Start, assemble_response
-from ltca.compliance.rollers import RollerLaws, balance_rollers
+from ltca.compliance.response import DiscResponse, KindPressures, Start
+from ltca.compliance.rollers import RollerLaws
+from ltca.compliance.uncoupled import PairLaws, UncoupledContacts
 from ltca.contact.end_pressure import largest_pressure
 from ltca.contact.tracked_grid import CELLS, ContactKind, ContactKinds, Pieces, Separation, press, recover_patches
 from ltca.drive.parts import Drive
@@ -26,10 +26,11 @@ from ltca.errors import DriveError
 from ltca.geometry.pair_motion import FlankMotion
 from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.separation import circle_departure, flank_departure
-from ltca.laws.series import SpringLaw
+from ltca.laws.contact_law import ContactLaw
+from ltca.laws.spring import SpringLaw
 
-PLACES = 4096
-"""Places on the flank for each of its waves at which separations are worked out; between them they are interpolated,
+STATIONS_PER_WAVE = 4096
+"""Stations on the flank, per wave, at which separations are computed; between them they are interpolated,
 which errs by 3e-7 of what the curvature swings ((2π/4096)²/8), the load by a tenth of that."""
 
 SeparationOf = Callable[[int, int], Separation]
@@ -44,7 +45,7 @@ class PositionContacts(NamedTuple):
     outer: tuple[Pieces, ...]
 
 
-class _KindGrids:
+class _KindGrids(ContactLaw):
     """The law of the contacts of one kind in a batch of positions, each on grids of its own.
 
     It lives as long as one response: the pieces of every contact are replaced as it is pressed again.
@@ -75,53 +76,24 @@ class _KindGrids:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class GridCompliance:
-    """Half-space contact grids for pins and rollers, springs for the pin holes.
+class GridCompliance(UncoupledContacts[_KindGrids]):
+    """Half-space contact grids for pins and rollers, springs for the pin holes."""
 
-    Attributes
-    ----------
-    geometry : ContactGeometry
-        The contact geometry of the drive.
-    kinds : ContactKinds
-        What the contacts of each kind share.
-    inner_radius, outer_radius : array, shape (n_BR,)
-        Effective radii of the rollers, mm.
-    hole_law : SpringLaw
-        Of the pin holes.
-    """
-
-    geometry: ContactGeometry
-    kinds: ContactKinds
-    inner_radius: FloatArray
-    outer_radius: FloatArray
-    hole_law: SpringLaw
+    grids_can_check: ClassVar[bool] = False
 
     @classmethod
     def of_drive(cls, drive: Drive, cells: int = CELLS) -> GridCompliance:
-        """Return the grid model of a drive.
-
-        Parameters
-        ----------
-        drive : Drive
-            The drive.
-        cells : int
-            Cells over each half-width and over half of each length.
-        """
-        geometry = ContactGeometry.of_drive(drive)
-        place = geometry.placement
-        kinds = ContactKinds.of_drive(drive, cells)
+        """Return the grid model of a drive, with so many cells over each half-width and over half of each length."""
         return cls(
-            geometry=geometry,
-            kinds=kinds,
-            inner_radius=place.inner_effective_radii,
-            outer_radius=place.outer_effective_radii,
+            geometry=ContactGeometry.of_drive(drive),
+            kinds=ContactKinds.of_drive(drive, cells),
             hole_law=SpringLaw(stiffness=drive.hole_stiffness),
         )
 
     def respond(
         self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None, shifts: ComplexArray | None = None
     ) -> DiscResponse:
-        """Return the contact forces at the poses of a batch of positions; see `ltca.compliance.half_space`.
+        """Return the contact forces at the poses of a batch of positions; see `UncoupledContacts`.
 
         Raises
         ------
@@ -130,46 +102,34 @@ class GridCompliance:
         """
         if shifts is not None:
             raise DriveError(["pin_wheel.beam, pin_shaft.beam: must be left out for grids, whose pins stand still"])
-        flank = self.geometry.flank(crank_angle, pose, None if start is None else start.parameter)
-        pins, inner, outer = self._laws(
-            flank, self._known(crank_angle.size, None if start is None else start.warm_start)
-        )
-        pin_load, pin_stiffness = pins.load_and_stiffness(flank.approach, flank.effective_radius)
-        holes = self.geometry.holes(crank_angle, pose)
-        hole_load, hole_stiffness = self.hole_law.load_and_stiffness(
-            holes.approach, self.geometry.placement.hole_effective_radii
-        )
-        bores, rays = self.geometry.bores(crank_angle, pose), self.geometry.rollers(crank_angle)
-        rollers = balance_rollers(
-            rays,
-            bores.each(bores.displacement, rays.direction.shape[1]),
-            RollerLaws(
-                inner=inner,
-                outer=outer,
-                inner_radius=self.inner_radius,
-                outer_radius=self.outer_radius,
-                by_place=True,
-            ),
-            None if start is None else start.share,
-        )
-        warm_start = np.empty(crank_angle.size, dtype=object)
-        for row, kept in enumerate(zip(pins.pieces, inner.pieces, outer.pieces, strict=True)):
-            warm_start[row] = PositionContacts(*(tuple(pieces) for pieces in kept))
-        return assemble_response(
-            flank, pin_load, pin_stiffness, holes, hole_load, hole_stiffness, rollers, bores, warm_start=warm_start
-        )
+        # A dataclass with slots is another class than the one that super() without arguments would know.
+        return super(GridCompliance, self).respond(crank_angle, pose, start)
 
-    def pressures(self, response: DiscResponse) -> ContactPressures:
-        """Return pressures and half-widths from the grids, those of the shaft pins from their loads."""
-        flank, rollers = response.flank, response.rollers
-        pins, inner, outer = self._laws(flank, self._known(flank.approach.shape[0], response.warm_start))
-        return ContactPressures(
-            pins=pins.pressures(flank.approach),
-            outer=outer.pressures(rollers.outer_approach),
-            inner=inner.pressures(rollers.inner_approach),
-            holes=elastic_hole_pressures(self.kinds.holes, response.hole_load, self.geometry.placement),
-            rigid_shaft_pins=False,
+    def laws(self, flank: FlankMotion, warm_start: NDArray[np.object_] | None) -> PairLaws[_KindGrids]:
+        """Return the grids of the pins and of the rollers on the inner race and in the bore."""
+        pins, inner, outer = self._grids(flank, self._known(flank.approach.shape[0], warm_start))
+        rollers = RollerLaws(
+            inner=inner,
+            outer=outer,
+            inner_radius=self.geometry.placement.inner_effective_radii,
+            outer_radius=self.geometry.placement.outer_effective_radii,
+            by_place=True,
         )
+        return PairLaws(pins=pins, rollers=rollers)
+
+    def read_pressures(
+        self, law: _KindGrids, kind: ContactKind, approach: FloatArray, effective_radius: FloatArray
+    ) -> KindPressures:
+        """Return pressures and half-widths of contacts of one kind at their approaches, shape (positions, pairs)."""
+        return law.pressures(approach)
+
+    def warm_start(self, laws: PairLaws[_KindGrids], positions: int) -> NDArray[np.object_]:
+        """Return the contacts of each position as values (`PositionContacts`)."""
+        kept = np.empty(positions, dtype=object)
+        kinds = (laws.pins.pieces, laws.rollers.inner.pieces, laws.rollers.outer.pieces)
+        for row, pieces in enumerate(zip(*kinds, strict=True)):
+            kept[row] = PositionContacts(*(tuple(each) for each in pieces))
+        return kept
 
     def _known(self, positions: int, warm_start: NDArray[np.object_] | None) -> list[PositionContacts]:
         """What is known of the contacts of every position."""
@@ -178,8 +138,8 @@ class GridCompliance:
         fresh = PositionContacts(pins=((),) * place.wheel_pin_radii.size, inner=nothing, outer=nothing)
         return [fresh if warm is None else warm for warm in ([None] * positions if warm_start is None else warm_start)]
 
-    def _laws(self, flank: FlankMotion, known: list[PositionContacts]) -> tuple[_KindGrids, _KindGrids, _KindGrids]:
-        """Laws of the pins, of the rollers on the inner race and in the bore."""
+    def _grids(self, flank: FlankMotion, known: list[PositionContacts]) -> tuple[_KindGrids, _KindGrids, _KindGrids]:
+        """Grids of the pins, of the rollers on the inner race and in the bore."""
         place, profile = self.geometry.placement, self.geometry.profile
         spacing = self._spacing
         number, part = np.divmod(flank.parameter, spacing)
@@ -208,8 +168,8 @@ class GridCompliance:
 
             return separation
 
-        bore = between_roller_and(-float(place.bore_radius), self.outer_radius)
-        race = between_roller_and(float(place.inner_race_radius), self.inner_radius)
+        bore = between_roller_and(-float(place.bore_radius), place.outer_effective_radii)
+        race = between_roller_and(float(place.inner_race_radius), place.inner_effective_radii)
         return (
             _KindGrids(self.kinds.pins, between_pin_and_flank, [position.pins for position in known]),
             _KindGrids(self.kinds.inner, race, [position.inner for position in known]),
@@ -223,4 +183,4 @@ class GridCompliance:
         waves = round(profile.reduction_ratio)
         if profile.deviation is not None:
             waves = max(waves, profile.deviation.knots.size, *profile.deviation.orders)
-        return float(2.0 * np.pi / (PLACES * waves))
+        return float(2.0 * np.pi / (STATIONS_PER_WAVE * waves))

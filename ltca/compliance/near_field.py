@@ -20,8 +20,9 @@ from ltca.compliance.coefficients import InfluenceCoefficients, logarithm_factor
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.contact.hertz import effective_radius, line_half_width
 from ltca.contact.tracked_grid import ContactKinds
+from ltca.drive.engine_support import require
+from ltca.drive.hole_contact import hole_modulus
 from ltca.drive.parts import Drive, Material, contact_modulus
-from ltca.drive.plane_strain import hole_modulus, require_plane_strain
 from ltca.errors import DriveError
 from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.placement import Placement
@@ -99,7 +100,7 @@ class NearFieldLaws:
                 datum=datum,
                 kinds=half_space.kinds,
             )
-        require_plane_strain(drive, "compliance fe")
+        require(drive, "fe")
         plays = Placement.of_drive(drive).wheel_pin_plays
 
         def law(modulus: float) -> PlaneContactLaw:

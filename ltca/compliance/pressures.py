@@ -19,30 +19,19 @@ from ltca.compliance.response import KindPressures
 from ltca.contact.end_pressure import largest_pressure_ratio
 from ltca.contact.tracked_grid import ContactKind
 from ltca.geometry.placement import Placement
-from ltca.laws.backed import BackedLaw
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.line_contact import LineContactLaw
-from ltca.laws.series import approach_at_load
 
 
 def pressures_of_law(
     law: ContactLaw, ends: ContactKind | None, approach: FloatArray, effective_radius: FloatArray
 ) -> KindPressures:
-    """Return pressures and half-widths of contacts at their approaches.
+    """Return pressures and half-widths of contacts at their approaches, mm, shape (positions, pairs).
 
-    Parameters
-    ----------
-    law : ContactLaw
-        Of the contacts.
-    ends : ContactKind or None
-        What pressures at the ends are read from; None in plane strain, which has no ends.
-    approach : array, shape (positions, pairs)
-        Of the contacts with what is behind them, mm.
-    effective_radius : array
-        mm; broadcast to that shape.
+    Approaches are those of the contacts with what is behind them; effective radii, mm, are broadcast to their shape. Pressures at
+    the ends are read from `ends`; None stands for plane strain, which has no ends.
     """
-    if isinstance(law, BackedLaw):
-        approach, law = law.contact_approach(approach, effective_radius), law.known_contact
+    law, approach = law.surface(approach, effective_radius)
     closed = approach > 0.0
     mid, half_width, largest = (np.zeros(closed.shape) for _ in range(3))
     pressed, radius = approach[closed], np.broadcast_to(effective_radius, closed.shape)[closed]
@@ -54,17 +43,10 @@ def pressures_of_law(
 
 
 def elastic_hole_pressures(kind: ContactKind, load: FloatArray, place: Placement) -> KindPressures:
-    """Return pressures and half-widths of elastic shaft pins in their holes, half-spaces of finite length.
+    """Return pressures and half-widths of elastic shaft pins in their holes by their loads, N, shape (positions, holes).
 
-    Parameters
-    ----------
-    kind : ContactKind
-        Of the holes, E* of disc and shaft pin.
-    load : array, shape (positions, holes)
-        N.
-    place : Placement
-        For the radii.
+    The bodies are half-spaces of finite length, E* that of disc and shaft pin.
     """
     law, radius = LineContactLaw(kind.length, kind.contact_modulus), place.hole_effective_radii
-    approach, _ = approach_at_load(law, load, radius)
+    approach, _ = law.approach_at_load(load, radius)
     return pressures_of_law(law, kind, approach, radius)

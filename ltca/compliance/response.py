@@ -13,8 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.arrays import ComplexArray, FloatArray
+from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.compliance.rollers import RollerState
-from ltca.geometry.coordinates import DISC_ROTATION
+from ltca.geometry.coordinates import DISC_PLACE
 from ltca.geometry.pair_motion import BoreMotion, FlankMotion, KnownPins, PairMotion
 from ltca.geometry.pairs import ContactGeometry
 
@@ -75,6 +76,19 @@ class DiscResponse:
     shifts: ComplexArray | None = None
     slopes: PairSlopes | None = None
     friction: FloatArray | None = None
+
+    @property
+    def pin_forces(self) -> ComplexArray:
+        """Force of the disc on each wheel pin and shaft pin in the fixed frame, with friction, N, shape (positions, pairs)."""
+        load = np.concatenate((self.pin_load, self.hole_load), axis=1)
+        normal, along = (
+            np.concatenate((getattr(self.flank, name), getattr(self.holes, name)), axis=1)[..., DISC_PLACE]
+            for name in ("gradient", "along")
+        )
+        force = load[..., None] * normal
+        if self.friction is not None:
+            force = force + self.friction[..., None] * along
+        return np.asarray(force[..., 0] + 1j * force[..., 1])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -152,6 +166,16 @@ class DiscModel(Protocol):
         """The contact geometry of the disc in its drive."""
         ...
 
+    @property
+    def coefficients(self) -> InfluenceCoefficients | None:
+        """Coefficients by which the contacts of the disc feel each other; None where they do not."""
+        ...
+
+    @property
+    def grids_can_check(self) -> bool:
+        """Whether contact grids, with the true separation of the surfaces, answer the same where separations are parabolas."""
+        ...
+
     def respond(
         self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None, shifts: ComplexArray | None = None
     ) -> DiscResponse:
@@ -207,93 +231,9 @@ class Start:
         return replace(cls.after(response), known=KnownPins.of(response.flank))
 
     def of_others(self, reach_beyond: FloatArray) -> Start:
-        """Return the start for other drives of which pins may be that much deeper in the flank at the same places.
-
-        Parameters
-        ----------
-        reach_beyond : array, shape (positions, pins)
-            `ltca.geometry.pairs.ContactGeometry.reach_beyond`, mm.
-        """
+        """Return the start for other drives, whose pins may be deeper in the flank by `reach_beyond`, mm, (positions, pins)."""
         known = self.known
         return replace(self, known=None if known is None else replace(known, approach=known.approach + reach_beyond))
-
-
-def assemble_response(
-    flank: FlankMotion,
-    pin_load: FloatArray,
-    pin_stiffness: FloatArray,
-    holes: PairMotion,
-    hole_load: FloatArray,
-    hole_stiffness: FloatArray,
-    rollers: RollerState,
-    bores: BoreMotion,
-    warm_start: NDArray[np.object_] | None = None,
-    shifts: ComplexArray | None = None,
-) -> DiscResponse:
-    """Put the loads of uncoupled pairs together: generalised force and tangent.
-
-    Parameters
-    ----------
-    flank, holes, rollers, bores : FlankMotion, PairMotion, RollerState, BoreMotion
-        Kinematics of the pairs, balanced rollers and their bores.
-    pin_load, pin_stiffness, hole_load, hole_stiffness : array, shape (positions, pairs)
-        N and N/mm.
-    warm_start : array of object, shape (positions,), optional
-        See `DiscResponse`.
-    shifts : array of complex, shape (positions, pairs), optional
-        See `DiscResponse`; slopes are wanted with them.
-    """
-    force = resultant(flank, pin_load, holes, hole_load, rollers, bores)
-    tangent = _pair_tangent(flank, pin_load, pin_stiffness) + _pair_tangent(holes, hole_load, hole_stiffness)
-    tangent += _roller_tangent(rollers, bores)
-    return DiscResponse(
-        force=force,
-        tangent=tangent,
-        flank=flank,
-        holes=holes,
-        rollers=rollers,
-        pin_load=pin_load,
-        hole_load=hole_load,
-        warm_start=np.full(force.shape[0], None, dtype=object) if warm_start is None else warm_start,
-        shifts=shifts,
-        slopes=None if shifts is None else _slopes(flank, pin_stiffness, holes, hole_stiffness),
-    )
-
-
-def _slopes(flank: FlankMotion, pin: FloatArray, holes: PairMotion, hole: FloatArray) -> PairSlopes:
-    by_approach = np.concatenate((pin, hole), axis=1)
-    gradient = np.concatenate((flank.gradient, holes.gradient), axis=1)
-    return PairSlopes(by_approach=by_approach, by_pose=by_approach[..., None] * gradient)
-
-
-def coupled_slopes(
-    root: FloatArray, inside: FloatArray, changed: FloatArray, chosen: NDArray[np.intp], kept: NDArray[np.intp]
-) -> PairSlopes:
-    """Return how the loads follow approaches and pose where contacts feel each other: dF = r (1 + r C r)⁻¹ r dδ.
-
-    Parameters
-    ----------
-    root : array, shape (positions, chosen)
-        r, square root of the stiffness of each contact that may carry.
-    inside : array, shape (positions, chosen, chosen)
-        1 + r C r.
-    changed : array, shape (positions, chosen, coordinates)
-        (1 + r C r)⁻¹ r ∂δ/∂q.
-    chosen : array of int, shape (positions, chosen)
-        Which of all contacts they are.
-    kept : array of int
-        Numbers of wheel pins and shaft pins among all contacts, the last of which is the last of these.
-    """
-    positions, contacts, rows = (
-        root.shape[0],
-        max(int(kept[-1]), int(chosen.max())) + 1,
-        np.arange(root.shape[0])[:, None],
-    )
-    by_pose, by_approach = np.zeros((positions, contacts, changed.shape[2])), np.zeros((positions, contacts, contacts))
-    by_pose[rows, chosen] = root[..., None] * changed
-    between = root[..., None] * np.linalg.solve(inside, root[..., None] * np.eye(root.shape[1]))
-    by_approach[rows[..., None], chosen[:, :, None], chosen[:, None, :]] = between
-    return PairSlopes(by_approach=by_approach[:, kept[:, None], kept], by_pose=by_pose[:, kept])
 
 
 def split_shifts(
@@ -331,17 +271,3 @@ def bearing_bend(rollers: RollerState, bores: BoreMotion) -> FloatArray:
     """Return what the bearings' forces add to the tangent because bores off the centre turn with the disc, N·mm."""
     push = bearing_pushes(rollers, bores.arm.shape[1])
     return np.asarray((push.conjugate() * bores.arm).real.sum(axis=1))
-
-
-def _roller_tangent(rollers: RollerState, bores: BoreMotion) -> FloatArray:
-    positions, cranks = bores.arm.shape
-    stiffness = np.einsum("bcri->bci", rollers.tangent.reshape(positions, cranks, -1, 4)).reshape(-1, cranks, 2, 2)
-    moved = np.stack((bores.gradient.real, bores.gradient.imag), axis=2)
-    tangent = np.matmul(moved.swapaxes(2, 3), np.matmul(stiffness, moved)).sum(axis=1)
-    tangent[:, DISC_ROTATION, DISC_ROTATION] += bearing_bend(rollers, bores)
-    return np.asarray(tangent)
-
-
-def _pair_tangent(motion: PairMotion, load: FloatArray, stiffness: FloatArray) -> FloatArray:
-    scaled = stiffness[..., None] * motion.gradient
-    return np.asarray(np.matmul(motion.gradient.swapaxes(1, 2), scaled) + motion.bend(load))

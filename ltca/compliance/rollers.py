@@ -16,15 +16,15 @@ from numpy.typing import NDArray
 from ltca.arrays import ComplexArray, FloatArray, by_drive
 from ltca.errors import ConvergenceError
 from ltca.geometry.pair_motion import RollerRays
-from ltca.laws.contact_law import LoadLaw
+from ltca.laws.contact_law import ContactLaw
 
-ITERATIONS = 60
-SETTLED = 1e-6
-"""Last change of a share by Newton's method: loads follow it in line, and what that leaves out is its square."""
-CLOSED = 1e-11
-"""Last change of a share by bisection."""
+MAX_ITERATIONS = 60
+NEWTON_TOLERANCE = 1e-6
+"""Last Newton change of a share: loads are corrected linearly for it, and the error left is of its square."""
+BISECTION_TOLERANCE = 1e-11
+"""Last change of a share where the step was a bisection."""
 
-Law = TypeVar("Law", bound=LoadLaw)
+Law = TypeVar("Law", bound=ContactLaw)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -33,7 +33,7 @@ class RollerLaws(Generic[Law]):
 
     Attributes
     ----------
-    inner, outer : LoadLaw
+    inner, outer : ContactLaw
         Laws on the inner race and in the bore.
     inner_radius, outer_radius : array, shape (rollers,)
         Effective radii of curvature, mm.
@@ -168,7 +168,7 @@ def _balance_pressed(
     along = direction.real * moved.real + direction.imag * moved.imag
     low, high = np.zeros_like(total), np.ones_like(total)
     history: list[float] = []
-    for _ in range(ITERATIONS):
+    for _ in range(MAX_ITERATIONS):
         place = outermost - share * total
         arm = place * direction - moved
         length = np.abs(arm)
@@ -193,7 +193,7 @@ def _balance_pressed(
         following = np.where(imbalance != 0.0, following, share)
         change = np.abs(following - share)
         history.append(float(np.max(change, initial=0.0)))
-        if np.all(change <= np.where(following == newton, SETTLED, CLOSED)):
+        if np.all(change <= np.where(following == newton, NEWTON_TOLERANCE, BISECTION_TOLERANCE)):
             break
         share = following
     else:

@@ -13,9 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.arrays import ComplexArray, FloatArray
-from ltca.compliance.coupled import CoupledCompliance
-from ltca.compliance.response import ContactPressures, DiscResponse
-from ltca.compliance.stress_coefficients import WallContacts, evaluate_wall_stress
+from ltca.compliance.response import ContactPressures, DiscModel, DiscResponse
+from ltca.compliance.stress_coefficients import StressCoefficients, WallContacts, evaluate_wall_stress
 
 CLEAR_HALF_WIDTHS = 4.0
 """A wall is clear of a contact beyond this many of its half-widths."""
@@ -24,7 +23,7 @@ REFINEMENT = 4
 """Places on a wall for each stress station. On the paper's disc the largest stresses are then within 0.3 % (roots), 0.2 %
 (bore) and 1.1 % (holes) of those from twice the stations."""
 
-CHUNK = 128
+POSITIONS_PER_CHUNK = 128
 """Positions evaluated at once: distances of all places from all contacts stay small."""
 
 
@@ -47,13 +46,7 @@ class WallProfile:
     clear: NDArray[np.bool_]
 
     def largest(self, places: NDArray[np.bool_] | slice = slice(None)) -> tuple[FloatArray, FloatArray]:
-        """Return the largest clear stress of each position and its parameter; not a number where nothing is clear.
-
-        Parameters
-        ----------
-        places : array of bool or slice
-            Which places count, all by default.
-        """
+        """Return the largest clear stress of each position and its parameter among some places; not a number where none is."""
         parameter = self.parameter[places]
         stress = np.where(self.clear[:, places], self.stress[:, places], -np.inf)
         best = np.argmax(stress, axis=1)
@@ -108,34 +101,26 @@ class _PlacedContacts:
 
 
 def wall_stresses(
-    model: CoupledCompliance, response: DiscResponse, pressures: ContactPressures, disc_rotation: FloatArray
+    model: DiscModel, response: DiscResponse, pressures: ContactPressures, disc_rotation: FloatArray
 ) -> WallStresses:
-    """Return the largest stresses along the walls and the stresses under the contacts.
+    """Return the largest stresses along the walls and the stresses under the contacts of a response and its pressures.
 
-    Parameters
-    ----------
-    model : CoupledCompliance
-        The model that answered.
-    response : DiscResponse
-        Its loads.
-    pressures : ContactPressures
-        ``model.pressures(response)``.
-    disc_rotation : array, shape (positions,)
-        Rotation of the disc, rad: ``pose[:, 2]``.
+    The rotation of the disc, rad, has shape (positions,).
     """
     positions, lobes = disc_rotation.size, round(model.geometry.profile.reduction_ratio) - 1
-    if not model.coefficients.stress.available:
+    stress = _stress_coefficients(model)
+    if stress is None:
         return _unknown(response, lobes)
     placed = _place_contacts(model, response, pressures, disc_rotation)
     parts = [
-        _reduce(model, _take(placed, rows), lobes)
-        for rows in np.array_split(np.arange(positions), max(1, -(-positions // CHUNK)))
+        _reduce(model, stress, _take(placed, rows), lobes)
+        for rows in np.array_split(np.arange(positions), max(1, -(-positions // POSITIONS_PER_CHUNK)))
     ]
     return WallStresses(**{name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
 
 
 def wall_profiles(
-    model: CoupledCompliance,
+    model: DiscModel,
     response: DiscResponse,
     pressures: ContactPressures,
     disc_rotation: FloatArray,
@@ -144,20 +129,22 @@ def wall_profiles(
 ) -> tuple[WallProfile, ...]:
     """Return the stress along flank, each bore and each hole wall; none where the coefficients have no stresses.
 
-    Parameters
-    ----------
-    model, response, pressures, disc_rotation
-        As for `wall_stresses`.
-    refinement : int
-        Places for each stress station, the first of them on it.
+    Arguments are those of `wall_stresses`; of so many places per stress station the first lies on it.
     """
-    if not model.coefficients.stress.available:
+    stress = _stress_coefficients(model)
+    if stress is None:
         return ()
-    return _profiles(model, _place_contacts(model, response, pressures, disc_rotation), refinement)[0]
+    return _profiles(model, stress, _place_contacts(model, response, pressures, disc_rotation), refinement)[0]
+
+
+def _stress_coefficients(model: DiscModel) -> StressCoefficients | None:
+    """Return the stress coefficients of a disc; None where it has none, or no body."""
+    coefficients = model.coefficients
+    return coefficients.stress if coefficients is not None and coefficients.stress.available else None
 
 
 def _place_contacts(
-    model: CoupledCompliance, response: DiscResponse, pressures: ContactPressures, disc_rotation: FloatArray
+    model: DiscModel, response: DiscResponse, pressures: ContactPressures, disc_rotation: FloatArray
 ) -> tuple[_PlacedContacts, ...]:
     """Return the contacts of flank, each bore and each hole in the frame of the disc."""
     place, turn = model.geometry.placement, disc_rotation[:, None]
@@ -205,10 +192,10 @@ def _take(placed: tuple[_PlacedContacts, ...], rows: NDArray[np.intp]) -> tuple[
 
 
 def _profiles(
-    model: CoupledCompliance, placed: tuple[_PlacedContacts, ...], refinement: int
+    model: DiscModel, coefficients: StressCoefficients, placed: tuple[_PlacedContacts, ...], refinement: int
 ) -> tuple[tuple[WallProfile, ...], FloatArray]:
     """Return the profiles of all walls, and the stress at the stations."""
-    place, coefficients = model.geometry.placement, model.coefficients.stress
+    place = model.geometry.placement
     centres = np.concatenate((place.bore_centres, place.hole_centres))
     radii = np.concatenate((np.full(place.cranks, place.bore_radius), place.hole_radii))
     stress = evaluate_wall_stress(coefficients, tuple(own.contacts for own in placed))
@@ -227,9 +214,11 @@ def _profiles(
     return tuple(profiles), stress
 
 
-def _reduce(model: CoupledCompliance, placed: tuple[_PlacedContacts, ...], lobes: int) -> dict[str, FloatArray]:
+def _reduce(
+    model: DiscModel, coefficients: StressCoefficients, placed: tuple[_PlacedContacts, ...], lobes: int
+) -> dict[str, FloatArray]:
     """Return the fields of `WallStresses` of some positions."""
-    profiles, stress = _profiles(model, placed, REFINEMENT)
+    profiles, stress = _profiles(model, coefficients, placed, REFINEMENT)
     flank, *round_walls = profiles
     nearest = np.mod(np.rint(flank.parameter * lobes / (2.0 * np.pi)).astype(int), lobes)
     roots = [flank.largest(nearest == root) for root in range(lobes)]
@@ -237,7 +226,7 @@ def _reduce(model: CoupledCompliance, placed: tuple[_PlacedContacts, ...], lobes
     cranks = model.geometry.placement.cranks
     worst = np.argmax(np.nan_to_num(values[:, :cranks], nan=-np.inf), axis=1)[:, None]
     under = []
-    for wall, own in zip(model.coefficients.stress.walls, placed, strict=True):
+    for wall, own in zip(coefficients.walls, placed, strict=True):
         stations, weights = wall.weights(own.contacts.parameter)
         rows = np.arange(stress.shape[0])[:, None, None]
         under.append(np.sum(stress[rows, stations] * weights, axis=-1))

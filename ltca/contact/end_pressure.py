@@ -1,9 +1,9 @@
-"""The largest pressure of a contact and how much it exceeds the one at mid-width.
+"""The largest pressure of a contact and its ratio to that at mid-width.
 
-At the end of an unrelieved roller the half-space pressure is singular: what a grid finds there depends on its end
-cell. So the largest pressure is that of an end cell of stated size on any grid: the largest mean over a hundredth
-of the length (`ltca.contact.tracked_grid.ContactKind.end_cell`). For cylinders its ratio to mid-width is a function of
-L/√(ρδ) alone; profiled contacts are sampled over the approaches and radii asked for.
+At the end of an unrelieved roller the half-space pressure is singular: on a grid it depends on the end cell. So the largest
+pressure is defined as the largest mean over a hundredth of the length (`ltca.contact.tracked_grid.ContactKind.end_cell`),
+on any grid. For cylinders its ratio to mid-width is a function of L/√(ρδ) alone; profiled contacts are sampled over the
+approaches and radii that occur.
 """
 
 from __future__ import annotations
@@ -22,18 +22,13 @@ TABLE = Path(__file__).with_name("end_pressure.json")
 _NODES = 19
 _LONGEST, _SHORTEST = 3.0e3, 1.0
 _APPROACHES, _RADII = 9, 3
-_LIGHTEST = 1e-2  # of the largest approach: lighter contacts take the ratio found there
+_LIGHTEST = 1e-2  # by the largest approach: lighter contacts take the ratio there
 
 
 def largest_pressure(solved: PatchSolution, stretch: float) -> float:
-    """Return the largest pressure as a mean over a stretch along the width, at least the one at mid-width, MPa.
+    """Return the largest pressure of a patch symmetric about mid-width as a mean over a stretch along the width, mm, in MPa.
 
-    Parameters
-    ----------
-    solved : PatchSolution
-        A patch symmetric about mid-width.
-    stretch : float
-        Length of the stretch, mm.
+    It is at least the pressure at mid-width.
     """
     edges = solved.grid.y_edges
     end = float(edges[-1])
@@ -52,17 +47,9 @@ def _ratio(kind: ContactKind, approach: float, radius: float) -> float:
 
 
 def tabulate_cylinder_ratio(cells: int) -> tuple[FloatArray, FloatArray]:
-    """Solve the ratio of cylinders on contact grids.
+    """Return nodes of ln(L/√(ρδ)), ascending, and the ratio of cylinders there, solved on contact grids.
 
-    Parameters
-    ----------
-    cells : int
-        Cells over the half-width and over half the length.
-
-    Returns
-    -------
-    tuple of (array, array)
-        Nodes of ln(L/√(ρδ)), ascending, and the largest pressure by the one at mid-width there.
+    `cells` are those over the half-width and over half the length.
     """
     kind = ContactKind(length=1.0, contact_modulus=1.0, generator=None, symmetric=True, cells=cells)
     nodes = np.linspace(np.log(_SHORTEST), np.log(_LONGEST), _NODES)
@@ -71,7 +58,7 @@ def tabulate_cylinder_ratio(cells: int) -> tuple[FloatArray, FloatArray]:
 
 @cache
 def _cylinder_ratio(cells: int) -> tuple[FloatArray, FloatArray]:
-    """Nodes and ratio as they ship with the package (`ltca.laws.shipped_tables`); other grids are solved."""
+    """Nodes and ratio as they ship with the package (made by `ltca.laws.shipped_tables`); solved for other numbers of cells."""
     if cells != CELLS:
         return tabulate_cylinder_ratio(cells)
     stored = json.loads(TABLE.read_text(encoding="utf-8"))
@@ -79,16 +66,9 @@ def _cylinder_ratio(cells: int) -> tuple[FloatArray, FloatArray]:
 
 
 def largest_pressure_ratio(kind: ContactKind, approach: FloatArray, effective_radius: FloatArray) -> FloatArray:
-    """Return largest pressure by pressure at mid-width, 1 where open.
+    """Return the ratio of the largest pressure to that at mid-width, 1 where open.
 
-    Parameters
-    ----------
-    kind : ContactKind
-        Length, profile and cells.
-    approach : array, shape (positions, pairs)
-        δ, mm.
-    effective_radius : array, broadcast to that shape
-        ρ, mm.
+    The approach δ has the shape (positions, pairs), mm; the effective radius ρ, mm, broadcasts to it.
     """
     radius = np.broadcast_to(effective_radius, approach.shape)
     closed = approach > 0.0

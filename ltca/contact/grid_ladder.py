@@ -1,8 +1,8 @@
-"""Ladder of the contact grids: their shapes, and which of them a contact is solved on.
+"""Shapes of the contact grids, in steps of half-width and reach, and which of them a contact is solved on.
 
-Half-width and reach of a contact are looked up on ladders of 5 %, so one small set of influence matrices serves all
-contacts. The rung follows from the half-width *expected* at the approach, never from what was solved before; about the
-boundary of two rungs both grids share the contact, so that its load is continuous with its slope.
+Half-width and reach of a contact are rounded to steps of 5 % (rungs), so one small set of influence matrices serves all
+contacts. The rung follows from the half-width *expected* at the approach, never from earlier solutions; near the
+boundary of two rungs the load is a weighted mean of both grids, so that it is continuous with its slope.
 """
 
 from __future__ import annotations
@@ -13,17 +13,17 @@ from typing import NamedTuple
 import numpy as np
 
 from ltca.arrays import BoolArray, freeze
-from ltca.contact.generator import SummedProfile
+from ltca.contact.length_profile import SummedProfile
 from ltca.contact.pressure_cells import PatchGrid, expected_half_width, graded_edges
 from ltca.contact.unilateral import solve_unilateral_contact
 
 RUNG = 0.05
 """Step of the ladder in ln(half-width)."""
 BLEND = 0.05
-"""Part of a rung about each boundary over which the grids on both sides share a contact: they differ by 1e-4 in the
-load, so the share adds 1 % to its slope, and one contact in twenty costs two grids."""
+"""Part of a rung about each boundary over which the grids on both sides are blended: their loads differ by 1e-4, so
+blending adds 1 % to the slope, and one contact in twenty costs two grids."""
 SHADES = 5
-"""Parts of a rung by which the contact cells of cylinders are kept to start from."""
+"""Steps per rung of the half-width by which initial contact cells of cylinders are cached."""
 
 END_GRADING = 2.5
 """Grading of the cells along an unrelieved length (`ltca.contact.pressure_cells.graded_edges`): the singular end then
@@ -43,16 +43,9 @@ class GridRung(NamedTuple):
 def unit_grid(rung: int, reach_rung: int, *, cells: int, symmetric: bool) -> PatchGrid:
     """Return the grid of unit length on a rung; its influence matrix is kept with it.
 
-    Parameters
-    ----------
-    rung : int
-        ln(half-width/length) in steps of `RUNG`.
-    reach_rung : int
-        How far a profiled contact ends before the body does, ln(body length/patch length) in steps of `RUNG`.
-    cells : int
-        Cells over the half-width and over half the length.
-    symmetric : bool
-        Positive half in x, or both.
+    `rung` is ln(half-width/length) in steps of `RUNG`; `reach_rung` is ln(body length/patch length) in such steps, for a
+    profiled contact that ends before the body does. `cells` are those over the half-width and over half the length; `symmetric`
+    grids have the positive half in x only.
     """
     half_width = float(np.exp(rung * RUNG))
     share = float(np.exp(-8.0 * reach_rung * RUNG))
@@ -74,23 +67,14 @@ def _smooth_step(part: float) -> float:
 def find_shares(
     length: float, generator: SummedProfile | None, effective_radius: float, approach: float
 ) -> dict[GridRung, float]:
-    """Return the grids of a contact and the part of its load that each gives.
+    """Return the grids of a contact and the share of each in its load, for ρ and δ in mm and a contact line of `length`, mm.
 
-    Mostly there is one; two near a boundary of rungs, four at most. Shares and their slopes are continuous.
-
-    Parameters
-    ----------
-    length : float
-        Length of the contact line, mm.
-    generator : SummedProfile or None
-        Crown and relief along it.
-    effective_radius, approach : float
-        ρ and δ, mm.
+    Mostly there is one grid; two near a boundary of rungs, four at most. Shares and their slopes are continuous.
     """
     reach_place = find_reach_place(length, generator, approach)
     reach = int(np.floor(reach_place))
-    # A patch a little too long only has idle cells, one too short would cut the contact off: the longer one leaves
-    # when the shorter has room enough.
+    # A patch a little too long only has idle cells, one too short would cut the contact off: the longer one is left
+    # only when the shorter has enough room.
     over = _smooth_step((reach_place - reach) / BLEND) if reach > 0 else 1.0
     found: dict[GridRung, float] = {}
     for number, part in ((reach, over), (reach - 1, 1.0 - over)):
@@ -108,9 +92,9 @@ def find_shares(
 def find_share_slopes(
     length: float, generator: SummedProfile | None, effective_radius: float, approach: float
 ) -> dict[GridRung, float]:
-    """Return the derivatives of the shares by the approach, 1/mm; arguments as for `find_shares`.
+    """Return the derivatives of the shares by the approach, 1/mm, for the arguments of `find_shares`.
 
-    They weigh differences of 1e-4, so a difference quotient will do.
+    They multiply differences of 1e-4, so a difference quotient is accurate enough.
     """
     step = 1e-6 * approach
     before, after = (find_shares(length, generator, effective_radius, approach + sign * step) for sign in (-1.0, 1.0))
@@ -118,33 +102,28 @@ def find_share_slopes(
 
 
 def find_reach_place(length: float, generator: SummedProfile | None, approach: float) -> float:
-    """Return how far a contact ends before the body does, in rungs: ln(body length/overlap) by `RUNG`."""
+    """Return ln(body length/overlap) in rungs: how far a profiled contact ends before the body does."""
     if generator is None:
         return 0.0
     return max(0.0, float(np.log(0.5 * length / generator.overlap_half_length(approach))) / RUNG)
 
 
 def find_width_place(length: float, reach_rung: int, effective_radius: float, approach: float) -> float:
-    """Return the expected half-width by patch length, its logarithm in rungs."""
+    """Return ln(expected half-width/patch length) in rungs."""
     patch = find_patch_length(length, reach_rung)
     return float(np.log(expected_half_width(patch, effective_radius, approach) / patch)) / RUNG
 
 
 def find_patch_length(length: float, reach_rung: int) -> float:
-    """Return the length of the patch, mm, on a rung of its reach."""
+    """Return the length of the patch on a rung of its reach, mm."""
     return length * float(np.exp(-reach_rung * RUNG))
 
 
 @cache
 def find_cylinder_cells(width: int, rung: int, cells: int, symmetric: bool) -> BoolArray:
-    """Return the contact cells of a cylinder, to start from.
+    """Return the contact cells of a cylinder on the grid of `unit_grid`, to start from.
 
-    Parameters
-    ----------
-    width : int
-        ln(expected half-width/length) of the cylinder in parts (`SHADES`) of a rung.
-    rung, cells, symmetric :
-        The grid, see `unit_grid`.
+    `width` is ln(expected half-width/length) in steps of `RUNG` / `SHADES`.
     """
     half_width = float(np.exp(width * RUNG / SHADES))
     size = half_width  # √(ρδ)

@@ -16,24 +16,24 @@ from ltca.arrays import FloatArray
 
 
 def effective_radius(radius_1: float, radius_2: float) -> float:
-    """1/(1/r1 + 1/r2), mm; a concave surface has a negative radius, a flat one an infinite one."""
+    """Return 1/(1/r1 + 1/r2), mm; a concave surface has a negative radius, a flat one an infinite one."""
     return 1.0 / (1.0 / radius_1 + 1.0 / radius_2)
 
 
 def line_half_width(line_load: ArrayLike, effective_radius: ArrayLike, contact_modulus: float) -> FloatArray:
-    """Half-width b = √(4 q ρ/(π E*)), mm (Johnson Eq. 4.43)."""
+    """Return the half-width b = √(4 q ρ/(π E*)), mm (Johnson Eq. 4.43)."""
     q, radius = np.asarray(line_load, dtype=float), np.asarray(effective_radius, dtype=float)
     return np.asarray(np.sqrt(4.0 * q * radius / (np.pi * contact_modulus)))
 
 
 def line_peak_pressure(line_load: ArrayLike, effective_radius: ArrayLike, contact_modulus: float) -> FloatArray:
-    """Peak pressure p0 = √(q E*/(π ρ)), MPa (Johnson Eq. 4.45)."""
+    """Return the peak pressure p0 = √(q E*/(π ρ)), MPa (Johnson Eq. 4.45)."""
     q, radius = np.asarray(line_load, dtype=float), np.asarray(effective_radius, dtype=float)
     return np.asarray(np.sqrt(q * contact_modulus / (np.pi * radius)))
 
 
 def line_load(half_width: ArrayLike, effective_radius: ArrayLike, contact_modulus: float) -> FloatArray:
-    """Load per length q = π E* b²/(4ρ), N/mm."""
+    """Return the load per length q = π E* b²/(4ρ), N/mm."""
     b, radius = np.asarray(half_width, dtype=float), np.asarray(effective_radius, dtype=float)
     return np.asarray(np.pi * contact_modulus * b**2 / (4.0 * radius))
 
@@ -41,7 +41,7 @@ def line_load(half_width: ArrayLike, effective_radius: ArrayLike, contact_modulu
 def half_plane_approach(
     line_load: ArrayLike, half_width: ArrayLike, depth: ArrayLike, young_modulus: float, poisson_ratio: float
 ) -> FloatArray:
-    """Approach of a point at a depth d ≫ b under a Hertz strip toward the surface of a half-plane, mm.
+    """Return the approach of a point at a depth d ≫ b under a Hertz strip toward the surface of a half-plane, mm.
 
     δ = q (1−ν²)/(π E) (2 ln(2d/b) − ν/(1−ν)), plane strain (Johnson section 5.6).
     """
@@ -53,10 +53,10 @@ def half_plane_approach(
 def cylinder_approach(
     line_load: ArrayLike, half_width: ArrayLike, radius: ArrayLike, young_modulus: float, poisson_ratio: float
 ) -> FloatArray:
-    """Approach of the centre of a cylinder, squeezed between two opposite contacts, toward one of them, mm.
+    """Return the approach of the centre of a cylinder, squeezed between two opposite contacts, toward one of them, mm.
 
     δ = q (1−ν²)/(π E) (2 ln(4R/b) − 1), plane strain (Johnson section 5.6, Eq. 5.57). The compression of the
-    diameter is the sum of both sides with their own half-widths (Eq. 5.58).
+    diameter is the sum of both sides with their half-widths (Eq. 5.58).
     """
     q, b, r = (np.asarray(value, dtype=float) for value in (line_load, half_width, radius))
     return np.asarray(q * (1.0 - poisson_ratio**2) / (np.pi * young_modulus) * (2.0 * np.log(4.0 * r / b) - 1.0))
@@ -65,16 +65,13 @@ def cylinder_approach(
 def strip_approach(
     line_load: ArrayLike, half_width: ArrayLike, length: ArrayLike, contact_modulus: float
 ) -> tuple[FloatArray, FloatArray]:
-    """Approach of two half-spaces over a long strip with Hertz pressure across and even load along it, mm.
+    """Return the approach of two half-spaces at mid-length of a long strip and its mean along it, mm.
+
+    The pressure is that of Hertz across and even along the strip.
 
     At mid-length δ = q/(π E*) (2 ln(2L/b) + 1) (Lundberg's 1.1932 + ln(L/b), twice); averaged over the length
-    δ = q/(π E*) (2 ln(4L/b) − 1). A real contact evens the approach out and lies between the two; the mean is
+    δ = q/(π E*) (2 ln(4L/b) − 1). In a real contact the approach is even along the length, and between the two; the mean is
     an upper bound of the approach at given load since the even load is only one of the admissible ones.
-
-    Returns
-    -------
-    mid, mean : ndarray
-        Approach at mid-length and its mean over the length.
     """
     q, b, strip = (np.asarray(value, dtype=float) for value in (line_load, half_width, length))
     scale = q / (np.pi * contact_modulus)
@@ -104,16 +101,9 @@ class PlaneStress2D:
 
 
 def line_contact_stress(x: ArrayLike, depth: ArrayLike, half_width: float, peak_pressure: float) -> PlaneStress2D:
-    """Stresses below a Hertz line contact in closed form (McEwen; Johnson Eq. 4.49).
+    """Return stresses below a Hertz line contact in closed form (McEwen; Johnson Eq. 4.49).
 
-    Parameters
-    ----------
-    x, depth : array_like
-        Place along the surface and depth ≥ 0, mm.
-    half_width : float
-        b, mm.
-    peak_pressure : float
-        p0, MPa.
+    The place x along the surface, the depth ≥ 0 and the half-width b are in mm, the peak pressure p0 in MPa.
 
     Examples
     --------
@@ -174,24 +164,11 @@ class PointContact:
 def solve_point_contact(
     approach: float, radius_small: float, radius_large: float, contact_modulus: float
 ) -> PointContact:
-    """Elliptical Hertz contact of separation x²/(2 R_small) + y²/(2 R_large) at given approach.
+    """Return the elliptical Hertz contact of separation x²/(2 R_small) + y²/(2 R_large) at an approach δ > 0; mm, E* in MPa.
 
     Johnson Eq. 4.26: with p0 = 3F/(2πab), e² = 1 − b²/a²,
     A = p0 b (K−E)/(E* e² a²), B = p0 b ((a²/b²)E − K)/(E* e² a²), δ = p0 b K/E*, A = 1/(2 R_large), B = 1/(2 R_small).
-
-    Parameters
-    ----------
-    approach : float
-        δ, mm, positive.
-    radius_small, radius_large : float
-        Principal relative radii, mm, radius_small ≤ radius_large.
-    contact_modulus : float
-        E*, MPa.
-
-    Raises
-    ------
-    ValueError
-        If the radii are not positive and in order.
+    Radii that are not positive and in order are refused (ValueError).
     """
     from scipy.optimize import brentq  # 0.2 s to import; line contacts do without
     from scipy.special import ellipe, ellipk

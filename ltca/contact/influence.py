@@ -1,14 +1,10 @@
 """Influence coefficients of uniformly pressed rectangles on an elastic half-space.
 
-Two closed forms of the Boussinesq kernel 1/r are used.
-
-*Point value* (Love): the integral of 1/r over one rectangle, seen from a point of the surface.
-
-*Mean value* (Galerkin): the integral of 1/r over two rectangles, that is the mean displacement of the
-receiving cell times its area. Collocation with Love's point values gives ``area_i A_ij != area_j A_ji`` as soon as
-cells differ in size; the mean value is symmetric and positive definite by construction because the kernel is. So
-matrices here are in the area-weighted form ``A[i, j] = area_i × mean displacement of i by unit pressure on j``
-(unit 1/r integrated twice: mm³), and the energy of a pressure field is ``p·A·p / (2 π E*)`` exactly.
+A coefficient is the integral of the Boussinesq kernel 1/r over two rectangles (Galerkin), in closed form: the mean
+displacement of the receiving cell times its area. Collocation with the displacement of points (Love) would give
+``area_i A_ij != area_j A_ji`` as soon as cells differ in size; the mean value is symmetric and positive definite because
+the kernel is. Matrices are in the area-weighted form ``A[i, j] = area_i × mean displacement of i by unit pressure on j``
+(1/r integrated twice: mm³), and the energy of a pressure field is ``p·A·p / (2 π E*)`` exactly.
 
 The tensor grids have uniform cells along x (the profile), graded ones along y (the width). Only lags in
 x matter then, and quarter or half domains follow by images.
@@ -28,69 +24,14 @@ _GAUSS_POINTS, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(3)
 # quadrature errs by less than 5e-6 of the coefficient, while second differences lose (distance/cell)⁴ digits.
 _FAR_LENGTHS = 1.5
 _FAR_WIDTHS = 4.0
-_TOGETHER = 1024  # far pairs of cells at once: their nodes stay in the cache
+_PAIRS_AT_ONCE = 1024  # distant pairs of cells: their nodes stay in the cache
 
 
 def _product_with_inverse_sinh(factor: FloatArray, ratio_of: FloatArray, to: FloatArray) -> FloatArray:
-    """``factor · asinh(ratio_of / |to|)``, zero where ``to`` is zero (its limit: the factor holds |to| or to²)."""
+    """``factor · asinh(ratio_of / |to|)``, zero where ``to`` is zero: its limit, since the factor contains |to| or to²."""
     size = np.abs(to)
     safe = np.where(size > 0.0, size, 1.0)
     return np.where(size > 0.0, factor * np.arcsinh(ratio_of / safe), 0.0)
-
-
-def love_displacement(
-    x: FloatArray | float, y: FloatArray | float, half_length_x: FloatArray | float, half_length_y: FloatArray | float
-) -> FloatArray:
-    r"""Integral of 1/r over a rectangle centred on the origin, seen from points of the surface (Love).
-
-    .. math:: \int_{-a}^{a}\int_{-b}^{b} \frac{d\eta\, d\xi}{\sqrt{(x-\xi)^2 + (y-\eta)^2}}
-
-    The normal displacement of the surface is this times p / (π E*) with uniform pressure p.
-
-    Parameters
-    ----------
-    x, y : float or ndarray
-        Points of the surface, mm; corners and edges are allowed.
-    half_length_x, half_length_y : float or ndarray
-        Half sides of the rectangle, mm.
-
-    Returns
-    -------
-    ndarray
-        The integral, mm, broadcast over all arguments.
-
-    References
-    ----------
-    A. E. H. Love, Phil. Trans. R. Soc. A 228 (1929) 377; Johnson, Contact Mechanics (1985), Eq. 3.25.
-    """
-    x, y, a, b = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, half_length_x, half_length_y)))
-    total = np.zeros(x.shape)
-    # Sum of signed corner terms X asinh(Y/|X|) + Y asinh(X/|Y|), paired so that far points do not cancel:
-    # asinh differences are formed from one quotient instead of two large logarithms.
-    for near, far, half_near, half_far in ((x, y, a, b), (y, x, b, a)):
-        for sign in (1.0, -1.0):
-            edge = near + sign * half_near
-            size = np.abs(edge)
-            safe = np.where(size > 0.0, size, 1.0)
-            upper, lower = (far + half_far) / safe, (far - half_far) / safe
-            total += sign * np.where(
-                size > 0.0, edge * _inverse_sinh_difference(upper, lower, 2.0 * half_far / safe), 0.0
-            )
-    return total
-
-
-def _inverse_sinh_difference(upper: FloatArray, lower: FloatArray, difference: FloatArray) -> FloatArray:
-    """asinh(upper) − asinh(lower), upper − lower given exactly: no cancellation when both are large or close."""
-    root_upper, root_lower = np.hypot(1.0, upper), np.hypot(1.0, lower)
-    same_side = upper * lower > 0.0
-    # asinh u − asinh v = asinh(u √(1+v²) − v √(1+u²)); on the same side u²−v² over the sum avoids the difference.
-    total = upper * root_lower + lower * root_upper
-    argument = np.where(
-        same_side,
-        difference * (upper + lower) / np.where(same_side, total, 1.0),
-        upper * root_lower - lower * root_upper,
-    )
-    return np.asarray(np.arcsinh(argument))
 
 
 def _fourfold_potential(x: FloatArray, y: FloatArray) -> FloatArray:
@@ -146,7 +87,7 @@ def _mean_line_potential(lags: FloatArray, width: float, distance: FloatArray) -
 
 
 def _far_mean(lag: FloatArray, width: float, distance: FloatArray, receive: FloatArray, send: FloatArray) -> FloatArray:
-    """Mean of 1/r over two cells well apart, times their lengths in y: Gauss in y, moments in x; flat pairs."""
+    """Mean of 1/r over two distant cells, times their lengths in y: Gauss in y, moments in x; flat pairs."""
     nodes_receive = np.repeat(_GAUSS_POINTS, _GAUSS_POINTS.size)[:, None]
     nodes_send = np.tile(_GAUSS_POINTS, _GAUSS_POINTS.size)[:, None]
     y = distance + 0.5 * receive * nodes_receive - 0.5 * send * nodes_send
@@ -163,7 +104,7 @@ def _far_mean(lag: FloatArray, width: float, distance: FloatArray, receive: Floa
     return np.asarray((weights @ (np.sqrt(inverse_square) * series)) * receive * send)
 
 
-def _lagged_block(lags: FloatArray, width: float, y_edges: FloatArray, sign: float, shift: float) -> FloatArray:
+def _lagged_block(lags: FloatArray, width: float, y_edges: FloatArray, sign: float, shift: float = 0.0) -> FloatArray:
     """Fourfold integrals per width² between cells at y and their images at ``sign·y + shift``; (lags, n, n)."""
     lengths = np.diff(y_edges)
     centres = 0.5 * (y_edges[1:] + y_edges[:-1])
@@ -174,8 +115,8 @@ def _lagged_block(lags: FloatArray, width: float, y_edges: FloatArray, sign: flo
     longest = np.maximum(lengths[:, None], lengths[None, :])
     far = gap >= np.maximum(_FAR_LENGTHS * longest, _FAR_WIDTHS * width)
     m, i, j = np.nonzero(far)
-    for first in range(0, m.size, _TOGETHER):
-        few = m[first : first + _TOGETHER], i[first : first + _TOGETHER], j[first : first + _TOGETHER]
+    for first in range(0, m.size, _PAIRS_AT_ONCE):
+        few = m[first : first + _PAIRS_AT_ONCE], i[first : first + _PAIRS_AT_ONCE], j[first : first + _PAIRS_AT_ONCE]
         block[few] = _far_mean(lags[few[0]], width, distance[few], lengths[few[1]], lengths[few[2]])
     return np.asarray(block)
 
@@ -189,31 +130,17 @@ def lagged_influence(
     end_plane: float = 0.0,
     end_factor: float = 0.0,
 ) -> FloatArray:
-    """Fourfold integrals of 1/r between cells of a tensor grid with uniform x cells, by lag in x.
+    """Return ∫∫ 1/r dA_i dA_j between cells of a tensor grid with uniform x cells, mm³, shape (lag_count, n, n).
 
-    Parameters
-    ----------
-    cell_width : float
-        Width of the x cells, mm.
-    lag_count : int
-        Number of lags (0, 1, … cells).
-    y_edges : ndarray, shape (n + 1,)
-        Ascending edges of the y cells, mm.
-    mirrored : bool
-        Add the images of the cells in the plane y = 0 (then ``y_edges`` must start at 0).
-    end_plane, end_factor : float
-        Add the images in the planes y = ±``end_plane``, mm, times ``end_factor`` (see `ltca.contact.free_end`).
-
-    Returns
-    -------
-    ndarray, shape (lag_count, n, n)
-        ∫∫ 1/r dA_i dA_j, mm³, symmetric in the last two axes.
+    Axis 0 is the lag in x, 0, 1, … cells of `cell_width` (mm); `y_edges` are the n + 1 ascending edges along y, mm.
+    `mirrored` adds the images of the cells in the plane y = 0, where `y_edges` must then start; `end_factor` times the images in
+    the planes y = ±`end_plane` (mm) are added for free ends (`ltca.contact.free_end`).
     """
     lags = cell_width * np.arange(lag_count, dtype=float)
     total = np.zeros((lag_count, y_edges.size - 1, y_edges.size - 1))
     for sign in (1.0, -1.0) if mirrored else (1.0,):
-        total += _lagged_block(lags, cell_width, y_edges, sign, 0.0)
-        if end_factor != 0.0:
+        total += _lagged_block(lags, cell_width, y_edges, sign)
+        if end_factor:
             for shift in (2.0 * end_plane, -2.0 * end_plane):
                 total += end_factor * _lagged_block(lags, cell_width, y_edges, -sign, shift)
     return np.asarray(0.5 * cell_width**2 * (total + total.transpose(0, 2, 1)))
@@ -228,31 +155,13 @@ def assemble_influence_matrix(
     end_plane: float = 0.0,
     end_factor: float = 0.0,
 ) -> FloatArray:
-    """Area-weighted influence matrix of a tensor grid, cells ordered x-major.
+    """Return the area-weighted influence matrix ∫∫ 1/r dA_i dA_j of a tensor grid, mm³, shape (nx·ny, nx·ny), x-major.
 
-    A symmetric direction is given by its positive half (edges from 0); the images of the cells are added, so
-    the matrix acts on that half alone: ``p·A·p / (2 π E*)`` is then the energy of one half (or quarter).
-
-    Parameters
-    ----------
-    x_edges : ndarray, shape (nx + 1,)
-        Ascending, uniformly spaced edges along the profile, mm.
-    y_edges : ndarray, shape (ny + 1,)
-        Ascending edges along the width, mm; any spacing.
-    symmetric_x, symmetric_y : bool
-        Whether the grid is the positive half of a symmetric one.
-    end_plane, end_factor : float
-        Images in the free ends at y = ±``end_plane``, mm, see `ltca.contact.free_end`; none by default.
-
-    Returns
-    -------
-    ndarray, shape (nx·ny, nx·ny)
-        Symmetric positive definite, ∫∫ 1/r dA_i dA_j, mm³; divide by π E* for the displacement moment.
-
-    Raises
-    ------
-    ValueError
-        If the x edges are not uniform, or a symmetric direction does not start at 0.
+    It is symmetric and positive definite; divided by π E* it gives displacement moments. Edges are ascending, mm: uniform along
+    the profile (x), of any spacing along the width (y). A symmetric direction is given by its positive half, edges from 0: the
+    images of the cells are added, so that the matrix acts on that half alone and ``p·A·p / (2 π E*)`` is the energy of one half
+    (or quarter). Other edges are refused (ValueError). Free ends at y = ±`end_plane` (mm) add their images times `end_factor`
+    (`ltca.contact.free_end`).
     """
     widths = np.diff(x_edges)
     count, width = widths.size, float(np.mean(widths))

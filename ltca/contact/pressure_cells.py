@@ -2,12 +2,12 @@
 
 The patch lies at |y| ≤ length/2 along the width and is as wide as needed along the profile x. Pressure is constant
 in each cell; displacement and separation enter as cell means (Galerkin), so the discrete solution is the minimum
-of the exact potential over the discrete pressures: the energy errs with the square of the pressure error (its order
-is measured in ``tests/analytic``), far better than the pressures themselves.
+of the exact potential over the discrete pressures: the error of the energy is quadratic in that of the pressures (its order
+is measured in ``tests/analytic``).
 
-The x cells are uniform with the expected edge of the contact on a cell edge; the y cells shrink toward the ends,
-where the pressure of an unrelieved body grows like one over the square root of the distance and the contact
-bulges (the grid leaves room for that).
+The x cells are uniform with the expected edge of the contact on a cell edge; the y cells shrink toward the ends, where the
+pressure of an unrelieved body grows like one over the square root of the distance and the contact is wider, for which the
+grid has room.
 """
 
 from __future__ import annotations
@@ -17,28 +17,26 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
-from ltca.arrays import FloatArray
+from ltca.arrays import BoolArray, FloatArray
 from ltca.contact.influence import assemble_influence_matrix
 from ltca.contact.unilateral import UnilateralSolution, solve_unilateral_contact
 
-Separation = Callable[[FloatArray, FloatArray], FloatArray]
 ReliefFunction = Callable[[FloatArray], FloatArray]
 
-# Room beyond the expected edge: an unrelieved end bulges by up to 1.56 of the half-width at mid-width.
+# Width of the grid by the expected half-width: the contact of an unrelieved end is up to 1.56 times as wide as at mid-width.
 _ROOM = 1.6
 # The edge of a short patch lies beyond 2√⟨x²⟩ by this over λ (measured for λ from 0.25 to 1; negligible above).
 _SHORT_EDGE = 0.007
-# What constant cells do to a Hertz profile whose edge lies on a cell edge, per (cell width/half-width)², measured
-# with 6 to 64 cells: 2√⟨x²⟩ comes out too large, the first cell's pressure too small against the peak.
+# Errors of constant cells for a Hertz profile whose edge lies on a cell edge, per (cell width/half-width)², measured
+# with 6 to 64 cells: 2√⟨x²⟩ is too large, the pressure of the first cell too small compared with the peak.
 _HALF_WIDTH_BIAS = 0.150
 _PEAK_BIAS = 0.114
 _GAUSS_POINTS, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(4)
 
 
 def graded_edges(length: float, cells: int, grading: float) -> FloatArray:
-    """Edges of half the width, 0 … length/2, cells shrinking toward the end like a power law.
+    """Return edges of half the width, 0 … length/2, mm, with cells that shrink toward the end like a power law.
 
     The last cell measures ``length/2 · cells**(-grading)``; grading 1 is uniform, 4 resolves the square-root
     singularity at an unrelieved end as well as the smooth middle.
@@ -48,7 +46,7 @@ def graded_edges(length: float, cells: int, grading: float) -> FloatArray:
 
 
 def end_grading(slenderness: float) -> float:
-    """Grading exponent for a patch of length/√(ρδ) = ``slenderness``: longer ones need smaller end cells."""
+    """Return the grading exponent for a patch of length/√(ρδ) = ``slenderness``: longer ones need smaller end cells."""
     return 2.5 + 0.25 * float(np.log(max(slenderness, 1.0)))
 
 
@@ -63,9 +61,9 @@ class PatchGrid:
     y_edges : ndarray, shape (ny + 1,)
         Edges along the width, mm; from 0 when ``symmetric_y``.
     symmetric_x, symmetric_y : bool
-        Whether the edges give the positive half of a symmetric patch.
+        Whether the edges are those of the positive half of a symmetric patch.
     end_plane, end_factor : float
-        Free ends of the bodies at y = ±``end_plane``, mm, and the weight of their images (`ltca.contact.free_end`).
+        Free ends of the bodies at y = ±`end_plane`, mm, and the weight of their images (`ltca.contact.free_end`).
     """
 
     x_edges: FloatArray
@@ -77,33 +75,26 @@ class PatchGrid:
 
     @classmethod
     def fitted(
-        cls,
-        length: float,
-        half_width: float,
-        *,
-        cells: int,
-        grading: float,
-        y_cells: int | None = None,
-        end_factor: float = 0.0,
+        cls, length: float, half_width: float, *, cells: int, grading: float, end_factor: float = 0.0
     ) -> PatchGrid:
-        """Quarter grid with ``cells`` cells over the expected half-width and room for the ends to bulge."""
+        """Return a quarter grid: `cells` over the expected half-width, with room for bulging ends, and over half the length."""
         count = int(np.ceil(_ROOM * cells))
         return cls(
             x_edges=np.asarray(half_width / cells * np.arange(count + 1.0)),
-            y_edges=graded_edges(length, cells if y_cells is None else y_cells, grading),
+            y_edges=graded_edges(length, cells, grading),
             end_plane=0.5 * length,
             end_factor=end_factor,
         )
 
     def whole(self) -> PatchGrid:
-        """The same grid without symmetry."""
+        """Return the same grid without symmetry."""
         half = self.half()
         y = half.y_edges
         edges = np.concatenate([-y[:0:-1], y]) if half.symmetric_y else y
         return replace(half, y_edges=edges, symmetric_y=False)
 
     def half(self) -> PatchGrid:
-        """The same grid without symmetry along x: for flanks whose separation leans to one side."""
+        """Return the same grid without symmetry along x: for flanks, whose separation is not even."""
         x = self.x_edges
         edges = np.concatenate([-x[:0:-1], x]) if self.symmetric_x else x
         return replace(self, x_edges=edges, symmetric_x=False)
@@ -115,7 +106,7 @@ class PatchGrid:
 
     @property
     def images(self) -> int:
-        """How many times the grid stands for the whole patch: 1, 2 or 4."""
+        """Number of images of the grid in the whole patch: 1, 2 or 4."""
         return (2 if self.symmetric_x else 1) * (2 if self.symmetric_y else 1)
 
     @property
@@ -150,8 +141,8 @@ class PatchGrid:
             end_factor=self.end_factor,
         )
 
-    def cell_means(self, function: Separation) -> FloatArray:
-        """Mean of f(x, y) over every cell by 4 × 4 Gauss points, shape (nx, ny)."""
+    def cell_means(self, function: Callable[[FloatArray, FloatArray], FloatArray]) -> FloatArray:
+        """Return the mean of f(x, y) over every cell by 4 × 4 Gauss points, shape (nx, ny)."""
         x, y = (
             centres[:, None] + 0.5 * np.diff(edges)[:, None] * _GAUSS_POINTS
             for centres, edges in ((self.x_centres, self.x_edges), (self.y_centres, self.y_edges))
@@ -191,7 +182,7 @@ class PatchSolution:
     solution: UnilateralSolution
 
     @property
-    def contact(self) -> NDArray[np.bool_]:
+    def contact(self) -> BoolArray:
         """Cells in contact, shape (nx, ny)."""
         return self.pressure > 0.0
 
@@ -200,20 +191,20 @@ class PatchSolution:
         """Cell centres along x and the pressure there at mid-width y = 0, mm and MPa."""
         return self.grid.x_centres, self._at_mid_width(self.pressure)
 
-    def whole_field(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Cell centres along x and y and the pressure over the whole patch, images unfolded; mm, mm, MPa."""
-        x, y, pressure = self.grid.x_centres, self.grid.y_centres, self.pressure
+    def unfolded(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return the edges of the cells along x and y and the pressure over the whole patch, images included; mm, mm, MPa."""
+        x, y, pressure = self.grid.x_edges, self.grid.y_edges, self.pressure
         if self.grid.symmetric_x:
-            x, pressure = np.concatenate([-x[::-1], x]), np.concatenate([pressure[::-1], pressure])
+            x, pressure = np.concatenate([-x[:0:-1], x]), np.concatenate([pressure[::-1], pressure])
         if self.grid.symmetric_y:
-            y, pressure = np.concatenate([-y[::-1], y]), np.concatenate([pressure[:, ::-1], pressure], axis=1)
+            y, pressure = np.concatenate([-y[:0:-1], y]), np.concatenate([pressure[:, ::-1], pressure], axis=1)
         return x, y, pressure
 
     @property
     def half_width(self) -> float:
         """Contact half-width at mid-width, mm: 2 √⟨x²⟩ with the pressure as weight (exact for Hertz).
 
-        The origin of x is the centre of pressure when the patch is not symmetric.
+        x is measured from the centre of pressure when the patch is not symmetric.
         """
         x, p = self.grid.x_edges, self._at_mid_width(self.pressure)
         total = float(np.sum(p))
@@ -247,7 +238,7 @@ class PatchSolution:
         return float(np.max(self.pressure))
 
     def _at_mid_width(self, field: FloatArray) -> FloatArray:
-        """Values at y = 0 from the cell means next to it (parabola across mid-width)."""
+        """Values at y = 0 from the cell means next to it, by a parabola across mid-width."""
         y = self.grid.y_edges
         if self.grid.symmetric_y:
             if y.size < 3:
@@ -272,31 +263,13 @@ def solve_patch(
     contact_modulus: float,
     approach: float,
     *,
-    start: NDArray[np.bool_] | None = None,
+    start: BoolArray | None = None,
 ) -> PatchSolution:
-    """Pressure over a patch pressed together by ``approach``.
+    """Return the pressure over a patch at an approach of distant points, mm; nothing touches where the separation exceeds it.
 
-    Parameters
-    ----------
-    grid : PatchGrid
-        Whole, half or quarter grid.
-    separation : ndarray, shape (nx, ny)
-        Mean separation of the undeformed bodies over each cell, mm (`PatchGrid.cell_means`).
-    contact_modulus : float
-        E*, MPa.
-    approach : float
-        Approach of distant points, mm; nothing touches where the separation exceeds it.
-    start : ndarray of bool, shape (nx, ny), optional
-        Contact cells to start from; default where the undeformed bodies overlap.
-
-    Returns
-    -------
-    PatchSolution
-
-    Raises
-    ------
-    ltca.errors.ConvergenceError
-        If the contact set does not settle.
+    `separation` is the mean separation of the undeformed bodies over each cell, mm (`PatchGrid.cell_means`), `contact_modulus`
+    E*, MPa; `start` are initial contact cells, by default those where the undeformed bodies overlap. Arrays have the shape (nx,
+    ny). ConvergenceError if the contact set does not settle.
     """
     areas = grid.areas.ravel()
     scale = 1.0 / (np.pi * contact_modulus)
@@ -319,7 +292,7 @@ def solve_patch(
 
 
 def expected_half_width(length: float, effective_radius: float, approach: float) -> float:
-    """First guess of the half-width at mid-width of an uncrowned contact, mm: 1 to 4 % high for λ > 3, 16 % at λ = 0.3.
+    """Return a first guess of the half-width at mid-width of an uncrowned contact, mm: 1 to 4 % high for λ > 3, 16 % at λ = 0.3.
 
     From δ = q/(π E*) (1 + 2 ln(length/b) + ln 4 …) for a Hertz strip of even load q, solved for b.
     """
@@ -340,13 +313,12 @@ def solve_cylinder_patch(
     *,
     relief: ReliefFunction | None = None,
     cells: int = 16,
-    y_cells: int | None = None,
     half_width: float | None = None,
     grading: float | None = None,
     end_factor: float = 0.0,
     start: PatchSolution | None = None,
 ) -> PatchSolution:
-    """Contact of two cylinders, symmetric in x and y, on a quarter grid fitted to the half-width.
+    """Return the contact of two cylinders, symmetric in x and y, on a quarter grid fitted to the half-width.
 
     Parameters
     ----------
@@ -359,31 +331,27 @@ def solve_cylinder_patch(
     approach : float
         Approach at mid-width, mm, positive.
     relief : callable, optional
-        z(y) ≥ 0, mm, symmetric: what the profile takes away along the width.
-    cells, y_cells : int
-        Cells over the half-width and over half the length (default: the same number).
+        z(y) ≥ 0, mm, symmetric: relief of the profile along the width.
+    cells : int
+        Cells over the half-width and over half the length.
     half_width : float, optional
-        Where to put the edge, mm; found on a grid of half as many cells when not given.
+        Expected edge of the contact, mm; from a grid of half as many cells by default.
     grading : float, optional
         Exponent of the cells along y, see `graded_edges`.
     end_factor : float, optional
-        Weight of the images in free ends at ±length/2, see `ltca.contact.free_end`; 0 is the half-space.
+        Weight of the images in free ends at ±length/2 (`ltca.contact.free_end`); 0 is the half-space.
     start : PatchSolution, optional
-        A solution on the grid of half as many cells to take the first guess of the contact cells from.
-
-    Returns
-    -------
-    PatchSolution
+        Solution on the grid of half as many cells, for the initial contact cells.
     """
     slenderness = length / float(np.sqrt(effective_radius * approach))
     exponent = end_grading(slenderness) if grading is None else grading
 
-    def solve_on(edge: float, count: int, count_y: int, before: PatchSolution | None) -> PatchSolution:
+    def solve_on(edge: float, count: int, before: PatchSolution | None) -> PatchSolution:
         fitted = edge * (1.0 + _SHORT_EDGE / slenderness)
-        grid = PatchGrid.fitted(length, fitted, cells=count, grading=exponent, y_cells=count_y, end_factor=end_factor)
+        grid = PatchGrid.fitted(length, fitted, cells=count, grading=exponent, end_factor=end_factor)
         x = grid.x_edges
         means = (x[1:] ** 2 + x[1:] * x[:-1] + x[:-1] ** 2) / (6.0 * effective_radius)
-        along = np.zeros(count_y) if relief is None else _means_along(relief, grid)
+        along = np.zeros(count) if relief is None else _means_along(relief, grid)
         guess = None
         if before is not None:
             guess = np.repeat(np.repeat(before.contact, 2, axis=0), 2, axis=1)
@@ -391,33 +359,20 @@ def solve_cylinder_patch(
                 guess = None
         return solve_patch(grid, means[:, None] + along[None, :], contact_modulus, approach, start=guess)
 
-    count_y = cells if y_cells is None else y_cells
     if half_width is None:
         half_width = expected_half_width(length, effective_radius, approach)
         for _ in range(3):
-            start = solve_on(half_width, max(cells // 2, 6), max(count_y // 2, 6), None)
+            start = solve_on(half_width, max(cells // 2, 6), None)
             if start.half_width <= 0.0:
                 break
             settled = abs(start.half_width / half_width - 1.0) < 2e-3
             half_width = start.half_width
             if settled:
                 break
-    return solve_on(half_width, cells, count_y, start)
+    return solve_on(half_width, cells, start)
 
 
 def _means_along(relief: ReliefFunction, grid: PatchGrid) -> FloatArray:
-    """Mean relief of every y cell by Gauss points."""
+    """Mean relief over every y cell by Gauss points."""
     y = grid.y_centres[:, None] + 0.5 * np.diff(grid.y_edges)[:, None] * _GAUSS_POINTS
     return np.asarray(relief(y) @ _GAUSS_WEIGHTS / 2.0)
-
-
-def parabolic_separation(effective_radius: float, relief: ReliefFunction | None = None) -> Separation:
-    """h(x, y) = x²/(2ρ) + z(y) as a function for `PatchGrid.cell_means`."""
-
-    def separation(x: ArrayLike, y: ArrayLike) -> FloatArray:
-        across = np.asarray(x, dtype=float)
-        along = np.asarray(y, dtype=float)
-        extra = np.zeros_like(along) if relief is None else relief(along)
-        return np.asarray(across**2 / (2.0 * effective_radius) + extra)
-
-    return separation

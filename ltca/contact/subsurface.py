@@ -30,21 +30,10 @@ def rectangle_stress(
     half_length_y: ArrayLike,
     poisson_ratio: float,
 ) -> FloatArray:
-    """Stress tensor below a rectangle under unit pressure, centred on the origin.
+    """Return the stress tensor below a rectangle under unit pressure, centred on the origin, shape (..., 6).
 
-    Parameters
-    ----------
-    x, y, depth : array_like
-        Points, mm, depth > 0.
-    half_length_x, half_length_y : array_like
-        Half sides, mm.
-    poisson_ratio : float
-        ν of the body.
-
-    Returns
-    -------
-    ndarray, shape (..., 6)
-        σx, σy, σz, τxy, τxz, τyz per unit pressure (compression negative; z into the body).
+    Points x, y and depth > 0 and the half sides are in mm; ν is that of the body. Components are σx, σy, σz, τxy, τxz, τyz per
+    unit pressure, compression negative, z into the body.
     """
     x, y, z, a, b = np.broadcast_arrays(
         *(np.asarray(value, dtype=float) for value in (x, y, depth, half_length_x, half_length_y))
@@ -76,21 +65,9 @@ def rectangle_stress(
 def patch_stress(
     solution: PatchSolution, x: ArrayLike, y: ArrayLike, depth: ArrayLike, poisson_ratio: float
 ) -> FloatArray:
-    """Stress tensor at points below a solved patch, MPa; the free ends' images are not included.
+    """Return the stress tensor at points x, y and depth > 0, mm, below a solved patch, as `rectangle_stress`, MPa.
 
-    Parameters
-    ----------
-    solution : PatchSolution
-        Pressure over the patch.
-    x, y, depth : array_like
-        Points, mm, depth > 0, broadcast together.
-    poisson_ratio : float
-        ν of the body looked into.
-
-    Returns
-    -------
-    ndarray, shape (..., 6)
-        σx, σy, σz, τxy, τxz, τyz, MPa.
+    ν is that of the body in which the points lie.
     """
     x, y, z = np.broadcast_arrays(*(np.asarray(value, dtype=float) for value in (x, y, depth)))
     grid = solution.grid
@@ -114,7 +91,7 @@ def patch_stress(
 
 
 def max_shear_stress(stress: FloatArray) -> FloatArray:
-    """Half the difference of the largest and smallest principal stress; stress in the last axis as above."""
+    """Return half the difference of the largest and smallest principal stress; components on the last axis as above."""
     tensor = np.empty((*stress.shape[:-1], 3, 3))
     for component, (i, j) in enumerate(((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))):
         tensor[..., i, j] = tensor[..., j, i] = stress[..., component]
@@ -142,25 +119,10 @@ class SubsurfaceShear:
 
 
 def find_subsurface_shear(solution: PatchSolution, poisson_ratio: float) -> SubsurfaceShear:
-    """Largest shear stress on the normal through the pressure peak at mid-width, and its depth.
+    """Return the largest shear stress on the normal through the pressure peak at mid-width, and its depth.
 
-    Depths from 0.2 to 2.5 half-widths are scanned and the crest is refined by a parabola.
-
-    Parameters
-    ----------
-    solution : PatchSolution
-        A patch with contact at mid-width.
-    poisson_ratio : float
-        ν of the body looked into.
-
-    Returns
-    -------
-    SubsurfaceShear
-
-    Raises
-    ------
-    ValueError
-        If nothing touches at mid-width.
+    Depths from 0.2 to 2.5 half-widths are scanned and the maximum is refined by a parabola. ν is that of the body in which the
+    stress is sought; nothing touching at mid-width is refused (ValueError).
     """
     half_width = solution.half_width
     if half_width <= 0.0:
@@ -178,31 +140,18 @@ def find_subsurface_shear(solution: PatchSolution, poisson_ratio: float) -> Subs
 
 
 LINE_SHEAR = 0.3002831
-"""Largest shear stress below a Hertz line contact by its peak pressure: the largest of ζ (1 − ζ/√(1 + ζ²))."""
+"""Largest shear stress below a Hertz line contact, in its peak pressure: the maximum of ζ (1 − ζ/√(1 + ζ²))."""
 LINE_SHEAR_DEPTH = 0.7861514
-"""Where it lies, in half-widths."""
-
-LINE_DEPTH = 0.7861514
-"""Its depth ζ in half-widths, √((√5 − 1)/2): the positive root of ζ⁴ + ζ² = 1."""
+"""Depth ζ of that stress in half-widths, √((√5 − 1)/2): the positive root of ζ⁴ + ζ² = 1."""
 
 
 def line_contact_shear(peak_pressure: ArrayLike, wall_stress: ArrayLike) -> FloatArray:
-    """Largest shear stress below a line contact in a body that carries a stress along its wall, MPa.
+    """Return the largest shear stress below a line contact in a body with a stress along its wall, MPa.
 
-    In plane strain the shear stress on the axis is half of σx − σz = 2 p0 ζ (1 − ζ/√(1 + ζ²)) (Johnson, Eq. 4.45 and 4.46), and a
-    stress along the wall adds to σx at every depth alike: half of it to the shear, wherever that is largest.
-
-    Parameters
-    ----------
-    peak_pressure : array_like
-        p0 of the contact, MPa.
-    wall_stress : array_like
-        Stress along the wall at the contact but for the contact's own, tension positive, MPa.
-
-    Returns
-    -------
-    ndarray
-        Zero where nothing presses.
+    Zero where nothing presses. In plane strain the shear stress on the axis is half of σx − σz = 2 p0 ζ (1 − ζ/√(1 + ζ²))
+    (Johnson, Eq. 4.45 and 4.46), and a stress along the wall adds to σx equally at every depth: half of it to the shear stress.
+    `wall_stress` is the stress along the wall at the contact without that of the contact, tension positive, MPa;
+    `peak_pressure` is p0, MPa.
 
     Examples
     --------
@@ -214,24 +163,10 @@ def line_contact_shear(peak_pressure: ArrayLike, wall_stress: ArrayLike) -> Floa
 
 
 def line_contact_shear_at(peak_pressure: ArrayLike, half_width: ArrayLike, depth: ArrayLike) -> FloatArray:
-    """Largest shear stress at a depth below the middle of a line contact and deeper, MPa.
+    """Return the largest shear stress at and below a depth, mm, under the middle of a line contact, MPa.
 
-    On the axis it is p0 (ζ − ζ²/√(1 + ζ²)), ζ = depth/half-width, which grows to `LINE_SHEAR` p0 at 0.786 half-widths and falls
-    below (Johnson, Contact Mechanics, 1985, Eq. 4.46 and 4.47).
-
-    Parameters
-    ----------
-    peak_pressure : array_like
-        p0 of the contact, MPa.
-    half_width : array_like
-        Of the contact, mm.
-    depth : array_like
-        Below the surface, mm.
-
-    Returns
-    -------
-    ndarray
-        Zero where nothing presses; `LINE_SHEAR` p0 where the largest shear lies deeper.
+    Zero where nothing presses. On the axis it is p0 (ζ − ζ²/√(1 + ζ²)), ζ = depth/half-width, which grows to `LINE_SHEAR` p0 at
+    0.786 half-widths and falls below (Johnson, Contact Mechanics, 1985, Eq. 4.46 and 4.47); p0 is in MPa, the half-width in mm.
 
     Examples
     --------

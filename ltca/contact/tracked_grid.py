@@ -1,16 +1,16 @@
-"""One contact on its own grid, solved again and again while the bodies move.
+"""Contacts solved on grids at every approach of an equilibrium: load, stiffness, pressures.
 
-An influence matrix depends on the shape of its grid alone, not on its size: grids are kept per shape (cell width
-by patch length, on a ladder of 5 %) with unit length, and one small set of matrices serves every contact of a drive.
-Where the edge of the contact falls within a cell moves the load of 12 cells per half-width by less than 1e-4 (measured
+An influence matrix depends on the shape of its grid alone, not on its size: grids are cached by shape (cell width
+by patch length, in steps of 5 %) with unit length, and one small set of matrices serves every contact of a drive.
+Where the edge of the contact falls within a cell changes the load on 12 cells per half-width by less than 1e-4 (measured
 in ``tests/ltca/contact/test_tracked_grid.py``).
 
-**A load depends on approach, radius and place alone**, never on what was solved before. The grids of a contact follow
-from the half-width expected at its approach (`ltca.contact.grid_ladder`); where two share it its load is continuous
-with its slope, so Newton's method ends. The separation of a flank is interpolated between places of a fixed ladder.
+**A load depends on approach, radius and place alone**, never on earlier solutions. The grids of a contact follow
+from the half-width expected at its approach (`ltca.contact.grid_ladder`); where two are blended the load is continuous
+with its slope, so Newton's method converges. The separation of a flank is interpolated between fixed places.
 
-While the same cells touch, pressure is linear in the approach and in the way from one place of that ladder to the
-next, p = δ A⁻¹1 − A⁻¹h, known without another factorisation. A `GridPiece` holds what that takes. It is a value:
+While the same cells touch, pressure is linear in the approach and in the distance between two such places,
+p = δ A⁻¹1 − A⁻¹h, and needs no further factorisation. A `GridPiece` holds the coefficients. It is a value:
 contacts that start from the pieces of a neighbouring pose solve the same problem, only faster.
 """
 
@@ -23,7 +23,6 @@ from typing import NamedTuple
 import numpy as np
 
 from ltca.arrays import BoolArray, FloatArray, freeze
-from ltca.contact.generator import SummedProfile, generator_profile
 from ltca.contact.grid_ladder import (
     RUNG,
     SHADES,
@@ -36,6 +35,7 @@ from ltca.contact.grid_ladder import (
     find_width_place,
     unit_grid,
 )
+from ltca.contact.length_profile import SummedProfile, generator_profile
 from ltca.contact.pressure_cells import PatchGrid, PatchSolution
 from ltca.contact.unilateral import UnilateralSolution, solve_unilateral_contact
 from ltca.drive.parts import Drive, contact_modulus
@@ -44,17 +44,17 @@ Departure = Callable[[FloatArray], FloatArray]
 
 CELLS = 12
 FIT = 0.08
-"""Largest misfit of ln(half-width) before a contact solved once (`solve_fitted`) changes its rung."""
+"""Largest error of ln(half-width) of the rung on which `solve_fitted` accepts a contact."""
 
 END_STRETCH = 0.01
-"""Part of the length over which the largest pressure is averaged, see `ltca.contact.end_pressure`."""
+"""Fraction of the length over which the largest pressure is averaged, see `ltca.contact.end_pressure`."""
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ContactKind:
-    """What all contacts of one kind share.
+    """Data shared by all contacts of one kind.
 
     Attributes
     ----------
@@ -78,7 +78,7 @@ class ContactKind:
 
     @property
     def end_cell(self) -> float:
-        """Length that the largest pressure stands for, mm: at an unrelieved end it is singular."""
+        """Length over which the largest pressure is averaged, mm: at an unrelieved end the pressure is singular."""
         return END_STRETCH * self.length
 
 
@@ -93,15 +93,7 @@ class ContactKinds:
 
     @classmethod
     def of_drive(cls, drive: Drive, cells: int = CELLS) -> ContactKinds:
-        """Return the kinds of contact of a drive.
-
-        Parameters
-        ----------
-        drive : Drive
-            The drive.
-        cells : int
-            Cells over each half-width and over half of each length.
-        """
+        """Return the kinds of contact of a drive, with `cells` over each half-width and over half of each length."""
         bearing, wheel, parts = drive.crank_bearing, drive.pin_wheel, drive.materials
         roller = generator_profile(bearing.roller_profile, bearing.roller_length, bearing.roller_radius)
         return cls(
@@ -138,18 +130,18 @@ class ContactKinds:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Separation:
-    """How two surfaces leave each other where they touch.
+    """Separation of two surfaces about the point where they touch.
 
     Attributes
     ----------
     effective_radius : float
         ρ there, from which the width of the contact is expected, mm.
     departure : callable
-        Separation in mm at a place of a ladder of places, by its number, over the distance along the tangent in mm.
+        Separation in mm at one of the fixed places, by its number, over the distance along the tangent in mm.
     place : int
         Place below, 0 where there is but one.
     part : float
-        Way from it to the place above, 0 to 1; the separation is interpolated between both.
+        Fraction of the way from it to the next place, 0 to 1; the separation is interpolated between both.
     """
 
     effective_radius: float
@@ -159,30 +151,30 @@ class Separation:
 
     @property
     def weights(self) -> FloatArray:
-        """Weights of the places."""
+        """Weights of the one or two places."""
         return np.array([1.0 - self.part, self.part]) if self.part > 0.0 else np.ones(1)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GridPiece:
-    """A contact on one grid with its contact cells held: all that is linear in the approach and the separation.
+    """Coefficients of a contact on one grid with its contact cells held: linear in the approach and the separation.
 
     Attributes
     ----------
     grid : GridRung
-        Which grid.
+        Shape of the grid.
     place : int
         Place of the separation, see `Separation`.
     active : array of bool, shape (cells,)
         Contact cells.
     rate, opening_rate : array, shape (cells,)
-        Pressure by E*, and opening, by approach over patch length.
+        Pressure by E*, and opening, per approach by patch length.
     taken, opening_taken : array, shape (cells, places)
-        What the separation at each place takes from both.
+        Both due to the separation at each place, to be subtracted.
     load_rate : float
-        Sum of the pressure's rate over the cells' areas.
+        Sum of `rate` times the areas of the cells.
     load_taken : array, shape (places,)
-        What the separation at each place takes from that.
+        Sums of `taken` times the areas.
     """
 
     grid: GridRung
@@ -196,7 +188,7 @@ class GridPiece:
     load_taken: FloatArray
 
     def holds(self, closing: float, weights: FloatArray, slack: float) -> bool:
-        """Return whether just these cells touch at an approach over patch length: no pull outside, no overlap."""
+        """Return whether the same cells touch at an approach by patch length: no tension inside, no overlap outside."""
         taken, opening_taken = self.taken, self.opening_taken
         if weights.size == 1:  # at a place of the ladder, or the only one
             taken, opening_taken = taken[:, :1], opening_taken[:, :1]
@@ -220,18 +212,9 @@ class Pressed(NamedTuple):
 
 
 def press(kind: ContactKind, separation: Separation, approach: float, start: Sequence[GridPiece] = ()) -> Pressed:
-    """Return load and stiffness of a contact.
+    """Return load and stiffness of a contact at an approach δ, mm, positive.
 
-    Parameters
-    ----------
-    kind : ContactKind
-        What it shares with others.
-    separation : Separation
-        Of its surfaces.
-    approach : float
-        δ, mm, positive.
-    start : sequence of GridPiece
-        Pieces of a neighbouring pose: they make it faster and change nothing.
+    `start` are the pieces of a neighbouring pose: they save time and do not change the result.
     """
     shares = find_shares(kind.length, kind.generator, separation.effective_radius, approach)
     slopes = (
@@ -256,7 +239,7 @@ def press(kind: ContactKind, separation: Separation, approach: float, start: Seq
 def recover_patches(
     kind: ContactKind, separation: Separation, approach: float, start: Sequence[GridPiece] = ()
 ) -> list[tuple[float, PatchSolution]]:
-    """Return the pressures of a contact on each of its grids and the share of each; arguments as for `press`."""
+    """Return the shares and the pressures of a contact on each of its grids; arguments as for `press`."""
     patches = []
     weights = separation.weights
     for rung, share in find_shares(kind.length, kind.generator, separation.effective_radius, approach).items():
@@ -275,16 +258,10 @@ def recover_patches(
 
 
 def solve_fitted(kind: ContactKind, approach: float, effective_radius: float, departure: Departure) -> PatchSolution:
-    """Return the pressure over a contact on the one grid that fits the half-width found.
+    """Return the pressure over a contact on the grid that fits its half-width.
 
-    Parameters
-    ----------
-    kind : ContactKind
-        What it shares with others.
-    approach, effective_radius : float
-        δ and ρ, mm.
-    departure : callable
-        Separation in mm over the distance along the tangent in mm.
+    Approach δ and effective radius ρ are in mm; `departure` gives the separation in mm over the distance along the tangent in
+    mm.
     """
     separation = Separation(effective_radius=effective_radius, departure=lambda _, x: departure(x))
     reach = int(np.floor(find_reach_place(kind.length, kind.generator, approach)))
@@ -312,7 +289,7 @@ def solve_fitted(kind: ContactKind, approach: float, effective_radius: float, de
 def _settle(
     kind: ContactKind, rung: GridRung, separation: Separation, approach: float, start: Sequence[GridPiece]
 ) -> GridPiece:
-    """The piece of one grid that holds at an approach: one of the start if it does, else solved from it."""
+    """Return the piece of one grid that holds at an approach: one of `start` if it does, otherwise solved from it."""
     weights, closing = separation.weights, approach / find_patch_length(kind.length, rung.reach_rung)
     areas = _scaled_areas(kind, rung)
     active = None
@@ -378,7 +355,7 @@ def _unit_separations(kind: ContactKind, rung: GridRung, separation: Separation)
 def _patch_solution(
     kind: ContactKind, rung: GridRung, unit: FloatArray, approach: float, solved: UnilateralSolution
 ) -> PatchSolution:
-    """A dimensionless solution in mm and MPa."""
+    """Return a dimensionless solution in mm and MPa."""
     shape, length = _grid(kind, rung), find_patch_length(kind.length, rung.reach_rung)
     grid = PatchGrid(
         x_edges=shape.x_edges * length,
@@ -400,7 +377,7 @@ def _patch_solution(
 
 
 def _expected_cells(kind: ContactKind, rung: GridRung, radius: float, approach: float) -> BoolArray:
-    """Contact cells to start from when nothing is known: those of the cylinder of the expected half-width."""
+    """Return initial contact cells without a neighbouring pose: those of the cylinder of the expected half-width."""
     if kind.generator is None:
         width = round(SHADES * find_width_place(kind.length, rung.reach_rung, radius, approach))
         return find_cylinder_cells(width, rung.rung, kind.cells, kind.symmetric)

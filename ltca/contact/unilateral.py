@@ -1,10 +1,9 @@
 """Frictionless unilateral contact: pressures that never pull and surfaces that never overlap.
 
-Find p with ``p ≥ 0``, ``w = A p − penetration ≥ 0`` and ``p·w = 0`` for a symmetric positive definite A. This is
-the minimum of ``½ p·A·p − penetration·p`` over p ≥ 0: one and only one solution exists. Block principal
-pivoting finds it exactly: drop every cell that pulls, readmit every cell that overlaps, solve again. Exchange in
-blocks may cycle in principle, so when the number of offenders has not fallen for a few steps single cells are
-exchanged by Murty's rule (the offender of highest index), which is known to end.
+Find p with ``p ≥ 0``, ``w = A p − penetration ≥ 0`` and ``p·w = 0`` for a symmetric positive definite A, the minimum of
+``½ p·A·p − penetration·p`` over p ≥ 0, which is unique. Block principal pivoting finds it exactly: release every cell that
+pulls, add every cell that overlaps, solve again. Exchange in blocks may cycle in principle, so when the number of offending
+cells has not fallen for a few steps single cells are exchanged by Murty's rule (the one of highest index), which terminates.
 """
 
 from __future__ import annotations
@@ -12,14 +11,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ltca.arrays import BoolArray, FloatArray
 from ltca.errors import ConvergenceError
 
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
-
+MAX_ITERATIONS = 500
+"""Factorisations."""
 _BLOCK_TRIALS = 4
+"""Block exchanges without fewer offending cells before single cells are exchanged."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -41,20 +40,19 @@ class UnilateralSolution:
         Number of offending cells before each solve.
     """
 
-    pressure: Array
-    active: Mask
-    opening: Array
-    rate: Array
+    pressure: FloatArray
+    active: BoolArray
+    opening: FloatArray
+    rate: FloatArray
     history: tuple[int, ...]
 
 
 def solve_unilateral_contact(
-    influence: Array,
-    penetration: Array,
+    influence: FloatArray,
+    penetration: FloatArray,
     *,
-    start: Mask | None = None,
-    load_direction: Array | None = None,
-    max_iterations: int = 500,
+    start: BoolArray | None = None,
+    load_direction: FloatArray | None = None,
 ) -> UnilateralSolution:
     """Solve p ≥ 0, A p − penetration ≥ 0, p·(A p − penetration) = 0 exactly by block principal pivoting.
 
@@ -65,15 +63,9 @@ def solve_unilateral_contact(
     penetration : ndarray, shape (n,)
         Right-hand side: the overlap of the undeformed bodies (area-weighted if A is).
     start : ndarray of bool, shape (n,), optional
-        Cells to start with; default where ``penetration`` is positive.
+        Initial contact cells; default where ``penetration`` is positive.
     load_direction : ndarray, shape (n,) or (n, directions), optional
-        Direction of the penetration's change for the tangent ``rate``, or several.
-    max_iterations : int
-        Factorisations allowed.
-
-    Returns
-    -------
-    UnilateralSolution
+        Directions of change of the penetration for the tangent ``rate``.
 
     Raises
     ------
@@ -85,7 +77,7 @@ def solve_unilateral_contact(
     ----------
     J. J. Júdice, F. M. Pires, Comput. Oper. Res. 21 (1994) 587 (block principal pivoting with Murty's rule).
     """
-    from scipy.linalg import lapack  # 0.1 s to import; what runs on tables solves no cells
+    from scipy.linalg import lapack  # 0.1 s to import; laws from tables solve no cells
 
     count = penetration.size
     active = (penetration > 0.0) if start is None else np.array(start, dtype=bool)
@@ -94,7 +86,7 @@ def solve_unilateral_contact(
     history: list[int] = []
     fewest, trials = count + 1, _BLOCK_TRIALS
     scale = float(np.max(np.abs(penetration), initial=0.0))
-    for _ in range(max_iterations):
+    for _ in range(MAX_ITERATIONS):
         inside = np.nonzero(active)[0]
         pressure[:] = 0.0
         opening = -penetration

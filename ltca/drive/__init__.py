@@ -1,24 +1,22 @@
-"""What a drive is: frozen definitions of its parts, their deviations and tolerances; nothing computed.
+"""The definition of a drive: frozen dataclasses of its parts, their deviations and tolerances; nothing is computed.
 
 Modules in the order data passes:
 
-=============  ============================================================
-units          Units of the drive file: what a text may carry, and how a field checks it
-names          Names of drives and cases: files and folders are called after them, and they are printed, drawn and put on
-               pages
-deviations     Deviations of real parts from their drawing: part of the drive's definition, all zero unless given
-materials      What parts are made of, linear-elastic, and the profile they are ground to along their length
-members        Parts that take a page of their own: crankshafts, and the pins of wheel and shaft
-fingerprints   Hashes of definitions: what is at its default is left out, so that a field that later versions add changes none
-parts          The drive: validated, frozen definitions of its parts, clearances and load (mm, N, MPa, N·mm, rad)
-single_discs   A drive of several discs as drives of one disc each, and how far each flank is turned against its holes
-plane_strain   What some models cannot say about a drive: what varies along rollers and pins, several cranks, supports, loose
-               pins
-unit_mistakes  Likely mistakes of units behind a drive that cannot carry its load: looked for when a solution fails, never
-               before
-fields         Fields of a drive by dotted path: read, count, unit
-mistakes       Mistakes in a definition as sentences: field, value, bound; a misspelt name with the one that was meant
-tolerances     Distributions of the fields of a drive: the ``[tolerances]`` table that studies read
-reference      What is told of the fields: unit, default, bound, meaning, and which engine takes them
-=============  ============================================================
+==============  ============================================================
+units           Units of the drive file, and the checks of quantities and counts that types of fields carry
+names           Names of drives and cases, which name files and folders and are printed and drawn
+deviations      Deviations of real parts from their drawing: part of the definition of a drive, all zero by default
+materials       Materials of the parts, linear-elastic, and their profiles along the length
+members         Crankshafts, pins, operation and temperatures; named materials; limits and their verdict
+fingerprints    Hashes of definitions without what is at its default, so that fields of later versions change none
+parts           The drive: validated, frozen definitions of its parts, clearances and load (mm, N, MPa, N·mm, rad)
+declaration     Every field with unit, bounds, default, meaning and growth with temperature, from the definitions
+engine_support  Fields that engines refuse: the one table behind engines, finite elements and the reference pages
+single_discs    A drive of several discs as drives of one disc each
+hole_contact    The contact of holes and shaft pins: whether the pins are elastic there, and the modulus of the pair
+fields          Fields of a drive by dotted path: values, numbers of elements, absent parts
+mistakes        Mistakes in a definition as sentences: field, value, bound, and the name that a misspelt one is close to
+unit_mistakes   Likely mistakes of units behind a drive that cannot carry its load
+tolerances      Distributions of the fields of a drive: the ``[tolerances]`` table that studies read
+==============  ============================================================
 """

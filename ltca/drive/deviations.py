@@ -1,7 +1,7 @@
 """Deviations of real parts from their drawing: part of the drive's definition, all zero unless given.
 
-Every one is a change of shape or place that the geometry takes exactly; none adds a spring. Angles are in the frame of
-the body that carries the deviation, at crank angle zero.
+Every deviation changes a shape or a place, which the geometry includes exactly; none adds a compliance. Angles are in the
+frame of the body with the deviation, at crank angle zero.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from typing import Annotated
 from pydantic import ConfigDict, Field
 from pydantic.dataclasses import dataclass
 
-from ltca.drive.units.quantities import COUNT, quantity
+from ltca.drive.units.quantities import COUNT, grows, quantity
 
 SignedLength = Annotated[float, quantity("mm")]
 PositiveLength = Annotated[float, quantity("mm", gt=0.0)]
@@ -25,7 +25,7 @@ STRICT = ConfigDict(extra="forbid", strict=False)
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
 class PlacementErrors:
-    """Errors of each pin or hole of a circle; an empty tuple means zero for all.
+    """Errors of the pins or holes of a circle, by part; an empty tuple means zero for all.
 
     Attributes
     ----------
@@ -44,9 +44,9 @@ class PlacementErrors:
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
 class RollerErrors:
-    """Errors of each roller; an empty tuple means zero for all.
+    """Errors of the rollers, by roller; an empty tuple means zero for all.
 
-    A roller floats along its cage ray, so a radial error has no meaning for it.
+    A roller moves freely along the ray of its cage pocket, so there is no radial error.
 
     Attributes
     ----------
@@ -147,14 +147,14 @@ class ProfileErrors:
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
 class DiscClearance:
-    """Clearances of one disc; what is left out is that of the drive's ``clearance``.
+    """Clearances of one disc; those left out are the common ones of ``clearance``.
 
     Attributes
     ----------
     bearing : float or None
-        In the place of ``clearance.bearing``, mm.
+        Replaces ``clearance.bearing``, mm.
     pin_hole : float or None
-        In the place of ``clearance.pin_hole``, mm.
+        Replaces ``clearance.pin_hole``, mm.
     """
 
     bearing: NonNegativeLength | None = None
@@ -168,29 +168,29 @@ class OneDisc:
     Attributes
     ----------
     runout : Runout or None
-        In the place of ``disc.runout``.
+        Replaces ``disc.runout``.
     profile_errors : ProfileErrors or None
-        In the place of ``disc.profile_errors``.
+        Replaces ``disc.profile_errors``.
     hole_errors : PlacementErrors or None
-        In the place of ``disc.hole_errors``.
+        Replaces ``disc.hole_errors``.
     clearance : DiscClearance or None
-        Its clearances.
+        Clearances of the disc.
     roller_errors : RollerErrors or None
-        In the place of ``crank_bearing.roller_errors``, at every crank.
+        Replaces ``crank_bearing.roller_errors``, at every crank.
     bore_errors : BoreErrors or None
-        Places of its bores, one number a bore.
+        Errors of the places of the bores, one number per bore.
     """
 
-    runout: Runout | None = None
-    profile_errors: ProfileErrors | None = None
-    hole_errors: PlacementErrors | None = None
-    clearance: DiscClearance | None = None
-    roller_errors: RollerErrors | None = None
-    bore_errors: BoreErrors | None = None
+    runout: Annotated[Runout | None, grows("disc")] = None
+    profile_errors: Annotated[ProfileErrors | None, grows("disc")] = None
+    hole_errors: Annotated[PlacementErrors | None, grows("disc")] = None
+    clearance: Annotated[DiscClearance | None, grows("disc")] = None
+    roller_errors: Annotated[RollerErrors | None, grows("roller")] = None
+    bore_errors: Annotated[BoreErrors | None, grows("disc", radial=grows("disc", upon="crank.circle_radius"))] = None
 
     @property
     def of_bores_alone(self) -> bool:
-        """Whether nothing but places of bores is said, which take the place of nothing that all discs have."""
+        """Whether only places of bores are given, which replace no common value."""
         return (self.runout, self.profile_errors, self.hole_errors, self.clearance, self.roller_errors) == (None,) * 5
 
 
@@ -201,16 +201,16 @@ class OneEccentric:
     Attributes
     ----------
     disc : int or None
-        Number of the disc whose it is. Left out, entry k is that of disc k on a central crank.
+        Number of the disc. Left out, entry k is that of disc k on a central crank.
     crank : int or None
-        Number of the crank whose it is, of several.
+        Number of the crank, of several.
     eccentricity_error : float or None
-        In the place of ``crank.eccentricity_error``, mm.
+        Replaces ``crank.eccentricity_error``, mm.
     phase_error : float
         Actual less nominal phase of the eccentric, counter-clockwise, rad.
     """
 
     disc: Number | None = None
     crank: Number | None = None
-    eccentricity_error: SignedLength | None = None
+    eccentricity_error: Annotated[SignedLength | None, grows("eccentric", upon="crank.eccentricity")] = None
     phase_error: Angle = 0.0

@@ -1,47 +1,24 @@
 """Fields of a drive by dotted path: read, count, unit.
 
-What differs per disc stands in ``disc.of`` and ``crank.of``: ``disc.of.1.runout.amount`` is that of disc 1, and where
-nothing is said of it, it reads as the field of all discs that it takes the place of. Eccentrics of several cranks are counted
-disc after disc: ``crank.of.N`` is that of disc N // cranks on crank N % cranks, in whatever order the file has them.
-``duty.N`` is entry N of ``[[duty]]``, counted from 0 in the order of the file.
+Values per disc stand in ``disc.of`` and ``crank.of``: ``disc.of.1.runout.amount`` is that of disc 1, and where it is left out,
+it reads as the common field ``disc.runout.amount``. Eccentrics of several cranks are counted disc after disc: ``crank.of.N`` is
+that of disc N // cranks on crank N % cranks, in whatever order the file has them. ``duty.N`` is entry N of ``[[duty]]``,
+counted from 0 in the order of the file.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, fields, is_dataclass, replace
+from collections.abc import Iterable
+from dataclasses import replace
 from functools import cache, lru_cache
-from types import NoneType, UnionType
-from typing import Annotated, Any, Union, cast, get_args, get_origin, get_type_hints
+from typing import Any
 
-from pydantic.functional_validators import BeforeValidator
-
-from ltca.drive.materials import MAY_BE_UNKNOWN, PARTS
+from ltca.drive.declaration import ANY as ANY, INDICES, LEFT_OUT, Field, declared_fields, naming_fields
 from ltca.drive.parts import Drive, Friction
 from ltca.drive.single_discs import single_discs
-from ltca.drive.units.quantities import QuantityCheck
 from ltca.errors import DriveError, nearest
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FieldKind:
-    """What the definition says about one field.
-
-    Attributes
-    ----------
-    unit : str
-        Unit of a quantity, ``""`` for counts and names, ``"dimensionless"`` for ratios.
-    is_array : bool
-        Whether it holds one number for each pin, hole, roller, order or point.
-    """
-
-    unit: str
-    is_array: bool
-
-
-ANY = "N"
-"""Stands for the number of a disc in the paths of `field_kinds`."""
 OWN = {
     "disc.runout": "disc.of.N.runout",
     "disc.profile_errors": "disc.of.N.profile_errors",
@@ -50,34 +27,30 @@ OWN = {
     "crank_bearing.roller_errors": "disc.of.N.roller_errors",
     "crank.eccentricity_error": "crank.of.N.eccentricity_error",
 }
-"""What each disc may have of its own, in the place of what all have."""
-_WHOSE = ("crank.of.N.disc", "crank.of.N.crank")
-"""They say whose an entry is, and are no fields of it."""
+"""Common fields and tables, and those of single discs that replace them."""
 _NUMBERED = re.compile(r"^((?:disc|crank)\.of|duty)\.([0-9]{1,6})\.")
 
 
 @cache
-def field_kinds() -> dict[str, FieldKind]:
+def field_kinds() -> dict[str, Field]:
     """Return every field of a drive by its dotted path, those of one disc with ``N`` for its number.
 
     Examples
     --------
-    >>> field_kinds()["disc.thickness"]
-    FieldKind(unit='mm', is_array=False)
-    >>> field_kinds()["crank.of.N.phase_error"]
-    FieldKind(unit='rad', is_array=False)
+    >>> field_kinds()["disc.thickness"].unit, field_kinds()["crank.of.N.phase_error"].unit
+    ('mm', 'rad')
     """
-    return {path: kind for path, kind in _kinds(Drive, "") if path not in _WHOSE}
+    return {path: field for path, field in declared_fields().items() if path not in INDICES}
 
 
 @lru_cache(maxsize=4096)
-def field_kind(path: str) -> FieldKind | None:
-    """Return what is known of a field, also of one of a numbered disc; None where there is none.
+def field_kind(path: str) -> Field | None:
+    """Return the declaration of a field, also of one of a numbered disc; None where there is none.
 
     Examples
     --------
-    >>> field_kind("disc.of.0.runout.amount")
-    FieldKind(unit='mm', is_array=False)
+    >>> field_kind("disc.of.0.runout.amount").path
+    'disc.of.N.runout.amount'
     """
     if f".{ANY}." in path:
         return None
@@ -85,7 +58,7 @@ def field_kind(path: str) -> FieldKind | None:
 
 
 def own_paths(drive: Drive, path: str) -> tuple[str, ...]:
-    """Return the paths of what each disc or eccentric has in the place of a field of all; none where they have not.
+    """Return the paths of the values per disc or eccentric that replace a common field; empty for other fields.
 
     Examples
     --------
@@ -102,7 +75,7 @@ def own_paths(drive: Drive, path: str) -> tuple[str, ...]:
 
 
 def _entries(drive: Drive, table: str) -> int:
-    """How many discs, or eccentrics, there are."""
+    """Number of discs or eccentrics."""
     discs = drive.disc.number_of_discs
     return discs * drive.crank.number if table == "crank" else discs
 
@@ -114,7 +87,7 @@ def numbered(path: str) -> tuple[str, int, str] | None:
 
 
 def whose(drive: Drive, path: str) -> str:
-    """Return whose a field of one eccentric of several cranks is; empty where its path says it.
+    """Return disc and crank of a field of one eccentric of several cranks; empty for fields whose path says it.
 
     Examples
     --------
@@ -130,7 +103,7 @@ def whose(drive: Drive, path: str) -> str:
 
 
 def with_whose(path: str, owner: str) -> str:
-    """Return a path with its owner (`whose`) behind it, if any.
+    """Return a path followed by disc and crank (`whose`), if any.
 
     Examples
     --------
@@ -141,7 +114,7 @@ def with_whose(path: str, owner: str) -> str:
 
 
 def _counting(drive: Drive, table: str) -> str:
-    """What N of ``disc.of.N``, ``crank.of.N`` or ``duty.N`` is."""
+    """Meaning and range of N in ``disc.of.N``, ``crank.of.N`` or ``duty.N``."""
     if table == "duty":
         return "N of duty.N is the entry, counted from 0"
     last, cranks = _entries(drive, table.partition(".")[0]) - 1, drive.crank.number
@@ -150,17 +123,12 @@ def _counting(drive: Drive, table: str) -> str:
 
 
 def not_a_field(drive: Drive | None, path: str, known: Iterable[str] | None = None) -> str:
-    """Return what to say of a path that is no field: the one that was meant, of those the drive can have.
+    """Return the message for a path that is not a field, with the field of the drive that it is close to.
 
-    Parameters
-    ----------
-    drive : Drive or None
-        None where it is not known yet.
-    path : str
-        As it was written.
-    known : iterable of str, optional
-        Fields to choose from; all by default.
+    Candidates are `known`, all fields by default; without a drive (None) also those that a drive may be without.
     """
+    if path in naming_fields():
+        return "stands for other fields in a drive file and is none itself; give each bearing a [[case]], or vary those fields"
     there = tuple(
         name
         for name in (field_kinds() if known is None else known)
@@ -181,39 +149,10 @@ def not_a_field(drive: Drive | None, path: str, known: Iterable[str] | None = No
     return "is not a field of the drive definition" + (f"; did you mean `{meant}`?{told[1:]}" if meant else "")
 
 
-def _kinds(owner: Any, prefix: str) -> Iterator[tuple[str, FieldKind]]:
-    compared = {item.name for item in fields(owner) if item.compare}
-    for name, hint in get_type_hints(owner, include_extras=True).items():
-        path = f"{prefix}{name}"
-        if name not in compared:  # the name of a case
-            continue
-        if get_origin(hint) in (Union, UnionType):  # what may be left out
-            (hint,) = (part for part in get_args(hint) if part is not NoneType)
-        if is_dataclass(hint):
-            yield from _kinds(cast(type, hint), f"{path}.")
-            continue
-        is_array = get_origin(hint) is tuple
-        if is_array and is_dataclass(get_args(hint)[0]):
-            yield from _kinds(cast(type, get_args(hint)[0]), f"{path}.{ANY}.")
-            continue
-        yield path, FieldKind(unit=_unit(get_args(hint)[0] if is_array else hint), is_array=is_array)
-
-
-def _unit(hint: Any) -> str:
-    if get_origin(hint) is Annotated:
-        for extra in get_args(hint)[1:]:
-            if isinstance(extra, BeforeValidator) and isinstance(extra.func, QuantityCheck):
-                return extra.func.unit
-    return ""
-
-
 def element_count(drive: Drive, path: str) -> int | None:
-    """Return how many numbers an array field has when filled; None for a single number.
+    """Return the number of elements of an array field when filled; None for a single number.
 
-    Raises
-    ------
-    DriveError
-        When there is no such field, or no such disc.
+    DriveError when there is no such field, or no such disc.
     """
     kind = field_kind(path)
     if kind is None:
@@ -238,9 +177,10 @@ def element_count(drive: Drive, path: str) -> int | None:
 
 
 def missing_part(drive: Drive, path: str) -> str | None:
-    """Return the part a field belongs to where the drive has none: its pin shaft, the support of its cranks, beams.
+    """Return the table that a field belongs to where the drive is without it: its pin shaft, supports or beams; None
+    elsewhere.
 
-    Coefficients of friction are zero where there is no friction: none of them is missing.
+    Coefficients of friction are zero without friction, and never missing.
     """
     if drive.pin_shaft is None and (path.startswith("disc.hole_errors") or ".hole_errors." in path):
         return "pin_shaft"
@@ -260,19 +200,11 @@ _OF_PARTS = {
     "friction.hole": "pin_shaft",
     "materials.crankshaft.": "crank.support",
 }
-"""What belongs to a part that may be left out without being in it."""
+"""Fields of a part that may be left out, which stand in other tables."""
 
 
 def absence(drive: Drive, path: str) -> str | None:
-    """Return why a drive cannot have a number in a field; None where it can.
-
-    Parameters
-    ----------
-    drive : Drive
-        The drive.
-    path : str
-        A field of the definition (`field_kind`).
-    """
+    """Return why a drive cannot have a number in a field; None where it can."""
     found = numbered(path)
     if found is not None and (problem := no_entry(drive, found[0], found[1])) is not None:
         return problem
@@ -287,7 +219,9 @@ def absence(drive: Drive, path: str) -> str | None:
 
 
 def no_entry(drive: Drive, table: str, number: int) -> str | None:
-    """Return what to say of an entry of ``disc.of`` or ``crank.of`` that the drive has not; None where it has it."""
+    """Return the message for an entry of ``disc.of``, ``crank.of`` or ``duty`` that the drive is without; None where it has
+    it.
+    """
     discs, cranks = drive.disc.number_of_discs, drive.crank.number
     if number < (len(drive.duty) if table == "duty" else _entries(drive, table.partition(".")[0])):
         return None
@@ -321,7 +255,7 @@ def _of_disc(drive: Drive, path: str) -> tuple[Drive, str]:
 
 
 def _own_value(single: Drive, crank: int, name: str, count: int | None) -> Any:
-    """What a drive of one disc has nowhere else: errors of its eccentrics and of its bores."""
+    """Errors of the eccentrics and of the bores of one disc, which have no common field."""
     if name.startswith("bore_errors."):
         errors = single.disc.of[0].bore_errors if single.disc.of else None
         held = () if errors is None else getattr(errors, name.partition(".")[2])
@@ -330,50 +264,31 @@ def _own_value(single: Drive, crank: int, name: str, count: int | None) -> Any:
     return single.crank.eccentricity_error if value is None else value
 
 
-MAY_BE_LEFT_OUT = (
-    *(f"materials.{part}.{name}" for part in PARTS for name in MAY_BE_UNKNOWN),
-    "crank.circle_radius",
-    "installation.first_stage_ratio",
-    "load.speed",
-    "pin_shaft.seat.bore_radius",
-    "pin_shaft.seat.pin_radius",
-    "pin_shaft.stiffness",
-    "pin_wheel.seat.bore_radius",
-    "pin_wheel.seat.pin_radius",
-    "pin_wheel.seat.radius",
-    "pin_wheel.support_stiffness",
-)
-"""Single fields that a drive may have not; a study may give them all the same."""
-
-
 _FOLLOWS = {
     "disc.phases": "disc.disc_phases",
     "disc.planes": "disc.disc_planes",
     "pin_shaft.beam.diameter": "pin_shaft.beam_diameter",
     "pin_wheel.beam.diameter": "pin_wheel.beam_diameter",
 }
-"""What follows from other fields where it is left out, and where it is read."""
+"""Fields that follow from others where they are left out, and the property with their value."""
+
+
+def may_be_left_out(path: str) -> bool:
+    """Tell whether a drive may be without a number in a field, such as a radius or a strength; a study may give one to all."""
+    field = field_kinds().get(path)
+    return field is not None and field.default == LEFT_OUT and not field.is_array and path not in _FOLLOWS
 
 
 def is_element(name: str) -> bool:
-    """Tell whether the last part of a path is the number of an element."""
+    """Tell whether the last part of a path is the index of an element."""
     return name.isascii() and name.isdigit() and len(name) <= 6
 
 
 def read_field(drive: Drive, path: str) -> Any:
-    """Return the value of a field; an array that was left out comes as its zeros.
+    """Return the value of a field, as ``disc.thickness``; an array that was left out comes as its zeros.
 
-    Parameters
-    ----------
-    drive : Drive
-        The drive.
-    path : str
-        ``disc.thickness``, ``pin_wheel.pin_errors.radial``, or one element of an array, ``….radial.3``.
-
-    Raises
-    ------
-    DriveError
-        When there is no such field or element.
+    The path may end with the index of an element of an array, ``pin_wheel.pin_errors.radial.3``. DriveError when there is
+    no such field or element.
     """
     parent, _, last = path.rpartition(".")
     if is_element(last) and field_kind(parent) is not None:
@@ -390,7 +305,7 @@ def read_field(drive: Drive, path: str) -> Any:
     value: Any = drive if drive.friction is not None else replace(drive, friction=Friction())
     for name in (_FOLLOWS.get(path) or path).split("."):
         value = getattr(value, name)
-    if value is None and path in MAY_BE_LEFT_OUT:
+    if value is None:
         raise DriveError([f"{path}: is left out in this drive"])
     if count is not None and not value:
         return (0.0,) * count

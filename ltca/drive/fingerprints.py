@@ -1,4 +1,4 @@
-"""Hashes of definitions: what is at its default is left out, so that a field that later versions add changes none."""
+"""Hashes of definitions without what is at its default, so that fields of later versions change none."""
 
 from __future__ import annotations
 
@@ -8,12 +8,8 @@ from typing import Any
 
 
 def fingerprint_of(part: Any) -> str:
-    """Return a hash of a definition (hex, 16 digits).
-
-    Parameters
-    ----------
-    part : dataclass or dict
-        Of numbers, texts, tuples and other such definitions.
+    """Return a hash (hex, 16 digits) of a definition: a dataclass or dict of numbers, texts, tuples and other such
+    definitions.
     """
     content = _given(part) if is_dataclass(part) else part
     return hashlib.sha256(repr(content).encode()).hexdigest()[:16]

@@ -1,4 +1,4 @@
-"""What parts are made of, linear-elastic, and the profile they are ground to along their length."""
+"""Materials of the parts, linear-elastic, and their profiles along the length."""
 
 from __future__ import annotations
 
@@ -27,23 +27,23 @@ class Material:
     poisson_ratio : float
         Poisson's ratio ν.
     allowable_pressure : float or None
-        Largest pressure of a contact that the surface endures, MPa.
+        Largest contact pressure that the surface endures, MPa.
     yield_strength : float or None
         Yield strength, of hardened parts that of the core, MPa.
     bending_fatigue_limit : float or None
-        Amplitude of fully reversed bending that smooth parts endure without end, MPa.
+        Endurance limit: amplitude of fully reversed bending of smooth parts, MPa.
     hardness : float or None
         Hardness of the surface, HV.
     hardness_depth : float or None
-        Depth of the case that is so hard, mm; hard throughout when left out.
+        Depth of the hardened case, mm; hard throughout when left out.
     density : float or None
         Mass by volume, kg/m³.
     thermal_expansion : float or None
-        Expansion by length, 1/K; counts where the drive has temperatures.
+        Coefficient of linear thermal expansion, 1/K; used where the drive has temperatures.
 
     Notes
     -----
-    What may be left out moves no load: strength, hardness and density are what results are judged by.
+    Properties that may be left out change no load: results are judged by strength, hardness and density.
     """
 
     youngs_modulus: Annotated[float, quantity("MPa", gt=0.0)] = 206_000.0
@@ -63,7 +63,7 @@ class Material:
 
     @property
     def is_bearing_steel(self) -> bool:
-        """Whether ISO 76 and ISO 281 rate races of it: a steel, and hardened where its hardness is told."""
+        """Whether ISO 76 and ISO 281 rate races of it: a steel, and hardened where its hardness is given."""
         return STEEL[0] <= self.youngs_modulus <= STEEL[1] and (self.hardness is None or self.hardness >= HARDENED)
 
 
@@ -74,21 +74,21 @@ class Materials:
     Attributes
     ----------
     disc : Material
-        Of the discs: flank, bores and holes.
+        Material of the discs: flank, bores and holes.
     wheel_pin : Material
-        Of the wheel pins.
+        Material of the wheel pins.
     roller : Material
-        Of the rollers of the crank bearings.
+        Material of the rollers of the crank bearings.
     inner_race : Material
-        Of the inner races of the crank bearings.
+        Material of the inner races of the crank bearings.
     shaft_pin : Material
-        Of the pins of the pin shaft.
+        Material of the pins of the pin shaft.
     crankshaft : Material
-        Of the shaft that bends between its bearings.
+        Material of the crankshaft, which bends between its bearings.
     wheel_seat : Material
-        Of the slots that wheel pins lie in; with temperatures that of the wheel.
+        Material of the slots of loose wheel pins; with temperatures that of the wheel.
     sleeve : Material
-        Of sleeves on either kind of pin.
+        Material of the sleeves on wheel pins and shaft pins.
     """
 
     disc: Material = field(default_factory=Material)
@@ -104,7 +104,7 @@ class Materials:
 PARTS = ("disc", "wheel_pin", "roller", "inner_race", "shaft_pin", "crankshaft", "wheel_seat", "sleeve")
 """Fields of `Materials`."""
 JUDGED_BY = ("allowable_pressure", "yield_strength", "bending_fatigue_limit", "hardness", "hardness_depth", "density")
-"""Fields of a material that move no load."""
+"""Properties of a material that change no load."""
 MAY_BE_UNKNOWN = (*JUDGED_BY, "thermal_expansion")
 """Fields of a material that may be left out."""
 
@@ -125,7 +125,7 @@ class LengthProfile:
     end_relief_length : float
         Length of the parabolic end relief at each end, mm.
     end_relief_depth : float
-        Its depth at y = ±L/2, mm.
+        Depth of the end relief at y = ±L/2, mm.
     """
 
     crown_drop: NonNegativeLength = 0.0
@@ -141,13 +141,7 @@ class LengthProfile:
 
 
 def elastic_alone(materials: Materials) -> Materials:
-    """Return materials of modulus and ratio alone: what loads at 20 °C follow from.
-
-    Parameters
-    ----------
-    materials : Materials
-        Of a drive.
-    """
+    """Return materials with modulus and Poisson's ratio alone, which determine the loads at 20 °C."""
     bare = {}
     for part in PARTS:
         own: Material = getattr(materials, part)

@@ -1,4 +1,4 @@
-"""Mistakes in a definition as sentences: field, value, bound; a misspelt name with the one that was meant."""
+"""Mistakes in a definition as sentences: field, value, bound, and the name that a misspelt one is close to."""
 
 from __future__ import annotations
 
@@ -7,23 +7,18 @@ from collections.abc import Iterable, Sequence
 from functools import cache
 from typing import Any
 
-from ltca.drive.units.table import label
+from ltca.drive.declaration import naming_fields
+from ltca.drive.fields import field_kind, field_kinds
 from ltca.errors import did_you_mean, nearest, printable, shortened
 
 
 def describe_mistakes(
     details: Sequence[Any], prefix: Sequence[str] = (), known: Sequence[str] | None = None
 ) -> list[str]:
-    """Return the mistakes pydantic found as sentences, a missing field and its misspelling as one.
+    """Return errors of pydantic (``ValidationError.errors()``) as sentences; a missing field and its misspelling become
+    one.
 
-    Parameters
-    ----------
-    details : sequence of dict
-        Of ``ValidationError.errors()``.
-    prefix : sequence of str
-        Tables above what was validated.
-    known : sequence of str, optional
-        Names there are in what was validated; the fields of the drive there by default.
+    `prefix` is the path of the validated table, `known` the names of its fields; by default those of the drive.
     """
     found = [(tuple(map(str, (*prefix, *detail["loc"]))), detail) for detail in details]
     missing = {place for place, detail in found if detail["type"].startswith("missing")}
@@ -43,14 +38,16 @@ def describe_mistakes(
 
 
 GONE = {
-    "disc.torque_share": "is no field any more: what each disc carries is computed (disc.number_of_discs); leave it out"
+    "disc.torque_share": "is no longer a field: the load of each disc is computed (disc.number_of_discs); leave it out"
 }
-"""Fields of earlier versions, and what to do without them."""
+"""Fields of earlier versions, and their replacement."""
 UNKNOWN = ("unexpected_keyword_argument", "extra_forbidden")
 
 
 def entry_words(number: int | str) -> str:
-    """Return an entry of ``crank.of`` by its place in the file: no number of an eccentric, as in the paths of studies."""
+    """Return an entry of ``crank.of`` by its place in the file, which is not the number of an eccentric as in the paths of
+    studies.
+    """
     return f"crank.of, entry {number}"
 
 
@@ -59,7 +56,7 @@ def _path(place: Iterable[str]) -> str:
 
 
 def _words(place: tuple[str, ...], given: int) -> str:
-    """The path of a mistake, of which the first parts were given: an entry of the file by its place."""
+    """The path of a mistake; an entry of ``crank.of`` by its place in the file where no part of the path was given."""
     if given == 0 and place[:2] == ("crank", "of") and len(place) > 2:
         below = _path(place[3:])
         return entry_words(place[2]) + (f": {below}" if below else "")
@@ -96,10 +93,8 @@ def _sentence(place: tuple[str, ...], path: str, detail: Any, known: Sequence[st
 
 
 def _unit_of(path: str) -> str:
-    from ltca.drive.fields import field_kind
-
     kind = field_kind(path)
-    return f" in {label(kind.unit)}" if kind is not None and kind.unit else ""
+    return f" in {kind.label}" if kind is not None and kind.unit else ""
 
 
 @cache
@@ -111,8 +106,7 @@ def fields_of(table: str) -> tuple[str, ...]:
     >>> fields_of("clearance")
     ('bearing', 'pin_hole')
     """
-    from ltca.drive.fields import field_kinds
-
     table = re.sub(r"(\.of|^duty)\.[0-9]+\b", r"\1.N", table)
     head = f"{table}." if table else ""
-    return tuple(dict.fromkeys(path[len(head) :].partition(".")[0] for path in field_kinds() if path.startswith(head)))
+    paths = (*field_kinds(), *naming_fields())
+    return tuple(dict.fromkeys(path[len(head) :].partition(".")[0] for path in paths if path.startswith(head)))

@@ -1,4 +1,4 @@
-"""Names of drives and cases: files and folders are called after them, and they are printed, drawn and put on pages."""
+"""Names of drives and cases, which name files and folders and are printed, drawn and put on pages."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from pydantic_core import PydanticCustomError
 LONGEST_NAME = 120
 """Bytes: file systems take 255 for a file, and names of figures go before it."""
 UNPRINTED = ("Cc", "Cf", "Zl", "Zp")
-"""Categories of signs that control, or that nobody sees: of zero width, joining, turning what is printed behind them."""
+"""Unicode categories of control and invisible characters: of zero width, joining, or changing the direction of text."""
 BLANK = "\u034f\u115f\u1160\u17b4\u17b5\u2800\u3164\uffa0"
-"""Letters and marks without a picture."""
+"""Letters and marks without a glyph."""
 PRINTED = "\u0600\u0601\u0602\u0603\u0604\u0605\u06dd\u070f\u08e2"
-"""Marks of numbers in Arabic and Syriac, which their category hides."""
+"""Visible number marks of Arabic and Syriac in these categories."""
 JOINERS = "\u200c\u200d"
-"""Within words of some scripts they are spelling."""
+"""Part of the spelling within words of some scripts."""
 NAMING = f"must be a text of at most {LONGEST_NAME} bytes that can name a file, without /, \\, control and invisible characters"
 
 
 def is_seen(text: str) -> bool:
-    """Tell whether no sign of a text controls, or stays invisible; joiners between letters of their scripts are spelling.
+    """Tell whether a text has no control or invisible characters; joiners between letters of their scripts are spelling.
 
     Examples
     --------

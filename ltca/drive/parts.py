@@ -46,11 +46,11 @@ from ltca.drive.members.pins import (
     WheelPinSeat as WheelPinSeat,
 )
 from ltca.drive.names import Name
-from ltca.drive.units.quantities import COUNT
+from ltca.drive.units.quantities import COUNT, grows
 from ltca.errors import DriveError
 
 SAME_PART = 1e-9
-"""Angle between two flanks that are cut alike, rad: round-off of a phase, far below what moves a flank by a nanometre."""
+"""Angle below which two flanks are equal, rad: round-off of a phase, which moves a flank by much less than a nanometre."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
@@ -80,19 +80,19 @@ class Disc:
     runout : Runout
         Centre of the flank against the bore.
     of : tuple of OneDisc
-        What differs per disc, one entry each; left out where nothing does.
+        Values per disc, one entry for every disc; left out where all discs are alike.
     """
 
     number_of_teeth: Annotated[int, Field(ge=3, le=1000), COUNT]
-    thickness: PositiveLength
+    thickness: Annotated[PositiveLength, grows("disc")]
     number_of_discs: Annotated[int, Field(ge=1, le=10), COUNT] = 1
     phases: tuple[Angle, ...] = ()
-    planes: tuple[SignedLength, ...] = ()
-    equidistant_offset: SignedLength = 0.0
-    shifting_offset: SignedLength = 0.0
-    hole_errors: PlacementErrors = field(default_factory=PlacementErrors)
-    profile_errors: ProfileErrors = field(default_factory=ProfileErrors)
-    runout: Runout = field(default_factory=Runout)
+    planes: Annotated[tuple[SignedLength, ...], grows("planes")] = ()
+    equidistant_offset: Annotated[SignedLength, grows("disc", upon="pin_wheel.pin_radius")] = 0.0
+    shifting_offset: Annotated[SignedLength, grows("disc", upon="pin_wheel.pin_circle_radius")] = 0.0
+    hole_errors: Annotated[PlacementErrors, grows("disc")] = field(default_factory=PlacementErrors)
+    profile_errors: Annotated[ProfileErrors, grows("disc")] = field(default_factory=ProfileErrors)
+    runout: Annotated[Runout, grows("disc")] = field(default_factory=Runout)
     of: tuple[OneDisc, ...] = ()
 
     @property
@@ -103,7 +103,7 @@ class Disc:
 
     @property
     def phase(self) -> float:
-        """ζ of the one disc, rad; DriveError where there are several, or one has something of its own."""
+        """ζ of the one disc, rad; DriveError for several discs, or values per disc."""
         if self.number_of_discs != 1 or not all(entry.of_bores_alone for entry in self.of):
             raise DriveError([f"disc.number_of_discs = {self.number_of_discs}: must be 1 here, and disc.of left out"])
         return self.disc_phases[0]
@@ -152,7 +152,7 @@ class Drive:
     load : Load
         Torque and direction.
     installation : Installation
-        Which member is held.
+        Which member is fixed.
     clearance : Clearance
         Bearing and pin-hole clearance.
     materials : Materials
@@ -162,11 +162,11 @@ class Drive:
     duty : tuple of Duty
         Torques and speeds over the life of the drive, for lives alone; those of ``load`` when left out.
     lubricant : Lubricant or None
-        What is between rollers and races, for lives alone; unmodified when left out.
+        Lubricant of rollers and races, for lives alone; unmodified when left out.
     temperature : Temperature or None
-        How warm the parts are; lengths of a file are those at 20 °C.
+        Temperatures of the parts; lengths of a file are those at 20 °C.
     case : str
-        Name of the case of a file that the drive is: it names results, and is neither compared nor hashed.
+        Name of the case in the file, for names of results; neither compared nor hashed.
     """
 
     name: Name = "drive"
@@ -177,7 +177,7 @@ class Drive:
     pin_shaft: PinShaft | None = None
     load: Load
     installation: Installation = field(default_factory=Installation)
-    clearance: Clearance = field(default_factory=Clearance)
+    clearance: Annotated[Clearance, grows("disc")] = field(default_factory=Clearance)
     materials: Materials = field(default_factory=Materials)
     friction: Friction | None = None
     duty: tuple[Duty, ...] = ()
@@ -202,20 +202,20 @@ class Drive:
 
     @property
     def motion_sign(self) -> int:
-        """Sense in which the crank turns, +1 for counter-clockwise: against `driving_sign` where the load drives."""
+        """Sense in which the crank turns, +1 for counter-clockwise: against `driving_sign` where the output drives."""
         return self.driving_sign if self.load.driven_by == "input" else -self.driving_sign
 
     @property
     def wheel_is_held(self) -> bool:
-        """Whether the pin wheel stands still and the pin shaft is the output."""
+        """Whether the pin wheel is fixed and the pin shaft is the output."""
         return self.installation.held == "pin-wheel"
 
     @property
     def transmission_ratio(self) -> float:
         """Turns of the input for one of the output.
 
-        A central crank: u with the pin shaft held, −z_C/Δz with the pin wheel held. Several cranks turned in the carrier, as
-        seen from there: u and −u. Behind a first stage i₁ the input is its sun: −i₁ u and 1 + i₁ u.
+        A central crank: u with the pin shaft held, −z_C/Δz with the pin wheel held. Several cranks driven from the carrier,
+        relative to it: u and −u. Behind a first stage i₁ the input is its sun: −i₁ u and 1 + i₁ u.
         """
         stage = self.installation.first_stage_ratio
         if stage is not None:
@@ -227,21 +227,23 @@ class Drive:
 
     @property
     def crank_turns_per_input(self) -> float:
-        """Turns of the cranks against the pin shaft for one of the input.
+        """Turns of the cranks relative to the pin shaft for one of the input.
 
-        The wheel turns against the shaft by 1/u of them; with the wheel held that is the output's turning back.
+        The wheel turns relative to the shaft by 1/u of them; with the wheel held that is the negative angle of the output.
         """
         return (-1.0 if self.wheel_is_held else 1.0) * self.reduction_ratio / self.transmission_ratio
 
     @property
     def crank_speed(self) -> float | None:
-        """Speed of the cranks against the pin shaft, rad/s, its size; None without `Load.speed`."""
+        """Magnitude of the speed of the cranks relative to the pin shaft, rad/s; None without `Load.speed`."""
         speed = self.load.speed
         return None if speed is None else abs(self.crank_turns_per_input) * speed * 2.0 * pi / 60.0
 
     @property
     def input_per_crank_moment(self) -> float:
-        """External moment of the input by that of all cranks: 1, −1/i₁ behind a first stage, 0 where the carrier turns them."""
+        """External moment of the input by that of all cranks: 1, −1/i₁ behind a first stage, 0 for cranks driven from the
+        carrier.
+        """
         if self.crank.number == 1:
             return 1.0
         stage = self.installation.first_stage_ratio
@@ -249,7 +251,7 @@ class Drive:
 
     @property
     def output_per_wheel_angle(self) -> float:
-        """Deviation of the output by `wheel_angle`: 1; with the wheel held −z_P/z_C, of several cranks −1 or (1 − i)/i."""
+        """Deviation of the output by `wheel_angle`: 1; with the wheel held −z_P/z_C, with several cranks −1 or (1 − i)/i."""
         if not self.wheel_is_held:
             return 1.0
         if self.crank.number == 1:
@@ -257,45 +259,33 @@ class Drive:
         return -1.0 / (1.0 - self.input_per_crank_moment / self.reduction_ratio)
 
     def wheel_moment(self, torque: float | None = None) -> float:
-        """Return the external moment on the wheel, ccw positive, N·mm: of a held one the mean (`ltca.equilibrium.output_torque`).
+        """Return the external moment on the wheel, ccw positive, N·mm, at an output torque of the whole drive (N·mm, its
+        load by default).
 
-        Parameters
-        ----------
-        torque : float, optional
-            Output torque of the whole drive, N·mm; the drive's own by default.
-
-        Returns
-        -------
-        float
-            For a crank driving counter-clockwise −T_out, with the pin wheel held that by `output_per_wheel_angle`.
+        For a crank driving counter-clockwise −T_out, with the pin wheel held that by `output_per_wheel_angle`; of a held
+        wheel it is the mean over a turn (`ltca.equilibrium.output_torque`).
         """
         total = self.load.torque if torque is None else torque
         return -self.driving_sign * total * abs(self.output_per_wheel_angle)
 
     def load_words(self, torque: float | None = None) -> str:
-        """Return torque and direction for the heading of a table.
-
-        Parameters
-        ----------
-        torque : float, optional
-            Output torque of the whole drive, N·mm; the drive's own by default.
-        """
+        """Return torque (N·mm; the load by default) and direction for the heading of a table."""
         total = self.load.torque if torque is None else torque
         return f"{total / 1000.0:.6g} N·m {self.load.direction}"
 
     @property
     def flank_turn(self) -> float:
-        """How far the flank of a drive of one disc is turned against its holes, −Δz ζ/z_C, rad."""
+        """Angle of the flank against the holes in a drive of one disc, −Δz ζ/z_C, rad."""
         return -self.tooth_number_difference * self.disc.phase / self.disc.number_of_teeth
 
     @property
     def number_of_holes(self) -> int:
-        """z_PS, the pins of the pin shaft and their holes; 0 without a pin shaft."""
+        """z_PS, number of shaft pins and of holes; 0 without a pin shaft."""
         return 0 if self.pin_shaft is None else self.pin_shaft.number_of_pins
 
     @property
     def hole_stiffness(self) -> float:
-        """k_PS of one shaft pin, N/mm; without a pin shaft that of none, 1. DriveError where the pins are beams."""
+        """k_PS of one shaft pin, N/mm; placeholder 1 without a pin shaft. DriveError where the pins are beams."""
         if self.pin_shaft is None:
             return 1.0
         if self.pin_shaft.stiffness is None:
@@ -304,28 +294,36 @@ class Drive:
 
     @property
     def flank_pin(self) -> Material:
-        """Material of what the flank touches: the wheel pins or their sleeves."""
+        """Material in contact with the flank: of the wheel pins or of their sleeves."""
         return self.materials.sleeve if self.pin_wheel.seat.kind == "sleeve" else self.materials.wheel_pin
 
     @property
     def body_materials(self) -> Materials:
-        """Materials of the plane bodies whose coefficients are derived: as `wheel_pin` that of what the flank touches."""
+        """Materials of the plane bodies whose coefficients are derived: `wheel_pin` is the material in contact with the
+        flank.
+        """
         return replace(self.materials, wheel_pin=self.flank_pin)
 
     @property
+    def pins_are_fixed(self) -> bool:
+        """Whether no pin lies loose, carries a sleeve or bends."""
+        parts = (self.pin_wheel, self.pin_shaft)
+        return all(part is None or (part.seat.kind == "fixed" and part.beam is None) for part in parts)
+
+    @property
     def hole_pin(self) -> Material:
-        """Material of what the holes touch: the shaft pins or their sleeves."""
+        """Material in contact with the holes: of the shaft pins or of their sleeves."""
         sleeved = self.pin_shaft is not None and self.pin_shaft.seat.kind == "sleeve"
         return self.materials.sleeve if sleeved else self.materials.shaft_pin
 
     @property
     def pattern(self) -> int:
-        """Steps of a turn after which holes and bores of the disc look the same."""
+        """Order of rotational symmetry of holes and bores of the disc."""
         return gcd(self.number_of_holes, 0 if self.crank.number == 1 else self.crank.number)
 
     @property
     def part_turn(self) -> tuple[float, int, int]:
-        """Which part the disc of a drive of one disc is (`part_turn`)."""
+        """Part and orientation of the disc of a drive of one disc (`part_turn`)."""
         return part_turn(self.flank_turn, self.disc.number_of_teeth, self.pattern)
 
     @property
@@ -339,20 +337,16 @@ class Drive:
         return 0.0 if self.pin_shaft is None else self.pin_shaft.hole_radius + self.clearance.pin_hole
 
     def fingerprint(self) -> str:
-        """Return a hash of everything that defines the drive in this case (hex, 16 digits)."""
+        """Return a hash of the whole definition of the drive in this case (hex, 16 digits)."""
         return fingerprint_of(self)
 
     def body_shape(self) -> dict[str, float]:
-        """Return every number that plane finite-element bodies of the drive are made of: what their compliance belongs to.
+        """Return the numbers that determine the plane finite-element bodies, and so their compliance, by name: mm, MPa,
+        counts.
 
-        Bore and holes are as wide as they are, clearances included. Errors of single parts never enter. What no plane body
-        has is left out: load, name, lengths and profiles along the length, numbers of rollers and discs, and all of the
-        shaft pins but their number and circle, which are those of the holes.
-
-        Returns
-        -------
-        dict of str to float
-            By field, or by the name of what several fields make: mm, MPa, counts.
+        Bore and holes have their actual radii, clearances included. Left out are errors of single parts, load, name,
+        lengths and profiles along the length, numbers of rollers and discs, and of the shaft pins all but their number and
+        circle, which are those of the holes.
         """
         self.require_warmed()
         wheel, disc, bearing, shaft = self.pin_wheel, self.disc, self.crank_bearing, self.pin_shaft
@@ -391,18 +385,7 @@ class Drive:
         return {name: float(f"{value:.12g}") for name, value in shape.items()}
 
     def require_warmed(self) -> Drive:
-        """Return the drive, or refuse one with temperatures, whose lengths are still those at 20 °C.
-
-        Returns
-        -------
-        Drive
-            Itself: no temperature is passed over in silence.
-
-        Raises
-        ------
-        DriveError
-            When the drive has temperatures.
-        """
+        """Return the drive itself; DriveError for one with temperatures, whose lengths are still those at 20 °C."""
         if self.temperature is not None:
             raise DriveError(
                 ["temperature: must be left out here: lengths are those at 20 °C still, warm the drive first"]
@@ -410,27 +393,18 @@ class Drive:
         return self
 
     def shape_fingerprint(self) -> str:
-        """Return a hash of `body_shape` (hex, 16 digits): influence coefficients of the bodies belong to it."""
+        """Return a hash of `body_shape` (hex, 16 digits), the key of influence coefficients."""
         return fingerprint_of(self.body_shape())
 
 
 def part_turn(turned: float, teeth: int, pattern: int) -> tuple[float, int, int]:
-    """Return which part a disc is, and how that part stands in it.
+    """Return the part that a disc is cut as, and the orientation of that part in the disc.
 
-    Parameters
-    ----------
-    turned : float
-        How far the flank is turned against holes and bores, rad.
-    teeth, pattern : int
-        z_C, and the steps of a turn after which holes and bores look the same: z_PS of a disc on a central crank.
-
-    Returns
-    -------
-    turn : float
-        Of the flank of the part, from 0 to a tooth pitch, the least that turning by steps of the pattern leaves, rad.
-    steps, tooth_pitches : int
-        The flank is turned by ``turn + 2π (steps/pattern + tooth_pitches/teeth)``: the part stands in the disc turned
-        by that many steps, and its teeth are counted from that many later.
+    Parts are equal where their flanks stand alike to holes and bores. The flank of the disc is turned by `turned` (rad)
+    against holes and bores, which have an order of rotational symmetry `pattern` (z_PS for a central crank). Returned are
+    ``(turn, steps, tooth_pitches)`` with ``turned = turn + 2π (steps/pattern + tooth_pitches/teeth)``: the least `turn` of
+    the flank of the part, from 0 to a tooth pitch, rad; the part is turned by `steps` of the pattern in the disc, and its
+    teeth are counted from `tooth_pitches` later.
 
     Examples
     --------

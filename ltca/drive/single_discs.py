@@ -1,7 +1,7 @@
-"""A drive of several discs as drives of one disc each, and how far each flank is turned against its holes.
+"""A drive of several discs as drives of one disc each.
 
 Disc k stands at the phase ζ_k of the crank. Its flank is turned by −Δz ζ_k/z_C against holes and bore, so that it meshes
-with the wheel as the others do. Turned by some hole pitches, such a disc may be the same part as another.
+with the wheel as the others do. Turned by a number of hole pitches, such a disc may be the same part as another.
 """
 
 from __future__ import annotations
@@ -23,19 +23,10 @@ from ltca.drive.parts import (
 
 
 def single_discs(drive: Drive) -> tuple[Drive, ...]:
-    """Return the drives that each disc makes with wheel, crank and pin shaft: what is one disc's own is the drive's there.
+    """Return one drive per disc, each with wheel, cranks and pin shaft; values per disc replace those of the drive.
 
-    Torques are divided by the number of discs, which is what each carries where all are alike.
-
-    Parameters
-    ----------
-    drive : Drive
-        Of any number of discs.
-
-    Returns
-    -------
-    tuple of Drive
-        The drive itself where it has one disc of which nothing is said apart.
+    Torques are divided by the number of discs, the share of each where all are alike. A drive that is single already
+    (`is_single`) is returned itself.
 
     Examples
     --------
@@ -52,13 +43,13 @@ def single_discs(drive: Drive) -> tuple[Drive, ...]:
 
 
 def is_single(drive: Drive) -> bool:
-    """Tell whether a drive has one disc and all that is said of it apart is the places of its eccentrics and bores."""
+    """Tell whether a drive has one disc without values of its own, except those of eccentrics and bores of several cranks."""
     alone = drive.disc.number_of_discs == 1 and all(entry.of_bores_alone for entry in drive.disc.of)
     return alone and (drive.crank.number > 1 or all(entry.eccentricity_error is None for entry in drive.crank.of))
 
 
 def without_own(drive: Drive) -> Drive:
-    """Return the drive with discs that have nothing of their own."""
+    """Return the drive without values per disc."""
     if not drive.disc.of and not drive.crank.of:
         return drive
     return replace(drive, disc=replace(drive.disc, of=()), crank=replace(drive.crank, of=()))
@@ -116,10 +107,10 @@ def equal_parts(drive: Drive) -> bool:
 
 
 def nominal_shape(drive: Drive, *, keep_clearance: bool = True) -> Drive:
-    """Return the shape that influence coefficients know of a drive of one disc.
+    """Return the shape of a drive of one disc that influence coefficients belong to.
 
-    Errors of single parts are left out, clearances too if asked; the disc is the part that it is (`Drive.part_turn`), not
-    as it stands in the drive.
+    Errors of single parts are left out, and clearances unless `keep_clearance`; the disc is in the orientation of the part
+    (`Drive.part_turn`), not as it stands in the drive.
     """
     phase = -drive.part_turn[0] * drive.disc.number_of_teeth / drive.tooth_number_difference
     return replace(

@@ -17,11 +17,11 @@ from pydantic.dataclasses import dataclass
 
 from ltca.arrays import FloatArray
 from ltca.drive.fields import (
-    MAY_BE_LEFT_OUT,
     absence,
     element_count,
     field_kind,
     field_kinds,
+    may_be_left_out,
     not_a_field,
     own_paths,
     read_field,
@@ -34,12 +34,12 @@ from ltca.errors import DriveError, printable, shortened
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=ConfigDict(extra="forbid"))
 class Distribution:
-    """How a field scatters about its value; an array field draws every element for itself.
+    """How a field scatters about its value; an array field draws every element independently.
 
     Attributes
     ----------
     distribution : {"normal", "uniform", "truncated-normal"}
-        Normal without bounds, uniform over the tolerance, normal with what is out of tolerance sorted out.
+        Normal without bounds, uniform over the tolerance, or normal with parts out of tolerance sorted out.
     tolerance : float
         T of ±T about the field's value, in the unit of the field.
     cpk : float
@@ -49,7 +49,7 @@ class Distribution:
     """
 
     distribution: Literal["normal", "uniform", "truncated-normal"]
-    # Validated in the unit of the field before; here only that they are numbers, and no truth values.
+    # The unit of the field is applied before; here only numbers are accepted, no truth values.
     tolerance: Annotated[float, Strict()]
     cpk: Annotated[float, quantity("dimensionless", gt=0.0)] = 1.0
     mean: Annotated[float, Strict()] = 0.0
@@ -61,12 +61,9 @@ class Distribution:
         return room / 3.0**0.5 if self.distribution == "uniform" else room / (3.0 * self.cpk)
 
     def quantile(self, probability: FloatArray) -> FloatArray:
-        """Return the deviation below which a part of all falls: the inverse distribution function.
+        """Return the inverse distribution function: the deviation below which a fraction `probability` of all parts lies.
 
-        Parameters
-        ----------
-        probability : array
-            Between 0 and 1, both excluded for the unbounded normal distribution.
+        Fractions are between 0 and 1, both excluded for the unbounded normal distribution.
 
         Examples
         --------
@@ -93,21 +90,10 @@ Tolerances = dict[str, Distribution]
 
 
 def parse_tolerances(table: Any, problems: list[str], drive: Drive | None = None) -> Tolerances:
-    """Read a ``[tolerances]`` table.
+    """Read a ``[tolerances]`` table into distributions by dotted path, in the order of the file.
 
-    Parameters
-    ----------
-    table : mapping
-        Nested tables of the drive's fields; a table with ``distribution`` is an entry.
-    problems : list of str
-        Takes what is wrong, one sentence each.
-    drive : Drive, optional
-        Whose they are, for what a misspelt path may have meant.
-
-    Returns
-    -------
-    dict of str to Distribution
-        By dotted path, in the order of the file.
+    A nested table with the key ``distribution`` is an entry. Mistakes are appended to `problems`, one sentence each; the
+    drive, if given, helps to find the field that a misspelt path is close to.
     """
     found: Tolerances = {}
     for path, entry in _entries(table, "", problems):
@@ -159,11 +145,11 @@ def _entries(table: Any, prefix: str, problems: list[str]) -> list[tuple[str, Ma
 
 
 def nothing_scatters(drive: Drive, path: str) -> str | None:
-    """Return why a field cannot scatter in a drive that has it not; None where it can."""
+    """Return why a field cannot scatter in a drive that is without it; None where it can."""
     if (problem := absence(drive, path)) is not None:
         return problem
     try:
-        if path in MAY_BE_LEFT_OUT:
+        if may_be_left_out(path):
             read_field(drive, path)
     except DriveError as error:
         return error.problems[0].partition(": ")[2]
@@ -171,7 +157,7 @@ def nothing_scatters(drive: Drive, path: str) -> str | None:
 
 
 def find_absent(tolerances: Tolerances, drives: Collection[Drive]) -> list[str]:
-    """Return what is wrong with tolerances on what none of the drives has, one sentence each."""
+    """Return the problems of tolerances on fields that none of the drives has, one sentence each."""
     found = []
     for path in tolerances:
         problems = [nothing_scatters(drive, path) for drive in drives]
@@ -181,7 +167,7 @@ def find_absent(tolerances: Tolerances, drives: Collection[Drive]) -> list[str]:
 
 
 def _per_disc(drive: Drive, tolerances: Tolerances) -> Tolerances:
-    """What scatters, disc by disc where each has it of its own; what is said of one disc stands before what is said of all."""
+    """Tolerances per disc where discs have values of their own; an entry for a disc replaces the common one."""
     each: Tolerances = {}
     for path, distribution in tolerances.items():
         own = own_paths(drive, path)
@@ -194,16 +180,16 @@ def _per_disc(drive: Drive, tolerances: Tolerances) -> Tolerances:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Factors:
-    """The scattering numbers of a drive in a row: what one sample draws.
+    """The scattering numbers of a drive in a row, which a sample draws together.
 
     Attributes
     ----------
     fields : tuple of (str, int or None)
-        Path of each field that scatters, and its number of elements if it is an array.
+        Path of each scattering field, and its number of elements if it is an array.
     centres : tuple of float
         Values of the fields in the drive, elements of arrays one by one.
     distributions : tuple of Distribution
-        Of each field.
+        Distribution of each field.
     """
 
     fields: tuple[tuple[str, int | None], ...]
@@ -212,13 +198,10 @@ class Factors:
 
     @classmethod
     def of_tolerances(cls, drive: Drive, tolerances: Tolerances) -> Factors:
-        """Return the factors of a drive; of several discs each scatters for itself.
+        """Return the factors of a drive; where discs have values of their own, every disc scatters independently.
 
-        Raises
-        ------
-        DriveError
-            When nothing scatters, the drive has not what shall scatter, or an array with an entry has no elements in
-            this drive (harmonics without orders).
+        DriveError when nothing scatters, when the drive is without a scattering field, or when a scattering array has no
+        elements in this drive (harmonics without orders).
         """
         found: list[tuple[str, int | None]] = []
         centres: list[float] = []
@@ -254,17 +237,8 @@ class Factors:
         )
 
     def draw(self, probability: FloatArray) -> FloatArray:
-        """Return the numbers of samples from uniform ones.
-
-        Parameters
-        ----------
-        probability : array, shape (samples, numbers)
-            Between 0 and 1.
-
-        Returns
-        -------
-        array, same shape
-            Values of the fields, in their units.
+        """Return the values of the fields, in their units, from uniform numbers between 0 and 1: shape (samples, numbers)
+        both.
         """
         drawn = np.empty_like(probability)
         column = 0

@@ -1,8 +1,8 @@
 """Likely mistakes of units behind a drive that cannot carry its load: looked for when a solution fails, never before.
 
-A soft drive under a light torque is sound (printed plastics have some 3000 MPa, TPU 30 MPa), so nothing is refused for
-its modulus, and what no drive has is pointed out, not refused (`unit_warnings`). Where no balance is found, a modulus as of
-rubber, a torque that no steel bears or a pin that yields by more than its hole is the likelier cause than slipping teeth.
+A soft drive under a light torque is sound (printed plastics have some 3000 MPa, TPU 30 MPa), so no modulus is refused, and
+values that no drive has give a warning (`unit_warnings`). Where no equilibrium exists, a modulus like that of rubber, a torque
+beyond the strength of steel or a pin deflection larger than its hole is a likelier cause than slipping teeth.
 """
 
 from __future__ import annotations
@@ -23,40 +23,36 @@ R = TypeVar("R")
 SOFT = 1000.0
 """Young's modulus below that of the softest rigid plastics (polyethylene, some 1000 MPa), MPa."""
 DIAMOND, STIFF = 1.2e6, 2e6
-"""Young's modulus of diamond, and one that nothing has, MPa."""
+"""Young's modulus of diamond, and one above that of any material, MPa."""
 METALS = 40e3, 700e3
 """Young's moduli of magnesium and of cemented carbide, MPa."""
 SMALLEST, LARGEST = 1.0, 5000.0
-"""Pin circle radii smaller and larger than those of all drives that are built, mm: micro drives have some 3, the largest 1000."""
+"""Pin circle radii smaller and larger than those of all existing drives, mm: micro drives have some 3, the largest 1000."""
 HOTTEST = 200.0
-"""Temperature at which bearing steel softens and plastics are gone, °C; that of a cold room in kelvin is beyond it."""
+"""Temperature at which bearing steel softens, °C; a cold room in kelvin is beyond it."""
 BORNE = 10_000.0
-"""Pressure that no gear bears: bearing steel yields below 6000 MPa, MPa."""
+"""Pressure beyond the strength of any gear: bearing steel yields below 6000 MPa, MPa."""
 
 
 def _parts(drive: Drive) -> list[str]:
-    """Parts whose material is pressed; crankshafts, and slots and sleeves where there are none, are of no account."""
+    """Parts whose material is under contact pressure: without crankshafts, and slots and sleeves where there are none."""
     seats = {drive.pin_wheel.seat.kind} | (set() if drive.pin_shaft is None else {drive.pin_shaft.seat.kind})
     counts = {"crankshaft": False, "wheel_seat": "slot" in seats, "sleeve": "sleeve" in seats}
     return [item.name for item in fields(Materials) if counts.get(item.name, True)]
 
 
 def likely_unit_mistakes(drive: Drive, torque: float | None = None) -> list[str]:
-    """Return what looks like a number in another unit, one sentence each, the likeliest first.
+    """Return values of a drive whose solution failed that look like numbers in another unit, one sentence each, the
+    likeliest first.
 
-    Parameters
-    ----------
-    drive : Drive
-        A drive whose solution failed.
-    torque : float, optional
-        Output torque, N·mm; the drive's own by default.
+    `torque` is the output torque, N·mm; that of the load by default.
     """
     used = drive.load.torque if torque is None else torque
     if beyond := unit_warnings(drive):
         return beyond
     modulus = _modulus(drive)
     if modulus:
-        return modulus  # what follows from it is no mistake of its own
+        return modulus  # the others follow from it
     share = used / drive.disc.number_of_discs
     for named, value in (
         ("load.torque" if used == drive.load.torque else "torque", used),
@@ -72,7 +68,7 @@ def likely_unit_mistakes(drive: Drive, torque: float | None = None) -> list[str]
 
 
 def _yielding(drive: Drive, share: float) -> list[str]:
-    """Pins so soft, or so long, that they would leave their place."""
+    """Problems of pins so soft, or so long, that they would leave their place."""
     wheel, shaft = drive.pin_wheel, drive.pin_shaft
     if wheel.beam is not None:
         bending = 48.0 * _bending_stiffness(drive.materials.wheel_pin, wheel.beam_diameter) / wheel.beam.span**3
@@ -121,34 +117,23 @@ def _modulus(drive: Drive) -> list[str]:
 
 
 def _pin_load(drive: Drive, share: float) -> float:
-    """Load of a wheel pin under its part of the torque, a third of the pins carrying, N."""
+    """Load of a wheel pin under its share of the torque, if a third of the pins carry, N."""
     lever = drive.crank.eccentricity * drive.reduction_ratio
     return share / (lever * drive.pin_wheel.number_of_pins / 3.0)
 
 
 def _pressure(drive: Drive, share: float) -> float:
-    """Hertz pressure of such a pin, MPa."""
+    """Hertz pressure of a wheel pin under this load, MPa."""
     load = _pin_load(drive, share)
     modulus = contact_modulus(drive.materials.disc, drive.flank_pin)
     return sqrt(load * modulus / (pi * drive.disc.thickness * drive.pin_wheel.pin_radius))
 
 
 def explain_failure(error: CycloError, drive: Drive, torque: float | None = None) -> CycloError:
-    """Return an error that names the likely mistake of units in the place of what followed from it.
+    """Return an error that names the likely mistake of units in place of a failed solution of a drive.
 
-    Parameters
-    ----------
-    error : CycloError
-        What a solution ended with.
-    drive : Drive
-        What was solved.
-    torque : float, optional
-        Output torque, N·mm; the drive's own by default.
-
-    Returns
-    -------
-    CycloError
-        The error itself where nothing looks like a mistake, or where it is about something else.
+    The error itself is returned where no value looks like a mistake, or where it is about something else. `torque` is the
+    output torque, N·mm; that of the load by default.
     """
     carried = isinstance(error, DriveError) and any("cannot be carried" in problem for problem in error.problems)
     if not carried and not isinstance(error, ConvergenceError):
@@ -161,12 +146,8 @@ def explain_failure(error: CycloError, drive: Drive, torque: float | None = None
 
 
 def names_unit_mistakes(solve: Callable[P, R]) -> Callable[P, R]:
-    """Let a function of a drive, and perhaps a torque, name a likely mistake of units where it fails.
-
-    Parameters
-    ----------
-    solve : callable
-        With parameters ``drive`` and, if it has one, ``torque``.
+    """Decorate a function with parameters ``drive`` and perhaps ``torque`` so that its errors name a likely mistake of
+    units.
     """
     signature = inspect.signature(solve)
 
@@ -187,13 +168,8 @@ def names_unit_mistakes(solve: Callable[P, R]) -> Callable[P, R]:
 def stiffness_warning(drive: Drive) -> str | None:
     """Return a warning where a modulus is likely in pascals or gigapascals, None elsewhere.
 
-    Beyond that of any material pascals are likely; what would be a metal in GPa, beside a part a hundred times stiffer,
-    is likely one: a soft shaft pin alone lets every solution succeed.
-
-    Parameters
-    ----------
-    drive : Drive
-        The drive.
+    Beyond that of any material pascals are likely; a value that would be a metal in GPa, beside a part a hundred times
+    stiffer, is likely in GPa: a soft shaft pin alone lets every solution succeed.
     """
     parts = _parts(drive)
     for part in parts:
@@ -215,12 +191,8 @@ def stiffness_warning(drive: Drive) -> str | None:
 
 
 def unit_warnings(drive: Drive) -> list[str]:
-    """Return what no drive has and what was probably meant by it, one sentence each.
-
-    Parameters
-    ----------
-    drive : Drive
-        The drive, as written.
+    """Return values that no drive has, with the values that were probably meant, one sentence each; of the drive as
+    written.
     """
     stiff, size = stiffness_warning(drive), drive.pin_wheel.pin_circle_radius
     found = [] if stiff is None else [stiff]
@@ -257,17 +229,11 @@ def unit_warnings(drive: Drive) -> list[str]:
 
 
 TURN = 2.0 * pi * (1.0 + 1e-6)
-"""Angles of discs and cranks beyond a turn are none, rad; 2π itself may come rounded."""
+"""Largest sensible angle of a disc or crank, rad: one turn, with the rounding of 2π."""
 
 
 def kelvin_words(drive: Drive) -> str:
-    """Return which temperatures are probably in kelvin; empty where none is.
-
-    Parameters
-    ----------
-    drive : Drive
-        The drive, as written.
-    """
+    """Return the temperatures of a drive, as written, that are probably in kelvin; empty where none is."""
     if drive.temperature is None:
         return ""
     hot = {

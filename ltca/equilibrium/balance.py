@@ -29,15 +29,15 @@ from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.first_contact import turn_to_contact
 from ltca.geometry.pairs import ContactGeometry
 
-ITERATIONS = 100
-"""Newton iterations after which a start counts as lost; usual are ten, and fifty where contacts take turns."""
-HEAVIER = 8.0
-"""Ratio of torques of a continuation; it shrinks where a step is too long, down to `LEAST_RATIO`."""
-HEAVIEST = 7
-"""Most times that the torque grows by `HEAVIER` to find a start."""
-LEAST_RATIO = 1.05
-FEW = 3
-"""Iterations from a start that is near."""
+MAX_ITERATIONS = 100
+"""Newton iterations after which a start is given up; ten are usual, and fifty where contacts alternate."""
+TORQUE_RATIO = 8.0
+"""Ratio of successive torques of the continuation; reduced where a step fails, down to `LEAST_TORQUE_RATIO`."""
+MAX_TORQUE_STEPS = 7
+"""Most increases of the torque by `TORQUE_RATIO` in search of a start that balances."""
+LEAST_TORQUE_RATIO = 1.05
+FEW_ITERATIONS = 3
+"""Iterations that a nearby start takes at most."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -104,7 +104,7 @@ def solve_equilibrium(
     model: Reducer,
     crank_angle: FloatArray,
     wheel_moment: FloatArray | float,
-    start: FloatArray | Equilibrium | None = None,
+    start: FloatArray | None = None,
     inner: Start | None = None,
     gaps: bool = True,
     series: int = 1,
@@ -119,9 +119,8 @@ def solve_equilibrium(
         Held crank angles φ_C, rad.
     wheel_moment : float or array, shape (positions,)
         External moment on the wheel, ccw positive, N·mm.
-    start : array, shape (positions, coordinates), or Equilibrium, optional
-        Poses to start from, or what this model answered under other moments; by default the discs on the inner-race
-        centres and the wheel turned to first contact.
+    start : array, shape (positions, coordinates), optional
+        Poses to start from; by default the discs on the inner-race centres and the wheel turned to first contact.
     inner : Start, optional
         Inner unknowns near the poses to start from.
     gaps : bool
@@ -141,14 +140,24 @@ def solve_equilibrium(
     """
     angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
     moment = np.broadcast_to(np.asarray(wheel_moment, dtype=float), angle.shape)
+    search = _search(model, angle, moment, np.zeros((angle.size, model.coordinates.size)))
+    return _completed(search, _solve_by_neighbours(search, start, inner, series), gaps)
+
+
+def follow_equilibrium(model: Reducer, found: Equilibrium, wheel_moment: FloatArray, gaps: bool = True) -> Equilibrium:
+    """Balance positions under other moments, N·mm, from what this model answered; `gaps` as for `solve_equilibrium`."""
+    search = _search(model, found.crank_angle, wheel_moment, found.pose.copy())
+    return _completed(search, search.iterate(MAX_ITERATIONS, response=found.response), gaps)
+
+
+def _search(model: Reducer, angle: FloatArray, moment: FloatArray, pose: FloatArray) -> Search:
     lever = lever_arms(model)
-    load = np.abs(moment) / lever[..., WHEEL_ANGLE]
-    if isinstance(start, Equilibrium):
-        search = Search(model, angle, moment, lever, load, start.pose.copy())
-        left = search.iterate(ITERATIONS, begin=start.response)
-    else:
-        search = Search(model, angle, moment, lever, load, np.zeros((angle.size, lever.shape[-1])))
-        left = _solve_by_neighbours(search, start, inner, series)
+    return Search(model, angle, moment, lever, np.abs(moment) / lever[..., WHEEL_ANGLE], pose)
+
+
+def _completed(search: Search, left: NDArray[np.intp], gaps: bool) -> Equilibrium:
+    """Balance what Newton's method has left over by other means, and return all positions."""
+    model, angle = search.model, search.angle
     creeping = search.follow_valley if search.symmetric else search.reduce_residual
     left = np.array([row for row in left if not creeping(int(row))], dtype=np.intp)
     if left.size and not np.all(_below_round_off(search, left)):
@@ -158,7 +167,7 @@ def solve_equilibrium(
     response = search.contacts()[1]
     return Equilibrium(
         crank_angle=angle,
-        wheel_moment=np.array(moment),
+        wheel_moment=np.array(search.moment),
         pose=search.pose,
         response=complete(model, angle, search.pose, response) if gaps else response,
         residual=search.residual,
@@ -181,18 +190,18 @@ def _solve_by_neighbours(
     first = np.arange(angle.size)
     if series == 1:
         first = leading_positions(model.discs[0].geometry, angle, moment)
-    left = search.iterate(ITERATIONS, first, take_positions(inner, first))
+    left = search.iterate(MAX_ITERATIONS, first, take_positions(inner, first))
     rest = np.setdiff1d(np.arange(angle.size), first)
     if rest.size == 0:
         return left
     begin = take_positions(inner, rest)
     # A start that leads somewhere in a few steps is as good as what lies between neighbours.
-    if np.median(search.iterations[first]) > FEW and search.balanced:
+    if np.median(search.iterations[first]) > FEW_ITERATIONS and search.balanced:
         known, contacts = search.contacts()
         pose[rest] = pose_between(angle[known], pose[known], angle[rest], model.coordinates)
         ratio = model.discs[0].geometry.placement.reduction_ratio
         begin = start_between(angle[known], Start.after(contacts), angle[rest], ratio)
-    return np.union1d(left, search.iterate(ITERATIONS, rest, begin))
+    return np.union1d(left, search.iterate(MAX_ITERATIONS, rest, begin))
 
 
 def _solve_beside_leaders(search: Search, series: int) -> NDArray[np.intp]:
@@ -203,7 +212,7 @@ def _solve_beside_leaders(search: Search, series: int) -> NDArray[np.intp]:
     if leading.size < count:
         leaders = leading[0] + count * np.arange(series)
     pose[leaders] = _at_first_contact(model.take(leaders), angle[leaders], search.moment[leaders])
-    left = search.iterate(ITERATIONS, leaders)
+    left = search.iterate(MAX_ITERATIONS, leaders)
     rest = np.setdiff1d(np.arange(angle.size), leaders)
     if rest.size == 0:
         return left
@@ -217,11 +226,11 @@ def _solve_beside_leaders(search: Search, series: int) -> NDArray[np.intp]:
         pose[beside] = pose_beside(angle[at], pose[at], angle[beside], model.coordinates)
         ratio = model.discs[0].geometry.placement.reduction_ratio
         begin = start_beside(angle[at], take_positions(Start.after(contacts), rows), angle[beside], ratio)
-        left = np.union1d(left, search.iterate(ITERATIONS, beside, begin))
+        left = np.union1d(left, search.iterate(MAX_ITERATIONS, beside, begin))
     alone = rest[~led[rest // count]]
     if alone.size:
         pose[alone] = _at_first_contact(model.take(alone), angle[alone], search.moment[alone])
-        left = np.union1d(left, search.iterate(ITERATIONS, alone))
+        left = np.union1d(left, search.iterate(MAX_ITERATIONS, alone))
     return left
 
 
@@ -247,24 +256,24 @@ def _follow_down(search: Search, rows: NDArray[np.intp]) -> NDArray[np.intp]:
     """Solve positions from heavier torques down to their own; return those that have no balance there either."""
     pose = _at_first_contact(search.model.take(rows), search.angle[rows], search.moment[rows])
     level = np.full(rows.size, np.nan)
-    for power in range(1, HEAVIEST + 1):
+    for power in range(1, MAX_TORQUE_STEPS + 1):
         new = np.nonzero(np.isnan(level))[0]
         if new.size == 0:
             break
-        part = _part(search, rows[new], np.full(new.size, HEAVIER**power), pose[new])
-        found = np.setdiff1d(np.arange(new.size), part.iterate(ITERATIONS))
+        part = _part(search, rows[new], np.full(new.size, TORQUE_RATIO**power), pose[new])
+        found = np.setdiff1d(np.arange(new.size), part.iterate(MAX_ITERATIONS))
         search.iterations[rows[new]] += part.iterations
-        pose[new[found]], level[new[found]] = part.pose[found], HEAVIER**power
-    ratio = np.full(rows.size, HEAVIER)
+        pose[new[found]], level[new[found]] = part.pose[found], TORQUE_RATIO**power
+    ratio = np.full(rows.size, TORQUE_RATIO)
     going = np.nonzero(~np.isnan(level))[0]
     while going.size:
         target = np.maximum(level[going] / ratio[going], 1.0)
         part = _part(search, rows[going], target, pose[going])
-        lost = part.iterate(ITERATIONS)
+        lost = part.iterate(MAX_ITERATIONS)
         search.iterations[rows[going]] += part.iterations
         found = np.setdiff1d(np.arange(going.size), lost)
         pose[going[found]], level[going[found]] = part.pose[found], target[found]
-        ratio[going[found]] = np.minimum(ratio[going[found]] ** 2, HEAVIER)
+        ratio[going[found]] = np.minimum(ratio[going[found]] ** 2, TORQUE_RATIO)
         ratio[going[lost]] = np.sqrt(ratio[going[lost]])
         there = going[found][target[found] == 1.0]
         if there.size:
@@ -272,7 +281,7 @@ def _follow_down(search: Search, rows: NDArray[np.intp]) -> NDArray[np.intp]:
             own = np.isin(kept, found[target[found] == 1.0])
             search.pose[rows[there]], search.residual[rows[there]] = pose[there], part.residual[kept[own]]
             search.keep(rows[going[kept]], contacts, own)
-        going = going[(level[going] > 1.0) & (ratio[going] > LEAST_RATIO)]
+        going = going[(level[going] > 1.0) & (ratio[going] > LEAST_TORQUE_RATIO)]
     return np.asarray(rows[level != 1.0])
 
 

@@ -18,24 +18,14 @@ from ltca.equilibrium.reducer import Reducer
 from ltca.geometry.coordinates import WHEEL_ANGLE
 
 PARTS = ("pins", "crank_bearings", "shaft_pins", "cranks", "wheel_bearing", "geometry")
-STEP = 1e-4
-"""Change of the torque, as a part of it: loads follow it in line, and round-off stays below 1e-4 of their change."""
+RELATIVE_TORQUE_STEP = 1e-4
+"""Relative change of the torque: loads follow it linearly, and round-off stays below 1e-4 of their change."""
 
 
 def compliance_shares(model: Reducer, found: Equilibrium) -> dict[str, FloatArray]:
-    """Return the shares of the wheel's compliance by part, crank held.
+    """Return the shares of the wheel's compliance by part (`PARTS`), crank held, shape (positions,); they add up to one.
 
-    Parameters
-    ----------
-    model : Reducer
-        What balanced.
-    found : Equilibrium
-        Balanced positions.
-
-    Returns
-    -------
-    dict of str to array, shape (positions,)
-        By `PARTS`; they add up to one. Not a number where nothing resists a free motion.
+    They are not a number where nothing resists a free motion.
     """
     response, size = found.response, found.pose.shape[1]
     if model.friction is not None:  # what bodies yield, not what rubs
@@ -43,7 +33,7 @@ def compliance_shares(model: Reducer, found: Equilibrium) -> dict[str, FloatArra
         response = model.respond(found.crank_angle, found.pose, Start.after(response))
     tangent = response.tangent
     one = np.zeros((found.pose.shape[0], size, 1))
-    one[:, WHEEL_ANGLE] = STEP * found.wheel_moment[:, None]
+    one[:, WHEEL_ANGLE] = RELATIVE_TORQUE_STEP * found.wheel_moment[:, None]
     try:
         moved: FloatArray = np.asarray(np.linalg.solve(tangent, one)[..., 0], dtype=float)
     except np.linalg.LinAlgError:  # a disc that carries nothing floats

@@ -20,12 +20,7 @@ MOST = 8
 def leading_positions(geometry: ContactGeometry, angle: FloatArray, moment: FloatArray) -> NDArray[np.intp]:
     """Return which positions of one drive to balance first; all of them where neighbours are no help.
 
-    Parameters
-    ----------
-    geometry : ContactGeometry
-        Of a disc.
-    angle, moment : array, shape (positions,)
-        φ_C, rad, and moments on the wheel, N·mm: neighbours carry the same.
+    Crank angles are in rad, moments on the wheel in N·mm: only positions under the same moment have neighbours.
     """
     everything = np.arange(angle.size)
     place = geometry.placement
@@ -41,18 +36,9 @@ def leading_positions(geometry: ContactGeometry, angle: FloatArray, moment: Floa
 
 
 def pose_between(angle: FloatArray, pose: FloatArray, wanted: FloatArray, coordinates: Coordinates) -> FloatArray:
-    """Return poses between known ones, in line as seen from the turning crank.
+    """Return poses at wanted crank angles between known ones, linearly as seen from the turning crank.
 
-    Parameters
-    ----------
-    angle : array, shape (positions,)
-        φ_C of the known poses, in any order, rad.
-    pose : array, shape (positions, coordinates)
-        q there.
-    wanted : array
-        φ_C of the poses to return, rad.
-    coordinates : Coordinates
-        What poses are made of.
+    Known angles, rad, may stand in any order; poses have the shape (positions, coordinates).
 
     Examples
     --------

@@ -28,22 +28,22 @@ STEP_BOUND = 1e-3
 """Largest first step of a mode as a part of e z_P (0.056 mm in the paper's drive): long against elastic approaches
 (µm), short against the radius of a flank (mm), and no length of its own, so that the size of a drive does not matter.
 It doubles while steps succeed, up to a tenth of the smallest pin, and halves when they have to be cut."""
-LINE_TRIALS = 12
-CREEPING = 0.01
-"""Residual below which a position that takes many iterations creeps rather than wanders, as a part of the load."""
-VALLEY_STEPS, WALL_STEPS = 60, 6
-"""Steps along a valley, and down to its bottom after each."""
-REDUCTIONS = 60
-"""Steps that reduce the residual of a position with friction, taken or not."""
-SHAKES = (0.0, *(0.02,) * 4, *(0.1,) * 4, *(0.4,) * 4)
-"""By what part of itself each coordinate of such a position is shaken for another start: a disc that carries next to nothing may
-be caught between contacts that friction does not let it rest on, and carries nothing right beside."""
-FIRST_ALONG = 1e-5
-"""First step along a valley, as a part of the smallest pin radius; each may be four times the last."""
-SOFT = 1e-6
-"""Part of its stiffness that a coordinate must keep when those before it give way, for its modes not to be looked at."""
-SLOPE_LEFT = 0.3
-"""A step is short enough when the slope of Π at its end is at most this part of the slope at its beginning."""
+MAX_LINE_SEARCH_STEPS = 12
+CREEPING_RESIDUAL = 0.01
+"""Residual, relative to the load, below which a position that did not balance is followed along its softest mode."""
+MAX_VALLEY_STEPS, MAX_WALL_STEPS = 60, 6
+"""Steps along a soft mode, and steps of the other modes after each."""
+MAX_REDUCTION_STEPS = 60
+"""Trial steps of the iteration that reduces the residual of a position with friction."""
+RESTART_PERTURBATIONS = (0.0, *(0.02,) * 4, *(0.1,) * 4, *(0.4,) * 4)
+"""Relative random perturbations of the pose tried at restarts with friction: a disc that carries next to nothing may be caught
+between contacts on which friction does not let it rest, and carries nothing right beside."""
+FIRST_VALLEY_STEP = 1e-5
+"""First step along a soft mode relative to the smallest pin radius; each step is at most four times the last."""
+LEAST_PIVOT_RATIO = 1e-6
+"""Least pivot ratio accepted by the elimination: with smaller ones the modes of the tangent are computed."""
+LINE_SEARCH_SLOPE_RATIO = 0.3
+"""Largest ratio of the slopes of Π at the end and at the beginning of an accepted step."""
 
 
 class Search:
@@ -59,7 +59,7 @@ class Search:
         What turns the residual into forces, mm.
     load : array, shape (positions,)
         Moment by the lever of the wheel, N.
-    pose : array, shape (positions, 4)
+    pose : array, shape (positions, coordinates)
         Where to start; changed in place.
 
     Notes
@@ -113,7 +113,11 @@ class Search:
         return gradient, response.tangent / (lever[..., :, None] * lever[..., None, :])
 
     def iterate(
-        self, most: int, rows: NDArray[np.intp] | None = None, begin: Start | Response | None = None
+        self,
+        most: int,
+        rows: NDArray[np.intp] | None = None,
+        begin: Start | None = None,
+        response: Response | None = None,
     ) -> NDArray[np.intp]:
         """Move positions towards balance; return those of them that do not balance, ascending.
 
@@ -123,13 +127,16 @@ class Search:
             Iterations.
         rows : array of int, optional
             Which positions, ascending; all by default.
-        begin : Start or Response, optional
-            Inner unknowns near the poses of these positions, or their contacts there.
+        begin : Start, optional
+            Inner unknowns near the poses of these positions.
+        response : Response, optional
+            Their contacts at these poses, where they are known.
         """
         active = asked = np.arange(self.angle.size) if rows is None else rows
         first_bound = STEP_BOUND * float(np.max(self.lever[..., WHEEL_ANGLE]))
         damping, bound = np.full(self.angle.size, 1e-6), np.full(self.angle.size, first_bound)
-        response = begin if isinstance(begin, Response) else self.evaluate(active, self.pose[active], begin)
+        if response is None:
+            response = self.evaluate(active, self.pose[active], begin)
         gradient, tangent = self.scaled(active, response)
         residual = self.residual
         residual[active] = np.max(np.abs(gradient), axis=1)
@@ -166,7 +173,10 @@ class Search:
             return False
         random = np.random.default_rng(0)  # the same position is always answered alike
         last = self.pose[row : row + 1].copy()
-        return any(self._reduce_residual(row, last * (1.0 + part * random.normal(size=last.shape))) for part in SHAKES)
+        return any(
+            self._reduce_residual(row, last * (1.0 + part * random.normal(size=last.shape)))
+            for part in RESTART_PERTURBATIONS
+        )
 
     def _reduce_residual(self, row: int, pose: FloatArray) -> bool:
         """Levenberg and Marquardt's iteration from a pose."""
@@ -179,7 +189,7 @@ class Search:
         response = self.evaluate(rows, pose, None)
         gradient, tangent = self.scaled(rows, response)
         damping, size = 1e-10, pose.shape[1]
-        for _ in range(REDUCTIONS):
+        for _ in range(MAX_REDUCTION_STEPS):
             self.residual[row] = np.max(np.abs(gradient))
             if self.residual[row] <= self.accepted(rows, tangent)[0]:
                 self.pose[rows] = pose
@@ -217,12 +227,12 @@ class Search:
         other modes down to the bottom, and the slope along the bottom is brought to zero by secants.
         """
         rows = np.array([row])
-        if self.slipped[row] or not self.residual[row] < CREEPING * self.load[row]:
+        if self.slipped[row] or not self.residual[row] < CREEPING_RESIDUAL * self.load[row]:
             return False
         lever, pose = self.levers(rows), self.pose[rows].copy()
         before, along, last, response = 0.0, 0.0, np.zeros(pose.shape[1]), self.evaluate(rows, pose, None)
-        for _ in range(VALLEY_STEPS):
-            for _ in range(WALL_STEPS):
+        for _ in range(MAX_VALLEY_STEPS):
+            for _ in range(MAX_WALL_STEPS):
                 gradient, tangent = self.scaled(rows, response)
                 values, modes = np.linalg.eigh(tangent[0])
                 soft = modes[:, np.argmin(np.abs(values))]
@@ -241,7 +251,7 @@ class Search:
             slope = float(soft @ gradient[0])
             change = (slope - before) / along if along else float(np.min(np.abs(values)))
             step = -slope / change if change > 0.0 else -np.sign(slope) * 2.0 * abs(along)
-            most = 4.0 * abs(along) if along else FIRST_ALONG * self.smallest_pin
+            most = 4.0 * abs(along) if along else FIRST_VALLEY_STEP * self.smallest_pin
             along, before, last = float(np.clip(step, -most, most)), slope, soft
             pose = pose + along * soft[None] / lever
             response = self.evaluate(rows, pose, Start.onward(response))
@@ -286,8 +296,8 @@ class Search:
         # Longer than the minimum: round-off of the slope must not send a step back.
         noise = 1e-3 * TOLERANCE * self.load[rows] * np.max(np.abs(step), axis=1)
         end = np.einsum("bi,bi->b", gradient, step)
-        for _ in range(LINE_TRIALS):
-            far = end > SLOPE_LEFT * np.abs(slope) + noise
+        for _ in range(MAX_LINE_SEARCH_STEPS):
+            far = end > LINE_SEARCH_SLOPE_RATIO * np.abs(slope) + noise
             if not np.any(far):
                 break
             high[far], high_slope[far] = fraction[far], end[far]
@@ -340,7 +350,7 @@ def _stiff_step(tangent: FloatArray, gradient: FloatArray, floor: FloatArray) ->
     size = gradient.shape[1]
     matrix, right = tangent.transpose(1, 2, 0).copy(), -gradient.T
     places = np.arange(size)
-    least = SOFT * matrix[places, places]
+    least = LEAST_PIVOT_RATIO * matrix[places, places]
     matrix[places, places] += floor
     stiff = np.ones(gradient.shape[0], dtype=bool)
     for place in range(size):

@@ -22,19 +22,16 @@ from numpy.typing import NDArray
 from ltca.arrays import FloatArray, put_positions, take_positions
 from ltca.compliance.response import Response, Start, bearing_pushes
 from ltca.drive.parts import Drive
-from ltca.equilibrium.balance import Equilibrium, solve_equilibrium
-from ltca.equilibrium.friction.turning import TurningFriction
+from ltca.equilibrium.balance import Equilibrium, follow_equilibrium, solve_equilibrium
 from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError
 
 Balance = Callable[[FloatArray, FloatArray, FloatArray | None], Equilibrium]
 """What balances positions: crank angles, moments on the wheel and poses to start from."""
-Begin = FloatArray | Equilibrium | None
-"""Poses to start from, or what was found under other moments."""
 
-ROUNDS = 30
-CLOSED = 1e-10
-"""Moment left over as a part of the output torque: below what the balance of the forces leaves."""
+MAX_ITERATIONS = 30
+TORQUE_TOLERANCE = 1e-10
+"""Unbalanced moment relative to the output torque; the balance of forces leaves more."""
 
 
 def crank_moments(model: Reducer, crank_angle: FloatArray, pose: FloatArray, response: Response) -> FloatArray:
@@ -42,18 +39,7 @@ def crank_moments(model: Reducer, crank_angle: FloatArray, pose: FloatArray, res
 
     It is ∂U/∂φ_C of the contacts: the moment of every bearing's force about the crank axis, which is that of the forces on the
     crank alone, and that of its cages (`cage_moments`) times `cage_speed`, the part of the crank's angle by which they turn.
-    What rubs at the crank comes on top.
-
-    Parameters
-    ----------
-    model : Reducer
-        What answered.
-    crank_angle : array, shape (positions,)
-        φ_C, rad.
-    pose : array, shape (positions, coordinates)
-        q.
-    response : Response
-        Contacts there.
+    Friction at the crank adds its own.
     """
     cranks, friction = model.discs[0].geometry.placement.cranks, model.friction
     pushes = [bearing_pushes(part.rollers, cranks) for part in response.parts]
@@ -68,13 +54,8 @@ def crank_moments(model: Reducer, crank_angle: FloatArray, pose: FloatArray, res
 def cage_moments(model: Reducer, crank_angle: FloatArray, pose: FloatArray, response: Response) -> FloatArray:
     """Return the external moment that holds the cages of each crank at their angle, ccw positive, N·mm, (positions, cranks).
 
-    Cage and inner race are concentric and the race pushes its rollers along its radii, the bore along its own: what holds
-    the cage is the moment of the bearing's force at the displaced centre of the bore, the sum over all discs.
-
-    Parameters
-    ----------
-    model, crank_angle, pose, response : Reducer, array, array, Response
-        As for `crank_moments`.
+    Cage and inner race are concentric and the race pushes its rollers along its radii, the bore along its own: what holds the
+    cage is the moment of the bearing's force at the displaced centre of the bore, the sum over all discs.
     """
     cranks = model.discs[0].geometry.placement.cranks
     total = np.zeros((crank_angle.size, cranks))
@@ -85,30 +66,25 @@ def cage_moments(model: Reducer, crank_angle: FloatArray, pose: FloatArray, resp
 
 
 def input_moment(
-    model: Reducer, crank_angle: FloatArray, pose: FloatArray, response: Response, part: FloatArray
+    model: Reducer, crank_angle: FloatArray, pose: FloatArray, response: Response, input_per_crank_moment: FloatArray
 ) -> FloatArray:
     """Return the external moment of the input, ccw positive, N·mm, without what seals and oil take there.
 
-    Parameters
-    ----------
-    model, crank_angle, pose, response : Reducer, array, array, Response
-        As for `crank_moments`.
-    part : array, shape (positions,)
-        `Drive.input_per_crank_moment`.
+    `input_per_crank_moment` is that of the drive of each position.
     """
-    return np.asarray(part * crank_moments(model, crank_angle, pose, response).sum(axis=1))
+    return np.asarray(input_per_crank_moment * crank_moments(model, crank_angle, pose, response).sum(axis=1))
 
 
-STRENGTH_STEP, LEAST_STRENGTH_STEP = 0.25, 0.01
-"""Part of the friction by which it grows at first where positions do not balance at once, and below which a step that fails is
-taken for the end: a drive that jams is told at which hundredth of its friction it does."""
-JAMMED = 2.0
-"""Growth of the loads by friction from which an end of the balance is called a jam."""
+FIRST_FRICTION_STEP, LEAST_FRICTION_STEP = 0.25, 0.01
+"""First and least step of the continuation in the strength of friction: where a step of the least size fails, the drive jams
+between two hundredths of its friction."""
+JAMMING_LOAD_RATIO = 2.0
+"""Ratio of the loads with and without friction from which the end of the continuation is reported as jamming."""
 
 
 def solve_at_output(
     model: Reducer,
-    drives: Drive | Sequence[Drive],
+    drives: Sequence[Drive],
     crank_angle: FloatArray,
     torque: FloatArray | float,
     start: FloatArray | None = None,
@@ -123,8 +99,8 @@ def solve_at_output(
     ----------
     model : Reducer
         Loads at a pose, of one drive or of a batch.
-    drives : Drive or sequence of Drive
-        The drive, or the drives of a batch that have equal numbers of positions each, drive by drive.
+    drives : sequence of Drive
+        The drives of the batch, often one; all have the same number of positions, drive by drive.
     crank_angle : array, shape (positions,)
         φ_C, rad.
     torque : float or array, shape (positions,)
@@ -146,22 +122,22 @@ def solve_at_output(
         When a position does not balance.
     """
     friction = model.friction
-    if not isinstance(friction, TurningFriction):
+    if friction is None or not friction.turns:
         return _solve(model, drives, crank_angle, torque, start, inner, gaps)
     smooth = _solve(replace(model, friction=None), drives, crank_angle, torque, start, inner, gaps=False)
     try:
         return _solve(model, drives, crank_angle, torque, smooth.pose, Start.after(smooth.response), gaps)
     except ConvergenceError as error:
         failure = error
-    found, reached, lost, step, loads = smooth, 0.0, 1.0, STRENGTH_STEP, smooth.response.pin_load.sum(axis=1)
+    found, reached, lost, step, loads = smooth, 0.0, 1.0, FIRST_FRICTION_STEP, smooth.response.pin_load.sum(axis=1)
     while reached < 1.0:
         strength = min(reached + step, 1.0)
         try:
-            part = replace(model, friction=friction.scaled(strength))
-            found = _solve(part, drives, crank_angle, torque, found.pose, Start.after(found.response), gaps)
+            weakened = replace(model, friction=friction.scaled(strength))
+            found = _solve(weakened, drives, crank_angle, torque, found.pose, Start.after(found.response), gaps)
         except ConvergenceError:
             lost = strength
-            if step <= LEAST_STRENGTH_STEP:
+            if step <= LEAST_FRICTION_STEP:
                 raise _jam(
                     drives,
                     np.atleast_1d(crank_angle),
@@ -175,12 +151,12 @@ def solve_at_output(
             continue
         reached = strength
         if reached >= lost:  # the step was too long, nothing else
-            step = min(2.0 * step, STRENGTH_STEP)
+            step = min(2.0 * step, FIRST_FRICTION_STEP)
     return found
 
 
 def _jam(
-    drives: Drive | Sequence[Drive],
+    drives: Sequence[Drive],
     crank_angle: FloatArray,
     reached: float,
     lost: float,
@@ -195,15 +171,14 @@ def _jam(
     the search made of the whole friction at once (that the teeth slip) tells nothing of that.
     """
     row = int(np.argmax(grown / np.maximum(without, 1e-300)))
-    each = [drives] if isinstance(drives, Drive) else list(drives)
-    friction = each[row * len(each) // grown.size].friction
+    friction = drives[row * len(drives) // grown.size].friction
     names = () if friction is None else ("pin", "seat", "hole", "roller", "support_bearing")
     given = {name: value for name in names if (value := getattr(friction, name))}
     told = ", ".join(
         f"friction.{name} = {reached * value:.3g} to {lost * value:.3g} of {value:g}" for name, value in given.items()
     )
     # Near the end loads grow without bound; where they have not, the search may as well have lost its way.
-    ended = "the drive jams" if grown[row] >= JAMMED * without[row] else "no balance was found"
+    ended = "the drive jams" if grown[row] >= JAMMING_LOAD_RATIO * without[row] else "no balance was found"
     jammed = ConvergenceError(
         f"{ended} between {reached:.1%} and {lost:.1%} of its friction ({told}): wheel pins carry {without[row]:.4g} N "
         f"without friction, {grown[row]:.4g} N at {reached:.1%} of it at crank angle {crank_angle[row]:.6g} rad (position {row} "
@@ -215,7 +190,7 @@ def _jam(
 
 def _solve(
     model: Reducer,
-    drives: Drive | Sequence[Drive],
+    drives: Sequence[Drive],
     crank_angle: FloatArray,
     torque: FloatArray | float,
     start: FloatArray | None,
@@ -223,22 +198,19 @@ def _solve(
     gaps: bool,
 ) -> Equilibrium:
     """Balance positions at output torques, the way `solve_at_output` says."""
-    each = [drives] if isinstance(drives, Drive) else list(drives)
     angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
     loads = np.broadcast_to(np.asarray(torque, dtype=float), angle.shape)
-    repeats = angle.size // len(each)
-    mean = np.repeat([drive.wheel_moment(1.0) for drive in each], repeats) * loads
-    held = np.repeat([drive.wheel_is_held for drive in each], repeats)
-    signed = np.repeat([drive.driving_sign for drive in each], repeats) * loads
+    repeats = angle.size // len(drives)
+    mean = np.repeat([drive.wheel_moment(1.0) for drive in drives], repeats) * loads
+    held = np.repeat([drive.wheel_is_held for drive in drives], repeats)
+    signed = np.repeat([drive.driving_sign for drive in drives], repeats) * loads
 
-    def balance(rows: NDArray[np.intp], moment: FloatArray, begin: Begin) -> Equilibrium:
-        part = model if rows.size == angle.size else model.take(rows)
-        own = None if isinstance(begin, Equilibrium) else inner
-        series = len(each) if rows.size == angle.size else rows.size
-        return solve_equilibrium(part, angle[rows], moment, begin, own, gaps, series)
+    def follow(rows: NDArray[np.intp], moment: FloatArray, near: Equilibrium) -> Equilibrium:
+        return follow_equilibrium(model if rows.size == angle.size else model.take(rows), near, moment, gaps)
 
-    part = np.repeat([drive.input_per_crank_moment for drive in each], repeats)
-    return _at_output(model, balance, angle, mean, signed, held, part, start)
+    input_per_crank_moment = np.repeat([drive.input_per_crank_moment for drive in drives], repeats)
+    found = solve_equilibrium(model, angle, mean, start, inner, gaps, len(drives))
+    return _at_output(model, follow, found, signed, held, input_per_crank_moment)
 
 
 def balance_at_output(
@@ -249,71 +221,59 @@ def balance_at_output(
     torque: float,
     start: FloatArray | None = None,
 ) -> Equilibrium:
-    """Balance positions of one drive at an output torque by any method that takes moments on the wheel.
+    """Balance positions of one drive at an output torque, N·mm, by any method that balances moments on the wheel.
 
-    Parameters
-    ----------
-    model : Reducer
-        Whose loads balance.
-    balance : callable
-        Crank angles, moments on the wheel and starting poses to balanced positions.
-    drive : Drive
-        The drive.
-    crank_angle : array, shape (positions,)
-        φ_C, rad.
-    torque : float
-        On the output, N·mm.
-    start : array, shape (positions, coordinates), optional
-        Poses to start from.
+    `balance` takes crank angles, moments on the wheel and poses to start from, and returns balanced positions.
     """
     angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
     mean = np.full(angle.size, drive.wheel_moment(torque))
     held = np.full(angle.size, drive.wheel_is_held)
 
-    def at(rows: NDArray[np.intp], moment: FloatArray, begin: Begin) -> Equilibrium:
-        return balance(angle[rows], moment, begin.pose if isinstance(begin, Equilibrium) else begin)
+    def follow(rows: NDArray[np.intp], moment: FloatArray, near: Equilibrium) -> Equilibrium:
+        return balance(angle[rows], moment, near.pose)
 
-    part = np.full(angle.size, drive.input_per_crank_moment)
-    return _at_output(model, at, angle, mean, np.full(angle.size, drive.driving_sign * torque), held, part, start)
+    input_per_crank_moment = np.full(angle.size, drive.input_per_crank_moment)
+    signed = np.full(angle.size, drive.driving_sign * torque)
+    return _at_output(model, follow, balance(angle, mean, start), signed, held, input_per_crank_moment)
 
 
 def _at_output(
     model: Reducer,
-    balance: Callable[[NDArray[np.intp], FloatArray, Begin], Equilibrium],
-    angle: FloatArray,
-    mean: FloatArray,
+    follow: Callable[[NDArray[np.intp], FloatArray, Equilibrium], Equilibrium],
+    found: Equilibrium,
     signed: FloatArray,
     held: NDArray[np.bool_],
-    share: FloatArray,
-    start: FloatArray | None,
+    input_per_crank_moment: FloatArray,
 ) -> Equilibrium:
-    """Find the moments on held wheels by secants, from their mean over a turn."""
-    everything = np.arange(angle.size)
-    found = balance(everything, mean, start)
+    """Find the moments on held wheels by secants, from positions balanced at the mean moment of a turn.
+
+    `follow` balances some positions under other moments, from what they were balanced under last.
+    """
     if not np.any(held):
         return found
+    angle, mean = found.crank_angle, found.wheel_moment
     moment = mean.copy()
-    left = moment + input_moment(model, angle, found.pose, found.response, share) + signed
+    left = moment + input_moment(model, angle, found.pose, found.response, input_per_crank_moment) + signed
     # The cranks carry 1/u of the wheel's moment in the mean, the input its part of that: what is left grows with the moment.
     slope = -signed / mean
     history = []
-    for _ in range(ROUNDS):
+    for _ in range(MAX_ITERATIONS):
         history.append(float(np.max(np.abs(np.where(held, left, 0.0)))))
-        open_rows = np.nonzero(held & (np.abs(left) > CLOSED * np.abs(signed)))[0]
+        open_rows = np.nonzero(held & (np.abs(left) > TORQUE_TOLERANCE * np.abs(signed)))[0]
         if open_rows.size == 0:
             return found
         step = -left[open_rows] / slope[open_rows]
         moment[open_rows] += step
         whole = open_rows.size == angle.size
-        begin = found if whole else take_positions(found, open_rows)
-        part = balance(open_rows, moment[open_rows], begin)
-        part = replace(part, iterations=begin.iterations + part.iterations)
+        near = found if whole else take_positions(found, open_rows)
+        part = follow(open_rows, moment[open_rows], near)
+        part = replace(part, iterations=near.iterations + part.iterations)
         found = part if whole else put_positions(found, open_rows, part)
         before = left[open_rows]
         model_part = model if whole else model.take(open_rows)
         left[open_rows] = (
             moment[open_rows]
-            + input_moment(model_part, angle[open_rows], part.pose, part.response, share[open_rows])
+            + input_moment(model_part, angle[open_rows], part.pose, part.response, input_per_crank_moment[open_rows])
             + signed[open_rows]
         )
         secant = (left[open_rows] - before) / step

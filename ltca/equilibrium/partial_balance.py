@@ -47,13 +47,7 @@ class PartlyBalanced:
         return known
 
     def spread(self, value: Value) -> Value:
-        """Return what belongs to the found positions as that of all: no numbers where there is no answer.
-
-        Parameters
-        ----------
-        value : array with the positions on axis 0, or tuples and dataclasses of such
-            Anything else is left as it is.
-        """
+        """Return a tree of arrays of the balanced positions as one of all positions: no numbers elsewhere."""
         return value if self.failure is None else spread_positions(value, self.rows, self.positions)
 
 
@@ -64,17 +58,7 @@ def all_balanced(found: Equilibrium) -> PartlyBalanced:
 
 
 def nothing_balanced(like: Equilibrium, positions: int, failure: ConvergenceError) -> PartlyBalanced:
-    """Return positions of which none has an answer.
-
-    Parameters
-    ----------
-    like : Equilibrium
-        Whose arrays tell how many coordinates and pairs there are.
-    positions : int
-        How many were asked for.
-    failure : ConvergenceError
-        Why.
-    """
+    """Return positions of which none has an answer, with arrays of the same shapes as those of `like`."""
     none = np.zeros(0, dtype=np.intp)
     return PartlyBalanced(positions=positions, rows=none, found=take_positions(like, none), failure=failure)
 
@@ -82,19 +66,8 @@ def nothing_balanced(like: Equilibrium, positions: int, failure: ConvergenceErro
 def balance_what_can_be(balance: Balance, positions: int, start: FloatArray | None = None) -> PartlyBalanced:
     """Balance positions together, and where that fails find out which of them have an answer.
 
-    Parameters
-    ----------
-    balance : callable
-        Numbers of positions and poses to start from, or None, to balanced positions.
-    positions : int
-        How many.
-    start : array, shape (positions, coordinates), optional
-        Poses to start from; not a number where there is none.
-
-    Raises
-    ------
-    ConvergenceError
-        When no position at all has an answer: that of the first.
+    Poses to start from, shape (positions, coordinates), are not a number where there is none. Where no position has an answer the
+    ConvergenceError of all together is raised.
     """
     everything = np.arange(positions)
     failures: list[ConvergenceError] = []

@@ -38,6 +38,39 @@ from ltca.geometry.pairs import ContactGeometry
 class JointFriction(Protocol):
     """Friction of the joints at a pose."""
 
+    @property
+    def pin(self) -> float:
+        """Coefficient with which wheel pins rub."""
+        ...
+
+    @property
+    def hole(self) -> float:
+        """Coefficient with which shaft pins rub."""
+        ...
+
+    @property
+    def rolling(self) -> float:
+        """Moment between crank and disc by the load of a crank bearing, mm."""
+        ...
+
+    @property
+    def motion(self) -> int:
+        """+1 where the crank turns counter-clockwise, −1 clockwise, 0 where the input is locked."""
+        ...
+
+    @property
+    def turns(self) -> bool:
+        """Whether the drive turns: its friction goes with the loads alone and may be followed from none."""
+        ...
+
+    def scaled(self, strength: float) -> JointFriction:
+        """Return the friction with all coefficients times a factor."""
+        ...
+
+    def reversed(self) -> JointFriction:
+        """Return the friction of the same drive as it turns the other way."""
+        ...
+
     def of_disc(
         self, geometry: ContactGeometry, crank_angle: FloatArray, pose: FloatArray, part: DiscResponse, disc: int
     ) -> Rubbing:
@@ -67,34 +100,29 @@ class Reducer:
         Pins that several discs bend.
     friction : JointFriction or None
         What rubs.
-    by_position : bool
-        Whether something differs from position to position: in a batch of drives, or in what rubs.
     """
 
     discs: tuple[DiscModel, ...]
     supports: FloatArray | None = by_drive(2, default=None)
     pins: SharedPins | None = None
     friction: JointFriction | None = None
-    by_position: bool = field(init=False, repr=False)
+    _by_position: bool | None = field(init=False, repr=False, compare=False, default=None)
 
     @classmethod
-    def of_drive(cls, drive: Drive, discs: Sequence[DiscModel], *, rubs: bool = True) -> Reducer:
-        """Return the reducer of a drive whose discs yield by these models; without friction where nothing `rubs`."""
+    def of_drive(cls, drive: Drive, discs: Sequence[DiscModel]) -> Reducer:
+        """Return the reducer of a drive whose discs yield by these models."""
         return cls(
             discs=tuple(discs),
             supports=support_stiffness(drive, discs[0].geometry),
             pins=SharedPins.of_drive(drive),
-            friction=TurningFriction.of_drive(drive) if rubs else None,
+            friction=TurningFriction.of_drive(drive),
         )
 
-    def __post_init__(self) -> None:
-        """Look once whether positions differ."""
-        parts = has_rows((self.discs, self.pins, self.friction)) or has_rows(self.supports, 2)
-        object.__setattr__(self, "by_position", parts)
-
     def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Reducer:
-        """Return the model of some positions: itself where no two differ."""
-        return take_rows(self, rows) if self.by_position else self
+        """Return the model of some positions: itself where no two differ, neither in their drives nor in their friction."""
+        if self._by_position is None:  # looked up once, and only for models that are solved
+            object.__setattr__(self, "_by_position", has_rows(self))
+        return take_rows(self, rows) if self._by_position else self
 
     @property
     def coordinates(self) -> Coordinates:
@@ -124,18 +152,17 @@ class Reducer:
 
         def respond(moved: ComplexArray | None) -> tuple[DiscResponse, ...]:
             if moved is None and self.friction is not None:
-                moved = self._unmoved(crank_angle.size)  # with which slopes come
-            each = [None] * count if moved is None else list(moved.swapaxes(0, 1))
-            found = tuple(
-                disc.respond(crank_angle, pose[:, own], own_start, own_shifts)
-                for own, disc, own_start, own_shifts in zip(places, self.discs, starts, each, strict=True)
-            )
-            if self.friction is None:
-                return found
-            return tuple(
-                _rubbed(self.friction, self.discs[disc].geometry, crank_angle, pose[:, own], part, disc)
-                for disc, (own, part) in enumerate(zip(places, found, strict=True))
-            )
+                moved = self._unmoved(crank_angle.size)  # friction needs the slopes that come with displacements
+            parts = []
+            for number, (own, disc) in enumerate(zip(places, self.discs, strict=True)):
+                shift = None if moved is None else moved[:, number]
+                part = disc.respond(crank_angle, pose[:, own], starts[number], shift)
+                if self.friction is not None:
+                    rubbing = self.friction.of_disc(disc.geometry, crank_angle, pose[:, own], part, number)
+                    force, tangent = part.force + rubbing.force, part.tangent + rubbing.tangent
+                    part = replace(part, force=force, tangent=tangent, friction=rubbing.tangential)
+                parts.append(part)
+            return tuple(parts)
 
         shifts, settled, size = None, None, coordinates.size
         if self.pins is None:
@@ -183,21 +210,6 @@ class Reducer:
         return ContactPressures(**joined, rigid_shaft_pins=found[0].rigid_shaft_pins)
 
 
-def _rubbed(
-    friction: JointFriction,
-    geometry: ContactGeometry,
-    crank_angle: FloatArray,
-    pose: FloatArray,
-    part: DiscResponse,
-    disc: int,
-) -> DiscResponse:
-    """Contacts of a disc with their friction."""
-    found = friction.of_disc(geometry, crank_angle, pose, part, disc)
-    return replace(
-        part, force=part.force + found.force, tangent=part.tangent + found.tangent, friction=found.tangential
-    )
-
-
 def reach_beyond(model: Reducer, other: Reducer) -> FloatArray:
     """Return how much deeper pins may be than those of another drive at the same places, mm, shape (…, pins of all discs)."""
     pairs = zip(model.geometries, other.geometries, strict=True)
@@ -205,19 +217,7 @@ def reach_beyond(model: Reducer, other: Reducer) -> FloatArray:
 
 
 def complete(model: Reducer, crank_angle: FloatArray, pose: FloatArray, response: Response) -> Response:
-    """Return a response whose pins that cannot touch were left out (`Start.onward`) with them: their gaps and places.
-
-    Parameters
-    ----------
-    model : Reducer
-        What answered.
-    crank_angle : array, shape (positions,)
-        φ_C, rad.
-    pose : array, shape (positions, coordinates)
-        q.
-    response : Response
-        Contacts there.
-    """
+    """Return a response with the gaps and places of the pins that were left out because they cannot touch (`Start.onward`)."""
     parts = []
     for number, (disc, part) in enumerate(zip(model.discs, response.parts, strict=True)):
         geometry, own = disc.geometry, model.coordinates.columns(number)
@@ -254,17 +254,7 @@ def disc_pressures(pressures: ContactPressures, discs: int) -> tuple[ContactPres
 
 
 def bearing_forces(model: Reducer, crank_angle: FloatArray, response: Response) -> NDArray[np.complex128]:
-    """Return the force of each crank bearing on its disc, radial + i tangential, shape (positions, discs, cranks), N.
-
-    Parameters
-    ----------
-    model : Reducer
-        What answered.
-    crank_angle : array, shape (positions,)
-        φ_C, rad.
-    response : Response
-        Contacts.
-    """
+    """Return the force of each crank bearing on its disc, radial + i tangential, shape (positions, discs, cranks), N."""
     forces = []
     for geometry, part in zip(model.geometries, response.parts, strict=True):
         ahead = geometry.placement.eccentric_directions(crank_angle)

@@ -25,9 +25,9 @@ from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION, Coordinates
 from ltca.laws.backed import from_start, shaft_pin_beam, wheel_pin_beam
 from ltca.laws.beam import PinBeam
 
-ITERATIONS = 60
-SETTLED = 5e-14
-"""Displacement of a pin that counts as none, mm: some round-off of places at 100 mm. Below it no step gains anything."""
+MAX_ITERATIONS = 60
+SHIFT_TOLERANCE = 5e-14
+"""Largest residual of a pin's displacement, mm: a few round-offs of coordinates of 100 mm."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -54,36 +54,20 @@ class SharedPins:
         coordinates: Coordinates,
         shifts: ComplexArray,
     ) -> tuple[tuple[DiscResponse, ...], ComplexArray, SharedTangent]:
-        """Return the contacts of all discs with the pins where all forces hold them.
+        """Return the contacts of all discs with the pins displaced by all forces, the displacements, and how all follow the pose.
 
-        Parameters
-        ----------
-        respond : callable
-            Contacts of all discs for displacements of the pins.
-        coordinates : Coordinates
-            Of the whole.
-        shifts : array of complex, shape (positions, discs, pairs)
-            Displacements to start from, mm.
-
-        Returns
-        -------
-        responses, shifts, tangent
-            Contacts of every disc, displacements, and how all follow the pose.
-
-        Raises
-        ------
-        ConvergenceError
-            When the displacements do not settle.
+        `respond` returns the contacts of all discs for displacements, mm, complex, shape (positions, discs, pairs). A
+        ConvergenceError is raised where they do not settle.
         """
         history: list[float] = []
         parts = respond(shifts)
         system = SharedTangent(self.flexibility, parts, coordinates)
         left = system.left_over(shifts)
         size = np.max(np.abs(left), axis=(1, 2), initial=0.0)
-        for _ in range(ITERATIONS):
+        for _ in range(MAX_ITERATIONS):
             history.append(float(np.max(size, initial=0.0)))
             most = float(np.max(np.abs(shifts), initial=0.0))
-            if history[-1] <= SETTLED + 1e-13 * most:
+            if history[-1] <= SHIFT_TOLERANCE + 1e-13 * most:
                 return parts, shifts, system
             step, fraction = system.step(left), np.ones(size.shape)
             for _ in range(10):
@@ -92,7 +76,7 @@ class SharedPins:
                 system = SharedTangent(self.flexibility, parts, coordinates)
                 left = system.left_over(trial)
                 found = np.max(np.abs(left), axis=(1, 2), initial=0.0)
-                worse = (found > size) & (found > SETTLED + 1e-11 * most)
+                worse = (found > size) & (found > SHIFT_TOLERANCE + 1e-11 * most)
                 if not worse.any():
                     break
                 fraction = np.where(worse, 0.5 * fraction, fraction)
@@ -132,11 +116,8 @@ class SharedTangent:
         # A pin moves against a disc as the disc moves the other way against it; shape (positions, pairs, discs, 2).
         self.normal = -gradient.swapaxes(1, 2)
         self.slip = -along.swapaxes(1, 2)
-        force = self.load.swapaxes(1, 2)[..., None] * self.normal
-        if parts[0].friction is not None:
-            rubbed = np.stack([part.friction[:, self.own] for part in parts if part.friction is not None], axis=2)
-            force = force + rubbed[..., None] * self.slip
-        self.force: ComplexArray = np.ascontiguousarray(force).view(complex)[..., 0]
+        # Against the pins' displacements.
+        self.force = np.stack([-part.pin_forces[:, self.own] for part in parts], axis=2)
         self.bend = (self.load * sense * bending).swapaxes(1, 2)
         self.on_flank = (self.load * (sense < 0.0)).swapaxes(1, 2)
         positions, pairs, discs = self.bend.shape

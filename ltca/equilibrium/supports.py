@@ -33,19 +33,9 @@ def crank_stiffness(drive: Drive) -> FloatArray | None:
 
 
 def support_stiffness(drive: Drive, geometry: ContactGeometry) -> FloatArray | None:
-    """Return the stiffness matrix of all supports by the coordinates of the drive; None where nothing yields.
+    """Return the stiffness matrix of all supports by the coordinates of a drive, N/mm; None where nothing yields.
 
-    Parameters
-    ----------
-    drive : Drive
-        Of any number of discs.
-    geometry : ContactGeometry
-        Of one of its discs, for the tips of shaft pins that a ring ties.
-
-    Returns
-    -------
-    array, shape (coordinates, coordinates) or None
-        N/mm.
+    The contact geometry of one disc is for the tips of shaft pins that a ring ties.
     """
     coordinates = Coordinates.of_drive(drive)
     shaft, wheel = crank_stiffness(drive), drive.pin_wheel.support_stiffness

@@ -1,4 +1,4 @@
-"""Parts carried out of the suite: exact outlines as splines and circles, drawings and tables of points.
+"""Export of parts: exact outlines as splines and circles, drawings and tables of points.
 
 ==============  ============================================================
 flank_outline   The flank of a part as it is made, and one periodic cubic spline through it to a fifth of a micron

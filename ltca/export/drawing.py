@@ -44,13 +44,7 @@ _options = threading.Lock()
 
 
 def load_ezdxf() -> ModuleType:
-    """Import ezdxf.
-
-    Raises
-    ------
-    DriveError
-        When it is not installed.
-    """
+    """Import ezdxf; `DriveError` when it is not installed."""
     try:
         import ezdxf
     except ImportError as error:
@@ -60,22 +54,7 @@ def load_ezdxf() -> ModuleType:
 
 
 def write_drawing(part: Part, path: Path) -> None:
-    """Write a part as a DXF file in mm.
-
-    Parameters
-    ----------
-    part : Part
-        From `ltca.export.parts.make_parts`.
-    path : Path
-        The file.
-
-    Raises
-    ------
-    DriveError
-        When ezdxf is not installed.
-    FaultError
-        When the file cannot be written.
-    """
+    """Write a part as a DXF file in mm; `DriveError` without ezdxf, `FaultError` when the file cannot be written."""
     ezdxf = load_ezdxf()
     with _without_clock(ezdxf):
         document = ezdxf.new(RELEASE, units=ezdxf.units.MM)

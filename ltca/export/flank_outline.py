@@ -21,14 +21,14 @@ POINTS_PER_LOBE = 48
 """To start with: 0.11 µm off on the paper's drive."""
 POINTS_PER_WAVE = 12
 """Of the highest harmonic of the flank, to start with: it is 0.02 % of its amplitude off."""
-CLOSE = 2e-4
+TOLERANCE = 2e-4
 """Departure of the spline from the exact flank at which no more points are put in, mm; a micron is promised."""
 MOST_POINTS = 200_000
 """Points of one flank: beyond that no CAD system reads it in reasonable time."""
 MOST_SPANS = 16
 """Of an arc of a flank in a solid: kernels integrate each face by a fixed rule. Volumes read 1e-6 wrong with them, 2e-4 wrong of
 sharp lobes with arcs from root to tip."""
-LOOKED_AT = np.array([0.25, 0.5, 0.75])
+CHECKED_SHARES = np.array([0.25, 0.5, 0.75])
 """Places between two points of the spline where its departure is measured."""
 
 
@@ -67,15 +67,7 @@ class MadeFlank:
         return np.asarray(found / (1.0 - self.inward * found))
 
     def departure(self, points: ComplexArray, near: FloatArray) -> FloatArray:
-        """Return how far points lie outside the flank along its normal, mm.
-
-        Parameters
-        ----------
-        points : array of complex
-            mm.
-        near : array of float
-            θ near each of them, rad.
-        """
+        """Return how far complex points, mm, lie outside the flank along its normal, mm; `near` is θ near each, rad."""
         found = self.profile.nearest_parameter(points, near)
         return self.profile.distance(points, found) + self.inward
 
@@ -184,45 +176,27 @@ class FlankSpline:
 
 
 def follow_flank(flank: MadeFlank) -> FlankSpline:
-    """Return a spline that departs from a flank by less than `CLOSE`, everywhere it is looked at.
+    """Return a spline that departs from a flank by less than `TOLERANCE`, wherever it is compared.
 
-    Parameters
-    ----------
-    flank : MadeFlank
-        The flank.
-
-    Raises
-    ------
-    DriveError
-        When that takes more than `MOST_POINTS` points.
+    Raises `DriveError` when that takes more than `MOST_POINTS` points.
     """
     parameter = flank.start()
     while parameter.size <= MOST_POINTS:
         spline = _through(flank, parameter)
-        coarse = np.max(np.abs(departures(spline)), axis=0) > CLOSE
+        coarse = np.max(np.abs(departures(spline)), axis=0) > TOLERANCE
         if not coarse.any():
             return spline
         ends = np.append(parameter[1:], 2.0 * np.pi)
         parameter = np.sort(np.append(parameter, 0.5 * (parameter + ends)[coarse]))
     raise DriveError(
-        [f"disc.profile_errors: the flank needs more than {MOST_POINTS} points to be followed within {CLOSE:g} mm"]
+        [f"disc.profile_errors: the flank needs more than {MOST_POINTS} points to be followed within {TOLERANCE:g} mm"]
     )
 
 
-def departures(spline: FlankSpline, places: FloatArray = LOOKED_AT) -> FloatArray:
-    """Return how far a spline lies outside the exact flank between its points, mm.
+def departures(spline: FlankSpline, places: FloatArray = CHECKED_SHARES) -> FloatArray:
+    """Return how far a spline lies outside the exact flank between its points, mm, of shape (k, n), piece by piece.
 
-    Parameters
-    ----------
-    spline : FlankSpline
-        The spline.
-    places : array, shape (k,)
-        Shares of each piece at which it is looked at, from 0 to 1.
-
-    Returns
-    -------
-    array, shape (k, n)
-        Piece by piece.
+    `places`, of shape (k,), are shares of each piece at which it is compared, from 0 to 1.
     """
     piece = np.arange(spline.parameter.size)
     ends = np.append(spline.parameter[1:], 2.0 * np.pi)

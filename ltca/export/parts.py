@@ -1,4 +1,4 @@
-"""Which bodies a part has, in which frame, and how they are moved for a printer.
+"""Bodies of a part, their frame, and compensation for a printer.
 
 A disc is written in its own frame: centre of its bore (of several, of the disc) at the origin, hole 0 on +x, its lower face at
 z = 0. The root θ = 0 of its flank would lie on +x, too; the phase ζ of the disc turns the flank by −Δz ζ/z_C against bores and
@@ -105,7 +105,7 @@ class Wall:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Part:
-    """What one file holds.
+    """Content of one file.
 
     Attributes
     ----------

@@ -19,35 +19,14 @@ LAST = 9
 
 
 def table_paths(part: Part, folder: Path) -> tuple[list[Path], Path]:
-    """Return the files of a part: one for each flank, one for its circles.
-
-    Parameters
-    ----------
-    part : Part
-        The part.
-    folder : Path
-        Where they shall be.
-    """
+    """Return the files of a part: one for each flank, one for its circles."""
     flanks = [body.name for body in part.bodies if isinstance(body.outer, FlankSpline)]
     named = [f"_{name.replace(' ', '_')}" if part.name == "assembly" else "" for name in flanks]
     return [folder / f"{part.stem}{name}_flank.csv" for name in named], folder / f"{part.stem}_circles.csv"
 
 
 def write_tables(part: Part, folder: Path) -> list[Path]:
-    """Write the tables of a part and return their files.
-
-    Parameters
-    ----------
-    part : Part
-        From `ltca.export.parts.make_parts`.
-    folder : Path
-        Where they shall be.
-
-    Raises
-    ------
-    FaultError
-        When a file cannot be written.
-    """
+    """Write the tables of a part and return their files; `FaultError` when a file cannot be written."""
     flanks, circles = table_paths(part, folder)
     head = "".join(f"# {line}\n" for line in part.remarks)
     splines = [body.outer for body in part.bodies if isinstance(body.outer, FlankSpline)]

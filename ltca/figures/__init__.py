@@ -1,4 +1,4 @@
-"""Pictures of results, by matplotlib.
+"""Figures of results, by matplotlib.
 
 Modules in the order data passes:
 

@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 
 from ltca.arrays import FloatArray
 from ltca.figures.curve_panels import (
-    BESIDE,
     DASHES,
+    TWO_COLUMNS_FROM,
     case_names,
     degrees,
     label_all,
@@ -32,16 +32,8 @@ HALF_TURN = 180.0
 def draw_rollers_of_each_crank(figure: Figure, data: xr.Dataset, place: FloatArray, title: str) -> None:
     """Draw mean and range of the roller loads of each crank, all its discs together, a panel for each crank.
 
-    Parameters
-    ----------
-    figure : Figure
-        Where to.
-    data : xarray.Dataset
-        Of `one_by_one`.
-    place : array, shape (discs and cranks, positions, rollers) or what broadcasts to it
-        Of the rollers from the eccentricity, degrees from −180 to 180.
-    title : str
-        Above all.
+    `place` is the angle of the rollers from the eccentricity, degrees from −180 to 180, of shape (discs and cranks, positions,
+    rollers) or what broadcasts to it; `data` comes from `one_by_one`.
     """
     steps = min(SECTORS, max(4, place.size // FEWEST_IN_A_SECTOR))
     sector = np.minimum(((place + HALF_TURN) / 360.0 * steps).astype(int), steps - 1)
@@ -68,7 +60,7 @@ def draw_rollers_of_each_crank(figure: Figure, data: xr.Dataset, place: FloatArr
         for _, _, _, other, _ in drawn:
             if other is not mean:
                 axes.plot(middle, other, color=OTHERS, linewidth=0.9, zorder=2.0)
-        name_panel(axes, name, 1 if len(drawn) < BESIDE else 2)
+        name_panel(axes, name, 1 if len(drawn) < TWO_COLUMNS_FROM else 2)
     panels[0].set_ylim(0.0, 1.06 * max(float(np.nanmax(high)) for *_, high in drawn) + 1e-9)
     mark_a_half_turn(panels[0])
     label_all(figure, panels, "angle of the roller from the eccentricity [°]", "load on the bore [N]")
@@ -76,27 +68,13 @@ def draw_rollers_of_each_crank(figure: Figure, data: xr.Dataset, place: FloatArr
 
 
 def mark_a_half_turn(axes: Any) -> None:
-    """Show places of rollers from −180° to 180°.
-
-    Parameters
-    ----------
-    axes : Axes
-        Its scale of x.
-    """
+    """Set the axis of roller angles from −180° to 180°."""
     axes.set_xlim(-HALF_TURN, HALF_TURN)
     axes.set_xticks(np.arange(-HALF_TURN, HALF_TURN + 1.0, 90.0))
 
 
 def draw_cranks(figure: Figure, data: xr.Dataset) -> None:
-    """Draw the torque of each crank, and where they yield how far each goes in the plane of each disc.
-
-    Parameters
-    ----------
-    figure : Figure
-        Where to.
-    data : xarray.Dataset
-        Of `ltca.analysis.results.build_dataset`, with several cranks.
-    """
+    """Draw the torque of each crank, and where they yield how far each goes in the plane of each disc."""
     cranks, yields = data.sizes["crank"], "crank_deflection_radial" in data
     torque = one_by_one(data.isel(disc=[0]), cranks)
     values, names = torque["crank_torque"].values / 1e3, case_names(torque)

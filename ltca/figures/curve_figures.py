@@ -17,15 +17,15 @@ from ltca.arrays import FloatArray
 from ltca.drive.units.quantities import ARCMIN, ARCSEC
 from ltca.figures.house_style import COLOURS, CRANK, DASHED, MARK, STYLE, formula, save_figure, shortened_name
 
-NAMED = 10
+ORDERS_NAMED = 10
 """Orders listed by name in the figure, the largest."""
-SEEN = 0.004
+LEAST_AMPLITUDE = 0.004
 """Amplitudes below this part of the largest are thinner than a line: the axis ends behind the last one above."""
-APART = 0.055, 0.04
+NUMBER_SIZE = 0.055, 0.04
 """Width and height of a number at a line, as parts of the axes: where two would overlap the larger amplitude has it."""
 
 
-STIFF = 0.5
+STIFFNESS_FROM = 0.5
 """Part of the rated torque from which on the stiffness is read."""
 
 
@@ -34,17 +34,7 @@ def _save(figure: Figure, path: Path) -> Path:
 
 
 def draw_torque_curve(curve: TorqueCurve, title: str, path: Path) -> Path:
-    """Draw torque against wind-up over all crank angles, the stiffness marked and the play magnified; return the file.
-
-    Parameters
-    ----------
-    curve : TorqueCurve
-        Of one case.
-    title : str
-        Drive and case.
-    path : Path
-        Of the file, whose suffix says what is written.
-    """
+    """Draw torque against wind-up over all crank angles, the stiffness marked and the play magnified; return the file."""
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(7.2, 4.4))
         axes, close = figure.subplots(1, 2, width_ratios=(3, 2))
@@ -93,7 +83,7 @@ def _from_to(low: float, high: float) -> str:
 
 
 def _band(axes: Any, angle: FloatArray, torque: FloatArray, colour: str, label: str) -> None:
-    """Mean of curves at several crank angles and the range of all; curves that lie on each other hide each other."""
+    """Draw mean and range of curves at several crank angles, which would otherwise hide each other."""
     low, mean, high = angle.min(axis=0), angle.mean(axis=0), angle.max(axis=0)
     axes.fill_betweenx(torque, low, high, color=colour, alpha=0.25, linewidth=0.0)
     axes.plot(mean, torque, color=colour, label=label)
@@ -103,7 +93,7 @@ def _mark_stiffness(axes: Any, curve: TorqueCurve) -> None:
     """Draw the chord whose slope is the stiffness, with its value."""
     rated = float(np.max(curve.torque)) / 1e3
     given = curve.output_angle.mean(axis=0) * ARCMIN
-    ends = np.array([STIFF, 1.0]) * rated
+    ends = np.array([STIFFNESS_FROM, 1.0]) * rated
     first, last = np.interp(ends, curve.torque / 1e3, given)
     axes.plot([first, last], ends, color=COLOURS[2], linewidth=4.0, alpha=0.6, solid_capstyle="butt", zorder=2.6)
     for at in ends:
@@ -126,8 +116,8 @@ def draw_spectrum(spectrum: Spectrum, title: str, path: Path) -> Path:
         values = np.array([order.value for order in spectrum.orders])
         heights = spectrum.amplitude * ARCSEC
         axes.vlines(values, 0.0, heights, color=COLOURS[1], linewidth=1.6)
-        largest = np.argsort(-heights)[:NAMED]
-        seen = heights >= SEEN * heights.max()
+        largest = np.argsort(-heights)[:ORDERS_NAMED]
+        seen = heights >= LEAST_AMPLITUDE * heights.max()
         ends = 1.05 * float(values[seen].max()), 1.12 * float(heights.max()) + 1e-9
         free = _without_overlap(values / ends[0], heights / ends[1])
         for row, number in enumerate(largest):
@@ -152,8 +142,8 @@ def _without_overlap(x: FloatArray, y: FloatArray) -> NDArray[np.bool_]:
     free = np.zeros(x.size, dtype=bool)
     for number in np.argsort(-y, kind="stable"):
         apart = np.abs(x - x[number])
-        numbers = free & (apart < APART[0]) & (np.abs(y - y[number]) < APART[1])
-        lines = (apart < 0.5 * APART[0]) & (y > y[number])
+        numbers = free & (apart < NUMBER_SIZE[0]) & (np.abs(y - y[number]) < NUMBER_SIZE[1])
+        lines = (apart < 0.5 * NUMBER_SIZE[0]) & (y > y[number])
         free[number] = not np.any(numbers | lines)
     return free
 

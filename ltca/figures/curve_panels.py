@@ -1,4 +1,4 @@
-"""Curves in panels of their own, the others grey behind; discs and cranks as cases of their own."""
+"""Curves in separate panels, the others grey behind; discs and cranks are shown as cases."""
 
 from __future__ import annotations
 
@@ -17,15 +17,17 @@ DASHES: tuple[Any, ...] = ("-", (0, (4, 2)), (0, (1, 1.5)), (0, (6, 1.5, 1, 1.5)
 """Lines of disc after disc."""
 MOST_CURVES = 16
 """Panels of one figure; more do not fit on a page."""
-FEW = 40
+MARKED_POSITIONS = 40
 """Positions below which each is marked."""
-BESIDE = 4
+TWO_COLUMNS_FROM = 4
 """Panels from which on they stand in two columns."""
-ALONE = "nominal"
+ROW_HEIGHT = 1.25
+"""Of panels, inches."""
+UNNAMED_CASE = "nominal"
 """Name of the case of a drive without cases: it tells nothing."""
 LETTERS = {1: 84, 2: 42}
 """Letters above a panel of the width of the figure, and of half of it."""
-ROOM = 0.06
+MARGIN = 0.06
 """Of the range of all curves, above and below them."""
 
 
@@ -68,28 +70,11 @@ def degrees(dataset: xr.Dataset) -> FloatArray:
     return np.asarray(np.degrees(dataset["crank_angle"].values))
 
 
-def panel_grid(figure: Figure, count: int, *, columns: int | None = None, height: float = 1.25) -> Any:
-    """Return axes in columns that share both scales, and give the figure the height they need.
-
-    Parameters
-    ----------
-    figure : Figure
-        Where to.
-    count : int
-        How many panels.
-    columns : int, optional
-        One for few panels, else two.
-    height : float
-        Of a row, inches.
-
-    Returns
-    -------
-    array of Axes, shape (count,)
-        Row by row.
-    """
-    across = columns or (1 if count < BESIDE else 2)
+def panel_grid(figure: Figure, count: int) -> Any:
+    """Return axes in one or two columns, row by row, that share both scales, and give the figure the height they need."""
+    across = 1 if count < TWO_COLUMNS_FROM else 2
     rows = -(-count // across)
-    figure.set_figheight(3.9 if count == 1 else max(3.6, 0.8 + height * rows))
+    figure.set_figheight(3.9 if count == 1 else max(3.6, 0.8 + ROW_HEIGHT * rows))
     grid = figure.subplots(rows, across, sharex=True, sharey=True, squeeze=False)
     for column, spare in enumerate(grid.ravel()[count:]):
         spare.set_visible(False)
@@ -109,40 +94,17 @@ def draw_panels(
     limits: tuple[float, float] | None = None,
     lines: Sequence[Line] | None = None,
     title: str = "",
-    columns: int | None = None,
 ) -> Any:
-    """Draw each curve in a panel with its name above, all others grey behind it, to the same scales.
+    """Draw each curve in a panel with its name above, all others grey behind it, to the same scales; return the axes.
 
-    Parameters
-    ----------
-    figure : Figure
-        Where to.
-    x : array, shape (positions,)
-        In any order.
-    curves : array, shape (curves, positions)
-        One for each name.
-    names : sequence of str
-        Above the panels; of one curve none is written unless it tells something.
-    x_label, y_label : str
-        Of all panels, with units; formulas stand between dollar signs.
-    limits : tuple of two floats, optional
-        Of y; from zero where nothing is negative, with room where something is.
-    lines : sequence of Line, optional
-        Of the curves.
-    title : str
-        Above all.
-    columns : int, optional
-        Of panels.
-
-    Returns
-    -------
-    array of Axes, shape (curves,)
+    `x` has shape (positions,) in any order, `curves` (curves, positions). Labels have units, formulas between dollar signs.
+    `limits` of y are by default from zero where nothing is negative, otherwise with room.
     """
     order = np.argsort(x, kind="stable")
     lines = plain_lines(len(curves)) if lines is None else lines
-    panels = panel_grid(figure, len(curves), columns=columns)
-    marker = "o" if x.size < FEW else None
-    across = columns or (1 if len(curves) < BESIDE else 2)
+    panels = panel_grid(figure, len(curves))
+    marker = "o" if x.size < MARKED_POSITIONS else None
+    across = 1 if len(curves) < TWO_COLUMNS_FROM else 2
     for number, (axes, line) in enumerate(zip(panels, lines, strict=True)):
         others = [curve for place, curve in enumerate(curves) if place != number]
         # Own curves first: who reads a panel's lines finds what it is about.
@@ -157,7 +119,7 @@ def draw_panels(
     axes.margins(x=0.0)
     if limits is None:
         least, most = float(np.nanmin(curves)), float(np.nanmax(curves))
-        room = ROOM * max(most - least, 1e-9 * abs(most), 1e-12)
+        room = MARGIN * max(most - least, 1e-9 * abs(most), 1e-12)
         limits = (0.0 if least >= 0.0 else least - room, most + room)
     axes.set_ylim(*limits)
     axes.yaxis.set_major_locator(mpl.ticker.MaxNLocator(5 if len(panels) == 1 else 3))
@@ -169,33 +131,13 @@ def draw_panels(
 
 
 def name_panel(axes: Any, name: str, across: int = 1) -> None:
-    """Write a name above a panel, at its left.
-
-    Parameters
-    ----------
-    axes : Axes
-        The panel.
-    name : str
-        Shortened in its middle where there is no room.
-    across : int
-        Panels beside each other.
-    """
-    if name != ALONE:
+    """Write a name above the left of a panel, shortened in its middle where panels `across` leave no room."""
+    if name != UNNAMED_CASE:
         axes.set_title(shortened_name(name, LETTERS[across]), loc="left", fontsize=8.5, color=INK, pad=3.0)
 
 
 def label_all(figure: Figure, panels: Any, x_label: str, y_label: str) -> None:
-    """Label the axes of one panel at it, of several once for all.
-
-    Parameters
-    ----------
-    figure : Figure
-        Of the panels.
-    panels : array of Axes
-        All of them.
-    x_label, y_label : str
-        Formulas stand between dollar signs.
-    """
+    """Label the axes of a single panel at it, of several once for all; formulas stand between dollar signs."""
     if len(panels) == 1:
         formula(panels[0].set_xlabel(x_label)), formula(panels[0].set_ylabel(y_label))
         return
@@ -216,15 +158,7 @@ def case_names(dataset: xr.Dataset) -> list[str]:
 
 
 def one_by_one(dataset: xr.Dataset, cranks: int) -> xr.Dataset:
-    """Return every disc of every case, on every crank, as a case of its own; of too many the cases that have room.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        Of `ltca.analysis.results.build_dataset`.
-    cranks : int
-        How many of the cranks are shown, the first of them.
-    """
+    """Return every disc of every case, on the first `cranks`, as a case; of too many the cases that have room."""
     discs = dataset.sizes["disc"]
     if discs * cranks == 1:
         return dataset.isel(disc=0, crank=0, case=slice(MOST_CURVES))

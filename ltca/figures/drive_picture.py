@@ -38,38 +38,12 @@ def _circles(axes: Any, centres: Any, radii: Any, colour: str, zorder: int) -> N
 
 
 def draw_drive(drive: Drive, analysis: LoadedAnalysis, position: int, path: Path, case: str = "") -> None:
-    """Write a picture of the drive at one analysed position, of several discs each beside the other.
-
-    Parameters
-    ----------
-    drive : Drive
-        The drive.
-    analysis : LoadedAnalysis
-        Its analysis.
-    position : int
-        Which position of the analysis.
-    path : Path
-        Picture file; the suffix chooses the format.
-    case : str
-        Its name, where there are several.
-    """
+    """Write a picture of the drive at one analysed position, several discs beside each other; the suffix chooses the format."""
     save_figure(drive_figure(drive, analysis, position, case), path)
 
 
 def drive_figure(drive: Drive, analysis: LoadedAnalysis, position: int, case: str = "") -> Figure:
-    """Return the picture that `draw_drive` writes.
-
-    Parameters
-    ----------
-    drive : Drive
-        The drive.
-    analysis : LoadedAnalysis
-        Its analysis.
-    position : int
-        Which position of the analysis.
-    case : str
-        Its name, where there are several.
-    """
+    """Return the picture that `draw_drive` writes."""
     discs = analysis.discs
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=((INCHES + 0.6) * len(discs), INCHES + 1.4))

@@ -14,15 +14,7 @@ SMALL = np.radians(2.0)
 
 
 def field_scale(path: str, values: FloatArray) -> tuple[float, str]:
-    """Return by what values of a field are multiplied, and the unit in which they are then.
-
-    Parameters
-    ----------
-    path : str
-        Of the field, or of an element of an array.
-    values : array
-        In the unit of the field.
-    """
+    """Return the factor by which values of a field, or of an element of an array, are multiplied, and their unit then."""
     kind = field_kind(path) or field_kind(path.rpartition(".")[0])
     unit = "" if kind is None else kind.unit
     if unit == "rad":

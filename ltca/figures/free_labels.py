@@ -1,4 +1,4 @@
-"""Words beside points where nothing else stands: measured, tried place by place, joined by a line where far."""
+"""Labels beside points in free space: candidate places are compared by cost, distant ones get a leader line."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 
-ROUND = 16
+DIRECTIONS = 16
 """Directions tried about a point."""
-NEAR, FAR, STEP = 3.0, 120.0, 6.0
+LEAST_GAP, LARGEST_GAP, GAP_STEP = 3.0, 120.0, 6.0
 """Gaps between a point and its word that are tried, pixels."""
-JOINED = 14.0
+LEADER_GAP = 14.0
 """Gap from which on a line joins them, pixels."""
-ON_A_LINE, TURNED, AWAY = 40.0, 6.0, 1.0
+LINE_COST, TURN_COST, DISTANCE_COST = 40.0, 6.0, 1.0
 """What a place costs: each line crossed, half a turn from the direction wanted, each pixel of distance."""
 
 
@@ -40,29 +40,17 @@ class FreeLabels:
         self._lines: list[np.ndarray[Any, Any]] = []
 
     def keep(self, text: Any) -> None:
-        """Let no word stand where a text stands."""
+        """Keep labels off a text."""
         self._boxes = np.vstack([self._boxes, text.get_window_extent(self._renderer).extents])
 
     def keep_line(self, start: complex, end: complex) -> None:
-        """Let words rather not stand on a line, given in the scales of the axes."""
+        """Make labels avoid a line, in data coordinates."""
         points = np.array([[start.real, start.imag], [end.real, end.imag]])
         first, last = np.asarray(self._axes.transData.transform(points), dtype=float)
         self._lines.append(np.linspace(first, last, 12))
 
     def place(self, words: str, point: complex, direction: complex, **style: Any) -> Any:
-        """Write words near a point, in a direction from it if there is room, and return the text.
-
-        Parameters
-        ----------
-        words : str
-            What to write.
-        point : complex
-            In the scales of the axes.
-        direction : complex
-            Wanted, of any length.
-        **style : Any
-            Of `Axes.text`.
-        """
+        """Write words near a point, in a direction from it if there is room, and return the text; both in data coordinates."""
         text = self._axes.text(point.real, point.imag, words, ha="center", va="center", **style)
         box = text.get_window_extent(self._renderer)
         half = 0.5 * np.array([box.width + 3.0, box.height + 2.0])
@@ -70,10 +58,10 @@ class FreeLabels:
         first = np.angle(direction)
         points = np.concatenate([*self._lines, np.zeros((0, 2))])
         best, least = None, np.inf
-        for gap in np.arange(NEAR, FAR, STEP):
-            if gap * AWAY >= least:
+        for gap in np.arange(LEAST_GAP, LARGEST_GAP, GAP_STEP):
+            if gap * DISTANCE_COST >= least:
                 break
-            for turn in np.linspace(-np.pi, np.pi, ROUND, endpoint=False):
+            for turn in np.linspace(-np.pi, np.pi, DIRECTIONS, endpoint=False):
                 ray = np.array([np.cos(first + turn), np.sin(first + turn)])
                 # So far that the box clears the point by the gap.
                 reach = gap + float(np.min(half / np.maximum(np.abs(ray), 1e-9)))
@@ -81,7 +69,7 @@ class FreeLabels:
                 if not self._free(middle, half):
                     continue
                 crossed = np.all(np.abs(points - middle) < half, axis=1).any()
-                cost = gap * AWAY + TURNED * abs(turn) / np.pi + ON_A_LINE * crossed
+                cost = gap * DISTANCE_COST + TURN_COST * abs(turn) / np.pi + LINE_COST * crossed
                 if cost < least:
                     best, least = (middle, gap), cost
         if best is None:  # nowhere room: better no word than one on another
@@ -91,7 +79,7 @@ class FreeLabels:
         place = self._axes.transData.inverted().transform(middle)
         text.set_position(place)
         self._boxes = np.vstack([self._boxes, Bbox.from_extents(*(middle - half), *(middle + half)).extents])
-        if gap > JOINED:
+        if gap > LEADER_GAP:
             nearest = middle + np.clip(at - middle, -half, half)
             end = self._axes.transData.inverted().transform(nearest)
             self._axes.plot(

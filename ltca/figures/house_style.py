@@ -1,4 +1,4 @@
-"""One look for every picture: colours, maps, fonts, proper symbols, and files that are the same for the same input."""
+"""Style of all figures: colours, maps, fonts, symbols, and reproducible files."""
 
 from __future__ import annotations
 
@@ -48,13 +48,7 @@ CRANK = f"crank angle {CRANK_ANGLE} [°]"
 
 
 def formula(text: Any) -> Any:
-    """Let a text of ours, without any name of a user's, be read as a formula, and return it.
-
-    Parameters
-    ----------
-    text : matplotlib.text.Text
-        What stands between dollar signs in it is one.
-    """
+    """Let matplotlib read a text as a formula between dollar signs, and return it; for texts without any name of a user's."""
     text.set_parse_math(True)
     return text
 
@@ -68,20 +62,7 @@ def shortened_name(name: str, letters: int) -> str:
 
 
 def save_figure(figure: Figure, path: Path) -> Path:
-    """Write a figure; same input, same bytes: no clock in it, and identifiers from a fixed salt.
-
-    Parameters
-    ----------
-    figure : Figure
-        Drawn with `STYLE`.
-    path : Path
-        Its suffix says what is written.
-
-    Returns
-    -------
-    Path
-        The file.
-    """
+    """Write a figure and return the file; same input, same bytes: no clock in it, and identifiers from a fixed salt."""
     clock: dict[str, Any] = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
     with mpl.rc_context(STYLE):
         # To find the layout takes as long as to draw, and saving would find it twice.

@@ -1,4 +1,4 @@
-"""Which pin is shown over its mesh, and over which crank angles: one whose mesh is whole, and little beside it."""
+"""Choice of the pin that is shown over its mesh, and of the crank angles: the mesh is whole, with a small margin."""
 
 from __future__ import annotations
 
@@ -8,39 +8,22 @@ from numpy.typing import NDArray
 from ltca.analysis.summary import LOADED_FRACTION
 from ltca.arrays import FloatArray, IntArray
 
-BESIDE_THE_MESH = 0.08
-"""Of its length, shown before and after it."""
-STEP = 5.0
+MARGIN = 0.08
+"""Part of the length of a mesh that is shown before and after it."""
+WINDOW_GRID = 5.0
 """Windows begin and end at whole multiples, degrees."""
 
 
 def loaded_at(load: FloatArray) -> NDArray[np.bool_]:
-    """Return where loads are more than nothing, by the largest of all.
-
-    Parameters
-    ----------
-    load : array
-        N.
-    """
+    """Return where loads are more than nothing, by the largest of all."""
     return np.asarray(load > LOADED_FRACTION * max(float(np.nanmax(load)), 1e-300))
 
 
 def elements_shown(crank_angle: FloatArray, load: FloatArray, discs: IntArray) -> IntArray:
     """Return which pin of each disc to show: the first whose mesh the positions do not cut in two.
 
-    Parameters
-    ----------
-    crank_angle : array, shape (positions,)
-        Degrees.
-    load : array, shape (cases, positions, pins)
-        Of every disc of every case, N.
-    discs : array of int, shape (cases,)
-        Whose loads they are.
-
-    Returns
-    -------
-    array of int, shape (discs,)
-        Of other discs the pins that mesh about when that of the first does, so that all fit one axis.
+    `crank_angle` in degrees has shape (positions,), `load` (cases, positions, pins), and `discs` (cases,) says whose loads they
+    are. Of further discs the pins are those that mesh about when that of the first does, so that all fit one axis.
     """
     order = np.argsort(crank_angle, kind="stable")
     loaded = loaded_at(load)[:, order]
@@ -64,25 +47,19 @@ def elements_shown(crank_angle: FloatArray, load: FloatArray, discs: IntArray) -
 
 
 def loaded_window(crank_angle: FloatArray, load: FloatArray) -> tuple[float, float] | None:
-    """Return the crank angles between which any of some curves is loaded, with a little room, degrees.
+    """Return the crank angles, degrees, between which any of the curves is loaded, with a little room.
 
-    Parameters
-    ----------
-    crank_angle : array, shape (positions,)
-        Degrees.
-    load : array, shape (curves, positions)
-        N.
-
-    Returns
-    -------
-    tuple of two floats or None
-        None where nothing would be left out, or nothing is loaded.
+    Loads have shape (curves, positions); None where nothing would be left out, or nothing is loaded.
     """
     at = crank_angle[loaded_at(load).any(axis=0)]
     if at.size < 2:
         return None
     apart = float(np.max(np.diff(np.sort(crank_angle))))  # to the next position, where a curve has come down to nothing
-    room = max(BESIDE_THE_MESH * float(np.ptp(at)), STEP, apart)
-    low = max(STEP * np.floor((at.min() - room) / STEP), STEP * np.floor(crank_angle.min() / STEP))
-    high = min(STEP * np.ceil((at.max() + room) / STEP), STEP * np.ceil(crank_angle.max() / STEP))
+    room = max(MARGIN * float(np.ptp(at)), WINDOW_GRID, apart)
+    low = max(
+        WINDOW_GRID * np.floor((at.min() - room) / WINDOW_GRID), WINDOW_GRID * np.floor(crank_angle.min() / WINDOW_GRID)
+    )
+    high = min(
+        WINDOW_GRID * np.ceil((at.max() + room) / WINDOW_GRID), WINDOW_GRID * np.ceil(crank_angle.max() / WINDOW_GRID)
+    )
     return (float(low), float(high)) if high - low < 0.95 * np.ptp(crank_angle) else None

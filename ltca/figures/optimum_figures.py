@@ -14,7 +14,7 @@ from ltca.drive.fields import whose
 from ltca.figures.field_scale import field_scale
 from ltca.figures.house_style import COLOURS, DASHED, OTHERS, STYLE, save_figure
 from ltca.quantities import SCALARS
-from ltca.studies.optimiser import Optimum, describe_limit
+from ltca.studies.optimiser import Optimum, describe_bound
 
 
 def write_optimum_figure(optimum: Optimum, positions: int, folder: Path, kind: str = "svg") -> Path:
@@ -27,7 +27,7 @@ def write_optimum_figure(optimum: Optimum, positions: int, folder: Path, kind: s
 
 
 def _title(optimum: Optimum, positions: int) -> str:
-    limits = ", ".join(describe_limit(limit) for limit in optimum.problem.limits)
+    limits = ", ".join(describe_bound(limit) for limit in optimum.problem.limits)
     told = f"{len(optimum.variables)} candidates × {positions} positions" + (f", subject to {limits}" if limits else "")
     return fill(told, 76)
 

@@ -16,27 +16,22 @@ from ltca.arrays import FloatArray
 from ltca.contact.tracked_grid import END_STRETCH
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
-from ltca.figures.curve_panels import BESIDE, MOST_CURVES, draw_panels, name_panel
+from ltca.figures.curve_panels import MOST_CURVES, TWO_COLUMNS_FROM, draw_panels, name_panel
 from ltca.figures.house_style import COLOUR_MAP, COLOURS, OTHERS, STYLE, save_figure, shortened_name
-from ltca.figures.run_figures import numbered
+from ltca.figures.run_figures import with_paper_number
 from ltca.geometry.flank import FlankProfile
 
 SIDES = ("outer", "inner")
 PRESSURE_FIGURES = ("fig27_contact_zone", "fig32_roller_pressure_along", "fig33_roller_pressure_across")
 """Drawn once for all cases."""
+ARC_POINTS = 4001
+"""Points at which the arc length of a flank is integrated."""
 
 
 def even_cells(edges: FloatArray, pressure: FloatArray, cells: int) -> tuple[FloatArray, FloatArray]:
-    """Return cell centres and mean pressures on even cells along the last axis (integrals are kept).
+    """Return cell centres and mean pressures on even cells along the last axis; integrals are kept.
 
-    Parameters
-    ----------
-    edges : array, shape (n + 1,)
-        Edges of the given cells, mm.
-    pressure : array, shape (…, n)
-        Their mean pressures, MPa.
-    cells : int
-        How many even cells to make.
+    `edges` of the given cells have shape (n + 1,), mm; `pressure`, their means, (…, n), MPa.
     """
     from scipy.interpolate import PchipInterpolator
 
@@ -63,9 +58,9 @@ def _named(fields: xr.Dataset, side: str, place: dict[str, int]) -> str:
     return f"roller {place['roller']} on the {race}{disc}, crank angle {angle:.4g}°"
 
 
-def flank_arc_length(profile: FlankProfile, samples: int = 4001) -> tuple[FloatArray, FloatArray]:
+def flank_arc_length(profile: FlankProfile) -> tuple[FloatArray, FloatArray]:
     """Return parameters θ over one tooth from a root (θ = 0) and the arc length of the flank from there, mm."""
-    theta = np.linspace(0.0, 2.0 * np.pi / (profile.reduction_ratio - 1.0), samples)
+    theta = np.linspace(0.0, 2.0 * np.pi / (profile.reduction_ratio - 1.0), ARC_POINTS)
     _, tangent, _ = profile.locus(theta)
     speed = np.abs(tangent) * (1.0 - profile.offset * profile.locus_curvature(theta))
     step = theta[1] - theta[0]
@@ -73,24 +68,14 @@ def flank_arc_length(profile: FlankProfile, samples: int = 4001) -> tuple[FloatA
 
 
 def draw_contact_zone(figure: Figure, results: xr.Dataset, drive: Drive) -> None:
-    """Draw the contact zone on one flank of each case over the arc from root to tip (Fig. 27).
-
-    Parameters
-    ----------
-    figure : Figure
-        To draw into.
-    results : xarray.Dataset
-        Of `ltca.analysis.results.build_dataset`.
-    drive : Drive
-        Any of the cases, for the flank.
-    """
+    """Draw the contact zone on one flank of each case over the arc from root to tip (Fig. 27)."""
     profile = FlankProfile.of_drive(single_discs(drive)[0])
     theta, arc = flank_arc_length(profile)
     half = theta.size // 2
     tip = float(arc[half])
     outline = profile.flank(theta[: half + 1])
     names = [str(name) for name in results["case"].values][:MOST_CURVES]
-    across = 1 if len(names) < BESIDE else 2
+    across = 1 if len(names) < TWO_COLUMNS_FROM else 2
     rows = -(-len(names) // across)
     figure.set_figheight(max(4.0, 0.9 + 1.3 * rows))
     grid = figure.add_gridspec(rows, 1 + across, width_ratios=(1.1, *(2.4 / across,) * across))
@@ -132,7 +117,7 @@ def draw_contact_zone(figure: Figure, results: xr.Dataset, drive: Drive) -> None
     panels[0].set_xlim(0.0, tip)
     panels[0].set_ylim(0.0, 1.08 * max(float(np.max(pressure)) for _, _, pressure in found))
     figure.suptitle(
-        numbered("Contact zone on the flank, contact half-width included; o: largest pressure", 27, results)
+        with_paper_number("Contact zone on the flank, contact half-width included; o: largest pressure", 27, results)
     )
 
 
@@ -148,26 +133,10 @@ def _contacts(
 
 
 def joined_as_hertz(centres: FloatArray, pressure: FloatArray, points: int = 401) -> tuple[FloatArray, FloatArray]:
-    """Return points of a smooth line through mean pressures of cells across a contact, down to its edges.
+    """Return points x, y of a smooth line through mean pressures of cells across a contact, down to its edges.
 
-    The square of a Hertzian pressure is a parabola: squares are interpolated, and continued to zero beyond the outermost
-    cells but one, for those at the edge are loaded on a part of them.
-
-    Parameters
-    ----------
-    centres : array, shape (n,)
-        Of the cells, mm.
-    pressure : array, shape (n,)
-        Their means, MPa.
-    points : int
-        Of the line.
-
-    Returns
-    -------
-    x : array
-        Of the line, mm.
-    y : array
-        Pressures there, MPa; through the means themselves where fewer than six cells are loaded.
+    `centres` (mm) and `pressure` (MPa) have shape (n,); the line goes through the means themselves where fewer than six cells
+    are loaded.
     """
     from scipy.interpolate import PchipInterpolator
 
@@ -189,12 +158,7 @@ def joined_as_hertz(centres: FloatArray, pressure: FloatArray, points: int = 401
 def draw_sections(fields: xr.Dataset, *, major: bool) -> Figure:
     """Draw the pressure of the hardest loaded roller of each case along its major or minor axis (Fig. 32, 33).
 
-    Parameters
-    ----------
-    fields : xarray.Dataset
-        Of `ltca.analysis.pressure_fields.build_pressure_dataset`.
-    major : bool
-        Along the roller (over y at x = 0) or across it (over x at mid-width).
+    Major is along the roller (over y at x = 0), minor across it (over x at mid-width).
     """
     figure = Figure(figsize=(7.2, 3.9))
     names = [str(name) for name in fields["case"].values][:MOST_CURVES]
@@ -227,9 +191,9 @@ def draw_sections(fields: xr.Dataset, *, major: bool) -> Figure:
     shown = titles[0] if len(set(titles)) == 1 else "the hardest loaded roller of each case"
     if major:
         cell = float(np.mean(np.diff(common)))
-        title = numbered(f"Pressure along the roller, means over {cell:.3g} mm", 32, fields)
+        title = with_paper_number(f"Pressure along the roller, means over {cell:.3g} mm", 32, fields)
     else:
-        title = numbered("Pressure across the roller at mid-width; dots: means of the cells", 33, fields)
+        title = with_paper_number("Pressure across the roller at mid-width; dots: means of the cells", 33, fields)
     panels = draw_panels(figure, common, resampled, names, label, "pressure [MPa]", title=f"{title}\n{shown}")
     for axes, (at, means), number in zip(panels, cells, range(len(cells)), strict=False):
         colour = COLOURS[number % len(COLOURS)]
@@ -261,17 +225,7 @@ def _surface(fields: xr.Dataset, case: str) -> tuple[FloatArray, FloatArray, Flo
 def draw_roller_pressure(fields: xr.Dataset, case: str) -> Figure:
     """Draw the pressure over the hardest loaded roller of a case as a surface (Fig. 31).
 
-    Parameters
-    ----------
-    fields : xarray.Dataset
-        Of `ltca.analysis.pressure_fields.build_pressure_dataset`.
-    case : str
-        Whose.
-
-    Returns
-    -------
-    Figure
-        No light falls on the surface: its colours are those of the scale.
+    No light falls on the surface: its colours are those of the scale.
     """
     x, y, pressure, title = _surface(fields, case)
     figure = Figure(figsize=(7.2, 5.2))
@@ -302,32 +256,16 @@ def draw_roller_pressure(fields: xr.Dataset, case: str) -> Figure:
     )
     bar.set_ticks([tick for tick in ticks if tick <= top])
     bar.outline.set_visible(False)
-    figure.suptitle(f"{numbered(shortened_name(case, 40), 31, fields)}: {title}, largest {top:.0f} MPa")
+    figure.suptitle(f"{with_paper_number(shortened_name(case, 40), 31, fields)}: {title}, largest {top:.0f} MPa")
     return figure
 
 
 def write_pressure_figures(
     results: xr.Dataset, fields: xr.Dataset, drive: Drive, folder: Path, kind: str = "svg"
 ) -> Iterator[Path]:
-    """Write Fig. 27 and 31–33; surfaces as PNG always: as lines they would take megabytes.
+    """Write Fig. 27 and 31–33 and yield each file; surfaces always as PNG, since as lines they would take megabytes.
 
-    Parameters
-    ----------
-    results : xarray.Dataset
-        The run, for the contact zone.
-    fields : xarray.Dataset
-        Its pressure fields.
-    drive : Drive
-        Any of the cases, for the flank.
-    folder : Path
-        Where to write; made when missing.
-    kind : str
-        ``svg``, ``png`` or ``pdf``, of the sections.
-
-    Yields
-    ------
-    Path
-        Each figure when it is written.
+    `drive` is any of the cases, for the flank.
     """
     with mpl.rc_context(STYLE):
         zone = Figure(figsize=(10.4, 4.6))

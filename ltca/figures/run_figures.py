@@ -20,7 +20,7 @@ from ltca.arrays import FloatArray
 from ltca.drive.units.quantities import ARCSEC
 from ltca.figures.crank_figures import HALF_TURN, draw_cranks, draw_rollers_of_each_crank, mark_a_half_turn
 from ltca.figures.curve_panels import (
-    FEW,
+    MARKED_POSITIONS,
     MOST_CURVES,
     case_names,
     degrees,
@@ -44,18 +44,8 @@ def _shipped() -> str:
     return shipped_drive()
 
 
-def numbered(title: str, number: int, dataset: xr.Dataset) -> str:
-    """Return a title with the number of the paper's figure, where the drive is the paper's.
-
-    Parameters
-    ----------
-    title : str
-        What is drawn.
-    number : int
-        Of the figure in the paper.
-    dataset : xarray.Dataset
-        With the text of its drive file as an attribute.
-    """
+def with_paper_number(title: str, number: int, dataset: xr.Dataset) -> str:
+    """Return a title with the number of the paper's figure, where the drive is the paper's."""
     return f"{title} (Fig. {number})" if dataset.attrs.get("drive_file") == _shipped() else title
 
 
@@ -89,7 +79,7 @@ def _transmission_error(figure: Figure, data: xr.Dataset) -> None:
         values = (values - values.mean(axis=1, keepdims=True))[:, order]
         for row in range(rows):
             axes = grid[row, column]
-            marker = "o" if x.size < FEW else None
+            marker = "o" if x.size < MARKED_POSITIONS else None
             axes.plot(
                 x[order], values[row], color=lines[row].colour, linestyle=lines[row].dashes, marker=marker,
                 markersize=3.0, zorder=2.5,
@@ -104,7 +94,7 @@ def _transmission_error(figure: Figure, data: xr.Dataset) -> None:
     mark_a_turn(grid[0, 0], x[order])
     figure.supylabel("deviation from the mean [″]", fontsize=9.0)
     member = "output (pin shaft)" if data.attrs.get("held") == "pin-wheel" else "wheel"
-    figure.suptitle(numbered(f"Transmission error at the {member}", 23, data))
+    figure.suptitle(with_paper_number(f"Transmission error at the {member}", 23, data))
 
 
 def _over_its_mesh(load: str, name: str, label: str, words: str, number: int) -> Callable[[Figure, xr.Dataset], None]:
@@ -120,7 +110,7 @@ def _over_its_mesh(load: str, name: str, label: str, words: str, number: int) ->
         pins = f"s {', '.join(map(str, shown.tolist()))} of the discs" if different else f" {shown[0]}"
         panels = draw_panels(
             figure, x, values, case_names(data), CRANK, label, lines=lines_of(data),
-            title=numbered(words.format(pins), number, data),
+            title=with_paper_number(words.format(pins), number, data),
         )  # fmt: skip
         window = loaded_window(x, loads)
         if window is not None:
@@ -156,14 +146,16 @@ def _number_loaded(name: str, words: str, number: int) -> Callable[[Figure, xr.D
             part = f", {end:.0f}° of the turn (ranges and means are those of all of it)"
         formula(axes[-1].set_xlabel(CRANK))
         figure.supylabel("number", fontsize=9.0)
-        figure.suptitle(numbered(words, number, data) + part)
+        figure.suptitle(with_paper_number(words, number, data) + part)
 
     return draw
 
 
 def _bearing(figure: Figure, data: xr.Dataset) -> None:
     total = np.hypot(data["bearing_radial"].values, data["bearing_tangential"].values)
-    _from_anywhere(figure, data, total, "total bearing load [N]", numbered("Bearing load of the crank", 28, data))
+    _from_anywhere(
+        figure, data, total, "total bearing load [N]", with_paper_number("Bearing load of the crank", 28, data)
+    )
 
 
 def _from_anywhere(figure: Figure, data: xr.Dataset, values: FloatArray, label: str, title: str) -> None:
@@ -176,7 +168,7 @@ def _from_anywhere(figure: Figure, data: xr.Dataset, values: FloatArray, label: 
 
 def _bearing_component(name: str, label: str, words: str, number: int) -> Callable[[Figure, xr.Dataset], None]:
     def draw(figure: Figure, data: xr.Dataset) -> None:
-        _from_anywhere(figure, data, data[name].values, label, numbered(words, number, data))
+        _from_anywhere(figure, data, data[name].values, label, with_paper_number(words, number, data))
 
     return draw
 
@@ -200,7 +192,7 @@ def _roller_distribution(figure: Figure, data: xr.Dataset) -> None:
     speed = float(data["cage_speed"].values[0])
     place = speed * angle[:, None] + 2.0 * np.pi * np.arange(rollers) / rollers - angle[:, None]
     place = np.degrees(np.mod(place + np.pi, 2.0 * np.pi)) - HALF_TURN
-    title = numbered("Load distribution over the rollers", 34, data)
+    title = with_paper_number("Load distribution over the rollers", 34, data)
     if "of_case" in data.coords and np.ptp(data["crank"].values) > 0:
         draw_rollers_of_each_crank(figure, data, place, f"{title}, all discs: mean and range")
         return
@@ -262,13 +254,7 @@ OF_THE_PIN_SHAFT = ("fig35_pin_shaft_load", "fig36_loaded_shaft_pins")
 
 
 def figure_names(discs: int, holes: int, cranks: int = 1) -> list[str]:
-    """Return the names of the figures of a run, keys of `FIGURES`.
-
-    Parameters
-    ----------
-    discs, holes, cranks : int
-        How many the drives have; no holes without a pin shaft.
-    """
+    """Return the names of the figures of a run, keys of `FIGURES`; `holes` is 0 without a pin shaft."""
     missing: tuple[str, ...] = OF_SEVERAL_DISCS if discs == 1 else ()
     missing += OF_SEVERAL_CRANKS if cranks == 1 else ()
     missing += OF_THE_PIN_SHAFT if holes == 0 else ()
@@ -276,15 +262,7 @@ def figure_names(discs: int, holes: int, cranks: int = 1) -> list[str]:
 
 
 def draw_figure(name: str, dataset: xr.Dataset) -> Figure:
-    """Return one figure.
-
-    Parameters
-    ----------
-    name : str
-        Key of `FIGURES`.
-    dataset : xarray.Dataset
-        Of `ltca.analysis.results.build_dataset`; of several discs each has a curve of its own.
-    """
+    """Return one figure of a run, a key of `FIGURES`; of several discs each has a curve."""
     dataset = _answered(dataset)
     if name in OF_SEVERAL_DISCS:
         dataset = dataset.assign(torque_share=dataset["disc_torque"] / dataset["wheel_moment"])
@@ -313,21 +291,6 @@ def _answered(dataset: xr.Dataset) -> xr.Dataset:
 
 
 def write_figures(dataset: xr.Dataset, folder: Path, kind: str = "svg") -> Iterator[Path]:
-    """Write every figure.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        Of `ltca.analysis.results.build_dataset`.
-    folder : Path
-        Where to write; made when missing.
-    kind : str
-        ``svg``, ``png`` or ``pdf``.
-
-    Yields
-    ------
-    Path
-        Each figure when it is written.
-    """
+    """Write every figure of a run as ``svg``, ``png`` or ``pdf`` and yield each file."""
     for name in figure_names(dataset.sizes["disc"], dataset.sizes["hole"], dataset.sizes["crank"]):
         yield save_figure(draw_figure(name, dataset), folder / f"{name}.{kind}")

@@ -18,12 +18,13 @@ from ltca.figures.house_style import COLOURS, DASHED, INK, OTHERS, STYLE, save_f
 from ltca.quantities import SCALARS
 from ltca.studies.designs import SweepDesign
 from ltca.studies.execution.storage import StudyFolder
+from ltca.studies.sensitivity import factor_groups
 from ltca.studies.study import Study
-from ltca.studies.study_results import factor_groups, read_quantity
+from ltca.studies.study_results import read_quantity
 
-SHOWN = 8
+FIELDS_SHOWN = 8
 """Fields in a ranking; the rest has no share worth a bar."""
-LETTERS = 44
+TITLE_LETTERS = 44
 """Letters of a line above a panel."""
 CHANCE_MEAN, CHANCE_SPREAD = 0.484, 1.170
 """Mean and deviation of max(z² − 1, 0) of a normal z: what an element without influence adds to its share of a regression,
@@ -35,7 +36,7 @@ def write_study_figures(
 ) -> Iterator[Path]:
     """Write the figures of a finished study into ``figures`` beside its results, one after the other.
 
-    `ranking` is that of `ltca.studies.study_results.rank`; `nominal`, quantities without deviations, is drawn where known.
+    `ranking` is that of `ltca.studies.sensitivity.rank`; `nominal`, quantities without deviations, is drawn where known.
     """
     values = {name: read_quantity(folder.results, name) for name in study.quantities}
     for name, figure in study_figures(study, values, ranking, nominal):
@@ -47,20 +48,8 @@ def study_figures(
 ) -> Iterator[tuple[str, Figure]]:
     """Yield the figures of a study with their names.
 
-    Parameters
-    ----------
-    study : Study
-        The study.
-    values : mapping of str to array, shape (samples,)
-        Of every quantity.
-    ranking : mapping
-        Of `ltca.studies.study_results.rank`.
-    nominal : mapping of str to float
-        Quantities of the drive without deviations, drawn where known.
-
-    Yields
-    ------
-    tuple of str and Figure
+    `values` of every quantity have shape (samples,), `ranking` is that of `ltca.studies.sensitivity.rank`, `nominal` has
+    quantities of the drive without deviations, drawn where known.
     """
     with mpl.rc_context(STYLE):
         if isinstance(study.design, SweepDesign):
@@ -93,7 +82,7 @@ def _distributions(study: Study, values: Mapping[str, Any], nominal: Mapping[str
     for axis, name in zip(axes, study.quantities, strict=False):
         finite = values[name][np.isfinite(values[name])]
         axis.hist(finite, bins=min(60, max(8, int(np.sqrt(finite.size)))), color=COLOURS[6], linewidth=0.0)
-        axis.set_xlabel(fill(SCALARS[name].heading, LETTERS), fontsize=8.0)
+        axis.set_xlabel(fill(SCALARS[name].heading, TITLE_LETTERS), fontsize=8.0)
         axis.set_yticks([])
         axis.grid(visible=False)
         axis.spines["left"].set_visible(False)
@@ -114,17 +103,17 @@ def _distributions(study: Study, values: Mapping[str, Any], nominal: Mapping[str
     return figure
 
 
-TALL = 12.0
+MAX_HEIGHT = 12.0
 """Inches that a figure of responses may be high before its quantities stand in blocks beside each other."""
 
 
 def _responses(study: Study, design: SweepDesign, values: Mapping[str, Any]) -> Figure:
     """Every quantity over every factor; samples alike in all other factors are joined."""
-    factors = list(design.factors)[:SHOWN]
+    factors = list(design.factors)[:FIELDS_SHOWN]
     count, across = len(study.quantities), len(factors)
     height = 1.25 if across < 4 else 1.0
     # Beside each other as far as a page is wide: few factors leave room for several blocks.
-    blocks = max(1, min(-(-count // 2), 4 // across, int(np.ceil(count * height / (0.6 * TALL)))))
+    blocks = max(1, min(-(-count // 2), 4 // across, int(np.ceil(count * height / (0.6 * MAX_HEIGHT)))))
     rows = -(-count // blocks)
     width = max(1.9, 3.2 / across)
     figure = Figure(figsize=(max(0.9 * blocks + width * across * blocks, 6.8), 1.3 + height * rows))
@@ -192,21 +181,8 @@ def _response(axis: Any, design: SweepDesign, numbers: Any, column: int, x: Any,
 def chance_of(study: Study, explained: float, samples: int) -> dict[str, float]:
     """Return the share up to which a field of a regression may have no influence at all, by its path.
 
-    A coefficient without influence has the variance (1 − R²)/freedom; a field adds up as many as it has elements.
-
-    Parameters
-    ----------
-    study : Study
-        For the fields and how many elements each has.
-    explained : float
-        R² of the regression, adjusted for its freedom.
-    samples : int
-        That have an answer.
-
-    Returns
-    -------
-    dict of str to float
-        Mean and two deviations of what chance alone gives.
+    A coefficient without influence has the variance (1 − R²)/freedom; a field adds up as many as it has elements. The share is
+    mean and two deviations of what chance alone gives, from R² adjusted for its freedom and the number of answered samples.
     """
     one = (1.0 - min(explained, 1.0)) / max(samples - 1, 1)
     sizes = {name: len(range(*columns.indices(columns.stop))) for name, columns in factor_groups(study)}
@@ -215,12 +191,12 @@ def chance_of(study: Study, explained: float, samples: int) -> dict[str, float]:
 
 def _ranking(study: Study, ranking: Mapping[str, Any], samples: Mapping[str, int]) -> Figure:
     names = [name for name in study.quantities if name in ranking["quantities"]]
-    bars = min(SHOWN, max(len(ranking["quantities"][name]["shares"]) for name in names))
+    bars = min(FIELDS_SHOWN, max(len(ranking["quantities"][name]["shares"]) for name in names))
     figure, axes = _panels(len(names), 0.95 + 0.17 * bars, 4.9, 2 if len(names) < 7 else 3)
     by_regression = "regression" in ranking["method"]
     for axis, name in zip(axes, names, strict=False):
         entry = ranking["quantities"][name]
-        shares = dict(list(entry["shares"].items())[:SHOWN])
+        shares = dict(list(entry["shares"].items())[:FIELDS_SHOWN])
         chance = chance_of(study, entry["explained"], samples[name]) if by_regression else {}
         colours = [OTHERS if share <= chance.get(path, 0.0) else COLOURS[1] for path, share in shares.items()]
         places = np.arange(len(shares))
@@ -234,7 +210,7 @@ def _ranking(study: Study, ranking: Mapping[str, Any], samples: Mapping[str, int
         axis.tick_params(axis="x", labelsize=7.5)
         words = f"{SCALARS[name].title}\nfirst order together {max(0.0, 100.0 * entry['explained']):.0f} %"
         axis.set_title(
-            "\n".join(fill(line, 2 * LETTERS // 3 + 8) for line in words.split("\n")), fontsize=8.0, loc="left"
+            "\n".join(fill(line, 2 * TITLE_LETTERS // 3 + 8) for line in words.split("\n")), fontsize=8.0, loc="left"
         )
     told = f"{shortened_name(study.name, 40)}: {ranking['method']}"
     letters = int(12.5 * figure.get_figwidth())

@@ -15,12 +15,12 @@ LAGRANGE_POINTS = 6
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Boundary:
-    """Stations of one closed boundary, uniform in a periodic parameter.
+    """Stations of one closed boundary, uniform in a parameter of period 2π, rad.
 
     Attributes
     ----------
     first, count : int
-        Place of the stations in the matrix.
+        Index of the first station in the matrix, and number of stations.
     offset : float
         Parameter of the first station, rad.
     """
@@ -30,28 +30,17 @@ class Boundary:
     offset: float = 0.0
 
     def weights(self, parameter: FloatArray) -> tuple[NDArray[np.intp], FloatArray]:
-        """Return stations and weights of local Lagrange interpolation, shapes (…, 6).
-
-        Parameters
-        ----------
-        parameter : array
-            Places, rad, period 2π.
-        """
+        """Return stations and weights of local Lagrange interpolation at parameters, shapes (…, 6)."""
         return _lagrange(parameter - self.offset, np.asarray(self.first), np.asarray(self.count))
 
     def refined(self, values: FloatArray, times: int) -> FloatArray:
         """Return values at `times` as many uniform places, by Fourier series, shape (…, times · count).
 
-        Parameters
-        ----------
-        values : array, shape (…, all stations)
-            At the stations of all boundaries; those of this one are taken.
-        times : int
-            How many places for each station, the first of them on it.
+        `values` are those at the stations of all boundaries, shape (…, all stations); every `times`-th place is a station.
         """
         spectrum = np.fft.rfft(values[..., self.first : self.first + self.count], axis=-1)
         if self.count % 2 == 0 and times > 1:
-            # The highest order of an even number stands for both signs.
+            # With an even number of stations the highest order contains both signs.
             spectrum[..., -1] *= 0.5
         return np.asarray(np.fft.irfft(spectrum, n=times * self.count, axis=-1) * times)
 
@@ -61,14 +50,9 @@ class Boundary:
 
 
 def weights_of(boundaries: Sequence[Boundary], parameter: FloatArray) -> tuple[NDArray[np.intp], FloatArray]:
-    """Return stations and weights of places that lie on several boundaries, shapes (…, places, 6).
+    """Return stations and weights of places on several boundaries, shapes (…, places, 6).
 
-    Parameters
-    ----------
-    boundaries : sequence of Boundary
-        The boundary of each place.
-    parameter : array, shape (…, places)
-        rad, period 2π.
+    `boundaries` has the boundary of each place, `parameter` the parameters, shape (…, places), rad.
     """
     first, count = (np.array([getattr(own, name) for own in boundaries]) for name in ("first", "count"))
     offset = np.array([own.offset for own in boundaries])
@@ -87,7 +71,7 @@ def _lagrange(
     cell = np.floor(place)
     local = place - cell
     weights = np.empty((*place.shape, LAGRANGE_POINTS))
-    # The product over all other nodes: of those before and of those after.
+    # The product over all other nodes is that over the nodes before times that over the nodes after.
     before = np.ones_like(local)
     for one, node in enumerate(_NODES):
         weights[..., one] = before * _SCALES[one]
@@ -101,12 +85,7 @@ def _lagrange(
 
 
 def boundaries_of(numbers: NDArray[np.integer]) -> tuple[Boundary, ...]:
-    """Return the boundaries of stations.
-
-    Parameters
-    ----------
-    numbers : array of int, shape (stations,)
-        Number of the boundary of each station, from 0 and ascending.
+    """Return the boundaries of stations from the number of the boundary of each station, from 0 and ascending.
 
     Examples
     --------
@@ -123,18 +102,10 @@ def boundaries_of(numbers: NDArray[np.integer]) -> tuple[Boundary, ...]:
 def turned_boundaries(
     boundaries: tuple[Boundary, ...], *, bores: int, steps: int, pattern: int, flank_turn: float
 ) -> tuple[Boundary, ...]:
-    """Return flank, bores and holes of a part that stands turned in its disc, as the disc counts them.
+    """Return flank, bores and holes of a part that stands turned in its disc, in the order of the disc.
 
-    Parameters
-    ----------
-    boundaries : tuple of Boundary
-        Of flank, bores and holes of the part.
-    bores : int
-        How many of them are bores.
-    steps, pattern : int
-        The part is turned by that many steps of ``2π/pattern``, of which bores and holes are whole numbers apart.
-    flank_turn : float
-        Parameter of the disc's flank where that of the part's begins, rad.
+    The part is turned by `steps` of ``2π/pattern``, of which bores and holes are whole numbers apart; `bores` is the number of
+    bores among `boundaries`, and `flank_turn` the parameter of the disc's flank at which that of the part begins, rad.
     """
     flank, *round_walls = boundaries
     turn = 2.0 * np.pi * steps / pattern

@@ -1,10 +1,10 @@
-"""Which coordinates a pose has and where: discs, cranks that yield, the wheel where its bearing does, the wheel's angle.
+"""The coordinates of a pose and their places: discs, cranks that yield, the wheel if its bearing yields, the angle of the wheel.
 
 A pose of one disc at a held crank angle is q = (x, y, disc rotation, …, wheel angle): x and y in mm are the displacement of
 the disc from its nominal place in the fixed frame, the angles in rad; the wheel angle is its deviation from φ_C/u. Between
-them stand x and y of each crank in the plane of the disc, where cranks yield, x and y of the wheel, where that does, and x, y
-and rotation of the ring that ties the tips of the shaft pins, where there is one. Of
-several discs the poses follow each other, with one wheel.
+them stand x and y of each crank in the plane of the disc, if cranks yield; x and y of the wheel, if its bearing yields; and
+x, y and rotation of the ring that ties the tips of the shaft pins, if there is one. The poses of several discs follow each
+other, with one wheel.
 """
 
 from __future__ import annotations
@@ -20,26 +20,20 @@ from ltca.drive.parts import Drive
 Columns = NDArray[np.intp]
 
 X, Y, DISC_ROTATION, WHEEL_ANGLE = 0, 1, 2, -1
-"""Places of the coordinates in a pose, in gradients by it and in forces on it; the wheel angle is the last one."""
+"""Places of the coordinates in poses, gradients and forces; the wheel angle is the last one."""
 DISC_PLACE = slice(X, Y + 1)
 RIGID = 4
-"""Coordinates of one disc on members that do not yield."""
+"""Number of coordinates of one disc on members that do not yield."""
 
 
 def disc_displacement(pose: FloatArray) -> ComplexArray:
-    """Return x + iy of poses: the disc from its nominal place in the fixed frame, mm.
-
-    Parameters
-    ----------
-    pose : array, shape (…, coordinates)
-        q of one disc, or of several of which it is the first.
-    """
+    """Return x + iy of poses, shape (…, coordinates): displacement of the (first) disc in the fixed frame, mm."""
     return np.asarray(pose[..., X] + 1j * pose[..., Y])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Coordinates:
-    """What a pose is made of.
+    """Members whose displacements make up a pose.
 
     Attributes
     ----------
@@ -60,7 +54,7 @@ class Coordinates:
 
     @classmethod
     def of_drive(cls, drive: Drive) -> Coordinates:
-        """Return what the poses of a drive of any number of discs are made of."""
+        """Return the coordinates of a drive of any number of discs."""
         cranks = 0 if drive.crank.support is None else drive.crank.number
         wheel = drive.pin_wheel.support_stiffness is not None
         beam = None if drive.pin_shaft is None else drive.pin_shaft.beam
@@ -69,21 +63,21 @@ class Coordinates:
 
     @property
     def own(self) -> int:
-        """Coordinates of each disc: x, y, rotation, and x and y of every crank there."""
+        """Number of coordinates of each disc: x, y, rotation, and x and y of every crank there."""
         return DISC_ROTATION + 1 + 2 * self.cranks
 
     @property
     def shared(self) -> int:
-        """Coordinates of wheel and ring."""
+        """Number of coordinates of wheel and ring."""
         return 1 + 2 * self.wheel + 3 * self.ring
 
     @property
     def size(self) -> int:
-        """All coordinates."""
+        """Number of all coordinates."""
         return self.discs * self.own + self.shared
 
     def columns(self, disc: int) -> Columns:
-        """Return the places of the coordinates of a disc, its own and the wheel's.
+        """Return the places of the coordinates of a disc followed by those of wheel and ring.
 
         Examples
         --------
@@ -122,7 +116,7 @@ class Coordinates:
 
     @property
     def displacements(self) -> Columns:
-        """Places of every x that is followed by its y: discs, cranks, wheel."""
+        """Places of every x that is followed by its y: discs, cranks, wheel, ring."""
         one = np.r_[X, DISC_ROTATION + 1 : self.own : 2]
         each = (self.own * np.arange(self.discs)[:, None] + one).ravel()
         shared = [self.size - self.shared] if self.wheel else []

@@ -11,24 +11,25 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.arrays import FloatArray, take_rows
+from ltca.arrays import BoolArray, FloatArray, take_rows
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.pairs import ContactGeometry
 
-STEEP = 1e-3
-"""Lever arm of a pin's contact normal, as a part of e u, above which Newton's method finds where it touches."""
+LEAST_LEVER = 1e-3
+"""Lever arm of a pin's contact normal, by e u, from which Newton's method is used to find where the pin touches."""
 TOUCHING = 1e-12
-"""Interference that counts as touching, as a part of the pin circle radius: some thousand times the round-off."""
-CLOSE = 1e-15
-"""Rotation, rad, that is round-off."""
-ROUNDS, BISECTIONS = 60, 60
+"""Interference that counts as touching, by the pin circle radius: some thousand times the round-off."""
+ROUND_OFF = 1e-15
+"""Rotation at which bisections end, rad."""
+MAX_ITERATIONS = 60
+"""Newton steps, and bisections."""
 
 
 def first_contact(
     geometry: ContactGeometry, crank_angle: FloatArray, coordinate: int, sense: int
 ) -> tuple[FloatArray, NDArray[np.intp]]:
-    """Turn disc or wheel about the nominal pose until the first pin touches.
+    """Return the rotation of disc or wheel about the nominal pose at which the first pin touches, and that pin.
 
     Parameters
     ----------
@@ -55,7 +56,7 @@ def first_contact(
 
     Notes
     -----
-    Where pins press on the flank at every rotation, by errors of single parts or as they are drawn, the answer is the
+    Where pins press on the flank at every rotation, because of errors of single parts or an interference fit, the result is the
     rotation of least `interference` in both senses, so that backlash is zero.
     """
     rotation, pin, settled, history = turn_to_contact(geometry, crank_angle, coordinate, sense)
@@ -69,19 +70,10 @@ def first_contact(
 
 def turn_to_contact(
     geometry: ContactGeometry, crank_angle: FloatArray, coordinate: int, sense: int
-) -> tuple[FloatArray, NDArray[np.intp], NDArray[np.bool_], list[float]]:
-    """Turn as `first_contact` does and tell where that found contact.
+) -> tuple[FloatArray, NDArray[np.intp], BoolArray, list[float]]:
+    """Return rotation and pin as `first_contact` does, whether contact was found, and the largest rotation of each iteration.
 
-    Returns
-    -------
-    rotation : array, shape (positions,)
-        rad, zero where no contact was found.
-    pin : array of int, shape (positions,)
-        The pin that touches first.
-    settled : array of bool, shape (positions,)
-        Whether contact was found.
-    history : list of float
-        Largest rotation of each round, rad.
+    Rotations are in rad, zero where no contact was found.
     """
     angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
     pose = np.zeros((angle.size, 4))
@@ -89,10 +81,10 @@ def turn_to_contact(
     history: list[float] = []
     settled = np.zeros(angle.size, dtype=bool)
     pin = np.zeros(angle.size, dtype=np.intp)
-    for _ in range(ROUNDS):
+    for _ in range(MAX_ITERATIONS):
         motion = geometry.flank(angle, pose)
         rate = sense * motion.gradient[..., coordinate]
-        closing = rate > STEEP * lever
+        closing = rate > LEAST_LEVER * lever
         travel = np.where(closing, -motion.approach / np.where(closing, rate, 1.0), np.inf)
         pin = np.argmin(travel, axis=1)
         step = np.take_along_axis(travel, pin[:, None], axis=1)[:, 0]
@@ -103,7 +95,7 @@ def turn_to_contact(
         history.append(float(np.max(np.abs(step))))
         if np.all(settled | ~reachable):
             break
-    # A pin whose normal points at the axis hardly moves along it: such pins were left out above.
+    # Pins whose normal nearly passes through the axis, left out above, are looked for by bisection.
     others = np.max(motion.approach, axis=1) > TOUCHING * _size(geometry)  # where it settled, at that pose
     unsure = np.nonzero(~settled | others)[0]
     if unsure.size:
@@ -112,7 +104,7 @@ def turn_to_contact(
         rotation, touching, stopped = _farthest_free(part, angle[unsure], coordinate, sense, bottom)
         free = pressed <= TOUCHING * _size(geometry)
         rotation = np.where(free, rotation, bottom)
-        # Among pins that overlap Newton's method above follows the steepest away: no rotation frees them.
+        # If pins overlap at every rotation, Newton's method above has followed the steepest of them away.
         better = stopped | ~free
         rows = unsure[better]
         pose[rows, coordinate], pin[rows], settled[rows] = rotation[better], touching[better], True
@@ -121,19 +113,9 @@ def turn_to_contact(
 
 
 def interference(geometry: ContactGeometry, crank_angle: FloatArray) -> FloatArray:
-    """Return how far pins and flank overlap where turning the wheel makes it least, the disc in its nominal place, mm.
+    """Return the overlap of pins and flank where turning the wheel makes it least, the disc in its nominal place, mm.
 
-    Parameters
-    ----------
-    geometry : ContactGeometry
-        The drive.
-    crank_angle : array, shape (positions,)
-        φ_C, rad.
-
-    Returns
-    -------
-    array, shape (positions,)
-        Zero where there is backlash.
+    Of the shape of the crank angles, (positions,); zero where there is backlash.
     """
     angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
     _, pressed = _least_interference(geometry, angle, WHEEL_ANGLE)
@@ -144,14 +126,14 @@ def _size(geometry: ContactGeometry) -> float:
     return float(np.max(np.abs(geometry.placement.wheel_pin_centres)))
 
 
-def _quarter(geometry: ContactGeometry) -> float:
-    return 0.5 * np.pi / geometry.placement.reduction_ratio  # of a pitch, rad
+def _quarter_pitch(geometry: ContactGeometry) -> float:
+    return 0.5 * np.pi / geometry.placement.reduction_ratio
 
 
 def _approaches(
     geometry: ContactGeometry, angle: FloatArray, coordinate: int, rotation: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Approach of every pin and its slope by the rotation."""
+    """Approach of every pin and its derivative by the rotation."""
     pose = np.zeros((angle.size, 4))
     pose[:, coordinate] = rotation
     motion = geometry.flank(angle, pose)
@@ -161,24 +143,24 @@ def _approaches(
 def _largest_approach(
     geometry: ContactGeometry, angle: FloatArray, coordinate: int, rotation: FloatArray
 ) -> tuple[FloatArray, FloatArray, NDArray[np.intp]]:
-    """Largest approach of all pins, its slope by the rotation, and the pin."""
+    """Largest approach of all pins, its derivative by the rotation, and the pin."""
     approach, slope = _approaches(geometry, angle, coordinate, rotation)
     rows, pin = np.arange(angle.size), np.argmax(approach, axis=1)
     return approach[rows, pin], slope[rows, pin], pin
 
 
 def _least_interference(geometry: ContactGeometry, angle: FloatArray, coordinate: int) -> tuple[FloatArray, FloatArray]:
-    """Rotation at which the largest approach is no interference, or the least one, and that approach.
+    """Return the rotation at which the largest approach is no interference, or the least one, and that approach.
 
-    The largest approach is a valley over the rotation: its slope says on which side of a place the bottom lies. There two
-    pins, each the one that presses most on its side, press alike. With unmodified flanks that is where all pins touch;
-    with equal offsets it is just below zero.
+    The largest approach over the rotation is a valley: its slope tells on which side the bottom lies. At the bottom two pins,
+    one from each side, have the same approach. With unmodified flanks all pins touch there; with equal offsets it is just below
+    zero. The derivative jumps at the bottom, which a library's minimiser finds to the root of round-off only.
     """
-    quarter, touching = _quarter(geometry), TOUCHING * _size(geometry)
+    quarter, touching = _quarter_pitch(geometry), TOUCHING * _size(geometry)
     rows, bottom = np.arange(angle.size), np.zeros(angle.size)
     low, high = np.full(angle.size, -quarter), np.full(angle.size, quarter)
     left = right = np.full(angle.size, -1)
-    for _ in range(BISECTIONS):
+    for _ in range(MAX_ITERATIONS):
         approach, slope = _approaches(geometry, angle, coordinate, bottom)
         pin = np.argmax(approach, axis=1)
         largest, falling = approach[rows, pin], slope[rows, pin] < 0.0
@@ -188,7 +170,7 @@ def _least_interference(geometry: ContactGeometry, angle: FloatArray, coordinate
         meets = (left >= 0) & (right >= 0) & (closing > 0.0)
         alike = bottom + (approach[rows, left] - approach[rows, right]) / np.where(meets, closing, 1.0)
         place = np.where(meets & (alike > low) & (alike < high), alike, 0.5 * (low + high))
-        if np.all((largest <= touching) | (np.abs(place - bottom) < CLOSE)):
+        if np.all((largest <= touching) | (np.abs(place - bottom) < ROUND_OFF)):
             break
         bottom = np.where(largest <= touching, bottom, place)
     return bottom, largest
@@ -196,22 +178,23 @@ def _least_interference(geometry: ContactGeometry, angle: FloatArray, coordinate
 
 def _farthest_free(
     geometry: ContactGeometry, angle: FloatArray, coordinate: int, sense: int, start: FloatArray
-) -> tuple[FloatArray, NDArray[np.intp], NDArray[np.bool_]]:
-    """How far it can turn from a start until a pin presses, which one, and whether one does.
+) -> tuple[FloatArray, NDArray[np.intp], BoolArray]:
+    """Return the rotation from a start at which a pin presses, that pin, and whether one does.
 
-    Newton's method between a place where a pin presses and one where none does; where it leaves them, their middle.
+    Newton's method between a rotation where a pin presses and one where none does, with bisection where it leaves them. Where
+    all pins touch at the start the function is zero there, too: a root finder would stay.
     """
-    # Where all touch at the start, round-off of their approaches is no way to go.
+    # Where all touch at the start, round-off of their approaches must not count.
     level = np.maximum(_largest_approach(geometry, angle, coordinate, start)[0], 0.0)
-    step = sense * _quarter(geometry)
+    step = sense * _quarter_pitch(geometry)
     inside, outside = start, start + step
     outside = np.where(_largest_approach(geometry, angle, coordinate, outside)[0] > level, outside, outside + step)
     largest, slope, pin = _largest_approach(geometry, angle, coordinate, outside)
     stops, place = largest > level, outside
-    for _ in range(BISECTIONS):
+    for _ in range(MAX_ITERATIONS):
         newton = place - (largest - level) / np.where(slope == 0.0, np.nan, slope)
         following = np.where((newton - inside) * (newton - outside) < 0.0, newton, 0.5 * (inside + outside))
-        if np.all(np.abs(following - place) < CLOSE):
+        if np.all(np.abs(following - place) < ROUND_OFF):
             break
         place = following
         largest, slope, pin = _largest_approach(geometry, angle, coordinate, place)
@@ -223,16 +206,9 @@ def _farthest_free(
 def backlash(
     geometry: ContactGeometry | Sequence[ContactGeometry], crank_angle: FloatArray, coordinate: int
 ) -> FloatArray:
-    """Return the backlash of disc (2) or wheel (−1): rotation between first contact in both senses, rad.
+    """Return the backlash of disc (2) or wheel (−1): rotation between first contact in both senses, rad, shape (positions,).
 
-    Parameters
-    ----------
-    geometry : ContactGeometry or sequence of them
-        The drive; of several discs on one wheel each, which turns until the first of them touches.
-    crank_angle : array, shape (positions,)
-        φ_C, rad.
-    coordinate : {2, −1}
-        What turns.
+    With several discs on one wheel `geometry` has each of them, and the wheel turns until the first of them touches.
     """
     discs = [geometry] if isinstance(geometry, ContactGeometry) else geometry
     forward = np.min([first_contact(disc, crank_angle, coordinate, 1)[0] for disc in discs], axis=0)
@@ -243,21 +219,10 @@ def backlash(
 def unloaded_transmission_error(
     geometry: ContactGeometry | Sequence[ContactGeometry], crank_angle: FloatArray, driving_sign: int = 1
 ) -> FloatArray:
-    """Return the wheel angle without load and without clearances, from geometry alone (Eq. 6), rad.
+    """Return the wheel angle without load and without clearances, from geometry alone (Eq. 6), rad, shape (positions,).
 
-    Parameters
-    ----------
-    geometry : ContactGeometry or sequence of them
-        The drive; of several discs on one wheel each.
-    crank_angle : array, shape (positions,)
-        φ_C, rad.
-    driving_sign : {+1, −1}
-        Sense in which the crank drives.
-
-    Returns
-    -------
-    array, shape (positions,)
-        Wheel angle at first contact: negative when a crank driving counter-clockwise takes up the backlash.
+    The angle at first contact: negative when a crank driving counter-clockwise (`driving_sign` = +1) takes up the backlash.
+    With several discs on one wheel `geometry` has each of them.
     """
     discs = [geometry] if isinstance(geometry, ContactGeometry) else geometry
     turned = [first_contact(disc, crank_angle, WHEEL_ANGLE, -driving_sign)[0] for disc in discs]
@@ -265,7 +230,7 @@ def unloaded_transmission_error(
     return np.asarray(-driving_sign * np.min([-driving_sign * each for each in turned], axis=0))
 
 
-def carrying_pins(geometry: ContactGeometry, crank_angle: FloatArray, driving_sign: int = 1) -> NDArray[np.bool_]:
+def carrying_pins(geometry: ContactGeometry, crank_angle: FloatArray, driving_sign: int = 1) -> BoolArray:
     """Return which wheel pins can drive the wheel against its load, shape (positions, z_P).
 
     A pin carries when pressing it on the flank turns the wheel in the driving sense: the lever of its contact
@@ -276,7 +241,7 @@ def carrying_pins(geometry: ContactGeometry, crank_angle: FloatArray, driving_si
     return np.asarray(driving_sign * motion.gradient[..., WHEEL_ANGLE] < 0.0)
 
 
-def carrying_holes(geometry: ContactGeometry, crank_angle: FloatArray, driving_sign: int = 1) -> NDArray[np.bool_]:
+def carrying_holes(geometry: ContactGeometry, crank_angle: FloatArray, driving_sign: int = 1) -> BoolArray:
     """Return which pin holes can hold the disc against rotation (Eq. 2–4), shape (positions, z_PS).
 
     The product of n = (−sin θ, cos θ) at the hole and the direction from disc centre to crank axis is positive.
@@ -291,19 +256,10 @@ def carrying_rollers(
     crank_angle: FloatArray,
     load_direction: FloatArray,
     loaded_zone: float = 0.5 * np.pi,
-) -> NDArray[np.bool_]:
-    """Return which rollers stand within ± the loaded zone about a direction of load (Eq. 5), shape (positions, n_BR).
+) -> BoolArray:
+    """Return which rollers lie within ± `loaded_zone` (θ_predict, rad) of a direction (Eq. 5), shape (positions, n_BR).
 
-    Parameters
-    ----------
-    geometry : ContactGeometry
-        The drive.
-    crank_angle : array, shape (positions,)
-        φ_C, rad.
-    load_direction : array, shape (positions,)
-        Direction of the bearing force on the disc, θ_F, rad.
-    loaded_zone : float
-        θ_predict, rad.
+    `load_direction` is the direction of the bearing force on the disc, θ_F, rad, shape (positions,).
     """
     rollers = geometry.placement.roller_angles(np.atleast_1d(np.asarray(crank_angle, dtype=float)))
     away = rollers - np.atleast_1d(np.asarray(load_direction, dtype=float))[:, None]

@@ -8,8 +8,9 @@ at the distance :math:`r_P + \Delta r_P`, of the trochoid that a pin centre desc
 so flank and trochoid share their normals, and the distance of a pin from the flank is the distance of its
 centre from the trochoid. A root of the flank lies at θ = 0.
 
-A real flank departs from it by δ(θ) along that normal and its centre by the runout from the bore. With a
-deviation it is a curve of its own, F = c − (offset − δ) n: everything below is then asked of F itself.
+An actual flank deviates from it by δ(θ) along that normal and its centre by the runout from the bore. With a
+deviation the flank F = c − (offset − δ) n is no parallel curve of a trochoid: normals, curvature and nearest points are then
+those of F.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.arrays import ComplexArray, FloatArray, by_drive, has_rows, take_rows
+from ltca.arrays import BoolArray, ComplexArray, FloatArray, by_drive, has_rows, take_rows
 from ltca.drive.parts import Drive
 from ltca.errors import ConvergenceError
 from ltca.geometry.flank_deviation import ProfileDeviation
@@ -28,9 +29,11 @@ from ltca.geometry.placement import BatchScalar
 from ltca.geometry.rotation import integer_power, small_turn, unit
 
 SETTLED = 1e-8
-"""Step of Newton's method, rad, that leaves a contact point wrong by less than round-off: convergence is quadratic."""
-THERE = 1e-13
-"""Step, rad, that is round-off itself: the curve is that of the place before it."""
+"""Last step of Newton's method, rad: convergence is quadratic, the error that is left is below round-off."""
+MAX_ITERATIONS = 100
+"""Newton steps to a contact point."""
+ROUND_OFF = 1e-13
+"""Step within round-off, rad: the curve before it is that after it."""
 
 
 class CurvePoints(NamedTuple):
@@ -52,7 +55,7 @@ class CurvePoints(NamedTuple):
 
 
 class CurveFrame(NamedTuple):
-    """The moving frame of a curve over θ, which has the speed |c′| and turns by w dθ."""
+    """Moving frame of a curve over θ, with the speed |c′| and the rotation w dθ."""
 
     point: ComplexArray
     """mm."""
@@ -67,7 +70,7 @@ class CurveFrame(NamedTuple):
 
 
 class NearestPoint(NamedTuple):
-    """Where the normal of the flank passes through a point: θ and the curve of `FlankProfile.contact_curve` there."""
+    """Foot of the normal through a point: θ and the curve of `FlankProfile.contact_curve` there."""
 
     parameter: FloatArray
     curve: CurvePoints
@@ -119,29 +122,14 @@ class FlankProfile:
             deviation=ProfileDeviation.of_errors(drive.disc.profile_errors),
         )
 
-    @property
-    def is_batch(self) -> bool:
-        """Whether every position has a flank of its own."""
-        return has_rows(self)
-
-    def of_points(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> FlankProfile:
+    def of_points(self, rows: NDArray[np.intp] | BoolArray) -> FlankProfile:
         """Return the flanks of points that belong to these positions: itself for one drive."""
         return take_rows(self, rows)
 
     def locus(self, parameter: FloatArray) -> CurvePoints:
-        """Return the design trochoid about its own centre, and its first two derivatives by the parameter θ.
+        """Return the design trochoid about its centre at θ, rad, and its first two derivatives by θ.
 
-        A flank that is turned against the holes has its trochoid turned with it.
-
-        Parameters
-        ----------
-        parameter : array of float
-            θ, rad.
-
-        Returns
-        -------
-        c, dc, ddc : arrays of complex, same shape
-            mm, mm/rad, mm/rad².
+        The trochoid of a flank that is turned against the holes is turned with it.
         """
         return self.at(unit(parameter))
 
@@ -165,17 +153,9 @@ class FlankProfile:
         return self.offset if self.deviation is None else 0.0
 
     def contact_curve(self, direction: ComplexArray) -> CurvePoints:
-        """Return a curve whose inward parallel at `contact_offset` is the actual flank: nearest points are common.
+        """Return a curve, at e^{iθ}, whose inward parallel at `contact_offset` is the actual flank: nearest points are common.
 
-        Parameters
-        ----------
-        direction : array of complex
-            e^{iθ}.
-
-        Returns
-        -------
-        CurvePoints
-            The trochoid; with a deviation the flank itself.
+        It is the trochoid; with a deviation the flank itself.
         """
         if self.deviation is None:
             c, dc, ddc = self.at(direction)
@@ -197,15 +177,7 @@ class FlankProfile:
         return CurveFrame(c, tangent, speed, ds, w, (back * dddc).imag / square - 2.0 * w * ds / speed)
 
     def deviated(self, frame: CurveFrame, direction: ComplexArray) -> CurvePoints:
-        """Return the flank itself, as it deviates from its design.
-
-        Parameters
-        ----------
-        frame : CurveFrame
-            Of the design at e^{iθ}.
-        direction : array of complex
-            e^{iθ}.
-        """
+        """Return the actual flank with its deviation, from the frame of the design at e^{iθ}."""
         if self.deviation is None:
             raise ValueError("the flank is as designed")
         # The frame t, n = −it turns with w: t′ = −w n, n′ = w t. Derivatives of F = c − d n, d = offset − δ.
@@ -255,23 +227,16 @@ class FlankProfile:
         """Return the effective radius of curvature of flank and pin: 1/ρ = 1/r_pin + κ_flank, mm."""
         return 1.0 / (1.0 / np.asarray(pin_radius) + self.curvature(parameter))
 
-    def nearest_parameter(self, point: ComplexArray, start: FloatArray, *, limit: int = 100) -> FloatArray:
+    def nearest_parameter(self, point: ComplexArray, start: FloatArray) -> FloatArray:
         """Return θ of the flank point whose normal passes through a point; see `nearest_point`."""
-        return self.nearest_point(point, start, limit=limit).parameter
+        return self.nearest_point(point, start).parameter
 
-    def nearest_point(
-        self,
-        point: ComplexArray,
-        start: FloatArray,
-        *,
-        limit: int = 100,
-        across_root: bool = True,
-    ) -> NearestPoint:
+    def nearest_point(self, point: ComplexArray, start: FloatArray) -> NearestPoint:
         """Find the flank point whose normal passes through a point.
 
         Newton's method on g = Re(conj(c′)(c − p)) = 0 with the step bounded to a fifth of a tooth and, when it does not
-        settle soon, kept between a place with g < 0 and one with g > 0: near a centre of curvature the slope of g
-        vanishes and Newton's method alone creeps or runs away. The minimum next to the start is found; for points
+        converge soon, bracketed between a place with g < 0 and one with g > 0: near a centre of curvature the slope of g
+        vanishes and Newton's method alone is slow or diverges. It finds the minimum next to the start; for points
         about a pin radius away from the flank that is the nearest one.
 
         Parameters
@@ -280,10 +245,6 @@ class FlankProfile:
             Points in the disc frame, mm.
         start : array of float, same shape
             First guess of θ, rad.
-        limit : int
-            Iterations.
-        across_root : bool
-            Whether to look at the other side of a sharp root as well.
 
         Returns
         -------
@@ -296,44 +257,47 @@ class FlankProfile:
             When a point does not settle; the history holds the largest steps.
         """
         theta = np.array(np.broadcast_to(start, np.shape(point)), dtype=float)
-        found = self._settle(point, theta, limit)
-        return self._nearer_side(point, found) if across_root else found
+        return self._nearer_side(point, self._settle(point, theta))
 
-    def _settle(self, point: ComplexArray, start: FloatArray, limit: int) -> NearestPoint:
-        """Find the foot next to every start; points that have settled are left alone as soon as they are most of them."""
+    def _settle(self, point: ComplexArray, start: FloatArray) -> NearestPoint:
+        """Find the foot next to every start; points that have converged are dropped as soon as they are the majority.
+
+        A loop of its own rather than a library's: it runs in every iteration of an equilibrium, with Halley's correction from
+        the slopes of two steps, and the curve at the foot comes out of it.
+        """
         flank, theta, direction = self, start, unit(start)
         every, settled, left = theta, direction, np.arange(theta.size)
         bound = 0.4 * np.pi / self.reduction_ratio
         low, high = np.full(theta.shape, -np.inf), np.full(theta.shape, np.inf)
         last = slope_before = np.zeros(theta.shape)
         history: list[float] = []
-        for iteration in range(limit):
+        for iteration in range(MAX_ITERATIONS):
             curve = flank.contact_curve(direction)
             away = curve.point - point
             tangent = curve.tangent
             speed = tangent.real**2 + tangent.imag**2
             value = tangent.real * away.real + tangent.imag * away.imag
             slope = speed + curve.second.real * away.real + curve.second.imag * away.imag
-            # Beyond a centre of curvature the slope is negative, the point next to a largest distance: leave it.
+            # Beyond a centre of curvature the slope is negative, near a maximum of the distance: step away from it.
             safe = np.maximum(np.abs(slope), 1e-3 * speed)
             step = value / safe
             if iteration:  # Halley's correction, the bend of g from the last two slopes
                 bend = np.divide(slope_before - slope, last, out=np.zeros(theta.shape), where=last != 0.0)
                 step /= 1.0 - (0.5 * step * bend / safe).clip(-0.5, 0.5)
             step = step.clip(-bound, bound)
-            if iteration > 5:  # nearly every point is there by now: only those that creep need a bracket
+            if iteration > 5:  # nearly every point has converged by now: only slow ones need a bracket
                 low, high = np.where(value < 0.0, theta, low), np.where(value > 0.0, theta, high)
-                # A step starts at one end. Nearly to the other is outside, too: they would send each other back for ever.
+                # A step starts at one end. One nearly to the other end counts as outside: it could go back and forth forever.
                 outside = np.abs(step) > 0.95 * (high - low)
                 step[outside] = theta[outside] - 0.5 * (low[outside] + high[outside])
             theta = theta - step
             slope_before, last = slope, step
             moved = np.abs(step)
             history.append(float(np.max(moved, initial=0.0)))
-            if history[-1] > THERE:
+            if history[-1] > ROUND_OFF:
                 direction = direction * small_turn(-step)
             if history[-1] <= SETTLED and theta.size == every.size:
-                return NearestPoint(theta, self.contact_curve(direction) if history[-1] > THERE else curve)
+                return NearestPoint(theta, self.contact_curve(direction) if history[-1] > ROUND_OFF else curve)
             going = moved > SETTLED
             if 2 * np.count_nonzero(going) < going.size:
                 every, settled = _with_places(every, left, theta), _with_places(settled, left, direction)
@@ -349,8 +313,8 @@ class FlankProfile:
     def _nearer_side(self, point: ComplexArray, found: NearestPoint) -> NearestPoint:
         """Change to the other side of the root where the flank is nearer there.
 
-        With e z_P/R_C near 1 the path of a pin centre is nearly a cusp at the root, and a pin that has left it by
-        more than its radius there has a nearest point on either side.
+        With e z_P/R_C near 1 the path of a pin centre is nearly a cusp at the root, and a pin farther from it than its radius
+        of curvature there has a nearest point on either side.
         """
         u = self.reduction_ratio
         bend = np.asarray(self.eccentricity * u * u - self.generating_radius)
@@ -365,10 +329,10 @@ class FlankProfile:
         if not np.any(doubtful):
             return found
         # The doubtful points alone; of a batch of flanks the positions that have some.
-        rows = np.nonzero(np.any(doubtful, axis=1))[0] if self.is_batch else doubtful
+        rows = np.nonzero(np.any(doubtful, axis=1))[0] if has_rows(self) else doubtful
         flank = self.of_points(rows)
         point, start = point[rows], np.where(doubtful, 2.0 * root - theta, theta)[rows]
-        other = flank.nearest_point(point, start, across_root=False)
+        other = flank._settle(point, start)
         nearer = doubtful[rows] & (flank._off_path(point, other) < away[rows])
 
         def chosen(here: NDArray[Any], there: NDArray[Any]) -> NDArray[Any]:
@@ -380,7 +344,7 @@ class FlankProfile:
         return NearestPoint(chosen(theta, other.parameter), curve)
 
     def _off_path(self, point: ComplexArray, found: NearestPoint) -> FloatArray:
-        """How far points are from the path of a pin that touches the flank, mm."""
+        """Distance of points from the path of the centre of a pin that touches the flank, mm."""
         return np.asarray(np.abs(np.abs(found.curve.point - point) - (self.offset - self.contact_offset)))
 
     def distance(self, point: ComplexArray, parameter: FloatArray) -> FloatArray:
@@ -399,13 +363,13 @@ class FlankProfile:
         return float(self.generating_radius + self.eccentricity - self.offset)
 
 
-def _picked(places: NDArray[np.bool_], *values: Any) -> Any:
-    """Values at some places of arrays, as columns."""
+def _picked(places: BoolArray, *values: Any) -> Any:
+    """Values of arrays at some places, as columns."""
     return [each[places][:, None] for each in values]
 
 
 def _with_places(values: NDArray[Any], places: NDArray[np.intp], fresh: NDArray[Any]) -> NDArray[Any]:
-    """Return a copy with some values replaced, which are counted through all axes."""
+    """Return a copy with the values at some places, counted through all axes, replaced."""
     changed = values.copy()
     changed.ravel()[places] = fresh.ravel()
     return changed

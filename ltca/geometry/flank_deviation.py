@@ -1,7 +1,7 @@
 r"""Deviation of the flank from its design along the design normal, δ(θ), with two derivatives.
 
-Harmonics, :math:`\delta = \mathrm{Re} \sum_k (a_k - i b_k) e^{ik\theta}`, and a periodic cubic spline through measured points
-(twice continuously differentiable, so contact and its tangent are continuous) add up.
+It is the sum of harmonics, :math:`\delta = \mathrm{Re} \sum_k (a_k - i b_k) e^{ik\theta}`, and of a periodic cubic spline
+through measured points (twice continuously differentiable, so contact and its tangent are continuous).
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ class ProfileDeviation:
 
     @classmethod
     def of_errors(cls, errors: ProfileErrors) -> ProfileDeviation | None:
-        """Return the deviation a drive defines, None for the flank as designed."""
+        """Return the deviation that a drive defines, None for the flank as designed."""
         if errors.is_zero:
             return None
         count = len(errors.orders)
@@ -57,18 +57,15 @@ class ProfileDeviation:
 
     @property
     def bound(self) -> FloatArray:
-        """What the deviation nowhere exceeds in size, mm, shape () or (positions, 1)."""
+        """Upper bound of |δ|, mm, shape () or (positions, 1)."""
         waves = np.abs(self.amplitudes).sum(axis=-1, keepdims=self.amplitudes.ndim > 1)
         spans = np.diff(self.knots) ** np.arange(3, -1, -1)[:, None]
         return np.asarray(waves + (np.abs(self.pieces) * spans).sum(axis=0).max(initial=0.0))
 
     def value_and_derivatives(self, direction: ComplexArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return δ, δ′ and δ″ at θ, mm by powers of rad.
+        """Return δ, δ′ and δ″ at e^{iθ}, mm by powers of rad, shape (…) or (positions, …).
 
-        Parameters
-        ----------
-        direction : array of complex, shape (…) or (positions, …)
-            e^{iθ}; with a batch of flanks axis 0 is the position.
+        With a batch of flanks axis 0 is the position.
         """
         value, first, second = (np.zeros(direction.shape) for _ in range(3))
         for number, order in enumerate(self.orders):

@@ -1,4 +1,4 @@
-"""How far parts overlap as they are drawn, before any body yields: what presses a drive together without load."""
+"""Overlap of the parts as drawn, before any body yields: it preloads a drive without external load."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from math import inf, sqrt
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
 
-# Fits that are exact in the definition (r_i + 2 r_BR = r_o) must survive the rounding of their sum.
+# A fit that is exact in the definition (r_i + 2 r_BR = r_o) must not overlap by the rounding of the sum.
 ROUNDING = 1e-9
-"""Overlap that is the rounding of a sum, mm."""
+"""Overlap within the rounding of a sum, mm."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -33,12 +33,7 @@ class Interference:
 
 
 def drawn_interference(drive: Drive) -> Interference:
-    """Return how far the parts of a drive overlap, errors of single parts left out.
-
-    Parameters
-    ----------
-    drive : Drive
-        The drive; its flank without loops.
+    """Return the overlaps of the parts of a drive whose flank has no loops, errors of single parts left out.
 
     Examples
     --------
@@ -62,12 +57,9 @@ def drawn_interference(drive: Drive) -> Interference:
 
 
 def lost_play(cold: Drive, warm: Drive) -> list[str]:
-    """Return which plays of a drive its warmth has taken, and by how much parts overlap then; empty where none is gone.
+    """Return the plays of a drive that are lost at temperature and by how much parts then overlap; empty where none is lost.
 
-    Parameters
-    ----------
-    cold, warm : Drive
-        At 20 °C and at temperature (`ltca.drive.members.temperatures.warm_drive`).
+    `cold` is the drive at 20 °C, `warm` at temperature (`ltca.drive.members.temperatures.warm_drive`).
     """
     before, after = drawn_plays(cold), drawn_plays(warm)
     return [
@@ -82,19 +74,10 @@ def _zero(value: float) -> float:
 
 
 def drawn_plays(drive: Drive) -> dict[str, float]:
-    """Return the least play of any disc, by what touches, discs in the middle of their eccentrics as these are.
+    """Return the least play of any disc by the parts that touch, discs in the middle of their eccentrics, mm.
 
-    The circles of holes and shaft pins, and those of bores and several cranks, are as far apart as they are in the mean.
-
-    Parameters
-    ----------
-    drive : Drive
-        At one temperature.
-
-    Returns
-    -------
-    dict of str to float
-        mm, negative where parts overlap as drawn, without the rounding of sums.
+    It is negative where parts overlap as drawn by more than the rounding of sums. The distance between the circles of holes and
+    shaft pins, and between those of bores and several cranks, is the mean one.
     """
     found = {"wheel pins and flank": -inf, "rollers and races": -inf, "shaft pins and holes": -inf}
     for single in single_discs(drive):
@@ -114,13 +97,7 @@ def drawn_plays(drive: Drive) -> dict[str, float]:
 
 
 def preload_warning(drive: Drive) -> str | None:
-    """Return what to say of a drive whose parts overlap as drawn, None where none do.
-
-    Parameters
-    ----------
-    drive : Drive
-        The drive; errors of its single parts are not looked at.
-    """
+    """Return a warning of a drive whose parts overlap as drawn, None where none do; errors of single parts are left out."""
     discs = [drawn_interference(single) for single in single_discs(drive)]
     named = [
         f"{what} by {overlap:.4g} mm ({field})"

@@ -1,4 +1,4 @@
-r"""What the geometry answers of pairs at a pose: approaches, their derivatives by the pose, and what bounds them elsewhere.
+"""Approaches of pairs at a pose, their derivatives by the pose, and bounds of approaches at other poses.
 
 All arrays carry the position on axis 0 and the pair on axis 1. Approaches are positive where the bodies are pressed
 together.
@@ -9,13 +9,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ltca.arrays import ComplexArray, FloatArray
+from ltca.arrays import BoolArray, ComplexArray, FloatArray
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 
 MARGIN = 1e-6
-"""Gap below which a pin is never left out, mm: far above round-off of places, far below any play."""
+"""Gap below which a pin is never left out, mm: far above the round-off of places, far below any play."""
 
 
 def dot(first: ComplexArray, second: ComplexArray) -> FloatArray:
@@ -33,7 +32,7 @@ class PairMotion:
     """Approach of pairs of one kind, with first and second derivatives by the pose.
 
     The second derivatives of a pair have few terms: κ s sᵀ with s = `along`, the slip of the contact along its
-    tangent, and turning terms made of s again. They are only formed summed over the pairs, see `bend`.
+    tangent, and terms of rotation made of s as well. They are only formed summed over the pairs, see `bend`.
 
     Attributes
     ----------
@@ -55,10 +54,7 @@ class PairMotion:
     def bend(self, load: FloatArray) -> FloatArray:
         """Return Σ F ∂²δ/∂q² over the pairs, the geometric part of the tangent, shape (positions, coordinates, coordinates).
 
-        Parameters
-        ----------
-        load : array, shape (positions, pairs)
-            F, N.
+        Loads F are in N, shape (positions, pairs).
         """
         return self._sum(load, self.bending, self.along)
 
@@ -99,7 +95,7 @@ class FlankMotion(PairMotion):
     effective_radius: FloatArray
     point: ComplexArray
     turning: ComplexArray
-    left_out: NDArray[np.bool_]
+    left_out: BoolArray
 
     @staticmethod
     def _sum(load: FloatArray, bending: FloatArray, along: FloatArray) -> FloatArray:
@@ -115,7 +111,7 @@ class FlankMotion(PairMotion):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class KnownPins:
-    """Approaches of wheel pins and flank at one pose or other, from which those at every pose are bounded.
+    """Approaches of wheel pins and flank at some pose, from which those at other poses are bounded.
 
     Attributes
     ----------
@@ -129,16 +125,13 @@ class KnownPins:
 
     @classmethod
     def of(cls, motion: FlankMotion) -> KnownPins:
-        """Return what pairs of pins and flank tell of the pins."""
+        """Return the pins of pairs of pins and flank."""
         return cls(approach=motion.approach, point=motion.point, turning=motion.turning)
 
-    def may_touch(self, point: ComplexArray) -> NDArray[np.bool_]:
-        """Tell which pins may touch the flank: a distance changes by no more than the point moves it is measured from.
+    def may_touch(self, point: ComplexArray) -> BoolArray:
+        """Return which pins may touch the flank, from their centres in the frame of the disc, mm, shape (positions, z_P).
 
-        Parameters
-        ----------
-        point : array of complex, shape (positions, z_P)
-            Centres of the pins in the frame of the disc, mm.
+        A distance changes by no more than the displacement of the point from which it is measured.
         """
         room, moved = -MARGIN - self.approach, point - self.point
         return np.asarray((room < 0.0) | (moved.real**2 + moved.imag**2 > room * room))
@@ -164,15 +157,7 @@ class BoreMotion:
     gradient: ComplexArray
 
     def each(self, values: ComplexArray, rollers: int) -> ComplexArray:
-        """Return values of the bores as those of their rollers, shape (positions, rollers, …).
-
-        Parameters
-        ----------
-        values : array, shape (positions, cranks, …)
-            One of the attributes.
-        rollers : int
-            All of them.
-        """
+        """Return values of the bores, shape (positions, cranks, …), as those of all their rollers, (positions, rollers, …)."""
         return values if values.shape[1] == 1 else np.repeat(values, rollers // values.shape[1], axis=1)
 
 
@@ -197,12 +182,9 @@ class RollerRays:
     def touching_distance(self, displacement: ComplexArray) -> FloatArray:
         """Return the distance s at which each roller just touches the bore, mm, shape (positions, rollers).
 
-        Parameters
-        ----------
-        displacement : array of complex, shape (positions, rollers) or (positions, 1)
-            Bore centre from inner-race centre, mm.
+        `displacement` is the bore centre from the inner-race centre, mm, shape (positions, rollers) or (positions, 1).
         """
         along = dot(self.direction, displacement)
         across = (self.direction.conjugate() * displacement).imag
-        # A disc displaced sideways by more than the bore play touches nowhere on the ray: nearest point instead.
+        # A disc displaced sideways by more than the bore play does not meet the ray: the nearest point instead.
         return np.asarray(along + np.sqrt(np.maximum(self.bore_play**2 - across**2, 0.0)))

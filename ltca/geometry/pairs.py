@@ -1,6 +1,6 @@
-r"""How far each pair is pressed together at a pose, and how that changes with the pose (Eq. 45–64).
+"""Approach of each pair at a pose and its derivatives by the pose (Eq. 45–64).
 
-A pose q is that of `ltca.geometry.coordinates`; one of four coordinates says that cranks and wheel stay where they are.
+A pose q is that of `ltca.geometry.coordinates`; a pose of four coordinates leaves cranks and wheel in place.
 All arrays carry the position on axis 0 and the pair on axis 1. Approaches are positive where the bodies are pressed
 together.
 """
@@ -12,7 +12,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.arrays import ComplexArray, FloatArray, by_drive
+from ltca.arrays import BoolArray, ComplexArray, FloatArray, by_drive
 from ltca.drive.parts import Drive
 from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION, RIGID, WHEEL_ANGLE, Coordinates, X, Y
 from ltca.geometry.flank import FlankProfile
@@ -28,13 +28,13 @@ from ltca.geometry.pair_motion import (
 from ltca.geometry.placement import Placement
 from ltca.geometry.rotation import unit
 
-FARTHEST = 0.1
-"""Most that a contact is moved along the flank by its slope, rad times the tooth number."""
+MAX_EXTRAPOLATION = 0.1
+"""Largest change of θ by which a first guess is extrapolated, rad, times the tooth number."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Pins:
-    """Wheel pins as the disc sees them, complex numbers of one shape, mm.
+    """Wheel pins relative to the disc, complex numbers of one shape, mm.
 
     Attributes
     ----------
@@ -69,16 +69,18 @@ class _Pins:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ContactGeometry:
-    """The drive as its contact pairs see it.
+    """Places of the contact pairs of a drive and their approaches at poses.
+
+    Crank angles φ_C are in rad, shape (positions,); poses q have the shape (positions, coordinates).
 
     Attributes
     ----------
     placement, profile : Placement, FlankProfile
-        Where the parts stand, and the flank.
+        Places of the parts, and the flank.
     coordinates : Coordinates
         Of a pose in which every member moves that can.
     tip_share : float or array, shape (positions, 1)
-        Displacement of a shaft pin at the disc by that of its tip, where a ring ties the tips.
+        Displacement of a shaft pin at the disc per displacement of its tip, where a ring ties the tips.
     """
 
     placement: Placement
@@ -99,7 +101,7 @@ class ContactGeometry:
         return np.stack((np.ones_like(places), np.full_like(places, 1j), 1j * places), axis=-1)
 
     def moved_by_ring(self, pose: FloatArray) -> ComplexArray | None:
-        """Return how far the ring moves the shaft pins at the disc, shape (positions, z_PS), mm; None without ring."""
+        """Return the displacement of the shaft pins at the disc by the ring, shape (positions, z_PS), mm; None without ring."""
         coordinates = self.coordinates_of(pose)
         return _moved(pose[:, coordinates.ring_place], self._by_ring) if coordinates.ring else None
 
@@ -109,17 +111,11 @@ class ContactGeometry:
         return np.asarray(np.asarray(self.tip_share)[..., None] * self.tips_by_ring)
 
     def coordinates_of(self, pose: FloatArray) -> Coordinates:
-        """Return the coordinates that a pose has: those of rigid members where it has no more than four."""
+        """Return the coordinates of a pose: those of rigid members where it has no more than four."""
         return Coordinates() if pose.shape[-1] == RIGID else self.coordinates
 
     def nominal_parameter(self, crank_angle: FloatArray) -> FloatArray:
-        """Return θ of each pin's contact at the nominal pose: (φ_C + 2πi)/z_P for Δz = 1, on a flank that is not turned, rad.
-
-        Parameters
-        ----------
-        crank_angle : array, shape (positions,)
-            φ_C, rad.
-        """
+        """Return θ of each pin's contact at the nominal pose, rad: (φ_C + 2πi)/z_P for Δz = 1 on a flank that is not turned."""
         pins = np.angle(self.placement.wheel_pin_centres)
         if self.profile.is_turned:
             pins = pins - np.angle(self.profile.turn)
@@ -146,7 +142,7 @@ class ContactGeometry:
         shifts : array of complex, shape (positions, z_P), optional
             Displacements of the pins in the fixed frame, mm.
         known : KnownPins, optional
-            Of the same drives: pins that cannot have come as far as the flank are left out, see `complete_flank`.
+            Of the same drives: pins that cannot touch the flank are left out, see `complete_flank`.
         """
         pins = self._pins(crank_angle, pose, shifts)
         if start is None:
@@ -158,17 +154,7 @@ class ContactGeometry:
     def complete_flank(
         self, crank_angle: FloatArray, pose: FloatArray, motion: FlankMotion, shifts: ComplexArray | None = None
     ) -> FlankMotion:
-        """Return the pairs of which `flank` left some out as those of all pins.
-
-        Parameters
-        ----------
-        crank_angle, pose : array, array
-            As for `flank`.
-        motion : FlankMotion
-            What it answered.
-        shifts : array of complex, shape (positions, z_P), optional
-            As for `flank`.
-        """
+        """Return pairs of which `flank` left some pins out with these computed as well; arguments as for `flank`."""
         if not motion.left_out.any():
             return motion
         pins = self._pins(crank_angle, pose, shifts)
@@ -185,17 +171,9 @@ class ContactGeometry:
     def reach_beyond(self, other: ContactGeometry) -> FloatArray:
         """Return a bound of how much deeper a pin is in the flank than that of another drive at the same place, mm.
 
-        It grows by its radius, and by no more than the flanks are apart: by their centres, the circles that generate them,
-        their offsets, turns and deviations.
-
-        Parameters
-        ----------
-        other : ContactGeometry
-            Of one drive with as many pins, or of as many positions.
-
-        Returns
-        -------
-        array, shape (z_P,) or (positions, z_P)
+        It is the difference of the radii plus a bound of the distance between the flanks: by their centres, generating circles,
+        offsets, turns and deviations. The other drive has as many pins, or is a batch of as many positions; shape (z_P,) or
+        (positions, z_P).
         """
         mine, theirs = self.profile, other.profile
         apart = np.abs(np.asarray(mine.centre - theirs.centre)) + np.abs(mine.offset - theirs.offset)
@@ -209,13 +187,13 @@ class ContactGeometry:
 
     @property
     def _pin_reaches(self) -> FloatArray:
-        """From the nominal centre of a wheel pin to where it touches: its radius less the play in its seat."""
+        """Distance from the nominal centre of a wheel pin to where it touches: its radius less the play in its seat, mm."""
         return self.placement.wheel_pin_radii - self.placement.wheel_pin_plays
 
     def _pins(self, crank_angle: FloatArray, pose: FloatArray, shifts: ComplexArray | None) -> _Pins:
         place, coordinates = self.placement, self.coordinates_of(pose)
         disc_centre = (place.race_centre(crank_angle) + pose[:, X] + 1j * pose[:, Y])[:, None]
-        if coordinates.wheel:  # a wheel that moves is a disc that moves the other way
+        if coordinates.wheel:  # a displacement of the wheel is one of the disc in the opposite direction
             wheel = coordinates.wheel_place
             disc_centre = disc_centre - (pose[:, wheel.start] + 1j * pose[:, wheel.start + 1])[:, None]
         turned = place.wheel_rotation(crank_angle)[:, None] + pose[:, WHEEL_ANGLE, None]
@@ -233,12 +211,12 @@ class ContactGeometry:
         )
 
     def _touching_some(
-        self, pins: _Pins, start: FloatArray, near: NDArray[np.bool_], known: KnownPins, coordinates: Coordinates
+        self, pins: _Pins, start: FloatArray, near: BoolArray, known: KnownPins, coordinates: Coordinates
     ) -> FlankMotion:
-        """Pairs of the pins that are near, each as a position of its own, among those of which something is known."""
+        """Pairs of the pins that are near, computed as positions of one pin, among those of the pins known from another pose."""
         places = np.flatnonzero(near)
         rows = places // near.shape[1]
-        chosen, most = pins.take(places, rows), FARTHEST / self.profile.reduction_ratio
+        chosen, most = pins.take(places, rows), MAX_EXTRAPOLATION / self.profile.reduction_ratio
         turned = dot(known.turning.take(places), chosen.point[:, 0] - known.point.take(places)).clip(-most, most)
         found = self._touching(
             self.profile.of_points(rows), chosen, (start.take(places) + turned)[:, None], coordinates
@@ -246,7 +224,7 @@ class ContactGeometry:
         approach, parameter = known.approach.copy(), start.copy()
         point, turning = known.point.copy(), known.turning.copy()
         bending = np.zeros(near.shape)
-        # Of pins left out some radius of the flank: what no place of it has, laws of profiled pins do not hold.
+        # Pins left out get some radius that the flank has: laws of profiled pins refuse others.
         if places.size:
             effective_radius = np.full(near.shape, found.effective_radius[0, 0])
         else:
@@ -332,7 +310,7 @@ class ContactGeometry:
         return PairMotion(approach=approach, gradient=gradient, along=along, bending=1.0 / distance)
 
     def bores(self, crank_angle: FloatArray, pose: FloatArray) -> BoreMotion:
-        """Return where the bores stand; arguments as for `flank`."""
+        """Return the displacements of the bores; arguments as for `flank`."""
         place, coordinates = self.placement, self.coordinates_of(pose)
         arm = place.bore_centres * unit(pose[:, DISC_ROTATION, None])
         moved = place.race_centre(crank_angle)[:, None] - place.race_centres(crank_angle) + arm
@@ -346,7 +324,7 @@ class ContactGeometry:
         return BoreMotion(displacement=moved, arm=arm, gradient=gradient)
 
     def rollers(self, crank_angle: FloatArray) -> RollerRays:
-        """Return the cage rays of the rollers (Eq. 48); they depend on the crank angle alone."""
+        """Return the cage rays of the rollers (Eq. 48), which depend on the crank angle alone."""
         place = self.placement
         return RollerRays(
             direction=place.roller_rays(crank_angle),
@@ -356,5 +334,5 @@ class ContactGeometry:
 
 
 def _moved(ring: FloatArray, by_ring: ComplexArray) -> ComplexArray:
-    """Displacements at coordinates of the ring, shape (positions, 3), by those of its unit steps."""
+    """Displacements at coordinates of the ring, shape (positions, 3), from those at unit coordinates."""
     return np.asarray(np.matmul(ring[:, None], by_ring.swapaxes(-1, -2))[:, 0])

@@ -1,4 +1,4 @@
-"""Where pins, rollers and holes stand and how large they are, errors included.
+"""Places and radii of pins, rollers and holes, errors included.
 
 Each part is given in the frame of the body that carries it, as complex numbers in mm: wheel pins in the
 wheel frame, holes in the disc frame, shaft pins in the fixed frame, rollers by their cage angle. Numbering
@@ -22,7 +22,7 @@ from ltca.geometry.rotation import unit
 from ltca.quantities import QUANTITIES
 
 BatchScalar: TypeAlias = float | FloatArray
-"""What is one number for one drive, and an array of shape (positions, 1) for a batch of drives."""
+"""A number for one drive, an array of shape (positions, 1) for a batch of drives."""
 
 
 def _filled(values: Sequence[float], count: int) -> FloatArray:
@@ -41,7 +41,7 @@ def _rays(count: int) -> ComplexArray:
 
 
 def _of_shaft(drive: Drive) -> dict[str, Any]:
-    """Pins of the pin shaft and their holes; none where there is no pin shaft."""
+    """Pins of the pin shaft and their holes; empty arrays without pin shaft."""
     shaft, count = drive.pin_shaft, drive.number_of_holes
     if shaft is None:
         nowhere, nothing = np.zeros(0, dtype=complex), np.zeros(0)
@@ -59,14 +59,14 @@ def _of_shaft(drive: Drive) -> dict[str, Any]:
 
 
 def _wheel_pin_plays(drive: Drive) -> FloatArray:
-    """Play of each wheel pin in its slot, which its own diameter changes, or of each sleeve on its pin."""
+    """Play of each wheel pin in its slot, less half the error of its diameter, or of each sleeve on its pin."""
     wheel, count = drive.pin_wheel, drive.pin_wheel.number_of_pins
     own = 0.5 * _filled(wheel.pin_errors.diameter, count) if wheel.seat.kind == "slot" else np.zeros(count)
     return np.asarray(wheel.seat_play - own)
 
 
 def _bore_centres(drive: Drive) -> ComplexArray:
-    """Centres of the bores in the frame of the disc, the errors of their places included."""
+    """Centres of the bores in the frame of the disc, errors of place included."""
     places, count = np.array(drive.crank.places), drive.crank.number
     errors = drive.disc.of[0].bore_errors if drive.disc.of else None
     if errors is None:
@@ -79,14 +79,14 @@ def _bore_centres(drive: Drive) -> ComplexArray:
 class Placement:
     """Places and radii of all pins, rollers and holes, of one drive or of a batch of drives.
 
-    What differs between the drives of a batch has the position on axis 0, single numbers the shape (positions, 1).
+    Arrays that differ between the drives of a batch have the position on axis 0, single numbers the shape (positions, 1).
 
     Attributes
     ----------
     wheel_pin_centres : array of complex, shape (z_P,)
         In the wheel frame, from the wheel's axis, mm.
     wheel_pin_radii : array of float, shape (z_P,)
-        Of what the flank touches, pins or sleeves, mm.
+        Of the pins, or of their sleeves, mm.
     wheel_pin_plays : array of float, shape (z_P,)
         Of loose pins in their slots, of sleeves on their pins, in radius, mm. Without friction the forces on a free pin are
         collinear: seen from the flank, a pin of radius r in a slot of radius r_s is a fixed one of radius r − (r_s − r).
@@ -208,7 +208,7 @@ class Placement:
         return unit(np.asarray(crank_angle)[..., None] + self.eccentric_phase)
 
     def eccentric_direction(self, crank_angle: FloatArray) -> ComplexArray:
-        """Return the unit vector of the disc's eccentricity, in the mean of its eccentrics, in the fixed frame."""
+        """Return the unit vector of the disc's eccentricity, at the mean phase of its eccentrics, in the fixed frame."""
         phase = self.eccentric_phase.mean(axis=-1)
         return unit(np.asarray(crank_angle) + phase)
 
@@ -219,12 +219,12 @@ class Placement:
     def race_centre(self, crank_angle: FloatArray) -> ComplexArray:
         """Return the nominal place of the disc in the fixed frame, mm: the centre of its inner race, the mean of several.
 
-        That of one is e·e^{i(φ_C + ζ)} from the crank axis (Eq. 47).
+        With one crank it is e·e^{i(φ_C + ζ)} from the crank axis (Eq. 47).
         """
         return np.asarray(self.race_centres(crank_angle).mean(axis=-1))
 
     def race_velocity(self, crank_angle: FloatArray) -> ComplexArray:
-        """Return how `race_centre` moves by the crank angle, mm/rad, shape (…,)."""
+        """Return the derivative of `race_centre` by the crank angle, mm/rad, shape (…,)."""
         return np.asarray((1j * self.eccentricity * self.eccentric_directions(crank_angle)).mean(axis=-1))
 
     def roller_angles(self, crank_angle: FloatArray) -> FloatArray:
@@ -242,7 +242,7 @@ class Placement:
 
 
 def _flat(value: complex | FloatArray | ComplexArray) -> complex | FloatArray | ComplexArray:
-    """A single number as it is, the column of a batch as one number for each position."""
+    """A single number as it is, the column of a batch as an array of one axis."""
     return value[:, 0] if isinstance(value, np.ndarray) else value
 
 
@@ -254,7 +254,7 @@ def position_angles(positions: int) -> FloatArray:
 def place_coordinates(
     drives: Mapping[str, Drive], discs: Sequence[Sequence[Placement]], crank_angle: FloatArray
 ) -> dict[str, Any]:
-    """Return the coordinates of a dataset that need no load: numbers and places of the parts of every disc, crank angles."""
+    """Return the coordinates of a dataset without loads: crank angles, numbers and places of the parts of every disc."""
     first = discs[0][0]
 
     def of_discs(name: str) -> NDArray[Any]:

@@ -1,18 +1,18 @@
-r"""How far the wheel can turn while no body gives: the free play of all clearances together, crank held, discs floating.
+r"""Free play of the wheel: its rotation while no body deforms, with all clearances together, crank held, discs floating.
 
-Of each disc the farthest wheel angle at which no pair interferes is a programme of four unknowns, the pose of the disc and the
-wheel's angle, with curved bounds. It is solved by linear programmes in turn: gaps are taken as linear about a pose,
+The farthest wheel angle of a disc at which no pair interferes is an optimisation over four unknowns, the pose of the disc and
+the angle of the wheel, with curved bounds. It is solved by successive linear programmes: gaps are linearised at a pose,
 
 .. math:: g_i - \nabla\delta_i \cdot d \ge -t,
 
-the wheel is turned as far as they allow and t, what parts overlap there, is made least before that; the exact gaps at the new
-pose give the next programme. Corners of flanks are reached as by Newton's method. Races and holes hold a disc by arcs, and a
-farthest pose may lie where an arc and the turning have one tangent, which is no corner: arcs are convex, so their tangents of
-earlier poses stay bounds and close it in. The programmes are solved by the dual simplex method, all positions at once.
+the wheel is turned as far as they allow after t, the overlap of parts there, is made least; the exact gaps at the new
+pose give the next programme. Corners of flanks are reached as by Newton's method. Races and holes bound a disc by arcs, and a
+farthest pose may lie where an arc and the turning have one tangent, which is no corner: arcs are convex, so their tangents at
+earlier poses remain bounds. The programmes are solved by the dual simplex method, all positions at once.
 
-The wheel is common to all discs: the play is what the angles of all of them have in common. Where parts overlap in every pose the
-drive is preloaded: parts that overlap where they do so least keep that overlap, and the play is what the others leave, none where
-they hold the wheel themselves. What a drive yields beyond is the loaded analysis's.
+The wheel is common to all discs: the play is the intersection of the ranges of its angle for all of them. Where parts overlap
+in every pose the drive is preloaded: parts keep the overlap of the pose in which it is least, and the play is what the other
+parts leave, none where the overlapping ones hold the wheel. Displacements beyond that are those of the loaded analysis.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.arrays import FloatArray, take_positions, take_rows
+from ltca.arrays import BoolArray, FloatArray, take_positions, take_rows
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_ROTATION, RIGID, WHEEL_ANGLE
 from ltca.geometry.pair_motion import KnownPins
@@ -32,33 +32,41 @@ from ltca.geometry.pairs import ContactGeometry
 Rows = NDArray[np.intp]
 
 CLOSED = 1e-9
-"""Overlap that counts as none, mm: a thousandth of what tells a clearance from none."""
+"""Overlap treated as none, mm: a thousandth of the least clearance that counts as one."""
 RELIEF = 2e-11
-"""Overlap that is always allowed, so that parts without any clearance leave a place to be in, mm."""
-GAIN = 1e-7
-"""Way of the wheel at e z_P that a programme has to promise to be followed, mm: some 1e-5 arcmin."""
+"""Overlap that is always allowed, mm, so that parts without any clearance have a feasible pose."""
+LEAST_GAIN = 1e-7
+"""Displacement of the wheel at e z_P, mm, that a programme must promise to be followed: some 1e-5 arcmin."""
 PENALTY = 1e6
-"""What overlap costs against way of the wheel: wedges of arcs gain some thousand mm for each mm of overlap."""
+"""Cost of overlap relative to displacement of the wheel: wedges of arcs gain some thousand mm per mm of overlap."""
 KEPT_GAP = 5e-11
-"""Overlap beyond that with which a pose is taken as found, mm; thousands of times the round-off of drives of a metre."""
-NUDGE = 1e-8
-"""Cost of the disc's own movements, different ones, so that no two corners of a programme are equally good."""
-STEP = 0.25
-"""Largest step of a programme as a part of the smaller of pin radius and eccentricity: gaps are nearly linear within it."""
-ROUNDS, SHRINKING, PIVOTS = 60, 12, 400
-"""Programmes, those after which steps get shorter, pivots of each."""
-KEPT = 8
-"""Programmes of which the tangents of arcs are kept."""
+"""Overlap beyond the allowed one at which a pose is accepted, mm; thousands of times the round-off of drives of a metre."""
+TIE_BREAK = 1e-8
+"""Small costs, all different, of the coordinates of the disc, so that no two corners of a programme are equally good."""
+MAX_STEP = 0.25
+"""Largest step of a programme by the smaller of pin radius and eccentricity: gaps are nearly linear within it."""
+MAX_PROGRAMMES = 60
+"""Linear programmes of one position."""
+SHRINK_AFTER = 12
+"""Programmes after which steps are shortened."""
+MAX_PIVOTS = 400
+"""Pivots of one programme."""
+KEPT_PROGRAMMES = 8
+"""Number of last programmes of which the tangents of arcs are kept."""
 DEGENERATE = 1e-9
-"""Determinant of a corner, of normals of length one, below which no programme is started from it."""
-FEWER = 0.7
-"""Part of a batch that still pivots below which it is gathered."""
+"""Determinant of the unit normals of a corner below which no programme is started from it."""
+GATHER_BELOW = 0.7
+"""Fraction of a batch that still pivots below which those rows are gathered."""
 GOLDEN = 0.5 * (5.0**0.5 - 1.0)
-"""Part of a turn between positions."""
-POSITIONS, REFINEMENTS, PLACES = 48, 2, 3
-"""Positions of a turn, rounds of more of them, and largest ones about which these lie."""
-BESIDE = np.array([-0.75, -0.5, -0.25, 0.25, 0.5, 0.75])
-"""Where these lie, by the mean distance of positions in the first round."""
+"""Fraction of a turn between positions."""
+POSITIONS = 48
+"""Positions of the first round over a turn."""
+REFINEMENTS = 2
+"""Rounds of further positions about the largest plays and the least."""
+LARGEST_REFINED = 3
+"""Number of largest plays about which they lie."""
+REFINED_PLACES = np.array([-0.75, -0.5, -0.25, 0.25, 0.5, 0.75])
+"""Places of the further positions, by the mean distance of positions in the first round."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -68,18 +76,18 @@ class Play:
     Attributes
     ----------
     forward, backward : array, shape (positions,)
-        Wheel angles at which it stops, counter-clockwise and clockwise, rad; alike where it is not free.
+        Wheel angles at which it stops, counter-clockwise and clockwise, rad; equal where it is not free.
     preloaded : array of bool, shape (positions,)
-        Whether parts overlap in every pose; forward and backward are then what those leave that overlap no more than they must.
+        Whether parts overlap in every pose; forward and backward then hold for the least overlap.
     """
 
     forward: FloatArray
     backward: FloatArray
-    preloaded: NDArray[np.bool_]
+    preloaded: BoolArray
 
     @property
     def play(self) -> FloatArray:
-        """Between the stops, rad, shape (positions,)."""
+        """Angle between the stops, rad, shape (positions,)."""
         return np.asarray(self.forward - self.backward)
 
 
@@ -94,7 +102,7 @@ class TurnPlay:
     crank_angle : float
         φ_C of the largest, rad.
     preloaded : float
-        Part of the positions looked at where parts overlap in every pose.
+        Fraction of the positions where parts overlap in every pose.
     """
 
     largest: float
@@ -104,12 +112,7 @@ class TurnPlay:
 
 
 def preload_words(part: float) -> str:
-    """Return what is said beside a free play of a drive that is preloaded over a part of the turn; nothing for none.
-
-    Parameters
-    ----------
-    part : float
-        Of the turn (`TurnPlay.preloaded`).
+    """Return a remark beside the free play of a drive that is preloaded over a fraction of the turn; empty for none.
 
     Examples
     --------
@@ -122,28 +125,18 @@ def preload_words(part: float) -> str:
 
 
 def play_over_a_turn(discs: Sequence[ContactGeometry]) -> TurnPlay:
-    """Return the largest and the least free play of the wheel over one turn of the crank.
+    """Return the largest and the least free play of the wheel over one turn of the crank; `discs` are all those of one drive.
 
-    Flank, holes and rollers pass with periods of their own: positions of equal steps see few phases of some of them. So they lie
-    at multiples of the golden section, and more of them about the largest and the least until these are within some 0.2 %.
-
-    Parameters
-    ----------
-    discs : sequence of ContactGeometry
-        Of every disc of one drive.
-
-    Raises
-    ------
-    ConvergenceError
-        As `free_play`.
+    Flank, holes and rollers have different periods: equally spaced positions would see few phases of some of them. So they lie
+    at multiples of the golden section, with more of them about the largest and the least until these are within some 0.2 %.
     """
     angle = 2.0 * np.pi * np.mod(GOLDEN * np.arange(POSITIONS), 1.0)
     found = free_play(discs, angle)
     play, preloaded, spread = found.play, float(found.preloaded.mean()), 2.0 * np.pi / POSITIONS
     for _ in range(REFINEMENTS):
         order = np.argsort(play, kind="stable")
-        near = np.concatenate([order[:1], order[-PLACES:]])
-        between = (angle[near][:, None] + spread * BESIDE).ravel()
+        near = np.concatenate([order[:1], order[-LARGEST_REFINED:]])
+        between = (angle[near][:, None] + spread * REFINED_PLACES).ravel()
         angle, play = np.append(angle, between), np.append(play, free_play(discs, between).play)
         spread *= 0.3
     most = int(np.argmax(play))
@@ -165,7 +158,7 @@ def free_play(discs: Sequence[ContactGeometry], crank_angle: FloatArray, *, over
     crank_angle : array, shape (positions,)
         Held φ_C, rad.
     overlap : float or array, shape (positions,)
-        How far parts may overlap, mm.
+        Allowed overlap of parts, mm.
 
     Raises
     ------
@@ -186,8 +179,8 @@ def free_play(discs: Sequence[ContactGeometry], crank_angle: FloatArray, *, over
             )
             preloaded[pressed] = True
         forward, backward = np.minimum(forward, turned[0]), np.maximum(backward, turned[1])
-    # Of discs that are free by themselves no angle may suit all.
-    preloaded |= (backward - forward) * max(_reach(disc) for disc in discs) > GAIN
+    # Discs may each be free without any angle common to all.
+    preloaded |= (backward - forward) * max(_reach(disc) for disc in discs) > LEAST_GAIN
     shut = forward < backward
     middle = 0.5 * (forward + backward)
     return Play(forward=np.where(shut, middle, forward), backward=np.where(shut, middle, backward), preloaded=preloaded)
@@ -196,8 +189,8 @@ def free_play(discs: Sequence[ContactGeometry], crank_angle: FloatArray, *, over
 def _beside_preload(disc: ContactGeometry, angle: FloatArray, room: FloatArray, poses: FloatArray) -> FloatArray:
     """Return the farthest wheel angles of a disc that is pressed in every pose, forward and backward, shape (2, positions).
 
-    Rollers that are too thick press a disc and leave its flank as free as it was: pairs keep the overlap that they have in the
-    middle of the two poses with the least of it, and the wheel turns in what the others leave.
+    Rollers that are too thick press a disc and leave its flank as free as before: pairs keep the overlap of the mean of the two
+    poses of least overlap, and the wheel turns as far as the other pairs allow.
     """
     rows, sense = np.tile(np.arange(angle.size), 2), np.repeat([1.0, -1.0], angle.size)
     programme = _Programme(take_rows(disc, rows), angle[rows], room[rows])
@@ -208,16 +201,9 @@ def _beside_preload(disc: ContactGeometry, angle: FloatArray, room: FloatArray, 
 
 
 def largest_overlap(geometry: ContactGeometry, crank_angle: FloatArray, pose: FloatArray) -> FloatArray:
-    """Return how far parts of one disc overlap in poses, mm, shape (positions,); negative: the least gap.
+    """Return the largest overlap of parts of one disc in poses, mm, shape (positions,); negative: the least gap.
 
-    Parameters
-    ----------
-    geometry : ContactGeometry
-        Of one disc.
-    crank_angle : array, shape (positions,)
-        φ_C, rad.
-    pose : array, shape (positions, 4)
-        q of `ltca.geometry.pairs`.
+    Poses have four coordinates, shape (positions, 4).
     """
     angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
     gap, _, _ = _Programme(geometry, angle).gaps(np.arange(angle.size), pose)
@@ -225,7 +211,7 @@ def largest_overlap(geometry: ContactGeometry, crank_angle: FloatArray, pose: Fl
 
 
 def rigid_poses(geometry: ContactGeometry, crank_angle: FloatArray, sense: int) -> FloatArray:
-    """Return the poses of one disc in which the wheel is turned as far as rigid bodies allow.
+    """Return the poses of one disc in which the wheel is turned as far as rigid bodies allow, shape (positions, 4).
 
     Parameters
     ----------
@@ -234,12 +220,7 @@ def rigid_poses(geometry: ContactGeometry, crank_angle: FloatArray, sense: int) 
     crank_angle : array, shape (positions,)
         Held φ_C, rad.
     sense : {+1, −1}
-        Counter-clockwise or clockwise; −1 is where the load of a crank driving counter-clockwise turns it.
-
-    Returns
-    -------
-    array, shape (positions, 4)
-        q of `ltca.geometry.pairs`.
+        Counter-clockwise or clockwise; the load of a crank driving counter-clockwise turns it clockwise.
 
     Raises
     ------
@@ -259,35 +240,29 @@ def rigid_poses(geometry: ContactGeometry, crank_angle: FloatArray, sense: int) 
     return pose
 
 
-def rigid_play(geometry: ContactGeometry, crank_angle: FloatArray) -> FloatArray:
-    """Return the play of the wheel with the crank held and one disc floating, rad, shape (positions,)."""
-    forward = rigid_poses(geometry, crank_angle, 1)[:, WHEEL_ANGLE]
-    return forward - rigid_poses(geometry, crank_angle, -1)[:, WHEEL_ANGLE]
-
-
 def _reach(geometry: ContactGeometry) -> float:
     """Lever of the rotations, e z_P, mm."""
     return float(geometry.placement.eccentricity.max()) * geometry.placement.reduction_ratio
 
 
 class _Programme:
-    """The gaps of a disc at a batch of positions, and the farthest wheel angle that they leave."""
+    """The gaps of a disc at a batch of positions, and the farthest wheel angle that they allow."""
 
     def __init__(self, geometry: ContactGeometry, angle: FloatArray, room: FloatArray | None = None) -> None:
         place = geometry.placement
         self.geometry, self.angle = geometry, angle
         self.room = RELIEF + (np.zeros((angle.size, 1)) if room is None else room[:, None])
         self.lever = np.array([1.0, 1.0, _reach(geometry), _reach(geometry)])
-        self.bound = STEP * min(float(place.wheel_pin_radii.min()), float(place.eccentricity.min()))
+        self.bound = MAX_STEP * min(float(place.wheel_pin_radii.min()), float(place.eccentricity.min()))
         self.pitch = np.pi / place.reduction_ratio
         motion = geometry.flank(angle, np.zeros((angle.size, RIGID)))
         self.known, self.parameter = KnownPins.of(motion), motion.parameter
 
     def gaps(self, rows: Rows, pose: FloatArray) -> tuple[FloatArray, FloatArray, int]:
-        """Exact gaps of all pairs, mm, their slopes by scaled coordinates, and how many of them are arcs, which stand first."""
+        """Exact gaps of all pairs, mm, their derivatives by scaled coordinates, and the number of arcs, which come first."""
         geometry, angle = take_rows(self.geometry, rows), self.angle[rows]
         rays, bores = geometry.rollers(angle), geometry.bores(angle, pose)
-        # A roller on the inner race presses on the bore with |s n − d| less the bore play.
+        # A roller that rests on the inner race overlaps the bore by |s n − d| less the bore play.
         count = rays.direction.shape[1]
         arm = rays.outermost * rays.direction - bores.each(bores.displacement, count)
         length = np.abs(arm)
@@ -300,21 +275,21 @@ class _Programme:
         return gap + self.room[rows], slope, gap.shape[1] - flank.approach.shape[1]
 
     def farthest(self, sense: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the poses of the farthest wheel angles in these senses, and what parts overlap there, mm."""
+        """Return the poses of the farthest wheel angles in these senses, and the overlap of parts there, mm."""
         size = self.angle.size
         pose, left, bound = np.zeros((size, RIGID)), np.zeros(size), np.full(size, self.bound)
         going = np.arange(size)
         tangents, pairs = np.zeros((size, 0, RIGID + 1)), np.zeros((size, 0), dtype=np.intp)
         start: Rows | None = None
         history: list[float] = []
-        for turn in range(ROUNDS):
+        for turn in range(MAX_PROGRAMMES):
             place = pose[going] * self.lever
             gap, slope, arcs = self.gaps(going, pose[going])
             overlap = np.maximum(-gap.min(axis=1), 0.0)
-            # −slope · d ≤ gap + t; tangents of earlier poses are told from the origin.
+            # −slope · d ≤ gap + t; tangents of earlier poses are relative to the origin.
             before = tangents[going]
             room = before[..., RIGID] + np.einsum("bij,bj->bi", before[..., :RIGID], place)
-            # A disc that turns far moves its holes on arcs of their own: a tangent that the exact gap passes bounds nothing.
+            # A disc that turns far moves its holes on arcs as well: a tangent that the exact gap violates is dropped.
             holds = room >= np.take_along_axis(gap, pairs[going], axis=1) - KEPT_GAP
             before, room = np.where(holds[..., None], before, 0.0), np.where(holds, room, 0.0)
             step, least, active = _farthest(
@@ -329,21 +304,21 @@ class _Programme:
             found = np.where(
                 least > CLOSED,
                 overlap - least <= CLOSED + 1e-3 * least,
-                (overlap <= KEPT_GAP) & (np.abs(gain) <= GAIN),
+                (overlap <= KEPT_GAP) & (np.abs(gain) <= LEAST_GAIN),
             )
             history.append(float(np.max(np.abs(np.where(found[:, None], 0.0, step)))))
             stay = ~found
             if not stay.any():
                 return pose, left
-            told = np.where(active < arcs, np.maximum(active, -1), -1)
-            drop = max(tangents.shape[1] - (KEPT - 1) * (RIGID + 1), 0)
+            chosen_arcs = np.where(active < arcs, np.maximum(active, -1), -1)
+            drop = max(tangents.shape[1] - (KEPT_PROGRAMMES - 1) * (RIGID + 1), 0)
             tangents = np.concatenate([tangents[:, drop:], np.zeros((size, RIGID + 1, RIGID + 1))], axis=1)
             pairs = np.concatenate([pairs[:, drop:], np.zeros((size, RIGID + 1), dtype=np.intp)], axis=1)
-            tangents[going, -(RIGID + 1) :] = _tangents_of(slope, gap, place, told)
-            pairs[going, -(RIGID + 1) :] = np.maximum(told, 0)
-            if turn >= SHRINKING:
+            tangents[going, -(RIGID + 1) :] = _tangents_of(slope, gap, place, chosen_arcs)
+            pairs[going, -(RIGID + 1) :] = np.maximum(chosen_arcs, 0)
+            if turn >= SHRINK_AFTER:
                 bound[going] = 0.7 * np.minimum(bound[going], np.abs(step).max(axis=1))
-            # What stopped this programme is where the next one begins; tangents of the oldest go.
+            # The active constraints of this programme start the next one; the oldest tangents are dropped.
             old = active >= gap.shape[1]
             start = np.where(old, np.where(active - drop < gap.shape[1], -1, active - drop), active)[stay]
             going, step = going[stay], step[stay]
@@ -362,13 +337,13 @@ class _Programme:
 
 
 def _tangents_of(slope: FloatArray, gap: FloatArray, place: FloatArray, chosen: Rows) -> FloatArray:
-    """Chosen gaps as linear functions of the scaled pose, shape (rows, chosen, 5); nothing, 0 ≤ ∞, for −1."""
+    """Chosen gaps as linear functions of the scaled pose, shape (rows, chosen, 5); zeros, which bound nothing, for −1."""
     pair = np.maximum(chosen, 0)
     along = np.take_along_axis(slope, pair[..., None], axis=1)
     offset = np.take_along_axis(gap, pair, axis=1) - np.einsum("bij,bj->bi", along, place)
-    told = np.concatenate([along, offset[..., None]], axis=2)
-    told[chosen < 0] = 0.0
-    return told
+    tangents = np.concatenate([along, offset[..., None]], axis=2)
+    tangents[chosen < 0] = 0.0
+    return tangents
 
 
 def _farthest(
@@ -387,7 +362,7 @@ def _farthest(
     bound : array, shape (rows,)
         Of every coordinate, mm.
     start : array of int, shape (rows, 5), optional
-        What stopped a programme much like this one.
+        Active constraints of a similar programme.
 
     Returns
     -------
@@ -396,7 +371,7 @@ def _farthest(
     overlap : array, shape (rows,)
         t, mm.
     active : array of int, shape (rows, 5)
-        The pairs that stop it; numbers below zero are bounds.
+        The active constraints: pairs; numbers below zero are bounds.
     """
     rows, pairs, size = normal.shape
     fixed = 2 * size + 1
@@ -405,17 +380,17 @@ def _farthest(
     matrix[:, 2 * size, size] = -1.0
     matrix[:, fixed:, :size], matrix[:, fixed:, size] = normal, -1.0
     limit = np.concatenate([np.repeat(bound[:, None], 2 * size, axis=1), np.zeros((rows, 1)), room], axis=1)
-    wish = np.tile(np.array([1.0, 1.7, 2.3, 3.1, 0.0]) * NUDGE, (rows, 1))
-    wish[:, size - 1] += sense
-    wish[:, size] = -PENALTY
-    # The corner of the bounds that the wish points to, without overlap, is the best of all without pairs.
-    first = np.where(wish[:, :size] > 0.0, 0, size) + np.arange(size)
+    objective = np.tile(np.array([1.0, 1.7, 2.3, 3.1, 0.0]) * TIE_BREAK, (rows, 1))
+    objective[:, size - 1] += sense
+    objective[:, size] = -PENALTY
+    # Without pairs the optimum is the corner of the bounds in the direction of the objective, without overlap.
+    first = np.where(objective[:, :size] > 0.0, 0, size) + np.arange(size)
     first = np.concatenate([first, np.full((rows, 1), 2 * size)], axis=1)
-    basis = _as_good_as_first(matrix, wish, first, first if start is None else start + fixed)
+    basis = _as_good_as_first(matrix, objective, first, first if start is None else start + fixed)
     answer, stopping = np.zeros((rows, size + 1)), basis.copy()
-    # Rows whose corner keeps all bounds stay as they are until moving the others together is worth it.
+    # Rows that have reached their optimum stay in the batch until gathering the others pays.
     going = np.arange(rows)
-    for _ in range(PIVOTS):
+    for _ in range(MAX_PIVOTS):
         each = np.arange(going.size)[:, None]
         inverse = np.linalg.inv(matrix[each, basis])
         point = np.matmul(inverse, limit[each, basis][..., None])
@@ -426,11 +401,11 @@ def _farthest(
         answer[going], stopping[going] = point[..., 0], basis
         if not over.any():
             break
-        if over.mean() < FEWER:
-            going, matrix, limit, wish = going[over], matrix[over], limit[over], wish[over]
+        if over.mean() < GATHER_BELOW:
+            going, matrix, limit, objective = going[over], matrix[over], limit[over], objective[over]
             basis, inverse, entering, each = basis[over], inverse[over], entering[over], each[: over.sum()]
             over = over[over]
-        price = np.matmul(wish[:, None], inverse)[:, 0]
+        price = np.matmul(objective[:, None], inverse)[:, 0]
         share = np.matmul(matrix[each, entering[:, None]], inverse)[:, 0]
         rises = share > 1e-11
         ratio = np.where(rises, np.maximum(price, 0.0) / np.where(rises, share, 1.0), np.inf)
@@ -440,11 +415,11 @@ def _farthest(
     return answer[:, :size], answer[:, size], stopping - fixed
 
 
-def _as_good_as_first(matrix: FloatArray, wish: FloatArray, first: Rows, start: Rows) -> Rows:
-    """Corners to start from: those where the wish is within what stops it, as the dual method needs it, or the first."""
+def _as_good_as_first(matrix: FloatArray, objective: FloatArray, first: Rows, start: Rows) -> Rows:
+    """Return dual feasible corners to start from, as the dual simplex method needs them: `start`, otherwise the first."""
     each = np.arange(first.shape[0])[:, None]
     start = np.where((start < matrix.shape[1]).all(axis=1, keepdims=True), start, first)
     known = np.abs(np.linalg.det(matrix[each, start])) > DEGENERATE
     start = np.where(known[:, None], start, first)
-    price = np.matmul(wish[:, None], np.linalg.inv(matrix[each, start]))[:, 0]
+    price = np.matmul(objective[:, None], np.linalg.inv(matrix[each, start]))[:, 0]
     return np.where(np.all(price >= 0.0, axis=1, keepdims=True), start, first)

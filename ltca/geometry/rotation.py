@@ -1,4 +1,4 @@
-"""Points of the unit circle without trigonometry where products do: e^{iφ}, its integer powers and small turns."""
+"""Points of the unit circle, by products instead of trigonometry where possible: e^{iφ}, its integer powers and small turns."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
-r"""True separation of two touching surfaces along their common tangent (Eq. 17–19, 53–58, 65).
+"""True separation of two touching surfaces along their common tangent (Eq. 17–19, 53–58, 65).
 
-At the distance l from the contact point along the tangent a circle of radius r has left it by r − √(r² − l²); the
-flank by h(l), found from its own equation. To second order both are the parabola l²/(2ρ) of the tables; the
-higher orders are what ``direct`` adds.
+At the distance l from the contact point along the tangent a circle of radius r has departed from it by r − √(r² − l²), and
+the flank by h(l), from its equation. To second order both are the parabola l²/(2ρ) of the tables; ``direct`` includes the
+higher orders.
 """
 
 from __future__ import annotations
@@ -13,20 +13,15 @@ from ltca.arrays import FloatArray
 from ltca.errors import ConvergenceError
 from ltca.geometry.flank import FlankProfile
 
+MAX_ITERATIONS = 40
+"""Newton steps to a point of the flank at a distance along the tangent."""
+
 
 def circle_departure(tangent_distance: FloatArray, radius: float) -> FloatArray:
-    """Return r − √(r² − l²), how far a circle has left its tangent, mm (Eq. 17).
+    """Return r − √(r² − l²), the departure of a circle from its tangent at the distance l, mm (Eq. 17).
 
-    Parameters
-    ----------
-    tangent_distance : array
-        l, mm.
-    radius : float
-        r, mm; negative for the concave side (a bore), whose departure is negative.
-
-    Notes
-    -----
-    Written l²/(r + √(r² − l²)), which does not cancel. Beyond the radius the circle has no points: infinite.
+    The radius is negative for the concave side (a bore), whose departure is negative. Computed as l²/(r + √(r² − l²)), without
+    cancellation; infinite beyond the radius, where the circle has no points.
     """
     size = abs(radius)
     square = np.asarray(tangent_distance, dtype=float) ** 2
@@ -35,31 +30,11 @@ def circle_departure(tangent_distance: FloatArray, radius: float) -> FloatArray:
     return np.asarray(np.copysign(departure, radius))
 
 
-def flank_departure(
-    profile: FlankProfile, parameter: float, tangent_distance: FloatArray, *, limit: int = 40
-) -> FloatArray:
-    """Return how far the flank has left its tangent at a contact point (Eq. 18–19).
+def flank_departure(profile: FlankProfile, parameter: float, tangent_distance: FloatArray) -> FloatArray:
+    """Return h, the departure of the flank from its tangent at the contact point θ, mm, positive into the disc (Eq. 18–19).
 
-    Parameters
-    ----------
-    profile : FlankProfile
-        The flank.
-    parameter : float
-        Its contact point θ, rad.
-    tangent_distance : array
-        l along the tangent in the sense of growing θ, mm.
-    limit : int
-        Newton iterations.
-
-    Returns
-    -------
-    array, same shape
-        h, mm, positive where the flank falls back into the disc.
-
-    Raises
-    ------
-    ConvergenceError
-        When the flank has no point at such a distance next to the contact point.
+    `parameter` is θ, rad; `tangent_distance` is l along the tangent in the sense of growing θ, mm. ConvergenceError where the
+    flank has no point at such a distance next to the contact point.
     """
     at = np.array(parameter)
     origin = profile.flank(at)
@@ -68,7 +43,7 @@ def flank_departure(
     theta = np.full(tangent_distance.shape, float(parameter))
     bound = 0.4 * np.pi / profile.reduction_ratio
     history: list[float] = []
-    for _ in range(limit):
+    for _ in range(MAX_ITERATIONS):
         rate = (profile.flank_tangent(theta) * np.conj(tangent)).real
         away = ((profile.flank(theta) - origin) * np.conj(tangent)).real - tangent_distance
         floor = 0.05 * np.abs(profile.locus(theta).tangent)

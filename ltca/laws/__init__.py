@@ -3,21 +3,19 @@
 Modules in the order data passes:
 
 =====================  ============================================================
-contact_law            What the mechanics needs of a load–approach law, whoever provides it: a table, a grid, a
-                       finite-element fit
+contact_law            Base class of the laws: load, stiffness, energy, pressure, half-width, approach at a load
+spring                 A contact that yields like a linear spring
 slenderness_curve      Smooth curves over the slenderness of a line contact: quintic splines on uniform knots, fast
                        to evaluate
 line_contact           Load–approach law of an uncrowned line contact between two half-spaces
 shipped_tables         Makes the tables of cylinders that ship with the package
 profiled_line_contact  Load–approach law of line contacts that are crowned or relieved along their length
-generator_law          The tabulated law of a roller or pin with the generator that the drive gives it
+generator_law          The tabulated law of a roller or pin, with the profile along its length that the drive defines
 plane_strain           Load–approach law of a line contact in plane strain, with a datum
 seats                  Conforming seats: contact over a given arc, series over the load, the wall of a sleeve
 conforming             A pin in a bore that is hardly larger: arc, pressure and approach, with a datum; a sleeve
                        on its pin
-beam                   Round shafts and pins as beams: how far they yield at some planes under the forces of discs at these
-                       planes
-series                 Springs, and the approach at a given load
-backed                 A contact backed by what carries its part: the seat of a loose pin or sleeve, and the bending of the pin
+beam                   Round shafts and pins as beams: deflections at the planes of the discs under the forces of the discs
+backed                 A contact in series with the seat of a loose pin or sleeve and with the bending of the pin
 =====================  ============================================================
 """

@@ -1,81 +1,65 @@
-r"""A contact backed by what carries its part: the seat of a loose pin or sleeve, and the bending of the pin.
+r"""A contact in series with the seat of a loose pin or sleeve and with the bending of the pin.
 
-Contact, seat and beam carry the same load F in series,
+Contact, seat and beam carry the same load F,
 
 .. math:: \delta = \epsilon + s(F) + c F, \qquad F = f(\epsilon),
 
-with the contact's own law f, the approach s of the seat and the flexibility c of the pin. A pin that yields along the common
-normal leaves the place of the contact where it is, so this is exact.
+with the law f of the surfaces in contact, the approach s of the seat and the flexibility c of the pin. A pin that yields along
+the common normal leaves the place of the contact where it is, so this is exact.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Protocol
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ltca.arrays import FloatArray, by_drive
 from ltca.drive.parts import Drive, PinShaft, PinWheel
 from ltca.errors import ConvergenceError
 from ltca.laws.beam import End, PinBeam
 from ltca.laws.conforming import ConformingLaw
-from ltca.laws.contact_law import ContactLaw, EnergyLaw
-from ltca.laws.series import SpringLaw
+from ltca.laws.contact_law import ContactLaw
 
 SLOT_DATUM = 3.0
-"""Radius, in radii of the slot, of the circle in the wheel against which a slot's yielding is measured."""
-MOST, SHARPNESS = 0.6, 8.0
-"""Part of a contact's approach that may be taken off, and how sharply what is more is bounded."""
-NEAR = 1e-7
-"""Last step, as a part of the contact's own approach, of contacts in series: loads are right to its square."""
+"""Radius, in radii of the slot, of the circle in the wheel relative to which the displacement of a slot is measured."""
+MAX_OVERLAP = 0.6
+"""Largest share of a contact's approach that is subtracted as counted twice."""
+OVERLAP_SHARPNESS = 8.0
+"""Exponent of the smooth bound by `MAX_OVERLAP`: the larger, the sharper its corner."""
+MAX_ITERATIONS = 80
+"""Newton steps of contact, seat and beam in series."""
+SETTLED = 1e-7
+"""Last step, relative to the contact's approach, at which they end: loads are accurate to its square."""
 GAUSS_POINTS, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(16)
 HALF_SPACE_DATUM = 0.7
 """Depth, in lengths of the contact, down to which a half-space of finite length counts: 0.68 to 0.72 (docs/theory/seats.md)."""
 
 
-class SeatLaw(Protocol):
-    """Law of a round part in a bore that is a little wider."""
-
-    def approach_and_compliance(self, load: FloatArray, play: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the approach at a load and its derivative, mm and mm/N, for bores wider by `play` in radius, mm."""
-        ...
-
-    def energy(self, load: FloatArray, play: FloatArray) -> FloatArray:
-        """Return ∫ F ds up to a load, N·mm."""
-        ...
-
-    def half_angle(self, load: FloatArray, play: FloatArray) -> FloatArray:
-        """Return half the angle of the arc under pressure, rad."""
-        ...
-
-    def largest_pressure(self, load: FloatArray, play: FloatArray) -> FloatArray:
-        """Return the largest pressure, MPa."""
-        ...
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
-class BackedLaw:
-    """Contacts of one kind with what is behind each.
+class BackedLaw(ContactLaw):
+    """Contacts of one kind in series with the seats of their pins and the bending of these.
 
     Attributes
     ----------
-    contact : EnergyLaw
-        Of the contact itself.
-    seat : SeatLaw or None
-        What the seats yield.
+    contact : ContactLaw
+        Law of the surfaces in contact.
+    seat : ConformingLaw or None
+        Law of the pins, or their sleeves, in their seats.
     play : array
-        Play of each seat, shape (pairs,) or (positions, pairs), mm.
+        Radial play of the seats, shape (pairs,) or (positions, pairs), mm.
     flexibility : float
-        c of the pin's bending, mm/N; drives of one batch have the same.
+        c of the pin's bending, mm/N; equal for all drives of a batch.
     overlap : float
-        What the contact's law counts of a sleeve below half its wall, where the sleeve's own law begins, mm/N: it is taken
-        off, up to `MOST` of the contact's approach. Where it would be more the contact is as wide as the wall, and no law holds.
+        Compliance counted twice, mm/N: that of a sleeve below half its wall, where the law of the sleeve begins, is part of the
+        contact's law as well. It is subtracted, up to `MAX_OVERLAP` of the contact's approach; where it would be more, the
+        contact is as wide as the wall and no law holds.
     """
 
-    contact: EnergyLaw
-    seat: SeatLaw | None
+    contact: ContactLaw
+    seat: ConformingLaw | None
     play: FloatArray = by_drive(1)
     flexibility: float = 0.0
     overlap: float = 0.0
@@ -89,59 +73,54 @@ class BackedLaw:
         return given, slope
 
     def counted_twice(self, near: FloatArray, load: FloatArray, stiffness: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return what is taken off the approach of a contact, mm, and its derivative by that: bounded smoothly."""
+        """Return what is subtracted from the approach `near` of the surfaces, smoothly bounded, mm, and its derivative by it.
+
+        `load` and `stiffness` are those of the surfaces at that approach, N and N/mm.
+        """
         if not self.overlap:
             return np.zeros_like(near), np.zeros_like(near)
-        most, whole = MOST * near, self.overlap * np.maximum(load, 1e-300)
-        part = (whole / most) ** SHARPNESS
-        bounded = whole * (1.0 + part) ** (-1.0 / SHARPNESS)
-        slope = self.overlap * stiffness / whole + MOST * part / most
+        most, whole = MAX_OVERLAP * near, self.overlap * np.maximum(load, 1e-300)
+        part = (whole / most) ** OVERLAP_SHARPNESS
+        bounded = whole * (1.0 + part) ** (-1.0 / OVERLAP_SHARPNESS)
+        slope = self.overlap * stiffness / whole + MAX_OVERLAP * part / most
         return bounded, bounded * slope / (1.0 + part)
 
-    def contact_approach(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
-        """Return the approach ε of the contacts themselves; that of open ones is the whole, mm.
-
-        Raises
-        ------
-        ConvergenceError
-            When Newton's method does not settle.
-        """
-        return self._solve(np.asarray(approach, dtype=float), effective_radius)[0]
+    def surface(self, approach: ArrayLike, effective_radius: ArrayLike) -> tuple[ContactLaw, FloatArray]:
+        """Return the law of the surfaces in contact and their approach ε, mm; that of open contacts is the whole."""
+        return self.contact, self._solve(np.asarray(approach, dtype=float), effective_radius)[0]
 
     def load_and_stiffness(self, approach: ArrayLike, effective_radius: ArrayLike) -> tuple[FloatArray, FloatArray]:
         """Return the load at an approach and its derivative, N and N/mm; zero where open."""
         _, load, stiffness = self._solve(np.asarray(approach, dtype=float), effective_radius)
         return load, stiffness
 
+    def take(self, shape: tuple[int, ...], places: Any) -> BackedLaw:
+        """Return the law of some contacts of a batch."""
+        play = np.asarray(np.broadcast_to(self.play, shape)[places])
+        return replace(self, contact=self.contact.take(shape, places), play=play)
+
     def _solve(self, delta: FloatArray, effective_radius: ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Contact approach, load, and stiffness of the whole."""
+        """Approach of the surfaces, load, and stiffness of the whole; ConvergenceError where Newton's method does not settle."""
         closed = delta > 0.0
-        found = delta.copy(), np.zeros_like(delta), np.zeros_like(delta)
+        solved = delta.copy(), np.zeros_like(delta), np.zeros_like(delta)
         if closed.any():
             radius = np.broadcast_to(np.asarray(effective_radius, dtype=float), delta.shape)[closed]
-            for all_pairs, part in zip(found, self._of_pairs(closed)._of_closed(delta[closed], radius), strict=True):
-                all_pairs[closed] = part
-        return found
-
-    def _of_pairs(self, chosen: NDArray[np.bool_]) -> BackedLaw:
-        """Law of some pairs of some positions, as one row."""
-
-        def of(values: float | FloatArray) -> FloatArray:
-            return np.asarray(np.broadcast_to(values, chosen.shape)[chosen])
-
-        law = self.contact
-        if isinstance(law, SpringLaw) and isinstance(law.stiffness, np.ndarray):
-            law = SpringLaw(stiffness=of(law.stiffness))
-        return replace(self, contact=law, play=of(self.play))
+            law = self.take(closed.shape, closed)
+            for values, part in zip(solved, law._of_closed(delta[closed], radius), strict=True):
+                values[closed] = part
+        return solved
 
     def _of_closed(self, delta: FloatArray, radius: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """The same of closed pairs: Newton's method between bounds, with the bend of the last two slopes (Halley)."""
+        """The same for closed contacts: bracketed Newton's method with Halley's correction from the last two slopes.
+
+        A loop of its own rather than a library's: it runs in every iteration of an equilibrium, and load, stiffness and the last
+        step come out of it.
+        """
         near, last, slope_before = 0.5 * delta, np.zeros_like(delta), np.zeros_like(delta)
         history: list[float] = []
-        # The approach lies between these two, and every evaluation moves one of them. It may be more than the whole where
-        # something is taken off.
+        # Every evaluation moves one of these bounds. The approach may exceed the whole where an overlap is subtracted.
         low, high = np.zeros_like(delta), np.full_like(delta, np.inf)
-        for iteration in range(80):
+        for iteration in range(MAX_ITERATIONS):
             load, stiffness = self.contact.load_and_stiffness(near, radius)
             given, slope = self.behind(load)
             off, off_slope = self.counted_twice(near, load, stiffness)
@@ -152,14 +131,14 @@ class BackedLaw:
                 bend = np.divide(steep - slope_before, last, out=np.zeros_like(delta), where=last != 0.0)
                 step = step / (1.0 - (0.5 * step * bend / steep).clip(-0.3, 0.3))
             following = near - step
-            # Next to the root round-off may have taken it for a bound.
-            outside = ((following <= 0.0) | (following < low) | (following > high)) & (np.abs(step) > NEAR * near)
+            # Next to the root a bound may be wrong by round-off.
+            outside = ((following <= 0.0) | (following < low) | (following > high)) & (np.abs(step) > SETTLED * near)
             following = np.where(outside, 0.5 * (low + np.minimum(high, 4.0 * near)), following)
             last, slope_before = following - near, steep
             history.append(float(np.max(np.abs(last) / following)))
             near = following
-            if history[-1] < NEAR:
-                # A tangent's length away from there: what is left is its square.
+            if history[-1] < SETTLED:
+                # Linearised about the last evaluation: the error is of the square of the step.
                 return near, load + stiffness * last, stiffness / steep
         raise ConvergenceError("contact and seat in series do not settle; relative change", history)
 
@@ -180,49 +159,22 @@ class BackedLaw:
         return np.asarray(self.contact.energy(near, effective_radius) + held)
 
     def mid_pressure(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
-        """Return the largest pressure of the contacts at mid-width, MPa."""
-        return self.known_contact.mid_pressure(self.contact_approach(approach, effective_radius), effective_radius)
+        """Return the largest pressure of the surfaces at mid-width, MPa."""
+        law, near = self.surface(approach, effective_radius)
+        return law.mid_pressure(near, effective_radius)
 
     def half_width(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
         """Return the contact half-width at mid-width, mm."""
-        return self.known_contact.half_width(self.contact_approach(approach, effective_radius), effective_radius)
-
-    @property
-    def outside(self) -> EnergyLaw:
-        """The law of the contact down to half the wall of a sleeve: overlap taken off, nothing behind."""
-        return replace(self, seat=None, flexibility=0.0) if self.overlap else self.contact
-
-    @property
-    def known_contact(self) -> ContactLaw:
-        """The law of the contact itself, that knows its pressures; TypeError where it knows loads alone."""
-        if not isinstance(self.contact, ContactLaw):
-            raise TypeError("the law of the contacts knows loads alone, no pressures")
-        return self.contact
-
-
-def of_pairs(law: EnergyLaw, chosen: NDArray[np.intp]) -> EnergyLaw:
-    """Return the law of some pairs of one drive, shape (positions, chosen)."""
-    return replace(law, play=law.play[chosen]) if isinstance(law, BackedLaw) else law
+        law, near = self.surface(approach, effective_radius)
+        return law.half_width(near, effective_radius)
 
 
 def back_wheel_pins(drive: Drive, contact: ContactLaw, play: FloatArray, depth: float | None = None) -> ContactLaw:
-    """Return the law of the wheel pins of a drive of one disc with what is behind them.
+    """Return the law of the wheel pins of a drive of one disc (`ltca.drive.single_discs`): contact, seats and beams in series.
 
-    Parameters
-    ----------
-    drive : Drive
-        Of one disc, at its own plane (`ltca.drive.single_discs`).
-    contact : ContactLaw
-        Of pins, or their sleeves, and flank.
-    play : array, shape (z_P,) or (positions, z_P)
-        Of each in its seat, mm.
-    depth : float, optional
-        Down to which `contact` counts a sleeve, mm; that of a half-space as long as the disc is thick by default.
-
-    Returns
-    -------
-    ContactLaw
-        That of the contact itself for fixed pins that do not bend.
+    `contact` is the law of pins, or their sleeves, and flank, returned as it is for fixed pins that do not bend; `play` is that
+    of each pin in its seat, shape (z_P,) or (positions, z_P), mm. `depth` is the depth in mm down to which `contact` counts a
+    sleeve, by default that of a half-space as long as the disc is thick.
     """
     beam, seat = wheel_pin_beam(drive), wheel_pin_seat(drive)
     if beam is None and seat is None:
@@ -233,19 +185,12 @@ def back_wheel_pins(drive: Drive, contact: ContactLaw, play: FloatArray, depth: 
     return BackedLaw(contact=contact, seat=seat, play=play, flexibility=own_flexibility(drive, beam), overlap=overlap)
 
 
-def back_shaft_pins(drive: Drive, contact: EnergyLaw, play: FloatArray, depth: float | None = None) -> EnergyLaw:
-    """Return the law of shaft pins and holes with the sleeves behind it.
+def back_shaft_pins(drive: Drive, contact: ContactLaw, play: FloatArray, depth: float | None = None) -> ContactLaw:
+    """Return the law of shaft pins and holes of a drive of one disc, with the sleeves behind it.
 
-    Parameters
-    ----------
-    drive : Drive
-        Of one disc.
-    contact : EnergyLaw
-        Of pins, or their sleeves, and holes.
-    play : array, shape (z_PS,) or (positions, z_PS)
-        Of the sleeves on their pins, mm.
-    depth : float, optional
-        Down to which `contact` counts a sleeve, mm; nowhere by default, where a spring stands for all outside.
+    `contact` is the law of pins, or their sleeves, and holes; `play` is that of the sleeves on their pins, shape (z_PS,) or
+    (positions, z_PS), mm. `depth` is the depth in mm down to which `contact` counts a sleeve; None where `contact` is a spring
+    that has nothing of the sleeve.
     """
     seat, shaft = shaft_pin_seat(drive), drive.pin_shaft
     if seat is None or shaft is None:
@@ -255,13 +200,13 @@ def back_shaft_pins(drive: Drive, contact: EnergyLaw, play: FloatArray, depth: f
 
 
 def _datum(drive: Drive, part: PinWheel | PinShaft) -> float:
-    """Depth below which the law of a sleeve itself begins, mm: half its wall, from where on any yields; less in thin discs."""
+    """Depth below which the law of a sleeve begins, mm: half its wall; less in thin discs."""
     wall = part.pin_radius - (part.seat.bore_radius or 0.0)
     return min(0.5 * wall, HALF_SPACE_DATUM * drive.disc.thickness)
 
 
 def _overlap(drive: Drive, part: PinWheel | PinShaft, depth: float) -> float:
-    """What a half-plane of the sleeve yields between that depth and another, 2 (1 − ν²) ln(D/d)/(π E L), mm/N."""
+    """Compliance of a half-plane of the sleeve between that depth and another, 2 (1 − ν²) ln(D/d)/(π E L), mm/N."""
     compliance = drive.materials.sleeve.plane_strain_compliance
     return float(2.0 * compliance * np.log(depth / _datum(drive, part)) / (np.pi * drive.disc.thickness))
 
@@ -304,7 +249,7 @@ def shaft_pin_beam(drive: Drive) -> PinBeam | None:
 
 
 def tip_share(drive: Drive) -> float:
-    """Return how far a shaft pin moves at the disc of a drive of one disc where a ring moves its tip by one; 0 without ring."""
+    """Return the displacement of a shaft pin at the disc per displacement of its tip by the ring; 0 without ring."""
     beam = shaft_pin_beam(drive)
     if beam is None or beam.ends[1] == "free":
         return 0.0
@@ -317,7 +262,7 @@ def from_start(beam: PinBeam, drive: Drive) -> FloatArray:
 
 
 def own_flexibility(drive: Drive, beam: PinBeam | None) -> float:
-    """Return what the pin of a drive of one disc yields by that disc alone, mm/N; 0 for no beam."""
+    """Return the deflection of the pin of a drive of one disc under unit load of that disc alone, mm/N; 0 without beam."""
     if beam is None:
         return 0.0
     return float(beam.flexibility(from_start(beam, drive).tolist(), drive.disc.thickness)[0, 0])

@@ -1,12 +1,12 @@
-r"""Round shafts and pins as beams: how far they yield at some planes under the forces of discs at these planes.
+r"""Round shafts and pins as beams: their deflections at the planes of the discs under the forces of the discs.
 
 A crankshaft on two elastic supports: bending alone (Euler–Bernoulli; shear and torsion are left out). The deflection at z under
-a unit force at s on a beam whose supports at 0 and L stand still is the fundamental solution :math:`|z-s|^3/12EI`, the same of
-the two reactions, and the rigid motion that brings the supports back to zero; elastic supports add their yielding along the
-straight line between them. Overhanging ends are in it.
+a unit force at s on a beam whose supports at 0 and L stand still is the fundamental solution :math:`|z-s|^3/12EI`, that of the
+two reactions, and the rigid motion that brings the supports back to zero; elastic supports add their displacement along the
+straight line between them. Overhanging ends are included.
 
 A pin between two ends (Timoshenko's beam, shear coefficient of a round section by Cowper 1966): each disc presses evenly along
-its thickness, and what counts is the mean deflection along it, so that forces and deflections belong to each other (Maxwell).
+its thickness, and deflections are means along it, so that the flexibility is symmetric (Maxwell).
 The deflection is the sum of fundamental solutions of forces :math:`|x|^3/12EI - |x|/2\kappa GA` and couples
 :math:`x|x|/4EI`, and a rigid motion; forces and couples at the ends follow from equilibrium and from how the ends are held.
 """
@@ -32,25 +32,10 @@ def shaft_flexibility(
     diameter: float,
     youngs_modulus: float,
 ) -> FloatArray:
-    """Return deflections of a shaft at its planes by unit forces at these planes, mm/N.
+    """Return deflections of a shaft at planes under unit forces at these planes, mm/N, symmetric, shape (planes, planes).
 
-    Parameters
-    ----------
-    planes : sequence of float
-        Axial places of the forces, mm.
-    supports : tuple of float
-        Axial places of the two supports, mm.
-    stiffness : tuple of float
-        Of each support, N/mm.
-    diameter : float
-        mm.
-    youngs_modulus : float
-        MPa.
-
-    Returns
-    -------
-    array, shape (planes, planes)
-        Symmetric.
+    Planes and the two supports are axial places in mm; `stiffness` is that of each support in N/mm, the diameter in mm, Young's
+    modulus in MPa.
 
     Examples
     --------
@@ -82,12 +67,14 @@ def shaft_flexibility(
 class PinBeam:
     """A round pin as a beam from 0 to its span.
 
+    Planes are the middles of the discs from the start of the pin and `width` is the thickness of each disc, both in mm.
+
     Attributes
     ----------
     span : float
         mm.
     ends : tuple of {"free", "supported", "clamped"}
-        How each end is held: not at all, free to turn, not even that.
+        How each end is held: not at all, free to turn, not free to turn.
     diameter : float
         mm.
     youngs_modulus : float
@@ -103,19 +90,7 @@ class PinBeam:
     poisson_ratio: float | None = None
 
     def flexibility(self, planes: Sequence[float], width: float) -> FloatArray:
-        """Return mean deflections along each disc under unit forces of the discs, mm/N.
-
-        Parameters
-        ----------
-        planes : sequence of float
-            Middle of each disc from the start of the pin, mm.
-        width : float
-            Thickness of each disc, mm.
-
-        Returns
-        -------
-        array, shape (discs, discs)
-            Symmetric.
+        """Return mean deflections along each disc under unit forces of the discs, mm/N, symmetric, shape (discs, discs).
 
         Examples
         --------
@@ -134,45 +109,22 @@ class PinBeam:
         return np.asarray(0.5 * (found + found.T))
 
     def deflection(self, at: float, middle: float, width: float) -> float:
-        """Return the deflection at one place under a unit force spread evenly about another, mm/N.
-
-        Parameters
-        ----------
-        at, middle : float
-            From the start of the pin, mm.
-        width : float
-            Length the force is spread over, mm.
-        """
+        """Return the deflection at one place under a unit force spread evenly over `width` about another, mm/N."""
         held = self._held(np.array([middle]), width)
         own = self._mean(np.array([at - middle]), width)
         return float((own + self._point(np.array([at]))[:, :6] @ held)[0, 0])
 
     def tip_shape(self, planes: Sequence[float], width: float) -> FloatArray:
-        """Return how far the pin moves along each disc, in the mean, where its far end is moved by one.
+        """Return the mean displacement along each disc when the far end is moved by one, shape (discs,).
 
-        Parameters
-        ----------
-        planes, width
-            As for `flexibility`.
-
-        Returns
-        -------
-        array, shape (discs,)
-            By reciprocity also the part of each disc's force that the far end carries.
+        By reciprocity it is also the share of the force of each disc that the far end carries.
         """
         return np.asarray(-self._held(np.asarray(planes, dtype=float), width)[2])
 
     def moments(self, at: FloatArray, planes: Sequence[float], width: float) -> FloatArray:
-        """Return bending moments under unit forces of the discs, mm, shape (places, discs + 1).
+        """Return bending moments at places under unit forces of the discs, mm, shape (places, discs + 1).
 
-        The last column is that of the far end moved by one, N (by mm).
-
-        Parameters
-        ----------
-        at : array, shape (places,)
-            From the start of the pin, mm.
-        planes, width
-            As for `flexibility`.
+        Places are in mm from the start of the pin. The last column is the moment when the far end is moved by one, N (by mm).
 
         Examples
         --------
@@ -188,7 +140,7 @@ class PinBeam:
         return np.asarray(held[0] * place + held[1] + spread)
 
     def shears(self, at: FloatArray, planes: Sequence[float], width: float) -> FloatArray:
-        """Return shear forces in the place of the moments of `moments`, N by N, and N/mm for the far end."""
+        """Return shear forces as `moments` returns moments, N by N, and N/mm for the far end."""
         held, low, high = self._internal(planes, width)
         place = np.asarray(at, dtype=float)[:, None]
         spread = np.zeros((place.shape[0], held.shape[1]))
@@ -196,7 +148,7 @@ class PinBeam:
         return np.asarray(held[0] + spread)
 
     def _internal(self, planes: Sequence[float], width: float) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """What holds the start, disc by disc and for the far end moved by one; where each force begins and ends."""
+        """Forces and couples of the ends, for each disc and for the far end moved by one; start and end of each force."""
         middle, moved = np.asarray(planes, dtype=float), np.zeros(6)
         moved[4] = 1.0
         tip = np.linalg.solve(self._conditions(), moved) if self.ends[1] != "free" else np.zeros(6)
@@ -205,7 +157,7 @@ class PinBeam:
 
     @property
     def tip_stiffness(self) -> float:
-        """Force that moves the far end by one where no disc presses, N/mm."""
+        """Force that moves the far end by one when no disc presses, N/mm."""
         matrix, moved = self._conditions(), np.zeros(6)
         moved[4] = 1.0
         return float(np.linalg.solve(matrix, moved)[2])
@@ -220,7 +172,7 @@ class PinBeam:
         return bending, factor * self.youngs_modulus / (2.0 * (1.0 + self.poisson_ratio)) * pi * self.diameter**2 / 4.0
 
     def _integral(self, x: FloatArray, times: int) -> FloatArray:
-        """Fundamental solution of a unit force, integrated so many times by x."""
+        """Fundamental solution of a unit force, integrated `times` times by x."""
         bending, shear = self._rigidity
         cubic, line = ((3, 1), (4, 2), (5, 3))[times]
         over, under = ((12.0, 2.0), (48.0, 4.0), (240.0, 12.0))[times]
@@ -242,7 +194,7 @@ class PinBeam:
         return np.stack([*columns, np.ones_like(at), at], axis=1)
 
     def _bent(self, held: FloatArray, middle: FloatArray, width: float) -> FloatArray:
-        """Mean deflection along each disc by what the ends do."""
+        """Mean deflection along each disc due to the forces, couples and rigid motion of the ends."""
         low, high = middle - 0.5 * width, middle + 0.5 * width
         columns = []
         for end in (0.0, self.span):

@@ -1,10 +1,10 @@
 r"""Load–approach law of a conforming seat: a round pin in a bore that is hardly larger, without friction, plane strain.
 
-At usual loads the arc of such a contact is no longer small against the radius and Hertz ends. Here the pressure acts
-on circles: a solid cylinder (force balanced by a uniform body force, displacement relative to its mean over the section)
-in a circular hole of an infinite body (displacement relative to the mean one of a concentric circle, the datum, in the
-direction of the load). Michell's solutions for the pressure :math:`p = p_0 + \sum p_n \cos n\theta` on the radius a give
-the radial displacements, κ = 3 − 4ν, μ the shear modulus:
+At usual loads the arc of such a contact is not small compared with the radius, and Hertz' solution does not hold. Here the
+pressure acts on circles: a solid cylinder (force balanced by a uniform body force, displacement relative to its mean over
+the section) in a circular hole of an infinite body (displacement relative to the mean one of a concentric circle, the datum,
+in the direction of the load). Michell's solutions for the pressure :math:`p = p_0 + \sum p_n \cos n\theta` on the radius a
+give the radial displacements, κ = 3 − 4ν, μ the shear modulus:
 
 =======  =================================================  ==================================================================
 n        pin, inward, per p_n a / 4μ                        bore, outward, per p_n a / 4μ
@@ -16,11 +16,11 @@ n ≥ 2    κ/(n + 1) + 1/(n − 1)                              κ/(n − 1) + 
 
 They fill the gap ΔR (1 − cos θ) − δ cos θ over the arc |θ| < α: `ltca.laws.seats.arc` solves that for a given arc,
 `ltca.laws.seats.series` tabulates it over the load, once for each pair of materials; the first harmonic adds a spring, the
-only part that knows the datum. docs/theory/seats.md has all of it, with figures.
+only part that depends on the datum. docs/theory/seats.md has the whole derivation, with figures.
 
 Both circles are taken at :math:`a = \sqrt{r r_s}`, which keeps Hertz' curvature exact; where the play is wide the arc is
-small, and there the logarithms of both radii count. Left out: displacements small against the radius, friction, and what
-bounds the body with the bore.
+small, and there the logarithms of both radii count. Left out: finite displacements, friction, and the outer boundary of the
+body with the bore.
 """
 
 from __future__ import annotations
@@ -37,14 +37,14 @@ from ltca.laws.seats.series import ConformingSeries, conforming_series
 from ltca.laws.seats.sleeve_wall import sleeve_wall
 
 SMALLEST_BREATHING = 0.02
-"""Smallest c₀ that is told apart: a pin of ν = 0.495 in a rigid bore; a softer one would touch its bore all round."""
+"""Lower bound of c₀, that of a pin of ν = 0.495 in a rigid bore; a softer pin would touch its bore all round."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Seat:
-    """Dimensionless numbers of a pin and the body around it; `part` and κ are those of that body.
+    """Dimensionless numbers of a pin and the body around it; `part` and `kappa` are those of that body.
 
-    Rounded where series are found by them: the same materials with another last bit share theirs.
+    They are rounded where series are looked up by them, so that materials that differ in the last bit share one.
     """
 
     modulus: float
@@ -75,14 +75,17 @@ class _Seat:
             breathing=round(max((pin_kappa - 1.0) * pin_part + 2.0 * part, SMALLEST_BREATHING), 12),
             kappa=kappa,
             part=round(part, 12),
-            # Near its load each body goes by the logarithm of its own radius, not a: that counts where the play is wide.
+            # Near the load each body follows the logarithm of its radius, not of a, which counts where the play is wide.
             first=0.5 * ((pin_kappa - 1.0) * pin_part + between * np.log(bore_radius / pin_radius)),
         )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ConformingLaw:
-    """Law of one pin in one bore, for any play small against the radius.
+    """Law of one pin in one bore, for any play small compared with the radius.
+
+    Loads are in N, at least 0, and plays (bore radius less pin radius) in mm, at least 0; they broadcast. Approaches are the
+    travel of the pin from where it touches, relative to the datum.
 
     Attributes
     ----------
@@ -117,21 +120,9 @@ class ConformingLaw:
     ) -> ConformingLaw:
         """Return the law of a pin in a bore.
 
-        Parameters
-        ----------
-        pin, bore : Material
-            Of the solid cylinder and of the body around it.
-        pin_radius, bore_radius : float
-            mm.
-        datum_radius : float
-            Of the circle about the bore whose mean displacement the approach is counted from, mm.
-        length : float
-            mm.
-
-        Raises
-        ------
-        DriveError
-            When a radius or the length leaves no such bodies.
+        `pin` and `bore` are the materials of the solid cylinder and of the body around it; lengths are in mm. The approach is
+        measured relative to the mean displacement of the circle of `datum_radius` about the bore. Radii or a length that leave
+        no such bodies are refused (DriveError).
         """
         if not datum_radius >= bore_radius:
             raise DriveError([f"datum radius {datum_radius:g} mm: must be at least {bore_radius:g} mm, the bore"])
@@ -159,24 +150,10 @@ class ConformingLaw:
     ) -> ConformingLaw:
         """Return the law of a sleeve between its pin and a load outside, in line: pin, seat and wall of the sleeve.
 
-        The load outside is narrow beside the wall. Its own law counts the sleeve as a half-plane down to the datum
-        distance (`ltca.laws.plane_strain`); what is left of the travel between the pin and the patch outside is here.
-
-        Parameters
-        ----------
-        pin, sleeve : Material
-            Of both bodies.
-        pin_radius, bore_radius, outer_radius : float
-            mm.
-        datum : float
-            Distance D of the law of the load outside, mm. With D much larger than the wall nothing may be left, or less.
-        length : float
-            mm.
-
-        Raises
-        ------
-        DriveError
-            When a radius or the length leaves no such bodies.
+        The load outside is narrow compared with the wall. The law of that contact counts the sleeve as a half-plane down to the
+        distance `datum` (`ltca.laws.plane_strain`); the rest of the travel between the pin and the patch outside is here. With
+        a datum much larger than the wall the rest may be zero or negative. Lengths are in mm; those that leave no such bodies
+        are refused (DriveError).
         """
         if not outer_radius > bore_radius:
             raise DriveError(
@@ -195,26 +172,13 @@ class ConformingLaw:
         )
 
     def _place(self, load: ArrayLike, play: ArrayLike) -> tuple[FloatArray, FloatArray]:
-        """Force, mm·MPa, and z, never zero: the logarithm of the compliance has no end."""
+        """Force per length, N/mm, and z, never zero: the logarithm in the compliance has no limit there."""
         force = np.maximum(np.asarray(load, dtype=float), 1e-300) / self.length
         scale = self.series.load_scale * self.contact_modulus * np.asarray(play, dtype=float)
         return force, np.sqrt(force / (force + scale))
 
     def approach_and_compliance(self, load: ArrayLike, play: ArrayLike) -> tuple[FloatArray, FloatArray]:
-        """Return the approach at a load and its derivative, mm and mm/N; the slope has no end at no load.
-
-        Parameters
-        ----------
-        load : array
-            N, at least 0.
-        play : array
-            Bore radius less pin radius, mm, at least 0; broadcasts with the load.
-
-        Returns
-        -------
-        approach, compliance : array
-            Travel of the pin from where it touches, against the datum.
-        """
+        """Return the approach at a load and its derivative, mm and mm/N; the derivative is unbounded at no load."""
         force, z = self._place(load, play)
         level = self.first_harmonic - 2.0 / np.pi * np.log(z) + self.series.evaluate(self.series.approach, z)
         # F dz/dF = z (1 − z²)/2
@@ -223,7 +187,7 @@ class ConformingLaw:
         return approach, (level + bend) / (self.contact_modulus * self.length)
 
     def energy(self, load: ArrayLike, play: ArrayLike) -> FloatArray:
-        """Return ∫ F dδ = F δ − ∫ δ dF, N·mm; parameters as for `approach_and_compliance`."""
+        """Return ∫ F dδ = F δ − ∫ δ dF, N·mm."""
         force, z = self._place(load, play)
         unit = self.length / self.contact_modulus * force**2
         approach = self.first_harmonic - 2.0 / np.pi * np.log(z) + self.series.evaluate(self.series.approach, z)
@@ -231,11 +195,11 @@ class ConformingLaw:
         return np.asarray(unit * (approach - complement))
 
     def half_angle(self, load: ArrayLike, play: ArrayLike) -> FloatArray:
-        """Return half the arc of contact on the radius a, rad; parameters as for `approach_and_compliance`."""
+        """Return half the arc of contact on the radius a, rad."""
         _, z = self._place(load, play)
         return np.asarray(2.0 * np.arctan(z * self.series.evaluate(self.series.half_width, z)))
 
     def largest_pressure(self, load: ArrayLike, play: ArrayLike) -> FloatArray:
-        """Return the pressure in the line of load, MPa; parameters as for `approach_and_compliance`."""
+        """Return the pressure in the line of load, MPa."""
         force, z = self._place(load, play)
         return np.asarray(force / (self.radius * z) * self.series.evaluate(self.series.pressure, z))

@@ -1,14 +1,18 @@
-"""The tabulated law of a roller or pin with the generator that the drive gives it."""
+"""The tabulated law of a roller or pin, with the profile along its length that the drive defines."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from ltca.arrays import FloatArray
-from ltca.contact.generator import generator_profile
+from ltca.contact.length_profile import generator_profile
 from ltca.drive.parts import LengthProfile
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.line_contact import LineContactLaw
+from ltca.laws.profiled_line_contact import ProfiledLineContactLaw
+
+LADDER_RATIO = 1.25
+"""Ratio of neighbouring ends of the ranges of radii for which tables of profiled parts are made in a batch."""
 
 
 def law_for_profile(
@@ -18,25 +22,20 @@ def law_for_profile(
     radius: float,
     contact_modulus: float,
     effective_radii: FloatArray,
+    on_ladder: bool = False,
 ) -> ContactLaw:
-    """Return the tabulated law of a roller or pin.
+    """Return the tabulated law of a roller or pin of a length and radius in mm and a contact modulus E* in MPa.
 
-    Parameters
-    ----------
-    profile : LengthProfile
-        Crown and relief along the length.
-    length, radius : float
-        Length of the contact and radius of the part, mm.
-    contact_modulus : float
-        E*, MPa.
-    effective_radii : array
-        Effective radii the law will be asked for, mm; only their range matters, and only for profiled parts.
+    Of `effective_radii`, mm, at which the law will be evaluated, only the range matters, and only for profiled parts; it is
+    rounded outward to powers of `LADDER_RATIO` if `on_ladder`, so that parts that differ little have the same table.
     """
     generator = generator_profile(profile, length, radius)
     if generator is None:
         return LineContactLaw(length, contact_modulus)
-    # Tables of profiles build for a second or so: cylinders do without their module.
-    from ltca.laws.profiled_line_contact import ProfiledLineContactLaw
-
-    smallest, largest = float(np.min(effective_radii)), float(np.max(effective_radii))
+    ends = np.array([np.min(effective_radii), np.max(effective_radii)])
+    if on_ladder:
+        step = np.log(LADDER_RATIO)
+        rungs = np.log(ends) / step
+        ends = np.exp(step * np.array([np.floor(rungs[0]), np.ceil(rungs[1])]))
+    smallest, largest = float(ends[0]), float(ends[1])
     return ProfiledLineContactLaw.for_radii(generator, contact_modulus, smallest, largest)

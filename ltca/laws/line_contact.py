@@ -18,14 +18,15 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from ltca.arrays import FloatArray
+from ltca.arrays import BoolArray, FloatArray
+from ltca.laws.contact_law import ContactLaw
 from ltca.laws.slenderness_curve import SlendernessCurve
 
 LONGEST = 1.0e5
 SHORTEST = 0.15
-"""Range of λ = L/√(ρδ) that the table is made for."""
+"""Range of λ = L/√(ρδ) of the table."""
 TABLE = Path(__file__).with_name("line_contact.json")
 
 
@@ -49,7 +50,7 @@ class LineContactTable:
 
     @classmethod
     def of_content(cls, content: dict[str, dict[str, Any]]) -> LineContactTable:
-        """Return the table whose `content` this is, to the last bit."""
+        """Return the table of which `content` gave these plain numbers, to the last bit."""
         return cls(**{name: SlendernessCurve.of_content(curve) for name, curve in content.items()})
 
     def content(self) -> dict[str, dict[str, Any]]:
@@ -61,22 +62,17 @@ class LineContactTable:
 def line_contact_table() -> LineContactTable:
     """Return the dimensionless table that ships with the package (read once in the process).
 
-    It is made by `ltca.laws.shipped_tables`, and read rather than solved: that takes half a second, and its last digits
-    would be those of the machine.
-
-    Returns
-    -------
-    LineContactTable
+    `ltca.laws.shipped_tables` makes it. It is read, not solved: solving takes half a second, with last digits that depend on
+    the machine.
     """
     return LineContactTable.of_content(json.loads(TABLE.read_text(encoding="utf-8")))
 
 
 @dataclass(frozen=True, slots=True)
-class LineContactLaw:
+class LineContactLaw(ContactLaw):
     """Load, stiffness, energy, pressure and half-width of uncrowned cylinders of one length and modulus.
 
-    Every method takes approach and effective radius in mm, broadcasts them and returns arrays; an open contact
-    (approach ≤ 0) gives zeros. The load is continuously differentiable where the approach is positive.
+    An open contact gives zeros. The load is continuously differentiable where the approach is positive.
 
     Parameters
     ----------
@@ -92,10 +88,8 @@ class LineContactLaw:
     contact_modulus: float
     table: LineContactTable = field(default_factory=line_contact_table)
 
-    def _place(
-        self, approach: ArrayLike, effective_radius: ArrayLike
-    ) -> tuple[FloatArray, FloatArray, NDArray[np.bool_]]:
-        """Approach (zero where open), X (harmless where open) and the mask of closed contacts."""
+    def _place(self, approach: ArrayLike, effective_radius: ArrayLike) -> tuple[FloatArray, FloatArray, BoolArray]:
+        """Approach (zero where open), X (0 approach replaced by 1 mm where open) and the mask of closed contacts."""
         delta = np.asarray(approach, dtype=float)
         radius = np.asarray(effective_radius, dtype=float)
         closed = delta > 0.0
@@ -112,7 +106,7 @@ class LineContactLaw:
         closed = delta > 0.0
         if closed.all():
             return self._closed(delta, product)
-        # Most pins of a drive are open: they cost nothing.
+        # Most pins of a drive are open: only closed contacts are evaluated.
         load, stiffness = np.zeros(delta.shape), np.zeros(delta.shape)
         load[closed], stiffness[closed] = self._closed(delta[closed], product[closed])
         return load, stiffness

@@ -1,8 +1,8 @@
 r"""Load–approach law of a line contact in plane strain, with a datum.
 
-A half-plane has no datum of its own: the approach of two bodies in plane strain counts from a depth that the rest of
-the bodies, their body part, has to know as well. Here the approach is the one of bodies whose displacement follows
-the half-planes' logarithm down to the distance D, the datum distance:
+A half-plane alone defines no approach: it has to be measured relative to some depth, the same for the law and for the
+flexibility of the rest of the body. Here the approach is that of bodies whose displacement follows the logarithm of the
+half-plane down to the distance D, the datum distance:
 
 .. math:: \delta = \frac{2 q}{\pi E^*} \left( \ln\frac{2D}{b} + \tfrac12 \right), \qquad
           b^2 = \frac{4 q \rho}{\pi E^*},
@@ -20,13 +20,14 @@ from numpy.typing import ArrayLike
 
 from ltca.arrays import FloatArray
 from ltca.errors import ConvergenceError
+from ltca.laws.contact_law import ContactLaw
 
 SELF_ENERGY = 0.25
-"""−⟨ln|x − x′|⟩ over a semi-elliptic pressure of half-width b is −ln(b/2) + 1/4."""
+"""Of a semi-elliptic pressure of half-width b: −⟨ln|x − x′|⟩ = −ln(b/2) + 1/4."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PlaneContactLaw:
+class PlaneContactLaw(ContactLaw):
     """Plane-strain law of one line contact.
 
     Attributes
@@ -36,20 +37,23 @@ class PlaneContactLaw:
     contact_modulus : float
         E*, MPa.
     datum : float
-        D, mm; large against every half-width.
+        D, mm; large compared with every half-width.
     """
 
     thickness: float
     contact_modulus: float
     datum: float
 
-    def approach_and_compliance(self, load: ArrayLike, effective_radius: ArrayLike) -> tuple[FloatArray, FloatArray]:
-        """Return the approach at a load and its derivative, mm and mm/N (infinite slope at no load)."""
-        force = np.asarray(load, dtype=float)
+    def approach_at_load(
+        self, load: FloatArray, effective_radius: ArrayLike, start: FloatArray | None = None
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return the approach at a load and its derivative, mm and mm/N, in closed form; zero where there is no load."""
+        force, radius = np.broadcast_arrays(np.asarray(load, dtype=float), np.asarray(effective_radius, dtype=float))
+        loaded = force > 0.0
         scale = 2.0 / (np.pi * self.contact_modulus * self.thickness)
-        half_width = self._half_width_of(np.maximum(force, 1e-300), effective_radius)
+        half_width = self._half_width_of(np.maximum(force, 1e-300), radius)
         logarithm = np.log(2.0 * self.datum / half_width)
-        return scale * force * (logarithm + 0.5), scale * logarithm
+        return np.where(loaded, scale * force * (logarithm + 0.5), 0.0), np.where(loaded, scale * logarithm, 0.0)
 
     def _half_width_of(self, load: FloatArray, effective_radius: ArrayLike) -> FloatArray:
         return np.asarray(
@@ -57,16 +61,16 @@ class PlaneContactLaw:
         )
 
     def _load(self, approach: ArrayLike, effective_radius: ArrayLike) -> tuple[FloatArray, FloatArray]:
-        """Invert the law by Newton's method: load and ln(2D/b) there; concave, so it rises to the root from below.
+        """Return the load and ln(2D/b) by Newton's method.
 
-        With λ(F) = ln(2D/b) the approach is F (λ + 1/2) in its unit and its slope λ: the step ends at
-        (δ − F/2)/λ, one logarithm each.
+        The approach is a concave function of the load, so iterates rise to the root. With λ(F) = ln(2D/b) the approach is F (λ
+        + 1/2) in units of 2/(π E* L), and its slope is λ: a step leads to (δ − F/2)/λ and costs one logarithm.
         """
         delta = np.asarray(approach, dtype=float)
         closed = delta > 0.0
         pull = np.pi * self.contact_modulus * self.thickness
         at_unit_load = np.log(2.0 * self.datum) - 0.5 * np.log(4.0 * np.asarray(effective_radius, dtype=float) / pull)
-        # Open contacts take an approach at which the law surely holds.
+        # Open contacts are given an approach at which the law holds.
         target = np.where(closed, delta * (0.5 * pull), np.exp(2.0 * at_unit_load - 10.0))
         logarithm = at_unit_load - 0.5 * np.log(target / 10.0)
         load = target / (logarithm + 0.5)

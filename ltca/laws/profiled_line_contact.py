@@ -2,7 +2,7 @@ r"""Load–approach law of line contacts that are crowned or relieved along thei
 
 A profile z(y) brings lengths of its own, so load depends on the approach and on the effective radius. With the
 modulus scaled out (a half-space is linear) the law is U = E* L δ² exp(−m) with m a function of X = ln(ρδ/L²) and
-ln ρ. Along X it is a quintic spline; across the radii asked for, a polynomial through a few Chebyshev nodes (one
+ln ρ. Along X it is a quintic spline; across the radii of the table, a polynomial through a few Chebyshev nodes (one
 node when there is one radius). Load and stiffness are exact derivatives of U at a held radius.
 
 Beyond the table m goes on as a straight line: a power law, which is what a crowned contact tends to at light load
@@ -15,16 +15,18 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from ltca.arrays import FloatArray
+from ltca.arrays import BoolArray, FloatArray
 from ltca.contact.length_profile import Relief
 from ltca.contact.pressure_cells import PatchSolution, end_grading, solve_cylinder_patch
 from ltca.errors import CycloError
+from ltca.laws.contact_law import ContactLaw
 from ltca.laws.slenderness_curve import quintic_hermite_pieces, quintic_spline_pieces
 
 LIGHTEST = 2.0e4
 HEAVIEST = 2.0
+"""λ = L/√(ρδ) at the ends of the table."""
 _NODES = 49
 _CELLS = 16
 # Orders measured with both cell counts doubled: energy 3, fields 2 (smooth ends: no singularity spoils them).
@@ -44,20 +46,10 @@ def solve_profiled_patch(
     half_width: float | None = None,
     start: PatchSolution | None = None,
 ) -> PatchSolution:
-    """Contact of a profiled cylinder at given approach on a quarter grid over the overlapping length.
+    """Return the contact of a profiled cylinder at the approach δ at mid-width, on a quarter grid over the overlapping length.
 
-    Parameters
-    ----------
-    profile : Relief
-        Relief along the width.
-    effective_radius, contact_modulus, approach : float
-        ρ in mm, E* in MPa, δ at mid-width in mm.
-    cells, half_width, start :
-        As in `ltca.contact.pressure_cells.solve_cylinder_patch`.
-
-    Returns
-    -------
-    PatchSolution
+    The effective radius and the approach are in mm, E* in MPa; `cells`, `half_width` and `start` as in
+    `ltca.contact.pressure_cells.solve_cylinder_patch`.
     """
     reach = profile.overlap_half_length(approach)
     slenderness = 2.0 * reach / float(np.sqrt(effective_radius * approach))
@@ -78,23 +70,23 @@ def solve_profiled_patch(
 
 
 class RadiusRangeError(CycloError):
-    """A profiled law was asked for an effective radius its table was not built for."""
+    """A profiled law was evaluated at an effective radius outside the range of its table."""
 
 
 @dataclass(frozen=True, slots=True)
 class ProfiledTable:
-    """Piece coefficients over X for every radius node.
+    """Piece coefficients over X at every radius node.
 
     Attributes
     ----------
     smallest_radius, largest_radius : float
-        Range of effective radii served, mm.
+        Range of effective radii of the table, mm.
     start, spacing : float
         First knot in X and distance of the knots.
     log_radii : ndarray, shape (r,)
         Chebyshev nodes of ln ρ, ascending.
     exponent, log_pressure, log_half_width : ndarray, shape (r, 6, pieces)
-        m, ln(p √ρ/(E* √δ)) and ln(b/√(ρδ)) of the mid-width values.
+        m, ln(p √ρ/(E* √δ)) and ln(b/√(ρδ)) at mid-width.
     """
 
     smallest_radius: float
@@ -115,32 +107,15 @@ def profiled_table(
     cells: int = _CELLS,
     nodes: int = _NODES,
 ) -> ProfiledTable:
-    """Tabulate a profiled line contact for effective radii in a range (cached in the process).
+    """Tabulate a profiled line contact for a range of effective radii, mm (cached in the process).
 
-    Parameters
-    ----------
-    profile : Relief
-        Relief along the width (hashable).
-    smallest_radius, largest_radius : float
-        Range of ρ, mm; equal for a single radius.
-    cells : int
-        Cells over the half-width and the half-length on the finer of two grids.
-    nodes : int
-        Nodes in X, from λ = L/√(ρδ) = 20000 to 2.
-
-    Returns
-    -------
-    ProfiledTable
-
-    Raises
-    ------
-    ValueError
-        If the radii are not positive and in order.
+    The bounds are equal for a single radius. `cells` are those over the half-width and the half-length on the finer of two
+    grids, `nodes` those in X, from λ = L/√(ρδ) = 20000 to 2. Radii that are not positive and in order are refused (ValueError).
     """
     if not 0.0 < smallest_radius <= largest_radius:
         raise ValueError(f"need 0 < smallest_radius <= largest_radius, got {smallest_radius}, {largest_radius}")
     low, high = np.log(smallest_radius), np.log(largest_radius)
-    # Three nodes per factor of e⁠: ln-polynomials then err by less than the grids (measured in the tests).
+    # Three nodes per factor of e: the polynomials in ln ρ then err by less than the grids (measured in the tests).
     count = 1 if high - low < 1e-9 else 3 + int(np.ceil(high - low))
     angles = (np.arange(count) + 0.5) * np.pi / count
     log_radii = np.sort(0.5 * (low + high) - 0.5 * (high - low) * np.cos(angles))
@@ -180,7 +155,7 @@ def profiled_table(
 
 
 def _lagrange_weights(nodes: FloatArray, at: FloatArray) -> list[FloatArray]:
-    """Weights of every node for interpolation at ``at``."""
+    """Return the weight of every node for interpolation at points."""
     weights = []
     for i, node in enumerate(nodes):
         weight = np.ones_like(at)
@@ -192,11 +167,10 @@ def _lagrange_weights(nodes: FloatArray, at: FloatArray) -> list[FloatArray]:
 
 
 @dataclass(frozen=True, slots=True)
-class ProfiledLineContactLaw:
-    """Load, stiffness, energy, pressure and half-width of profiled cylinders.
+class ProfiledLineContactLaw(ContactLaw):
+    """Load, stiffness, energy, pressure and half-width of profiled cylinders; zeros where open.
 
-    The methods are those of `ltca.laws.line_contact.LineContactLaw`. Radii outside the range the table was built for
-    are refused (`RadiusRangeError`).
+    Radii outside the range of the table are refused (`RadiusRangeError`).
 
     Parameters
     ----------
@@ -216,7 +190,7 @@ class ProfiledLineContactLaw:
     def for_radii(
         cls, profile: Relief, contact_modulus: float, smallest_radius: float, largest_radius: float
     ) -> ProfiledLineContactLaw:
-        """Build (or reuse) the table for effective radii between two bounds, mm."""
+        """Return the law for effective radii between two bounds, mm."""
         return cls(profile, contact_modulus, profiled_table(profile, smallest_radius, largest_radius))
 
     def load_and_stiffness(self, approach: ArrayLike, effective_radius: ArrayLike) -> tuple[FloatArray, FloatArray]:
@@ -247,8 +221,8 @@ class ProfiledLineContactLaw:
 
     def _place(
         self, approach: ArrayLike, effective_radius: ArrayLike
-    ) -> tuple[FloatArray, FloatArray, FloatArray, NDArray[np.bool_]]:
-        """Approach (zero where open), X (harmless where open), radius and the mask of closed contacts."""
+    ) -> tuple[FloatArray, FloatArray, FloatArray, BoolArray]:
+        """Approach (zero where open), X (arbitrary where open), radius and the mask of closed contacts."""
         delta, radius = np.broadcast_arrays(
             np.asarray(approach, dtype=float), np.asarray(effective_radius, dtype=float)
         )
@@ -286,7 +260,7 @@ class ProfiledLineContactLaw:
             total[2] += weight * (2.0 * c2 + t * (6.0 * c3 + t * (12.0 * c4 + t * 20.0 * c5)))
         first, second = total[1] / h, total[2] / h**2
         on_table = beyond == 0.0
-        # The bend dies out within about one unit of X, so the load stays continuously differentiable.
+        # The curvature decays within about one unit of X, so the load stays continuously differentiable.
         fade = np.exp(-np.abs(beyond))
         run = np.abs(beyond) - 1.0 + fade
         value = np.where(on_table, total[0], total[0] + first * beyond + second * run)

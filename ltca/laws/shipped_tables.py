@@ -35,18 +35,8 @@ def tabulate_line_contact(
 ) -> LineContactTable:
     """Solve the dimensionless table on contact grids.
 
-    Parameters
-    ----------
-    cells : int
-        Cells over the half-width and over half the length on the finer grid; the coarser has half as many.
-    nodes : int
-        Number of nodes, uniform in ln λ.
-    shortest, longest : float
-        Range of λ = L/√(ρδ).
-
-    Returns
-    -------
-    LineContactTable
+    `cells` are those over the half-width and over half the length on the finer grid, the coarser has half as many; `nodes` are
+    uniform in ln λ between `longest` and `shortest` λ = L/√(ρδ).
     """
     places = np.linspace(-2.0 * np.log(longest), -2.0 * np.log(shortest), nodes)
     rows = np.empty((nodes, 3))

@@ -1,9 +1,9 @@
 """Smooth curves over the slenderness of a line contact: quintic splines on uniform knots, fast to evaluate.
 
-Quintic pieces joined four times differentiably make loads and stiffnesses derived from them smooth; scipy finds
-them. The laws of `ltca.laws.line_contact` are evaluated for every contact in every iteration, so here a curve is
-located by one multiplication and value, slope and curvature are summed together by Horner's rule: for the 4680
-contacts of a usual batch that takes about half the time of scipy's own evaluation, which searches the knots.
+Quintic pieces joined four times differentiably, which scipy computes, make loads and stiffnesses derived from them smooth. The
+laws of `ltca.laws.line_contact` are evaluated for every contact in every iteration: here one multiplication locates the piece,
+and value, slope and curvature are summed together by Horner's rule, which for the 4680 contacts of a usual batch takes about
+half the time of scipy's evaluation, which searches the knots.
 """
 
 from __future__ import annotations
@@ -21,25 +21,10 @@ _DEGREE = 5
 
 
 def quintic_spline_pieces(values: FloatArray) -> FloatArray:
-    """Piece coefficients of the quintic spline through values at uniform knots.
+    """Return piece coefficients of the quintic spline through values at uniform knots, at least 8 (ValueError), shape (6, n − 1).
 
-    Four not-a-knot conditions close it (no jump of the fifth derivative at the two knots next to each end), so
-    polynomials up to degree five are reproduced.
-
-    Parameters
-    ----------
-    values : ndarray, shape (n,)
-        Values at the knots, at least 8.
-
-    Returns
-    -------
-    ndarray, shape (6, n − 1)
-        Powers 0 … 5 of the local coordinate 0 … 1 of every piece.
-
-    Raises
-    ------
-    ValueError
-        With fewer than eight values.
+    They are those of the powers 0 … 5 of the local coordinate 0 … 1. Four not-a-knot conditions (no jump of the fifth
+    derivative at the two knots next to each end) make it reproduce polynomials up to degree five.
 
     Examples
     --------
@@ -55,26 +40,16 @@ def quintic_spline_pieces(values: FloatArray) -> FloatArray:
         raise ValueError(f"a quintic spline needs at least 8 values, not {count}")
     knots = np.arange(float(count))
     spline = make_interp_spline(knots, values, k=_DEGREE)
-    # The pieces next to the ends go over the knots left out there: every interval gets coefficients of its own.
+    # The pieces at the ends span the knots that not-a-knot leaves out: every interval between knots gets its coefficients.
     return np.array([spline(knots[:-1], nu=power) / factorial(power) for power in range(_DEGREE + 1)])
 
 
 def quintic_hermite_pieces(values: FloatArray, slopes: FloatArray) -> FloatArray:
-    """Piece coefficients of the quintic spline with given values and slopes at uniform knots.
+    """Return piece coefficients of the quintic spline with given values and slopes at uniform knots, as `quintic_spline_pieces`.
 
-    Three times continuously differentiable; straight (no curvature) at the first knot, and the fourth derivative is
-    continuous at the last knot but one. Twice the data of `quintic_spline_pieces` per knot: for curves that bend
-    within few knots.
-
-    Parameters
-    ----------
-    values, slopes : ndarray, shape (n,)
-        Values and derivatives per unit of the local coordinate (slope times knot distance), n ≥ 4.
-
-    Returns
-    -------
-    ndarray, shape (6, n − 1)
-        Powers 0 … 5 of the local coordinate 0 … 1 of every piece.
+    Slopes are per unit of the local coordinate (slope times knot distance); n ≥ 4. Three times continuously differentiable,
+    with no curvature at the first knot and a continuous fourth derivative at the last knot but one. Twice the data of
+    `quintic_spline_pieces` per knot: for curves that bend within few knots.
 
     Examples
     --------
@@ -112,12 +87,11 @@ def quintic_hermite_pieces(values: FloatArray, slopes: FloatArray) -> FloatArray
 
 @dataclass(frozen=True, slots=True)
 class SlendernessCurve:
-    """Smooth curve over X = ln(ρδ/L²) with a sound continuation on both sides.
+    """Smooth positive curve over X = ln(ρδ/L²), continued beyond its knots on both sides with value, slope and curvature.
 
-    Toward X → −∞ (very long or light contacts) it goes on as ``a + b t + c ln(1 + t/T)``, the form the
-    logarithmic approach of slender contacts has, with the limiting slope b known and T from the curvature; toward
-    X → ∞ as the exponential of an almost linear function. Both continue value, slope and curvature; the curve must
-    be positive.
+    Toward X → −∞ (very long or light contacts) it continues as ``a + b t + c ln(1 + t/T)``, the form of the logarithmic
+    approach of slender contacts, with the limiting slope b known and T from the curvature; toward X → ∞ as the exponential of
+    an almost linear function.
 
     Parameters
     ----------
@@ -141,13 +115,13 @@ class SlendernessCurve:
 
     @classmethod
     def of_content(cls, content: dict[str, Any]) -> SlendernessCurve:
-        """Return the curve whose `content` this is, to the last bit."""
+        """Return the curve of which `content` gave these plain numbers, to the last bit."""
         return cls(**content | {"coefficients": np.array(content["coefficients"])})
 
     def content(self) -> dict[str, Any]:
         """Return the curve as plain numbers, for a file."""
-        own = {item.name: getattr(self, item.name) for item in fields(self)}
-        return own | {"coefficients": self.coefficients.tolist()}
+        values = {item.name: getattr(self, item.name) for item in fields(self)}
+        return values | {"coefficients": self.coefficients.tolist()}
 
     def value(self, x: FloatArray) -> FloatArray:
         """Value at ``x``, any shape."""
@@ -170,7 +144,7 @@ class SlendernessCurve:
         return np.asarray(value), np.asarray(first), np.asarray(second)
 
     def _locate(self, x: FloatArray) -> tuple[NDArray[np.intp], FloatArray, bool]:
-        """Piece, local coordinate and whether all points lie on the curve's own range."""
+        """Piece, local coordinate, and whether all points lie between the first and the last knot."""
         place = (x - self.start) * (1.0 / self.spacing)
         pieces = self.coefficients.shape[1]
         inside = bool(place.size == 0 or (place.min() >= 0.0 and place.max() < pieces))
@@ -182,7 +156,7 @@ class SlendernessCurve:
         return piece, place - piece, inside
 
     def _beyond(self, x: FloatArray, *found: FloatArray) -> tuple[FloatArray, ...]:
-        """Replace values (and derivatives) of points off the range."""
+        """Replace values (and derivatives) of points beyond the knots."""
         h, c = self.spacing, self.coefficients
         end = self.start + h * c.shape[1]
         results = [np.array(item) for item in found]

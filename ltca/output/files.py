@@ -27,15 +27,7 @@ _HELD: ContextVar[tuple[Path, Placed] | None] = ContextVar("held", default=None)
 
 @contextmanager
 def told_of_files(folder: Path, placed: Placed) -> Iterator[None]:
-    """Tell a function of every file that is about to take its place while the block runs.
-
-    Parameters
-    ----------
-    folder : Path
-        Held by this process and cleared of parts: nobody looks for any there.
-    placed : callable
-        Given the place and the finished part.
-    """
+    """Call `placed` with the place and the finished part of every file before it takes its place, while the block runs."""
     token = _HELD.set((folder.resolve(), placed))
     try:
         yield
@@ -45,24 +37,9 @@ def told_of_files(folder: Path, placed: Placed) -> Iterator[None]:
 
 @contextmanager
 def whole_file(path: Path) -> Iterator[Path]:
-    """Give a temporary name to write to; the file takes its place only when the block ends well.
+    """Give a temporary name to write to; the file takes its place only when the block ends without an exception.
 
-    The part is made anew under a name that nobody can foresee, so in a shared folder no link of another user's is followed.
-
-    Parameters
-    ----------
-    path : Path
-        Where the file shall be; its folder is made.
-
-    Yields
-    ------
-    Path
-        Name to write to, in the same folder and with the same suffix.
-
-    Raises
-    ------
-    FaultError
-        When the folder cannot be made or the file cannot be written.
+    The name is in the same folder, which is made, and has the same suffix. Raises `FaultError` when it cannot be written.
     """
     part = path.with_name(f".{path.stem}.{secrets.token_hex(8)}.part{path.suffix}")
     try:
@@ -83,15 +60,7 @@ def whole_file(path: Path) -> Iterator[Path]:
 
 
 def remove_parts_of(path: Path, age: float) -> None:
-    """Remove parts of a file that were left by killed programs.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    age : float
-        Of the parts at the least, s; 0 for who holds a lock on the file.
-    """
+    """Remove parts of a file left by killed programs, at least `age` seconds old; 0 for the holder of a lock on the file."""
     head, now = f".{path.stem}.", time.time()
     with os.scandir(path.parent) as entries:
         for entry in entries:

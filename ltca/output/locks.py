@@ -20,21 +20,9 @@ FAULTS = (errno.ENOSPC, errno.EDQUOT, errno.EIO)
 
 @contextmanager
 def claimed_file(path: Path, command: str) -> Iterator[None]:
-    """Hold one file while a run makes it.
+    """Hold one file, whose folder is made, while a command makes it.
 
-    Parameters
-    ----------
-    path : Path
-        The file; its folder is made.
-    command : str
-        Name of the command, for the message.
-
-    Raises
-    ------
-    PlaceError
-        When another process makes it, or its folder cannot be made or written to.
-    FaultError
-        When the disc is full or fails.
+    Raises `PlaceError` when another process makes it or its folder cannot be written to, `FaultError` when the disc fails.
     """
     if path.is_dir():
         raise PlaceError(f"--out {path}: is a folder, not a file")
@@ -47,23 +35,9 @@ def claimed_file(path: Path, command: str) -> Iterator[None]:
 def held(lock: Path, what: str, command: str, *, wait: bool = False) -> Iterator[None]:
     """Hold a lock that ends with the process, however that ends; its file is removed.
 
-    Parameters
-    ----------
-    lock : Path
-        File of the lock; its folder is made, and removed again where nothing came to lie in it.
-    what : str
-        What is locked, for the message.
-    command : str
-        Who holds it.
-    wait : bool
-        Whether to wait for whoever holds it.
-
-    Raises
-    ------
-    PlaceError
-        When another process holds it and it was not to be waited for, or the folder cannot be made or written to.
-    FaultError
-        When the disc is full or fails.
+    `what` is locked for `command`, as messages name both; with `wait` another holder is waited for. The folder of the lock is
+    made, and removed again where it stays empty. Raises `PlaceError` when another process holds it or the folder cannot be
+    written to, `FaultError` when the disc is full or fails.
     """
     made = [folder for folder in lock.parents if not folder.exists()]
     try:

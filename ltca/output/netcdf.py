@@ -20,6 +20,7 @@ import numpy as np
 from ltca.errors import DamagedFileError, FaultError, one_line
 from ltca.output.regular_files import NotReadableError, regular_file
 from ltca.output.resources import available_memory
+from ltca.quantities import SCHEMA_VERSION
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -37,21 +38,9 @@ DAMAGE = (
 
 @contextmanager
 def opened_hdf5(path: Path) -> Iterator[Any]:
-    """Open an HDF5 file, of which nothing has been looked at, for reading.
+    """Open an HDF5 file that has not been checked, for reading (`h5py.File`).
 
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Yields
-    ------
-    h5py.File
-
-    Raises
-    ------
-    OSError
-        When it is no regular file, or no HDF5; `DAMAGE` names what may come while the block runs.
+    Raises `OSError` when it is no regular file, or no HDF5; `DAMAGE` names what may be raised while the block runs.
     """
     import h5py
 
@@ -62,19 +51,8 @@ def opened_hdf5(path: Path) -> Iterator[Any]:
 def require_sound_netcdf(path: Path, what: str, *, whole: bool) -> None:
     """Refuse a file with links, data that lie elsewhere, filters from elsewhere, or sizes that are not there.
 
-    Parameters
-    ----------
-    path : Path
-        The file.
-    what : str
-        It should be, for the message: "a coefficient file".
-    whole : bool
-        Whether all of it is going to be read into memory.
-
-    Raises
-    ------
-    DamagedFileError
-        When it is not there, cannot be read, or has one of them.
+    `what` names the file in messages, as "a coefficient file"; `whole` tells whether all of it is going to be read into memory.
+    Raises `DamagedFileError`, also when it cannot be read.
     """
     try:
         with opened_hdf5(path) as file:
@@ -88,20 +66,7 @@ def require_sound_netcdf(path: Path, what: str, *, whole: bool) -> None:
 
 
 def read_netcdf(path: Path, what: str) -> xr.Dataset:
-    """Return a netCDF file of anybody's, read into memory.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    what : str
-        It should be, for the message: "a coefficient file".
-
-    Raises
-    ------
-    DamagedFileError
-        As for `require_sound_netcdf`.
-    """
+    """Return a netCDF file of any origin, read into memory, after `require_sound_netcdf`, whose errors it raises."""
     import xarray as xr
 
     require_sound_netcdf(path, what, whole=True)
@@ -109,6 +74,18 @@ def read_netcdf(path: Path, what: str) -> xr.Dataset:
         return xr.load_dataset(path, engine="h5netcdf", decode_times=False, decode_timedelta=False)
     except DAMAGE as error:
         raise _unreadable(path, what, error) from error
+
+
+def require_known_schema(path: Path, attributes: Mapping[str, Any]) -> None:
+    """Refuse (`DamagedFileError`) a dataset of a later schema than this version knows; older files may have no number."""
+    try:
+        version = int(attributes.get("schema_version", 0))
+    except (TypeError, ValueError) as error:
+        raise DamagedFileError(f"{path}: schema_version is no whole number") from error
+    if version > SCHEMA_VERSION:
+        raise DamagedFileError(
+            f"{path}: has schema version {version}, this version of cyclo reads up to {SCHEMA_VERSION}: update cyclo"
+        )
 
 
 def _unreadable(path: Path, what: str, error: Exception) -> DamagedFileError:
@@ -221,22 +198,9 @@ class DiscStream(io.RawIOBase):
 
 @contextmanager
 def netcdf_stream(path: Path) -> Iterator[DiscStream]:
-    """Give a stream for ``h5netcdf.File(stream, "w")``; what the disc did not take is raised when the block ends.
+    """Give a `DiscStream` to a part of `ltca.output.files.whole_file`, for ``h5netcdf.File(stream, "w")``.
 
-    Parameters
-    ----------
-    path : Path
-        From `ltca.output.files.whole_file`.
-
-    Yields
-    ------
-    DiscStream
-        Call its ``check`` between the parts of a large file.
-
-    Raises
-    ------
-    OSError
-        When the disc is full or fails.
+    Its ``check`` is called between the parts of a large file; `OSError` is raised when the block ends and the disc was full.
     """
     descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_TRUNC, 0o666)
     try:
@@ -249,23 +213,9 @@ def netcdf_stream(path: Path) -> Iterator[DiscStream]:
 
 
 def write_netcdf(dataset: xr.Dataset, part: Path, encoding: Mapping[Any, Mapping[str, Any]] | None = None) -> None:
-    """Write a dataset as netCDF-4.
+    """Write a dataset as netCDF-4 to a part of `ltca.output.files.whole_file`; `encoding` as in ``Dataset.to_netcdf``.
 
-    Parameters
-    ----------
-    dataset : Dataset
-        What to write.
-    part : Path
-        From `ltca.output.files.whole_file`.
-    encoding : mapping, optional
-        Of single variables, as in ``Dataset.to_netcdf``.
-
-    Raises
-    ------
-    OSError
-        When the disc is full or fails.
-    FaultError
-        When memory is not enough.
+    Raises `OSError` when the disc is full or fails, `FaultError` when memory is not enough.
     """
     import h5netcdf
     from xarray.backends import H5NetCDFStore

@@ -45,28 +45,11 @@ NOTICING = 5.0
 def process_pool(
     processes: int, *, preload: str = "", initializer: Callable[[], None] | None = None
 ) -> Iterator[ProcessPoolExecutor]:
-    """Give a pool of processes; whoever leaves the block by an exception leaves no worker behind.
+    """Give a pool of processes; an exception that leaves the block leaves no worker behind.
 
-    Never a fork of this process, which may have threads.
-
-    Parameters
-    ----------
-    processes : int
-        Workers.
-    preload : str
-        Module that a fork server imports once, where there is one: every worker starts as its copy.
-    initializer : callable, optional
-        Called first in every worker; it has to call `become_worker`, which is the default.
-
-    Yields
-    ------
-    ProcessPoolExecutor
-        The pool.
-
-    Raises
-    ------
-    FaultError
-        When the system gives no processes, or none of the semaphores and pipes between them.
+    A fork server, where there is one, imports `preload` once, and every worker starts as its copy. `initializer` is called first
+    in every worker and has to call `become_worker`, which is the default. Raises `FaultError` when the system gives no
+    processes, or none of the semaphores and pipes between them.
     """
     try:
         pool = _started_pool(processes, preload, initializer)
@@ -177,15 +160,7 @@ def pool_folder() -> Path | None:
 
 
 def remove_stale_folders(place: Path, fresh: float = FRESH) -> None:
-    """Remove folders of ours whose processes are dead.
-
-    Parameters
-    ----------
-    place : Path
-        For temporary files.
-    fresh : float
-        Age, s, up to which none is looked at.
-    """
+    """Remove temporary folders of this program whose processes are dead, if older than `fresh` seconds."""
     with suppress(OSError):
         for folder in place.glob(f"{PREFIX}*"):
             with suppress(OSError):

@@ -99,13 +99,7 @@ class Supervised:
             )
 
     def wait(self, seconds: float | None = None) -> int:
-        """Wait until the program ends and return its exit status.
-
-        Raises
-        ------
-        subprocess.TimeoutExpired
-            When it takes longer than some seconds.
-        """
+        """Wait until the program ends and return its exit status; `subprocess.TimeoutExpired` after so many seconds."""
         return self._process.wait(seconds)
 
     def end(self) -> None:
@@ -121,26 +115,9 @@ class Supervised:
 
 @contextmanager
 def supervised(words: Sequence[str], folder: Path, **options: Any) -> Iterator[Supervised]:
-    """Give a program that runs beside the block and is ended with it.
+    """Give a program that runs beside the block, its temporary files in `folder`, and is ended with it.
 
-    Parameters
-    ----------
-    words : sequence of str
-        Program and arguments; the program must be there.
-    folder : Path
-        Its temporary files.
-    **options
-        Of `subprocess.Popen`.
-
-    Yields
-    ------
-    Supervised
-        To be waited for.
-
-    Raises
-    ------
-    OSError
-        When no process can be started.
+    Options are those of `subprocess.Popen`. Raises `OSError` when no process can be started.
     """
     program = Supervised(words, folder, options)
     try:

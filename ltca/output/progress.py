@@ -31,19 +31,8 @@ class Advance(Protocol):
 def progress(title: str, total: int, *, at_most: bool = False) -> Iterator[Advance]:
     """Show on stderr how far the block is: a bar with time left on a terminal, else a line every few seconds.
 
-    Parameters
-    ----------
-    title : str
-        What is counted.
-    total : int
-        How many there are.
-    at_most : bool
-        Whether there may be fewer.
-
-    Yields
-    ------
-    callable
-        To be called with the name of each finished part, and its size when it is not 1.
+    Gives a function to be called with the name of each finished part of `total`, and its size when that is not 1; `at_most`
+    tells that there may be fewer.
     """
     if not sys.stderr.isatty():
         done, last = 0, ""
@@ -76,15 +65,7 @@ def progress(title: str, total: int, *, at_most: bool = False) -> Iterator[Advan
 def steps(title: str = "") -> Iterator[Callable[[str], None]]:
     """Show on stderr what is being done: one line that overwrites itself on a terminal, else one every few seconds.
 
-    Parameters
-    ----------
-    title : str
-        Before the name of the step.
-
-    Yields
-    ------
-    callable
-        To be called with the name of each step before it starts.
+    Gives a function to be called with the name of each step before it starts.
     """
     head, now = f"{title}: " if title else "", ""
     if not sys.stderr.isatty():

@@ -34,19 +34,11 @@ def cache_home() -> Path:
 
 @cache
 def code_hash(*packages: str) -> str:
-    """Return a hash of the code of some packages (hex, 16 digits).
+    """Return a hash of the code of importable packages, by name (hex, 16 digits); nothing is imported.
 
-    Parameters
-    ----------
-    *packages : str
-        Names of importable packages, ``"ltca"`` for instance; nothing is imported.
-
-    Returns
-    -------
-    str
-        Of relative paths and of what the files mean: the syntax tree of modules without docstrings, the content of TOML
-        files, the bytes of others. Comments, docstrings and the place of the package change nothing; a package that is not
-        installed counts by its absence.
+    It is of relative paths and of what the files mean: the syntax tree of modules without docstrings, the content of TOML files,
+    the bytes of others. Comments, docstrings and the place of the package change nothing; a package that is not installed
+    counts by its absence.
     """
     digest = hashlib.sha256()
     for package in packages:

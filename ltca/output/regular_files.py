@@ -1,4 +1,4 @@
-"""Files that are named to the program or found in its folders: regular ones of sane size are read, nothing else.
+"""Reading of files: only regular ones of bounded size are opened.
 
 A pipe nobody writes to would be waited for without end, a device such as ``/dev/zero`` read without end.
 """
@@ -29,24 +29,10 @@ class NotReadableError(OSError):
 
 @contextmanager
 def regular_file(path: Path, largest: int | None = None) -> Iterator[BufferedReader]:
-    """Open a regular file for reading; every reader of the program opens its files here.
+    """Open a regular file, links followed, for reading bytes; every reader of the program opens its files here.
 
-    Parameters
-    ----------
-    path : Path
-        The file; links are followed.
-    largest : int, optional
-        Bytes that no such file has more of.
-
-    Yields
-    ------
-    file
-        Of bytes.
-
-    Raises
-    ------
-    OSError
-        When there is none, it is a pipe, a device, a socket or a folder, or larger; ``strerror`` says which.
+    Raises `OSError`, whose ``strerror`` says why, when there is none, when it is a pipe, a device, a socket or a folder, or when
+    it has more than `largest` bytes.
     """
     # Not blocking: to open a pipe for reading waits for somebody who writes. On regular files it has no effect.
     descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
@@ -65,14 +51,6 @@ def regular_file(path: Path, largest: int | None = None) -> Iterator[BufferedRea
 
 
 def read_regular(path: Path, largest: int) -> bytes:
-    """Return the content of a regular file; see `regular_file`, whose errors it raises.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    largest : int
-        Bytes that no such file has more of; one that grows meanwhile is cut there.
-    """
+    """Return the content of a regular file; see `regular_file`. A file that grows meanwhile is cut at `largest` bytes."""
     with regular_file(path, largest) as stream:
         return stream.read(largest)

@@ -30,23 +30,9 @@ def available_memory() -> float:
 
 
 def require_room(needed: float, *, memory: float, folder: Path, option: str) -> None:
-    """Refuse work whose results would not fit.
+    """Refuse work whose results need more bytes on disc or in memory than there are.
 
-    Parameters
-    ----------
-    needed : float
-        Bytes on disc.
-    memory : float
-        Bytes in memory.
-    folder : Path
-        Where the files go.
-    option : str
-        What makes it so large, with its value.
-
-    Raises
-    ------
-    PlaceError
-        With the numbers.
+    `option`, what makes it so large with its value, is named in the `PlaceError`.
     """
     free = available_memory()
     if memory > free:

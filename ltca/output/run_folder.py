@@ -36,7 +36,7 @@ NOT_OURS = f"is there and was not written by the last run ({MANIFEST} does not l
 
 
 class RunFolder:
-    """What a run knows of its folder while it holds it.
+    """Manifest and lock of an output folder.
 
     Parameters
     ----------
@@ -64,13 +64,7 @@ class RunFolder:
         self._cleared = adding
 
     def keep(self, *paths: Path) -> None:
-        """Take files of an earlier run over into this one: a resumed study goes on with its own.
-
-        Parameters
-        ----------
-        *paths : Path
-            Those that the last manifest does not list are left alone anyway.
-        """
+        """Take files of an earlier run over into this one, as a resumed study does; only those that its manifest lists."""
         for path in paths:
             name = self._name(path)
             if name in self._old:
@@ -78,18 +72,7 @@ class RunFolder:
                 self._files[name] = self._old[name]
 
     def require_whole(self, *paths: Path) -> None:
-        """Refuse files of the last run that are damaged or missing: whoever goes on with them must find what it wrote.
-
-        Parameters
-        ----------
-        *paths : Path
-            Those that the last manifest does not list are not looked at.
-
-        Raises
-        ------
-        DamagedFileError
-            Naming the first of them.
-        """
+        """Refuse (`DamagedFileError`) files of the last run that are damaged or missing; only those that its manifest lists."""
         for path in paths:
             known = self._checksums(self._name(path) or "")
             if known and (not path.is_file() or _checksum(path) not in known):
@@ -119,12 +102,9 @@ class RunFolder:
             self._write(complete=True)
 
     def withdraw(self, *, refused: bool) -> None:
-        """Remove what this run has written where it has ended with nothing.
+        """Remove what this run has written where it has ended without a result.
 
-        Parameters
-        ----------
-        refused : bool
-            Whether its input is refused. What a study has solved stays, for ``--resume``; a plan alone goes.
+        Solved batches of a study stay, for ``--resume``, unless its input was `refused`; a plan alone goes.
         """
         written, batches = set(self._files) - self._kept, self.path / BATCHES
         if batches in self._beside:
@@ -139,19 +119,9 @@ class RunFolder:
             (self.path / MANIFEST).unlink(missing_ok=True)
 
     def require_room_for(self, writes: Iterable[str], what: str) -> None:
-        """Refuse to start where files of the user are in the way.
+        """Refuse (`PlaceError`) to start where files of the user are in the way of names or patterns in `writes`.
 
-        Parameters
-        ----------
-        writes : iterable of str
-            Names, or patterns of names, of all files that the run may write; nothing is asked for in an empty folder.
-        what : str
-            The folder as the user gave it, for the message.
-
-        Raises
-        ------
-        PlaceError
-            Naming the first of them.
+        Nothing is asked for in an empty folder; `what` is the folder as the user gave it, for the message.
         """
         there = {
             path.relative_to(self.path).as_posix(): path
@@ -225,14 +195,7 @@ class RunFolder:
 
 
 def figure_files(kind: str | None, *names: str) -> list[str]:
-    """Return what figures are written as, for ``writes`` of `claimed_folder`.
-
-    Parameters
-    ----------
-    kind : str or None
-        Of the files; None where no figures are asked for.
-    *names : str
-        Of the figures.
+    """Return the files of figures, for ``writes`` of `claimed_folder`; none where `kind` is None.
 
     Examples
     --------
@@ -243,24 +206,13 @@ def figure_files(kind: str | None, *names: str) -> list[str]:
 
 
 def require_folder(path: Path) -> None:
-    """Refuse a file in the place of a folder.
-
-    Parameters
-    ----------
-    path : Path
-        What ``--out`` gives; it need not be there yet.
-
-    Raises
-    ------
-    PlaceError
-        When it is one.
-    """
+    """Refuse (`PlaceError`) a file in the place of the folder that ``--out`` gives, which need not be there yet."""
     if path.exists() and not path.is_dir():
         raise PlaceError(f"--out {path}: is a file, not a folder")
 
 
 def _require_no_interrupted_study(path: Path) -> None:
-    """Its plan would be removed as a file of the last run; batches without one are of no use to anybody."""
+    """Refuse a folder with an interrupted study: without its plan, a file of the last run, its batches are useless."""
     if (path / PLAN).exists() and any((path / BATCHES).glob("*.npz")):
         raise PlaceError(
             f"--out {path}: holds an interrupted study; continue it with --resume, or choose another --out"
@@ -277,27 +229,24 @@ def claimed_folder(
     adding: bool = False,
     renewing: tuple[str, ...] = (),
 ) -> Iterator[RunFolder]:
-    """Hold a folder while a run writes to it.
+    """Hold a folder, which is made, while a command writes to it.
+
+    Every file of `ltca.output.files.whole_file` is entered into its manifest.
 
     Parameters
     ----------
     path : Path
-        The folder; it is made.
+        The folder.
     command : str
-        Name of the command, for manifest and message.
+        Name of the command, for manifest and messages.
     writes : iterable of str
-        Names, or patterns of names, of all files that the run may write: where the user has one of them it does not start.
+        Names, or patterns of names, of all files that may be written: where the user has one of them nothing starts.
     beside : tuple of str
         Folders in it whose files outlive a run.
     adding : bool
-        Whether the run adds to what is there instead of replacing it.
+        Whether files are added to those of earlier runs, which are otherwise replaced.
     renewing : tuple of str
         Names of files of earlier runs that are replaced even where they were changed since.
-
-    Yields
-    ------
-    RunFolder
-        Enters every file of `ltca.output.files.whole_file` by itself.
 
     Raises
     ------

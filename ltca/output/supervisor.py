@@ -24,12 +24,7 @@ GRACE = 3.0
 def supervise(folder: str, words: Sequence[str]) -> int:
     """Run a program and return its exit status; end it when standard input does.
 
-    Parameters
-    ----------
-    folder : str
-        Removed when the asking process ends before the program does.
-    words : sequence of str
-        Program and arguments.
+    The folder is removed when the asking process ends before the program does.
     """
     # Ctrl-C reaches the asking process, which then ends this one.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -58,7 +53,7 @@ def supervise(folder: str, words: Sequence[str]) -> int:
 
 
 class _EndedError(Exception):
-    """SIGTERM has come."""
+    """Raised on SIGTERM."""
 
 
 def _end(number: int, frame: object) -> None:

@@ -1,4 +1,4 @@
-"""Streams that take every message: any encoding, no stream at all."""
+"""Standard streams that take every message, whatever their encoding, also where they are closed."""
 
 from __future__ import annotations
 

@@ -15,8 +15,9 @@ import numpy as np
 from ltca.arrays import FloatArray
 from ltca.drive.units.quantities import ARCMIN, ARCSEC
 from ltca.errors import DamagedFileError, DriveError, one_line, printable, shortened
-from ltca.output.netcdf import DAMAGE, read_netcdf
+from ltca.output.netcdf import DAMAGE, read_netcdf, require_known_schema
 from ltca.output.regular_files import read_regular
+from ltca.page.run_arrays import bearing_curves, contact_arrays
 from ltca.reading.toml_text import read_text
 
 ANGLES = {"crank_angle_deg": pi / 180.0, "crank_angle_rad": 1.0}
@@ -24,13 +25,6 @@ ERRORS = {
     "transmission_error_arcsec": 1.0, "transmission_error_arcmin": ARCSEC / ARCMIN, "transmission_error_rad": ARCSEC,
 }  # fmt: skip
 """Columns of a measured transmission error, and what they are times, in rad and arc seconds."""
-KINDS = {
-    "pin": ("pin_load", "pin_pressure_mid", "pin_half_width"),
-    "outer": ("roller_load", "roller_pressure_mid_outer", "roller_half_width_outer"),
-    "inner": ("roller_load_inner", "roller_pressure_mid_inner", "roller_half_width_inner"),
-    "hole": ("pin_shaft_load", "pin_shaft_pressure_mid", "pin_shaft_half_width"),
-}
-"""Variables of ``results.nc`` by kind of contact: load, pressure, half-width."""
 LARGEST_SUMMARY = 50_000_000
 """Bytes of a ``summary.json``; one of a hundred cases has a megabyte."""
 MOST_MEASURED = 200_000
@@ -41,7 +35,7 @@ MOST_POSITIONS = 3600
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Compared:
-    """What stands beside a run.
+    """A second run or measured curve for comparison.
 
     Attributes
     ----------
@@ -65,18 +59,10 @@ class Compared:
 
 
 def read_compared(path: Path) -> Compared:
-    """Read what a run is to be compared with.
+    """Read what a run is to be compared with; `DriveError` when there is none, or it holds something else.
 
-    Parameters
-    ----------
-    path : Path
-        A folder that ``cyclo run`` wrote, its ``results.nc``, or a file of comma separated values with a measured transmission
-        error: columns ``crank_angle_deg`` (or ``_rad``) and ``transmission_error_arcsec`` (or ``_arcmin``, ``_rad``).
-
-    Raises
-    ------
-    DriveError
-        When there is none, or it holds something else.
+    The path is a folder that ``cyclo run`` wrote, its ``results.nc``, or a file of comma separated values with a measured
+    transmission error: columns ``crank_angle_deg`` (or ``_rad``) and ``transmission_error_arcsec`` (or ``_arcmin``, ``_rad``).
     """
     results = path / "results.nc" if path.is_dir() else path
     if results.suffix == ".csv":
@@ -93,17 +79,15 @@ def read_compared(path: Path) -> Compared:
 def _of_run(results: Path) -> Compared:
     try:
         dataset = read_netcdf(results, "results of cyclo run")
+        require_known_schema(results, dataset.attrs)
         cases = tuple(str(name) for name in dataset["case"].values)
         arrays: dict[str, FloatArray] = {"angle": dataset["crank_angle"].values}
         for number in range(len(cases)):
             one = dataset.isel(case=number)
-            for kind, names in KINDS.items():
-                for quantity, name in zip(("load", "pressure", "width"), names, strict=True):
-                    arrays[f"{number}/full/{kind}/{quantity}"] = _by_contact(one[name])
+            arrays |= {f"{number}/full/{name}": values for name, values in contact_arrays(one).items()}
             arrays[f"{number}/full/te"] = one["transmission_error"].values * ARCSEC
             arrays[f"{number}/light/te"] = one["transmission_error_light"].values * ARCSEC
-            for name in ("radial", "tangential"):
-                arrays[f"{number}/{name}"] = one[f"bearing_{name}"].transpose("disc", "crank", "position").values
+            arrays |= {f"{number}/{name}": values for name, values in bearing_curves(one).items()}
         _require_positions(arrays)
     except DamagedFileError as error:
         raise DriveError([f"--compare = {error}"]) from error
@@ -117,16 +101,8 @@ def _of_run(results: Path) -> Compared:
     )
 
 
-def _by_contact(values: Any) -> FloatArray:
-    """Of shape (discs, contacts, positions); those of several cranks behind each other."""
-    (last,) = (name for name in ("pin", "roller", "hole") if name in values.dims)
-    order = [name for name in ("disc", "crank", last, "position") if name in values.dims]
-    found = np.asarray(values.transpose(*order).values)
-    return found.reshape(found.shape[0], -1, found.shape[-1])
-
-
 def _require_positions(arrays: dict[str, FloatArray]) -> None:
-    """Refuse what has not a number for every position."""
+    """Refuse arrays without a number for every position."""
     positions = arrays["angle"].shape
     for name, values in arrays.items():
         alone = name == "angle" or name.endswith("/te")

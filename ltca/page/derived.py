@@ -1,4 +1,4 @@
-"""What follows from the inputs of a drive: geometry, installation, walls, as names and texts."""
+"""Values derived from the inputs of a drive: geometry, installation, walls, as names and texts."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from math import degrees, pi, sin
 import numpy as np
 
 from ltca.analysis.verdict.geometry import roller_gap, walls
+from ltca.drive.members.bearings import designation_of
 from ltca.drive.members.named_materials import named_parts
 from ltca.drive.members.temperatures import temperature_words
 from ltca.drive.parts import Drive, PinShaft, PinWheel
@@ -17,19 +18,15 @@ from ltca.geometry.first_contact import backlash
 from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.placement import position_angles
 from ltca.geometry.play import play_over_a_turn, preload_words
+from ltca.quantities import SCALARS
 
 Rows = list[tuple[str, str]]
 
 
 def derived_rows(written: Drive, drive: Drive, *, plays: bool = True) -> Rows:
-    """Return what follows from the inputs, a name and a text each.
+    """Return values derived from the inputs of a drive, as it was given and at its temperatures: names and texts.
 
-    Parameters
-    ----------
-    written, drive : Drive
-        As it was given, and at its temperatures.
-    plays : bool
-        Whether gaps and backlash over a turn are wanted, which take most of the time.
+    `plays` are gaps and backlash over a turn, which take most of the time.
     """
     return [*_warmth(written), *_materials(written), *_properties(drive, plays)]
 
@@ -58,6 +55,7 @@ def _properties(drive: Drive, plays: bool) -> Rows:
         (f"bore radius{of} with clearance", f"{single.bore_radius:.4f} mm"),
         (f"play of a roller{of} between the races", f"{roller_play:.4f} mm"),
         ("gap between neighbouring rollers", f"{roller_gap(drive):.4f} mm"),
+        *_bought(drive),
         *_walls(single, of),
         ("mean tangential bearing load of a disc", f"{tangential:.1f} N"),
     ]  # fmt: skip
@@ -72,7 +70,7 @@ def _plays(geometries: list[ContactGeometry], leverage: float) -> Rows:
     return [
         ("gap between pins and flank, nominal position", f"{gap.min():.4f} … {gap.max():.4f} mm"),
         (
-            "backlash at the output, all clearances",
+            SCALARS["backlash_output"].verdict_title,
             ", ".join(
                 filter(
                     None,
@@ -94,8 +92,17 @@ def _plays(geometries: list[ContactGeometry], leverage: float) -> Rows:
     ]
 
 
+def _bought(drive: Drive) -> Rows:
+    """Name of the crank bearing where it is one of the shipped ones, and ratings of its maker."""
+    part, name = drive.crank_bearing, designation_of(drive.crank_bearing)
+    ratings = (("C", part.dynamic_load_rating), ("C0", part.static_load_rating))
+    told = ", ".join(f"{rating} {value:.0f} N" for rating, value in ratings if value is not None)
+    rows = [] if name is None else [("crank bearing", name)]
+    return rows + ([("ratings of the maker", told)] if told else [])
+
+
 def _warmth(drive: Drive) -> Rows:
-    """How warm the parts are; what is printed below are lengths at these temperatures."""
+    """Temperatures of the parts, which all lengths are at."""
     held = drive.temperature
     return [] if held is None else [("temperatures, of which all lengths are", temperature_words(held))]
 
@@ -109,7 +116,7 @@ def _materials(drive: Drive) -> Rows:
 
 
 def _walls(single: Drive, of: str) -> Rows:
-    """What is left between holes, bores and roots of a disc."""
+    """Walls between holes, bores and roots of a disc."""
     rows, found = [], dict(walls(single))
 
     def both(first: str, second: str) -> str:
@@ -127,7 +134,7 @@ def _walls(single: Drive, of: str) -> Rows:
 
 
 def _installation(drive: Drive) -> Rows:
-    """Who is held and turned, and how the discs stand."""
+    """Which member is held and which is driven, and the arrangement of the discs."""
     held = (
         "pin wheel held, pin shaft is the output" if drive.wheel_is_held else "pin shaft held, pin wheel is the output"
     )
@@ -159,7 +166,7 @@ def _installation(drive: Drive) -> Rows:
 
 
 def _supports(drive: Drive) -> Rows:
-    """What yields on its bearings, and what is taken for rigid."""
+    """Elastic supports, and what they leave out."""
     rows, support, wheel = [], drive.crank.support, drive.pin_wheel.support_stiffness
     if support is not None:
         first, second = (
@@ -173,12 +180,12 @@ def _supports(drive: Drive) -> Rows:
     return rows
 
 
-THIN = 0.1
+THIN_WALL = 0.1
 """Wall between slots, or of a sleeve, by the radius of its bore: what is thinner yields more than the contacts in it say."""
 
 
 def _pins(drive: Drive) -> Rows:
-    """How pins of wheel and shaft sit and bend, where they are not fixed and rigid."""
+    """Seats and beams of pins that are not fixed and rigid."""
     wheel, shaft = drive.pin_wheel, drive.pin_shaft
     rows = _seat(wheel, "wheel pins", "the flank")
     if wheel.seat.kind == "slot":
@@ -214,4 +221,4 @@ def _seat(part: PinWheel | PinShaft, pins: str, seen_from: str) -> Rows:
 
 
 def _wall(wall: float, bore: float) -> str:
-    return f"{wall:.4f} mm" + (", thin: it yields more than its contacts alone say" if wall < THIN * bore else "")
+    return f"{wall:.4f} mm" + (", thin: it yields more than its contacts alone say" if wall < THIN_WALL * bore else "")

@@ -20,19 +20,9 @@ LEVEL = 6
 
 
 def pack(arrays: Mapping[str, FloatArray]) -> tuple[dict[str, list[int]], str]:
-    """Return where each array lies, and all of them as text.
+    """Return where each array lies, number of its first value and shape, and all of them as text.
 
-    Parameters
-    ----------
-    arrays : mapping of str to array
-        By name; what is no number stays none.
-
-    Returns
-    -------
-    places : dict of str to list of int
-        Number of the first value, then the shape.
-    text : str
-        All values in this order, as float32, bytes in planes, gzipped, in base64.
+    The text has all values in this order as float32, bytes in planes, gzipped, in base64; not-a-number values stay so.
 
     Examples
     --------

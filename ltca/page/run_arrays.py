@@ -1,126 +1,112 @@
-"""The numbers behind the moving drive of a run: poses, loads and pressures of every contact at both torques."""
+"""The numbers behind the moving drive of a run: poses, loads and pressures of every contact, from the dataset of the run."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import replace
 from math import ceil
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.arrays import FloatArray
-from ltca.compliance.grids import GridCompliance
-from ltca.compliance.response import KindPressures
 from ltca.drive.units.quantities import ARCSEC
-from ltca.equilibrium.balance import Equilibrium
-from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, disc_displacement
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 MOST_VALUES = 1_500_000
 """Numbers on a page, some two megabytes: of runs with more, every second position is shown, or every third."""
-TORQUES = ("full", "light")
+CONTACTS = {
+    "pin": ("pin_load", "pin_pressure_mid", "pin_half_width"),
+    "outer": ("roller_load", "roller_pressure_mid_outer", "roller_half_width_outer"),
+    "inner": ("roller_load_inner", "roller_pressure_mid_inner", "roller_half_width_inner"),
+    "hole": ("pin_shaft_load", "pin_shaft_pressure_mid", "pin_shaft_half_width"),
+}
+"""Load, pressure and half-width in ``results.nc``, by kind of contact."""
 
 
-def shown_positions(analyses: Mapping[str, LoadedAnalysis]) -> NDArray[np.intp]:
+def shown_positions(dataset: xr.Dataset) -> NDArray[np.intp]:
     """Return which positions of a run a page shows: all of them, or evenly chosen ones of many."""
-    first = next(iter(analyses.values()))
-    positions = first.full.crank_angle.size
-    contacts = first.full.response
-    each = 2 * (4 * contacts.pin_load.shape[1] + 6 * contacts.rollers.outer_load.shape[1])
-    each += 2 * 3 * contacts.hole_load.shape[1] + 30 * len(first.model.discs)
-    return np.arange(0, positions, ceil(each * positions * len(analyses) / MOST_VALUES))
+    sizes = dataset.sizes
+    each = 2 * (4 * sizes["pin"] + 6 * sizes["crank"] * sizes["roller"]) + 2 * 3 * sizes["hole"] + 30
+    values = each * sizes["disc"] * sizes["position"] * sizes["case"]
+    return np.arange(0, sizes["position"], ceil(values / MOST_VALUES))
 
 
-def run_arrays(analyses: Mapping[str, LoadedAnalysis], rows: NDArray[np.intp]) -> dict[str, FloatArray]:
-    """Return every array of a page of a run, positions last.
+def run_arrays(dataset: xr.Dataset, light: xr.Dataset | None, rows: NDArray[np.intp]) -> dict[str, FloatArray]:
+    """Return the arrays of a page of a run, positions last.
 
-    Parameters
-    ----------
-    analyses : mapping of str to LoadedAnalysis
-        By case.
-    rows : array of int
-        Positions that are shown (`shown_positions`).
-
-    Returns
-    -------
-    dict of str to array
-        ``angle``, rad; by number of the case, torque and name, as ``0/full/pin/load``: loads in N, pressures at mid-width in MPa,
-        half-widths in mm of shape (discs, contacts, positions), the parameter of each contact on the flank, rad;
-        ``radial`` and ``tangential`` of each disc, mm, its ``rotation``, rad, the ``wheel`` angle, rad, and
-        the transmission error ``te`` in arc seconds; further curves of the whole drive (`_curves`).
+    ``angle``, rad; by number of the case, torque and name, as ``0/full/pin/load``: loads in N, pressures at mid-width in MPa,
+    half-widths in mm of shape (discs, contacts, positions), the parameter of each contact on the flank, rad; ``radial`` and
+    ``tangential`` of each disc, mm, its ``rotation``, rad, the ``wheel`` angle, rad, and the transmission error ``te`` in
+    arc seconds; further curves of the whole drive (`_curves`). The dataset is that of `ltca.analysis.results.build_dataset`, or
+    ``results.nc`` read back, `light` the same at the light torque: without it that torque has its transmission error alone.
+    `rows` are the positions that are shown (`shown_positions`).
     """
-    first = next(iter(analyses.values()))
-    arrays: dict[str, FloatArray] = {"angle": first.full.crank_angle}
-    for number, analysis in enumerate(analyses.values()):
-        for torque in TORQUES:
-            for name, values in _of_torque(analysis, light=torque == "light").items():
-                arrays[f"{number}/{torque}/{name}"] = values
-        arrays |= {f"{number}/{name}": values for name, values in _curves(analysis).items()}
+    arrays: dict[str, FloatArray] = {"angle": dataset["crank_angle"].values}
+    for number in range(dataset.sizes["case"]):
+        case = dataset.isel(case=number)
+        found = {f"full/{name}": values for name, values in _state(case).items()}
+        if light is None:
+            found["light/te"] = case["transmission_error_light"].values * ARCSEC
+        else:
+            found |= {f"light/{name}": values for name, values in _state(light.isel(case=number)).items()}
+        arrays |= {f"{number}/{name}": values for name, values in (found | _curves(case)).items()}
     return {name: np.ascontiguousarray(values[..., rows]) for name, values in arrays.items()}
 
 
-def _of_torque(analysis: LoadedAnalysis, *, light: bool) -> dict[str, FloatArray]:
-    found = _at_light_torque(analysis) if light else analysis
-    each = [_of_disc(disc) for disc in found.discs]
-    error = analysis.transmission_error_light if light else analysis.transmission_error
+def contact_arrays(case: xr.Dataset) -> dict[str, FloatArray]:
+    """Return load, pressure and half-width of a case by kind, as ``pin/load``, of shape (discs, contacts, positions)."""
     return {
-        **{name: np.stack([values[name] for values in each]) for name in each[0]},
-        "wheel": found.full.pose[:, WHEEL_ANGLE],
-        "te": error * ARCSEC,
+        f"{kind}/{quantity}": by_contact(case[name])
+        for kind, names in CONTACTS.items()
+        for quantity, name in zip(("load", "pressure", "width"), names, strict=True)
     }
 
 
-def _at_light_torque(analysis: LoadedAnalysis) -> LoadedAnalysis:
-    """The analysis as if its light torque were that of the run; without pressures where they would be dear or unknown."""
-    light, model, known = analysis.light, analysis.model, analysis.pressures
-    grids = any(isinstance(disc, GridCompliance) for disc in model.discs)  # they would be solved anew, for minutes
-    if np.all(analysis.balanced_light) and not grids:
-        return replace(analysis, full=light, pressures=model.pressures(light.response))
-    pins, outer, inner, holes = (
-        replace(kind, mid=np.full_like(kind.mid, np.nan), half_width=np.full_like(kind.half_width, np.nan))
-        for kind in (known.pins, known.outer, known.inner, known.holes)
-    )
-    return replace(analysis, full=light, pressures=replace(known, pins=pins, outer=outer, inner=inner, holes=holes))
+def by_contact(values: xr.DataArray) -> FloatArray:
+    """Return values of contacts with shape (discs, contacts, positions); rollers come crank after crank."""
+    (last,) = (name for name in ("pin", "roller", "hole") if name in values.dims)
+    order = [name for name in ("disc", "crank", last, "position") if name in values.dims]
+    found = np.asarray(values.transpose(*order).values)
+    return found.reshape(found.shape[0], int(np.prod(found.shape[1:-1])), found.shape[-1])
 
 
-def _of_disc(analysis: LoadedAnalysis) -> dict[str, FloatArray]:
-    full: Equilibrium = analysis.full
-    contacts, pressures = full.response, analysis.pressures
-    place = analysis.model.discs[0].geometry.placement
-    displacement = disc_displacement(full.pose) * place.eccentric_direction(full.crank_angle).conjugate()
-    kinds: dict[str, tuple[FloatArray, KindPressures]] = {
-        "pin": (contacts.pin_load, pressures.pins),
-        "outer": (contacts.rollers.outer_load, pressures.outer),
-        "inner": (contacts.rollers.inner_load, pressures.inner),
-        "hole": (contacts.hole_load, pressures.holes),
-    }
-    values: dict[str, FloatArray] = {}
-    for kind, (load, pressed) in kinds.items():
-        values |= {f"{kind}/load": load.T, f"{kind}/pressure": pressed.mid.T, f"{kind}/width": pressed.half_width.T}
-    return values | {
-        "pin/parameter": np.mod(contacts.flank.parameter, 2.0 * np.pi).T,
-        "radial": displacement.real,
-        "tangential": displacement.imag,
-        "rotation": full.pose[:, DISC_ROTATION],
+def _state(case: xr.Dataset) -> dict[str, FloatArray]:
+    """Contacts and poses of a case at one torque."""
+    return contact_arrays(case) | {
+        "pin/parameter": by_contact(case["pin_contact_parameter"]),
+        "radial": case["disc_radial"].values,
+        "tangential": case["disc_tangential"].values,
+        "rotation": case["disc_rotation"].values,
+        "wheel": case["wheel_angle"].values,
+        "te": case["transmission_error"].values * ARCSEC,
     }
 
 
-def _curves(analysis: LoadedAnalysis) -> dict[str, FloatArray]:
+def bearing_curves(case: xr.Dataset) -> dict[str, FloatArray]:
+    """Return the bearing forces of a case, N, shape (discs, cranks, positions)."""
+    return {
+        name: case[f"bearing_{name}"].transpose("disc", "crank", "position").values for name in ("radial", "tangential")
+    }
+
+
+def _curves(case: xr.Dataset) -> dict[str, FloatArray]:
     """Curves of the whole drive at the torque of the run: bearing forces by disc and crank, N, torques, N·m, losses."""
-    discs = analysis.bearing_radial.shape[1]
-    curves = {
-        "radial": np.moveaxis(analysis.bearing_radial, 0, -1),
-        "tangential": np.moveaxis(analysis.bearing_tangential, 0, -1),
-    }
-    if discs > 1:
-        curves["share"] = analysis.torque_share.T
-    if analysis.drive.crank.number > 1:
-        curves["crank"] = analysis.crank_torques.T / 1000.0
-    losses = analysis.losses
-    if losses is not None:
-        curves["efficiency"] = losses.efficiency
-        for kind, energy in losses.by_kind.items():
-            if np.any(energy):
-                curves[f"loss/{kind}"] = energy
+    curves = bearing_curves(case)
+    if case.sizes["disc"] > 1:
+        torque = case["disc_torque"].values
+        curves["share"] = torque / torque.sum(axis=0)
+    if case.sizes["crank"] > 1:
+        curves["crank"] = case["crank_torque"].values / 1000.0
+    if has_friction(case):
+        curves["efficiency"] = case["efficiency"].values
+        for name, values in case.data_vars.items():
+            if str(name).startswith("loss_") and np.any(values.values):
+                curves[f"loss/{str(name).removeprefix('loss_')}"] = values.values
     return curves
+
+
+def has_friction(case: xr.Dataset) -> bool:
+    """Tell whether a case has friction: beside cases that have it, others have values that are not a number."""
+    return "efficiency" in case and bool(np.isfinite(case["efficiency"].values).any())

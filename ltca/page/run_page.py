@@ -5,37 +5,35 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import degrees
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from ltca.analysis.engines import describe_engine
-from ltca.analysis.loaded_analysis import LoadedAnalysis
+from ltca.analysis.engines import Engine, describe_engine
+from ltca.analysis.friction.losses import KINDS
+from ltca.analysis.life.bearing_lives import BearingLives
 from ltca.analysis.summary import refined_value
 from ltca.analysis.summary_rows import rows_of, with_residual_part
+from ltca.arrays import FloatArray
 from ltca.drive.members.judgement import Check
+from ltca.drive.members.temperatures import warm_drive
+from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
-from ltca.output.provenance import code_hash, code_version
 from ltca.page.compared import Compared, matched
 from ltca.page.packing import pack
-from ltca.page.run_arrays import run_arrays, shown_positions
+from ltca.page.run_arrays import has_friction, run_arrays, shown_positions
 from ltca.page.run_sections import lives_of_cases, wind_up
-from ltca.page.run_tables import (
-    derived_tables,
-    input_tables,
-    orders_table,
-    summary_tables,
-    turn_orders,
-)
+from ltca.page.run_tables import derived_tables, input_tables, orders_table, summary_tables, turn_orders
 from ltca.page.scene import moving_scene
 from ltca.page.tables import Table, number, texts, word
 from ltca.page.verdict_tables import verdict_of, verdict_tables
 from ltca.page.writing import page_text, script_data
+from ltca.quantities import SCALARS
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 PAGE = "report.html"
 SCRIPTS = ("drawing", "plots", "motion", "stage", "run")
-LOSSES = {
-    "pin": "flank on wheel pins", "seat": "seats", "hole": "holes on shaft pins", "roller": "rollers",
-    "support_bearing": "bearings of cranks and wheel", "no_load": "seals and oil",
-}  # fmt: skip
+LOSSES = {kind: SCALARS[f"power_loss_{kind}"].title.removeprefix("power lost: ") for kind in KINDS}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,82 +42,86 @@ class Run:
 
     Attributes
     ----------
-    name, text : str
-        Of the drive, and its file.
-    analyses : mapping of str to LoadedAnalysis
-        By case.
+    dataset : xarray.Dataset
+        Results of the run (`ltca.analysis.results.build_dataset`, or ``results.nc`` read back).
+    drives : mapping of str to Drive
+        As they were given, by case.
+    engine : Engine
+        What the run was solved on.
     summaries : mapping of str to mapping
         Scalars by case (`ltca.analysis.summary.summarise`).
     checks : mapping of str to sequence of Check
         Verdict by case; none of cases without an answer somewhere.
+    lives : mapping of str to BearingLives or str
+        Of the crank bearings by case, or why there are none.
     sampling : sequence of str
         What the values stand for, and warnings.
+    light : xarray.Dataset or None
+        The same results at the light torque (`ltca.analysis.light_torque`); without them the drive moves at its torque alone.
     compared : Compared or None
         What stands beside it.
     """
 
-    name: str
-    text: str
-    analyses: Mapping[str, LoadedAnalysis]
+    dataset: xr.Dataset
+    drives: Mapping[str, Drive]
+    engine: Engine
     summaries: Mapping[str, Mapping[str, float | None]]
     checks: Mapping[str, Sequence[Check]]
+    lives: Mapping[str, BearingLives | str]
     sampling: Sequence[str]
+    light: xr.Dataset | None = None
     compared: Compared | None = None
 
 
 def run_page(run: Run) -> str:
-    """Return the page of a run; the same run gives the same page.
-
-    Parameters
-    ----------
-    run : Run
-        What it shows.
-    """
-    first = next(iter(run.analyses.values()))
-    shown = shown_positions(run.analyses)
+    """Return the page of a run; the same run gives the same page."""
+    dataset, cases = run.dataset, list(run.drives)
+    name, positions = str(dataset.attrs["drive"]), dataset.sizes["position"]
+    drives = {case: warm_drive(drive) for case, drive in run.drives.items()}
+    loads = [drive.load_words(_torque(dataset, place)) for place, drive in enumerate(drives.values())]
+    shown = shown_positions(dataset)
     sentence, state = verdict_of(run.checks)
-    unjudged = [name for name in run.analyses if name not in run.checks]
+    unjudged = [case for case in cases if case not in run.checks]
     if unjudged and run.checks:
         sentence, state = f"No answer at some positions, not judged: {', '.join(unjudged)}. {sentence}", "fail"
-    summary = summary_tables(run.analyses, run.summaries)
-    sections = [wind_up(run.analyses, run.summaries), lives_of_cases(run.analyses)]
-    places, numbers = pack(_arrays(run))
+    sections = [wind_up(dataset, run.summaries), lives_of_cases(run.lives)]
+    places, numbers = pack(_arrays(run, drives))
     content = {
-        "cases": [_case(one) for one in run.analyses.values()],
-        "names": list(run.analyses),
+        "cases": [_case(dataset, place, drive) for place, drive in enumerate(drives.values())],
+        "names": cases,
         "places": places,
-        "cranks": first.drive.crank.number,
-        "discs": first.drive.disc.number_of_discs,
+        "cranks": dataset.sizes["crank"],
+        "discs": dataset.sizes["disc"],
         "losses": LOSSES,
         "compared": _compared(run),
     }
     return page_text(
         "run.html",
         {
-            "title": f"{run.name}: loaded tooth contact analysis",
-            "drive": run.name,
-            "cases": list(run.analyses),
-            "model": describe_engine(first.engine),
-            "loads": list(dict.fromkeys(one.drive.load_words(one.torque) for one in run.analyses.values())),
-            "positions": first.full.crank_angle.size,
-            "thinned": 0 if shown.size == first.full.crank_angle.size else int(shown[1]),
-            "version": code_version(),
+            "title": f"{name}: loaded tooth contact analysis",
+            "drive": name,
+            "cases": cases,
+            "model": describe_engine(run.engine),
+            "loads": list(dict.fromkeys(loads)),
+            "positions": positions,
+            "thinned": 0 if shown.size == positions else int(shown[1]),
+            "version": dataset.attrs["version"],
             "sentence": sentence,
             "state": state,
             "verdicts": verdict_tables(run.checks),
-            "summary": summary,
-            "orders": orders_table(run.analyses),
+            "summary": summary_tables(drives, run.summaries),
+            "orders": orders_table(dataset, drives),
             "sections": list(zip(("wind_up", "life"), sections, strict=True)),
-            "friction": first.losses is not None,
-            "several": len(run.analyses) > 1,
+            "friction": has_friction(dataset.isel(case=0)),
+            "several": len(cases) > 1,
             "comparison": _comparison(run),
             "compared": run.compared,
             "warnings": [line.removeprefix("warning: ") for line in run.sampling if line.startswith("warning: ")],
             "sampling": [line for line in run.sampling if not line.startswith("warning: ")],
-            "inputs": input_tables({name: one.as_written for name, one in run.analyses.items()}),
-            "derived": derived_tables(run.analyses),
-            "made": _made(run, first),
-            "text": run.text,
+            "inputs": input_tables(run.drives),
+            "derived": derived_tables(run.drives, drives),
+            "made": _made(run, drives),
+            "text": dataset.attrs["drive_file"],
             "data": script_data(content),
             "numbers": numbers,
         },
@@ -127,22 +129,26 @@ def run_page(run: Run) -> str:
     )
 
 
-def _arrays(run: Run) -> dict[str, Any]:
-    arrays = run_arrays(run.analyses, shown_positions(run.analyses))
-    for number_of, one in enumerate(run.analyses.values()):
-        lines = turn_orders(one)
+def _torque(dataset: xr.Dataset, place: int) -> float:
+    """Output torque of a case, N·mm."""
+    return float(dataset["torque"][place])
+
+
+def _arrays(run: Run, drives: Mapping[str, Drive]) -> dict[str, FloatArray]:
+    arrays = run_arrays(run.dataset, run.light, shown_positions(run.dataset))
+    for place, drive in enumerate(drives.values()):
+        lines = turn_orders(run.dataset.isel(case=place))
         if lines is not None:
-            most = max(5 * one.drive.disc.number_of_teeth, 2 * one.drive.number_of_holes, 40)
-            arrays[f"{number_of}/orders"] = lines[:most]
+            most = max(5 * drive.disc.number_of_teeth, 2 * drive.number_of_holes, 40)
+            arrays[f"{place}/orders"] = lines[:most]
     beside = {} if run.compared is None else run.compared.arrays
     return arrays | {f"b/{name}": values for name, values in beside.items()}
 
 
-def _case(analysis: LoadedAnalysis) -> dict[str, Any]:
-    drive = analysis.drive
+def _case(dataset: xr.Dataset, place: int, drive: Drive) -> dict[str, Any]:
     return {
         "scenes": [moving_scene(single) for single in single_discs(drive)],
-        "torque": analysis.torque / 1000.0,
+        "torque": _torque(dataset, place) / 1000.0,
         "light": drive.load.light_torque / 1000.0,
         "direction": drive.load.direction,
         "sign": int(drive.driving_sign),
@@ -153,18 +159,16 @@ def _compared(run: Run) -> dict[str, Any] | None:
     beside = run.compared
     if beside is None:
         return None
-    own = next(iter(run.analyses.values())).engine.options["compliance"]
+    own = run.engine.options["compliance"]
     name = beside.name if beside.name != own else "second run"
-    match = matched(run.analyses, beside) if beside.cases else []
+    match = matched(run.drives, beside) if beside.cases else []
     return {"name": name, "cases": list(beside.cases), "match": match}
 
 
 def _comparison(run: Run) -> list[Table]:
     """Scalars of both runs side by side, a table for each case."""
     beside, tables = run.compared, list[Table]()
-    for case, place in zip(
-        run.analyses, matched(run.analyses, beside) if beside and beside.cases else (), strict=False
-    ):
+    for case, place in zip(run.drives, matched(run.drives, beside) if beside and beside.cases else (), strict=False):
         assert beside is not None
         other = beside.summaries.get(beside.cases[place])
         if other is None:
@@ -181,20 +185,20 @@ def _comparison(run: Run) -> list[Table]:
     return tables
 
 
-def _made(run: Run, first: LoadedAnalysis) -> Table:
+def _made(run: Run, drives: Mapping[str, Drive]) -> Table:
     """What the numbers were computed by."""
-    angles = first.full.crank_angle
+    angles, attributes = run.dataset["crank_angle"].values, run.dataset.attrs
     where = f"{angles.size}, {degrees(angles.min()):.6g}° … {degrees(angles.max()):.6g}°"
-    options = [(name.replace("_", " "), str(value)) for name, value in first.engine.options.items()]
+    options = [(name.replace("_", " "), str(value)) for name, value in run.engine.options.items()]
     rows = [
-        ("version of cyclo", code_version()),
-        ("hash of its code", code_hash("ltca")),
+        ("version of cyclo", attributes["version"]),
+        ("hash of its code", attributes["code_hash"]),
         *options,
         ("positions of the crank", where),
         *(("sampling", line) for line in run.sampling if not line.startswith("warning: ")),
         *(
-            (f"fingerprint of {name}" if len(run.analyses) > 1 else "fingerprint of the drive", one.drive.fingerprint())
-            for name, one in run.analyses.items()
+            (f"fingerprint of {name}" if len(drives) > 1 else "fingerprint of the drive", drive.fingerprint())
+            for name, drive in drives.items()
         ),
     ]
     return Table(name="computed_by", caption="", columns=["", "value"], rows=texts(rows), words=1)

@@ -1,4 +1,4 @@
-"""What the page of a run tells beside its positions: wind-up of each case, life of its crank bearings.
+"""Sections of the page of a run beside its positions: wind-up and life of the crank bearings.
 
 Both are what ``cyclo curves`` has, in short, and of the answers that are there already: wind-up between the two torques of the
 run, and lives from its turn, which leave some thousandths to lives over many turns.
@@ -7,41 +7,38 @@ run, and lives from its turn, which leave some thousandths to lives over many tu
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ltca.analysis.life.bearing_lives import BearingLives, bearing_lives
-from ltca.analysis.life.equivalent_load import covers_whole_turns
-from ltca.analysis.loaded_analysis import LoadedAnalysis
+from ltca.analysis.life.bearing_lives import BearingLives
 from ltca.arrays import FloatArray
 from ltca.drive.units.quantities import ARCMIN
-from ltca.errors import CycloError
 from ltca.page.study_page import Section
 from ltca.page.tables import Cell, Table, minus, number, word
+from ltca.quantities import SCALARS
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+PLAY = SCALARS["backlash_output"]
 
 
-def wind_up(analyses: Mapping[str, LoadedAnalysis], summaries: Mapping[str, Mapping[str, float | None]]) -> Section:
-    """Return what the two torques of a run tell of the torque curve of every case.
-
-    Parameters
-    ----------
-    analyses : mapping of str to LoadedAnalysis
-        By case.
-    summaries : mapping of str to mapping
-        Their scalars.
-    """
+def wind_up(dataset: xr.Dataset, summaries: Mapping[str, Mapping[str, float | None]]) -> Section:
+    """Return the wind-up of every case between the two torques of the run."""
     rows, equal = list[list[Cell]](), list[str]()
-    for name, analysis in analyses.items():
-        wound = np.abs(analysis.transmission_error - analysis.transmission_error_light)
-        wound = wound[analysis.balanced & analysis.balanced_light]
-        light = analysis.drive.load.light_torque
+    for place, name in enumerate(summaries):
+        case = dataset.isel(case=place)
+        wound = np.abs(case["transmission_error"].values - case["transmission_error_light"].values)
+        wound = wound[(case["status"].values == 0) & (case["status_light"].values == 0)]
+        torque, light = float(case["torque"]), float(case["light_torque"])
         if not (wound.size and np.all(wound > 0.0)):
             equal.append(name)
             continue
-        play = summaries[name]["backlash_output_arcmin"]
-        stiffness = abs(analysis.torque - light) / wound
-        torques = word(minus(f"{light / 1e3:.4g} … {analysis.torque / 1e3:.4g}"))
-        rows.append([word(name), number(play), torques, _range(wound * ARCMIN), _range(stiffness / ARCMIN / 1e3)])
+        stiffness = abs(torque - light) / wound
+        torques = word(minus(f"{light / 1e3:.4g} … {torque / 1e3:.4g}"))
+        play = number(summaries[name][PLAY.key])
+        rows.append([word(name), play, torques, _range(wound * ARCMIN), _range(stiffness / ARCMIN / 1e3)])
     notes = [
         "Least … largest over the positions, between the answers at the light torque and at the torque. The whole curve, both "
         "ways, with lost motion and loops of friction: cyclo curves."
@@ -56,28 +53,19 @@ def wind_up(analyses: Mapping[str, LoadedAnalysis], summaries: Mapping[str, Mapp
     return Section(heading="Wind-up", notes=notes, tables=[table] if rows else [])
 
 
-def lives_of_cases(analyses: Mapping[str, LoadedAnalysis]) -> Section:
-    """Return the lives of the crank bearings of every case, the shortest of each.
-
-    Parameters
-    ----------
-    analyses : mapping of str to LoadedAnalysis
-        By case.
-    """
+def lives_of_cases(lives: Mapping[str, BearingLives | str]) -> Section:
+    """Return the shortest life of the crank bearings of every case, or why a case has none."""
     rows, notes = list[list[Cell]](), list[str]()
-    for name, analysis in analyses.items():
-        if not (analysis.is_complete and covers_whole_turns(analysis.full.crank_angle)):
-            notes.append(f"{name}: no life, positions cover no whole turn or have no answer.")
-            continue
-        try:
-            lives = bearing_lives(analysis)
-        except CycloError as error:
-            notes.append(f"{name}: no life, {error}")
-            continue
-        if lives.not_rated:
-            notes.append(f"{name}: ISO 281 rates no such crank bearing, {'; '.join(lives.not_rated)}")
-            continue
-        rows.append(_life_row(name, lives))
+    for name, found in lives.items():
+        if isinstance(found, str):
+            notes.append(f"{name}: no life, {found}")
+        elif found.not_rated:
+            notes.append(f"{name}: ISO 281 rates no such crank bearing, {'; '.join(found.not_rated)}")
+        else:
+            rows.append(_life_row(name, found))
+    makers = [name for name, found in lives.items() if not isinstance(found, str) and found.of_maker]
+    if makers:
+        notes.append(f"Of {', '.join(makers)} C and C0 are those of the maker where the drive gives them.")
     columns = ["case", "shortest of", "C, N", "P, N", "L10r, million turns", "L10r, h", "S0"]
     table = Table(name="life", caption="", columns=columns, rows=rows, words=1)
     notes.append(

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from math import degrees
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ltca.analysis.extremes import is_full_turn
-from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.analysis.summary import refined_value
 from ltca.analysis.summary_rows import FRICTION_ROWS, rows_of, with_residual_part
 from ltca.analysis.transmission_error_orders import known_orders
+from ltca.arrays import FloatArray
 from ltca.drive.fields import field_kind
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import ARCSEC, label
@@ -21,18 +21,21 @@ from ltca.page.derived import derived_rows
 from ltca.page.tables import NOTHING, Cell, Table, minus, number, texts, word
 from ltca.quantities import Scalar
 
+if TYPE_CHECKING:
+    import xarray as xr
+
 Summaries = Mapping[str, Mapping[str, float | None]]
 
 GROUPS = ("loads", "pressures", "transmission", "losses", "rest")
-TOLD_ORDERS = 8
+ORDERS_SHOWN = 8
 """Orders of the transmission error in the table."""
-SAME = 1e-9
-"""Of whole orders."""
+ORDER_TOLERANCE = 1e-9
+"""Departure up to which an order counts as a whole one."""
 
 
-def summary_tables(analyses: Mapping[str, LoadedAnalysis], summaries: Summaries) -> dict[str, Table]:
+def summary_tables(drives: Mapping[str, Drive], summaries: Summaries) -> dict[str, Table]:
     """Return the scalars of the cases side by side, by `GROUPS`; those that have a row."""
-    yields = any(one.drive.crank.support or one.drive.pin_wheel.support_stiffness for one in analyses.values())
+    yields = any(drive.crank.support or drive.pin_wheel.support_stiffness for drive in drives.values())
     whole = {name: with_residual_part(case) for name, case in summaries.items()}
     captions = {"transmission": "Transmission error and backlash", "rest": "What else is known of the answer"}
     rows: dict[str, list[list[Cell]]] = {name: [] for name in GROUPS}
@@ -62,24 +65,27 @@ def _group(row: Scalar) -> str:
     return "rest" if "residual" in row.name or row.name.startswith("compliance_share") else "loads"
 
 
-def turn_orders(analysis: LoadedAnalysis) -> np.ndarray[Any, np.dtype[np.float64]] | None:
+def turn_orders(case: xr.Dataset) -> FloatArray | None:
     """Return the amplitudes of whole orders over one turn, from 1, arc seconds; None where positions are no turn."""
-    angle = analysis.full.crank_angle
-    if not (is_full_turn(angle) and analysis.is_complete):
+    angle = case["crank_angle"].values
+    if not is_full_turn(angle) or np.any(case["status"]) or np.any(case["status_light"]):
         return None
-    lines = np.fft.rfft(analysis.transmission_error) * (2.0 / angle.size) * ARCSEC
+    lines = np.fft.rfft(case["transmission_error"].values) * (2.0 / angle.size) * ARCSEC
     return np.asarray(np.abs(lines[1 : (angle.size + 1) // 2]))
 
 
-def orders_table(analyses: Mapping[str, LoadedAnalysis]) -> Table | None:
+def orders_table(dataset: xr.Dataset, drives: Mapping[str, Drive]) -> Table | None:
     """Return the largest whole orders of the transmission error, cases side by side; None where there are none."""
-    found = {name: lines for name, one in analyses.items() if (lines := turn_orders(one)) is not None and lines.size}
+    each = {name: turn_orders(dataset.isel(case=place)) for place, name in enumerate(drives)}
+    found = {name: lines for name, lines in each.items() if lines is not None and lines.size}
     if not found:
         return None
     largest = np.max(list(found.values()), axis=0)
-    chosen = np.sort(np.argsort(-largest, kind="stable")[:TOLD_ORDERS])
-    drive = next(iter(analyses.values())).drive
-    names = {round(one.value): one.name for one in known_orders(drive) if abs(one.value - round(one.value)) < SAME}
+    chosen = np.sort(np.argsort(-largest, kind="stable")[:ORDERS_SHOWN])
+    drive = next(iter(drives.values()))
+    names = {
+        round(one.value): one.name for one in known_orders(drive) if abs(one.value - round(one.value)) < ORDER_TOLERANCE
+    }
     rows = [
         [
             word(str(place + 1)),
@@ -154,9 +160,9 @@ def _words(value: Any) -> str:
     return f"{value:.10g}" if isinstance(value, float) else str(value)
 
 
-def derived_tables(analyses: Mapping[str, LoadedAnalysis]) -> list[Table]:
-    """Return what follows from the inputs: cases side by side where they differ, otherwise once."""
-    each = {name: dict(derived_rows(one.as_written, one.drive, plays=False)) for name, one in analyses.items()}
+def derived_tables(written: Mapping[str, Drive], drives: Mapping[str, Drive]) -> list[Table]:
+    """Return values derived from the inputs, as given and warm: cases side by side where they differ, otherwise once."""
+    each = {name: dict(derived_rows(written[name], drive, plays=False)) for name, drive in drives.items()}
     titles = list(dict.fromkeys(title for rows in each.values() for title in rows))
     cases = list(each.values())
     if all(case == cases[0] for case in cases):

@@ -1,4 +1,4 @@
-"""What a page draws a drive from: outlines, radii and places of its parts, each in the frame of the body that carries it."""
+"""Geometry of a drive for drawing: outlines, radii and places of parts, in the frame of the body that carries them."""
 
 from __future__ import annotations
 
@@ -16,13 +16,7 @@ DIGITS = 4
 
 
 def drive_scene(drive: Drive) -> dict[str, Any]:
-    """Return what does not move: the disc's outline in its own frame and radii, mm.
-
-    Parameters
-    ----------
-    drive : Drive
-        Of one disc.
-    """
+    """Return the fixed shapes of a drive of one disc: the disc's outline in its frame and radii, mm."""
     geometry = ContactGeometry.of_drive(drive)
     place = geometry.placement
     count = POINTS_PER_LOBE * drive.disc.number_of_teeth
@@ -37,18 +31,10 @@ def drive_scene(drive: Drive) -> dict[str, Any]:
 
 
 def moving_scene(drive: Drive) -> dict[str, Any]:
-    """Return `drive_scene` and where its parts stand, so that a page places them at any crank angle.
+    """Return `drive_scene` and where the parts of a drive of one disc stand, for any crank angle.
 
-    Parameters
-    ----------
-    drive : Drive
-        Of one disc.
-
-    Returns
-    -------
-    dict
-        Besides: wheel pins in the frame of the wheel, shaft pins in the fixed one, rollers by their angle in the cage,
-        crank axes, eccentricities and phases, cage speed and reduction ratio (`ltca.geometry.placement.Placement`).
+    Besides: wheel pins in the frame of the wheel, shaft pins in the fixed one, rollers by their angle in the cage, crank axes,
+    eccentricities and phases, cage speed and reduction ratio (`ltca.geometry.placement.Placement`).
     """
     place = ContactGeometry.of_drive(drive).placement
     return {

@@ -1,4 +1,4 @@
-"""Tables of a page: what each cell says, and the number behind it for who copies or downloads the table."""
+"""Tables of a page: cells with their text, and the full number for copies and downloads."""
 
 from __future__ import annotations
 
@@ -79,23 +79,13 @@ def minus(text: str) -> str:
     return "".join(parts)
 
 
-def word(text: str, *, note: str = "", state: str = "") -> Cell:
+def word(text: str) -> Cell:
     """Return a cell of words."""
-    return Cell(text=text, value=text, note=note, state=state)
+    return Cell(text=text, value=text)
 
 
 def number(value: float | None, form: str = "{:.5g}", unit: str = "", *, note: str = "", state: str = "") -> Cell:
-    """Return a cell of a number.
-
-    Parameters
-    ----------
-    value : float or None
-        The number; a dash stands for none.
-    form : str
-        How it is printed.
-    unit, note, state : str
-        What stands behind it, below it, and its verdict.
-    """
+    """Return a cell of a number printed by `form`, a dash for none, with its unit behind it and a note below."""
     if value is None or not isfinite(value):
         return Cell(text=NOTHING, value="", note=note, state=state)
     sign = unit_sign(unit)

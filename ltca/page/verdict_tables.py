@@ -1,4 +1,4 @@
-"""The verdict of a design as a page tells it: one sentence, then tables, worst first, cases side by side."""
+"""The verdict of a design on a page: one sentence, then tables, worst first, cases side by side."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def verdict_of(checks: Checks) -> tuple[str, str]:
 
 
 def verdict_tables(checks: Checks) -> list[Table]:
-    """Return what is judged, worst first; limits that meet no value; values without a limit: cases side by side."""
+    """Return tables of judged values (worst first), limits without a value and values without a limit; cases side by side."""
     judged = _by_check(checks, lambda check: check.fails or check.verdict in ("pass", "fail"))
     unknown = _by_check(
         checks, lambda check: check.limit is not None and check.verdict == "not known" and not check.fails

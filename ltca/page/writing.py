@@ -24,20 +24,10 @@ def page_text(
     styles: Sequence[str] = (),
     package: str | None = None,
 ) -> str:
-    """Return a page.
+    """Return a page from a template that extends ``base.html``; names from drive files in its context are texts.
 
-    Parameters
-    ----------
-    template : str
-        Its template, which extends ``base.html``.
-    context : mapping
-        What it shows; names from drive files are texts, whatever they contain.
-    scripts : sequence of str
-        Of `ltca.page.scripts` or the templates of the package, after `SCRIPTS`.
-    styles : sequence of str
-        Of the templates of the package, after ``page.css``.
-    package : str, optional
-        Package with further templates, in its folder ``templates``.
+    `scripts`, of `ltca.page.scripts` or of the package, follow `SCRIPTS`, and `styles` of the package follow ``page.css``;
+    `package` has further templates in its folder ``templates``.
 
     Notes
     -----
@@ -85,13 +75,7 @@ def _with_signs(text: str) -> Any:
 
 
 def write_page(path: Path, text: str) -> Path:
-    """Write a page; return where it is.
-
-    Raises
-    ------
-    CycloError
-        When it cannot be written.
-    """
+    """Write a page; return where it is."""
     with whole_file(path) as part:
         part.write_text(text, encoding="utf-8")
     return path

@@ -1,24 +1,25 @@
-"""Files that are read: drives, checked against physics, changed and written; coefficients, by their laws; arguments.
+"""Input: drive files, read, checked against physics, changed and written; coefficient files, checked by laws; arguments.
 
 Modules in the order data passes:
 
 ==================  ============================================================
 arguments           Arguments that commands share: the same names, metavars, units, bounds and default folders in all of
                     them
-toml_text           TOML files as plain tables: whatever the file holds, it is read or refused in one sentence
+toml_text           TOML files as plain tables: any file is read, or refused in one sentence
 drive_file          Reading drive files: TOML to validated drives, one for each case, with every mistake reported at
                     once
+bearing_names       Bought bearings in drive files, as fields: names, clearance classes, entries of the user's own
 measured            Files of measured flanks, as deviations
-physical_checks     Physical checks of a drive: what its numbers, each fine on its own, cannot be together
-deviation_checks    Physical checks of deviations, counts and sizes, and of the flank they leave: it neither folds nor
-                    traps its pins
-contradictions      Which field is behind a contradiction: the one that alone can mend all of it, not the one whose bound
-                    it breaks
+physical_checks     Physical checks of a drive: contradictions between numbers that are valid by themselves
+member_checks       Checks of the members together: cranks, values per disc, supports, seats and beams of pins, duty
+disc_checks         Checks of a drive of one disc: tooth numbers, flank, pins, bearing, holes and bores, deviations
+contradictions      Cause of contradictions: the field that alone can resolve all of them, not the one whose bound is
+                    violated
 changes             A drive with some fields replaced, validated like a drive file
 writing             A drive as the text of a drive file
-coefficient_schema  What a file of influence coefficients must hold to be used; whoever made it
-held_ring           A round body held along an inner circle, loaded by a patch on its outer one: the closed form of wheel
-                    pins and races
+coefficient_schema  Schema of a file of influence coefficients, of this or another code
+station_walls       Walls of a disc between its stations: how they bend as beams, and what stations far apart miss of
+                    the load across them
 coefficient_laws    Checks of a file of influence coefficients by laws that need no second computation
 coefficient_file    Files of influence coefficients: written whole with a checksum, read only when schema, laws and
                     checksum hold

@@ -1,7 +1,7 @@
 """Arguments that commands share: the same names, metavars, units, bounds and default folders in all of them.
 
-Quantities are numbers or texts with a unit (``"20 deg"``); what is wrong is told as in a drive file. Light: commands
-import it at their head.
+Quantities are numbers or texts with a unit (``"20 deg"``), with the messages of a drive file. The module is light: commands
+import it at the top.
 """
 
 from __future__ import annotations
@@ -13,31 +13,25 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ltca.errors import DriveError, shortened
+
 if TYPE_CHECKING:
     from ltca.drive.parts import Drive
 
 DRIVE = "drive file (TOML), or 'paper' for the shipped drive"
 LONGEST_PART = 255
-"""Bytes of the name of a file or folder that file systems take."""
+"""Largest number of bytes in the name of a file or folder on common file systems."""
 LONGEST_COUNT = 19
-"""Digits of a whole number; what is longer is out of every range."""
+"""Largest number of digits of a whole number; longer ones are out of every range."""
 
 
 class DifferentValues(argparse.Action):
-    """Gathers the values of a repeatable option; one that is there already is a slip."""
+    """Action of a repeatable option, which refuses a value that is given twice."""
 
     def __call__(
         self, parser: argparse.ArgumentParser, namespace: argparse.Namespace, values: Any, option_string: Any = None
     ) -> None:
-        """Add a value.
-
-        Raises
-        ------
-        DriveError
-            When it has been given before.
-        """
-        from ltca.errors import DriveError, shortened
-
+        """Add a value; DriveError when it is given already."""
         before = getattr(namespace, self.dest) or []
         if values in before:
             raise DriveError([f"{option_string} {shortened(str(values))[1:-1]}: is given twice"])
@@ -47,24 +41,11 @@ class DifferentValues(argparse.Action):
 def refuse_idle_options(
     compliance: str, *, method: str | None, contacts: str | None, coefficients: object, hole_near_field: bool | None
 ) -> None:
-    """Refuse options that have no effect together; before the engines are imported, which check more.
+    """Refuse options that have no effect together, all of them in one DriveError; before the engines are imported, which
+    check more.
 
-    Parameters
-    ----------
-    compliance, method, contacts : str, optional
-        How bodies yield, and how half-spaces are solved.
-    coefficients : object
-        Files of influence coefficients, if any.
-    hole_near_field : bool, optional
-        Whether hole walls yield near the contact, if said.
-
-    Raises
-    ------
-    DriveError
-        With every one of them.
+    Options that are not given are None.
     """
-    from ltca.errors import DriveError
-
     if compliance == "half-space":
         found = {"coefficients": coefficients, "hole_near_field": hole_near_field}
         idle = [
@@ -99,22 +80,22 @@ def add_case_argument(parser: argparse.ArgumentParser, what: str, *, several: bo
 
 
 def add_out_argument(parser: argparse.ArgumentParser, command: str, what: str = "folder for the results") -> None:
-    """Add the folder for what a command writes."""
+    """Add the output folder of a command."""
     shown = default_folder("<drive>" if command != "sweep" else "<study>", command)
     parser.add_argument("--out", metavar="DIR", type=path_argument("--out"), help=f"{what}; default {shown}")
 
 
 def add_page_argument(parser: argparse.ArgumentParser) -> None:
-    """Add the argument that leaves the page out."""
+    """Add the option that writes no page."""
     parser.add_argument("--no-page", action="store_true", help="write no report.html")
 
 
 FIGURE_KINDS = ("svg", "png", "pdf")
-"""Files that figures are written as."""
+"""File types of figures."""
 
 
 def add_figures_argument(parser: argparse.ArgumentParser) -> None:
-    """Add the argument that asks for figures, and the one that asks for none, which is the default."""
+    """Add the options for figures and for no figures, which is the default."""
     which = parser.add_mutually_exclusive_group()
     which.add_argument(
         "--figures",
@@ -127,14 +108,9 @@ def add_figures_argument(parser: argparse.ArgumentParser) -> None:
 
 
 def default_folder(name: str, command: str) -> Path:
-    """Return where a command writes when it is not told: ``out/<name>`` for ``run``, ``out/<name>_<command>`` else.
+    """Return the default output folder of a command: ``out/<name>`` for ``run``, ``out/<name>_<command>`` for others.
 
-    Parameters
-    ----------
-    name : str
-        Of the drive, or of the study file.
-    command : str
-        Of the program.
+    The name is that of the drive or of the study file.
 
     Examples
     --------
@@ -169,21 +145,10 @@ def add_size_argument(parser: argparse.ArgumentParser, what: str) -> None:
 def quantity_argument(
     option: str, unit: str, *, gt: float | None = None, ge: float | None = None, le: float | None = None
 ) -> Callable[[str], float]:
-    """Return what reads the text of an option as a quantity.
+    """Return the ``type=`` of an option with a quantity in a unit (`ltca.drive.units.quantities.quantity`); it raises
+    DriveError.
 
-    Parameters
-    ----------
-    option : str
-        For messages.
-    unit : str
-        Unit of the result and of plain numbers, see `ltca.drive.units.quantities.quantity`.
-    gt, ge, le : float, optional
-        Bounds (greater than, at least, at most) in that unit.
-
-    Returns
-    -------
-    callable
-        For ``type=`` of an argument; it raises `DriveError`.
+    Bounds (greater than, at least, at most) are in that unit.
     """
 
     def read(text: str) -> float:
@@ -195,15 +160,8 @@ def quantity_argument(
 
 
 def torque_argument(text: str) -> float:
-    """Return the output torque of ``--torque``, N·mm.
-
-    Raises
-    ------
-    DriveError
-        When it is none.
-    """
+    """Return the output torque of ``--torque``, N·mm; DriveError for anything else."""
     from ltca.drive.units.quantities import parse_quantity
-    from ltca.errors import DriveError
 
     try:
         return parse_quantity(text, "N*mm", "--torque", gt=0.0)
@@ -214,17 +172,7 @@ def torque_argument(text: str) -> float:
 
 
 def path_argument(option: str) -> Callable[[str], Path]:
-    """Return what reads the text of an option as the name of a file or folder to be written.
-
-    Parameters
-    ----------
-    option : str
-        For messages.
-
-    Returns
-    -------
-    callable
-        For ``type=`` of an argument; it raises `DriveError`.
+    """Return the ``type=`` of an option with the name of a file or folder to be written; it raises DriveError.
 
     Examples
     --------
@@ -234,7 +182,6 @@ def path_argument(option: str) -> Callable[[str], Path]:
 
     def read(text: str) -> Path:
         from ltca.drive.names import is_seen
-        from ltca.errors import DriveError, shortened
 
         told = f"{option} = {shortened(text)}"
         if not text.strip():
@@ -254,19 +201,7 @@ def path_argument(option: str) -> Callable[[str], Path]:
 
 
 def count_argument(option: str, least: int, most: int) -> Callable[[str], int]:
-    """Return what reads the text of an option as a whole number within bounds.
-
-    Parameters
-    ----------
-    option : str
-        For messages.
-    least, most : int
-        Bounds, both allowed.
-
-    Returns
-    -------
-    callable
-        For ``type=`` of an argument; it raises `DriveError`.
+    """Return the ``type=`` of an option with a whole number from `least` to `most`; it raises DriveError.
 
     Examples
     --------
@@ -275,8 +210,6 @@ def count_argument(option: str, least: int, most: int) -> Callable[[str], int]:
     """
 
     def read(text: str) -> int:
-        from ltca.errors import DriveError, shortened
-
         digits = text.removeprefix("-").removeprefix("+")
         if not (digits.isascii() and digits.isdigit()):
             raise DriveError([f"{option} = {shortened(text)}: must be a whole number from {least} to {most}"])
@@ -289,13 +222,7 @@ def count_argument(option: str, least: int, most: int) -> Callable[[str], int]:
 
 
 def tell_unit_mistakes(drives: Iterable[Drive]) -> None:
-    """Point out on stderr what drives have that no drive has, once each: values that were probably meant in another unit.
-
-    Parameters
-    ----------
-    drives : iterable of Drive
-        As they are written.
-    """
+    """Print warnings to stderr about values of drives, as written, that were probably meant in another unit, each once."""
     from ltca.drive.unit_mistakes import unit_warnings
 
     for text in dict.fromkeys(warning for drive in drives for warning in unit_warnings(drive)):

@@ -4,13 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass, replace
+from functools import cache
 from typing import Any
 
 from pydantic import ValidationError
 
+from ltca.drive.declaration import REQUIRED
 from ltca.drive.deviations import BoreErrors, DiscClearance, OneDisc, OneEccentric
-from ltca.drive.fields import field_kind, is_element, missing_part, no_entry, not_a_field, numbered, read_field
+from ltca.drive.fields import (
+    field_kind,
+    field_kinds,
+    is_element,
+    missing_part,
+    no_entry,
+    not_a_field,
+    numbered,
+    read_field,
+)
 from ltca.drive.materials import PARTS
+from ltca.drive.members.bearings import named_bearing
 from ltca.drive.members.named_materials import named_material, numbers_of
 from ltca.drive.mistakes import describe_mistakes
 from ltca.drive.parts import Drive, Duty
@@ -26,7 +38,8 @@ def with_fields(drive: Drive, values: Mapping[str, Any], *, check: bool = True) 
     drive : Drive
         The drive to start from.
     values : mapping of str to value
-        New values by dotted path, see `read_field`; ``materials.disc`` and the like take a material's name.
+        New values by dotted path, see `read_field`; ``materials.disc`` and the like take a material's name,
+        ``crank_bearing.bearing`` that of a shipped bearing.
     check : bool
         Whether to look for physical contradictions as well.
 
@@ -59,7 +72,7 @@ def with_fields(drive: Drive, values: Mapping[str, Any], *, check: bool = True) 
         else:
             whole[path] = value
             missing = missing_part(drive, path)
-            if missing is not None and not all(f"{missing}.{name}" in values for name in _NEEDED[missing]):
+            if missing is not None and not all(name in values for name in _required(missing)):
                 raise DriveError([f"{path}: there is no {missing} in this drive"])
     own: dict[tuple[str, int], dict[str, Any]] = {}
     for path, value in {**whole, **{name: tuple(row) for name, row in arrays.items()}}.items():
@@ -83,35 +96,45 @@ def with_fields(drive: Drive, values: Mapping[str, Any], *, check: bool = True) 
 
 
 def _without_names(values: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Named materials as their numbers, which numbers given beside them replace."""
-    named = {f"materials.{part}" for part in PARTS} & values.keys()
+    """Changes with named materials and bearings as their properties, which properties given beside them replace."""
+    readers = {f"materials.{part}": (_numbers_of_material, "a material") for part in PARTS}
+    readers[BEARING] = (_numbers_of_bearing, "a bearing")
+    named = readers.keys() & values.keys()
     if not named:
         return values
     found: dict[str, Any] = {}
     for path in sorted(named):
+        numbers, what = readers[path]
         if not isinstance(values[path], str):
-            raise DriveError([f"{path} = {shortened(values[path])}: must be the name of a material"])
+            raise DriveError([f"{path} = {shortened(values[path])}: must be the name of {what}"])
         try:
-            found |= {f"{path}.{name}": number for name, number in numbers_of(named_material(values[path])).items()}
+            table = path.removesuffix(".bearing")
+            found |= {f"{table}.{name}": number for name, number in numbers(values[path]).items()}
         except DriveError as error:
             raise DriveError([f"{path} = {problem}" for problem in error.problems]) from error
     return found | {path: value for path, value in values.items() if path not in named}
 
 
-_NEEDED = {
-    "pin_shaft": ("number_of_pins", "pin_circle_radius", "pin_radius", "hole_radius"),
-    "pin_shaft.beam": ("span", "tip"),
-    "pin_wheel.beam": ("span", "ends"),
-    "crank.support": ("diameter", "positions", "stiffness"),
-    "friction": (),
-    "lubricant": ("viscosity", "contamination"),
-    "temperature": (),
-}
-"""What a part that may be left out is made of."""
+BEARING = "crank_bearing.bearing"
+"""Path that takes the name of a shipped bearing."""
+
+
+def _numbers_of_material(name: str) -> Mapping[str, Any]:
+    return numbers_of(named_material(name))
+
+
+def _numbers_of_bearing(name: str) -> Mapping[str, Any]:
+    return named_bearing(name).fields
+
+
+@cache
+def _required(table: str) -> tuple[str, ...]:
+    """Paths of the fields without which a table that may be left out cannot be made."""
+    return tuple(path for path, field in field_kinds().items() if field.table == table and field.default == REQUIRED)
 
 
 def _with_own(drive: Drive, own: Mapping[tuple[str, int], Mapping[str, Any]], problems: list[str]) -> Drive:
-    """Replace fields of single discs; what one has not of its own begins as that of all."""
+    """Replace values of single discs; those left out so far start as the common ones."""
     rows: dict[str, list[Any]] = {
         "disc": [*(drive.disc.of or (OneDisc(),) * drive.disc.number_of_discs)],
         "crank": _eccentrics(drive),
@@ -158,7 +181,7 @@ def _made(values: Mapping[str, Any], path: str, problems: list[str]) -> Any:
 
 
 def _eccentrics(drive: Drive) -> list[OneEccentric]:
-    """An entry for every eccentric, disc after disc; of several cranks each says whose it is."""
+    """An entry for every eccentric, disc after disc, with index keys where there are several cranks."""
     cranks = drive.crank.number
     entries = [(disc, crank) for disc in range(drive.disc.number_of_discs) for crank in range(cranks)]
     if cranks == 1:
@@ -167,7 +190,7 @@ def _eccentrics(drive: Drive) -> list[OneEccentric]:
 
 
 def _begun(drive: Drive, entry: Any, name: str) -> Any:
-    """A table of one disc, or what it takes the place of."""
+    """A table of one disc, or the common one that it replaces."""
     mine = getattr(entry, name)
     if mine is not None:
         return mine
@@ -183,7 +206,7 @@ def _replaced(part: Any, tree: dict[str, Any], prefix: str, problems: list[str])
     for name, value in tree.items():
         below = getattr(part, name)
         nested = isinstance(value, dict) and is_dataclass(below)
-        # A part that was left out is made of what is given.
+        # A part that is absent so far is made of the given fields.
         changes[name] = _replaced(below, value, f"{prefix}{name}.", problems) if nested else value
     try:
         return replace(part, **changes)

@@ -1,7 +1,7 @@
 """Files of influence coefficients: written whole with a checksum, read only when schema, laws and checksum hold.
 
-What is read may come from anybody: links to other files are not followed, what a file only declares is refused before
-memory is taken for it, nothing in it is executed.
+Files may come from anybody: links to other files are not followed, data that a file only declares is refused before memory
+is allocated, and nothing is executed.
 """
 
 from __future__ import annotations
@@ -25,28 +25,13 @@ if TYPE_CHECKING:
 CHECKSUM = "checksum"
 
 _LAWFUL: set[str] = set()
-"""Checksums of contents whose laws this process has found to hold: a run reads its file more than once."""
+"""Checksums of contents that this process has checked already: a run reads its file more than once."""
 
 
 def write_coefficients(dataset: xr.Dataset, path: Path) -> Path:
-    """Write coefficients with a checksum.
+    """Write coefficients (``docs/theory/coefficients.md``) with a checksum, and return the path; the folder is made.
 
-    Parameters
-    ----------
-    dataset : Dataset
-        As ``docs/theory/coefficients.md`` describes it.
-    path : Path
-        The file; its folder is made.
-
-    Returns
-    -------
-    Path
-        The file.
-
-    Raises
-    ------
-    FaultError
-        When it cannot be written.
+    FaultError when the file cannot be written.
     """
     with whole_file(path) as part:
         write_netcdf(dataset.assign_attrs({CHECKSUM: checksum_of(dataset)}), part)
@@ -54,24 +39,10 @@ def write_coefficients(dataset: xr.Dataset, path: Path) -> Path:
 
 
 def read_coefficients(path: Path, *, lawful: bool = True) -> xr.Dataset:
-    """Read coefficients into memory.
+    """Read coefficients of the right schema into memory.
 
-    Parameters
-    ----------
-    path : Path
-        The file.
-    lawful : bool
-        Whether to refuse what breaks a law; ``cyclo derive --check`` prints which instead.
-
-    Returns
-    -------
-    Dataset
-        Of the right schema.
-
-    Raises
-    ------
-    DamagedFileError
-        When there is no such file, it holds something else, its checksum is another, or a law is broken.
+    DamagedFileError when there is no such file, it holds something else, its checksum differs, or, with `lawful`, when a
+    law is broken (``cyclo derive --check`` prints which).
     """
     dataset = read_netcdf(path, "a coefficient file")
     require_schema(dataset, str(path))
@@ -93,19 +64,7 @@ def read_coefficients(path: Path, *, lawful: bool = True) -> xr.Dataset:
 
 
 def require_replaceable(path: Path) -> None:
-    """Refuse to derive into the place of a file that no derivation wrote.
-
-    Parameters
-    ----------
-    path : Path
-        ``--out``.
-
-    Raises
-    ------
-    PlaceError
-        When there is something else than coefficients with the checksum that `write_coefficients` gives them: notes, results
-        of a run, a file of another code, a link.
-    """
+    """Refuse to derive into the place of a file (``--out``) that `write_coefficients` did not write: PlaceError."""
     if path.is_symlink() or (path.exists() and not _is_written_by_us(path)):
         raise PlaceError(
             f"--out {path}: is there and is no coefficient file that cyclo derive wrote: move it, or choose another place"
@@ -113,7 +72,7 @@ def require_replaceable(path: Path) -> None:
 
 
 def _is_written_by_us(path: Path) -> bool:
-    """Look at names only, no number is read."""
+    """Check the names of variables and attributes, no numbers."""
     try:
         with opened_hdf5(path) as file:
             return CHECKSUM in file.attrs and all(name in file for name in NEEDED)
@@ -122,12 +81,8 @@ def _is_written_by_us(path: Path) -> bool:
 
 
 def checksum_of(dataset: xr.Dataset) -> str:
-    """Return a hash of variables and attributes (hex), independent of how they are stored.
-
-    Parameters
-    ----------
-    dataset : Dataset
-        Units and descriptions of single variables do not count.
+    """Return a hash (hex) of variables and attributes, independent of their storage; units and descriptions of variables
+    are left out.
     """
     digest = hashlib.sha256()
     for name in sorted(map(str, dataset.variables)):

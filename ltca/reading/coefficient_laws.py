@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ltca.arrays import ComplexArray, FloatArray
+from ltca.contact.round_bodies import compressed_cylinder, held_ring_approach
 from ltca.reading.coefficient_schema import shape_of
-from ltca.reading.held_ring import held_ring_approach, missed_between_stations, wall_bending
+from ltca.reading.station_walls import missed_between_stations, wall_bending
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -26,9 +27,9 @@ NEIGHBOURS = "near field, neighbours and sizes"
 EVEN_PRESSURE = "stress left by even pressure on all walls"
 WALLS_CLOSE = "stress along closed walls against their displacement"
 STRESS_CONVERGENCE = "convergence of the stresses: change from a mesh of twice the size"
-# How good a file is by its own word: no sign of damage.
+# Accuracy that a file states about itself: no sign of damage.
 STATED_QUALITY = (CONVERGENCE, STRESS_CONVERGENCE)
-# Laws on what a file may leave out, and what that is.
+# Laws on optional data, with the names of the data.
 STATED_BY: dict[str, tuple[str, ...]] = {
     RECIPROCITY: ("symmetry",),
     RIGID_MOTIONS: ("rigid_residual",),
@@ -62,18 +63,18 @@ NEIGHBOUR_BOUNDS = (0.3, 5.0)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Check:
-    """One figure against its bounds.
+    """One figure with its bounds.
 
     Attributes
     ----------
     name : str
-        What is measured.
+        Name of the figure.
     value : float
         The figure.
     lowest, highest : float
         Bounds.
     reason : str
-        Why the bounds have their size.
+        Reason for the bounds.
     """
 
     name: str
@@ -86,29 +87,19 @@ class Check:
     def bounds(self) -> str:
         """The bounds as text."""
         if self.lowest == 0.0:
-            return "says nothing" if np.isinf(self.highest) else f"at most {self.highest:g}"
+            return "no bound" if np.isinf(self.highest) else f"at most {self.highest:g}"
         return f"at least {self.lowest:g}" if np.isinf(self.highest) else f"{self.lowest:g} to {self.highest:g}"
 
     @property
     def passed(self) -> bool:
-        """Whether the figure lies between its bounds; a figure that is no number does not."""
+        """Whether the figure lies between its bounds; NaN does not."""
         return bool(self.lowest <= self.value <= self.highest)
 
 
 def project_rigid_motions(approach: FloatArray, resultants: FloatArray) -> FloatArray:
-    """Return approaches with everything removed that rigid motions, or resultants, can change.
+    """Return approaches, shape (m, m), without the part that rigid motions or the choice of a datum can change.
 
-    Parameters
-    ----------
-    approach : array, shape (m, m)
-        In any datum.
-    resultants : array, shape (3, m)
-        Of the unit loads.
-
-    Returns
-    -------
-    array, shape (m, m)
-        Q A Q with Q the projection onto loads without resultant; equal for all datums.
+    It is Q A Q with Q the projection onto loads without resultant; `resultants`, shape (3, m), are those of the unit loads.
     """
     basis, _ = np.linalg.qr(resultants.T)
     left = approach - basis @ (basis.T @ approach)
@@ -116,40 +107,23 @@ def project_rigid_motions(approach: FloatArray, resultants: FloatArray) -> Float
 
 
 def near_field_unit(dataset: xr.Dataset, body: str) -> float:
-    """Return 2(1 − ν²)/(πEt) of a body (without ν in plane stress), mm/N: what the near field is a multiple of."""
+    """Return 2(1 − ν²)/(πEt) of a body (without ν in plane stress), mm/N: the unit of the near field."""
     nu = float(dataset.attrs[f"{body}_poisson_ratio"]) if dataset.attrs["plane"] == "strain" else 0.0
     modulus, thickness = float(dataset.attrs[f"{body}_youngs_modulus"]), float(dataset.attrs["thickness"])
     return 2.0 * (1.0 - nu**2) / (np.pi * modulus * thickness)
 
 
 def station_resultants(dataset: xr.Dataset) -> FloatArray:
-    """Return force in x, y and moment about the disc centre of a newton at each station, shape (3, stations)."""
+    """Return force in x, y (N) and moment about the disc centre (N·mm) of a newton at each station, shape (3, stations)."""
     point = dataset["station_x"].values + 1j * dataset["station_y"].values
     inward = -(dataset["station_normal_x"].values + 1j * dataset["station_normal_y"].values)
     return np.stack([inward.real, inward.imag, (point.conjugate() * inward).imag])
 
 
-def compressed_cylinder(radius: float, half_width: float) -> float:
-    r"""Return how far a cylinder yields at each of two opposite loads, relative to its centre, as multiple of the unit.
-
-    Johnson, *Contact Mechanics* (1985), Eq. 5.57: :math:`\ln(4R/b) - 1/2` at the middle of a semi-elliptic
-    pressure (both ends, each relative to the centre); the pressure-weighted mean over the patch is 1/4 less.
-    """
-    return float(np.log(4.0 * radius / half_width) - 0.75)
-
-
 def check_coefficients(dataset: xr.Dataset) -> tuple[Check, ...]:
-    """Check a set of coefficients.
+    """Check coefficients of the right schema: reciprocity, definiteness, rigid bodies, closed forms, convergence.
 
-    Parameters
-    ----------
-    dataset : Dataset
-        Of the right schema (`ltca.reading.coefficient_schema`).
-
-    Returns
-    -------
-    tuple of Check
-        Reciprocity, definiteness, rigid bodies, closed forms, convergence; those of `unstated_laws` are left out.
+    Those of `unstated_laws` are left out.
     """
     return (
         *_check_reciprocity(dataset),
@@ -164,9 +138,9 @@ def check_coefficients(dataset: xr.Dataset) -> tuple[Check, ...]:
 
 
 def unstated_laws(dataset: xr.Dataset) -> dict[str, str]:
-    """Return the laws that a file says nothing about, and what it would have to hold for them.
+    """Return the laws that cannot be checked for lack of data in a file, with the missing names.
 
-    Another code's file may leave out how it was derived and what serves checking alone.
+    A file of another code may leave out its derivation and the data that serve checking alone.
     """
     return {
         law: ", ".join(lacking)
@@ -180,7 +154,7 @@ def _holds(dataset: xr.Dataset, name: str) -> bool:
 
 
 def _stated(dataset: xr.Dataset, law: str, highest: float, reason: str) -> Iterator[Check]:
-    """The figure that a file states of itself for a law, if it does."""
+    """The figure that a file states about itself for a law, if it does."""
     (name,) = STATED_BY[law]
     if name in dataset.attrs:
         value = float(dataset.attrs[name])
@@ -236,7 +210,7 @@ def _check_near_field(dataset: xr.Dataset) -> Iterator[Check]:
         ratio = np.log(dataset["wide_half_width"].values / dataset["station_half_width"].values[wide])
         slopes = (own - broad) / ratio / near_field_unit(dataset, "disc")
         most = 1.0 + NEAR_FIELD_LIMIT + wall_bending(dataset, wide)
-        # Of all stations the one that comes nearest to its own bounds, or is farthest beyond them; one that is no number first.
+        # The station that is nearest to its bounds, or farthest beyond them; NaN first.
         used = np.where(slopes > 1.0, (slopes - 1.0) / (most - 1.0), (1.0 - slopes) / NEAR_FIELD_LIMIT)
         worst = int(np.argmax(used))
         lowest, value = 1.0 - NEAR_FIELD_LIMIT, float(slopes[worst])
@@ -253,9 +227,9 @@ def _check_near_field(dataset: xr.Dataset) -> Iterator[Check]:
 
 
 def _check_neighbours(dataset: xr.Dataset) -> Iterator[Check]:
-    """Between a patch and its neighbour the approach falls like the logarithm, a pin yields about like a cylinder.
+    """Between a patch and its neighbour the approach falls like the logarithm; a pin yields about like a cylinder.
 
-    Files with wider patches say it better: what bends between neighbours is in both of those.
+    Files with wider patches are checked by them, which is sharper: bending between neighbours cancels there.
     """
     if _holds(dataset, "wide_station") and _holds(dataset, "pin_wide_approach"):
         return
@@ -288,7 +262,7 @@ def _check_neighbours(dataset: xr.Dataset) -> Iterator[Check]:
 
 
 def _fall(distance: FloatArray | float, half_width: FloatArray) -> FloatArray:
-    """ln(distance) against the mean logarithm of a patch on itself."""
+    """ln(distance) minus the mean logarithm of a patch on itself."""
     return np.asarray(np.log(distance) - np.log(0.5 * half_width) + 0.25)
 
 
@@ -320,7 +294,9 @@ def _check_closed_forms(dataset: xr.Dataset) -> Iterator[Check]:
 
 
 def _off_held_ring(dataset: xr.Dataset, body: str, inner: float, outer: float) -> float:
-    """Largest difference of a round body's approaches from the closed form, of its largest; no number for no ring."""
+    """Largest difference of a round body's approaches from the closed form, relative to the largest; NaN where there is no
+    ring.
+    """
     if not 0.0 < inner < outer:
         return float("nan")
     nu = float(dataset.attrs[f"{body}_poisson_ratio"])
@@ -354,7 +330,7 @@ def even_pressure(dataset: xr.Dataset) -> FloatArray:
 
 
 def _slope(values: ComplexArray, at: FloatArray | None = None) -> ComplexArray:
-    """Derivative by the parameter of values at uniform places of its period 2π, there or elsewhere, by Fourier series."""
+    """Derivative of values at uniform places of a period 2π by the parameter, at these or other places, by Fourier series."""
     count = len(values)
     order = np.fft.fftfreq(count, 1.0 / count)
     series = 1j * order * np.fft.fft(values) / count
@@ -363,12 +339,12 @@ def _slope(values: ComplexArray, at: FloatArray | None = None) -> ComplexArray:
 
 
 def _opening_of_walls(dataset: xr.Dataset) -> float:
-    """How far the worst wall fails to close again by its own strain and displacement, of the change of its length.
+    """Largest gap of a wall that is closed again by its strain and displacement, relative to the change of its length.
 
-    Along a wall with unit tangent t and normal m the strain is ε = u_t′ + u_m t·m′; all around it u_t comes back to where
-    it began, so ∮ε ds = ∮u_m t·dm. A wall without load of its own has ε = σ(1 − ν²)/E (plane strain), and u_m is the
-    approach with its sign. So stresses are tied to approaches, in size and sign, by the loads on the other walls: of all of
-    them the best factor between both sides counts, since few stations miss the peak beside a load near by.
+    Along a wall with unit tangent t and normal m the strain is ε = u_t′ + u_m t·m′; over the closed wall u_t returns to its
+    initial value, so ∮ε ds = ∮u_m t·dm. An unloaded wall has ε = σ(1 − ν²)/E (plane strain), and u_m is the approach with
+    its sign. So stresses are related to approaches, in size and sign, by the loads on the other walls; the best factor
+    between both sides over all of them counts, since few stations miss the peak beside a near load.
     """
     boundary, stressed = dataset["station_boundary"].values, dataset["stress_station_boundary"].values
     parameter = dataset["stress_station_parameter"].values
@@ -386,7 +362,7 @@ def _opening_of_walls(dataset: xr.Dataset) -> float:
         # Approaches are counted into the body, normals point out of it.
         displaced = -(turning / np.count_nonzero(own)) @ dataset["disc_approach"].values[np.ix_(own, ~own)]
         if np.max(np.abs(displaced), initial=0.0) <= least:
-            continue  # a body whose walls do not feel each other says nothing
+            continue  # walls of this body are not coupled
         length = np.abs(_slope(points[own], parameter[seen])) / np.count_nonzero(seen)
         strained = length @ dataset["disc_stress"].values[np.ix_(seen, ~own)] / stiffness
         found.append(abs(float(strained @ displaced / (displaced @ displaced)) - 1.0))
@@ -414,7 +390,7 @@ def _check_stresses(dataset: xr.Dataset) -> Iterator[Check]:
         name=WALLS_CLOSE,
         value=_opening_of_walls(dataset),
         lowest=0.0,
-        # Both sums are off by what is missed; where all of it may be, they say nothing of each other.
+        # Both sums have the error of the missed part; where all may be missed, there is no bound.
         highest=WALLS_CLOSE_LIMIT + 2.0 * missed / (1.0 - missed) if missed < 1.0 else np.inf,
         reason="a wall strained all around stays closed (∮ε ds = ∮u·dm); means over patches and arcs for points, and what "
         "stations farther apart than walls are thick miss",

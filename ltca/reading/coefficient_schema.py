@@ -1,7 +1,7 @@
-"""What a file of influence coefficients must hold to be used; whoever made it.
+"""Schema of a file of influence coefficients, of this or another code.
 
-A file of another finite-element code needs neither the attributes that say how ours was derived nor what serves only to
-check it (wider patches, resultants); what it does hold must have the shape that ``docs/theory/coefficients.md`` describes.
+A file of another finite-element code needs neither the attributes about our derivation nor the data that serve only to check
+it (wider patches, resultants); everything in it must have the form of ``docs/theory/coefficients.md``.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from ltca.errors import DamagedFileError
 if TYPE_CHECKING:
     import xarray as xr
 
-# Dimensions of what is used; a scalar has none.
+# Dimensions of the variables that are used; a scalar has none.
 NEEDED: dict[str, tuple[str, ...]] = {
     "station_boundary": ("station",),
     "station_parameter": ("station",),
@@ -36,7 +36,7 @@ NEEDED: dict[str, tuple[str, ...]] = {
     "race_approach": ("race_angle",),
     "race_half_width": (),
 }
-# Dimensions of what may be left out, in groups that come together.
+# Dimensions of optional variables, in groups that come together.
 OPTIONAL: tuple[dict[str, tuple[str, ...]], ...] = (
     {"disc_resultant": ("motion", "station")},
     {"wide_station": ("wide",), "wide_half_width": ("wide",), "wide_approach": ("wide",)},
@@ -49,10 +49,10 @@ OPTIONAL: tuple[dict[str, tuple[str, ...]], ...] = (
         "stress_station_parameter": ("stress_station",),
     },
 )
-# Bodies of a file, and what the materials of a drive call them.
+# Bodies of a file, and their names in the materials of a drive.
 PARTS = {"disc": "disc", "pin": "wheel_pin", "roller": "roller", "race": "inner_race"}
 CONSTANTS = ("youngs_modulus", "poisson_ratio")
-# Dimensions whose entries may be labelled, with numbers that count up or with these words: they are taken in their order.
+# Dimensions whose entries may be labelled, by consecutive numbers or by these words; entries are used in their order.
 LABELS: dict[str, tuple[str, ...]] = {
     "station": (),
     "station_loaded": (),
@@ -61,7 +61,7 @@ LABELS: dict[str, tuple[str, ...]] = {
     "roller_end": ("inner", "outer"),
     "roller_end_loaded": ("inner", "outer"),
 }
-# Attributes that repeat numbers of `shape`, which says whose bodies they are (`ltca.drive.parts.Drive.body_shape`).
+# Attributes that repeat numbers of `shape`, which identifies the bodies (`ltca.drive.parts.Drive.body_shape`).
 REPEATED = {"thickness": "disc.thickness", "roller_radius": "crank_bearing.roller_radius"} | {
     f"{body}_{constant}": f"materials.{part}.{constant}" for body, part in PARTS.items() for constant in CONSTANTS
 }
@@ -69,28 +69,19 @@ CLEARANCES = ("bearing_clearance", "pin_hole_clearance")
 POSITIVE_ATTRIBUTES = ("thickness", "roller_radius", *(f"{body}_youngs_modulus" for body in PARTS))
 STATEMENTS = ("symmetry", "rigid_residual", "convergence_estimate", "convergence_stress")
 POISSON_RATIOS = tuple(f"{body}_poisson_ratio" for body in PARTS)
-# Interpolation takes six stations; less on a boundary would count some twice.
+# Interpolation takes six stations; with fewer on a boundary some would count twice.
 FEWEST_STATIONS = 6
-# Numbers that stand in a file twice differ by their rounding.
+# Relative rounding of numbers that stand in a file twice.
 REPEATED_TOLERANCE = 1e-9
-# Parameters are uniform and normals of unit length up to what a file with seven digits keeps.
+# Tolerance for uniform parameters and unit normals: the rounding of seven digits.
 UNIFORM = 1e-6
 
 
 def require_schema(dataset: xr.Dataset, source: str) -> None:
-    """Refuse a dataset that is no set of influence coefficients.
+    """Refuse a dataset that is not a set of influence coefficients: DamagedFileError with everything that is missing or
+    malformed.
 
-    Parameters
-    ----------
-    dataset : Dataset
-        Content of a file.
-    source : str
-        Its name, for the message.
-
-    Raises
-    ------
-    DamagedFileError
-        Naming everything that is missing or has the wrong form, in one line.
+    `source` is the name of the file, for the message.
     """
     problems = [*_missing(dataset)] or [*_misshapen(dataset)] or [*_implausible(dataset)]
     if problems:
@@ -133,7 +124,7 @@ def _misshapen(dataset: xr.Dataset) -> Iterator[str]:
     for name, words in LABELS.items():
         if name in dataset.variables and not _in_order(dataset, name):
             told = f", or {', '.join(words)}" if words else ""
-            yield f"{name} must count its entries 0, 1, 2, …{told}: they are taken in their order"
+            yield f"{name} must number its entries 0, 1, 2, …{told}: they are used in their order"
     if dataset.sizes.get("motion", 3) != 3:
         yield f"motion has length {dataset.sizes['motion']}: must be 3 (x, y, rotation)"
     if dataset.sizes.get("roller_end", 2) != 2:
@@ -141,7 +132,7 @@ def _misshapen(dataset: xr.Dataset) -> Iterator[str]:
 
 
 def _in_order(dataset: xr.Dataset, name: str) -> bool:
-    """Tell whether the labels along a dimension say the order that entries are taken in."""
+    """Tell whether the labels along a dimension are in the order in which entries are used."""
     labels = dataset[name].values
     if labels.dtype.kind in "iuf":
         return labels.ndim == 1 and bool(np.array_equal(labels, labels[:1] + np.arange(labels.size)))
@@ -181,7 +172,7 @@ def elastic_constants(materials: Materials) -> dict[str, float]:
 
 
 def shape_of(dataset: xr.Dataset) -> dict[str, float]:
-    """Return the numbers that the bodies of a file are made of; none when the attribute `shape` cannot be read."""
+    """Return the numbers that determine the bodies of a file; none when the attribute `shape` cannot be read."""
     try:
         return {str(name): float(value) for name, value in json.loads(str(dataset.attrs["shape"])).items()}
     except (KeyError, ValueError, TypeError, AttributeError, RecursionError):
@@ -189,12 +180,9 @@ def shape_of(dataset: xr.Dataset) -> dict[str, float]:
 
 
 def shape_differences(theirs: dict[str, float], own: dict[str, float]) -> dict[str, tuple[str, str]]:
-    """Return the numbers in which two shapes differ, theirs and our own as texts, "none" where a shape has no such number.
+    """Return the numbers in which two shapes (`ltca.drive.parts.Drive.body_shape`) differ, theirs and ours as texts.
 
-    Parameters
-    ----------
-    theirs, own : dict of str to float
-        Shapes (`ltca.drive.parts.Drive.body_shape`).
+    "none" stands where a shape is without the number.
 
     Examples
     --------
@@ -253,7 +241,7 @@ def _misplaced(dataset: xr.Dataset) -> Iterator[str]:
 
 
 def _number(value: object) -> float:
-    """Return an attribute as a number; not a number where it is none."""
+    """Return an attribute as a number, NaN where it is not one."""
     try:
         return float(value)  # type: ignore[arg-type]
     except (TypeError, ValueError):

@@ -1,4 +1,4 @@
-"""Which field is behind a contradiction: the one that alone can mend all of it, not the one whose bound it breaks."""
+"""Cause of contradictions: the field that alone can resolve all of them, not the one whose bound is violated."""
 
 from __future__ import annotations
 
@@ -22,15 +22,16 @@ CAUSES = (
     "clearance.pin_hole", "pin_wheel.seat.radius", "pin_wheel.seat.pin_radius", "pin_wheel.seat.bore_radius",
     "pin_shaft.seat.pin_radius", "pin_shaft.seat.bore_radius",
 )  # fmt: skip
-# Two fields of a part that are mistaken for each other, the smaller first.
+# Fields of a part that are easily exchanged, the smaller first.
 SWAPPED = (("crank_bearing", "inner_race_radius", "outer_race_radius"), ("pin_shaft", "pin_radius", "hole_radius"))
-# Modifications of the flank are hundredths of the pin radius; one beyond this share of it is the likeliest mistake.
+# Modifications of the flank are hundredths of the pin radius; one beyond this fraction of it is the likeliest mistake.
 OFFSETS = ("disc.equidistant_offset", "disc.shifting_offset")
 LARGE_OFFSET = 0.2
-# How much farther than the bound of one case a field may have to go in another.
+# Logarithmic steps beyond the bound of one case that are tried for another.
 FARTHER = (0.0, 0.01, 0.1)
 COUNTS = ("pin_shaft.number_of_pins", "crank_bearing.number_of_rollers")
-# From 1 % to a wrong prefix: steps of 1.12 up to five times, as fine as the eccentricity a hole leaves; then of 1.22.
+# Logarithms of the changes that are tried, from 1 % to a wrong prefix: steps of 1.12 up to five times, as fine as a hole
+# bounds the eccentricity; then of 1.22.
 SIZES = (0.01, 0.03, 0.06, *(0.113 * k for k in range(1, 15)), *(1.6 + 0.2 * k for k in range(40)))
 
 
@@ -39,14 +40,14 @@ Mend = Callable[[Drive], bool]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Cause:
-    """A field that alone can mend a drive.
+    """A field that alone can resolve all contradictions of a drive.
 
     Attributes
     ----------
     path : str
         The field.
     value, bound : float
-        What it is, and the nearest value that is sound, mm.
+        Its value, and the nearest sound value, mm.
     """
 
     path: str
@@ -55,7 +56,7 @@ class Cause:
 
     @property
     def distance(self) -> float:
-        """How far off the field is, as a logarithm."""
+        """Logarithm of the ratio of bound and value."""
         return abs(log(self.bound / self.value))
 
     def bounded(self) -> str:
@@ -70,7 +71,7 @@ class Cause:
         return f"{'at least' if least else 'at most'} {text} mm"
 
     def mends(self, drive: Drive) -> bool:
-        """Tell whether a like drive is sound with the field at its bound, or a little beyond."""
+        """Tell whether a similar drive is sound with the field at its bound, or a little beyond."""
         if self.path in COUNTS:
             return _sound_with(drive, self.path, self.bound)
         away = 1.0 if abs(self.bound) > abs(self.value) else -1.0
@@ -82,39 +83,19 @@ class Cause:
 
 
 def explain_contradictions(drive: Drive, problems: list[str]) -> list[str]:
-    """Return contradictions with the field that causes them in the place of those that suffer from it.
+    """Return one sentence on the field that causes all contradictions of a drive, or the contradictions themselves if there
+    is none.
 
-    Parameters
-    ----------
-    drive : Drive
-        What they were found in.
-    problems : list of str
-        Of `ltca.reading.physical_checks.find_contradictions`.
-
-    Returns
-    -------
-    list of str
-        One sentence that names the cause, when one field mends all; otherwise the problems as they are.
+    They are those of `ltca.reading.physical_checks.find_contradictions`.
     """
     return find_cause(drive, problems)[0]
 
 
 def find_cause(drive: Drive, problems: list[str]) -> tuple[list[str], Mend]:
-    """Return contradictions as `explain_contradictions` does, and what tells whether the same is wrong with a like drive.
+    """Return the explanation of contradictions (`explain_contradictions`), and whether its field resolves those of another
+    drive.
 
-    Parameters
-    ----------
-    drive : Drive
-        What they were found in.
-    problems : list of str
-        Of `ltca.reading.physical_checks.find_contradictions`.
-
-    Returns
-    -------
-    list of str
-        One sentence that names the cause, when one field mends all; otherwise the problems as they are.
-    callable
-        Given a drive, tells whether the field that was found mends that one, too.
+    The second result is a function of that drive.
     """
     if not problems:
         return [], lambda other: False
@@ -122,7 +103,7 @@ def find_cause(drive: Drive, problems: list[str]) -> tuple[list[str], Mend]:
     if not all(
         path in COUNTS or (path in CAUSES and _has(drive, path) and read_field(drive, path) > 0.0) for path in named
     ):
-        return problems, lambda other: False  # of deviations and negative offsets, which are what is wrong themselves
+        return problems, lambda other: False  # deviations and negative offsets are the cause themselves
     for part, smaller, larger in SWAPPED:
         if getattr(drive, part) is None:
             continue
@@ -137,12 +118,12 @@ def find_cause(drive: Drive, problems: list[str]) -> tuple[list[str], Mend]:
         return problems, lambda other: False
     large = LARGE_OFFSET * drive.pin_wheel.pin_radius
     offsets = [cause for cause in causes if cause.path in OFFSETS and abs(cause.bound) < abs(cause.value) > large]
-    # A field that is named already and mends everything is said well enough.
+    # A field that is named already and resolves everything needs no other message.
     if len(named) == 1 and named <= {cause.path for cause in offsets or causes}:
         (own,) = (cause for cause in causes if cause.path in named)
         return problems, own.mends
     causes = offsets or causes
-    # One that breaks a bound itself is the likelier, unless another is very much nearer to what is sound.
+    # A field that violates a bound itself is likelier, unless another is very much nearer to a sound value.
     least = causes[0].distance
     near = [cause for cause in causes if cause.distance <= 10.0 * least]
     first, *others = sorted(near, key=lambda cause: (cause.path not in named, cause.distance))
@@ -154,7 +135,7 @@ def find_cause(drive: Drive, problems: list[str]) -> tuple[list[str], Mend]:
 
 
 def _sound_swapped(drive: Drive, part: str) -> bool:
-    """Tell whether a drive is sound with the two fields of a part in each other's place."""
+    """Tell whether a drive is sound with two fields of a part exchanged."""
     (names,) = ((smaller, larger) for name, smaller, larger in SWAPPED if name == part)
     own = getattr(drive, part)
     try:
@@ -190,7 +171,7 @@ def _causes(drive: Drive) -> Iterator[Cause]:
 
 
 def _has(drive: Drive, path: str) -> bool:
-    """Tell whether a drive has a field: one without pin shaft, with one crank or with fixed pins has not all of them."""
+    """Tell whether a drive has a field; one without pin shaft, with one crank or with fixed pins lacks some."""
     try:
         read_field(drive, path)
     except DriveError:
@@ -199,7 +180,7 @@ def _has(drive: Drive, path: str) -> bool:
 
 
 def _fitting(drive: Drive, path: str) -> float:
-    """The value that follows from the other fields where little room is left; 0 elsewhere, mm."""
+    """Value that follows from the other fields where there is little room, mm; 0 for other fields."""
     bearing = drive.crank_bearing
     return {
         "crank_bearing.inner_race_radius": bearing.outer_race_radius - 2.0 * bearing.roller_radius,
@@ -209,7 +190,7 @@ def _fitting(drive: Drive, path: str) -> float:
 
 
 def _nearest(drive: Drive, path: str, value: float, size: float) -> float:
-    """Sound value nearest to the present one, by bisection between it and one that is known to be sound."""
+    """Sound value nearest to the present one, by bisection between it and a sound one."""
     wrong, sound = 0.0, size
     for _ in range(16):
         middle = 0.5 * (wrong + sound)
@@ -228,13 +209,13 @@ def _sound_with(drive: Drive, path: str, value: float) -> bool:
 
 
 def _with(part: Any, names: list[str], value: float) -> Any:
-    """A definition with one field of it, or of what it is made of, replaced."""
+    """A definition with one field, by its path, replaced."""
     name, *below = names
     return replace(part, **{name: _with(getattr(part, name), below, value) if below else value})
 
 
 def _consequence(problem: str, cause: str) -> str:
-    """What a contradiction says beside its own bound."""
+    """The part of a contradiction that does not repeat its bound."""
     if match := re.search(r", or (.+)$", problem):
         return match.group(1)
     head, _, tail = problem.partition(": ")

@@ -10,7 +10,6 @@ from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
-from ltca.drive.members.bearings import own_bearings, with_named_bearing
 from ltca.drive.members.limits import Limits, parse_limits
 from ltca.drive.members.named_materials import LIKE, with_named_materials
 from ltca.drive.members.temperatures import warm_drive
@@ -19,6 +18,7 @@ from ltca.drive.names import NAMING, names_a_file
 from ltca.drive.parts import Drive
 from ltca.drive.tolerances import Tolerances, find_absent, parse_tolerances
 from ltca.errors import DriveError, did_you_mean, shortened
+from ltca.reading.bearing_names import BearingNames
 from ltca.reading.contradictions import explain_contradictions, find_cause
 from ltca.reading.measured.tables import MeasuredFiles, Named, without_files
 from ltca.reading.physical_checks import find_contradictions
@@ -26,13 +26,13 @@ from ltca.reading.toml_text import parse_toml, read_text
 
 NOMINAL_CASE = "nominal"
 BESIDE_THE_DRIVE = ("tolerances", "limits")
-"""Tables of a drive file that are no part of a drive."""
+"""Tables of a drive file that are no part of the drive."""
 MOST_NAMES = 10
-"""Names of cases in one message."""
+"""Largest number of cases named in one message."""
 MANY_CASES = 300
-"""Cases with contradictions after which no more are looked at."""
+"""Number of contradictory cases after which no more are checked."""
 MOST_EXPLAINED = 3
-"""Contradictions of cases whose cause is looked for."""
+"""Largest number of contradictions of cases whose cause is searched."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,15 +44,15 @@ class DriveFile:
     name : str
         Name of the drive.
     source : str
-        Where it was read from.
+        File or name that it was read from.
     cases : dict of str to Drive
         One complete drive for each case, in the order of the file.
     tolerances : dict of str to Distribution
-        How fields scatter, by dotted path; for studies alone.
+        Distributions of fields by dotted path, for studies alone.
     limits : dict of str to dict of str to Limit
-        What results of each case may reach, by case and key (`ltca.drive.members.limits`).
+        Limits of results by case and key (`ltca.drive.members.limits`).
     text : str
-        What was read.
+        Text of the file.
     """
 
     name: str
@@ -139,24 +139,24 @@ def parse_drive(text: str, source: str = "drive") -> DriveFile:
     table.setdefault("name", Path(source).stem)
     problems: list[str] = []
     measured = MeasuredFiles(Path(source).parent)
-    # Mistakes of the common part come back in every case: the base is validated alone, first.
+    # Mistakes of the common part would repeat in every case: it is validated first, alone.
     base_problems: list[str] = []
-    own_named, written = own_bearings(table.pop("bearings", {}), base_problems), table.get("crank_bearing")
-    table = with_named_bearing(table, base_problems, own_named)
+    bearings, written = BearingNames.of_table(table.pop("bearings", {}), base_problems), table.get("crank_bearing")
+    table = bearings.resolved(table, base_problems)
     base = _validate(table, base_problems, measured)
     tolerances = parse_tolerances(scatter, problems, base)
     named = _named_cases(cases, problems)
     limits = parse_limits(bounds, problems)
     own = {name: parse_limits(overrides.pop("limits", {}), problems) for name, overrides in named.items()}
     if base_problems or base is None:
-        raise DriveError(problems + base_problems, source)
+        raise DriveError(problems + bearings.told(base_problems), source)
     drives: dict[str, Drive] = {}
     mistakes: dict[str, list[str]] = {}
     for name, overrides in named.items():
-        overrides = with_named_bearing(overrides, mistakes.setdefault(name, []), own_named, written)
+        overrides = bearings.resolved(overrides, mistakes.setdefault(name, []), written)
         if mistakes[name]:
             continue
-        # Parts that a case leaves alone are valid already; a measured flank deviates from that of each case for itself.
+        # Parts that a case does not change are valid already; a measured flank deviates from the design of every case.
         changed = {key: _merged(table.get(key), value) for key, value in overrides.items()}
         if without_files(table)[1]:
             changed.setdefault("disc", table["disc"])
@@ -170,7 +170,7 @@ def parse_drive(text: str, source: str = "drive") -> DriveFile:
     problems += found
     problems = problems or find_absent(tolerances, drives.values())
     if problems:
-        raise DriveError(problems, source, f"{left} cases not looked at" if left else "")
+        raise DriveError(bearings.told(problems), source, f"{left} cases not checked" if left else "")
     each = {name: {**limits, **own.get(name, {})} for name in drives}
     return DriveFile(
         name=str(table["name"]), source=source, cases=drives, tolerances=tolerances, limits=each, text=text
@@ -178,7 +178,7 @@ def parse_drive(text: str, source: str = "drive") -> DriveFile:
 
 
 def _contradictions(base: Drive, drives: dict[str, Drive]) -> tuple[list[str], int]:
-    """What cannot be, once each: that of the common part which no case mends, then that of the cases; cases left over."""
+    """Contradictions of the common part and of the cases, each once, and the number of cases that were not checked."""
     common = find_contradictions(base)
     found: dict[str, list[str]] = {}
     wrong = 0
@@ -189,7 +189,7 @@ def _contradictions(base: Drive, drives: dict[str, Drive]) -> tuple[list[str], i
             break
     problems, mends = find_cause(base, common)
     suffering = {name for name, those in found.items() if those and mends(drives[name])}
-    if suffering:  # one field of the common part is behind it, whatever else differs from case to case
+    if suffering:  # one field of the common part causes them, whatever else differs from case to case
         everywhere = [] if suffering < set(found) else problems
         told = {name: [] if everywhere else problems for name in suffering}
         problems = everywhere
@@ -202,7 +202,7 @@ def _contradictions(base: Drive, drives: dict[str, Drive]) -> tuple[list[str], i
         if name in told:
             continue
         own = tuple(problem for problem in those if problem not in everywhere)
-        # Looking for the field behind a contradiction takes a tenth of a second: the first few are enough.
+        # The search for the cause of a contradiction takes a tenth of a second: the first few are enough.
         if own and own not in explained and len(explained) < MOST_EXPLAINED:
             explained[own] = explain_contradictions(drives[name], [*own])
         told[name] = explained.get(own, [*own])
@@ -223,7 +223,7 @@ def _once(mistakes: dict[str, list[str]], drives: dict[str, Drive]) -> list[str]
 
 
 def listed(names: Iterable[str]) -> str:
-    """Return names in a row, the first few of many."""
+    """Return names separated by commas, the first few of many."""
     names = [*names]
     shown = ", ".join(names[:MOST_NAMES])
     return shown if len(names) <= MOST_NAMES else f"{shown} and {len(names) - MOST_NAMES} more"
@@ -255,42 +255,38 @@ def _parts(drive: Drive) -> dict[str, Any]:
 
 def _merged(below: Any, value: Any) -> Any:
     if isinstance(value, dict) and LIKE in value:
-        return value  # a named material has all of its own
+        return value  # a named material replaces all of it
     if isinstance(below, str) and isinstance(value, dict):
-        return {LIKE: below, **value}  # numbers beside the name below
+        return {LIKE: below, **value}  # properties that differ from the named material
     if (
         not isinstance(below, dict)
         or not isinstance(value, dict)
         or below.get("kind") != value.get("kind", below.get("kind"))
     ):
-        return value  # a seat of another kind has nothing of the one below
+        return value  # a seat of another kind replaces all of it
     kept = {key: over for key, over in below.items() if INSTEAD.get(key) not in value}
     return {**kept, **{key: _merged(below.get(key), over) for key, over in value.items()}}
 
 
 INSTEAD = {"stiffness": "beam", "beam": "stiffness"}
-"""Fields of one table that stand for each other: a case that gives one takes the other away."""
+"""Alternative fields of one table: a case that gives one removes the other."""
 _ADAPTER = TypeAdapter(Drive)
 
 
 def build_drive(table: dict[str, Any]) -> Drive:
-    """Return the drive of nested plain tables (as in a drive file without cases), fully checked.
+    """Return the fully checked drive of nested plain tables, as in a drive file without cases; DriveError with every
+    mistake.
 
-    Tolerances and limits are no part of a drive and are passed over.
-
-    Raises
-    ------
-    DriveError
-        With every mistake.
+    Tolerances and limits are no part of a drive and are ignored.
     """
     problems: list[str] = []
-    own = own_bearings(table.get("bearings", {}), problems)
+    bearings = BearingNames.of_table(table.get("bearings", {}), problems)
     plain = {name: value for name, value in table.items() if name not in (*BESIDE_THE_DRIVE, "bearings")}
-    drive = _validate(with_named_bearing(plain, problems, own), problems)
+    drive = _validate(bearings.resolved(plain, problems), problems)
     if drive is not None and not problems:
         problems += explain_contradictions(drive, find_contradictions(drive))
     if problems or drive is None:
-        raise DriveError(problems)
+        raise DriveError(bearings.told(problems))
     return drive
 
 

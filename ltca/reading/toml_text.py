@@ -1,4 +1,4 @@
-"""TOML files as plain tables: whatever the file holds, it is read or refused in one sentence."""
+"""TOML files as plain tables: any file is read, or refused in one sentence."""
 
 from __future__ import annotations
 
@@ -11,32 +11,19 @@ from ltca.errors import DriveError, printable
 from ltca.output.regular_files import read_regular
 
 DEEPEST = 20
-"""Tables and arrays in each other; a drive file needs five."""
-# Possessive and anchored, so that long words cost their length once.
+"""Largest depth of nested tables and arrays; a drive file needs five."""
+# Possessive and anchored, so that the time is linear in the length of a word.
 _MANY_DOTS = re.compile(r"""(?<![\w"'-])(?:[\w"'-]++[ \t]*+\.[ \t]*+){60}""")
 LARGEST = 50_000_000
-"""Bytes of a file; a drive of 10,000 cases has some 2 MB."""
+"""Largest number of bytes of a file; a drive of 10,000 cases has some 2 MB."""
 MOST_VALUES = 500_000
-"""Of a drive file: ten discs with measured flanks, each of `ltca.reading.measured.points.MOST_POINTS`, have 400,000."""
+"""Largest number of values of a drive file: ten measured flanks of `ltca.reading.measured.points.MOST_POINTS` have 400,000."""
 LONGEST = 20_000
-"""Entries of an array, of points or of cases: as many mistakes in one take seconds to be told."""
+"""Largest number of entries of an array: so many mistakes take seconds to report."""
 
 
 def read_text(path: Path, missing: str = "no such file") -> str:
-    """Return the text of a TOML file.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    missing : str
-        What to say when it is not there.
-
-    Raises
-    ------
-    DriveError
-        When it cannot be read.
-    """
+    """Return the text of a TOML file; DriveError when it cannot be read, with the message `missing` when it does not exist."""
     try:
         return read_regular(path, LARGEST).decode("utf-8")
     except FileNotFoundError as error:
@@ -52,23 +39,10 @@ def read_text(path: Path, missing: str = "no such file") -> str:
 
 
 def parse_toml(text: str, source: str, most_values: int = MOST_VALUES, longest: int = LONGEST) -> dict[str, Any]:
-    """Return the tables of a TOML text.
+    """Return the tables of a TOML text, with or without a byte-order mark; `source` is its file, for messages.
 
-    Parameters
-    ----------
-    text : str
-        The text; a byte-order mark before it is passed over.
-    source : str
-        Its file, for the message.
-    most_values : int
-        Values that no such file has more of: reading takes seconds for a million.
-    longest : int
-        Entries that no array of such a file has more of.
-
-    Raises
-    ------
-    DriveError
-        When it is not TOML, has more values, a longer array, or tables stand in each other more than `DEEPEST` deep.
+    DriveError when it is not TOML, or has more than `most_values` values, an array of more than `longest` entries, or
+    tables nested more than `DEEPEST` deep, which would take seconds to read.
     """
     # An upper bound without reading: there is a comma or an equals sign for each value but one of an array.
     values = text.count(",") + text.count("=")
@@ -100,4 +74,4 @@ def parse_toml(text: str, source: str, most_values: int = MOST_VALUES, longest: 
 
 
 def _too_deep() -> str:
-    return f"tables or arrays stand in each other more than {DEEPEST} deep"
+    return f"tables or arrays are nested more than {DEEPEST} deep"

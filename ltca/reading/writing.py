@@ -29,7 +29,7 @@ def _write_table(part: Any, path: str, lines: list[str]) -> None:
         lines.append(f"\n[{path}]")
     for item in fields(part):
         value = getattr(part, item.name)
-        if not item.compare:  # the case is the file's own, not a field of it
+        if not item.compare:  # the name of the case is no field
             continue
         if is_dataclass(value):
             inner.append((f"{path}.{item.name}" if path else item.name, value))
@@ -40,7 +40,7 @@ def _write_table(part: Any, path: str, lines: list[str]) -> None:
 
 
 def _literal(value: Any) -> str:
-    if is_dataclass(value):  # an entry of `of`: what a disc has of its own
+    if is_dataclass(value):  # an entry of `of` or `duty`
         own = ((item.name, getattr(value, item.name)) for item in fields(value))
         inner = ", ".join(f"{name} = {_literal(held)}" for name, held in own if held is not None and held != ())
         return f"{{ {inner} }}" if inner else "{}"

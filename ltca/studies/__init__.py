@@ -14,7 +14,7 @@ tolerance_study  Samples drawn from the tolerances of a drive
 sweep_file       ``study.toml``: which fields of a drive a sweep varies, how, and what it keeps
 execution        Who solves the batches and where their results are kept
 run_study        A study from start to files: solve what is left, finish the dataset, sum it up, draw it
-study_results    Reading the final dataset of a study: scalars of each quantity, worst samples, sensitivity, in flat memory
+study_results    The final dataset and table of a study: written from its samples in order, read back in flat memory
 sensitivity      Which tolerances matter: standardised regression over random samples, Sobol indices over Saltelli blocks
 optimiser        Best fields of a drive under limits: scipy's differential evolution on the batch solver, Pareto front of two
                  aims

@@ -1,4 +1,4 @@
-"""The quantities of many drives at once; a sample that cannot be solved says why and stops nobody else."""
+"""Quantities of many drives in one batch; a sample that fails is reported and leaves the others unaffected."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from ltca.studies.shapes import with_kept_coefficients
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Nominal:
-    """Solution of the drive the samples scatter about: where they start from.
+    """Solution of the drive without deviations: starting estimate of samples that scatter about it.
 
     Attributes
     ----------
@@ -69,7 +69,7 @@ class BatchSettings:
     nominal: Nominal | None = None
 
     def __post_init__(self) -> None:
-        """Refuse methods that studies would leave out in silence."""
+        """Refuse methods other than tables."""
         method = self.engine.options["method"]
         if method != "tables":
             raise DriveError(
@@ -94,13 +94,7 @@ class SampleResults:
 
 
 def solve_nominal(drive: Drive, settings: BatchSettings) -> Nominal:
-    """Return the solution of one drive at the angles of the settings.
-
-    Raises
-    ------
-    ConvergenceError
-        When it does not balance.
-    """
+    """Return the solution of one drive at the angles of the settings; `ConvergenceError` where it does not balance."""
     solved = _Batch([drive], settings)
     full = solved.balance([drive.load.torque], None)
     light = full
@@ -127,7 +121,7 @@ class _Batch:
             self.model = self.prepared.model
 
     def balance(self, torques: list[float], near: Equilibrium | None, nominal: Reducer | None = None) -> Equilibrium:
-        """Balance the drives at their torques, from what is near: one position for each of theirs, or for each angle.
+        """Balance the drives at their torques, starting from the solution `near`, if given, of the same rows or of one drive.
 
         The latter is what the model of another drive answered, the nominal one.
         """
@@ -215,25 +209,10 @@ def solve_batch(
     nominal: Nominal | None = None,
     models: Sequence[Reducer] | None = None,
 ) -> SampleBatch:
-    """Solve several drives at all angles as one batch.
+    """Solve drives whose models have one `ltca.arrays.batch_layout` at all angles as one batch; `models` are theirs if known.
 
-    Parameters
-    ----------
-    drives : sequence of Drive
-        Drives whose models have one `ltca.arrays.batch_layout`.
-    settings : BatchSettings
-        Angles, quantities, engine.
-    nominal : Nominal, optional
-        Starting poses.
-    models : sequence of Reducer, optional
-        Their models, where they are known.
-
-    Raises
-    ------
-    ConvergenceError
-        When a position of any of them does not balance.
-    DriveError
-        When a torque cannot be carried (`ltca.analysis.half_width_guard`).
+    Raises `ConvergenceError` when a position of any of them does not balance, and `DriveError` when a torque cannot be carried
+    (`ltca.analysis.half_width_guard`).
     """
     drives = [warm_drive(drive) for drive in drives]
     stages = {STAGES[name] for name in settings.quantities}

@@ -1,4 +1,4 @@
-"""Which samples a study has: every design gives the numbers of any range of samples without the ones before.
+"""Designs of experiments: each gives the numbers of any range of samples without the ones before.
 
 So a batch depends on its place in the study alone, not on who computes it or when.
 """
@@ -40,7 +40,7 @@ class Design(Protocol):
 
 
 def random_rows(seed: int, first: int, last: int, columns: int) -> FloatArray:
-    """Return uniform numbers in (0, 1) of samples: a counter-based generator gives each sample its own stretch."""
+    """Return uniform numbers in (0, 1) of samples, from a counter-based generator with a stretch for each sample."""
     rows = np.empty((last - first, columns))
     for row, sample in zip(rows, range(first, last), strict=True):
         generator = np.random.Generator(np.random.Philox(key=seed, counter=[0, 0, 0, sample]))

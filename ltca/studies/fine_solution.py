@@ -45,25 +45,7 @@ class FineSolution:
 def solve_finely(
     drive: Drive, quantities: tuple[str, ...], engine: Engine, positions: int = FINE_POSITIONS
 ) -> FineSolution:
-    """Return the quantities of one drive, means over many positions and refined extremes.
-
-    Parameters
-    ----------
-    drive : Drive
-        The drive.
-    quantities : tuple of str
-        Names of `ltca.studies.quantities`.
-    engine : Engine
-        How bodies yield.
-    positions : int
-        Crank angles 2πk/N.
-
-    Raises
-    ------
-    ConvergenceError
-        When a position does not balance.
-    DriveError
-        When the torque cannot be carried.
+    """Return the quantities of one drive, means over positions 2πk/N of the crank and extremes refined between them.
 
     Examples
     --------

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from ltca.analysis.engines import Engine, HalfSpace
 from ltca.arrays import FloatArray
 from ltca.drive.fields import ANY, field_kind, field_kinds, not_a_field, read_field
+from ltca.drive.members.bearings import bought_size
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import label, parse_quantity
 from ltca.errors import CycloError, DriveError, shortened
@@ -48,7 +49,7 @@ class Variable:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Limit:
+class Bound:
     """Bound of a quantity: at most (sense +1) or at least (−1) a value in its unit."""
 
     quantity: str
@@ -57,13 +58,7 @@ class Limit:
 
 
 def parse_variable(text: str, drive: Drive) -> Variable:
-    """Read ``name``, ``path`` or either with ``=low:high``; half to one and a half of its value without a range.
-
-    Raises
-    ------
-    DriveError
-        When the name is none or several fields, or the range is missing or wrong.
-    """
+    """Read ``name``, ``path`` or either with ``=low:high``; half to one and a half of its value without a range."""
     name, _, span = text.partition("=")
     # A name alone is that of all discs; of one disc the whole path says it.
     kinds = {path: kind for path, kind in field_kinds().items() if f".{ANY}." not in path}
@@ -84,6 +79,8 @@ def parse_variable(text: str, drive: Drive) -> Variable:
     unit = "" if kind is None else kind.unit
     if kind is None or not unit or (kind.is_array and not element):
         raise DriveError([f"--vary {path}: is not a single quantity"])
+    if refused := bought_size(drive.crank_bearing, path):
+        raise DriveError([f"--vary {refused}"])
     if span:
         ends = span.split(":")
         if len(ends) != 2:
@@ -97,17 +94,12 @@ def parse_variable(text: str, drive: Drive) -> Variable:
     return Variable(path=path, low=low, high=high)
 
 
-def parse_limit(text: str) -> Limit:
+def parse_bound(text: str) -> Bound:
     """Read ``quantity <= value unit`` or ``quantity >= value unit``.
-
-    Raises
-    ------
-    DriveError
-        When it reads otherwise.
 
     Examples
     --------
-    >>> parse_limit("max_pin_pressure_mid <= 1.5 GPa").value
+    >>> parse_bound("max_pin_pressure_mid <= 1.5 GPa").value
     1500.0
     """
     match = re.fullmatch(r"\s*(\w+)\s*(<=|>=|≤|≥)\s*(.+?)\s*", text)
@@ -117,7 +109,7 @@ def parse_limit(text: str) -> Limit:
     check_quantities((name,))
     unit = SCALARS[name].unit
     number = parse_quantity(value, "dimensionless" if unit == "1" else unit, f"--subject {name}")
-    return Limit(quantity=name, sense=1 if sign in ("<=", "≤") else -1, value=number)
+    return Bound(quantity=name, sense=1 if sign in ("<=", "≤") else -1, value=number)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -132,14 +124,14 @@ class Problem:
         What varies.
     aims : tuple of str
         One or two quantities to make small.
-    limits : tuple of Limit
+    limits : tuple of Bound
         What must hold.
     """
 
     drive: Drive
     variables: tuple[Variable, ...]
     aims: tuple[str, ...]
-    limits: tuple[Limit, ...]
+    limits: tuple[Bound, ...]
 
     @property
     def quantities(self) -> tuple[str, ...]:
@@ -148,17 +140,7 @@ class Problem:
 
 
 def batch_analysis(problem: Problem, positions: int, engine: Engine | None = None) -> Analysis:
-    """Return the analysis of candidates by the batch solver over one turn.
-
-    Parameters
-    ----------
-    problem : Problem
-        For its quantities.
-    positions : int
-        Crank angles 2πk/N.
-    engine : Engine, optional
-        How bodies yield; half-spaces by default.
-    """
+    """Return the analysis of candidates by the batch solver at crank angles 2πk/N, by default on half-spaces."""
     used: Engine = HalfSpace() if engine is None else engine
     quantities_for(problem.drive, problem.quantities)
     settings = BatchSettings(crank_angle=position_angles(positions), quantities=problem.quantities, engine=used)
@@ -269,27 +251,9 @@ def optimise(
 ) -> Optimum:
     """Find the best candidate, for two aims the Pareto front.
 
-    Parameters
-    ----------
-    problem : Problem
-        Variables, aims and limits.
-    analysis : callable
-        Quantities of drives, see `batch_analysis`.
-    seed : int
-        Of the random numbers.
-    generations : int
-        Of differential evolution, for each of the weighted problems of a front a third of them.
-    told : callable
-        Told the number of candidates of each solved batch.
-
-    Returns
-    -------
-    Optimum
-
-    Raises
-    ------
-    CycloError
-        When the drive itself cannot be solved, or no candidate is sound and within the limits.
+    `generations` are those of differential evolution, a third of them for each of the weighted problems of a front; `told` is
+    called with the number of candidates of each solved batch. Raises `CycloError` when the drive itself cannot be solved, or no
+    candidate is sound and within the limits.
     """
     from scipy.optimize import differential_evolution, minimize
 
@@ -395,7 +359,7 @@ def _outcome(archive: _Archive, start: FloatArray, aims: int) -> Optimum:
     )
 
 
-def broken_limits(problem: Problem, values: Mapping[str, float]) -> tuple[Limit, ...]:
+def broken_limits(problem: Problem, values: Mapping[str, float]) -> tuple[Bound, ...]:
     """Return the limits that quantities break by more than rounding, 1e-6 of the limit."""
     return tuple(
         limit
@@ -404,7 +368,7 @@ def broken_limits(problem: Problem, values: Mapping[str, float]) -> tuple[Limit,
     )
 
 
-def describe_limit(limit: Limit) -> str:
+def describe_bound(limit: Bound) -> str:
     """Return a limit as it is written on the command line."""
     unit = SCALARS[limit.quantity].unit
     text = label(unit) if unit != "1" else ""

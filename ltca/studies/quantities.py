@@ -174,10 +174,7 @@ OF_FRICTION = ("mean_efficiency", "mean_input_torque", "power_loss")
 def quantities_for(drive: Drive, names: tuple[str, ...] | None) -> tuple[str, ...]:
     """Return the quantities of a study of a drive: names of `STAGES`, by default and for ``all`` those that it has.
 
-    Raises
-    ------
-    DriveError
-        When a name is not one of them, or none of this drive.
+    Raises `DriveError` when a name is not one of them, or the drive does not have it.
     """
     missing = dict.fromkeys(OF_THE_PIN_SHAFT, "pin shaft (pin_shaft)") if drive.pin_shaft is None else {}
     if drive.friction is None:
@@ -206,13 +203,7 @@ def with_what_varies(drive: Drive, paths: Iterable[str]) -> Drive:
 
 
 def check_quantities(names: tuple[str, ...]) -> tuple[str, ...]:
-    """Return the names in the order of `STAGES`, ``all`` meaning every one.
-
-    Raises
-    ------
-    DriveError
-        When a name is not one of them, or is there twice.
-    """
+    """Return the names in the order of `STAGES`, ``all`` meaning every one; `DriveError` for unknown and repeated names."""
     if repeated := told_twice(names):
         raise DriveError([f"{shortened(repeated)[1:-1]}: is given twice"])
     if "all" in names:

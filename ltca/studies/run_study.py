@@ -14,9 +14,10 @@ from ltca.reading.writing import drive_text
 from ltca.studies.batch_analysis import analyse_samples
 from ltca.studies.execution.storage import StudyFolder
 from ltca.studies.execution.workers import Workers, solve_batches
+from ltca.studies.sensitivity import rank
 from ltca.studies.shapes import find_beforehand
 from ltca.studies.study import Study
-from ltca.studies.study_results import PERCENTILES, QuantitySummary, rank, read_quantity, summarise_quantity
+from ltca.studies.study_results import PERCENTILES, QuantitySummary, read_failures, read_quantity, summarise_quantity
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -30,7 +31,7 @@ class StudySummary:
     nominal : dict of str to float
         Quantities of the first case without deviations; empty when it cannot be solved.
     ranking : dict
-        Of `ltca.studies.study_results.rank`.
+        Of `ltca.studies.sensitivity.rank`.
     failures : tuple of (int, str)
         Failed samples and why.
     solved_positions : int
@@ -59,31 +60,10 @@ def run_study(
 ) -> StudySummary:
     """Run a study, or what is left of it, and write its files.
 
-    Parameters
-    ----------
-    study : Study
-        What to solve.
-    folder : StudyFolder
-        Where its files go.
-    workers : Workers
-        Who solves it.
-    resume : bool
-        Whether to continue what the folder holds.
-    replace : bool
-        Whether another study in the folder makes room.
-    advance : callable
-        Told the samples of every finished batch and the rate so far in positions per second.
-    told : callable
-        Told what has to be derived before samples are solved, and which kept batches cannot be used.
-
-    Returns
-    -------
-    StudySummary
-
-    Raises
-    ------
-    CycloError
-        When the folder holds something else, no sample has influence coefficients, or workers die again and again.
+    `resume` continues what the folder holds, `replace` makes room for another study. `advance` is called with the number of
+    samples of every finished batch and the rate so far in positions per second; `told` with lines on what is derived before
+    samples are solved and on kept batches that cannot be used. Raises `CycloError` when the folder holds something else, no
+    sample has influence coefficients, or workers die again and again.
     """
     left = folder.prepare(study, resume, told, replace=replace)
     if not study.engine.batches:
@@ -96,7 +76,7 @@ def run_study(
         solved += len(result.messages) * study.positions
         advance(len(result.messages), solved / (time.perf_counter() - began))
     seconds = time.perf_counter() - began
-    failures = folder.failures(study) if not left and folder.results.exists() else folder.finish(study)
+    failures = read_failures(folder.results) if not left and folder.results.exists() else folder.finish(study)
     quantities = {}
     for name in study.quantities:
         summary = summarise_quantity(read_quantity(folder.results, name))

@@ -10,10 +10,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from ltca.arrays import FloatArray
+from ltca.studies.designs import FEWEST_BLOCKS, ToleranceDesign
+from ltca.studies.study import Study
+from ltca.studies.study_results import read_chunks, read_quantity
 
 Chunks = Callable[[], Iterator[tuple[FloatArray, FloatArray]]]
 
@@ -40,15 +45,8 @@ class Regression:
 def regress(chunks: Chunks) -> Regression | None:
     """Regress every quantity on all factors at once, reading the samples in chunks.
 
-    Parameters
-    ----------
-    chunks : callable
-        Gives the samples anew at every call: factors (n, f) and quantities (n, q), failed samples left out.
-
-    Returns
-    -------
-    Regression or None
-        None with fewer than two samples for each factor: chance would decide.
+    `chunks` gives the samples anew at every call: factors (n, f) and quantities (n, q), failed samples left out. None with fewer
+    than two samples for each factor: chance would decide.
     """
     count, sum_x, sum_y = 0, np.zeros(1), np.zeros(1)
     for x, y in chunks():
@@ -102,12 +100,9 @@ class SobolIndices:
 
 
 def sobol_indices(blocks: FloatArray) -> SobolIndices:
-    """Return the indices from Saltelli blocks.
+    """Return the indices from Saltelli blocks of shape (blocks, groups + 2, quantities).
 
-    Parameters
-    ----------
-    blocks : array, shape (blocks, groups + 2, quantities)
-        f(A), f(B), and f(A with one group from B); blocks with a failed sample left out.
+    Of each block: f(A), f(B), and f(A with one group from B); blocks with a failed sample are left out.
 
     Notes
     -----
@@ -121,3 +116,66 @@ def sobol_indices(blocks: FloatArray) -> SobolIndices:
     first = ((b - mean)[:, None] * (mixed - a[:, None])).mean(axis=0) / variance
     total = 0.5 * ((a[:, None] - mixed) ** 2).mean(axis=0) / variance
     return SobolIndices(first=first, total=total, blocks=len(blocks))
+
+
+def regression_of(path: Path, study: Study) -> Regression | None:
+    """Return the regression of all quantities on all factors; None when samples are too few."""
+    return regress(lambda: read_chunks(path, study.quantities))
+
+
+def sobol_of(path: Path, study: Study) -> SobolIndices | None:
+    """Return the Sobol indices of a study of Saltelli blocks; None for other designs or fewer than `FEWEST_BLOCKS`."""
+    design = study.design
+    if not isinstance(design, ToleranceDesign) or design.sequence != "saltelli":
+        return None
+    size = len(design.groups) + 2
+    blocks = design.samples // size
+    values = np.stack([read_quantity(path, name) for name in study.quantities], axis=1)
+    cut = values[: blocks * size].reshape(blocks, size, len(study.quantities))
+    cut = cut[np.isfinite(cut).all(axis=(1, 2))]
+    return sobol_indices(cut) if len(cut) >= FEWEST_BLOCKS else None
+
+
+def factor_groups(study: Study) -> tuple[tuple[str, slice], ...]:
+    """Return the fields of a study with their columns."""
+    if isinstance(study.design, ToleranceDesign):
+        return study.design.groups
+    return tuple((name, slice(column, column + 1)) for column, name in enumerate(study.design.names))
+
+
+def rank(path: Path, study: Study) -> dict[str, Any]:
+    """Return the sensitivity ranking of a study from its ``results.nc``.
+
+    That is the ``method`` and, for each quantity, ``explained`` and the ``shares`` of the fields, largest first.
+    """
+    names = [name for name, _ in factor_groups(study)]
+    sobol = sobol_of(path, study)
+    if sobol is not None:
+        tables = {
+            quantity: {
+                "explained": float(sobol.first[:, column].sum()),
+                "shares": _sorted(names, sobol.total[:, column]),
+                "first_order": dict(zip(names, map(float, sobol.first[:, column]), strict=True)),
+            }
+            for column, quantity in enumerate(study.quantities)
+        }
+        return {"method": f"Sobol total indices, {sobol.blocks} blocks", "quantities": tables}
+    regression = regression_of(path, study)
+    if regression is None:
+        return {"method": "none: fewer than two samples for each factor and the mean", "quantities": {}}
+    shares = grouped(regression.shares, factor_groups(study))
+    return {
+        "method": "standardised regression, SRC² added up over the elements of a field",
+        "quantities": {
+            quantity: {
+                "explained": float(regression.explained[column]),
+                "shares": _sorted(names, shares[:, column]),
+            }
+            for column, quantity in enumerate(study.quantities)
+        },
+    }
+
+
+def _sorted(names: Sequence[str], shares: FloatArray) -> dict[str, float]:
+    order = np.argsort(-shares, kind="stable")
+    return {names[number]: float(shares[number]) for number in order}

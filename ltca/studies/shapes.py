@@ -37,8 +37,8 @@ from ltca.output.locks import held
 from ltca.output.provenance import code_hash
 from ltca.output.regular_files import regular_file
 
-KEPT = 8
-"""Shapes whose coefficients a process keeps in memory, some 10 MB each."""
+MAX_KEPT_SHAPES = 8
+"""Shapes whose coefficients a process keeps in memory, some 10 MB for each."""
 
 _ENGINES: OrderedDict[tuple[str, ...], Engine] = OrderedDict()
 
@@ -46,17 +46,7 @@ _ENGINES: OrderedDict[tuple[str, ...], Engine] = OrderedDict()
 def with_kept_coefficients(engine: Engine, drive: Drive) -> Engine:
     """Return the engine with the coefficients of a drive in it, those of the last shapes from memory.
 
-    Parameters
-    ----------
-    engine : Engine
-        How bodies yield.
-    drive : Drive
-        Whose shape counts.
-
-    Raises
-    ------
-    CycloError
-        When there are none and none can be derived.
+    Raises `CycloError` when there are none and none can be derived.
     """
     given = _given(engine)
     if engine.batches or _are_coefficients(given):
@@ -69,7 +59,7 @@ def with_kept_coefficients(engine: Engine, drive: Drive) -> Engine:
         there = given is not None or all(cached_file(single).exists() for single in singles)
         with nullcontext() if there else _one_process(shapes[0]):
             _ENGINES[key] = engine.with_coefficients(drive)
-        if len(_ENGINES) > KEPT:
+        if len(_ENGINES) > MAX_KEPT_SHAPES:
             _ENGINES.popitem(last=False)
     _ENGINES.move_to_end(key)
     return _ENGINES[key]
@@ -105,22 +95,10 @@ def shapes_of(drives: Iterable[Drive]) -> dict[str, Drive]:
 
 
 def find_beforehand(engine: Engine, shapes: Mapping[str, Drive], told: Callable[[str], None]) -> None:
-    """Derive what a study will need in this process, so that its workers find it.
+    """Derive the coefficients that a study will need in this process, so that its workers find them; nothing for half-spaces.
 
-    Parameters
-    ----------
-    engine : Engine
-        How bodies yield; nothing is done for half-spaces.
-    shapes : mapping of str to Drive
-        Of `shapes_of`.
-    told : callable
-        Told how many shapes have to be derived, if any.
-
-    Raises
-    ------
-    CycloError
-        When a file given does not serve a shape, or no shape at all has coefficients. A shape that alone cannot be
-        derived is left to its samples, which say why.
+    Raises `CycloError` when a given file does not serve a shape, or no shape at all has coefficients. A shape that alone cannot
+    be derived is left to its samples, which say why.
     """
     given = _given(engine)
     if engine.batches or _are_coefficients(given) or not shapes:
@@ -132,8 +110,11 @@ def find_beforehand(engine: Engine, shapes: Mapping[str, Drive], told: Callable[
             few = "1 shape has" if len(missing) == 1 else f"{len(missing)} shapes have"
             longest = told_seconds(max(expected_seconds(missing)))
             told(f"{few} no influence coefficients yet: derived first, {longest} each")
-        for first in range(0, len(missing), KEPT) if len(missing) > 1 else ():
-            group = {f"shape {first + number}": drive for number, drive in enumerate(missing[first : first + KEPT], 1)}
+        for first in range(0, len(missing), MAX_KEPT_SHAPES) if len(missing) > 1 else ():
+            group = {
+                f"shape {first + number}": drive
+                for number, drive in enumerate(missing[first : first + MAX_KEPT_SHAPES], 1)
+            }
             # Several at once; what fails is tried again alone below.
             with suppress(CycloError):
                 find_case_coefficients(group, near_field=NEAR_FIELDS[engine.compliance])

@@ -6,6 +6,7 @@ import hashlib
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -107,8 +108,9 @@ class Study:
         """Return a field as people read it: with whose it is where its number does not say so."""
         return with_whose(path, self.whose(path))
 
+    @cached_property
     def fingerprint(self) -> str:
-        """Return a hash of everything the results depend on, the code included (hex, 16 digits)."""
+        """Hash of everything the results depend on, the code and files of coefficients included (hex, 16 digits)."""
         parts = (
             self.cases,
             self.design,
@@ -123,32 +125,16 @@ class Study:
         return hashlib.sha256(repr(parts).encode()).hexdigest()[:16]
 
     def drive_of(self, fields: dict[str, Any], *, check: bool = True) -> Drive:
-        """Return the drive of one sample.
+        """Return the drive of one sample, with what it replaces by dotted path; `check` for physical contradictions.
 
-        Parameters
-        ----------
-        fields : dict
-            What the sample replaces, by dotted path.
-        check : bool
-            Whether physical contradictions are looked for.
-
-        Raises
-        ------
-        DriveError
-            When the sample is no sound drive.
+        Raises `DriveError` when it is no sound drive.
         """
         fields = dict(fields)
         base = dict(self.cases)[fields.pop("case", self.cases[0][0])]
         return with_fields(base, fields, check=check)
 
     def shapes(self, numbers: Sequence[int]) -> dict[str, Drive]:
-        """Return a drive of every distinct shape in some batches, by fingerprint; what is no sound drive has none.
-
-        Parameters
-        ----------
-        numbers : sequence of int
-            Batches.
-        """
+        """Return a drive of every distinct shape in batches of these numbers, by fingerprint; unsound samples have none."""
         if not numbers:
             return {}
         if isinstance(self.design, ToleranceDesign):
@@ -170,13 +156,7 @@ class Study:
         return first, min(first + self.batch_samples, self.design.samples)
 
     def sample_drive(self, sample: int) -> Drive:
-        """Return the drive of a sample by its number.
-
-        Raises
-        ------
-        DriveError
-            When there is no such sample or it is no sound drive.
-        """
+        """Return the drive of a sample by its number; `DriveError` when it is no sound drive."""
         return self.drive_of(self.design.fields(self.design.rows(sample, sample + 1)[0]))
 
 
@@ -208,7 +188,7 @@ _NOMINAL: dict[str, Nominal | None] = {}
 def _settings(study: Study) -> BatchSettings:
     """Settings with the nominal solution, which every process finds once for itself."""
     settings = study.settings
-    key = study.fingerprint()
+    key = study.fingerprint
     if key not in _NOMINAL:
         _NOMINAL.clear()
         _NOMINAL[key] = None
@@ -220,15 +200,7 @@ def _settings(study: Study) -> BatchSettings:
 
 
 def run_batch(study: Study, number: int) -> BatchResult:
-    """Solve one batch: the task every worker runs.
-
-    Parameters
-    ----------
-    study : Study
-        The study.
-    number : int
-        Batch 0 … ``study.batches`` − 1.
-    """
+    """Solve one batch of a study, by its number: the task every worker runs."""
     factors = study.design.rows(*study.samples_of(number))
     values = np.full((len(factors), len(study.quantities)), np.nan)
     messages = [""] * len(factors)

@@ -1,22 +1,20 @@
-"""What serves checking alone, importable by tests of your own.
+"""Modules for checking alone, which tests of your own can import.
 
 Modules in the order data passes:
 
 ==================  ============================================================
-random_drives       Random but valid drives, to try the analysis on what nobody thought of
+random_drives       Random but valid drives, to test the analysis on unforeseen combinations
 practical_drives    Drives as people draw them: round numbers, zeros and equalities, steel, aluminium or plastic
 crank_drives        Reducers of all kinds: one or several cranks, with and without pin shaft, first stage and supports, either
                     member held
-pin_drives          Such reducers whose pins are loose, sleeved or bend, or not, and such with friction
-actual_parts        Every part of a drive at its actual place, written out from the definition apart from `ltca.geometry`
-yielding_pins       Where loose and bent pins are, and what they store: coordinates of their own, apart from `ltca.laws`
-friction_check      What rubs in a drive that turns: forces, work and moments, apart from `ltca.equilibrium.friction`
-balance_check       Whether a pose balances, found without the code that balances it
-field_changes       One sensible change for every leaf field of a drive: what the contract is walked with
-malformed           Malformed drive and study files by a seeded generator: values, texts, structures and bytes nobody
-                    should write
-elastic_cylinder    An elastic cylinder between two rigid planes, solved with its true boundary: what half-spaces are
-                    measured by
+pin_drives          Reducers of all kinds with loose, sleeved or bending pins, or with friction
+actual_parts        Actual places of all parts of a drive, computed from its definition independently of `ltca.geometry`
+yielding_pins       Places and energies of loose and bent pins by explicit coordinates, independently of `ltca.laws`
+friction_check      Friction of a drive that turns: forces, work and moments, independently of `ltca.equilibrium.friction`
+balance_check       Check of an equilibrium by its potential energy, independently of the code that finds it
+field_changes       A plausible change of every leaf field of a drive, for the test of the contract
+malformed           Malformed drive and study files by a seeded generator: wrong values, texts, structures and bytes
+elastic_cylinder    An elastic cylinder between two rigid planes, solved with its true boundary: a reference for half-spaces
 closed_form_bodies  Influence coefficients of bodies in closed form: a coefficient file without finite elements
 ==================  ============================================================
 """

@@ -1,4 +1,4 @@
-"""Every part of a drive at its actual place, written out from the definition apart from `ltca.geometry`."""
+"""Actual places of all parts of a drive, computed from its definition independently of `ltca.geometry`."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from ltca.arrays import ComplexArray, FloatArray
 from ltca.drive.parts import Drive, ProfileErrors
 
 SAMPLES = 48
-"""Points of the flank for each wave of its highest order: a search is safe from the nearest of them."""
+"""Points of the flank per wave of its highest order, so that a search from the nearest of them is safe."""
 FINER = 12
-"""How much finer the next search is."""
+"""Refinement of the next search."""
 NODES = 7
-"""Points of the flank through which a polynomial stands for it next to a contact."""
+"""Number of points of the flank in the polynomial that replaces it near a contact."""
 _NODES = np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)
 _TO_POWERS = np.linalg.inv(np.vander(_NODES, increasing=True))
 
@@ -30,14 +30,14 @@ def disc_phase(drive: Drive, disc: int) -> float:
 
 
 def disc_own(drive: Drive, disc: int, name: str, common: Any) -> Any:
-    """Return what a disc has of its own, or else what all have."""
+    """Return the value of a disc, or else the common one."""
     own = getattr(drive.disc.of[disc], name) if drive.disc.of else None
     return common if own is None else own
 
 
 @dataclass(frozen=True)
 class ActualParts:
-    """Places and sizes of everything about one disc of a drive, written out from its definition.
+    """Places and sizes of all parts at one disc of a drive.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ class ActualParts:
     crank_angle : float
         φ_C, rad.
     disc : int
-        Which disc.
+        Number of the disc.
     """
 
     drive: Drive
@@ -75,7 +75,7 @@ class ActualParts:
 
     @cached_property
     def place(self) -> complex:
-        """What the displacement of the disc is counted from: the mean of the centres of its inner races, mm."""
+        """Origin of the displacement of the disc: the mean of the centres of its inner races, mm."""
         return complex(sum(self.race_centres) / self.race_centres.size)
 
     @cached_property
@@ -101,7 +101,7 @@ class ActualParts:
 
     @cached_property
     def wheel_pin_plays(self) -> FloatArray:
-        """By how much slots are wider in radius than the pins in them, or bores of sleeves than theirs, mm."""
+        """Radial plays of wheel pins in their slots, or of sleeves on them, mm."""
         seat, radii = self.drive.pin_wheel.seat, self.wheel_pins[1]
         if seat.kind == "slot":
             return np.asarray((seat.radius or 0.0) - radii)
@@ -109,7 +109,7 @@ class ActualParts:
 
     @cached_property
     def shaft_pin_plays(self) -> FloatArray:
-        """By how much bores of sleeves are wider in radius than the shaft pins in them, mm."""
+        """Radial plays of sleeves on the shaft pins, mm."""
         if self.drive.pin_shaft is None:
             return np.zeros(0)
         seat = self.drive.pin_shaft.seat
@@ -117,7 +117,7 @@ class ActualParts:
 
     @cached_property
     def wheel_axis(self) -> complex:
-        """Place of the axis the wheel turns about, mm."""
+        """Place of the axis that the wheel turns about, mm."""
         return complex(self.drive.pin_wheel.axis_offset.x, self.drive.pin_wheel.axis_offset.y)
 
     @cached_property
@@ -188,7 +188,7 @@ class DeviatedFlank:
     drive : Drive
         The drive with its deviations.
     disc : int
-        Which disc: its flank is turned by −Δz ζ/z_C against the holes, the runout is not.
+        Number of the disc: its flank is turned by −Δz ζ/z_C relative to the holes, the runout is not.
     """
 
     drive: Drive
@@ -196,7 +196,7 @@ class DeviatedFlank:
 
     @cached_property
     def turn(self) -> float:
-        """How far the flank is turned against the holes, rad."""
+        """Rotation of the flank relative to the holes, rad."""
         return -self.drive.tooth_number_difference * disc_phase(self.drive, self.disc) / self.drive.disc.number_of_teeth
 
     @cached_property
@@ -290,7 +290,7 @@ class DeviatedFlank:
         return approach, effective
 
     def _search(self, point: ComplexArray, reach: FloatArray) -> tuple[FloatArray, float, NDArray[np.intp]]:
-        """Points of the flank, finer and finer: the nearest to those points that it reaches, their spacing, which."""
+        """Parameters of the nearest points of the flank to those points that it reaches, their spacing, and which points."""
         errors, pins = self.errors, self.drive.pin_wheel.number_of_pins
         spacing = 2.0 * np.pi / (SAMPLES * max((pins, *errors.orders, len(errors.parameter))))
         # A pin stands at the angle of the place it touches to less than 1/z_P, since e z_P/R_C is less than 1.

@@ -1,15 +1,15 @@
-"""Whether a pose balances, found without the code that balances it.
+"""Check of an equilibrium by its potential energy, independently of the code that finds it.
 
-Written apart from `ltca.geometry`, `ltca.compliance.rollers` and `ltca.equilibrium.balance`: every place from the definition of
-the drive with all its deviations, distances from the flank by a search over points of the deviated flank, rollers placed by
-a search on their energy, nothing but energies. The only things shared are the definition of the drive and the energy
-∫F dδ of the contact laws, crown and relief in it. A pose balances when its potential Π is a minimum: no small
-displacement lowers it, and its slope by central differences vanishes. Loose and bent pins have coordinates of their own
-(`ltca.testing.yielding_pins`), by which the slope vanishes as well. What rubs (`ltca.testing.friction_check`) adds its work.
+Independent of `ltca.geometry`, `ltca.compliance.rollers` and `ltca.equilibrium.balance`: all places come from the definition of
+the drive with its deviations, distances from the flank from a search over points of the deviated flank, places of rollers from a
+search on their energy. Shared are only the definition of the drive and the energies ∫F dδ of the contact laws, crown and
+relief included. At an equilibrium the potential Π has a minimum: no small displacement lowers it, and its slope by
+central differences vanishes. Loose and bent pins have explicit coordinates (`ltca.testing.yielding_pins`), by which the
+slope vanishes as well. Friction (`ltca.testing.friction_check`) adds its work.
 
-The effective radii of the flank contacts are held at those of the pose looked at: a frictionless contact pushes
-along its normal with F(δ, ρ), and what the energy gains because the contact moves to another curvature (about 1e-3
-of the contact's load, along the flank) is no force.
+The effective radii of the flank contacts are those of the pose that is checked: a frictionless contact pushes along its
+normal with F(δ, ρ), and the change of energy because the contact moves to another curvature (about 1e-3 of the load, along the
+flank) is no force.
 """
 
 from __future__ import annotations
@@ -40,10 +40,10 @@ from ltca.testing.yielding_pins import (
 
 GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
 SECTIONS = 9
-"""Golden sections of the approach of a roller between race and bore: to a hundredth of it, parabolas do the rest."""
+"""Number of golden sections of the approach of a roller between race and bore, to a hundredth of it, before parabolas."""
 
 FARTHEST = 0.01
-"""Largest displacement tried, as a part of the pin radius."""
+"""Largest displacement, as a fraction of the pin radius."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -84,14 +84,10 @@ class PotentialEnergy:
         return np.asarray(stored - self.wheel_moment * pose[:, -1])
 
     def of_wheel_pins(self, pose: FloatArray, moved: ComplexArray | float = 0.0) -> FloatArray:
-        """Return what each wheel pin stores, its flank contacts included, N·mm, shape (rows, pins).
+        """Return the energy of each wheel pin and its flank contacts, N·mm, shape (rows, pins).
 
-        Parameters
-        ----------
-        pose : array, shape (rows, coordinates)
-            One row stands for all.
-        moved : array of complex, shape (rows, 2, discs, 1)
-            Displacements of beams and of loose parts, of all pins alike, from where forces hold them, mm.
+        Poses have shape (rows, coordinates); one row serves for all displacements. `moved`, shape (rows, 2, discs, 1), are
+        displacements of beams and of loose parts, of all pins alike, from their places under load, mm.
         """
         held = self.wheel_pins
         place = np.stack([held.bent, held.loose])[None] + moved
@@ -107,7 +103,7 @@ class PotentialEnergy:
         return np.asarray(total)
 
     def of_shaft_pins(self, pose: FloatArray, moved: ComplexArray | float = 0.0) -> FloatArray:
-        """Return what each shaft pin stores, its contacts with the holes included; arguments as for `of_wheel_pins`."""
+        """Return the energy of each shaft pin and its contacts with the holes; arguments as for `of_wheel_pins`."""
         held, shaft = self.shaft_pins, self.drive.pin_shaft
         if shaft is None:
             return np.zeros((pose.shape[0], 0))
@@ -126,14 +122,14 @@ class PotentialEnergy:
         return np.asarray(total)
 
     def _place(self, disc: int, pose: FloatArray) -> tuple[ActualParts, ComplexArray, ComplexArray]:
-        """Parts about a disc, its centre and its turn at poses."""
+        """Parts at a disc, its centre and its rotation at poses."""
         parts, first = ActualParts(self.drive, self.crank_angle, disc), self.own * disc
         centre = (parts.place + pose[:, first] + 1j * pose[:, first + 1])[:, None]
         return parts, centre, np.exp(1j * pose[:, first + 2])[:, None]
 
     @property
     def own(self) -> int:
-        """Coordinates of each disc: three, and two for each crank that yields."""
+        """Number of coordinates of each disc: three, and two for each crank on elastic supports."""
         return 3 if self.drive.crank.support is None else 3 + 2 * self.drive.crank.number
 
     def _cranks(self, disc: int, pose: FloatArray) -> ComplexArray:
@@ -152,7 +148,7 @@ class PotentialEnergy:
         return np.asarray(pose[:, last] + 1j * pose[:, last + 1])
 
     def _supports(self, pose: FloatArray) -> FloatArray:
-        """Energy of crankshafts on their bearings and of the wheel on its own, N·mm."""
+        """Energy of crankshafts on their bearings and of the wheel on its main bearing, N·mm."""
         total = 0.5 * (self.drive.pin_wheel.support_stiffness or 0.0) * np.abs(self.wheel_displacement(pose)) ** 2
         if self.drive.crank.support is not None:
             holding = np.linalg.inv(crankshaft_deflections(self.drive))
@@ -162,14 +158,10 @@ class PotentialEnergy:
         return np.asarray(total)
 
     def crank_moment(self, pose: FloatArray) -> float:
-        """Return what the crank has to be held with at a pose: the slope of the stored energy by φ_C, N·mm.
+        """Return the moment that holds the crank at a pose, shape (coordinates,): the slope of the stored energy by φ_C,
+        N·mm.
 
-        Discs, cranks and wheel stay where they are; the inner races move under them and the cages turn.
-
-        Parameters
-        ----------
-        pose : array, shape (coordinates,)
-            q.
+        Discs, cranks and wheel are fixed; the inner races move under them and the cages turn.
         """
         e, ends = self.drive.crank.eccentricity, []
         step = 1e-5 * float(np.max(np.abs(pose))) / e + 1e-7
@@ -187,13 +179,7 @@ class PotentialEnergy:
         return (ends[0] - ends[1]) / (2.0 * step)
 
     def bearing_forces(self, pose: FloatArray) -> ComplexArray:
-        """Return the force of every crank bearing at a pose, shape (discs, cranks), N: slopes of their energies.
-
-        Parameters
-        ----------
-        pose : array, shape (coordinates,)
-            q.
-        """
+        """Return the forces of the crank bearings at a pose, shape (discs, cranks), N, as slopes of their energies."""
         found = []
         for disc in range(self.drive.disc.number_of_discs):
             parts, centre, turn = self._place(disc, pose[None])
@@ -216,7 +202,7 @@ class PotentialEnergy:
         return total
 
     def _rollers(self, parts: ActualParts, shift: ComplexArray) -> FloatArray:
-        """Energy of all rollers, each at its best place on its ray."""
+        """Energy of all rollers, each at the place of least energy on its ray."""
         ray, radii = parts.rollers
         inner_race, bore = parts.races
         across, along = (np.conj(ray) * shift).imag, (np.conj(ray) * shift).real
@@ -254,7 +240,7 @@ class PotentialEnergy:
 
 
 def _yielding(drive: Drive, laws: HalfSpaceCompliance, balanced: Equilibrium, row: int) -> dict[str, YieldingPins]:
-    """Wheel pins and shaft pins where the loads of an answer hold them."""
+    """Wheel pins and shaft pins at the displacements under the loads of a solution."""
     parts, found = balanced.response.parts, {}
     tip = ring_tips(drive, balanced.pose[row : row + 1])[0]
     for name, part, law, material in (
@@ -279,7 +265,7 @@ def _yielding(drive: Drive, laws: HalfSpaceCompliance, balanced: Equilibrium, ro
 
 
 def potential_of(drive: Drive, model: Reducer, balanced: Equilibrium, position: int) -> PotentialEnergy:
-    """Return Π about a position that is said to balance; arguments as for `find_imbalance`."""
+    """Return Π about a position of a solution; arguments as for `find_imbalance`."""
     laws = cast(HalfSpaceCompliance, model.discs[0])
     pins = _yielding(drive, laws, balanced, position)
     return PotentialEnergy(
@@ -295,7 +281,7 @@ def potential_of(drive: Drive, model: Reducer, balanced: Equilibrium, position: 
 
 
 def friction_at(potential: PotentialEnergy, balanced: Equilibrium, position: int) -> FrictionCheck:
-    """Return what should rub at that position in a drive with friction."""
+    """Return the friction at that position of a drive with friction."""
     drive, pose, wheel, shaft = potential.drive, balanced.pose[position], potential.wheel_pins, potential.shaft_pins
     supported = drive.pin_wheel.support_stiffness is not None
     return FrictionCheck(
@@ -320,22 +306,11 @@ def find_imbalance(
     *,
     torque: float | None = None,
 ) -> list[str]:
-    """Return what speaks against a position being in equilibrium; empty when nothing does.
+    """Return the violations of equilibrium at a position of a solution; empty for an equilibrium.
 
-    Parameters
-    ----------
-    drive : Drive
-        The drive; its geometry, deviations included, is taken from nowhere else.
-    model : Reducer
-        Of half-spaces on tables, for the energies of its laws.
-    balanced : Equilibrium
-        The solution.
-    position : int
-        Which of its positions.
-    seed : int
-        Of the random displacements.
-    torque : float, optional
-        On the output, N·mm: whether the moments of wheel, crank and output are in balance is looked at as well.
+    The geometry with all deviations comes from the drive, the energies of the laws from the model (half-spaces on tables).
+    `seed` is that of the random displacements. With the output torque (N·mm) the balance of the moments of wheel, crank and
+    output is checked as well.
     """
     pose, contacts = balanced.pose[position], balanced.response
     moment = float(balanced.wheel_moment[position])
@@ -360,19 +335,19 @@ def find_imbalance(
     ):
         if np.any(force[position] < 0.0) or np.any((force[position] > 0.0) & (approach[position] <= 0.0)):
             problems.append(f"a {name} pulls or carries while open")
-    # How far the least stiff contact yields under the load sets the scale of the displacements.
+    # The approach of the softest contact is the scale of the displacements.
     scale = max(1e-6, float(np.max(contacts.flank.approach[position])), float(np.max(rollers.outer_approach[position])))
-    # Contacts that just open or close bend the slope: of several steps the best tells; a wrong pose fails with all.
-    # A disc that carries nothing rests on kinks of stiff holes: there the step itself is the slope.
+    # Contacts that just open or close disturb the slope: the best of several steps counts; a wrong pose fails with all.
+    # A disc without load rests on kinks of stiff holes: there the step itself is the slope.
     steps = scale * np.array([1e-3, 1e-4, 1e-5, 1e-6, 1e-7])
     offsets = (steps[:, None, None] * np.concatenate([np.eye(size), -np.eye(size)])).reshape(-1, size)
     directions = np.random.default_rng(seed).normal(size=(12, size))
     directions /= np.linalg.norm(directions, axis=1)[:, None]
-    # Preloaded pins yield by more than the pieces of the flank hold on which they are followed.
+    # Approaches of preloaded pins may exceed the pieces of the flank on which they are followed.
     farthest = min(scale, FARTHEST * drive.pin_wheel.pin_radius)
     sizes = farthest * np.repeat([1e-2, 1e-1, 1.0], 4)
     here = np.zeros((1, size))
-    # Apart, since the farthest pose sets how wide the pieces are.
+    # Separately, since the farthest pose determines the width of the pieces.
     work = np.zeros(size) if rubbed is None else rubbed.work / lever
     value = potential.at(pose + np.concatenate([here, offsets]) / lever)
     value[1:] += offsets @ work
@@ -401,7 +376,7 @@ def find_imbalance(
             )
             ways = np.concatenate([np.zeros((1, *ways.shape[1:])), ways])[..., None]
             beside = stored(pose[None], ways.astype(complex))[1:].reshape(steps.size, 2, -1, held.load.shape[1])
-            # Pins do not feel each other: of each coordinate the step that tells best.
+            # Pins are independent: the best step for each coordinate.
             steep = np.abs(beside[:, 0] - beside[:, 1]) / (2.0 * steps)[:, None, None]
             steep = np.min(steep - (noise / steps)[:, None, None], axis=0)
             if np.max(steep) > 1e-3 * load:

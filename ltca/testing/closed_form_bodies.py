@@ -1,8 +1,8 @@
 """Influence coefficients of bodies in closed form: a coefficient file without finite elements.
 
-Disc, wheel pins and race yield like half-planes whose depth is the datum, rollers like whole cylinders squeezed between
-two loads (K. L. Johnson, *Contact Mechanics* (1985), section 5.6). Contacts of one boundary feel each other like those of
-a half-plane, different boundaries not at all. What a model makes of such a file can be worked out by hand.
+Disc, wheel pins and race are half-planes with a datum at a depth, rollers are cylinders between two loads (K. L. Johnson,
+*Contact Mechanics* (1985), section 5.6). Contacts of one boundary are coupled as on a half-plane, different boundaries are
+not coupled. Results with such a file can be worked out by hand.
 """
 
 from __future__ import annotations
@@ -26,26 +26,15 @@ if TYPE_CHECKING:
 
 PER_LOBE, BORE, PER_HOLE, RACE_ANGLES = 8, 12, 8, 24
 CROSS_SHARE = 0.1
-"""What the load at one end of a roller adds at the other, as a part of the half-plane's unit."""
+"""Approach at one end of a roller by the load at the other, as a fraction of the half-plane's unit."""
 
 
 def closed_form_coefficients(drive: Drive, *, half_width: float, depth: float) -> xr.Dataset:
-    """Return the content of a coefficient file of a drive in closed form.
+    """Return the content of a coefficient file of a drive in closed form (``docs/theory/coefficients.md``).
 
-    Parameters
-    ----------
-    drive : Drive
-        The drive; errors of single parts do not matter.
-    half_width : float
-        Half-width of all patches, mm, small against their distances.
-    depth : float
-        Datum depth of disc, pins and race, mm: beyond the size of the disc, some 200 mm for the paper's, or loads in
-        equilibrium do negative work and the file is refused.
-
-    Returns
-    -------
-    xarray.Dataset
-        The variables and attributes that a run needs of ``docs/theory/coefficients.md``.
+    `half_width` is that of all patches, mm, small against their distances; `depth` is the datum depth of disc, pins and
+    race, mm. It must exceed the size of the disc (some 200 mm for the paper's), or loads in equilibrium do negative work
+    and the file is refused.
     """
     import xarray as xr
 
@@ -105,17 +94,17 @@ def closed_form_coefficients(drive: Drive, *, half_width: float, depth: float) -
 
 
 def _unit(material: Material, thickness: float) -> float:
-    """2(1 − ν²)/(πEt), what the near field of a half-plane is a multiple of, mm/N."""
+    """2(1 − ν²)/(πEt), the unit of the near field of a half-plane, mm/N."""
     return 2.0 * (1.0 - material.poisson_ratio**2) / (np.pi * material.youngs_modulus * thickness)
 
 
 def _half_plane(
     places: ComplexArray | FloatArray, material: Material, thickness: float, half_width: float, depth: float
 ) -> FloatArray:
-    """Approach between patches of a half-plane whose datum lies deep below them, by a newton, mm.
+    """Approach between patches of a half-plane with a deep datum by a newton, mm.
 
-    The mean over a patch of its own displacement is a quarter of the unit less than that of its middle, which Johnson's
-    form gives; one far away sinks by −ln(distance) of the unit, wider patches by the square of their width less.
+    The mean over the loaded patch is a quarter of the unit less than that of its middle, which Johnson's form gives; a
+    distant patch moves by −ln(distance) of the unit, and by the square of the width less.
     """
     unit = _unit(material, thickness)
     middle = half_plane_approach(1.0 / thickness, half_width, depth, material.youngs_modulus, material.poisson_ratio)

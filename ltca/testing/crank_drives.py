@@ -1,6 +1,6 @@
 """Reducers of all kinds: one or several cranks, with and without pin shaft, first stage and supports, either member held.
 
-Like `practical_drives`, on which they are built, they crowd at the plain choices: no error at all, equal supports, rigid ones.
+They are built on `practical_drives`, and plain choices are frequent as there: no errors, equal supports, rigid supports.
 """
 
 from __future__ import annotations
@@ -19,19 +19,8 @@ from ltca.testing.practical_drives import practical_drive
 
 
 def crank_drive(seed: int) -> tuple[Drive, float]:
-    """Return a reducer of any kind, and a crank angle in rad.
-
-    Parameters
-    ----------
-    seed : int
-        Not negative; the same seed gives the same drive.
-
-    Returns
-    -------
-    Drive
-        Two thirds of them with two to five cranks on the carrier.
-    float
-        φ_C, rad.
+    """Return a reducer of any kind, two thirds with two to five cranks on the carrier, and a crank angle in rad, by a seed
+    (not negative).
     """
     random = np.random.default_rng((seed, 2))
     while True:
@@ -44,7 +33,9 @@ def crank_drive(seed: int) -> tuple[Drive, float]:
 
 
 def _on_the_carrier(random: Generator, drive: Drive) -> Drive:
-    """Several cranks with small bearings on a circle, a first stage or none; pins of the shaft between them or none."""
+    """The drive with several cranks with small bearings on a circle, with or without first stage and shaft pins between
+    them.
+    """
     root, cranks = (
         FlankProfile.of_drive(replace(drive, disc=_plain(drive))).root_radius,
         int(random.choice([2, 2, 3, 3, 4, 5])),
@@ -99,7 +90,7 @@ def _plain(drive: Drive) -> Any:
 
 
 def _supported(random: Generator, drive: Drive) -> Drive:
-    """Crankshafts on bearings, the wheel on its own, or neither."""
+    """The drive with elastic supports of the crankshafts, of the wheel, of both or of none."""
     crank, wheel = drive.crank, drive.pin_wheel
     stiffness = float(random.choice([1e5, 3e5, 1e6]))
     if random.uniform() < 0.6:

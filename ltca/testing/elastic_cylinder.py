@@ -1,6 +1,6 @@
-r"""An elastic cylinder between two rigid planes, solved with its true boundary: what half-spaces are measured by.
+r"""An elastic cylinder between two rigid planes, solved with its true boundary: a reference for half-spaces.
 
-Plane strain, linear elasticity, frictionless. The circle is mapped by nothing: with Muskhelishvili's potentials the boundary
+Plane strain, linear elasticity, frictionless. No conformal map is needed: with Muskhelishvili's potentials the boundary
 values of a disc of radius 1 under tractions t are
 
 .. math:: 2\mu u = (\kappa + 1) \varphi - f, \quad f = i \int t\,ds = \sum A_k e^{ik\theta}, \quad
@@ -22,12 +22,12 @@ from ltca.arrays import FloatArray
 POISSON_RATIO = 0.3
 POINTS_PER_CELL = 8
 PLANE_DATUM = (2.0 * np.log(2.0) - 2.0) / np.pi
-"""What a line load adds beside −(2/π)∫p ln|x − s| so that Hertz pressure gives (2 ln(4/b) − 1) q/π."""
+"""Constant beside −(2/π)∫p ln|x − s| with which Hertz pressure gives (2 ln(4/b) − 1) q/π."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CylinderContact:
-    """One of the two contacts.
+    """Result of one of the two contacts.
 
     Attributes
     ----------
@@ -45,21 +45,14 @@ class CylinderContact:
 
 
 def hertz_approach(half_width: float) -> float:
-    """Return the approach of centre and plane at which Hertz and Johnson's Eq. 5.57 give a half-width, by the radius."""
+    """Return the approach of centre and plane at a half-width, both by the radius (Hertz, and Johnson, Eq. 5.57)."""
     return 0.25 * half_width**2 * (2.0 * float(np.log(4.0 / half_width)) - 1.0)
 
 
 def press_cylinder(approach: float, cells: int, reach: float) -> CylinderContact:
-    """Press the cylinder with its true boundary.
+    """Press the cylinder with its true boundary to an approach of centre and plane, by the radius.
 
-    Parameters
-    ----------
-    approach : float
-        Of centre and plane, by the radius.
-    cells : int
-        Cells on half of the boundary looked at.
-    reach : float
-        Half of that boundary, rad; the contact must end within.
+    `cells` divide half of the boundary up to the angle `reach`, rad, within which the contact must end.
     """
     edges, matrix = _cylinder(cells, reach)
     width = edges[1] - edges[0]
@@ -69,14 +62,8 @@ def press_cylinder(approach: float, cells: int, reach: float) -> CylinderContact
 
 
 def press_half_plane(approach: float, cells: int, reach: float, *, parabola: bool) -> CylinderContact:
-    """Press a half-plane instead, by the separation of the tables (a parabola) or that of the circle.
-
-    Parameters
-    ----------
-    approach, cells, reach
-        As of `press_cylinder`.
-    parabola : bool
-        Whether the separation is x²/2 instead of 1 − √(1 − x²).
+    """Press a half-plane instead, as in `press_cylinder`, with the separation x²/2 of the tables or 1 − √(1 − x²) of the
+    circle.
     """
     edges = reach * np.arange(cells + 1.0) / cells
     width = edges[1] - edges[0]
@@ -90,7 +77,7 @@ def press_half_plane(approach: float, cells: int, reach: float, *, parabola: boo
 
 @cache
 def _cylinder(cells: int, reach: float) -> tuple[FloatArray, FloatArray]:
-    """Edges of the cells, rad, and mean displacement towards the centre by unit forces on them, their images loaded alike."""
+    """Edges of the cells, rad, and mean displacement towards the centre by unit forces on them and on their images."""
     count = POINTS_PER_CELL * round(2.0 * np.pi / (reach / cells))
     count += count % 2
     spacing = 2.0 * np.pi / count
@@ -135,7 +122,7 @@ def _half_plane(cells: int, reach: float) -> FloatArray:
 
 
 def _press(matrix: FloatArray, penetration: FloatArray) -> FloatArray:
-    """Forces of cells that touch where it presses; both kinds of cells are exchanged until none is wrong."""
+    """Forces of the cells in contact; cells are exchanged until all conditions of contact hold."""
     touching = penetration > 0.0
     for _ in range(100):
         force = np.zeros(penetration.size)

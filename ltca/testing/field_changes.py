@@ -1,8 +1,7 @@
-"""One sensible change for every leaf field of a drive: what the contract is walked with.
+"""A plausible change of every leaf field of a drive, for the test of the contract.
 
-The contract says that every field of a drive is used by every model and command, or refused by name. So each leaf
-field is changed by an amount that a person could have meant, and the answer has to move or the field's name has to
-come up in a `DriveError`.
+The contract: every field of a drive is used by every model and command, or refused by name. So every leaf field is
+changed by a plausible amount, and either the answer changes or a `DriveError` names the field.
 """
 
 from __future__ import annotations
@@ -19,7 +18,7 @@ from ltca.drive.parts import Drive
 from ltca.errors import DriveError
 from ltca.reading.changes import with_fields
 
-# Fields whose change must be a small one, or the drive stops being a drive: mm, as a part of the value.
+# Factors of fields that allow small changes only, or the drive becomes unsound.
 _CLOSE = {
     "crank.eccentricity": 0.999,
     "pin_wheel.pin_circle_radius": 1.0005,
@@ -38,14 +37,6 @@ _CLOSE = {
     "pin_shaft.seat.pin_radius": 0.999,
     "pin_shaft.seat.bore_radius": 1.001,
 }
-_COUNTS = {
-    "pin_wheel.number_of_pins": 1,
-    "disc.number_of_teeth": 1,
-    "disc.number_of_discs": 1,
-    "crank.number": 1,
-    "crank_bearing.number_of_rollers": -1,
-    "pin_shaft.number_of_pins": 1,
-}
 _SUPPORT = {
     "crank.support.diameter": 8.0,
     "crank.support.positions": (-10.0, 12.0),
@@ -59,12 +50,14 @@ GOES_WITH = {
     "load.driven_by": "friction",
     "friction": "friction",
 }
-"""What goes with something that a drive may have not, or a model not know: with what it is refused."""
+"""Tables that fields of other tables belong to, in whose names they are refused."""
 _LEFT_OUT = {
     "load.speed": 1500.0,
     "pin_wheel.support_stiffness": 5e5,
     "installation.first_stage_ratio": 2.0,
     "crank.circle_radius": 6.0,
+    "crank_bearing.dynamic_load_rating": 5e4,
+    "crank_bearing.static_load_rating": 6e4,
 }
 _LEFT_OUT |= {
     f"materials.{part}.{name}": value
@@ -79,20 +72,11 @@ _LEFT_OUT |= {
         "thermal_expansion": 1.2e-5,
     }.items()
 }
-"""What may be left out, and a value that a person could give."""
+"""Plausible values of fields that may be left out."""
 _FROM_ZERO = {"mm": 1e-3, "rad": 0.3, "dimensionless": 0.5}
-_OTHER_WORD = {
-    "load.direction": {"ccw": "cw", "cw": "ccw"},
-    "load.driven_by": {"input": "output", "output": "input"},
-    "installation.held": {"pin-shaft": "pin-wheel", "pin-wheel": "pin-shaft"},
-    "pin_wheel.beam.ends": {"supported": "clamped", "clamped": "supported"},
-    "pin_shaft.beam.tip": {"free": "tied-clamped", "tied-clamped": "tied-pinned", "tied-pinned": "free"},
-    "pin_shaft.seat.kind": {"fixed": "sleeve", "sleeve": "fixed"},
-    "pin_wheel.seat.kind": {"fixed": "slot", "slot": "sleeve", "sleeve": "fixed"},
-}
 _RELIEF = {"end_relief_length": 0.8, "end_relief_depth": 0.002}
 ROUND_OFF = 1e-6
-"""An answer moves when a number of it changes by more than this part: a thousand times the tolerance of equilibrium."""
+"""Relative change of a number above which an answer differs: a thousand times the tolerance of equilibrium."""
 
 DIAMETERS = tuple(path for path in field_kinds() if path.endswith("_errors.diameter") and ANY not in path.split("."))
 _NAME = {
@@ -104,6 +88,10 @@ _NAME |= {f"materials.{part}.{name}": "moves no load: results are judged by it" 
 _OF_LIFE = dict.fromkeys(
     ("duty.0.torque", "duty.0.speed", "duty.0.share", "lubricant.viscosity", "lubricant.contamination"),
     "duty and lubricant concern lives of bearings alone, and here none is told",
+)
+_OF_LIFE |= dict.fromkeys(
+    ("crank_bearing.dynamic_load_rating", "crank_bearing.static_load_rating"),
+    "ratings of the maker concern lives of bearings alone, and here none is told",
 )
 _EVERYWHERE = _NAME | _OF_LIFE
 _SPRINGS = _EVERYWHERE | {
@@ -122,28 +110,18 @@ EXCEPTIONS: Mapping[str, Mapping[str, str]] = {
     "studies": _SPRINGS,
     "full FE": _EVERYWHERE | {"load.light_torque": "a full solution is one of full load"},
 }
-"""Fields that may leave the answer of a model alone, each with its reason."""
+"""Fields without effect on the answer of a model, with the reason."""
 
 
 def leaf_fields() -> tuple[str, ...]:
-    """Return the dotted paths of all leaf fields of a drive, those of single discs for disc 0."""
+    """Return the dotted paths of all leaf fields of a drive; those of entries are of entry 0."""
     return tuple(path.replace(f".{ANY}.", ".0.") for path in field_kinds())
 
 
 def sensible_change(drive: Drive, path: str) -> Any:
-    """Return another value for a field, one that a person could have meant.
+    """Return a plausible other value for a field of a drive, one of `leaf_fields`, for `ltca.reading.changes.with_fields`.
 
-    Parameters
-    ----------
-    drive : Drive
-        The drive to change.
-    path : str
-        One of `leaf_fields`.
-
-    Returns
-    -------
-    value
-        For `ltca.reading.changes.with_fields`; it may make the drive unsound, which then has to be said by name.
+    It may make the drive unsound, which then must be reported by the name of the field.
 
     Examples
     --------
@@ -161,12 +139,12 @@ def sensible_change(drive: Drive, path: str) -> Any:
         return value  # of one disc there is no other, and none has an effect yet
     if path == "name":
         return f"{value} too"
-    if path in _OTHER_WORD:
-        return _OTHER_WORD[path][value]
+    if kind.choices:
+        return kind.choices[(kind.choices.index(value) + 1) % len(kind.choices)]
     if isinstance(value, bool):
         return not value
-    if path in _COUNTS:
-        return value + _COUNTS[path]
+    if _is_count(path):
+        return value + (-1 if path == "crank_bearing.number_of_rollers" else 1)
     if kind.is_array:
         return _changed_array(drive, path, list(value))
     if path in _CLOSE:
@@ -180,6 +158,11 @@ def sensible_change(drive: Drive, path: str) -> Any:
     return 0.9 * value
 
 
+def _is_count(path: str) -> bool:
+    kind = field_kind(path)
+    return kind is not None and kind.kind == "count" and not kind.is_array
+
+
 def _changed_array(drive: Drive, path: str, values: list[Any]) -> tuple[Any, ...]:
     if path.endswith("profile_errors.orders"):
         return (values[0] + 1, *values[1:]) if values else (2,)
@@ -189,7 +172,7 @@ def _changed_array(drive: Drive, path: str, values: list[Any]) -> tuple[Any, ...
     if kind is not None and kind.unit == "N/mm":
         return tuple(1.1 * value for value in values)
     count = element_count(drive, path)
-    # Of each part another amount: a circle that shifts or grows as a whole could hide in a free motion.
+    # Different amounts for the parts: a circle that shifts or grows as a whole could be hidden by a free motion.
     step = _FROM_ZERO["mm"]
     return tuple(value + step * (1.0 if number % 2 else -0.6) for number, value in enumerate(values[: count or 0]))
 
@@ -203,7 +186,7 @@ def _is_left_out(drive: Drive, path: str) -> bool:
 
 
 def _seat(drive: Drive, path: str, kind: str) -> dict[str, Any]:
-    """All fields of a seat of a kind, with a play that a person could have meant."""
+    """All fields of a seat of a kind, with a usual play."""
     radius = float(read_field(drive, f"{path}.pin_radius"))
     radii = {
         "fixed": {},
@@ -217,7 +200,7 @@ def _seat(drive: Drive, path: str, kind: str) -> dict[str, Any]:
 
 
 def _warmth(drive: Drive, path: str) -> dict[str, Any]:
-    """Temperatures, and the expansion of every part that the drive has and of that which is changed."""
+    """Temperatures, and the expansion of all materials of the drive and of the one that is changed."""
     part = path.split(".")[1]
     parts = {"disc", "wheel_pin", "roller", "inner_race"} | ({"shaft_pin"} if drive.pin_shaft else set())
     parts |= {"sleeve"} if "sleeve" in (drive.pin_wheel.seat.kind, part) else set()
@@ -228,7 +211,7 @@ def _warmth(drive: Drive, path: str) -> dict[str, Any]:
 
 
 def _beside(drive: Drive, path: str) -> dict[str, Any]:
-    """What a field needs beside it to count, where the drive has it not."""
+    """Further fields that a field needs to have an effect, where the drive is without them."""
     span = 3.0 * (2.0 * max(map(abs, drive.disc.disc_planes)) + drive.disc.thickness)
     wheel, shaft, name = drive.pin_wheel, drive.pin_shaft, path.rpartition(".")[2]
     if path.endswith(".thermal_expansion") or path.startswith("temperature."):
@@ -269,35 +252,21 @@ def _beside(drive: Drive, path: str) -> dict[str, Any]:
 
 
 def is_refused_by_name(path: str, told: str) -> bool:
-    """Tell whether a refusal names a field, its table, or what a material goes with."""
+    """Tell whether a message names a field, its table, or the table that a material belongs to."""
     table = path.rpartition(".")[0]
     return path in told or table in told or goes_with(path) in told
 
 
 def goes_with(path: str) -> str:
-    """Return what a refusal of a field names: the field, or what it goes with."""
+    """Return the name in the refusal of a field: the field, or the table that it belongs to."""
     return GOES_WITH.get(path) or GOES_WITH.get(path.rpartition(".")[0], path)
 
 
 def change_of(drive: Drive, path: str) -> tuple[Drive, dict[str, Any]]:
-    """Return a drive in which a field counts, and its change.
+    """Return a drive in which a field has an effect, for comparison, and the change of the field for `with_fields`.
 
-    Counts take what belongs to them along (teeth follow pins, errors of single parts go), and of an end relief the
-    other of length and depth is given, without which neither has a meaning.
-
-    Parameters
-    ----------
-    drive : Drive
-        The drive to start from.
-    path : str
-        One of `leaf_fields`.
-
-    Returns
-    -------
-    base : Drive
-        To compare with.
-    change : dict of str to value
-        For `ltca.reading.changes.with_fields`.
+    Numbers of parts change together with what depends on them (teeth with pins; errors of single parts are left out), and
+    of an end relief the other of length and depth is given, without which neither has an effect.
     """
     parent, _, name = path.rpartition(".")
     if parent.endswith(("pin_profile", "roller_profile")):
@@ -318,7 +287,7 @@ def change_of(drive: Drive, path: str) -> tuple[Drive, dict[str, Any]]:
         )
     if path == "duty.0.share":
         return drive, {path: 0.5 * read_field(drive, path), "duty.1.share": 1.0 - 0.5 * read_field(drive, path)}
-    if path in _COUNTS:
+    if _is_count(path):
         cleared = {
             field: ()
             for field, kind in field_kinds().items()
@@ -338,7 +307,7 @@ def change_of(drive: Drive, path: str) -> tuple[Drive, dict[str, Any]]:
 
 
 def moves(before: FloatArray, after: FloatArray) -> bool:
-    """Return whether an answer differs from another by more than `ROUND_OFF` in any number, or in their count."""
+    """Tell whether an answer differs from another by more than `ROUND_OFF` in any number, or in their count."""
     if before.shape != after.shape or not np.array_equal(np.isnan(before), np.isnan(after)):
         return True
     known = ~np.isnan(before)

@@ -1,13 +1,12 @@
-"""Friction of a drive that turns, found without the code that balances it.
+"""Friction of a drive that turns, independently of the code that balances it.
 
-Places from the definition of the drive (`ltca.testing.actual_parts`), normals as the slope of the distance from the flank,
-by differences; the material points of both bodies at a contact are moved as parts of rigid bodies, by the pose and,
-for the slip of the turning drive, by turning the cranks a little. What is rubbed follows from loads that are frozen, so the work
-of friction is linear in small displacements: added to the potential of `ltca.testing.balance_check` it makes a pose that
-balances its minimum again.
+Places come from the definition of the drive (`ltca.testing.actual_parts`), normals from differences of the distance from the
+flank; the material points of both bodies at a contact move as parts of rigid bodies, by the pose and, for the slip of the turning
+drive, by a small rotation of the cranks. Friction follows from frozen loads, so its work is linear in small displacements:
+added to the potential of `ltca.testing.balance_check`, it makes the balanced pose a minimum again.
 
-A pin that is free to turn passes on what it takes: the total forces of disc and seat are equal and opposite, in the line
-through both contacts, so what the wheel feels is the force at the flank.
+A pin that is free to turn transmits its load: the total forces of disc and seat are equal and opposite, in the line
+through both contacts, so the force on the wheel is that at the flank.
 """
 
 from __future__ import annotations
@@ -27,21 +26,15 @@ from ltca.testing.actual_parts import ActualParts, DeviatedFlank
 FADES = 1e-4
 """Slip by the crank angle, in eccentricities, below which a contact is next to the pitch point: any friction may be there."""
 SAME = 1e-5
-"""Largest difference of friction forces, as a part of the largest possible one: normals by differences are good to some 1e-8,
-what the answer's loads leave of balance is less."""
+"""Largest difference of friction forces, as a fraction of the largest possible one: normals by differences are accurate to some
+1e-8, the balance of the loads is better."""
 TURNED = 1e-6
-"""Crank angle by which the drive is turned to see what slips, rad."""
+"""Rotation of the cranks for the slip, rad."""
 
 
 def easier_coefficient(contact: float, seat: float, part: PinWheel | PinShaft) -> float:
-    """Return the coefficient of whichever surface of a pin slips: the disc's, or that of its seat at the disc's lever.
-
-    Parameters
-    ----------
-    contact, seat : float
-        μ of disc on pin, and of pin in its seat.
-    part : PinWheel or PinShaft
-        How the pins sit.
+    """Return the coefficient of the surface of a pin that slips first: that at the disc, or that of the seat at the lever
+    of the disc.
     """
     own = part.seat
     if own.kind == "slot":
@@ -113,7 +106,7 @@ class FrictionCheck:
 
     @cached_property
     def contacts(self) -> tuple[RubbedContacts, ...]:
-        """What rubs between each disc and the pins."""
+        """Contacts of each disc with the pins."""
         return tuple(self._contacts(disc) for disc in range(len(self.parts)))
 
     @cached_property
@@ -139,7 +132,7 @@ class FrictionCheck:
 
     @property
     def at_cranks(self) -> float:
-        """Moment that rubbing takes at all cranks, ccw positive, N·mm."""
+        """Moment of friction on all cranks, ccw positive, N·mm."""
         support, planes = self.drive.crank.support, self.drive.disc.disc_planes
         if support is None:  # held beside every disc
             carried = np.abs(self.bearings).sum()
@@ -153,16 +146,16 @@ class FrictionCheck:
 
     @property
     def lost(self) -> float:
-        """Energy lost by radian of the crank but for seals and oil, N·mm."""
+        """Energy lost per radian of the crank without seals and oil, N·mm."""
         at_pins = sum(float((np.abs(each.rubbing) * np.abs(each.slip)).sum()) for each in self.contacts)
         turns = abs(self.drive.tooth_number_difference) / self.drive.pin_wheel.number_of_pins
         return at_pins + self._at_wheel * turns + abs(self.at_cranks)
 
     def problems(self) -> list[str]:
-        """Return which friction forces of the answer are others than they should be; empty when none is."""
+        """Return the friction forces of the solution that are wrong; empty when none is."""
         found, pins = [], self.drive.pin_wheel.number_of_pins
         for disc, (part, own) in enumerate(zip(self.parts, self.contacts, strict=True)):
-            # Contacts that carry next to nothing are known to a part of those that carry.
+            # The accuracy of small loads is a fraction of the sum of all.
             nothing = 1e-9 * float(part.pin_load.sum() + part.hole_load.sum())
             told = self._told(disc)
             off = np.abs(told - own.rubbing) > SAME * own.most + nothing
@@ -192,7 +185,7 @@ class FrictionCheck:
 
     @property
     def _at_wheel(self) -> float:
-        """Size of the moment by which the wheel's bearing rubs, N·mm."""
+        """Magnitude of the friction moment of the wheel's bearing, N·mm."""
         pins, on_wheel = self.drive.pin_wheel.number_of_pins, 0j
         for part, found in zip(self.parts, self.contacts, strict=True):
             on_wheel += (found.rubbing[:pins] - part.pin_load[0] * found.into_disc[:pins]).sum()
@@ -200,7 +193,7 @@ class FrictionCheck:
         return float(friction.support_bearing * friction.support_bearing_radius * abs(on_wheel))
 
     def _told(self, disc: int) -> ComplexArray:
-        """Friction on the pins as the answer tells it: what works by the place of the disc."""
+        """Friction on the pins in the solution: the force that works by the place of the disc."""
         part = self.parts[disc]
         along = np.concatenate((part.flank.along[0], part.holes.along[0]))
         told = np.zeros(along.shape[0]) if part.friction is None else part.friction[0]

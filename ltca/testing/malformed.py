@@ -1,7 +1,7 @@
-"""Malformed drive and study files by a seeded generator: values, texts, structures and bytes nobody should write.
+"""Malformed drive and study files by a seeded generator: wrong values, texts, structures and bytes.
 
-Every file either is surely wrong, and then has to be refused, or may be sound by chance (a flipped letter in a comment);
-in both cases reading it ends with drives or a `DriveError`, nothing else.
+A file either is certainly wrong, and must be refused, or may be valid by chance (a changed letter in a comment); in both cases
+reading it ends with drives or a `DriveError`, nothing else.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
+from ltca.drive.declaration import find_fields
 from ltca.reading.drive_file import shipped_drive
 
 DIGITS = "7" * 400
@@ -21,7 +22,7 @@ NO_QUANTITY = (
     '"__import__(\'os\')"', '"${HOME}"', "1e308", "-1e308", "1e400", DIGITS, f"-{DIGITS}", f'"{DIGITS}"', f'"{"5 mm" * 5000}"',
     "'''5\nmm'''", '"5 mm²³"', '"5 e3 mm"', '"0x10 mm"', "0xffffffffffffffffffffffffffffffff",
 )  # fmt: skip
-"""No value of any quantity of a drive, whatever its unit."""
+"""Texts that are not a value of any quantity of a drive."""
 NO_COUNT = (
     "13.5", "-1", "0", "nan", "inf", "true", "1e308", "1e400", DIGITS, f"-{DIGITS}", '"many"', '"14 mm"', '"1e1"', "[14]",
     "{}", '""', "1001", "100000000000000000000", "1979-05-27",
@@ -49,11 +50,11 @@ class Malformed:
     Attributes
     ----------
     about : str
-        What was done to it.
+        Description of the change.
     content : bytes
-        The file.
+        Bytes of the file.
     wrong : bool
-        Whether it is surely wrong.
+        Whether the file is certainly wrong.
     """
 
     about: str
@@ -62,15 +63,7 @@ class Malformed:
 
 
 def malformed_drives(seed: int, count: int) -> Iterator[Malformed]:
-    """Yield drive files.
-
-    Parameters
-    ----------
-    seed : int
-        Of the random numbers: file k of a seed is the same however many are asked for.
-    count : int
-        How many.
-    """
+    """Yield `count` drive files; file k of a seed does not depend on the count."""
     for number in range(count):
         draw = random.Random(f"drive {seed} {number}")
         yield draw.choice(DRIVES)(draw)
@@ -84,7 +77,7 @@ def malformed_studies(seed: int, count: int) -> Iterator[Malformed]:
 
 
 def _lines(text: str) -> list[tuple[int, str, str]]:
-    """Places of ``field = value`` in a text: line, field, value without its comment."""
+    """Assignments ``field = value`` of a text: line, field, value without its comment."""
     found = []
     for number, line in enumerate(text.splitlines()):
         match = re.fullmatch(r"(\w+) = ([^#]*?)\s*(#.*)?", line)
@@ -101,9 +94,7 @@ def _with_line(text: str, number: int, line: str) -> str:
 
 def _value(draw: random.Random) -> Malformed:
     number, field, _ = draw.choice([item for item in _lines(BASE) if re.fullmatch(r"[-\d.e]+", item[2])])
-    value = draw.choice(NO_COUNT if field.startswith("number_of") else NO_QUANTITY)
-    if field == "number_of_discs" and value == "1001":
-        value = "11"
+    value = draw.choice(NO_COUNT if find_fields(field)[0].kind == "count" else NO_QUANTITY)
     return Malformed(about=f"{field} = {value[:40]}", content=_with_line(BASE, number, f"{field} = {value}").encode())
 
 

@@ -1,7 +1,7 @@
-"""Reducers whose pins are loose, sleeved or bend, or not: on those of all kinds (`crank_drives`), crowding at the plain choices.
+"""Reducers of all kinds (`crank_drives`) with loose, sleeved or bending pins, or with friction.
 
-Nothing at all, plays that are equal, a beam no longer than the discs, its diameter typed although it is the pin's own.
-With friction (`friction_drive`) they do not bend.
+Plain choices are frequent: fixed pins, equal plays, a beam just as long as the discs need, a diameter that is given although
+it is that of the pin. With friction (`friction_drive`) pins do not bend.
 """
 
 from __future__ import annotations
@@ -20,35 +20,25 @@ from ltca.testing.crank_drives import crank_drive
 from ltca.testing.yielding_pins import beam_stiffness
 
 PLAYS = (0.001, 0.004, 0.01, 0.01, 0.02, 0.05)
-"""mm."""
+"""Radial plays, mm."""
 COEFFICIENTS = (0.0, 0.0, 0.01, 0.03, 0.05, 0.05, 0.08, 0.1, 0.15)
-"""μ of joints as people type them."""
+"""Usual values of μ of joints."""
 OTHERS = (
     Material(),
     Material(),
     Material(youngs_modulus=110e3, poisson_ratio=0.34),
     Material(youngs_modulus=2.6e3, poisson_ratio=0.38),
 )
-"""Slots and sleeves of steel, bronze or plastic."""
+"""Materials of slots and sleeves: steel, bronze or plastic."""
 SOFTEST = 1.0
-"""Largest deflection of a pin when a quarter of all carry a disc's part of the torque, in eccentricities: where pins give way
-by more than half the height of the teeth, these slip."""
+"""Largest deflection of a pin when a quarter of all carry the torque of a disc, in eccentricities: teeth slip where pins move
+by more than half their height."""
 
 
 def pin_drive(seed: int) -> tuple[Drive, float]:
-    """Return a reducer of any kind whose pins sit and bend in any way, and a crank angle in rad.
+    """Return a reducer of any kind with seats and beams of its pins, and a crank angle in rad, by a seed (not negative).
 
-    Parameters
-    ----------
-    seed : int
-        Not negative; the same seed gives the same drive.
-
-    Returns
-    -------
-    Drive
-        Wheel pins fixed, loose in slots or under sleeves, shaft pins fixed or under sleeves; either kind rigid or beams.
-    float
-        φ_C, rad.
+    Wheel pins are fixed, loose in slots or under sleeves, shaft pins fixed or under sleeves; either kind is rigid or bends.
     """
     random = np.random.default_rng((seed, 3))
     while True:
@@ -65,20 +55,10 @@ def pin_drive(seed: int) -> tuple[Drive, float]:
 
 
 def friction_drive(seed: int) -> tuple[Drive, float]:
-    """Return a reducer of any kind with friction in its joints, and a crank angle in rad.
+    """Return a reducer of any kind with friction in its joints, and a crank angle in rad, by a seed (not negative).
 
-    Parameters
-    ----------
-    seed : int
-        Not negative; the same seed gives the same drive.
-
-    Returns
-    -------
-    Drive
-        Wheel pins fixed, loose in slots or under sleeves, shaft pins fixed or under sleeves, none of them beams; driven by
-        its input or its output.
-    float
-        φ_C, rad.
+    Wheel pins are fixed, loose in slots or under sleeves, shaft pins fixed or under sleeves, none of them beams; the drive
+    is driven by its input or its output.
     """
     random = np.random.default_rng((seed, 4))
     while True:
@@ -111,12 +91,12 @@ def friction_drive(seed: int) -> tuple[Drive, float]:
 
 
 def _bearing_radius(drive: Drive) -> float:
-    """As large as the inner races, to the millimetre."""
+    """Radius of the inner races, rounded to a millimetre."""
     return max(round(drive.crank_bearing.inner_race_radius), 1.0)
 
 
 def largest_deflection(drive: Drive) -> float:
-    """Return how far pins that are beams bend under their disc when a quarter of them carry its part of the torque, mm."""
+    """Return the largest deflection of bending pins when a quarter of them carry the torque of a disc, mm."""
     discs, found = drive.disc.number_of_discs, [0.0]
     wheel, shaft, materials = drive.pin_wheel, drive.pin_shaft, drive.materials
     at_wheel = drive.crank.eccentricity * wheel.number_of_pins
@@ -132,7 +112,7 @@ def largest_deflection(drive: Drive) -> float:
 
 
 def _inner(random: Generator, radius: float) -> float:
-    """Radius of the pin under a sleeve, as one writes it."""
+    """Radius of the pin under a sleeve, rounded."""
     step = 0.25 if radius > 1.0 else 0.05
     return max(round(float(random.choice([0.5, 0.6, 0.75])) * radius / step), 1) * step
 
@@ -166,13 +146,13 @@ def _seated_shaft_pins(random: Generator, drive: Drive, play: float) -> PinShaft
 
 
 def _span(random: Generator, drive: Drive) -> float:
-    """As long as the discs need, or longer."""
+    """Span that the discs need, or a longer one."""
     reach = 2.0 * max(abs(plane) for plane in drive.disc.disc_planes) + drive.disc.thickness
     return reach * float(random.choice([1.0, 1.0, 1.25, 2.0]))
 
 
 def _diameter(random: Generator, part: PinWheel | PinShaft) -> float | None:
-    """Left out, typed, or that of a pin that is thinner between its ends."""
+    """Diameter left out, that of the pin, or less, for a pin that is thinner between its ends."""
     own = 2.0 * (part.seat.pin_radius or part.pin_radius)
     return [None, own, 0.8 * own][int(random.integers(3))]
 
@@ -194,7 +174,7 @@ def _bent_shaft_pins(random: Generator, drive: Drive, shaft: PinShaft) -> PinSha
 
 
 def _made_of(random: Generator, drive: Drive) -> Drive:
-    """Slots and sleeves of one material or another."""
+    """The drive with materials of slots and sleeves."""
     materials, shaft = drive.materials, drive.pin_shaft
     slot, sleeve = (OTHERS[int(random.integers(len(OTHERS)))] for _ in range(2))
     kinds = {drive.pin_wheel.seat.kind, "fixed" if shaft is None else shaft.seat.kind}

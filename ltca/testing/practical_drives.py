@@ -1,7 +1,7 @@
 """Drives as people draw them: round numbers, zeros and equalities, steel, aluminium or plastic.
 
-Where `random_drives` fills the space of what is valid, these crowd at the plain choices: no offsets at all, equal ones,
-no clearance, equal radii, full and hundredth torque.
+While `random_drives` covers the space of valid drives, plain choices are frequent here: no offsets or equal ones, no
+clearance, equal radii, full torque or a hundredth of it.
 """
 
 from __future__ import annotations
@@ -35,52 +35,15 @@ MATERIALS = {
 }
 """Young's modulus, MPa, Poisson's ratio and flank pressure at the rated torque, MPa, of the disc; its pins are steel."""
 PIN_NUMBERS = (
-    6,
-    8,
-    10,
-    11,
-    12,
-    14,
-    16,
-    18,
-    20,
-    24,
-    25,
-    26,
-    30,
-    32,
-    36,
-    40,
-    41,
-    44,
-    48,
-    50,
-    52,
-    60,
-    64,
-    76,
-    80,
-    90,
-    100,
-    120,
-)
+    6, 8, 10, 11, 12, 14, 16, 18, 20, 24, 25, 26, 30, 32, 36, 40, 41, 44, 48, 50, 52, 60, 64, 76, 80, 90, 100, 120,
+)  # fmt: skip
 CIRCLES = (20.0, 25.0, 30.0, 32.0, 40.0, 50.0, 55.0, 60.0, 72.0, 80.0, 88.0, 100.0, 120.0, 150.0, 180.0)
 
 
 def practical_drive(seed: int) -> tuple[Drive, float]:
-    """Return a drive that somebody could have drawn, and a crank angle in rad.
+    """Return a drive as people draw them, and a crank angle in rad (one in four is zero), by a seed (not negative).
 
-    Parameters
-    ----------
-    seed : int
-        Not negative; the same seed gives the same drive.
-
-    Returns
-    -------
-    Drive
-        With its rated torque or a hundredth of it, one to three discs, either member held.
-    float
-        φ_C, rad; one in four is zero.
+    It has its rated torque or a hundredth of it, one to three discs, and either member held.
     """
     random = np.random.default_rng(seed)
     while True:
@@ -91,7 +54,9 @@ def practical_drive(seed: int) -> tuple[Drive, float]:
 
 
 def _built_in(random: Generator, drive: Drive) -> Drive:
-    """One to three discs under so much more torque, small errors of one of them, either member held."""
+    """The drive with one to three discs under as many times the torque, small errors of one of them, and either member
+    held.
+    """
     discs = int(random.choice([1, 1, 2, 2, 3]))
     load = replace(drive.load, torque=discs * drive.load.torque, light_torque=discs * drive.load.light_torque)
     disc, crank = replace(drive.disc, number_of_discs=discs), drive.crank
@@ -106,20 +71,10 @@ def _built_in(random: Generator, drive: Drive) -> Drive:
 
 
 def preloaded_drive(seed: int) -> tuple[Drive, float]:
-    """Return a drive as `practical_drive` does whose parts overlap as drawn, and a crank angle in rad.
+    """Return a `practical_drive` whose parts overlap as drawn, and a crank angle in rad, by a seed (not negative).
 
-    Parameters
-    ----------
-    seed : int
-        Not negative; the same seed gives the same drive.
-
-    Returns
-    -------
-    Drive
-        Pins and flank, rollers and races, shaft pins and holes overlap, or some of them: by micrometres to a fortieth of the
-        smallest pin or roller radius.
-    float
-        φ_C, rad.
+    Pins and flank, rollers and races, shaft pins and holes overlap, or some of them: by micrometres to a fortieth of the
+    smallest pin or roller radius.
     """
     random = np.random.default_rng((seed, 1))
     while True:
@@ -155,12 +110,12 @@ def _draw(random: Generator) -> Drive | None:
 
 
 def _round(value: float, step: float) -> float:
-    """Round to a step, as one writes it."""
+    """Round to a step."""
     return float(round(round(value / step) * step, 6))
 
 
 def _step(value: float) -> float:
-    """Step of what is written for a length: 0.05 mm above 1 mm, 0.01 mm below."""
+    """Rounding step of a length: 0.05 mm above 1 mm, 0.01 mm below."""
     return 0.05 if value > 1.0 else 0.01
 
 
@@ -195,7 +150,7 @@ def _teeth(random: Generator) -> dict[str, Any] | None:
 
 
 def _inside(random: Generator, table: dict[str, Any]) -> bool:
-    """Bearing and holes in what the teeth leave; False where nothing fits."""
+    """Add bearing and holes inside of the teeth; False where nothing fits."""
     wheel, disc, eccentricity = table["pin_wheel"], table["disc"], table["crank"]["eccentricity"]
     root = wheel["pin_circle_radius"] - eccentricity - wheel["pin_radius"]
     bore = _round(root * random.uniform(0.3, 0.5), 0.5)
@@ -249,12 +204,12 @@ def _load(random: Generator, table: dict[str, Any]) -> None:
 
 
 PARTS = (1e-6, 1e-5, 1e-4)
-"""Parts of the torque, the next where one is too little to be balanced."""
+"""Fractions of the torque; the next one is tried where no equilibrium is found."""
 NANOMETRE = 1e-6
 """mm. Unit of the gaps in `light_limit`: HiGHS leaves reduced costs of 1e-7 of a cost, and in mm a pin with next to no lever
 (force 1e4 times that of the wheel) may hide a bound that is 3 % less behind that."""
 BESIDE = 1.1
-"""From the crank angle of the drive to the second one, rad."""
+"""Difference of the second crank angle to that of the drive, rad."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -284,32 +239,22 @@ class Comparison:
 
     @property
     def difference(self) -> float:
-        """Between loaded and free play, arcmin."""
+        """Difference of loaded and free play, arcmin."""
         return abs(self.loaded - self.free)
 
 
 def light_limit(geometry: ContactGeometry, crank_angle: FloatArray, sense: int) -> tuple[FloatArray, FloatArray]:
-    """Return how far a load that vanishes turns the wheel at most with one disc on it, and how far it turns without load, rad.
+    """Return the largest wheel angle under a vanishing load with one disc, and the wheel angle without load, rad, ccw
+    positive.
 
-    Forces of contact in proportion to a torque that goes to nought still balance it: λ ≥ 0 with Σ λ_i ∇δ_i = e of the wheel's
-    torque. Their work on the gaps that are left, Σ λ_i g_i, is how much further the wheel may go before they press, and the least
-    of it over all balances bounds where the load ends: nothing if the pairs that touch balance it by themselves. No contact law
-    enters, so it holds of every one. Gaps are taken as straight about the pose. Where an arc of a race or a hole lies across the
-    turning, a pose found to 1e-7 mm is off by the root of that along it, and the straight gap promises more than the arc has.
+    Contact forces in proportion to a vanishing torque still balance it: λ ≥ 0 with Σ λ_i ∇δ_i = e of the wheel's torque.
+    Their work on the remaining gaps, Σ λ_i g_i, is how much further the wheel may turn before they are closed, and the
+    least of it over all balances is the bound: zero if the pairs in contact balance the torque by themselves. No contact
+    law enters, so it holds for every one. Gaps are linear about the pose. Where an arc of a race or a hole lies across the
+    rotation, an error of 1e-7 mm in the pose becomes its square root along the arc, and the linear gap is larger than that
+    of the arc.
 
-    Parameters
-    ----------
-    geometry : ContactGeometry
-        Of one disc.
-    crank_angle : array, shape (positions,)
-        φ_C, rad.
-    sense : {+1, −1}
-        Of the wheel.
-
-    Returns
-    -------
-    limit, free : array, shape (positions,)
-        Wheel angles, counter-clockwise positive.
+    Crank angles φ_C (rad) and both results have shape (positions,); `sense` is +1 or −1, of the wheel.
     """
     from scipy.optimize import linprog
 
@@ -334,21 +279,10 @@ def light_limit(geometry: ContactGeometry, crank_angle: FloatArray, sense: int) 
 def pair_approaches(
     geometry: ContactGeometry, crank_angle: FloatArray, pose: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the approaches of pins, holes and rollers that stand outermost, mm, and their gradients by the pose.
+    """Return the approaches of pins, holes and outermost rollers of one disc, mm, and their gradients by the pose.
 
-    Parameters
-    ----------
-    geometry : ContactGeometry
-        Of one disc.
-    crank_angle : array, shape (positions,)
-        φ_C, rad.
-    pose : array, shape (positions, 4)
-        q of `ltca.geometry.pairs`.
-
-    Returns
-    -------
-    approach : array, shape (positions, pairs)
-    gradient : array, shape (positions, pairs, 4)
+    Crank angles φ_C (rad) have shape (positions,), poses q (`ltca.geometry.pairs`) (positions, 4), approaches (positions,
+    pairs) and gradients (positions, pairs, 4).
     """
     flank, holes, rays = (
         geometry.flank(crank_angle, pose),
@@ -365,7 +299,7 @@ def pair_approaches(
 
 
 def _limit(discs: Sequence[ContactGeometry], angle: FloatArray) -> float:
-    """Between the limits of vanishing torques of either sense, of all discs together, rad."""
+    """Difference of the limits of vanishing torques of either sense, of all discs together, rad."""
     ends = []
     for sense in (1, -1):
         limits = [light_limit(disc, angle, sense)[0] for disc in discs]
@@ -374,27 +308,13 @@ def _limit(discs: Sequence[ContactGeometry], angle: FloatArray) -> float:
 
 
 def compare_with_load(seed: int) -> list[Comparison]:
-    """Return the comparisons of the practical drive of a seed at two crank angles.
-
-    Parameters
-    ----------
-    seed : int
-        Of `ltca.testing.practical_drives.practical_drive`.
-    """
+    """Return the comparisons of the practical drive of a seed at two crank angles."""
     drive, angle = practical_drive(seed)
     return compare(drive, np.array([angle, angle + BESIDE]))
 
 
 def compare(drive: Drive, crank_angle: FloatArray) -> list[Comparison]:
-    """Return the comparisons of a drive at crank angles.
-
-    Parameters
-    ----------
-    drive : Drive
-        As it is written.
-    crank_angle : array, shape (positions,)
-        φ_C, rad.
-    """
+    """Return the comparisons of a drive, as written, at crank angles φ_C, rad."""
     drive = warm_drive(drive)
     model = replace(HalfSpace().prepare(drive).model, friction=None)
     discs, scale = model.geometries, abs(drive.output_per_wheel_angle) * ARCMIN
@@ -409,7 +329,7 @@ def compare(drive: Drive, crank_angle: FloatArray) -> list[Comparison]:
         for part in PARTS:
             torque = part * drive.load.torque * np.array([1.0, -1.0])
             try:
-                loaded = solve_at_output(model, drive, np.full(2, angle), torque)
+                loaded = solve_at_output(model, [drive], np.full(2, angle), torque)
             except ConvergenceError:
                 continue
             turned = abs(float(np.diff(loaded.pose[:, WHEEL_ANGLE])[0])) * scale

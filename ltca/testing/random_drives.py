@@ -1,4 +1,4 @@
-"""Random but valid drives, to try the analysis on what nobody thought of.
+"""Random but valid drives, to test the analysis on unforeseen combinations.
 
 A drive is a point of the unit cube: each coordinate moves one property between bounds that the others allow, so
 nearly every point is a valid drive. Zeros give the plainest one.
@@ -24,7 +24,7 @@ COORDINATES = 34
 REFERENCE_PRESSURE = 2000.0
 """Hertz pressure of two fully loaded wheel pins at the largest torque, MPa."""
 PROFILED = 0.999
-"""Coordinate above which rollers are crowned or relieved: a table of such a law takes a second, so few are."""
+"""Coordinate above which rollers are crowned or relieved; only few, since a table of such a law takes a second."""
 
 
 def _between(low: float, high: float, part: float) -> float:
@@ -43,13 +43,10 @@ def _often_zero(part: float) -> float:
 def random_drive(point: Sequence[float]) -> tuple[Drive, float] | None:
     """Return a drive and a crank angle in rad for a point of the unit cube, None where no drive fits.
 
-    Parameters
-    ----------
-    point : sequence of float, length `COORDINATES`
-        Each between 0 and 1: tooth number (6 to 120), size, e z_P/R_C (0.2 to 0.95), pin radius, offsets, bearing,
-        holes, clearances, modulus, errors of single parts, torque (four decades), direction and crank angle, crown
-        and relief, then eccentricity, both axes, runout, flank (harmonics, measured points). A third of each
-        deviation's range is zero.
+    The coordinates (`COORDINATES` numbers between 0 and 1) are tooth number (6 to 120), size, e z_P/R_C (0.2 to 0.95), pin
+    radius, offsets, bearing, holes, clearances, modulus, errors of single parts, torque (four decades), direction and crank
+    angle, crown and relief, then eccentricity, both axes, runout, flank (harmonics, measured points). A third of the range
+    of each deviation is zero.
     """
     if len(point) != COORDINATES:
         raise ValueError(f"a random drive needs {COORDINATES} numbers, got {len(point)}")
@@ -156,12 +153,9 @@ def random_drive(point: Sequence[float]) -> tuple[Drive, float] | None:
 
 
 def random_reducer(seed: int) -> tuple[Drive, float] | None:
-    """Return a drive of one to three discs with either member held, and a crank angle in rad; None where none fits.
+    """Return a random drive of one to three discs with either member held, and a crank angle in rad; None where none fits.
 
-    Parameters
-    ----------
-    seed : int
-        Not negative: of the point that `random_drive` takes, and of what each disc has of its own.
+    The seed determines the point of `random_drive` and the values per disc.
     """
     random = np.random.default_rng(seed)
     drawn = random_drive(random.random(COORDINATES).tolist())
@@ -186,7 +180,7 @@ def random_reducer(seed: int) -> tuple[Drive, float] | None:
 
 
 def _own_errors(random: Generator, drive: Drive, size: float) -> OneDisc:
-    """What one disc has of its own: nothing, or some of runout, clearances and errors of its holes and rollers."""
+    """Values of one disc: none, or some of runout, clearances and errors of its holes and rollers."""
     given = random.uniform(size=4) < 0.5
     holes, rollers = drive.number_of_holes, drive.crank_bearing.number_of_rollers
     scattered = _Scattered(random, scatter=size / 3.0)
@@ -201,7 +195,7 @@ def _own_errors(random: Generator, drive: Drive, size: float) -> OneDisc:
 
 
 def _own_eccentric(random: Generator, drive: Drive, size: float) -> OneEccentric:
-    """An eccentric with errors of its own, or none."""
+    """An eccentric with errors, or without."""
     if random.uniform() < 0.5:
         return OneEccentric()
     error, ahead = (size * random.uniform(-1.0, 1.0, 2)).tolist()
@@ -213,7 +207,7 @@ def _tuples(errors: dict[str, list[float]]) -> dict[str, Any]:
 
 
 class _Lengths:
-    """Deviations of one length each: how large by a coordinate of the point, which way by random numbers."""
+    """Deviations of single lengths: their size from a coordinate of the point, their direction from random numbers."""
 
     def __init__(self, point: Iterator[float], random: Generator, *, size: float) -> None:
         self.point, self.random, self.size = point, random, size
@@ -230,7 +224,7 @@ class _Lengths:
 
 
 class _Scattered:
-    """Errors of the parts of a circle; those of each kind are left out a third of the time."""
+    """Errors of the parts of a circle; those of each kind are zero a third of the time."""
 
     def __init__(self, random: Generator, *, scatter: float) -> None:
         self.random, self.scatter = random, scatter
@@ -244,7 +238,7 @@ class _Scattered:
 
 
 def _harmonics(random: Generator, pins: int, size: float, sharpness: float) -> dict[str, list[Any]]:
-    """Up to three waves of the flank, those of high order no rounder than a fifth of the pins are."""
+    """Up to three waves of the flank; those of high order have at most a fifth of the curvature of the pins."""
     orders = random.choice([1, 2, 3, pins - 1, pins, 2 * pins, 3 * pins], size=random.integers(1, 4), replace=False)
     if size == 0.0:
         return {}
@@ -264,7 +258,7 @@ def _measured_points(random: Generator, size: float) -> dict[str, list[float]]:
 
 
 def _roller_profile(part: float, radius: float, length: float) -> dict[str, float]:
-    """Crown, logarithmic profile or end relief of a few drives."""
+    """Crown, logarithmic profile or end relief of a small part of the drives."""
     if part <= PROFILED:
         return {}
     which = 3.0 * (part - PROFILED) / (1.0 - PROFILED)

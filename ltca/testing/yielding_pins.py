@@ -1,9 +1,9 @@
-"""Where loose and bent pins are, and what they store: coordinates of their own, apart from the laws in series of `ltca.laws`.
+"""Places and energies of loose and bent pins by explicit coordinates, independently of the laws in series of `ltca.laws`.
 
-Each pin has, in the plane of each disc, the displacement of its beam, and what is loose on it or in it the displacement
-from there: two complex numbers for every pin and disc. Nothing is eliminated, no common normal is taken for granted: the slope of
-the potential by all these coordinates vanishes where pins, sleeves and slots are in balance. The stiffness of a beam comes
-from a quadrature of bending moments and shear forces (the unit-load theorem), ends held by forces and couples of their own.
+Coordinates are two complex numbers for every pin and disc: the displacement of the beam in the plane of the disc, and that of the
+loose pin or sleeve from there. Nothing is eliminated, and no common normal is assumed: the slope of the potential by all
+these coordinates vanishes where pins, sleeves and slots are in equilibrium. The stiffness of a beam comes from a quadrature of
+bending moments and shear forces (the unit-load theorem), with forces and couples at held ends.
 """
 
 from __future__ import annotations
@@ -19,15 +19,16 @@ from ltca.arrays import ComplexArray, FloatArray
 from ltca.drive.materials import Material
 from ltca.drive.members.pins import PinShaft, PinWheel, WheelPinBeam
 from ltca.drive.parts import Drive
-from ltca.laws.backed import MOST, BackedLaw, SeatLaw
+from ltca.laws.backed import MAX_OVERLAP, BackedLaw
+from ltca.laws.conforming import ConformingLaw
 from ltca.testing.actual_parts import ActualParts
 
 LOADS = np.concatenate([[0.0], np.geomspace(1e-9, 1.0, 300), np.linspace(1.02, 8.0, 60)])
-"""Loads at which the energy of a seat is known, in its largest load."""
+"""Nodes of the energy of a seat, in units of its largest load."""
 
 
 class EnergyLaw(Protocol):
-    """What the check asks of a contact law."""
+    """Contact law with an energy."""
 
     def energy(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
         """∫F dδ, N·mm."""
@@ -40,7 +41,7 @@ class SeatEnergy:
 
     Parameters
     ----------
-    law : SeatLaw
+    law : ConformingLaw
         Approach at a load.
     play : array, shape (pins,)
         mm.
@@ -48,7 +49,7 @@ class SeatEnergy:
         Load about which energies are wanted, N.
     """
 
-    law: SeatLaw
+    law: ConformingLaw
     play: FloatArray
     largest: float
 
@@ -57,7 +58,7 @@ class SeatEnergy:
         return self.law.approach_and_compliance(load, np.broadcast_to(self.play, load.shape))[0]
 
     def at(self, approach: FloatArray) -> FloatArray:
-        """Return the energy at approaches, shape (rows, discs, pins), N·mm: cubics between known loads, slopes and all."""
+        """Return the energy at approaches, shape (rows, discs, pins), N·mm, by cubic Hermite interpolation between nodes."""
         found = np.zeros(approach.shape)
         for play in np.unique(self.play):
             own = self.play == play
@@ -68,7 +69,7 @@ class SeatEnergy:
             left = (1.0 + 2.0 * t) * energy[piece] + t * width * load[piece]
             right = (3.0 - 2.0 * t) * energy[piece + 1] + (t - 1.0) * width * load[piece + 1]
             value = (1.0 - t) ** 2 * left + t**2 * right
-            # Farther than any load that was tried: on along the last slope.
+            # Beyond the last node: along the last slope.
             beyond = energy[-1] + load[-1] * (s - known[-1])
             found[..., own] = np.where(s < known[-1], value, beyond)
         return found
@@ -87,18 +88,15 @@ class SeatEnergy:
 
 @dataclass(frozen=True, kw_only=True)
 class ContactOfSleeves:
-    """Contacts on sleeves, whose laws count less of the sleeve than a whole half-space: approaches by bisection.
+    """Contacts on sleeves, whose laws count the sleeve down to half its wall alone; approaches are found by bisection.
 
-    Parameters
-    ----------
-    law : BackedLaw
-        For the contact's own law and what is taken off its approach.
+    `law` holds the law of the contact and the compliance that is subtracted.
     """
 
     law: BackedLaw
 
     def _off(self, near: FloatArray, effective_radius: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """What is taken off at approaches of a whole half-space, its derivative, and the load."""
+        """Subtracted approach at approaches of a whole half-space, its derivative, and the load."""
         load, stiffness = self.law.contact.load_and_stiffness(near, effective_radius)
         return *self.law.counted_twice(near, load, stiffness), load
 
@@ -108,7 +106,7 @@ class ContactOfSleeves:
         radius = np.broadcast_to(np.asarray(effective_radius, dtype=float), delta.shape)
         total, closed = np.zeros(delta.shape), delta > 0.0
         whole, radius = delta[closed], radius[closed]
-        low, high = whole.copy(), whole / (1.0 - MOST)
+        low, high = whole.copy(), whole / (1.0 - MAX_OVERLAP)
         for _ in range(52):
             middle = 0.5 * (low + high)
             above = middle - self._off(middle, radius)[0] > whole
@@ -163,14 +161,9 @@ class YieldingPins:
         return np.asarray((self.seat.play + self.seat.approach(self.load)) * self.away)
 
     def stored(self, bent: ComplexArray, loose: ComplexArray, tip: ComplexArray) -> FloatArray:
-        """Return the energy of beams and seats, N·mm, shape (rows, pins).
+        """Return the energy of beams and seats, N·mm, shape (rows, pins), at displacements in mm.
 
-        Parameters
-        ----------
-        bent, loose : array of complex, shape (rows, discs, pins)
-            mm.
-        tip : array of complex, shape (rows, pins)
-            mm.
+        `bent` and `loose` have shape (rows, discs, pins), `tip` (rows, pins), all complex.
         """
         rows = max(bent.shape[0], loose.shape[0], tip.shape[0])
         total = np.zeros((rows, self.load.shape[1]))
@@ -185,7 +178,7 @@ class YieldingPins:
 
     @property
     def ways(self) -> ComplexArray:
-        """Unit displacements of beams and loose parts in every direction that they have, shape (ways, 2, discs)."""
+        """Unit displacements of beams and loose parts in all their directions, shape (ways, 2, discs)."""
         discs = self.load.shape[0]
         kinds = [kind for kind, free in enumerate((self.stiffness, self.seat)) if free is not None]
         each = np.zeros((len(kinds), discs, 2, 2, discs), dtype=complex)
@@ -201,7 +194,7 @@ def has_ring(drive: Drive) -> bool:
 
 
 def ring_tips(drive: Drive, pose: FloatArray) -> ComplexArray:
-    """Displacements of the tips of the shaft pins that a ring moves along and turns, mm, shape (poses, z_PS)."""
+    """Displacements of the tips of the shaft pins by the motion of their ring, mm, shape (poses, z_PS)."""
     places = ActualParts(drive, 0.0).shaft_pins[0]
     if not has_ring(drive):
         return np.zeros((pose.shape[0], places.size), dtype=complex)
@@ -210,29 +203,15 @@ def ring_tips(drive: Drive, pose: FloatArray) -> ComplexArray:
 
 
 def contact_alone(law: EnergyLaw) -> EnergyLaw:
-    """Return the law of the contacts themselves, on sleeves down to half their wall.
-
-    Parameters
-    ----------
-    law : EnergyLaw
-        Of contacts, or of those with what is behind them.
-    """
+    """Return the law of the contacts themselves, on sleeves down to half their wall, without seats and beams behind them."""
     if not isinstance(law, BackedLaw):
         return law
     return ContactOfSleeves(law=law) if law.overlap else law.contact
 
 
 def beam_stiffness(drive: Drive, part: PinWheel | PinShaft, material: Material) -> FloatArray | None:
-    """Return the forces on a pin by its mean displacements along the discs, and that of a tip that a ring holds, N/mm.
-
-    Parameters
-    ----------
-    drive : Drive
-        For the places and the thickness of its discs.
-    part : PinWheel or PinShaft
-        What the pins belong to.
-    material : Material
-        Of the pins.
+    """Return the forces on a pin by its mean displacements along the discs, and that of a tip held by a ring, N/mm; None
+    for rigid pins.
     """
     beam = part.beam
     if beam is None:
@@ -268,7 +247,7 @@ def beam_stiffness(drive: Drive, part: PinWheel | PinShaft, material: Material) 
 def _unit_loads(
     at: FloatArray, middles: Sequence[float], width: float, span: float, basis: str
 ) -> tuple[FloatArray, FloatArray]:
-    """Bending moments and shear forces of unit loads spread along the discs, then of what the ends add."""
+    """Bending moments and shear forces of unit loads spread along the discs, followed by those of reactions at the ends."""
     moments, shears = [], []
     for middle in middles:
         low, high = middle - 0.5 * width, middle + 0.5 * width
@@ -291,13 +270,7 @@ def _unit_loads(
 
 
 def crankshaft_deflections(drive: Drive) -> FloatArray:
-    """Return deflections of a crankshaft in the planes of the discs by forces there, by quadrature of moments, mm/N.
-
-    Parameters
-    ----------
-    drive : Drive
-        With `crank.support`.
-    """
+    """Return the deflections of a crankshaft in the planes of the discs by forces there, by quadrature of moments, mm/N."""
     support = drive.crank.support
     assert support is not None
     (start, end), planes = support.positions, np.asarray(drive.disc.disc_planes)

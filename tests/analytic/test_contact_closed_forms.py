@@ -11,12 +11,12 @@ from fem.body.condensation import condense_body
 from fem.body.elasticity import assemble_stiffness, unknowns_of_boundary
 from fem.body.surface import OppositeZone, PressureZone
 from fem.contact.coupling import Pose, integrate_pair
-from fem.contact.hertz import hertz_half_width, hertz_peak_pressure
 from fem.contact.two_bodies import press_together
 from fem.contact.unilateral import ContactProblem, solve_floating_contact
 from fem.mesh.element_size import Refinement
 from fem.mesh.triangulation import mesh_circle
 from fem.shapes import CircleShape
+from ltca.contact.hertz import line_half_width, line_peak_pressure
 from ltca.drive.parts import Material, contact_modulus
 
 STEEL = Material(youngs_modulus=206_000.0, poisson_ratio=0.3)
@@ -55,7 +55,7 @@ def two_cylinders(elements, ratio, first, second, radii=(8.0, 6.5), load=1500.0,
     """Press two pins with rigid cores together; return contact and Hertz' half-width and peak."""
     modulus = contact_modulus(first, second)
     effective = 1.0 / (1.0 / radii[0] + 1.0 / radii[1])
-    width = float(hertz_half_width(load / thickness, effective, modulus))
+    width = float(line_half_width(load / thickness, effective, modulus))
     shapes = [CircleShape(name=f"cylinder_{k}", radius=radius, core_radius=2.0) for k, radius in enumerate(radii)]
     below = mesh_circle(shapes[0], [Refinement(radii[0], 0.0, width / elements, 1.5 * width)])
     above = mesh_circle(shapes[1], [Refinement(-radii[1], 0.0, ratio * width / elements, 1.5 * width)])
@@ -75,7 +75,7 @@ def two_cylinders(elements, ratio, first, second, radii=(8.0, 6.5), load=1500.0,
         zone, condensed[0], opposite, condensed[1],
         pose=Pose(centre=sum(radii) + 0j), radius=radii[1], load=load, direction=1.0, expected_half_width=width,
     )  # fmt: skip
-    return contact, width, float(hertz_peak_pressure(load / thickness, effective, modulus))
+    return contact, width, float(line_peak_pressure(load / thickness, effective, modulus))
 
 
 @pytest.mark.slow
@@ -105,7 +105,7 @@ def test_roller_between_flats(block_of, flat):
     """Approach of points 2 mm deep in two large flats that squeeze a roller (Johnson, Eqs. 5.56, 5.57)."""
     radius, thickness, line_load, depth = 5.0, 11.8, 150.0, 2.0
     nu, modulus = STEEL.poisson_ratio, STEEL.youngs_modulus
-    width = float(hertz_half_width(line_load, radius, contact_modulus(STEEL, STEEL)))
+    width = float(line_half_width(line_load, radius, contact_modulus(STEEL, STEEL)))
     # A block 60 mm wide and deep: its far boundary changes the strain near by about depth/(2·60)·(1/3).
     block = block_of(60.0, 60.0, width / 8.0, zone=2.2 * width, depth=depth)
     shape = CircleShape(name="roller", radius=radius)
@@ -169,7 +169,7 @@ def test_nafems_cylinder_on_block(block_of, flat):
     aluminium = Material(youngs_modulus=70_000.0, poisson_ratio=0.3)
     steel = Material(youngs_modulus=210_000.0, poisson_ratio=0.3)
     radius, load = 50.0, 35_000.0
-    width = float(hertz_half_width(load, radius, contact_modulus(steel, aluminium)))
+    width = float(line_half_width(load, radius, contact_modulus(steel, aluminium)))
     assert width == pytest.approx(6.21, abs=0.01)
     block = block_of(100.0, 200.0, width / 10.0, zone=1.6 * width)
     shape = CircleShape(name="cylinder", radius=radius)

@@ -13,7 +13,7 @@ from ltca.equilibrium.reducer import Reducer
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.first_contact import backlash, first_contact
 from ltca.geometry.pairs import ContactGeometry
-from ltca.geometry.play import rigid_play, rigid_poses
+from ltca.geometry.play import free_play, rigid_poses
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
 from ltca.studies.batch_analysis import BatchSettings, analyse_samples
@@ -198,10 +198,10 @@ def test_vanishing_errors_follow_the_trend_of_each_quantity():
     assert shift[0.1][2] > scatter[0.1][2]
 
 
-def test_rigid_play_without_clearances_is_the_backlash(paper_cases):
+def test_free_play_without_clearances_is_the_backlash(paper_cases):
     geometry = ContactGeometry.of_drive(paper_cases["CS-1"])
     angles = np.linspace(0.0, 6.0, 5)
-    np.testing.assert_allclose(rigid_play(geometry, angles), backlash(geometry, angles, WHEEL_ANGLE), rtol=1e-6)
+    np.testing.assert_allclose(free_play([geometry], angles).play, backlash(geometry, angles, WHEEL_ANGLE), rtol=1e-6)
 
 
 def test_rigid_poses_touch_and_do_not_interfere(paper_cases):
@@ -221,7 +221,7 @@ def test_torque_curve_tends_to_the_play_of_the_clearances(paper_cases, case):
     """The issue asks for 1 %; at 1e-4 of the torque the elastic wind-up is 1e-4 of the play."""
     angles = np.array([0.1, 1.7])
     curve = torque_curve(paper_cases[case], angles, points=12)
-    play = rigid_play(ContactGeometry.of_drive(paper_cases[case]), angles)
+    play = free_play([ContactGeometry.of_drive(paper_cases[case])], angles).play
     smallest = np.argsort(np.abs(curve.torque))[:2]
     branches = np.abs(np.diff(curve.output_angle[:, smallest]))[:, 0]
     np.testing.assert_allclose(branches, play, rtol=1e-3)

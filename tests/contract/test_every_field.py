@@ -19,9 +19,9 @@ from ltca.analysis.loaded_analysis import analyse
 from ltca.compliance.coefficients import load_coefficients
 from ltca.compliance.grids import GridCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
+from ltca.drive.engine_support import refusal
 from ltca.drive.materials import JUDGED_BY
 from ltca.drive.members.temperatures import warm_drive
-from ltca.drive.reference.engine_support import refusal
 from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.reducer import Reducer
@@ -61,9 +61,9 @@ def direct(drive):
     drive = warm_drive(drive)
     singles = single_discs(drive)
     tables = Reducer.of_drive(drive, [HalfSpaceCompliance.of_drive(single) for single in singles])
-    near = solve_at_output(tables, drive, ANGLES[:1], drive.load.torque)
+    near = solve_at_output(tables, [drive], ANGLES[:1], drive.load.torque)
     model = replace(tables, discs=tuple(GridCompliance.of_drive(single, cells=4) for single in singles))
-    found = solve_at_output(model, drive, ANGLES[:1], drive.load.torque, near.pose)
+    found = solve_at_output(model, [drive], ANGLES[:1], drive.load.torque, near.pose)
     pressures = model.pressures(found.response)
     kinds = (pressures.pins, pressures.outer, pressures.inner, pressures.holes)
     return np.concatenate(

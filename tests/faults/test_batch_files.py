@@ -8,18 +8,19 @@ import shutil
 import zipfile
 from dataclasses import replace
 
+import h5py
 import numpy as np
 import pytest
 
 from ltca.commands.program import main
 from ltca.errors import CycloError, DamagedFileError
+from ltca.quantities import SCHEMA_VERSION
 from ltca.reading.drive_file import load_drive
-from ltca.studies.execution.batch_files import PARTS, read_batch
-from ltca.studies.execution.storage import StudyFolder
+from ltca.studies.execution.storage import PARTS, StudyFolder, read_batch
 from ltca.studies.execution.workers import Workers
 from ltca.studies.run_study import run_study
 from ltca.studies.study import run_batch
-from ltca.studies.study_results import read_quantity
+from ltca.studies.study_results import read_failures, read_quantity
 from ltca.studies.tolerance_study import tolerance_study
 
 RAN = []
@@ -236,7 +237,7 @@ def test_results_that_cannot_be_read_are_told_in_a_line(finished, tmp_path):
     """Without a manifest, as in Python, there is no checksum to find it by."""
     folder = StudyFolder(path=shutil.copytree(finished, tmp_path / "out"))
     folder.results.write_bytes(folder.results.read_bytes()[:-2000])
-    for read in (lambda: read_quantity(folder.results, "max_pin_load"), lambda: folder.failures(None)):
+    for read in (lambda: read_quantity(folder.results, "max_pin_load"), lambda: read_failures(folder.results)):
         with pytest.raises(
             DamagedFileError, match=r"results\.nc: cannot be read as the results of a study \(netCDF-4\): [^\n]*--force"
         ):
@@ -274,3 +275,13 @@ def test_a_batch_is_read_as_it_was_written(study, interrupted, solved):
         np.testing.assert_array_equal(found.values, result.values)
         np.testing.assert_array_equal(found.factors, result.factors)
         assert found.messages == result.messages
+
+
+def test_results_of_a_later_schema_are_refused(study, interrupted):
+    """The dataset of a study says its schema version, as that of a run does; a later one may mean other things."""
+    interrupted.finish(study)
+    with h5py.File(interrupted.results, "r+") as file:
+        assert file.attrs["schema_version"] == SCHEMA_VERSION
+        file.attrs["schema_version"] = SCHEMA_VERSION + 1
+    with pytest.raises(DamagedFileError, match=f"schema version {SCHEMA_VERSION + 1}.*up to {SCHEMA_VERSION}: update"):
+        read_quantity(interrupted.results, "max_pin_load")

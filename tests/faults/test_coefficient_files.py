@@ -11,11 +11,11 @@ from ltca.commands.program import main
 from ltca.compliance import coefficient_files
 from ltca.compliance.coefficient_files import cached_file, find_case_coefficients, find_coefficients
 from ltca.compliance.coefficients import load_coefficients
+from ltca.contact.round_bodies import held_ring_approach
 from ltca.errors import DamagedFileError
 from ltca.output.netcdf import write_netcdf
 from ltca.reading.coefficient_file import CHECKSUM, checksum_of, read_coefficients, write_coefficients
 from ltca.reading.coefficient_laws import near_field_unit
-from ltca.reading.held_ring import held_ring_approach
 from ltca.testing.closed_form_bodies import closed_form_coefficients
 
 
@@ -182,9 +182,9 @@ def of_rings(drive):
             "roller against the compressed cylinder",
         ),
         "core": (lambda dataset: dataset.assign_attrs(core_radius=20.0), "pin against the held ring is nan"),
-        "stations": (labelled("station", lambda count: np.arange(count)[::-1]), "station must count its entries"),
+        "stations": (labelled("station", lambda count: np.arange(count)[::-1]), "station must number its entries"),
         "ends": (labelled("roller_end", lambda count: ["outer", "inner"]), "or inner, outer"),
-        "loaded": (labelled("station_loaded", lambda count: ["a"] * count), "station_loaded must count its entries"),
+        "loaded": (labelled("station_loaded", lambda count: ["a"] * count), "station_loaded must number its entries"),
     }.values(),
 )
 def test_half_widths_and_labels_are_checked(change, told, drive, tmp_path):

@@ -74,7 +74,7 @@ def test_ten_thousand_bad_cases_are_counted(override, counted):
     told = str(caught.value)
     assert counted in told
     assert len(told.splitlines()) <= 11
-    assert ("9700 cases not looked at" in told) == ("eccentricity" in override)
+    assert ("9700 cases not checked" in told) == ("eccentricity" in override)
 
 
 def test_an_unforeseen_exception_is_one_line_and_debug_shows_the_traceback(monkeypatch, capsys):

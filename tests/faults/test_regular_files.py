@@ -20,8 +20,8 @@ from ltca.page.compared import read_compared
 from ltca.reading.coefficient_file import read_coefficients
 from ltca.reading.measured.points import read_points
 from ltca.reading.toml_text import read_text
-from ltca.studies.execution.batch_files import read_batch
-from ltca.studies.execution.storage import StudyFolder, opened_results
+from ltca.studies.execution.storage import StudyFolder, read_batch
+from ltca.studies.study_results import opened_results
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names")
 

@@ -53,14 +53,14 @@ def unbalanced_work():
 def work_left_over(drive, angle):
     """T_C + T_W (1/u + w′) − U′ + Σ ∂U/∂ρ ρ′ by the torque; T_C of all cranks with their cages, U with the supports' energy."""
     model = HalfSpace().prepare(drive).model
-    centre = solve_at_output(model, drive, angle, drive.load.torque)
+    centre = solve_at_output(model, [drive], angle, drive.load.torque)
     crank = crank_moments(model, angle, centre.pose, centre.response).sum(axis=1)
     slope = stored_energy(model, centre.response, centre.pose)[1]
 
     def left(step):
         ends = []
         for side in (1.0, -1.0):
-            found = solve_at_output(model, drive, angle + side * step, drive.load.torque, centre.pose)
+            found = solve_at_output(model, [drive], angle + side * step, drive.load.torque, centre.pose)
             energy = stored_energy(model, found.response, found.pose)[0]
             ends.append((energy, found.pose[:, WHEEL_ANGLE], found.response.flank.effective_radius))
         (up, wheel_up, radius_up), (down, wheel_down, radius_down) = ends
@@ -92,7 +92,7 @@ def tangent_and_slope():
 def scaled_tangent_and_slope(drive, angle, step=1e-7):
     """Tangent at one balanced position and the differences of the force over ±step mm, both by the lever arms."""
     model = HalfSpace().prepare(drive).model
-    balanced = solve_at_output(model, drive, angle, drive.load.torque)
+    balanced = solve_at_output(model, [drive], angle, drive.load.torque)
     parts = zip(model.discs, balanced.response.parts, strict=True)
     held = tuple(replace(m, pin_law=HeldRadius(m.pin_law, part.flank.effective_radius)) for m, part in parts)
     several = isinstance(model, Reducer)

@@ -233,7 +233,7 @@ def test_tangent_of_bodies_by_finite_elements(small, derived, name, engine):
 
 def check_tangent(drive, engine):
     model = engine.prepare(drive).model
-    balanced = solve_at_output(model, drive, ANGLES[:1], drive.load.torque)
+    balanced = solve_at_output(model, [drive], ANGLES[:1], drive.load.torque)
     lever, step = lever_arms(model), 1e-6
     scaled = balanced.response.tangent[0] / np.outer(lever, lever)
     np.testing.assert_allclose(scaled, scaled.T, rtol=0.0, atol=1e-9 * np.abs(scaled).max())

@@ -110,12 +110,12 @@ def test_virtual_work_at_every_position(name, stored):
     drive = of_kind(name)
     model = HalfSpace().prepare(drive).model
     torque = drive.load.torque
-    centre = solve_at_output(model, drive, ANGLES, torque)
+    centre = solve_at_output(model, [drive], ANGLES, torque)
     crank = crank_moments(model, ANGLES, centre.pose, centre.response).sum(axis=1)
     slope = stored(model, centre.response, centre.pose)[1]
 
     def left(step):
-        ends = [solve_at_output(model, drive, ANGLES + side * step, torque, centre.pose) for side in (1.0, -1.0)]
+        ends = [solve_at_output(model, [drive], ANGLES + side * step, torque, centre.pose) for side in (1.0, -1.0)]
         (up, down), (above, below) = ends, [stored(model, end.response, end.pose)[0] for end in ends]
         rate = (up.pose - down.pose) / (2.0 * step)
         radii = (up.response.flank.effective_radius - down.response.flank.effective_radius) / (2.0 * step)
@@ -133,7 +133,7 @@ def test_energy_in_less_energy_out_is_what_is_lost(name):
     """In the mean over a turn, which is no period of rollers and cage: sampled means hold to 2e-4 (issue)."""
     drive = of_kind(name)
     model, angle = HalfSpace().prepare(drive).model, position_angles(97)
-    found = losses(model, drive, solve_at_output(model, drive, angle, drive.load.torque), drive.load.torque)
+    found = losses(model, drive, solve_at_output(model, [drive], angle, drive.load.torque), drive.load.torque)
     left = np.mean(found.at_input + found.at_output - found.total)
     assert abs(left) < 2e-4 * np.mean(np.abs(found.at_output))
     assert 0.7 < found.mean_efficiency < 0.95
@@ -153,7 +153,7 @@ def test_no_coefficient_is_no_friction(paper):
 def test_first_order_in_the_coefficient_is_the_perturbation(paper):
     """(q(μ) − q(0))/μ → −K⁻¹ Σ F σ s, with the tangent and loads of the drive without friction."""
     smooth = HalfSpace().prepare(paper).model
-    plain = solve_at_output(smooth, paper, ANGLES, paper.load.torque)
+    plain = solve_at_output(smooth, [paper], ANGLES, paper.load.torque)
     slip = Slip.of_disc(smooth.geometries[0], ANGLES, plain.pose, plain.response)
     force = np.concatenate((plain.response.pin_load, plain.response.hole_load), axis=1) * np.sign(slip.by_crank)
     rubbed = np.einsum("bp,bpj->bj", force, slip.by_pose)
@@ -162,9 +162,9 @@ def test_first_order_in_the_coefficient_is_the_perturbation(paper):
     def rate(size):
         drive = replace(paper, friction=Friction(pin=size, hole=size))
         model = HalfSpace().prepare(drive).model
-        found = solve_at_output(model, drive, ANGLES, drive.load.torque)
+        found = solve_at_output(model, [drive], ANGLES, drive.load.torque)
         back = replace(model, friction=model.friction.reversed())
-        other = solve_at_output(back, drive, ANGLES, drive.load.torque)
+        other = solve_at_output(back, [drive], ANGLES, drive.load.torque)
         return (found.pose - other.pose) / (2.0 * size)
 
     # Both motions together leave the third order; poses of 1e-3 are balanced to 1e-9 of the load, by μ: 1e-5.
@@ -177,10 +177,10 @@ def test_loss_at_the_pins_is_that_about_the_pitch_point(paper):
     drive = replace(paper, friction=Friction(pin=size))
     angle = position_angles(104)
     model, torque = HalfSpace().prepare(drive).model, paper.load.torque
-    plain = solve_at_output(HalfSpace().prepare(paper).model, paper, angle, torque)
-    found = solve_at_output(model, drive, angle, torque)
+    plain = solve_at_output(HalfSpace().prepare(paper).model, [paper], angle, torque)
+    found = solve_at_output(model, [drive], angle, torque)
     back = replace(model, friction=model.friction.reversed())
-    other = solve_at_output(back, drive, angle, torque)
+    other = solve_at_output(back, [drive], angle, torque)
     crank = [crank_moments(model if at is found else back, angle, at.pose, at.response)[:, 0] for at in (found, other)]
     place, flank, u = model.discs[0].geometry.placement, plain.response.flank, paper.reduction_ratio
     outward = flank.gradient[..., 0] + 1j * flank.gradient[..., 1]

@@ -80,7 +80,7 @@ def test_virtual_work_at_every_position(joint, discs, held, stored):
     drive = with_fields(drive, {"disc.of.0.runout.amount": 0.003, "clearance.bearing": 0.02})
     model = HalfSpace().prepare(drive).model
     angle = 2.0 * np.pi * np.arange(5) / 5.0 + 0.05
-    centre = solve_at_output(model, drive, angle, drive.load.torque)
+    centre = solve_at_output(model, [drive], angle, drive.load.torque)
     crank = crank_moments(model, angle, centre.pose, centre.response).sum(axis=1)
     slope = stored(model, centre.response, centre.pose)[1]
 
@@ -88,7 +88,7 @@ def test_virtual_work_at_every_position(joint, discs, held, stored):
         ends = []
         for side in (1.0, -1.0):
             at = angle + side * step
-            found = solve_at_output(model, drive, at, drive.load.torque, centre.pose)
+            found = solve_at_output(model, [drive], at, drive.load.torque, centre.pose)
             ends.append(
                 (stored(model, found.response, found.pose)[0], found.pose[:, WHEEL_ANGLE], found.response.flank)
             )

@@ -106,7 +106,7 @@ def test_a_free_pin_by_its_own_two_unknowns(joint, name):
     """Pin (or sleeve) between flank and seat, both contacts and its place found by brute force: load and approach of the pair."""
     drive = single_discs(kind(joint, name))[0]
     model = HalfSpace().prepare(drive).model
-    found = solve_at_output(model, drive, ANGLES[:1], drive.load.torque)
+    found = solve_at_output(model, [drive], ANGLES[:1], drive.load.torque)
     (disc,), pose, part = model.discs, found.pose[0], found.response
     profile, wheel, place = FlankProfile.of_drive(drive), drive.pin_wheel, disc.geometry.placement
     seat, contact = wheel_pin_seat(drive), LineContactLaw(drive.disc.thickness, 206e3 / (2.0 * (1.0 - 0.09)))
@@ -181,7 +181,7 @@ def test_pins_that_discs_share_by_a_dense_reference(joint, name):
     """Every loaded pin alone, all its discs' forces and its place at each disc as unknowns, exact gaps of the moved pin."""
     drive = unmodified(kind(joint, name))
     model = HalfSpace().prepare(drive).model
-    found = solve_at_output(model, drive, ANGLES[:1], drive.load.torque)
+    found = solve_at_output(model, [drive], ANGLES[:1], drive.load.torque)
     parts, singles = found.response.parts, single_discs(drive)
     on_wheel = drive.pin_wheel.beam is not None
     beam = wheel_pin_beam(drive) if on_wheel else shaft_pin_beam(drive)
@@ -262,7 +262,7 @@ def test_bodies_that_feel_nothing_are_half_spaces(joint, name):
     model = Reducer(
         discs=tuple(discs), supports=support_stiffness(drive, discs[0].geometry), pins=SharedPins.of_drive(drive)
     )
-    found = solve_at_output(model, drive, ANGLES[:2], drive.load.torque)
+    found = solve_at_output(model, [drive], ANGLES[:2], drive.load.torque)
     expected = analyse(drive, ANGLES[:2]).full
     np.testing.assert_allclose(found.pose[:, WHEEL_ANGLE], expected.pose[:, WHEEL_ANGLE], rtol=0.0, atol=1e-11)
     np.testing.assert_allclose(found.response.pin_load, expected.response.pin_load, rtol=0.0, atol=LOAD)

@@ -28,7 +28,7 @@ def answer(seed, reverse=False):
         other = {"input": "output", "output": "input"}[drive.load.driven_by]
         drive = replace(drive, load=replace(drive.load, driven_by=other))
         model = replace(model, friction=model.friction.reversed())
-    return drive, model, solve_at_output(model, drive, np.array([angle]), drive.load.torque)
+    return drive, model, solve_at_output(model, [drive], np.array([angle]), drive.load.torque)
 
 
 def confirm(seed, reverse=False, told=True):
@@ -111,7 +111,7 @@ def test_a_disc_that_friction_does_not_let_rest_carries_nothing():
     friction = replace(drive.friction, pin=0.15, hole=0.15, roller=0.0015)
     drive = replace(drive, friction=friction, load=replace(drive.load, driven_by="output"))
     model, torque = HalfSpace().prepare(drive).model, drive.load.torque
-    found = solve_at_output(model, drive, np.array([angle + 10.0 * np.pi / 7.0]), torque)
+    found = solve_at_output(model, [drive], np.array([angle + 10.0 * np.pi / 7.0]), torque)
     assert find_imbalance(drive, model, found, torque=torque) == []
     first, second = (part.pin_load.sum() for part in found.response.parts)
     assert first < 1e-3 * second
@@ -126,14 +126,14 @@ def test_a_drive_that_jams_says_so():
     strengths = np.array([0.0, 0.25, 0.5, 0.75])
     for strength in strengths:
         part = replace(model, friction=model.friction.scaled(strength))
-        loads.append(solve_at_output(part, drive, np.array([angle]), torque).response.pin_load.sum())
+        loads.append(solve_at_output(part, [drive], np.array([angle]), torque).response.pin_load.sum())
     left = 1.0 / np.array(loads)
     # What is left of a unit load's moment falls to nothing, in a line but for the directions that loads turn to.
     slope, none = np.polyfit(strengths, left, 1)
     np.testing.assert_allclose(none + slope * strengths, left, rtol=0.0, atol=0.03 * left[0])
     assert 0.75 < -none / slope < 0.9
     with pytest.raises(ConvergenceError, match="the drive jams") as caught:
-        solve_at_output(model, drive, np.array([angle]), torque)
+        solve_at_output(model, [drive], np.array([angle]), torque)
     least, most = (
         float(part) for part in re.search(r"friction.pin = (\S+) to (\S+) of 0.5", str(caught.value)).groups()
     )
@@ -151,7 +151,7 @@ def test_a_drive_that_jams_is_told_at_which_coefficient():
 
     def at(pin):
         drive = replace(shipped, friction=Friction(pin=pin))
-        return solve_at_output(HalfSpace().prepare(drive).model, drive, angle, torque)
+        return solve_at_output(HalfSpace().prepare(drive).model, [drive], angle, torque)
 
     with pytest.raises(ConvergenceError, match="the drive jams between") as caught:
         at(0.6)
@@ -203,7 +203,7 @@ def rebalanced(rubbing, **changes):
     drive, model, found = rubbing
     other = replace(model, friction=replace(model.friction, **changes))
     torque = drive.load.torque
-    return find_imbalance(drive, other, solve_at_output(other, drive, found.crank_angle, torque), torque=torque)
+    return find_imbalance(drive, other, solve_at_output(other, [drive], found.crank_angle, torque), torque=torque)
 
 
 def test_the_check_sees_the_coefficient_of_another_joint(rubbing):
@@ -219,7 +219,7 @@ def test_the_check_sees_the_other_motion(rubbing):
 def test_the_check_sees_a_pose_that_friction_does_not_hold(rubbing):
     """Told forces that are right do not help where they do not balance."""
     drive, model, found = rubbing
-    smooth = solve_at_output(replace(model, friction=None), drive, found.crank_angle, drive.load.torque)
+    smooth = solve_at_output(replace(model, friction=None), [drive], found.crank_angle, drive.load.torque)
     own = Reducer.respond(model, smooth.crank_angle, smooth.pose)
     assert any("slope" in problem for problem in find_imbalance(drive, model, replace(smooth, response=own)))
 
@@ -233,5 +233,5 @@ def test_the_check_sees_bearings_that_rub_not(rubbing, name):
     friction = type(model.friction).of_drive(drive)
     model = replace(model, friction=friction)
     torque = drive.load.torque
-    assert find_imbalance(drive, model, solve_at_output(model, drive, found.crank_angle, torque), torque=torque) == []
+    assert find_imbalance(drive, model, solve_at_output(model, [drive], found.crank_angle, torque), torque=torque) == []
     assert rebalanced((drive, model, found), **{name: 0.0})

@@ -9,7 +9,7 @@ import pytest
 
 from ltca.analysis.engines import HalfSpace
 from ltca.analysis.loaded_analysis import analyse
-from ltca.compliance import half_space
+from ltca.compliance import uncoupled
 from ltca.compliance.rollers import RollerState
 from ltca.drive.parts import CrankSupport
 from ltca.drive.single_discs import equal_parts
@@ -69,7 +69,7 @@ KINDS = ["rigid", "cranks", "central crank yields", "holes", *SLOWLY]
 def test_every_kind_is_balanced_by_energies_alone(rv, name):
     drive = kind(rv, name)
     model = HalfSpace().prepare(drive).model
-    found = solve_at_output(model, drive, ANGLES, drive.load.torque)
+    found = solve_at_output(model, [drive], ANGLES, drive.load.torque)
     for position in range(ANGLES.size):
         assert find_imbalance(drive, model, found, position, torque=drive.load.torque) == []
 
@@ -100,11 +100,11 @@ class LinearBearings:
 def test_linear_bearings_share_resultant_and_moment(rv, cranks, monkeypatch):
     """Resultant/n on each crank and moment/(n r) at a right angle to its turned arm; radially K r (1 − cos of the rotation)."""
     stiffness = 4e5
-    monkeypatch.setattr(half_space, "balance_rollers", LinearBearings(stiffness))
+    monkeypatch.setattr(uncoupled, "balance_rollers", LinearBearings(stiffness))
     drive = kind(rv, "shaft held")
     drive = replace(drive, crank=replace(drive.crank, support=None, number=cranks))
     model = HalfSpace().prepare(drive).model
-    found = solve_at_output(model, drive, ANGLES, drive.load.torque)
+    found = solve_at_output(model, [drive], ANGLES, drive.load.torque)
     for number, part in enumerate(found.response.parts):
         on_disc = -np.einsum("bi,bij->bj", part.pin_load, part.flank.gradient)
         resultant, moment = on_disc[:, X] + 1j * on_disc[:, Y], on_disc[:, DISC_ROTATION]

@@ -12,7 +12,7 @@ from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.results import build_dataset
 from ltca.analysis.summary import summarise
 from ltca.analysis.transmission_error_orders import Order, Spectrum
-from ltca.commands.curves import _speed_words
+from ltca.commands.actions.curves import _speed_words
 from ltca.commands.program import main
 from ltca.commands.show import _loads
 from ltca.drive.units.quantities import ARCSEC

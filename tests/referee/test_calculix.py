@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from fem.drive.solution import solve_drive
+from fem.options import SolutionOptions
 from fem.referee.calculix import ask_calculix, load_differences
 from fem.referee.calculix_deck import write_deck
 from ltca.errors import CycloError
@@ -37,7 +38,7 @@ def test_full_drive(fields, angle, scale, tmp_path):
     CS-6: offsets, play in the bearing and the holes, four pins loaded, a little fewer iterations than CS-1 takes. With seven
     times the size, in half of the time that four times take, loads are 0.4 % apart at worst, the wheel 0.12″.
     """
-    solution = solve_drive(with_fields(load_drive("paper").cases["CS-6"], fields), angle, scale=scale)
+    solution = solve_drive(with_fields(load_drive("paper").cases["CS-6"], fields), angle, SolutionOptions(size=scale))
     answer = ask_calculix(solution, write_deck(solution, tmp_path / "drive.inp"), "ccx")
     for name, difference in load_differences(solution, answer).items():
         assert abs(difference) < 5e-3, name

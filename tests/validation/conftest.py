@@ -9,13 +9,15 @@ import numpy as np
 import pytest
 
 import validation.levels.flexible_disc
+from fem.options import SolutionOptions
+from ltca.analysis.loaded_analysis import analyse
 from ltca.compliance.coefficients import without_coupling
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import parse_drive, shipped_drive
 from validation.compare.compared_positions import compare_case
 from validation.compare.disc_stresses import DiscStressAnswer
-from validation.compare.finite_element_positions import FullPosition, Settings
-from validation.compare.model_positions import answer_positions
+from validation.compare.finite_element_positions import FullPosition
+from validation.compare.model_positions import answers_of
 from validation.levels.flexible_disc import flexibility_rows, full_solution_rows, study_case
 from validation.levels.positions import compare_position_rows
 from validation.rows import Row
@@ -59,7 +61,7 @@ def make_study(paper_cases):
     drives = {name: paper_cases[name] for name in ("CS-1", "CS-6")}
     compared, flexibility, coefficients, rows = {}, {}, {}, []
     for case, drive in drives.items():
-        answers = answer_positions(drive, np.array(ANGLES), "half-space")
+        answers = answers_of(analyse(drive, np.array(ANGLES)))
         positions = [
             FullPosition(
                 case=case,
@@ -92,7 +94,7 @@ def make_study(paper_cases):
                 reason="made by hand",
             )
         )
-    plan = Plan(name="paper", drives=drives, crank_angles=ANGLES, level="quick", settings=Settings())
+    plan = Plan(name="paper", drives=drives, crank_angles=ANGLES, level="quick", options=SolutionOptions())
     return Study(plan=plan, rows=tuple(rows), compared=compared, flexibility=flexibility, coefficients=coefficients)
 
 
@@ -115,14 +117,16 @@ def crank_study(crank_drive):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(validation.levels.flexible_disc, "TURN_POSITIONS", 2)
         patch.setattr(validation.levels.flexible_disc, "TORQUES", (1.0,))
-        (answer,) = answer_positions(crank_drive, np.array(angles), "half-space")
+        (answer,) = answers_of(analyse(crank_drive, np.array(angles)))
         full = FullPosition(
             case="nominal", crank_angle=angles[0], answer=answer, stress=NO_STRESS, residual=0.0, unknowns=1000,
             seconds=1.0, pictures=(),
         )  # fmt: skip
         coefficients = replace(without_coupling(crank_drive), pin=1e-7)
         compared = compare_case(crank_drive, [full], coefficients)
-        plan = Plan(name="rv", drives={"nominal": crank_drive}, crank_angles=angles, level="quick", settings=Settings())
+        plan = Plan(
+            name="rv", drives={"nominal": crank_drive}, crank_angles=angles, level="quick", options=SolutionOptions()
+        )
         return Study(
             plan=plan, rows=tuple(compare_position_rows(compared[0])), compared={"nominal": compared},
             flexibility={"nominal": study_case(crank_drive, coefficients)}, coefficients={"nominal": coefficients},

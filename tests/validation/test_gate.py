@@ -12,10 +12,11 @@ from pathlib import Path
 
 import pytest
 
+from fem.options import SolutionOptions
 from ltca.reading.drive_file import load_drive
 from validation.compare.compared_positions import compare_case
 from validation.compare.derived_coefficients import coefficients_of
-from validation.compare.finite_element_positions import Settings, solve_position
+from validation.compare.finite_element_positions import solve_positions
 from validation.levels.coefficients import check_file
 from validation.levels.disc_stresses import disc_stress_rows
 from validation.levels.positions import compare_position_rows
@@ -40,7 +41,9 @@ def drive():
 @pytest.fixture(scope="module")
 def full(drive, tmp_path_factory):
     """Full FE at the default size."""
-    (full,) = solve_position(drive, "nominal", CRANK_ANGLE, tmp_path_factory.mktemp("positions"), Settings())
+    (full,) = next(
+        solve_positions(drive, "nominal", [CRANK_ANGLE], tmp_path_factory.mktemp("positions"), SolutionOptions())
+    )
     return full
 
 

@@ -11,9 +11,10 @@ from __future__ import annotations
 
 import pytest
 
+from fem.options import SolutionOptions
 from validation.compare.compared_positions import compare_case
 from validation.compare.derived_coefficients import coefficients_of
-from validation.compare.finite_element_positions import Settings, solve_position
+from validation.compare.finite_element_positions import solve_positions
 
 pytestmark = [pytest.mark.slow, pytest.mark.nightly]
 
@@ -30,7 +31,7 @@ def compared(paper_cases, tmp_path_factory):
     _, coefficients = coefficients_of(drive, "CS-1", folder / "coefficients", size=1.0)
     found = {}
     for steps in (0, 3, 10):
-        full = solve_position(drive, "CS-1", steps * STEP, folder / "positions", Settings())
+        full = next(solve_positions(drive, "CS-1", [steps * STEP], folder / "positions", SolutionOptions()))
         (position,) = compare_case(drive, full, coefficients)
         found[steps] = position.differences
     return found

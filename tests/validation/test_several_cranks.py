@@ -10,6 +10,7 @@ import pytest
 
 from fem.body.wall_stress import WallStress
 from fem.drive.disc_stress import DiscStress
+from fem.options import SolutionOptions
 from ltca.analysis.engines import PlaneStrain
 from ltca.analysis.loaded_analysis import analyse
 from ltca.compliance.coefficients import without_coupling
@@ -29,7 +30,7 @@ from validation.compare.disc_stresses import (
     stress_content,
     stresses_of,
 )
-from validation.compare.finite_element_positions import Settings, answer_of_summary
+from validation.compare.finite_element_positions import answer_of_summary
 from validation.levels.closed_forms import _power
 from validation.levels.disc_stresses import disc_stress_rows
 from validation.levels.flexible_disc import (
@@ -273,16 +274,16 @@ def test_the_page_draws_every_bore_and_race(compared, drive):
 
 def test_what_a_disc_without_shaft_pins_changes_leaves_them_out(crank_study, tmp_path):
     effect, compared = crank_study.flexibility["nominal"], crank_study.compared["nominal"]
-    assert np.isnan(effect.turn["fe"].shaft_load)
-    assert set(effect.by_torque[1.0]) == {"pin_load", "roller_load"}
+    assert np.isnan(effect.turn["fe"].max_pin_shaft_load)
+    assert set(effect.by_torque[1.0]) == {"max_pin_load", "max_roller_load"}
     rows = flexibility_rows("nominal", effect)
     assert len(rows) == 2 * 7 + 2
     assert not any("shaft" in row.quantity for row in rows)
     assert set(full_solution_changes(compared)) == {"pin_load", "roller_load"}
-    assert not any("pin-shaft" in sentence for sentence in judge_half_space({"nominal": effect}))
-    assert turn_content(effect)["fe"]["shaft_load"] is None
+    assert not any("shaft pin" in sentence for sentence in judge_half_space({"nominal": effect}))
+    assert turn_content(effect)["fe"]["max_pin_shaft_load"] is None
     page = write_report(crank_study, tmp_path / "report.html").read_text(encoding="utf-8")
-    assert "largest pin-shaft load" not in page
+    assert "largest load of a shaft pin" not in page
     assert "bearing of crank 2" in page
 
 
@@ -301,7 +302,7 @@ def test_models_agree_without_shaft_pins(drive):
 
 def test_cranks_are_planned_and_supports_refused(drive):
     file = load_drive("paper")
-    plan = plan_study(replace(file, cases={"nominal": drive}), None, [ANGLE], "quick", Settings())
+    plan = plan_study(replace(file, cases={"nominal": drive}), None, [ANGLE], "quick", SolutionOptions())
     assert plan.drives == {"nominal": drive}
     support = parse_drive(shipped_drive("rv"), "rv").cases["nominal"].crank.support
     for refused, field in (
@@ -309,4 +310,4 @@ def test_cranks_are_planned_and_supports_refused(drive):
         (replace(drive, pin_wheel=replace(drive.pin_wheel, support_stiffness=5e5)), r"pin_wheel\.support_stiffness"),
     ):
         with pytest.raises(DriveError, match=field):
-            plan_study(replace(file, cases={"nominal": refused}), None, None, "quick", Settings())
+            plan_study(replace(file, cases={"nominal": refused}), None, None, "quick", SolutionOptions())

@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 
 import validation.compare.derived_coefficients as derived
+from fem.options import SolutionOptions
 from ltca.analysis.loaded_analysis import analyse
 from ltca.compliance.coefficients import without_coupling
 from ltca.drive.deviations import DiscClearance, OneDisc, Runout
 from ltca.drive.single_discs import single_discs
 from ltca.reading.changes import with_fields
 from validation.compare.compared_positions import compare_case
-from validation.compare.finite_element_positions import FullPosition, Settings, answer_of_summary, disc_case
+from validation.compare.finite_element_positions import FullPosition, answer_of_summary, disc_case
 from validation.compare.model_positions import answers_of
 from validation.levels.closed_forms import _power
 from validation.levels.flexible_disc import FlexibilityEffect, turn_figures
@@ -97,10 +98,10 @@ def test_parts_stand_on_the_eccentric_of_their_disc(compared, drive):
 def test_report_of_several_discs(compared, drive, coefficients, tmp_path):
     analysis = analyse(drive, np.array(ANGLES))
     figures = turn_figures(analysis)
-    assert figures.pin_load == max(own.full.response.pin_load.max() for own in analysis.discs)
+    assert figures.max_pin_load == max(own.full.response.pin_load.max() for own in analysis.discs)
     effect = FlexibilityEffect(turn=dict.fromkeys(("half-space", "fe", "hybrid"), figures), by_torque={})
     rows = tuple(row for item in compared for row in compare_position_rows(item))
-    plan = Plan(name="two", drives={"CS-3": drive}, crank_angles=ANGLES, level="quick", settings=Settings())
+    plan = Plan(name="two", drives={"CS-3": drive}, crank_angles=ANGLES, level="quick", options=SolutionOptions())
     study = Study(
         plan=plan, rows=rows, compared={"CS-3": compared}, flexibility={"CS-3": effect},
         coefficients={"CS-3": coefficients},

@@ -1,4 +1,4 @@
-"""``cyclo validate``: how far each simplification is from the full solution, as a report with pass and fail."""
+"""``cyclo validate``: comparison of each simplification with the full solution, as a report with limits."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ltca.errors import CycloError
 from ltca.reading.arguments import (
     add_case_argument,
     add_drive_argument,
@@ -62,22 +63,21 @@ def execute(arguments: argparse.Namespace) -> int:
     from ltca.output.run_folder import claimed_folder, require_folder
     from ltca.reading.drive_file import load_drive
 
-    # Before finite elements are imported: what is wrong is told at once.
+    # Before finite elements are imported: wrong input is reported at once.
     file = load_drive(arguments.drive)
     file.select(arguments.case)
     out: Path = arguments.out or default_folder(file.name, "validate")
     require_folder(out)
     from fem.errors import MemoryLimitError
+    from fem.options import SolutionOptions
     from fem.reducer.solution import require_solution_memory
-    from ltca.errors import CycloError
-    from validation.compare.finite_element_positions import Settings
     from validation.study import plan_study
 
     angles = list(arguments.angles or [])
-    plan = plan_study(file, arguments.case, angles, arguments.level, Settings(size=arguments.size))
+    plan = plan_study(file, arguments.case, angles, arguments.level, SolutionOptions(size=arguments.size))
     try:
         for drive in plan.drives.values():
-            require_solution_memory(drive, plan.crank_angles[0], arguments.size)
+            require_solution_memory(drive, plan.crank_angles[0], plan.options)
     except MemoryLimitError as error:
         raise CycloError(f"--size {arguments.size:g}: {error}") from error
     with claimed_folder(out, "validate", writes=("report.html", "validation.json", "rows.csv"), beside=("kept",)):
@@ -150,7 +150,7 @@ def _print_costs(study: Study) -> None:
 
 
 class _Progress:
-    """Which step of how many, what it is, and its details."""
+    """Prints the number and title of a step and its details."""
 
     def __init__(self, plan: Plan, show: Callable[[str], None]) -> None:
         self.total, self.done, self.title, self.show = plan.steps, 0, "", show

@@ -36,7 +36,7 @@ class ComparedPosition:
         By kind, how far each contact on the disc lies from the nearest station of the coefficients, in spacings
         (0 on a station, 0.5 midway).
     stress : dict of str to DiscStressDifference
-        By compliance model that knows the stress in the disc, model less full solution.
+        By compliance model that gives the stress in the disc, model less full solution.
     """
 
     drive: Drive
@@ -50,22 +50,7 @@ class ComparedPosition:
 def compare_case(
     drive: Drive, positions: Sequence[FullPosition], coefficients: DiscCoefficients
 ) -> list[ComparedPosition]:
-    """Answer the positions of one case with all models and compare disc by disc.
-
-    Parameters
-    ----------
-    drive : Drive
-        In the case.
-    positions : sequence of FullPosition
-        Full solutions, of several discs each by itself.
-    coefficients : InfluenceCoefficients or tuple of them
-        Of the disc, or of each of several.
-
-    Returns
-    -------
-    list of ComparedPosition
-        In the order of `positions`.
-    """
+    """Answer the positions of one case with all models and compare them disc by disc, in the order of `positions`."""
     angles = list(dict.fromkeys(position.crank_angle for position in positions))
     analyses = {model: analyse(drive, np.array(angles), engine=engine_of(model, coefficients)) for model in MODELS}
     of_discs = coefficients if isinstance(coefficients, tuple) else (coefficients,)
@@ -90,7 +75,7 @@ class _AnsweredDisc:
         return cls(
             drive=analyses["fe"].drive,
             answers={model: answers_of(analysis) for model, analysis in analyses.items()},
-            # A part that stands turned in this disc has its stations turned.
+            # The stations of a part that is turned in this disc are turned with it.
             distances=_station_distances(analyses["fe"], coefficients.placed_in(analyses["fe"].drive)),
             stresses={model: found for model, analysis in analyses.items() if (found := stresses_of(analysis))},
         )

@@ -1,7 +1,7 @@
-"""One position of a drive as any model answers it, and how two answers differ: all metrics are defined here.
+"""One position of a drive as any model answers it, and how two answers differ: definitions of all metrics.
 
-- A **load difference** is relative to the largest load of its kind in the reference: a contact that carries next to
-  nothing cannot make a large figure, and the sum over a kind stays a force.
+- A **load difference** is relative to the largest load of its kind in the reference: a contact that carries almost
+  nothing cannot give a large figure, and the sum over a kind stays a force.
 - **Pressures** and **half-widths** are compared, relative to the reference, where a contact carries over 5 % of the
   largest load of its kind: below that its half-width is a few elements and says nothing about the drive.
 - **Bearing forces** are compared crank by crank, relative to the largest of any crank in the reference.
@@ -13,15 +13,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fem.drive.contact_kinds import CONTACT_KINDS, PairKind
 from ltca.arrays import FloatArray
+from ltca.drive.units.quantities import ARCSEC
 
-Kind = Literal["pin", "roller_outer", "roller_inner", "hole"]
-KINDS: tuple[Kind, ...] = get_args(Kind)
+Kind = PairKind
+KINDS: tuple[Kind, ...] = tuple(CONTACT_KINDS)
 
 COMPARED_SHARE = 0.05
 """Pressures and half-widths are compared above this part of the largest load of a kind."""
@@ -31,8 +32,6 @@ LOADED_SHARE = 0.01
 
 COUNTED_SHARE = 1e-3
 """A contact counts as loaded above this part of the largest load of its kind, as in `ltca.analysis.results`."""
-
-ARCSECONDS = float(np.degrees(1.0) * 3600.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -129,11 +128,6 @@ class KindDifference:
         """Contact with the largest pressure difference, and that difference; (−1, nan) without any."""
         return worst(self.pressure)
 
-    @property
-    def worst_half_width(self) -> tuple[int, float]:
-        """Contact with the largest half-width difference, and that difference; (−1, nan) without any."""
-        return worst(self.half_width)
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PositionDifference:
@@ -183,24 +177,14 @@ class PositionDifference:
 
 
 def contact_name(kind: Kind, number: int, rollers: int | None = None) -> str:
-    """Return the name of a contact as rows and report give it.
-
-    Parameters
-    ----------
-    kind : Kind
-        What touches what.
-    number : int
-        Which of its kind, rollers counted crank after crank.
-    rollers : int, optional
-        Of each crank, where there are several: the name then says which.
+    """Return the name of a contact as rows and report give it; of several cranks with `rollers` each, crank and roller.
 
     Examples
     --------
     >>> contact_name("roller_outer", 11), contact_name("roller_outer", 11, 9)
     ('roller 11 bore', 'crank 1 roller 2 bore')
     """
-    names = {"pin": "pin {}", "roller_outer": "roller {} bore", "roller_inner": "roller {} race"}
-    name = names.get(kind, "shaft pin {}")
+    name = CONTACT_KINDS[kind].name
     if rollers is None or kind not in ("roller_outer", "roller_inner"):
         return name.format(number)
     return f"crank {number // rollers} " + name.format(number % rollers)
@@ -220,22 +204,9 @@ def worst(difference: FloatArray) -> tuple[int, float]:
 
 
 def compare_kind(model: KindAnswer, reference: KindAnswer) -> KindDifference:
-    """Compare the contacts of one kind.
+    """Return the differences of the contacts of one kind, model less reference.
 
-    Parameters
-    ----------
-    model, reference : KindAnswer
-        With arrays of the same length.
-
-    Returns
-    -------
-    KindDifference
-        Model less reference.
-
-    Raises
-    ------
-    ValueError
-        When the arrays differ in length, or the reference carries nothing while the model does.
+    ValueError when the arrays differ in length, or the reference carries nothing while the model does.
     """
     if model.load.shape != reference.load.shape:
         raise ValueError(f"{model.load.size} contacts against {reference.load.size}: not the same drive")
@@ -266,25 +237,14 @@ def _relative(model: FloatArray, reference: FloatArray, compared: NDArray[np.boo
 
 
 def compare_positions(model: PositionAnswer, reference: PositionAnswer) -> PositionDifference:
-    """Compare two answers to the same position.
-
-    Parameters
-    ----------
-    model, reference : PositionAnswer
-        At the same crank angle of the same drive.
-
-    Returns
-    -------
-    PositionDifference
-        Model less reference.
-    """
+    """Return the differences of two answers to the same position of the same drive, model less reference."""
     bearing = float(np.max(np.hypot(reference.bearing_radial, reference.bearing_tangential)))
     return PositionDifference(
         kinds={kind: compare_kind(model.kinds[kind], reference.kinds[kind]) for kind in KINDS},
         bearing_radial=(model.bearing_radial - reference.bearing_radial) / bearing,
         bearing_tangential=(model.bearing_tangential - reference.bearing_tangential) / bearing,
-        wheel_angle=(model.wheel_angle - reference.wheel_angle) * ARCSECONDS,
-        disc_rotation=(model.disc_rotation - reference.disc_rotation) * ARCSECONDS,
+        wheel_angle=(model.wheel_angle - reference.wheel_angle) * ARCSEC,
+        disc_rotation=(model.disc_rotation - reference.disc_rotation) * ARCSEC,
         disc_displacement=float(
             np.hypot(
                 model.disc_radial - reference.disc_radial,

@@ -1,4 +1,4 @@
-"""Coefficients of the discs that a validation needs, each derived once and kept as a file of its own."""
+"""Coefficients of the discs that a validation needs, derived once and kept in files."""
 
 from __future__ import annotations
 
@@ -24,19 +24,7 @@ if TYPE_CHECKING:
 def nominal_coefficients_of(
     drive: Drive, case: str, folder: Path, *, progress: Callable[[str], None] | None = None
 ) -> DiscCoefficients | None:
-    """Return the coefficients that all clearance cases could share, lent to this one; None when it has no clearance.
-
-    Parameters
-    ----------
-    drive : Drive
-        In the case.
-    case : str
-        Its name, for the record.
-    folder : Path
-        Where files are kept.
-    progress : callable, optional
-        Called with each step.
-    """
+    """Return the coefficients derived without clearance that all clearance cases could share; None without clearance."""
     singles = single_discs(drive)
     if all(single.clearance == Clearance() for single in singles):
         return None
@@ -50,25 +38,9 @@ def nominal_coefficients_of(
 def disc_coefficients_of(
     drive: Drive, case: str, folder: Path, **options: Any
 ) -> tuple[dict[str, xr.Dataset], DiscCoefficients]:
-    """Return the coefficients of all discs of a case, those of each distinct shape once.
+    """Return the coefficients of all discs of a case, derived once for each distinct shape; options as for `coefficients_of`.
 
-    Parameters
-    ----------
-    drive : Drive
-        In the case.
-    case : str
-        Its name, for the record.
-    folder : Path
-        Where files are kept.
-    **options
-        As for `coefficients_of`.
-
-    Returns
-    -------
-    datasets : dict of str to Dataset
-        Of each distinct shape by the case, of several shapes by case and first disc.
-    coefficients : InfluenceCoefficients or tuple of them
-        Of the disc, or of each of several.
+    The datasets are keyed by the case, of several shapes by case and first disc.
     """
     singles = single_discs(drive)
     shapes: dict[str, tuple[str, xr.Dataset]] = {}
@@ -94,33 +66,7 @@ def coefficients_of(
     size: float = 1.0,
     progress: Callable[[str], None] | None = None,
 ) -> tuple[xr.Dataset, InfluenceCoefficients]:
-    """Return the coefficients of a disc, from its file if there is one that fits.
-
-    Parameters
-    ----------
-    drive : Drive
-        In the case, of one disc.
-    case : str
-        Its name, for the record.
-    folder : Path
-        Where files are kept.
-    plane : {"strain", "stress"}
-        State of the bodies.
-    size : float
-        Multiple of the element edges.
-    progress : callable, optional
-        Called with each step.
-
-    Returns
-    -------
-    Dataset, InfluenceCoefficients
-        The file's content, and as the LTCA reads it from the file.
-
-    Raises
-    ------
-    CycloError
-        When meshing fails or the file cannot be written.
-    """
+    """Return the coefficients of a drive of one disc, from its kept file if that fits: content, and as the LTCA reads it."""
     # The code that derived them is in the name: what older code kept is never compared.
     path = folder / f"{drive.shape_fingerprint()}_{plane}_{size:g}_{code_hash('fem', 'ltca')}.nc"
     try:

@@ -1,4 +1,4 @@
-"""Stress in the disc as full finite elements and as each compliance model have it, and how they differ.
+"""Stress in the disc by full finite elements and by each compliance model, and the differences.
 
 - Along the walls models are compared at their stress stations, where they are clear: farther than four half-widths from
   every loaded contact on the wall. A difference is relative to the largest stress of the reference at any such station.
@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 from fem.drive.disc_stress import DiscStress
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.arrays import FloatArray
-from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.wall_stress import wall_profiles, wall_stresses
 from ltca.contact.subsurface import line_contact_shear
 from validation.compare.comparison import Kind, worst
@@ -138,13 +137,10 @@ def answer_of_content(content: dict[str, Any]) -> DiscStressAnswer:
 
 
 def stresses_of(analysis: LoadedAnalysis) -> list[DiscStressAnswer]:
-    """Return the stress of an analysis of one disc position by position; none where its model knows no stress in the disc."""
+    """Return the stress of an analysis of one disc position by position; none where its model gives no stress in the disc."""
     model, full = analysis.model.discs[0], analysis.full
-    if (
-        len(analysis.model.discs) > 1
-        or not isinstance(model, CoupledCompliance)
-        or not model.coefficients.stress.available
-    ):
+    coefficients = model.coefficients
+    if len(analysis.model.discs) > 1 or coefficients is None or not coefficients.stress.available:
         return []
     rotation = full.pose[:, 2]
     profiles = wall_profiles(model, full.response, analysis.pressures, rotation, refinement=1)
@@ -173,24 +169,10 @@ def stresses_of(analysis: LoadedAnalysis) -> list[DiscStressAnswer]:
 
 
 def compare_stresses(model: DiscStressAnswer, reference: DiscStressAnswer) -> DiscStressDifference:
-    """Compare the stress in the disc of two answers to one position.
+    """Return the differences of the stress in the disc of two answers to one position, model less reference.
 
-    Parameters
-    ----------
-    model : DiscStressAnswer
-        At its stress stations.
-    reference : DiscStressAnswer
-        At nodes close to each other: taken linear between them.
-
-    Returns
-    -------
-    DiscStressDifference
-        Model less reference.
-
-    Raises
-    ------
-    ValueError
-        When the answers do not belong to discs with as many walls, roots and contacts.
+    The model is given at its stress stations, the reference at nodes close to each other, linear between them. ValueError
+    when the numbers of walls, roots or contacts differ.
     """
     if len(model.stress) != len(reference.stress) or any(
         own.shape != reference.largest[region].shape for region, own in model.largest.items()

@@ -1,7 +1,7 @@
-"""Full finite-element solutions of chosen positions, each kept as a file of its own as soon as it is there.
+"""Full finite-element solutions of chosen positions, kept in one file for each position as soon as it is solved.
 
-A file belongs to a drive in a case (by fingerprint), a crank angle, the settings of the solution and the code that found
-it; whatever does not fit, or was damaged, is solved again. So a run that was killed goes on where it stopped and ends with
+A file belongs to a drive in a case (by fingerprint), a crank angle, the options of the solution and the code that found
+it; a file that does not fit, or is damaged, is solved again. So a run that was killed continues where it stopped and ends with
 the same numbers, and no number of older code is compared.
 """
 
@@ -10,26 +10,29 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from fem.body.elasticity import PlaneState
+from fem.drive.contact_kinds import CONTACT_KINDS
 from fem.drive.disc_stress import recover_disc_stress
 from fem.drive.fields import recover_fields
 from fem.drive.full_solution import FullSolution
 from fem.drive.model import RoundGroup
+from fem.options import SolutionOptions
 from fem.pictures.solution_pictures import draw_solution
 from fem.reducer.solution import solve_reducer
 from fem.reducer.solution_files import summarise
+from ltca.arrays import FloatArray
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
 from ltca.geometry.placement import Placement
 from ltca.output.files import write_json
 from ltca.output.provenance import code_hash, code_version
 from ltca.output.regular_files import read_regular
+from ltca.quantities import QUANTITIES
 from validation.compare.comparison import KindAnswer, PositionAnswer
 from validation.compare.disc_stresses import DiscStressAnswer, answer_of_content, stress_content
 
@@ -38,22 +41,6 @@ LARGEST_KEPT = 200_000_000
 """Bytes of one kept position."""
 PICTURES = ("von_mises", "deformed", "contacts")
 PICTURE_SIDE = 1200
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Settings:
-    """How full solutions are found.
-
-    Attributes
-    ----------
-    size : float
-        Element edge as a multiple of an eighth of each half-width.
-    plane : {"strain", "stress"}
-        Plane strain or plane stress.
-    """
-
-    size: float = 1.0
-    plane: PlaneState = "strain"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -93,97 +80,30 @@ class FullPosition:
     disc: int = 0
 
 
-def solve_position(
-    drive: Drive,
-    case: str,
-    crank_angle: float,
-    folder: Path,
-    settings: Settings,
-    *,
-    pictures: bool = False,
-    title: str = "",
-    progress: Callable[[str], None] | None = None,
-) -> tuple[FullPosition, ...]:
-    """Return the full solution of a position disc by disc, from its file if there is one that fits.
-
-    Parameters
-    ----------
-    drive : Drive
-        In the case.
-    case : str
-        Its name.
-    crank_angle : float
-        rad.
-    folder : Path
-        Where files are kept.
-    settings : Settings
-        Of the solution.
-    pictures : bool
-        Whether stress pictures are wanted.
-    title : str
-        Headline of the pictures.
-    progress : callable, optional
-        Called with one line for each step.
-
-    Returns
-    -------
-    tuple of FullPosition
-        Of each disc; always as read from the file, so that a resumed run sees the same digits.
-
-    Raises
-    ------
-    CycloError
-        When the solution fails or a file cannot be written.
-    """
-    positions, _ = _solve_kept(drive, case, crank_angle, folder, settings, (), pictures, title, progress)
-    return positions
-
-
 def solve_positions(
     drive: Drive,
     case: str,
     crank_angles: Iterable[float],
     folder: Path,
-    settings: Settings,
+    options: SolutionOptions,
     *,
     pictured: float | None = None,
     title: str = "",
     begin: Callable[[str], None] | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> Iterator[tuple[FullPosition, ...]]:
-    """Yield the full solutions of one position after the other; what they share is made once.
+    """Yield the full solutions at one crank angle (rad) after the other, disc by disc, from kept files where they fit.
 
-    That saves time and changes no bit: a file is the same whether it was made in a series or alone.
-
-    Parameters
-    ----------
-    drive, case, folder, settings, progress
-        As for `solve_position`.
-    crank_angles : iterable of float
-        rad.
-    pictured : float, optional
-        Crank angle of which pictures are wanted, rad.
-    title : str
-        Headline of the pictures before the crank angle.
-    begin : callable, optional
-        Called with one line before each solution.
-
-    Yields
-    ------
-    tuple of FullPosition
-        Of each disc.
-
-    Raises
-    ------
-    CycloError
-        When a solution fails or a file cannot be written.
+    Condensed pins and rollers serve the next angle, which saves time and changes no bit of a file. Every answer is read back
+    from its file, so that a resumed run sees the same digits. Pictures are drawn at the crank angle `pictured`, under `title`
+    and the angle; `begin` is called with a line before each angle, `progress` with one for each step of a solution.
     """
     rounds: tuple[RoundGroup, ...] = ()
     for angle in crank_angles:
         if begin is not None:
             begin(f"full FE of {case} at {angle:.4g} rad")
         positions, rounds = _solve_kept(
-            drive, case, angle, folder, settings, rounds, angle == pictured, f"{title}, {angle:.4g} rad", progress
+            drive, case, angle, folder, options, rounds, angle == pictured, f"{title}, {angle:.4g} rad", progress
         )
         yield positions
 
@@ -193,34 +113,28 @@ def _solve_kept(
     case: str,
     crank_angle: float,
     folder: Path,
-    settings: Settings,
+    options: SolutionOptions,
     rounds: tuple[RoundGroup, ...],
     pictures: bool,
     title: str,
     progress: Callable[[str], None] | None,
 ) -> tuple[tuple[FullPosition, ...], tuple[RoundGroup, ...]]:
-    """Return a position, and the condensed pins and rollers to go on with."""
-    key = _key(drive, case, crank_angle, settings)
-    path = folder / f"{position_name(drive, case, crank_angle, settings)}.json"
+    """Return a position, and condensed pins and rollers for the next one."""
+    key = _key(drive, case, crank_angle, options)
+    path = folder / f"{position_name(drive, case, crank_angle, options)}.json"
     singles = single_discs(drive)
     count = len(singles)
     prefixes = [f"disc_{disc}_" if count > 1 else "" for disc in range(count)]
     images = [tuple(path.with_suffix("") / f"{prefix}{name}.png" for name in PICTURES) for prefix in prefixes]
     content = _read(path, key)
     if content is None or (pictures and not all(image.exists() for own in images for image in own)):
-        solution = solve_reducer(
-            drive,
-            crank_angle,
-            scale=settings.size,
-            state=settings.plane,
-            fine_walls=True,
-            rounds=rounds,
-            progress=progress,
-        )
+        # Stresses along the walls are compared.
+        with_walls = replace(options, fine_walls=True)
+        solution = solve_reducer(drive, crank_angle, with_walls, rounds=rounds, progress=progress)
         rounds = solution.rounds
         if pictures:
             for disc, prefix in zip(solution.discs, prefixes, strict=True):
-                _draw(disc, settings, title, path.with_suffix(""), prefix)
+                _draw(disc, title, path.with_suffix(""), prefix)
         if content is None:
             stress = [stress_content(recover_disc_stress(disc)) for disc in solution.discs]
             answer = {"summary": summarise(solution), "stress": stress}
@@ -247,7 +161,7 @@ def _solve_kept(
 
 
 def disc_case(case: str, disc: int, discs: int) -> str:
-    """Return what rows and report call one disc of a case: the case itself where it is the only one.
+    """Return the label of one disc of a case in rows and report: the case itself where it is the only disc.
 
     Examples
     --------
@@ -257,12 +171,12 @@ def disc_case(case: str, disc: int, discs: int) -> str:
     return case if discs == 1 else f"{case}, disc {disc}"
 
 
-def position_name(drive: Drive, case: str, crank_angle: float, settings: Settings) -> str:
+def position_name(drive: Drive, case: str, crank_angle: float, options: SolutionOptions) -> str:
     """Return the name of the file of a position."""
-    return f"{drive.fingerprint()}_{case}_{crank_angle:.9f}_{settings.plane}_{settings.size:g}"
+    return f"{drive.fingerprint()}_{case}_{crank_angle:.9f}_{options.plane}_{options.size:g}"
 
 
-def _key(drive: Drive, case: str, crank_angle: float, settings: Settings) -> dict[str, Any]:
+def _key(drive: Drive, case: str, crank_angle: float, options: SolutionOptions) -> dict[str, Any]:
     return {
         "format": FORMAT,
         "version": code_version(),
@@ -270,13 +184,13 @@ def _key(drive: Drive, case: str, crank_angle: float, settings: Settings) -> dic
         "fingerprint": drive.fingerprint(),
         "case": case,
         "crank_angle_rad": crank_angle,
-        "size": settings.size,
-        "plane": settings.plane,
+        "size": options.size,
+        "plane": options.plane,
     }
 
 
 def _read(path: Path, key: dict[str, Any]) -> dict[str, Any] | None:
-    """Return the content of a file that fits its key; None when it has to be made (again)."""
+    """Return the content of a file that fits its key; None when it has to be solved."""
     try:
         content: dict[str, Any] = json.loads(read_regular(path, LARGEST_KEPT))
     except (OSError, ValueError):
@@ -291,8 +205,8 @@ def _checksum(answer: object) -> str:
     return hashlib.sha256(json.dumps(answer, sort_keys=True).encode()).hexdigest()
 
 
-def _draw(solution: FullSolution, settings: Settings, title: str, folder: Path, prefix: str) -> None:
-    fields = recover_fields(solution.model, solution.state, state=settings.plane)
+def _draw(solution: FullSolution, title: str, folder: Path, prefix: str) -> None:
+    fields = recover_fields(solution)
     folder.mkdir(parents=True, exist_ok=True)
     draw_solution(solution, fields, title, folder, side=PICTURE_SIDE, prefix=prefix)
 
@@ -300,27 +214,16 @@ def _draw(solution: FullSolution, settings: Settings, title: str, folder: Path, 
 def answer_of_summary(summary: dict[str, Any], single: Drive, disc: int) -> PositionAnswer:
     """Return the answer of one disc in the summary of a full solution (`fem.reducer.solution_files.summarise`).
 
-    Parameters
-    ----------
-    summary : dict
-        Of all discs.
-    single : Drive
-        The drive of the disc alone.
-    disc : int
-        Its number.
+    `single` is the drive of that disc alone.
     """
 
-    def kind(load: str, pressure: str, width: str) -> KindAnswer:
-        return KindAnswer(
-            load=np.array(summary[f"{load}_N"][disc], dtype=float),
-            pressure=np.array(summary[f"{pressure}_MPa"][disc], dtype=float),
-            half_width=np.array(summary[f"{width}_mm"][disc], dtype=float),
-        )
+    def of_disc(name: str) -> FloatArray:
+        return np.array(summary[QUANTITIES[name].older_fem_key][disc], dtype=float)
 
     discs = len(summary["pin_load_N"])
 
     def own(name: str) -> Any:
-        """What a disc has one of is a list by disc only where there are several."""
+        """Return a value of the disc, which is a list by disc only where there are several."""
         return summary[name][disc] if discs > 1 else summary[name]
 
     shift = own("disc_displacement")
@@ -328,10 +231,10 @@ def answer_of_summary(summary: dict[str, Any], single: Drive, disc: int) -> Posi
     along = complex(shift["x_mm"], shift["y_mm"]) * complex(direction).conjugate()
     return PositionAnswer(
         kinds={
-            "pin": kind("pin_load", "pin_pressure_max", "pin_half_width"),
-            "roller_outer": kind("roller_load_outer", "roller_pressure_max_outer", "roller_half_width_outer"),
-            "roller_inner": kind("roller_load_inner", "roller_pressure_max_inner", "roller_half_width_inner"),
-            "hole": kind("pin_shaft_load", "pin_shaft_pressure_max", "pin_shaft_half_width"),
+            kind: KindAnswer(
+                load=of_disc(names.load), pressure=of_disc(names.pressure), half_width=of_disc(names.half_width)
+            )
+            for kind, names in CONTACT_KINDS.items()
         },
         bearing_radial=np.array(own("bearing_radial_N"), dtype=float, ndmin=1),
         bearing_tangential=np.array(own("bearing_tangential_N"), dtype=float, ndmin=1),

@@ -7,18 +7,18 @@ from typing import TypeAlias
 import numpy as np
 
 from ltca.analysis.engines import Compliance, Engine, HalfSpace, engine_named
-from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse
+from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.arrays import FloatArray
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.compliance.response import ContactPressures
+from ltca.drive.hole_contact import shaft_pins_yield
 from ltca.drive.parts import Drive
-from ltca.drive.plane_strain import shaft_pins_yield
 from ltca.geometry.coordinates import disc_displacement
 from validation.compare.comparison import Kind, KindAnswer, PositionAnswer
 
 MODELS: tuple[Compliance, ...] = ("half-space", "fe", "hybrid")
-
-
+FULL = "full FE"
+"""Label of the full solution beside the models."""
 DiscCoefficients: TypeAlias = InfluenceCoefficients | tuple[InfluenceCoefficients, ...]
 """Coefficients of the one disc of a drive, or of each of several."""
 
@@ -28,46 +28,8 @@ def engine_of(compliance: Compliance, coefficients: DiscCoefficients | None) -> 
     return HalfSpace() if compliance == "half-space" else engine_named(compliance, coefficients=coefficients)
 
 
-def answer_positions(
-    drive: Drive,
-    crank_angles: FloatArray,
-    compliance: Compliance,
-    coefficients: DiscCoefficients | None = None,
-) -> list[PositionAnswer]:
-    """Analyse positions with one compliance model.
-
-    Parameters
-    ----------
-    drive : Drive
-        In its case, of one disc.
-    crank_angles : array, shape (positions,)
-        rad.
-    compliance : {"half-space", "fe", "hybrid"}
-        The model.
-    coefficients : InfluenceCoefficients or tuple of them, optional
-        What ``fe`` and ``hybrid`` need.
-
-    Returns
-    -------
-    list of PositionAnswer
-        One for each angle.
-
-    Raises
-    ------
-    CycloError
-        As `ltca.analysis.loaded_analysis.analyse`.
-    """
-    return answers_of(analyse(drive, crank_angles, engine=engine_of(compliance, coefficients)))
-
-
 def answers_of(analysis: LoadedAnalysis) -> list[PositionAnswer]:
-    """Return the analysis of a drive of one disc (`LoadedAnalysis.discs`) position by position.
-
-    Raises
-    ------
-    ValueError
-        For several discs.
-    """
+    """Return the analysis of a drive of one disc (`LoadedAnalysis.discs`) position by position."""
     (disc,) = analysis.model.discs
     full, response, pressures = analysis.full, analysis.full.response, analysis.pressures
     direction = disc.geometry.placement.eccentric_direction(full.crank_angle)
@@ -97,7 +59,7 @@ def answers_of(analysis: LoadedAnalysis) -> list[PositionAnswer]:
 
 
 def _hole_contacts(drive: Drive, pressures: ContactPressures) -> tuple[FloatArray, FloatArray]:
-    """Return pressures and half-widths at the holes; no numbers where the pins of full FE yield and the model's do not, or so."""
+    """Return pressures and half-widths at the holes; NaN where shaft pins yield in full FE or the model only."""
     holes = pressures.holes
     if pressures.rigid_shaft_pins == shaft_pins_yield(drive):
         return np.full(holes.mid.shape, np.nan), np.full(holes.mid.shape, np.nan)

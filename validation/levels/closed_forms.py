@@ -39,13 +39,7 @@ FEM, HALF_SPACE = "finite elements", "half-space"
 
 
 def check_closed_forms(drive: Drive) -> list[Row]:
-    """Return the rows of level 1.
-
-    Parameters
-    ----------
-    drive : Drive
-        Its mean tangential bearing load is held against power balance; the other rows use bodies of their own.
-    """
+    """Return the rows of level 1; the mean tangential bearing load of the drive is compared with power balance."""
     return [*_ring(), *_hole(), *_two_cylinders(), *_rollers(), *_ball(), *_power(drive)]
 
 
@@ -58,7 +52,7 @@ def _solve_ring(
     load = traction_load(body, boundary, traction, thickness=1.0)  # type: ignore[arg-type]
     u = condense_body(body, stiffness, sp.csc_matrix(load[:, None])).displacement(np.array([1.0]))
     stress = recover_stress(body, u, STEEL)
-    return stress.xx, stress.yy, stress.xy, body.mesh.doflocs[0] + 1j * body.mesh.doflocs[1]
+    return stress.xx, stress.yy, stress.xy, body.places
 
 
 def _ring() -> list[Row]:
@@ -223,7 +217,7 @@ def _rollers() -> list[Row]:
 
 
 def _ball() -> list[Row]:
-    """A crowned roller short of its ends is an elliptical point contact."""
+    """Return the rows on a crowned roller, an elliptical point contact as long as it does not reach its ends."""
     small, large, approach = 2.0, 40.0, 2e-3
     point = solve_point_contact(approach, small, large, MODULUS)
     length = 2.2 * point.half_axis_long
@@ -248,7 +242,7 @@ def _ball() -> list[Row]:
 
 
 def _power(drive: Drive) -> list[Row]:
-    """Work of cranks and wheel over whole periods of the flank: mean tangential bearing load T/(u e) of what a disc carries.
+    """Return the rows on power balance over whole periods of the flank: mean tangential bearing load T/(u e) of each disc.
 
     Several cranks turn together: their loads count by their eccentricities.
     """

@@ -1,4 +1,4 @@
-"""Level 4: the derived influence coefficients by laws, closed forms and the size of their mesh."""
+"""Level 4: the derived influence coefficients against laws, closed forms and a finer mesh."""
 
 from __future__ import annotations
 
@@ -15,20 +15,12 @@ HALVED_LIMIT = 3e-3
 
 
 def check_file(dataset: xr.Dataset, case: str, plane: str) -> list[Row]:
-    """Return the checks of one set of coefficients as rows.
-
-    Parameters
-    ----------
-    dataset : Dataset
-        From `fem.coefficients.dataset.derive_coefficients`.
-    case, plane : str
-        Case whose disc it is, and its plane state, for the rows.
-    """
+    """Return the checks of one set of derived coefficients as rows, labelled with case and plane state."""
     return [_row(check, case, f"coefficients, plane {plane}") for check in check_coefficients(dataset)]
 
 
 def _row(check: Check, case: str, model: str) -> Row:
-    """Return a check as a row: bounds on both sides about their middle, else what the value is short or over."""
+    """Return a check as a row: of two bounds the distance from their middle, else the amount by which the bound is missed."""
     if math.isfinite(check.highest):
         middle = 0.0 if check.lowest == 0.0 else 0.5 * (check.lowest + check.highest)
         difference, limit = check.value - middle, check.highest - middle
@@ -52,14 +44,9 @@ def _row(check: Check, case: str, model: str) -> Row:
 
 
 def halved_mesh_row(finer: xr.Dataset, case: str) -> Row:
-    """Return what a mesh of half the size changes, from coefficients derived on it.
+    """Return the row on the change by a mesh of half the size, from coefficients derived on it.
 
-    Parameters
-    ----------
-    finer : Dataset
-        Derived with half the element size; its own convergence estimate compares with the default one.
-    case : str
-        Whose disc.
+    Their convergence estimate compares with twice the element size, the default one.
     """
     change = float(finer.attrs["convergence_estimate"])
     return Row(

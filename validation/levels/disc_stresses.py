@@ -1,4 +1,4 @@
-"""Level 5, stress in the disc: the LTCA's, from its loads and the stress coefficients, against the full solution's own."""
+"""Level 5, stress in the disc: by the LTCA, from its loads and the stress coefficients, against the full solution."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Any
 
 from validation.compare.compared_positions import ComparedPosition
 from validation.compare.disc_stresses import REGIONS, ComparedStress, Region
-from validation.levels.positions import FULL
+from validation.compare.model_positions import FULL
 from validation.rows import Row
 
 WALL_LIMIT, SHEAR_LIMIT = 2e-2, 3e-2
@@ -22,13 +22,7 @@ PARTS: dict[Region, str] = {"flank": "lobe roots", "bore": "bore", "holes": "hol
 
 
 def disc_stress_rows(compared: ComparedPosition) -> list[Row]:
-    """Return the rows of one position, all models that know the stress in the disc.
-
-    Parameters
-    ----------
-    compared : ComparedPosition
-        The position.
-    """
+    """Return the rows of one position for all models that give the stress in the disc."""
     rows = []
     for model, difference in compared.stress.items():
         rows += [

@@ -1,4 +1,4 @@
-"""Level 6: how much the flexible disc changes what a designer reads off, and when half-spaces are good enough."""
+"""Level 6: effect of the flexible disc on the figures of a design, and when half-spaces are accurate enough."""
 
 from __future__ import annotations
 
@@ -7,87 +7,86 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fem.drive.contact_kinds import CONTACT_KINDS
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse
 from ltca.drive.parts import Drive
+from ltca.drive.units.quantities import ARCSEC
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.placement import position_angles
+from ltca.quantities import SCALARS
 from validation.compare.compared_positions import ComparedPosition
-from validation.compare.comparison import ARCSECONDS, Kind, PositionAnswer
-from validation.compare.model_positions import MODELS, DiscCoefficients, engine_of
+from validation.compare.comparison import Kind, PositionAnswer
+from validation.compare.model_positions import FULL, MODELS, DiscCoefficients, engine_of
 from validation.rows import Row, relative_row, rounded
 
 TURN_POSITIONS = 72
 TORQUES = (0.25, 0.5, 1.0, 1.5)
-SAFE = 0.05
-"""A largest load is taken as good enough for a design within this part: what materials and tolerances scatter by."""
+LOAD_TOLERANCE = 0.05
+"""Part within which a largest load is accurate enough for a design: the scatter by materials and tolerances."""
 
-NAMES: dict[str, str] = {
-    "pin": "largest pin load",
-    "roller_outer": "largest roller load",
-    "hole": "largest pin-shaft load",
-}
 CAUSE = "what the rigid disc and uncoupled contacts leave out: informs only"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TurnFigures:
-    """What a designer reads off one turn with one model.
+    """Figures of one turn with one model: scalars of `ltca.quantities`, and three of the wheel.
 
     Attributes
     ----------
-    pin_load, roller_load, shaft_load : float
-        Largest loads, N; not a number without shaft pins.
-    pin_pressure, roller_pressure : float
-        Largest pressures at mid-width, MPa.
+    max_pin_load, max_roller_load, max_pin_shaft_load : float
+        N; not a number without shaft pins.
+    max_pin_pressure_mid, max_roller_pressure_mid : float
+        MPa.
     wind_up : float
         Mean wheel angle with the backlash that is taken up, seconds of arc, positive in the sense of the load.
-    elastic : float
+    elastic_wind_up : float
         Mean part of it between the light torque and the torque, seconds of arc.
-    swing : float
+    wheel_swing : float
         Wheel angle peak to peak, seconds of arc.
     """
 
-    pin_load: float
-    roller_load: float
-    shaft_load: float
-    pin_pressure: float
-    roller_pressure: float
+    max_pin_load: float
+    max_roller_load: float
+    max_pin_shaft_load: float
+    max_pin_pressure_mid: float
+    max_roller_pressure_mid: float
     wind_up: float
-    elastic: float
-    swing: float
+    elastic_wind_up: float
+    wheel_swing: float
 
 
+LOADS = ("max_pin_load", "max_roller_load", "max_pin_shaft_load")
 TITLES: dict[str, tuple[str, str]] = {
-    "pin_load": ("largest pin load over a turn", "N"),
-    "roller_load": ("largest roller load over a turn", "N"),
-    "shaft_load": ("largest pin-shaft load over a turn", "N"),
-    "pin_pressure": ("largest flank pressure at mid-width over a turn", "MPa"),
-    "roller_pressure": ("largest roller pressure at mid-width over a turn", "MPa"),
+    **{
+        name: (f"{SCALARS[name].title} over a turn", SCALARS[name].unit)
+        for name in (*LOADS, "max_pin_pressure_mid", "max_roller_pressure_mid")
+    },
     "wind_up": ("mean wind-up of the wheel, backlash included", '"'),
-    "elastic": ("mean wind-up of the wheel from the light torque on", '"'),
-    "swing": ("transmission error, peak to peak over a turn", '"'),
+    "elastic_wind_up": ("mean wind-up of the wheel from the light torque on", '"'),
+    "wheel_swing": ("wheel angle, peak to peak over a turn", '"'),
 }
+"""Title and unit of each figure."""
 
 
 def turn_figures(analysis: LoadedAnalysis) -> TurnFigures:
     """Return the figures of one turn."""
     response, pressures = analysis.full.response, analysis.pressures
-    wheel, light = (state.pose[:, WHEEL_ANGLE] * ARCSECONDS for state in (analysis.full, analysis.light))
+    wheel, light = (state.pose[:, WHEEL_ANGLE] * ARCSEC for state in (analysis.full, analysis.light))
     return TurnFigures(
-        pin_load=float(np.max(response.pin_load)),
-        roller_load=float(np.max(response.rollers.outer_load)),
-        shaft_load=float(np.max(response.hole_load)) if response.hole_load.size else float("nan"),
-        pin_pressure=float(np.max(pressures.pins.mid)),
-        roller_pressure=float(max(np.max(pressures.outer.mid), np.max(pressures.inner.mid))),
+        max_pin_load=float(np.max(response.pin_load)),
+        max_roller_load=float(np.max(response.rollers.outer_load)),
+        max_pin_shaft_load=float(np.max(response.hole_load)) if response.hole_load.size else float("nan"),
+        max_pin_pressure_mid=float(np.max(pressures.pins.mid)),
+        max_roller_pressure_mid=float(max(np.max(pressures.outer.mid), np.max(pressures.inner.mid))),
         wind_up=float(np.mean(-wheel)) * analysis.drive.driving_sign,
-        elastic=float(np.mean(light - wheel)) * analysis.drive.driving_sign,
-        swing=float(np.ptp(wheel)),
+        elastic_wind_up=float(np.mean(light - wheel)) * analysis.drive.driving_sign,
+        wheel_swing=float(np.ptp(wheel)),
     )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FlexibilityEffect:
-    """What the flexible disc changes in one case, by all models.
+    """Figures of one case by all models, and the changes by the flexible disc.
 
     Attributes
     ----------
@@ -102,15 +101,7 @@ class FlexibilityEffect:
 
 
 def study_case(drive: Drive, coefficients: DiscCoefficients) -> FlexibilityEffect:
-    """Run one turn with every model and several torques with two.
-
-    Parameters
-    ----------
-    drive : Drive
-        In the case.
-    coefficients : InfluenceCoefficients or tuple of them
-        Of its disc, or of each of several.
-    """
+    """Analyse one turn with every model, and with two models at several torques."""
     angles = position_angles(TURN_POSITIONS)
     turn: dict[str, TurnFigures] = {
         model: turn_figures(analyse(drive, angles, engine=engine_of(model, coefficients))) for model in MODELS
@@ -123,9 +114,7 @@ def study_case(drive: Drive, coefficients: DiscCoefficients) -> FlexibilityEffec
             for model in (MODELS[0], MODELS[1])
         )
         by_torque[multiple] = {
-            name: getattr(fe, name) / getattr(half, name) - 1.0
-            for name in ("pin_load", "roller_load", "shaft_load")
-            if np.isfinite(getattr(half, name))
+            name: getattr(fe, name) / getattr(half, name) - 1.0 for name in LOADS if np.isfinite(getattr(half, name))
         }
     return FlexibilityEffect(turn=turn, by_torque=by_torque)
 
@@ -149,17 +138,17 @@ def flexibility_rows(case: str, effect: FlexibilityEffect) -> list[Row]:
 
 
 def full_solution_changes(compared: list[ComparedPosition]) -> dict[str, float]:
-    """Return by how much the full solution changes the largest loads over the positions of a case, relative."""
+    """Return the relative change of the largest loads over the positions of a case by the full solution."""
 
     def largest(answers: list[PositionAnswer], kind: Kind) -> float:
         return max(float(np.max(answer.kinds[kind].load)) for answer in answers)
 
     half = [position.answers["half-space"] for position in compared]
     full = [position.full.answer for position in compared]
-    kinds: dict[str, Kind] = {"pin_load": "pin", "roller_load": "roller_outer", "pin_shaft_load": "hole"}
+    kinds: tuple[Kind, ...] = ("pin", "roller_outer", "hole")
     return {
-        name: largest(full, kind) / largest(half, kind) - 1.0
-        for name, kind in kinds.items()
+        CONTACT_KINDS[kind].load: largest(full, kind) / largest(half, kind) - 1.0
+        for kind in kinds
         if full[0].kinds[kind].load.size
     }
 
@@ -168,8 +157,8 @@ def full_solution_rows(case: str, compared: list[ComparedPosition]) -> list[Row]
     """Return the informing rows of one case: full solution against half-space at the chosen angles."""
     rows = []
     for name, change in full_solution_changes(compared).items():
-        quantity = f"largest {name.replace('_', ' ')} at the chosen angles, change from half-space to full FE"
-        rows.append(_change_row(case, quantity, change, "full FE"))
+        quantity = f"{SCALARS[f'max_{name}'].title} at the chosen angles, change from half-space to full FE"
+        rows.append(_change_row(case, quantity, change, FULL))
     wheel = [
         (position.answers["half-space"].wheel_angle, position.full.answer.wheel_angle, position.full.crank_angle)
         for position in compared
@@ -179,8 +168,8 @@ def full_solution_rows(case: str, compared: list[ComparedPosition]) -> list[Row]
         Row(
             level=6,
             quantity="wind-up at the angle where it differs most",
-            value=abs(half) * ARCSECONDS,
-            reference=abs(full) * ARCSECONDS,
+            value=abs(half) * ARCSEC,
+            reference=abs(full) * ARCSEC,
             unit='"',
             difference=half / full - 1.0,
             limit=None,
@@ -188,7 +177,7 @@ def full_solution_rows(case: str, compared: list[ComparedPosition]) -> list[Row]
             case=case,
             crank_angle=angle,
             model="half-space",
-            against="full FE",
+            against=FULL,
         )
     )
     return rows
@@ -212,10 +201,9 @@ def _change_row(case: str, quantity: str, change: float, against: str) -> Row:
 
 
 def judge_half_space(effects: Mapping[str, FlexibilityEffect]) -> list[str]:
-    """Return what the figures say about when half-spaces are good enough, one sentence each."""
-    names = {"pin_load": "pin", "roller_load": "roller", "shaft_load": "pin-shaft"}
+    """Return sentences on when half-spaces are accurate enough, by the figures."""
     sentences = []
-    for name, word in names.items():
+    for name in LOADS:
         changes = {
             case: getattr(item.turn["fe"], name) / getattr(item.turn["half-space"], name) - 1.0
             for case, item in effects.items()
@@ -224,19 +212,21 @@ def judge_half_space(effects: Mapping[str, FlexibilityEffect]) -> list[str]:
         if not changes:
             continue
         low, high = min(changes.values()), max(changes.values())
-        safe = [case for case, change in changes.items() if abs(change) <= SAFE]
-        under = [case for case, change in changes.items() if change > SAFE]
-        over = [case for case, change in changes.items() if change < -SAFE]
+        safe = [case for case, change in changes.items() if abs(change) <= LOAD_TOLERANCE]
+        under = [case for case, change in changes.items() if change > LOAD_TOLERANCE]
+        over = [case for case, change in changes.items() if change < -LOAD_TOLERANCE]
         verdict = [
-            f"within {100.0 * SAFE:g} % in {', '.join(safe)}" if safe else "",
+            f"within {100.0 * LOAD_TOLERANCE:g} % in {', '.join(safe)}" if safe else "",
             f"too low, so unsafe, in {', '.join(under)}" if under else "",
             f"too high, so on the safe side, in {', '.join(over)}" if over else "",
         ]
         sentences.append(
-            f"Largest {word} load over a turn: the disc's flexibility changes it by {_percent(low)} to {_percent(high)}; "
-            f"half-spaces give it {'; '.join(part for part in verdict if part)}."
+            f"{SCALARS[name].title.capitalize()} over a turn: the disc's flexibility changes it by {_percent(low)} to "
+            f"{_percent(high)}; half-spaces give it {'; '.join(part for part in verdict if part)}."
         )
-    wind = [item.turn["half-space"].elastic / item.turn["fe"].elastic - 1.0 for item in effects.values()]
+    wind = [
+        item.turn["half-space"].elastic_wind_up / item.turn["fe"].elastic_wind_up - 1.0 for item in effects.values()
+    ]
     sentences.append(
         f"Mean wind-up from the light torque on: half-spaces differ from fe by {_percent(min(wind))} to "
         f"{_percent(max(wind))}; what they miss is flexibility of the bodies, so stiffness should not be taken from them."
@@ -250,7 +240,7 @@ def judge_half_space(effects: Mapping[str, FlexibilityEffect]) -> list[str]:
         )
         sentences.append(
             f"At {multiple:g} times the torque the largest change of a largest load is {_percent(worst[3])} "
-            f"({names[worst[2]]}, {worst[1]})."
+            f"({SCALARS[worst[2]].title}, {worst[1]})."
         )
     return sentences
 

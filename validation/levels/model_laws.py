@@ -1,4 +1,4 @@
-"""Level 5, without full solutions: what the compliance models owe each other, and what the plane-stress body changes."""
+"""Level 5, without full solutions: relations between the compliance models, and the effect of the body in plane stress."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from ltca.compliance.coefficients import InfluenceCoefficients, without_coupling
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.near_field import NearField
 from ltca.drive.parts import Drive
-from ltca.laws.series import approach_at_load
-from validation.compare.comparison import ARCSECONDS, compare_positions
+from ltca.drive.units.quantities import ARCSEC
+from validation.compare.comparison import compare_positions
 from validation.compare.model_positions import answers_of
 from validation.rows import Row, positive_row
 
@@ -29,19 +29,7 @@ def compare_models(
     coefficients: InfluenceCoefficients,
     plane_stress: InfluenceCoefficients,
 ) -> list[Row]:
-    """Return rows on the models alone.
-
-    Parameters
-    ----------
-    drive : Drive
-        In the case.
-    case : str
-        Its name.
-    crank_angles : array
-        rad.
-    coefficients, plane_stress : InfluenceCoefficients
-        Of the drive's shape, body part in plane strain and in plane stress.
-    """
+    """Return rows on the models alone; the coefficients are those of the body in plane strain and in plane stress."""
     return [
         *_uncoupled(drive, case, crank_angles),
         *_wide(drive, case, crank_angles, coefficients),
@@ -50,7 +38,7 @@ def compare_models(
 
 
 def _uncoupled(drive: Drive, case: str, crank_angles: FloatArray) -> list[Row]:
-    """Without a body part and without the holes' near field the hybrid is the paper's half-space model."""
+    """Return the row on the hybrid without body part and without near field of the holes, which is the half-space model."""
     half = analyse(drive, crank_angles)
     hybrid = analyse(drive, crank_angles, engine=Hybrid(coefficients=without_coupling(drive), hole_near_field=False))
     first, second = half.full.response, hybrid.full.response
@@ -115,9 +103,9 @@ def pair_approaches(
     crank_angle: float,
     load: FloatArray,
 ) -> FloatArray:
-    """Return how far wheel pins and flank approach each other under loads of their own alone, mm.
+    """Return the approach of wheel pins and flank under their loads, without the loads of other contacts, mm.
 
-    Near field and own body parts together: what no choice of datum between the two can change.
+    It is the sum of near field and body part of each contact, which does not depend on the datum between the two.
     """
     model = CoupledCompliance.of_drive(drive, coefficients, near_field)
     angle = np.array([crank_angle])
@@ -132,12 +120,12 @@ def pair_approaches(
     )
     pins = flank.parameter.shape[1]
     body = np.einsum("bii->bi", matrix)[0, :pins] + model.own.pin
-    near, _ = approach_at_load(model.near_field.pin, load, flank.effective_radius[0])
+    near, _ = model.near_field.pin.approach_at_load(load, flank.effective_radius[0])
     return np.asarray(near + body * load)
 
 
 def _wide(drive: Drive, case: str, crank_angles: FloatArray, coefficients: InfluenceCoefficients) -> list[Row]:
-    """The wider the drive the nearer half-spaces of finite length come to plane strain, like 1/ln width."""
+    """Return the rows on wider drives: half-spaces of finite length tend to plane strain like 1/ln width."""
     angle = float(crank_angles[0])
     fe = analyse(drive, crank_angles[:1], engine=PlaneStrain(coefficients=coefficients))
     load = fe.full.response.pin_load[0]
@@ -211,8 +199,8 @@ def _plane_stress(
             Row(
                 level=5,
                 quantity="wheel angle",
-                value=second.wheel_angle * ARCSECONDS,
-                reference=first.wheel_angle * ARCSECONDS,
+                value=second.wheel_angle * ARCSEC,
+                reference=first.wheel_angle * ARCSEC,
                 unit='"',
                 difference=apart.wheel_angle,
                 difference_unit='"',

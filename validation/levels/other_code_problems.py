@@ -1,7 +1,7 @@
-"""Level 2, what is solved: each problem, its definition, our answer computed now, and how another code answers it.
+"""Level 2: the problems, with definition, our answer computed now, and the run of the other code.
 
-A definition is what both codes are given, so that an answer of the other code that was stored can be refused when the
-problem has changed since. Loads are lists by part, zeros included.
+The definition holds the input of both codes, so that a stored answer of the other code is refused when the
+problem has changed. Loads are lists by part, zeros included.
 """
 
 from __future__ import annotations
@@ -17,8 +17,10 @@ from typing import Any
 
 import numpy as np
 
+from fem.drive.contact_kinds import CONTACT_KINDS
 from fem.drive.full_solution import FullSolution
 from fem.drive.solution import solve_drive
+from fem.options import SolutionOptions
 from fem.referee.calculix import ask_calculix
 from fem.referee.calculix_deck import PENALTY_FACTOR, find_calculix, pair_name, write_deck
 from ltca.arrays import FloatArray
@@ -28,20 +30,19 @@ from ltca.drive.parts import Drive, Material, contact_modulus
 from ltca.errors import CycloError
 from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.profiled_line_contact import ProfiledLineContactLaw
-from ltca.laws.series import approach_at_load
 from ltca.reading.drive_file import load_drive
 
 Answer = dict[str, Any]
 
 CASE, CRANK_ANGLE = "CS-1", 0.5
-# Two elements for each half-width, four pressures across a contact: with fewer our own answer depends on where the
+# Two elements for each half-width, four pressures across a contact: with fewer our answer depends on where the
 # vertices happen to lie (benchmarks/fem.py --ccx 6 4 3 2).
 SIZE = 4.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OtherCode:
-    """Another code and the problem it is given.
+    """Another code and its problem.
 
     Attributes
     ----------
@@ -68,14 +69,14 @@ class OtherCode:
 
 
 def coarse_drive() -> Drive:
-    """Return the drive that CalculiX solves, too."""
+    """Return the drive that is solved by both codes."""
     drive = load_drive("paper").cases[CASE]
     # What results are judged by is no part of the problem: stored answers stay those of the same drive.
     return replace(drive, materials=elastic_alone(drive.materials))
 
 
 def has_calculix() -> bool:
-    """Return whether ccx can be asked here."""
+    """Return whether ccx is installed."""
     try:
         find_calculix()
     except CycloError:
@@ -98,36 +99,24 @@ def define_drive() -> dict[str, Any]:
 
 def our_drive() -> Answer:
     """Solve the drive by our finite elements."""
-    solution = solve_drive(coarse_drive(), CRANK_ANGLE, scale=SIZE)
-    contacts = solution.contacts
-    return {
-        "pin_load": contacts.pin_load.tolist(),
-        "roller_load": contacts.roller_load.tolist(),
-        "roller_load_inner": contacts.roller_load_inner.tolist(),
-        "pin_shaft_load": contacts.pin_shaft_load.tolist(),
-        "wheel_angle": solution.pose.wheel_angle,
-    }
+    solution = solve_drive(coarse_drive(), CRANK_ANGLE, SolutionOptions(size=SIZE))
+    loads = {kind.load: getattr(solution.contacts, kind.load).tolist() for kind in CONTACT_KINDS.values()}
+    return {**loads, "wheel_angle": solution.pose.wheel_angle}
 
 
 def their_drive() -> Answer:
-    """Let CalculiX solve it on the same mesh."""
-    solution = solve_drive(coarse_drive(), CRANK_ANGLE, scale=SIZE)
+    """Solve the drive by CalculiX on the same mesh."""
+    solution = solve_drive(coarse_drive(), CRANK_ANGLE, SolutionOptions(size=SIZE))
     with tempfile.TemporaryDirectory(prefix="cyclo-validate-") as folder:
         answer = ask_calculix(solution, write_deck(solution, Path(folder) / "drive.inp"), find_calculix())
     return {**_by_part(solution, answer.load), "wheel_angle": answer.wheel_angle}
 
 
 def _by_part(solution: FullSolution, load: dict[str, float]) -> Answer:
-    contacts = solution.contacts
-    found = {
-        "pin": ("pin_load", np.zeros_like(contacts.pin_load)),
-        "roller_outer": ("roller_load", np.zeros_like(contacts.roller_load)),
-        "roller_inner": ("roller_load_inner", np.zeros_like(contacts.roller_load_inner)),
-        "hole": ("pin_shaft_load", np.zeros_like(contacts.pin_shaft_load)),
-    }
+    found = {kind.load: np.zeros_like(getattr(solution.contacts, kind.load)) for kind in CONTACT_KINDS.values()}
     for pair in solution.model.pairs:
-        found[pair.kind][1][pair.index] = load.get(pair_name(pair), 0.0)
-    return {name: values.tolist() for name, values in found.values()}
+        found[CONTACT_KINDS[pair.kind].load][pair.index] = load.get(pair_name(pair), 0.0)
+    return {name: values.tolist() for name, values in found.items()}
 
 
 STEEL = Material(youngs_modulus=210e3, poisson_ratio=0.3)
@@ -167,7 +156,7 @@ class PressedRoller:
         return contact_modulus(STEEL, STEEL)
 
     def drop(self, place: FloatArray) -> FloatArray:
-        """Return how far the profile falls back at places along the length from the middle, mm."""
+        """Return the relief of the profile at places along the length from the middle, mm."""
         return np.zeros_like(place) if self.relief is None else np.asarray(self.relief.relief(place))
 
     def solved(self) -> tuple[float, float]:
@@ -177,7 +166,7 @@ class PressedRoller:
             law = LineContactLaw(self.length, self.modulus)
         else:
             law = ProfiledLineContactLaw.for_radii(self.relief, self.modulus, self.radius, self.radius)
-        approach = float(approach_at_load(law, np.array([self.load]), self.radius)[0][0])
+        approach = float(law.approach_at_load(np.array([self.load]), self.radius)[0][0])
         return float(law.mid_pressure(approach, self.radius)), approach
 
 
@@ -196,7 +185,7 @@ ROLLERS = (
 
 
 def has_tamaas() -> bool:
-    """Return whether tamaas can be asked here."""
+    """Return whether tamaas is installed."""
     return importlib.util.find_spec("tamaas") is not None
 
 
@@ -222,7 +211,7 @@ def our_rollers() -> Answer:
 
 
 def their_rollers() -> Answer:
-    """Let tamaas press them."""
+    """Press the rollers by tamaas."""
     return {roller.name: list(_press(roller)) for roller in ROLLERS}
 
 

@@ -1,4 +1,4 @@
-"""Level 2: today's code against other people's, asked where they are installed, else as stored with the command that did.
+"""Level 2: comparison with other codes, run where they are installed, else with stored answers.
 
 Our side is computed in every run. Only the other codes' answers are stored, in ``stored/other_codes.json``, each with the
 fingerprint of the problem it belongs to (`validation.levels.other_code_problems`); an answer to another problem is refused.
@@ -20,12 +20,14 @@ from typing import Any
 
 import numpy as np
 
+from fem.drive.contact_kinds import CONTACT_KINDS
+from ltca.drive.units.quantities import ARCSEC
 from ltca.errors import CycloError
 from ltca.output.files import write_json
 from ltca.output.processes import supervised
 from ltca.output.provenance import code_hash
 from ltca.output.regular_files import read_regular
-from validation.compare.comparison import ARCSECONDS, Kind, contact_name
+from validation.compare.comparison import contact_name
 from validation.levels.other_code_problems import CASE, CODES, CRANK_ANGLE, ROLLERS, Answer
 from validation.rows import Row
 
@@ -47,22 +49,11 @@ LIMITS = {
 
 @contextmanager
 def asked_codes(kept: Path | None = None) -> Iterator[Callable[[], list[Row]]]:
-    """Let the installed codes work in a process of their own while the block runs.
+    """Run the installed codes in a separate process while the block runs.
 
-    Parameters
-    ----------
-    kept : Path, optional
-        File that keeps their answers: those that belong to today's problems and code are not asked for again.
-
-    Yields
-    ------
-    callable
-        Computes our side, waits for their answers and returns the rows of level 2; missing codes answer as stored.
-
-    Raises
-    ------
-    CycloError
-        From the callable, when a code that is installed fails, or a stored answer belongs to another problem.
+    Yields a callable that computes our answers, waits for theirs and returns the rows of level 2; codes that are not
+    installed answer as stored. Answers that belong to today's problems and code are kept in the file `kept` and not asked for
+    again. The callable raises CycloError when an installed code fails, or a stored answer belongs to another problem.
     """
     known = {} if kept is None else read_kept(kept)
     asked = [name for name, code in CODES.items() if name not in known and code.installed()]
@@ -112,13 +103,7 @@ def fitting_answers(content: dict[str, Any]) -> dict[str, Answer]:
 
 
 def stored_answer(name: str) -> Answer:
-    """Return what a code answered when it was asked last and its answer stored.
-
-    Raises
-    ------
-    CycloError
-        When that belongs to another problem than today's.
-    """
+    """Return the stored answer of a code; CycloError when it belongs to another problem than today's."""
     content = json.loads((resources.files("validation.levels") / STORED).read_text(encoding="utf-8"))
     found = fitting_answers(content)
     if name not in found:
@@ -153,17 +138,7 @@ def with_problems(answers: dict[str, Answer]) -> dict[str, Any]:
 
 
 def compare_answers(name: str, ours: Answer, theirs: Answer, against: str) -> list[Row]:
-    """Return the rows of one code.
-
-    Parameters
-    ----------
-    name : {"CalculiX", "tamaas"}
-        The code.
-    ours, theirs : dict
-        Answers to its problem.
-    against : str
-        What the rows call the other side.
-    """
+    """Return the rows of one code ("CalculiX" or "tamaas"); `against` is the label of the other code."""
     return _drive_rows(ours, theirs, against) if name == "CalculiX" else _roller_rows(ours, theirs, against)
 
 
@@ -171,12 +146,9 @@ def _drive_rows(ours: Answer, theirs: Answer, against: str) -> list[Row]:
     place: dict[str, Any] = {
         "case": CASE, "crank_angle": CRANK_ANGLE, "model": "finite elements, coarse", "against": against,
     }  # fmt: skip
-    kinds: dict[str, Kind] = {
-        "pin_load": "pin", "roller_load": "roller_outer", "roller_load_inner": "roller_inner", "pin_shaft_load": "hole",
-    }  # fmt: skip
     rows = []
-    for name, kind in kinds.items():
-        own, other = np.array(ours[name]), np.array(theirs[name])
+    for kind, names in CONTACT_KINDS.items():
+        own, other = np.array(ours[names.load]), np.array(theirs[names.load])
         for part in np.flatnonzero((own > 0.0) | (other > 0.0)).tolist():
             value, reference = float(own[part]), float(other[part])
             difference = (value - reference) / float(other.max())
@@ -184,7 +156,7 @@ def _drive_rows(ours: Answer, theirs: Answer, against: str) -> list[Row]:
             rows.append(
                 _row("load of a contact of the whole drive", value, reference, "N", difference, "load", contact=contact, **place)
             )  # fmt: skip
-    value, reference = ours["wheel_angle"] * ARCSECONDS, theirs["wheel_angle"] * ARCSECONDS
+    value, reference = ours["wheel_angle"] * ARCSEC, theirs["wheel_angle"] * ARCSEC
     return [*rows, _row("wheel angle", value, reference, '"', value - reference, "wheel", difference_unit='"', **place)]
 
 

@@ -5,21 +5,21 @@ from __future__ import annotations
 import numpy as np
 
 from ltca.drive.parts import Drive
+from ltca.drive.units.quantities import ARCSEC
 from validation.compare.compared_positions import ComparedPosition
 from validation.compare.comparison import (
-    ARCSECONDS,
     KINDS,
     LOADED_SHARE,
     Kind,
     PositionAnswer,
     PositionDifference,
 )
+from validation.compare.model_positions import FULL
 from validation.rows import Row
 
 LOAD_LIMIT, PRESSURE_LIMIT, WHEEL_LIMIT = 5e-3, 2e-2, 0.3
 INTERPOLATED_LIMIT = 1e-2
 BETWEEN_STATIONS = 0.25
-FULL = "full FE"
 
 REASONS = {
     "load": "of the largest load of its kind; coefficients on meshes of their own, contacts as Hertz parabolas",
@@ -34,13 +34,7 @@ CAUSES = {
 
 
 def compare_position_rows(compared: ComparedPosition) -> list[Row]:
-    """Return the rows of one position, all models.
-
-    Parameters
-    ----------
-    compared : ComparedPosition
-        The position.
-    """
+    """Return the rows of one position for all models."""
     rows: list[Row] = []
     for model in compared.answers:
         rows += _contact_rows(compared, model)
@@ -49,7 +43,7 @@ def compare_position_rows(compared: ComparedPosition) -> list[Row]:
 
 
 class _Maker:
-    """Rows of one position and model."""
+    """Makes the rows of one position and model."""
 
     def __init__(self, compared: ComparedPosition, model: str) -> None:
         self.case, self.angle, self.model = compared.full.case, compared.full.crank_angle, model
@@ -119,12 +113,12 @@ def _body_rows(compared: ComparedPosition, model: str) -> list[Row]:
     answer, reference, difference = compared.answers[model], compared.full.answer, compared.differences[model]
     wheel = compared.drive.pin_wheel.pin_circle_radius
     lever, levers = _rotation_lever(compared.drive)
-    travel = WHEEL_LIMIT / ARCSECONDS * wheel
+    travel = WHEEL_LIMIT / ARCSEC * wheel
     rms = max(kind.rms_load for kind in difference.kinds.values())
     rows = [
         make.row("load differences, root mean square, worst kind", rms, None, "", rms, LOAD_LIMIT, REASONS["load"]),
         make.row(
-            "wheel angle", answer.wheel_angle * ARCSECONDS, reference.wheel_angle * ARCSECONDS, '"',
+            "wheel angle", answer.wheel_angle * ARCSEC, reference.wheel_angle * ARCSEC, '"',
             difference.wheel_angle, WHEEL_LIMIT, REASONS["wheel"], difference_unit='"',
         ),
         make.row(
@@ -133,7 +127,7 @@ def _body_rows(compared: ComparedPosition, model: str) -> list[Row]:
             difference_unit="µm",
         ),
         make.row(
-            "disc rotation", answer.disc_rotation * ARCSECONDS, reference.disc_rotation * ARCSECONDS, '"',
+            "disc rotation", answer.disc_rotation * ARCSEC, reference.disc_rotation * ARCSEC, '"',
             difference.disc_rotation, WHEEL_LIMIT * wheel / lever,
             f"as the wheel's, at the shorter lever of {levers}", difference_unit='"',
         ),
@@ -161,7 +155,7 @@ def _body_rows(compared: ComparedPosition, model: str) -> list[Row]:
 
 
 def _rotation_lever(drive: Drive) -> tuple[float, str]:
-    """Return the radius at which a disc is held against rotation, the longest where pins and cranks do, and its name."""
+    """Return the radius at which a disc is held against rotation, by pins or cranks the larger one, and its name."""
     shaft, circle = drive.pin_shaft, drive.crank.circle_radius or 0.0
     if shaft is not None and shaft.pin_circle_radius >= circle:
         return shaft.pin_circle_radius, "the shaft pins"
@@ -196,7 +190,7 @@ def _faint(answer: PositionAnswer, kind: Kind) -> int:
 
 
 def _interpolation_row(compared: ComparedPosition) -> Row:
-    """Return the worst load among contacts well between stations: nothing there was derived, all is interpolated."""
+    """Return the worst load among contacts well between stations, where the coefficients are interpolated."""
     worst, name, ours, theirs = 0.0, "", 0.0, 0.0
     for kind, distance in compared.station_distance.items():
         apart = compared.differences["fe"].kinds[kind]
@@ -220,12 +214,9 @@ def _interpolation_row(compared: ComparedPosition) -> Row:
 
 
 def shared_file_rows(positions: list[ComparedPosition]) -> list[Row]:
-    """Return what one file for all clearance cases costs: worst load, pressure and wheel angle of ``fe`` on it.
+    """Return the rows on the error of one file for all clearance cases: worst load, pressure and wheel angle of ``fe`` with it.
 
-    Parameters
-    ----------
-    positions : list of ComparedPosition
-        Of one case with clearance, with the coefficients of the disc without any.
+    The positions are of one case with clearance, compared with the coefficients of the disc without clearance.
     """
     cause = "what one file without clearances for all cases costs (cyclo derive --without-clearance); informs only"
     rows = []
@@ -239,7 +230,7 @@ def shared_file_rows(positions: list[ComparedPosition]) -> list[Row]:
              other.kinds[kind].load[number], "N", load, ""),
             ("peak pressure at mid-width, worst contact", difference.contact_name(pressed, place),
              own.kinds[pressed].pressure[place], other.kinds[pressed].pressure[place], "MPa", pressure, ""),
-            ("wheel angle", "", own.wheel_angle * ARCSECONDS, other.wheel_angle * ARCSECONDS, '"',
+            ("wheel angle", "", own.wheel_angle * ARCSEC, other.wheel_angle * ARCSEC, '"',
              difference.wheel_angle, '"'),
         ):  # fmt: skip
             rows.append(

@@ -1,4 +1,4 @@
-"""Other ways to balance a drive, which the paper has and comparisons use.
+"""Other methods to balance a drive, from the paper, for comparison.
 
 Modules in the order data passes:
 

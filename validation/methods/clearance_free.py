@@ -30,8 +30,8 @@ from scipy.sparse.linalg import SuperLU, splu
 from ltca.arrays import FloatArray
 from ltca.contact.hertz import line_half_width
 from ltca.contact.pressure_cells import PatchGrid, PatchSolution, end_grading, solve_patch
+from ltca.drive.engine_support import require
 from ltca.drive.parts import Drive, contact_modulus
-from ltca.drive.plane_strain import require_fixed_pins, require_frictionless, require_one_bore, require_rigid_members
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.first_contact import carrying_holes, carrying_rollers, first_contact
@@ -41,12 +41,12 @@ WHEEL = 3
 """Place of the wheel angle in the unknowns: behind the disc, before the rollers."""
 
 CELLS = 12
-PASSES = 4
-FACTORISATIONS = 60
+MAX_GRID_PASSES = 4
+MAX_FACTORISATIONS = 60
 LOADED_ZONE = np.radians(110.0)
 """Rollers this near the expected bearing force start as effective (θ_predict of Eq. 5)."""
-FITTED = 5e-3
-"""Change of the half-widths below which the grids are not laid anew."""
+HALF_WIDTH_TOLERANCE = 5e-3
+"""Relative change of the half-widths below which the grids are kept."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -111,18 +111,15 @@ def analyse_without_clearance(
     _refuse_clearance(drive)
     system = _System(drive, crank_angle, drive.wheel_moment(torque), cells)
     factorisations = 0
-    for _ in range(PASSES):
+    for _ in range(MAX_GRID_PASSES):
         factorisations += system.solve()
-        if system.refit_grids() < FITTED:
+        if system.refit_grids() < HALF_WIDTH_TOLERANCE:
             break
     return system.solution(factorisations)
 
 
 def _refuse_clearance(drive: Drive) -> None:
-    require_rigid_members(drive, "the clearance-free analysis")
-    require_frictionless(drive, "the clearance-free analysis")
-    require_fixed_pins(drive, "the clearance-free analysis")
-    require_one_bore(drive, "the clearance-free analysis")
+    require(drive, "clearance-free")
     problems = [
         f"clearance.{name} = {value:g} mm: must be 0 mm for the clearance-free analysis"
         for name, value in (("bearing", drive.clearance.bearing), ("pin_hole", drive.clearance.pin_hole))
@@ -173,7 +170,7 @@ class _Patch:
 
     @property
     def weights(self) -> FloatArray:
-        """Area for which each cell stands, all quarters together, mm²."""
+        """Area of each cell with its mirror images, mm²."""
         return self.grid.images * self.grid.areas.ravel()
 
     @property
@@ -284,7 +281,7 @@ class _System:
     def solve(self) -> int:
         """Solve with the present grids; return the number of factorisations."""
         history: list[float] = []
-        for count in range(1, FACTORISATIONS + 1):
+        for count in range(1, MAX_FACTORISATIONS + 1):
             floating = not self._factor_and_solve()
             changes = int(floating) + sum(patch.exchange(self.displacement) for patch in self.patches.values())
             opening = self.hole_carrying != (self.hole_approach + self.hole_direction @ self.displacement > 0.0)
@@ -315,7 +312,7 @@ class _System:
         try:
             solved = _factor(blocks, coupling, springs).solve(right)
         except RuntimeError:
-            # Too few cells are left to hold the disc: a soft ground tells where it goes and which cells it meets.
+            # Too few cells are left to hold the disc: a soft ground shows where it moves and which cells it meets.
             held = False
             ground = 1e-3 * self.hole_stiffness * np.eye(self.load.size)
             solved = _factor(blocks, coupling, springs + ground).solve(right)
@@ -341,7 +338,7 @@ class _System:
             if patch.load > 1e-2 * largest:
                 change = max(change, abs(found.half_width / patch.half_width - 1.0))
             patch.half_width = found.half_width
-        if change >= FITTED:
+        if change >= HALF_WIDTH_TOLERANCE:
             for patch in self.patches.values():
                 patch.lay_grid()
         return change

@@ -1,6 +1,6 @@
 """The iteration of the paper: wheel held, crank leads, Newton with finite-difference tangents (Eq. 43–46, 90–93).
 
-The wheel stands at φ_P; the unknowns are the displacements δ_r, δ_t of the disc centre from its ideal place, the
+The wheel is held at φ_P; the unknowns are the displacements δ_r, δ_t of the disc centre from its ideal place, the
 rotation δ_φ of the disc and the lead δ_φC of the crank. The residual is that of `ltca.equilibrium.balance`, on any
 compliance model. Mapped back: the actual crank angle is u φ_P + δ_φC and the wheel deviates from its ideal place
 there by −δ_φC/u. To give the answer at a requested actual crank angle the held φ_P is corrected from outside.
@@ -12,6 +12,7 @@ may fail, above all where a body floats free of contact and the tangent is singu
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,27 +20,26 @@ from numpy.typing import NDArray
 from ltca.arrays import FloatArray, take_positions
 from ltca.compliance.response import Response, Start
 from ltca.drive.parts import Drive
-from ltca.drive.plane_strain import require_one_bore, require_rigid_members
 from ltca.equilibrium.balance import Equilibrium, lever_arms, solve_equilibrium
 from ltca.equilibrium.newton import TOLERANCE
 from ltca.equilibrium.output_torque import balance_at_output
 from ltca.equilibrium.reducer import Reducer
-from ltca.errors import ConvergenceError, DriveError
+from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, disc_displacement
 
-ITERATIONS = 60
-START = 0.95
-"""Part of the torque whose solution the iteration starts from: near, but never the answer itself."""
-DIFFERENCE = 1e-6
+MAX_ITERATIONS = 60
+START_TORQUE_RATIO = 0.95
+"""Part of the torque whose solution is the starting point: near the answer, but not the answer."""
+DIFFERENCE_STEP = 1e-6
 """ε of Eq. 91 and 93, mm (rotations: by their lever arms): small against an approach, large against round-off."""
-CORRECTIONS = 12
-LABEL = 1e-11
+MAX_CORRECTIONS = 12
+CRANK_ANGLE_TOLERANCE = 1e-11
 """Largest difference of the actual crank angle from the requested one, rad: it moves loads by 1e-9 of themselves."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PaperIteration:
-    """Where the iteration of the paper ended for each position of a batch.
+    """Result of the iteration of the paper for each position of a batch.
 
     Attributes
     ----------
@@ -65,14 +65,7 @@ class PaperIteration:
 def pose_of_lead(model: Reducer, wheel_position: FloatArray, unknowns: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return actual crank angle and pose (`ltca.geometry.pairs`) of the unknowns of the paper (Eq. 45–46).
 
-    Parameters
-    ----------
-    model : Reducer
-        For its geometry.
-    wheel_position : array, shape (positions,)
-        Held φ_P, rad.
-    unknowns : array, shape (positions, 4)
-        δ_r, δ_t, δ_φ, δ_φC.
+    `wheel_position` is the held φ_P, rad, shape (positions,); the unknowns are δ_r, δ_t, δ_φ and δ_φC, shape (positions, 4).
     """
     place = model.discs[0].geometry.placement
     ideal = place.reduction_ratio * wheel_position
@@ -99,16 +92,10 @@ def lead_of_pose(model: Reducer, crank_angle: FloatArray, pose: FloatArray) -> t
 def iterate_held_wheel(
     model: Reducer, wheel_position: FloatArray, wheel_moment: FloatArray, unknowns: FloatArray
 ) -> PaperIteration:
-    """Iterate Eq. 90–93 at held wheel from given guesses; failures are told, not raised.
+    """Iterate Eq. 90–93 at held wheel from given guesses; failures are part of the result, not raised.
 
-    Parameters
-    ----------
-    model : Reducer
-        Loads at a pose: tables or grids.
-    wheel_position, wheel_moment : array, shape (positions,)
-        Held φ_P in rad, external moment on the wheel in N·mm.
-    unknowns : array, shape (positions, 4)
-        Guesses of δ_r, δ_t, δ_φ, δ_φC.
+    `wheel_position` is the held φ_P, rad, `wheel_moment` in N·mm, both of shape (positions,); the guesses are δ_r, δ_t, δ_φ
+    and δ_φC, shape (positions, 4).
     """
     try:
         return _iterate(model, wheel_position, wheel_moment, unknowns)
@@ -151,7 +138,7 @@ def _iterate(
     going = np.ones(count, dtype=bool)
     converged = np.zeros(count, dtype=bool)
     # δ_φC moves the disc's race by e δ_φC: its lever is e, not e z_P.
-    steps = DIFFERENCE / np.array([1.0, 1.0, lever[2], reach])
+    steps = DIFFERENCE_STEP / np.array([1.0, 1.0, lever[2], reach])
     start: Start | None = None
 
     def unbalanced(rows: NDArray[np.intp], values: FloatArray, before: Start | None) -> tuple[FloatArray, Response]:
@@ -161,7 +148,7 @@ def _iterate(
         residual[:, WHEEL_ANGLE] -= wheel_moment[rows]
         return residual / lever, response
 
-    for _ in range(ITERATIONS + 1):
+    for _ in range(MAX_ITERATIONS + 1):
         rows = np.nonzero(going)[0]
         residual, response = unbalanced(rows, guess[rows], start)
         size = np.max(np.abs(residual), axis=1)
@@ -189,7 +176,7 @@ def _iterate(
         if not np.any(going):
             break
     for row in np.nonzero(~converged)[0]:
-        failure[row] = failure[row] or f"no balance after {ITERATIONS} iterations"
+        failure[row] = failure[row] or f"no balance after {MAX_ITERATIONS} iterations"
     return PaperIteration(
         unknowns=guess,
         converged=converged,
@@ -202,28 +189,10 @@ def _iterate(
 def solve_paper_equilibrium(
     model: Reducer, crank_angle: FloatArray, wheel_moment: FloatArray | float, start: FloatArray
 ) -> Equilibrium:
-    """Balance every position by the iteration of the paper, at requested actual crank angles.
+    """Balance every position by the iteration of the paper, at requested actual crank angles (rad), from given poses.
 
-    Parameters
-    ----------
-    model : Reducer
-        Loads at a pose: tables or grids.
-    crank_angle : array, shape (positions,)
-        Actual φ_C that the answer shall have, rad.
-    wheel_moment : float or array, shape (positions,)
-        External moment on the wheel, N·mm.
-    start : array, shape (positions, 4)
-        Poses to start from.
-
-    Returns
-    -------
-    Equilibrium
-        As from `ltca.equilibrium.balance.solve_equilibrium`; iterations counts all Newton steps.
-
-    Raises
-    ------
-    ConvergenceError
-        When a position fails; the history holds its residuals in N.
+    `iterations` of the result counts all Newton steps. ConvergenceError when a position fails; the history holds its
+    residuals in N.
     """
     requested = np.atleast_1d(np.asarray(crank_angle, dtype=float))
     moment = np.broadcast_to(np.asarray(wheel_moment, dtype=float), requested.shape)
@@ -231,7 +200,7 @@ def solve_paper_equilibrium(
     wheel, unknowns = lead_of_pose(model, requested, start)
     steps = np.zeros(requested.size, dtype=np.intp)
     off: list[float] = []
-    for _ in range(CORRECTIONS):
+    for _ in range(MAX_CORRECTIONS):
         found = iterate_held_wheel(model, wheel, moment, unknowns)
         steps += found.iterations
         if not np.all(found.converged):
@@ -246,7 +215,7 @@ def solve_paper_equilibrium(
         actual, pose = pose_of_lead(model, wheel, unknowns)
         away = requested - actual
         off.append(float(np.max(np.abs(away))))
-        if off[-1] <= LABEL:
+        if off[-1] <= CRANK_ANGLE_TOLERANCE:
             response = model.respond(requested, pose)
             residual = response.force.copy()
             residual[:, WHEEL_ANGLE] -= moment
@@ -271,8 +240,10 @@ class HeldWheel:
     drive : Drive
         Of one disc.
     tables, model : Reducer
-        Where the iteration starts, and what it balances.
+        For the starting point, and the model that is balanced.
     """
+
+    batches: ClassVar[bool] = False
 
     drive: Drive
     tables: Reducer
@@ -282,7 +253,7 @@ class HeldWheel:
         """Return balanced positions at an output torque."""
 
         def iterate(angle: FloatArray, moment: FloatArray, begin: FloatArray | None) -> Equilibrium:
-            near = solve_equilibrium(self.tables, angle, START * moment, begin)
+            near = solve_equilibrium(self.tables, angle, START_TORQUE_RATIO * moment, begin)
             return solve_paper_equilibrium(self.model, angle, moment, near.pose)
 
         return balance_at_output(self.model, iterate, self.drive, crank_angle, torque, start)
@@ -294,19 +265,8 @@ def prepare(drive: Drive, tables: Reducer, model: Reducer) -> HeldWheel:
     Parameters
     ----------
     drive : Drive
-        At its temperatures.
+        At its temperatures, without anything that method paper refuses (`ltca.drive.engine_support`).
     tables, model : Reducer
         On tabulated laws, and what is to be balanced.
-
-    Raises
-    ------
-    DriveError
-        For what the iteration does not know: several discs or cranks, members that yield.
     """
-    require_rigid_members(drive, "method paper")
-    require_one_bore(drive, "method paper")
-    if len(model.discs) > 1:
-        raise DriveError(
-            [f"disc.number_of_discs = {len(model.discs)}: must be 1 for method paper, which knows one disc"]
-        )
     return HeldWheel(drive=drive, tables=tables, model=model)

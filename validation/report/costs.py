@@ -1,4 +1,4 @@
-"""What a position costs: full finite elements as measured when solved, the LTCA measured here."""
+"""Time of one position: full finite elements as measured when solved, the LTCA measured here."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def measure_costs(study: Study) -> Costs:
     models: dict[str, float] = {}
     for model in MODELS:
         seconds = []
-        for _ in range(REPEATS):  # the least disturbed by whatever else runs
+        for _ in range(REPEATS):  # the least disturbed by other processes
             start = time.perf_counter()
             analyse(drive, angles, engine=engine_of(model, coefficients))
             seconds.append(time.perf_counter() - start)

@@ -1,4 +1,4 @@
-"""The few figures to read first, and the files ``validation.json`` and ``rows.csv``."""
+"""The main figures, and the files ``validation.json`` and ``rows.csv``."""
 
 from __future__ import annotations
 
@@ -24,18 +24,10 @@ COLUMNS = (
 def headline(study: Study) -> dict[str, Any]:
     """Return the worst differences of each model and what the full solution changes.
 
-    Parameters
-    ----------
-    study : Study
-        A finished validation.
-
-    Returns
-    -------
-    dict
-        ``worst_difference_from_full_fe``: by compliance model the largest load difference (of the largest load of its
-        kind), pressure difference (relative) and wheel-angle difference (arc seconds), each with its place;
-        ``change_half_space_to_full_fe``: by case, relative change of the largest pin, roller and pin-shaft load
-        that it has; ``rows`` in all, ``checked`` by a limit, ``informing`` without one, and ``failed``.
+    ``worst_difference_from_full_fe``: by compliance model the largest load difference (of the largest load of its kind),
+    pressure difference (relative) and wheel-angle difference (arc seconds), with their places;
+    ``change_half_space_to_full_fe``: by case, relative change of the largest pin, roller and pin-shaft load that it has;
+    ``rows`` in all, ``checked`` by a limit, ``informing`` without one, and ``failed``.
     """
     positions = [item for case in study.compared.values() for item in case]
     return {
@@ -82,7 +74,7 @@ def validation_content(study: Study) -> dict[str, Any]:
         "cases": {case: drive.fingerprint() for case, drive in plan.drives.items()},
         "crank_angles_rad": [rounded(angle) for angle in plan.crank_angles],
         "depth": plan.level,
-        "element_size": plan.settings.size,
+        "element_size": plan.options.size,
         "levels": {str(level): title for level, title in LEVELS.items()},
         "headline": headline(study),
         "verdict": verdict_content(study),

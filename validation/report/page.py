@@ -1,4 +1,4 @@
-"""``report.html``: one page with everything in it, which opens offline."""
+"""``report.html``: one self-contained page."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from ltca.page.scene import drive_scene
 from ltca.page.tables import minus
 from ltca.page.writing import page_text, script_data, write_page
 from validation.compare.finite_element_positions import disc_case
-from validation.compare.model_positions import MODELS
+from validation.compare.model_positions import FULL, MODELS
 from validation.levels.flexible_disc import TITLES, judge_half_space, turn_content
 from validation.report.headline import headline
 from validation.report.scene import position_scene
-from validation.report.verdict import FULL, verdict_lines
+from validation.report.verdict import verdict_lines
 from validation.rows import LEVELS, Row
 from validation.study import Study
 
@@ -44,25 +44,7 @@ SHARED = (
 
 
 def write_report(study: Study, path: Path) -> Path:
-    """Write the page of a validation.
-
-    Parameters
-    ----------
-    study : Study
-        A finished validation.
-    path : Path
-        The page.
-
-    Returns
-    -------
-    Path
-        The page.
-
-    Raises
-    ------
-    CycloError
-        When it cannot be written.
-    """
+    """Write the page of a finished validation and return its path."""
     text = page_text(
         "report.html", _context(study), scripts=("drawing", "report"), styles=("report",), package="validation.report"
     )
@@ -73,7 +55,7 @@ def _context(study: Study) -> dict[str, Any]:
     plan, first = study.plan, next(iter(study.plan.drives.values()))
     positions = [position_scene(item) for items in study.compared.values() for item in items]
     data = {
-        "models": ["full FE", *MODELS],
+        "models": [FULL, *MODELS],
         "drives": {
             disc_case(case, disc, drive.disc.number_of_discs): drive_scene(single)
             for case, drive in plan.drives.items()
@@ -88,7 +70,7 @@ def _context(study: Study) -> dict[str, Any]:
         "cases": list(plan.drives),
         "angles": [_angle(angle) for angle in plan.crank_angles],
         "depth": plan.level,
-        "size": plan.settings.size,
+        "size": plan.options.size,
         "torque": f"{first.load.torque / 1000.0:g}",
         "headline": head,
         "worst": [_worst_line(model, head["worst_difference_from_full_fe"][model]) for model in MODELS],
@@ -171,7 +153,7 @@ def _level(number: int, rows: list[Row]) -> dict[str, Any]:
 
 
 def _condense(rows: list[Row]) -> list[tuple[Row, int]]:
-    """Return the row with the largest difference of each quantity, case and model, and how many it stands for."""
+    """Return the row with the largest difference of each quantity, case and model, and the number of rows it represents."""
     groups: dict[tuple[str, ...], list[Row]] = {}
     for row in rows:
         groups.setdefault((row.model, row.against, row.quantity, row.case), []).append(row)
@@ -225,7 +207,7 @@ def _pictures(study: Study) -> list[dict[str, str]]:
 
 
 def picture_name(path: Path) -> str:
-    """Return which picture a file is: of several discs its name begins with that of the disc.
+    """Return the picture in a file; with several discs the file name begins with the disc.
 
     Examples
     --------
@@ -236,7 +218,7 @@ def picture_name(path: Path) -> str:
 
 
 def _embedded(path: Path) -> str:
-    """Return a picture as a data address, made smaller for the page."""
+    """Return a picture as a data URL, scaled down for the page."""
     from PIL import Image
 
     with Image.open(path) as opened:

@@ -1,4 +1,4 @@
-"""What the report's own script draws: the drive at each position, with every contact's place, direction and numbers."""
+"""Data for the script of the report: the drive at each position, with place, direction and numbers of every contact."""
 
 from __future__ import annotations
 
@@ -7,10 +7,12 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from ltca.arrays import ComplexArray, FloatArray
+from ltca.drive.units.quantities import ARCSEC
 from ltca.geometry.pairs import ContactGeometry
 from ltca.page.scene import circles, point
 from validation.compare.compared_positions import ComparedPosition
-from validation.compare.comparison import ARCSECONDS, Kind, PositionAnswer
+from validation.compare.comparison import Kind, PositionAnswer
+from validation.compare.model_positions import FULL
 from validation.rows import rounded
 
 Line: TypeAlias = tuple[str, int, float | None]
@@ -18,20 +20,12 @@ Line: TypeAlias = tuple[str, int, float | None]
 
 
 def position_scene(compared: ComparedPosition) -> dict[str, Any]:
-    """Return one position: places of all parts and the contacts' numbers in all models.
+    """Return one position for the page: parts at the pose of the full solution and the contacts' numbers in all models.
 
-    Parameters
-    ----------
-    compared : ComparedPosition
-        The position.
-
-    Returns
-    -------
-    dict
-        Parts at the pose of the full solution; each contact with its place, the direction of the force on the disc (inner
-        race: on the roller) and, by model, load, pressure and half-width.
+    A contact has its place, the direction of the force on the disc (inner race: on the roller) and, by model, load, pressure and
+    half-width.
     """
-    answers = {"full FE": compared.full.answer, **compared.answers}
+    answers = {FULL: compared.full.answer, **compared.answers}
     parts = _places(compared)
     contacts = [
         {
@@ -105,7 +99,7 @@ def _numbers(answer: PositionAnswer, kind: Kind, number: int) -> list[float | No
 
 
 def _totals(answers: dict[str, PositionAnswer]) -> list[dict[str, Any]]:
-    """Return the lines of the table of what a position has one of, bearing forces of each crank."""
+    """Return the lines of the table of wheel, bearing forces, pose and number of contacts."""
     found: dict[str, list[Line]] = {model: _total_lines(answer) for model, answer in answers.items()}
     return [
         {"title": title, "digits": digits, "models": {model: lines[number][2] for model, lines in found.items()}}
@@ -126,11 +120,11 @@ def _total_lines(answer: PositionAnswer) -> list[Line]:
         ]
     counted: dict[str, Kind] = {"pins": "pin", "rollers": "roller_outer", "shaft pins": "hole"}
     return [
-        ("wheel angle, ″", 2, rounded(answer.wheel_angle * ARCSECONDS)),
+        ("wheel angle, ″", 2, rounded(answer.wheel_angle * ARCSEC)),
         *bearings,
         ("disc, radial, µm", 2, _short(1e3 * answer.disc_radial)),
         ("disc, tangential, µm", 2, _short(1e3 * answer.disc_tangential)),
-        ("disc rotation, ″", 2, _short(answer.disc_rotation * ARCSECONDS)),
+        ("disc rotation, ″", 2, _short(answer.disc_rotation * ARCSEC)),
         *(
             (f"loaded {name}", 0, float(answer.loaded(kind)))
             for name, kind in counted.items()

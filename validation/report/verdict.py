@@ -1,67 +1,46 @@
-"""What full solutions and models reach over all positions, judged by the limits of the drive file and its materials."""
+"""Largest loads and pressures over all positions, judged by the limits of the drive file and its materials."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
-import numpy as np
-
-from ltca.arrays import FloatArray
-from ltca.drive.members.judgement import Check, Value, judge
+from fem.drive.contact_kinds import CONTACT_KINDS
+from fem.reducer.verdict import Candidate, judge_largest, judged_contacts
+from ltca.drive.members.judgement import Check
 from ltca.drive.members.verdict_words import WORDS, check_content
 from validation.compare.compared_positions import ComparedPosition
 from validation.compare.comparison import Kind, PositionAnswer
-from validation.compare.model_positions import MODELS
+from validation.compare.model_positions import FULL, MODELS
 from validation.study import Study
-
-FULL = "full FE"
-QUANTITIES: tuple[tuple[str, str, tuple[Kind, ...]], ...] = (
-    ("pin_load", "load", ("pin",)),
-    ("roller_load", "load", ("roller_outer",)),
-    ("pin_shaft_load", "load", ("hole",)),
-    ("pin_pressure_mid", "pressure", ("pin",)),
-    ("roller_pressure_mid_outer", "pressure", ("roller_outer",)),
-    ("roller_pressure_mid_inner", "pressure", ("roller_inner",)),
-    ("pin_shaft_pressure_mid", "pressure", ("hole",)),
-)
-"""What is judged, what it is of a contact, and of which kinds."""
 
 
 def verdicts(study: Study) -> dict[str, dict[str, list[Check]]]:
-    """Return the checks of every case by model, the full solution first.
-
-    Parameters
-    ----------
-    study : Study
-        A finished validation.
-    """
-    found: dict[str, dict[str, list[Check]]] = {}
-    for case, items in study.compared.items():
-        limits = study.plan.limits.get(case, {})
-        found[case] = {}
-        for model in (FULL, *MODELS):
-            values = [value for spec in QUANTITIES if (value := _largest(items, model, *spec)) is not None]
-            told = {value.quantity for value in values} | {"roller_pressure_mid"}
-            own = {key: limit for key, limit in limits.items() if limit.quantity in told}
-            found[case][model] = judge(study.plan.drives[case], values, own)
-    return found
+    """Return the checks of every case of a finished validation by model, the full solution first."""
+    return {
+        case: {
+            model: judge_largest(
+                study.plan.drives[case],
+                {quantity: _candidates(items, model, quantity, kind) for quantity, kind, _ in judged_contacts()},
+                study.plan.limits.get(case, {}),
+            )
+            for model in (FULL, *MODELS)
+        }
+        for case, items in study.compared.items()
+    }
 
 
-def _largest(
-    items: list[ComparedPosition], model: str, quantity: str, name: str, kinds: tuple[Kind, ...]
-) -> Value | None:
-    best: Value | None = None
+def _candidates(items: list[ComparedPosition], model: str, quantity: str, kind: Kind) -> Iterator[Candidate]:
+    """Yield the loads or pressures of one kind, position by position."""
     for item in items:
         answer: PositionAnswer = item.full.answer if model == FULL else item.answers[model]
-        for kind in kinds:
-            each: FloatArray = getattr(answer.kinds[kind], name)
-            if not np.any(np.isfinite(each)):
-                continue
-            number = int(np.nanargmax(each))
-            if best is None or each[number] > (best.value or 0.0):
-                part = f"{answer.contact_name(kind, number)}, {item.full.case}"
-                best = Value(quantity=quantity, value=float(each[number]), part=part, crank_angle=item.full.crank_angle)
-    return best
+        contacts = answer.kinds[kind]
+        values = contacts.load if quantity == CONTACT_KINDS[kind].load else contacts.pressure
+
+        def name_of(number: int, answer: PositionAnswer = answer, case: str = item.full.case) -> str:
+            return f"{answer.contact_name(kind, number)}, {case}"
+
+        yield values, name_of, item.full.crank_angle
 
 
 def verdict_content(study: Study) -> dict[str, dict[str, list[dict[str, Any]]]]:

@@ -16,13 +16,12 @@ from ltca.analysis.engines import Engine, HalfSpace
 from ltca.arrays import FloatArray
 from ltca.drive.parts import Drive
 from ltca.equilibrium.friction.sticking import StickingFriction
-from ltca.equilibrium.friction.turning import TurningFriction
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 
-SMALLEST = 1e-4
-"""Smallest torque as a part of the largest: zero itself would leave the discs floating."""
+LEAST_TORQUE_RATIO = 1e-4
+"""Smallest torque relative to the largest: at zero the discs would float."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -81,15 +80,15 @@ def locked_path(
     angles, path = np.atleast_1d(np.asarray(crank_angle, dtype=float)), np.atleast_1d(np.asarray(torque, dtype=float))
     model = (HalfSpace() if engine is None else engine).prepare(drive).model
     friction = model.friction
-    if not isinstance(friction, TurningFriction):
+    if friction is None:
         raise DriveError(["friction: must be given for a loop, which only friction makes"])
     smooth = replace(model, friction=None)
-    found = solve_at_output(smooth, drive, angles, float(path[0]))
+    found = solve_at_output(smooth, [drive], angles, float(path[0]))
     state = StickingFriction.at_rest(friction, smooth, found)
     wound = [found.pose[:, WHEEL_ANGLE]]
     for before, value in pairwise(path):
         try:
-            found = solve_at_output(replace(model, friction=state), drive, angles, float(value), found.pose)
+            found = solve_at_output(replace(model, friction=state), [drive], angles, float(value), found.pose)
         except ConvergenceError as error:
             error.add(f"torque path from {before:g} to {value:g} N·mm")
             raise
@@ -138,7 +137,7 @@ def hysteresis_loop(
     if not 0.0 < lost_motion < amplitude:
         raise DriveError([f"lost_motion = {lost_motion:g}: must be greater than 0 and less than {amplitude:g}"])
     read = lost_motion / amplitude
-    up = np.unique(np.concatenate([np.linspace(SMALLEST**0.5, 1.0, points) ** 2, [read]]))
+    up = np.unique(np.concatenate([np.linspace(LEAST_TORQUE_RATIO**0.5, 1.0, points) ** 2, [read]]))
     once = np.concatenate([-up[::-1], up])
     path = drive.load.torque * amplitude * np.concatenate([up, once[::-1][1:], once[1:]])
     # A torque that turns the output ccw opposes a crank driving ccw with the wheel as output; the pin shaft turns back.

@@ -16,7 +16,7 @@ from ltca.compliance.response import bearing_pushes
 from ltca.drive.parts import Drive, PinShaft, PinWheel
 from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.friction.slip import Slip
-from ltca.equilibrium.friction.turning import TurningFriction, rubbing, seat_travel
+from ltca.equilibrium.friction.turning import rubbing, seat_travel
 from ltca.equilibrium.output_torque import crank_moments
 from ltca.equilibrium.reducer import Reducer
 
@@ -124,7 +124,7 @@ def losses(model: Reducer, drive: Drive, found: Equilibrium, torque: float | Flo
         When nothing rubs in the model.
     """
     friction, coefficients = model.friction, drive.friction
-    if not isinstance(friction, TurningFriction) or coefficients is None:
+    if friction is None or not friction.turns or coefficients is None:
         raise ValueError("losses are those of a drive with friction that turns")
     angle, parts = found.crank_angle, found.response.parts
     force = np.abs(np.stack([part.friction for part in parts if part.friction is not None]))

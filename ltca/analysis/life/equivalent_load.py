@@ -31,11 +31,11 @@ from ltca.arrays import FloatArray
 HARMONICS = 24
 """Highest harmonic around a race: zones of load are wider than the distance of two rollers."""
 _PLACES = 4 * HARMONICS
-DAMAGE = 4.0
+DAMAGE_EXPONENT = 4.0
 """Exponent of the load over the time at one place."""
-TOGETHER = 50_000
-"""Loads that are summed at once: each takes a kilobyte meanwhile."""
-WEIBULL = 9.0 / 8.0
+LOADS_PER_CHUNK = 50_000
+"""Number of loads summed at once: each takes a kilobyte."""
+WEIBULL_SLOPE = 9.0 / 8.0
 """Slope of line contact: exponent of the damage over the places."""
 
 
@@ -58,16 +58,16 @@ def race_load(load: FloatArray, place: FloatArray, laminae: Laminae) -> float:
     largest = float(np.max(size))
     order = np.arange(HARMONICS + 1)
     series = np.zeros((order.size, laminae.weights.size), dtype=complex)
-    for first in range(0, size.size, TOGETHER):
-        few = slice(first, first + TOGETHER)
+    for first in range(0, size.size, LOADS_PER_CHUNK):
+        few = slice(first, first + LOADS_PER_CHUNK)
         shares = laminae.shares(np.append(size[few], largest))[:-1]  # solved around the largest of all
-        damage = ((size[few] / largest)[:, None] * shares) ** DAMAGE
+        damage = ((size[few] / largest)[:, None] * shares) ** DAMAGE_EXPONENT
         series += np.exp(-1j * np.outer(order, at[few])) @ damage / load.size
     series[1:] *= 2.0
     around = np.exp(2j * np.pi * np.outer(np.arange(_PLACES), order) / _PLACES)
     over_time = np.maximum((around @ series).real, 0.0)  # a cut series may dip below zero where nothing presses
-    over_places = float((over_time**WEIBULL).mean(axis=0) @ laminae.weights)
-    return float(largest * over_places ** (1.0 / (DAMAGE * WEIBULL)))
+    over_places = float((over_time**WEIBULL_SLOPE).mean(axis=0) @ laminae.weights)
+    return float(largest * over_places ** (1.0 / (DAMAGE_EXPONENT * WEIBULL_SLOPE)))
 
 
 def covers_whole_turns(crank_angle: FloatArray) -> bool:

@@ -30,9 +30,9 @@ from ltca.contact.pressure_cells import PatchGrid, PatchSolution, expected_half_
 
 LAMINAE = 31
 """n_s, odd: one in the middle and pairs beside it."""
-RUNG = 1.4
+APPROACH_RATIO = 1.4
 """Ratio of neighbouring approaches at which a contact is solved; between them shares follow the logarithm of the load."""
-LIGHTEST = 0.05
+LEAST_LOAD_RATIO = 0.05
 """Part of the largest load below which shares are held: what is left out is 0.05⁴ of the damage."""
 _CELLS, _GUESS_CELLS = 8, 5
 _PER_LAMINA, _IN_LAST, _LAST_GRADING = 2, 8, 3.0
@@ -57,9 +57,9 @@ class Laminae(Protocol):
         ...
 
 
-def pair_weights(laminae: int = LAMINAE) -> FloatArray:
+def pair_weights() -> FloatArray:
     """Return the parts of the length from the middle outward: one slice, then pairs of them."""
-    return np.array([1.0] + [2.0] * (laminae // 2)) / laminae
+    return np.array([1.0] + [2.0] * (LAMINAE // 2)) / LAMINAE
 
 
 def edge_factors(laminae: int = LAMINAE) -> FloatArray:
@@ -129,14 +129,14 @@ class SolvedLaminae:
         return np.asarray(found / (found @ self.weights)[:, None])
 
     def _solved(self, largest: float) -> tuple[FloatArray, FloatArray]:
-        """Loads and shares of the contacts around [LIGHTEST, 1] of the largest load, ascending."""
+        """Loads and shares of the contacts around [LEAST_LOAD_RATIO, 1] of the largest load, ascending."""
         # An approach of any power of the rung: every load of a drive is served by the same contacts.
         rough = largest / (self.contact_modulus * self.length)
-        first = int(np.floor(np.log(rough / self._height) / np.log(RUNG)))
+        first = int(np.floor(np.log(rough / self._height) / np.log(APPROACH_RATIO)))
         found = {first: self._at(first)}
         while found[max(found)][0] < largest:
             found[max(found) + 1] = self._at(max(found) + 1)
-        while found[min(found)][0] > LIGHTEST * largest:
+        while found[min(found)][0] > LEAST_LOAD_RATIO * largest:
             found[min(found) - 1] = self._at(min(found) - 1)
         rungs = [found[number] for number in sorted(found)]
         return np.array([load for load, _ in rungs]), np.array([row for _, row in rungs])
@@ -148,7 +148,7 @@ class SolvedLaminae:
 
     def _at(self, number: int) -> tuple[float, FloatArray]:
         """Load and shares at a rung."""
-        approach, unit = RUNG**number, self.contact_modulus
+        approach, unit = APPROACH_RATIO**number, self.contact_modulus
         if self.profile is not None:
             load, row = solve_laminae(self.profile, self.length, self.effective_radius, self._height * approach)
         else:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-LARGEST = 50.0
+MAX_LIFE_FACTOR = 50.0
 """Bound of a_ISO."""
 FULL_FILM = 4.0
 """Viscosity ratio above which more gives no more."""
@@ -52,5 +52,5 @@ def life_modification_factor(viscosity_ratio: float, contamination: float, limit
     factor, exponent = next(row[1:] for row in _BRANCHES if ratio < row[0])
     left = 1.0 - (1.5859 - factor * ratio**-exponent) * (contamination * limit_ratio) ** 0.4
     if left <= 0.0:
-        return LARGEST
-    return float(min(0.1 * left**-9.185, LARGEST))
+        return MAX_LIFE_FACTOR
+    return float(min(0.1 * left**-9.185, MAX_LIFE_FACTOR))

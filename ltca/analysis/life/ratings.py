@@ -13,9 +13,9 @@ BEARING_STEEL = 1.1
 """b_m of ISO 281 for radial cylindrical roller bearings."""
 INNER_SHARE, OUTER_SHARE = 0.378, 0.364
 """Radial load by Z times the equivalent roller load of a race that turns and of one that stands (ISO 16281:2025)."""
-STATIC = 44.0
+STATIC_RATING_FACTOR = 44.0
 """Factor of the static rating of radial roller bearings, N/mm² (ISO 76)."""
-FATIGUE = 8.2
+FATIGUE_LIMIT_RATIO = 8.2
 """Static rating by the fatigue load limit C_u of roller bearings (ISO 281, B.3.3)."""
 LARGE_PITCH_DIAMETER = 100.0
 """Pitch diameter above which C_u falls behind, mm."""
@@ -130,13 +130,15 @@ class RollerBearing:
     @property
     def static_load_rating(self) -> float:
         """C_0r = 44 (1 − γ) Z L_we D_we, N (ISO 76, one row, α = 0)."""
-        return STATIC * (1.0 - self.slenderness) * self.rollers * self.roller_length * self.roller_diameter
+        return (
+            STATIC_RATING_FACTOR * (1.0 - self.slenderness) * self.rollers * self.roller_length * self.roller_diameter
+        )
 
     @property
     def fatigue_load_limit(self) -> float:
         """C_u = C_0/8.2, less by (100 mm/D_pw)^0.3 above a pitch diameter of 100 mm, N (ISO 281, B.3.3)."""
         size = max(self.pitch_diameter / LARGE_PITCH_DIAMETER, 1.0)
-        return float(self.static_load_rating / FATIGUE * size**-0.3)
+        return float(self.static_load_rating / FATIGUE_LIMIT_RATIO * size**-0.3)
 
     def race_ratings(self, dynamic_load_rating: float | None = None) -> RaceRatings:
         """Return Q_ci and Q_ce of ISO 16281:2025: C_r/(0.378 λν Z) and C_r/(0.364 λν Z) with their parts of the joined life.

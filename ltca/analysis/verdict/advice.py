@@ -2,8 +2,8 @@
 
 Every input is changed by a little, with what belongs to it, and the drive is solved again, on half-spaces: elasticities
 d ln v/d ln x of all values come from one solution for each input. What a change would have to be follows from a power law,
-so it is about as much as said; nothing is said of changes beyond `FARTHEST`, nor of such that make no drive. Of counts it is the
-next whole number; those of wheel pins and teeth are the ratio, and no advice.
+so the change is approximate; nothing is said of changes beyond `MAX_FACTOR`, nor of such that make no drive. Of counts it is
+the next whole number; those of wheel pins and teeth are the ratio, and no advice.
 """
 
 from __future__ import annotations
@@ -24,16 +24,16 @@ from ltca.drive.units.table import label
 from ltca.errors import CycloError
 from ltca.reading.changes import with_fields
 
-STEP = 0.01
-"""Change of an input, as a part of it; half of it where the whole makes no drive."""
-FARTHEST = 3.0
-"""Factor on an input up to which a power law is followed."""
-FARTHEST_SIZE = 10.0
-"""The same of all sizes together, which keep the shape."""
-LEAST = 0.02
+RELATIVE_STEP = 0.01
+"""Relative change of an input; half of it where the whole makes no drive."""
+MAX_FACTOR = 3.0
+"""Largest factor on an input for which the power law is used."""
+MAX_SIZE_FACTOR = 10.0
+"""Largest factor on all sizes together, which keeps the shape."""
+LEAST_ELASTICITY = 0.02
 """Elasticity below which an input is not said to drive a value."""
-TOLD = 3
-"""Inputs that are told of each value."""
+MAX_INPUTS = 3
+"""Number of inputs named for each value."""
 TORQUE, SIZES = "load.torque", "all sizes"
 
 
@@ -48,7 +48,7 @@ class Driver:
     elasticity : float
         d ln value/d ln input.
     change : str
-        What would bring the value to its limit, in words; empty where nothing within `FARTHEST` does.
+        What would bring the value to its limit, in words; empty where nothing within `MAX_FACTOR` does.
     factor : float or None
         The same as a factor.
     """
@@ -73,7 +73,7 @@ class _Input:
         """Changes to try, by the input: the first that makes a drive is taken."""
         if self.is_count and self.start:
             return (1.0 / self.start, -1.0 / self.start)
-        return (STEP, -STEP, 0.5 * STEP, -0.5 * STEP)
+        return (RELATIVE_STEP, -RELATIVE_STEP, 0.5 * RELATIVE_STEP, -0.5 * RELATIVE_STEP)
 
 
 def advise(
@@ -122,7 +122,7 @@ def advise(
             if not before or not after or before * after <= 0.0:
                 continue
             elasticity = log(after / before) / log(1.0 + step)
-            if abs(elasticity) >= LEAST:
+            if abs(elasticity) >= LEAST_ELASTICITY:
                 found[quantity].append(_driver(drive, one, elasticity, check, part))
     return {
         quantity: sorted(drivers, key=lambda driver: -abs(driver.elasticity)) for quantity, drivers in found.items()
@@ -131,9 +131,9 @@ def advise(
 
 def _driver(drive: Drive, one: _Input, elasticity: float, check: Check, part: float) -> Driver:
     safety = check.safety
-    farthest, whole = FARTHEST, 1.0
+    farthest, whole = MAX_FACTOR, 1.0
     if one.name == SIZES:  # which are told for the whole torque: at equal stress torques grow with their cube
-        farthest, whole = FARTHEST_SIZE, part ** (-1.0 / 3.0)
+        farthest, whole = MAX_SIZE_FACTOR, part ** (-1.0 / 3.0)
     elif part < 1.0 and one.name != TORQUE:
         safety = None
     # A play is what sizes leave less what others take: a power law goes past its end.

@@ -5,24 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
+from ltca.analysis.life.bearing_lives import at_entry
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.analysis.summary import summarise
 from ltca.drive.members.judgement import Value
 from ltca.errors import DriveError
-
-BY_LOAD = frozenset(
-    (
-        "pin_load", "roller_load", "pin_shaft_load", "bearing_load", "pin_pressure_mid", "pin_shaft_pressure_mid",
-        "roller_pressure_mid_outer", "roller_pressure_mid_inner", "pin_seat_pressure", "hole_seat_pressure", "disc_shear",
-        "core_shear", "shear_depth", "wheel_pin_bending_amplitude", "shaft_pin_bending_amplitude",
-        "wheel_pin_bending_stress", "wheel_pin_shear_stress", "shaft_pin_bending_stress",
-        "shaft_pin_shear_stress", "root_stress", "bore_stress", "hole_stress", "power_loss", "pin_pv", "pin_shaft_pv",
-        "pin_seat_pv", "hole_seat_pv", "half_width_ratio", "contact_strain", "pin_deflection", "shaft_pin_deflection",
-        "bearing_deflection", "crank_deflection", "wheel_deflection", "bearing_deflection_by_clearance",
-        "crank_deflection_by_clearance", "wheel_deflection_by_clearance",
-    )
-)  # fmt: skip
-"""Quantities that torque and speed raise, and of which the largest of all entries counts."""
+from ltca.quantities import LIMITED
 
 FindValues = Callable[..., list[Value]]
 
@@ -53,7 +41,7 @@ def worst_of_duty(analysis: LoadedAnalysis, values: Sequence[Value], find_values
             continue
         others = {one.quantity: one for one in find_values(entry, summarise(entry), lives=False)}
         for at, value in enumerate(found):
-            other = others.get(value.quantity, value) if value.quantity in BY_LOAD else value
+            other = others.get(value.quantity, value) if LIMITED[value.quantity].by_load else value
             if other.value is not None and (value.value is None or other.value > value.value):
                 found[at] = replace(other, part=f"{other.part} in duty.{number}".strip())
     return found
@@ -63,8 +51,6 @@ def _heavier(analysis: LoadedAnalysis) -> Iterator[tuple[int, LoadedAnalysis | D
     """Entries that are heavier or quicker than the load, solved at the same positions by the same engine."""
     if not analysis.drive.duty:
         return
-    from ltca.analysis.life.bearing_lives import at_entry
-
     drive, speed = analysis.drive, analysis.drive.load.speed
     for number, entry in enumerate(drive.duty):
         quicker = drive.friction is not None and (

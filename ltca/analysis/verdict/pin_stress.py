@@ -22,11 +22,11 @@ import numpy as np
 
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.arrays import ComplexArray, FloatArray
-from ltca.geometry.coordinates import DISC_PLACE, WHEEL_ANGLE
+from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.laws.backed import from_start, shaft_pin_beam, wheel_pin_beam
 
-PLACES = 201
-"""Places along a pin at which moments are looked at, besides its ends and the edges of the discs."""
+STATIONS = 201
+"""Stations along a pin at which moments are evaluated, besides its ends and the edges of the discs."""
 
 
 FIBRES = 36
@@ -82,16 +82,10 @@ def pin_stress(analysis: LoadedAnalysis, pins: Literal["wheel", "shaft"]) -> Pin
         return None
     planes, width = from_start(beam, drive).tolist(), drive.disc.thickness
     edges = [edge for plane in planes for edge in (plane - 0.5 * width, plane + 0.5 * width)]
-    at = np.unique(np.concatenate([np.linspace(0.0, beam.span, PLACES), np.clip(edges, 0.0, beam.span)]))
-    forces = []
-    for part in analysis.full.response.parts:
-        motion, load = (part.flank, part.pin_load) if pins == "wheel" else (part.holes, part.hole_load)
-        vector = load[..., None] * motion.gradient[..., DISC_PLACE]
-        if part.friction is not None:
-            count = part.pin_load.shape[1]
-            rubbed = part.friction[:, :count] if pins == "wheel" else part.friction[:, count:]
-            vector = vector + rubbed[..., None] * motion.along[..., DISC_PLACE]
-        forces.append(vector[..., 0] + 1j * vector[..., 1])
+    at = np.unique(np.concatenate([np.linspace(0.0, beam.span, STATIONS), np.clip(edges, 0.0, beam.span)]))
+    parts = analysis.full.response.parts
+    count = parts[0].pin_load.shape[1]
+    forces = [part.pin_forces[:, :count] if pins == "wheel" else part.pin_forces[:, count:] for part in parts]
     # A pin gives way as the disc presses; a tied tip goes with its ring.
     tip = np.zeros_like(forces[0])
     coordinates = analysis.model.coordinates

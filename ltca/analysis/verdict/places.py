@@ -24,22 +24,10 @@ def largest_value(
     refined: float | None = None,
     discs: int | None = None,
 ) -> Value:
-    """Return the largest of values by position and pair; the refined one where there is one, at the place of the sampled.
+    """Return the largest of values, shape (positions, pairs), as a limited quantity with its part and crank angle.
 
-    Parameters
-    ----------
-    analysis : LoadedAnalysis
-        Whose positions these are.
-    quantity : str
-        One of `ltca.quantities.LIMITED`.
-    values : array, shape (positions, pairs)
-        Those of disc 0 first.
-    name : str
-        What a pair is called.
-    refined : float, optional
-        Largest between the positions.
-    discs : int, optional
-        How many discs' pairs there are; all by default.
+    Pairs are those of disc 0 first, of all discs unless `discs` says of how many; `name` is what a pair is called. A larger value
+    between the positions, `refined`, counts at the place of the sampled one.
     """
     if not np.any(np.isfinite(values)):
         return Value(quantity=quantity, value=None, reason="the engine cannot say it")

@@ -15,10 +15,10 @@ from math import pi, sin
 
 from ltca.drive.parts import Drive
 
-ALIKE = 1.6
-"""Numbers of pins by which drives are compared differ by less than this factor: pins stand closer the more there are."""
-BESIDE = 0.1
-"""Part by which a proportion has to be beside the span before it is told."""
+PIN_NUMBER_FACTOR = 1.6
+"""Largest ratio between the numbers of pins of drives that are compared: pins stand closer the more there are."""
+SPAN_MARGIN = 0.1
+"""Relative distance from the published span from which a proportion is reported."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -67,7 +67,11 @@ def _odd(drive: Drive) -> Iterator[str]:
             f"e z_P/R_C, is {told[0]}, in published drives {told[1]}; with {0.5 * wheel.pin_circle_radius:g} mm it were "
             f"{told[2]}: is it a diameter?"
         )
-    alike = [one for one in _published() if 1.0 / ALIKE < one.number_of_pins / wheel.number_of_pins < ALIKE]
+    alike = [
+        one
+        for one in _published()
+        if 1.0 / PIN_NUMBER_FACTOR < one.number_of_pins / wheel.number_of_pins < PIN_NUMBER_FACTOR
+    ]
     spacing = [_spacing(one) for one in alike]
     if spacing and (told := _beside(_spacing(own), spacing)):
         yield (
@@ -80,7 +84,7 @@ def _odd(drive: Drive) -> Iterator[str]:
 def _beside(value: float, published: list[float]) -> tuple[str, str, str] | None:
     """The value, the span and what it were with a radius halved, where it is below the span."""
     low, high = min(published), max(published)
-    if value >= (1.0 - BESIDE) * low:
+    if value >= (1.0 - SPAN_MARGIN) * low:
         return None
     return f"{value:.3g}", f"{low:.3g} … {high:.3g}", f"{2.0 * value:.3g}"
 

@@ -7,8 +7,12 @@ from math import isfinite
 
 import numpy as np
 
+from ltca.analysis.contact_arrays import PARTS, contact_arrays
 from ltca.analysis.extremes import RESOLVED
 from ltca.analysis.half_width_guard import HALF_WIDTH_BOUND
+from ltca.analysis.life.bearing_lives import bearing_lives
+from ltca.analysis.life.equivalent_load import covers_whole_turns
+from ltca.analysis.life.life_text import life_summary
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.analysis.results import case_arrays
 from ltca.analysis.summary import refined_value
@@ -24,7 +28,7 @@ from ltca.drive.members.limits import Limit
 from ltca.drive.single_discs import single_discs
 from ltca.errors import DriveError
 from ltca.geometry.play import preload_words
-from ltca.quantities import LIMITED
+from ltca.quantities import LIMITED, QUANTITIES
 
 DEMANDED = {
     limit.quantity: limit
@@ -40,22 +44,17 @@ DEMANDED = {
     )
 }  # fmt: skip
 """What theories demand, by quantity."""
+OF_LOADS = (
+    "pin_load", "roller_load", "pin_shaft_load", "bearing_load", "pin_pressure_mid", "roller_pressure_mid_outer",
+    "roller_pressure_mid_inner", "pin_shaft_pressure_mid",
+)  # fmt: skip
+"""Loads and pressures that may be limited, in the order of the verdict."""
 LIVES = ("bearing_life_million_turns", "bearing_life_hours", "bearing_life_modified_hours", "static_safety_S0")
 """What `ltca.analysis.life` tells."""
 
 
 def find_values(analysis: LoadedAnalysis, summary: Mapping[str, float | None], *, lives: bool = True) -> list[Value]:
-    """Return everything that may be judged of one case.
-
-    Parameters
-    ----------
-    analysis : LoadedAnalysis
-        The case.
-    summary : mapping of str to (float or None)
-        Its scalars (`ltca.analysis.summary.summarise`).
-    lives : bool
-        Whether lives of the crank bearings are wanted, which take a second.
-    """
+    """Return everything that may be judged of one case and its summary; bearing lives, which take 1 s, on demand."""
     found = [*_of_shape(analysis), *_of_loads(analysis, summary), *_of_pins(analysis), *_of_walls(analysis)]
     found += _of_lives(analysis) if lives else []
     return [*found, *_of_theory(analysis, summary), *assembly_values(analysis), *_of_friction(analysis, summary)]
@@ -64,15 +63,7 @@ def find_values(analysis: LoadedAnalysis, summary: Mapping[str, float | None], *
 def judge_analysis(
     analysis: LoadedAnalysis, summary: Mapping[str, float | None], limits: Mapping[str, Limit], *, lives: bool = True
 ) -> list[Check]:
-    """Return the checks of one case.
-
-    Parameters
-    ----------
-    analysis, summary, lives
-        As for `find_values`; lives that have a limit are told in any case.
-    limits : mapping of str to Limit
-        Of the drive file.
-    """
+    """Return the checks of one case against the limits of its drive file; lives that have a limit are judged in any case."""
     wanted = lives or any(limit.quantity in LIVES for limit in limits.values())
     values = worst_of_duty(analysis, find_values(analysis, summary, lives=wanted), find_values)
     return judge(analysis.drive, values, limits, DEMANDED)
@@ -128,7 +119,7 @@ def _disc(number: int, discs: list[object] | tuple[object, ...]) -> str:
 
 
 def _of_loads(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) -> Iterator[Value]:
-    contacts, pressures, angle = analysis.full.response, analysis.pressures, analysis.full.crank_angle
+    angle = analysis.full.crank_angle
     for quantity in ("backlash_disc", "backlash_wheel", "interference"):
         yield Value(quantity=quantity, value=summary[LIMITED[quantity].key])
     play = summary["backlash_output_arcmin"]
@@ -144,16 +135,9 @@ def _of_loads(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) -> 
     yield Value(quantity="mean_loaded_pins", value=summary["mean_loaded_pins"])
     yield Value(quantity="ptp_transmission_error", value=refined_value(summary, LIMITED["ptp_transmission_error"].key))
     bearing = np.hypot(analysis.bearing_radial, analysis.bearing_tangential).reshape(angle.size, -1)
-    for quantity, each, name in (
-        ("pin_load", contacts.pin_load, "wheel pin"),
-        ("roller_load", contacts.rollers.outer_load, "roller"),
-        ("pin_shaft_load", contacts.hole_load, "shaft pin"),
-        ("bearing_load", bearing, "bearing"),
-        ("pin_pressure_mid", pressures.pins.mid, "wheel pin"),
-        ("roller_pressure_mid_outer", pressures.outer.mid, "roller"),
-        ("roller_pressure_mid_inner", pressures.inner.mid, "roller"),
-        ("pin_shaft_pressure_mid", pressures.holes.mid, "shaft pin"),
-    ):
+    arrays = contact_arrays(analysis.full.response, analysis.pressures) | {"bearing_load": bearing}
+    for quantity in OF_LOADS:
+        each, name = arrays[quantity], PARTS.get(QUANTITIES[quantity].of, "bearing")
         if each.shape[1]:
             yield largest_value(analysis, quantity, each, name, refined_value(summary, LIMITED[quantity].key))
 
@@ -170,19 +154,14 @@ def _of_pins(analysis: LoadedAnalysis) -> Iterator[Value]:
             else:
                 yield largest_value(analysis, quantity, getattr(stress, kind), name, discs=1)
     arrays = case_arrays(analysis)
-    for quantity, variable, name in (
-        ("pin_seat_pressure", "pin_seat_pressure_max", "wheel pin"),
-        ("hole_seat_pressure", "hole_seat_pressure_max", "shaft pin"),
-        ("pin_deflection", "pin_deflection", "wheel pin"),
-        ("shaft_pin_deflection", "shaft_pin_deflection", "shaft pin"),
-    ):
+    for quantity in ("pin_seat_pressure", "hole_seat_pressure", "pin_deflection", "shaft_pin_deflection"):
+        variable = LIMITED[quantity].of
         if variable in arrays:
+            name = PARTS[QUANTITIES[variable].of]
             yield largest_value(analysis, quantity, np.concatenate(arrays[variable], axis=1), name)
 
 
 def _bending_fatigue(analysis: LoadedAnalysis, stress: PinStress | None, pins: str) -> Value:
-    from ltca.analysis.life.equivalent_load import covers_whole_turns
-
     quantity = f"{pins}_pin_bending_amplitude"
     if stress is None:
         return Value(quantity=quantity, value=None, reason=f"{pins} pins are no beams (pin_{pins}.beam)")
@@ -204,21 +183,17 @@ def _of_walls(analysis: LoadedAnalysis) -> Iterator[Value]:
         parts = [np.asarray(getattr(walls_of, wall)) for walls_of in analysis.wall_stresses]
         each = np.concatenate([part.reshape(part.shape[0], -1) for part in parts], axis=1)
         if np.any(np.isfinite(each)):
-            yield largest_value(
-                analysis, f"{wall}_stress", each, {"root": "lobe", "bore": "bore", "hole": "hole"}[wall]
-            )
+            yield largest_value(analysis, f"{wall}_stress", each, "lobe" if wall == "root" else wall)
     pressures = analysis.pressures
-    shear = [
-        (line_contact_shear(kind.mid, np.zeros_like(kind.mid)), name)
-        for kind, name in ((pressures.pins, "wheel pin"), (pressures.outer, "roller"), (pressures.holes, "shaft pin"))
-        if kind.mid.size
-    ]
-    yield most_of(largest_value(analysis, "disc_shear", each, f"below {name}") for each, name in shear)
     kinds = [
         (kind, f"below {name}")
         for kind, name in ((pressures.pins, "wheel pin"), (pressures.outer, "roller"), (pressures.holes, "shaft pin"))
-        if kind.half_width.size
+        if kind.mid.size
     ]
+    yield most_of(
+        largest_value(analysis, "disc_shear", line_contact_shear(kind.mid, np.zeros_like(kind.mid)), name)
+        for kind, name in kinds
+    )
     yield most_of(
         largest_value(analysis, "shear_depth", LINE_SHEAR_DEPTH * kind.half_width, name) for kind, name in kinds
     )
@@ -232,10 +207,6 @@ def _of_walls(analysis: LoadedAnalysis) -> Iterator[Value]:
 
 def _of_lives(analysis: LoadedAnalysis) -> Iterator[Value]:
     """Shortest life and least static safety of the crank bearings, of positions that cover whole turns."""
-    from ltca.analysis.life.bearing_lives import bearing_lives
-    from ltca.analysis.life.equivalent_load import covers_whole_turns
-    from ltca.analysis.life.life_text import life_summary
-
     named = [name for name in LIVES if "modified" not in name or analysis.drive.lubricant is not None]
     if not covers_whole_turns(analysis.full.crank_angle):
         told = "positions cover no whole turns"
@@ -290,16 +261,11 @@ def _of_friction(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) 
         value = summary[LIMITED[quantity].key]
         yield Value(quantity=quantity, value=value, reason="there is no speed (load.speed)" if value is None else "")
     values = case_arrays(analysis)
-    for quantity, part in (
-        ("pin_pv", "wheel pin"),
-        ("pin_seat_pv", "wheel pin"),
-        ("pin_shaft_pv", "shaft pin"),
-        ("hole_seat_pv", "shaft pin"),
-    ):
+    for quantity in ("pin_pv", "pin_seat_pv", "pin_shaft_pv", "hole_seat_pv"):
         if quantity not in values or not values[quantity].size:
             continue
         each = np.concatenate(values[quantity], axis=1)
         if np.any(np.isfinite(each)):
-            yield largest_value(analysis, quantity, each, part)
+            yield largest_value(analysis, quantity, each, PARTS[QUANTITIES[quantity].of])
         else:
             yield Value(quantity=quantity, value=None, reason="there is no speed (load.speed)")

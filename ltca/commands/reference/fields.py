@@ -6,7 +6,7 @@ import argparse
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from ltca.drive.reference.field_descriptions import FieldDescription
+    from ltca.drive.declaration import Field
 
 SUMMARY = "fields of a drive file: unit, default, bounds, meaning, and which engines take them"
 EXAMPLES = (
@@ -26,11 +26,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Print the fields, table by table."""
-    from ltca.drive.reference.field_descriptions import describe_fields, find_fields, gathered, known_paths
+    from ltca.drive.declaration import find_fields, gathered, known_paths
     from ltca.errors import DriveError, did_you_mean, shortened
 
     if arguments.name is None:
-        print(_text(gathered(describe_fields())))
+        print(_text(gathered()))
         return 0
     found = find_fields(arguments.name)
     if not found:
@@ -40,8 +40,8 @@ def execute(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _text(described: tuple[FieldDescription, ...]) -> str:
-    from ltca.drive.reference.field_descriptions import by_table
+def _text(described: tuple[Field, ...]) -> str:
+    from ltca.drive.declaration import by_table
 
     lines: list[str] = []
     for table, fields in by_table(described).items():
@@ -56,15 +56,15 @@ def _text(described: tuple[FieldDescription, ...]) -> str:
 
 
 def _heading(table: str) -> list[str]:
-    from ltca.drive.reference.field_descriptions import table_description
+    from ltca.drive.declaration import table_of
 
-    told = table_description(table)
+    told = table_of(table)
     left_out = ", may be left out" if told.optional else ""
     return [f"[{table}]{left_out}", *_wrapped(told.meaning)]
 
 
-def _refusals(field: FieldDescription) -> list[str]:
-    from ltca.drive.reference.engine_support import refusals
+def _refusals(field: Field) -> list[str]:
+    from ltca.drive.engine_support import refusals
 
     return [
         line
@@ -73,10 +73,10 @@ def _refusals(field: FieldDescription) -> list[str]:
     ]
 
 
-def _values(field: FieldDescription) -> str:
-    from ltca.drive.reference.field_descriptions import REQUIRED
+def _values(field: Field) -> str:
+    from ltca.drive.declaration import REQUIRED
 
-    kind = field.unit or {"quantity": "number", "count": "whole number"}.get(field.kind, field.kind)
+    kind = field.label or {"quantity": "number", "count": "whole number"}.get(field.kind, field.kind)
     told = [f"a list, {kind}" if field.is_array else kind, field.bounds]
     told.append(REQUIRED if field.default == REQUIRED else f"default {field.default}")
     return f": {'; '.join(part for part in told if part)}"

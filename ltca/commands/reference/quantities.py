@@ -56,7 +56,7 @@ def execute(arguments: argparse.Namespace) -> int:
 
 
 def _missing(drive: Drive) -> dict[str, str]:
-    """Why a drive has not some quantities of studies."""
+    """Reasons why a drive lacks quantities of studies, by name."""
     from ltca.errors import DriveError
     from ltca.studies.quantities import STAGES, quantities_for
 
@@ -70,7 +70,7 @@ def _missing(drive: Drive) -> dict[str, str]:
 
 
 def _judged(drive: Drive) -> dict[str, str]:
-    """Why a drive has not some values that may be limited: half-spaces are asked, at a few positions."""
+    """Reasons why a drive lacks values that may be limited, by name, from half-spaces at a few positions."""
     from ltca.analysis.loaded_analysis import analyse
     from ltca.analysis.summary import summarise
     from ltca.analysis.verdict.values import find_values

@@ -12,20 +12,19 @@ from dataclasses import dataclass as plain_dataclass
 from functools import cache
 from importlib import resources
 from math import asin, pi
-from typing import Annotated, Any
+from typing import Annotated, Literal, get_args
 
-from pydantic import Field, TypeAdapter, ValidationError
+from pydantic import Field, TypeAdapter
 from pydantic.dataclasses import dataclass
 
 from ltca.drive.deviations import STRICT, PositiveLength
-from ltca.drive.mistakes import describe_mistakes
-from ltca.drive.units.quantities import COUNT, quantity
+from ltca.drive.members.crank import CrankBearing, Force
+from ltca.drive.units.quantities import COUNT
 from ltca.errors import DriveError, shortened
 
 FILE = "bearings.toml"
-BEARING = "bearing"
-CLEARANCE_CLASS = "clearance_class"
-CLASSES = ("C2", "CN", "C3", "C4", "C5")
+ClearanceClass = Literal["C2", "CN", "C3", "C4", "C5"]
+CLASSES: tuple[str, ...] = get_args(ClearanceClass)
 """Groups of radial internal clearance (ISO 5753-1), from small to large."""
 FULLEST = 0.97
 """Largest part of a full complement that a row of rollers may have: what is left is its running clearance."""
@@ -45,8 +44,6 @@ WITH_OUTER_RING = {
     r"(2[0-4]\d{3}|C\d{4})": "a self-aligning roller bearing with an outer ring of its own",
 }
 """Designations of bearings that bring an outer ring into the disc, and what they are."""
-
-Force = Annotated[float, quantity("N", gt=0.0)]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
@@ -70,7 +67,7 @@ class NamedBearing:
     width : float or None
         Width of cage or inner ring, mm.
     dynamic_load_rating, static_load_rating : float or None
-        C and C_0 of the maker, N; for comparison, lives are computed from the rollers (ISO 281).
+        C and C_0 of the maker, N; those of ISO 281 and ISO 76 when left out.
     source : str
         Where the numbers are from.
     """
@@ -107,14 +104,16 @@ class NamedBearing:
         return self.roller_length / self.roller_diameter
 
     @property
-    def fields(self) -> dict[str, float]:
-        """Fields of ``[crank_bearing]`` that the bearing stands for."""
+    def fields(self) -> dict[str, float | None]:
+        """Fields of ``[crank_bearing]`` that the bearing stands for; None for ratings that it does not give."""
         return {
             "inner_race_radius": 0.5 * self.inner_race_diameter,
             "outer_race_radius": 0.5 * self.outer_race_diameter,
             "number_of_rollers": self.number_of_rollers,
             "roller_radius": 0.5 * self.roller_diameter,
             "roller_length": self.roller_length,
+            "dynamic_load_rating": self.dynamic_load_rating,
+            "static_load_rating": self.static_load_rating,
         }
 
     def problems(self) -> list[str]:
@@ -145,8 +144,24 @@ class NamedBearing:
         return told
 
 
+@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
+class BearingName:
+    """Keys of ``[crank_bearing]`` that stand for fields of the drive.
+
+    Attributes
+    ----------
+    bearing : str or None
+        Bought bearing by its designation, ``"K20x26x12"``: stands for both races, number, radius and length of the rollers,
+        and for the load ratings of the maker.
+    clearance_class : {"C2", "CN", "C3", "C4", "C5"} or None
+        Class of radial internal clearance (ISO 5753-1) of the bearing: stands for ``clearance.bearing``, its middle.
+    """
+
+    bearing: str | None = None
+    clearance_class: ClearanceClass | None = None
+
+
 _ADAPTER = TypeAdapter(NamedBearing)
-_LENGTH = TypeAdapter(PositiveLength)
 
 
 @plain_dataclass(frozen=True, slots=True, kw_only=True)
@@ -214,7 +229,7 @@ def clearance_classes() -> ClearanceClasses:
 
 
 def named_bearing(name: str, own: Mapping[str, NamedBearing] | None = None) -> NamedBearing:
-    """Return a bearing by its designation: spaces, large and small letters and the sign of multiplication do not matter.
+    """Return a bearing by its designation; spaces, case and the sign of multiplication do not matter.
 
     Parameters
     ----------
@@ -280,121 +295,32 @@ def clearance_range(bearing: NamedBearing, clearance_class: str) -> tuple[float,
     return clearance_classes().range_of(clearance_class, bearing.bore or bearing.inner_race_diameter)
 
 
-def own_bearings(table: Any, problems: list[str]) -> dict[str, NamedBearing]:
-    """Return the bearings of ``[bearings."…"]`` of a drive file; what is wrong with them is added to the problems."""
-    if not isinstance(table, Mapping):
-        problems.append('bearings: must be a table of tables, written [bearings."NAME"]')
-        return {}
-    found = {}
-    for name, entry in table.items():
-        try:
-            bearing = _ADAPTER.validate_python(entry)
-        except ValidationError as error:
-            names = list(NamedBearing.__dataclass_fields__)
-            problems += describe_mistakes(error.errors(), ("bearings", name), names)
-            continue
-        told = bearing.problems()
-        problems += [f"bearings.{name}.{problem}" for problem in told]
-        if not told:
-            found[name] = bearing
-    return found
+def designation_of(part: CrankBearing) -> str | None:
+    """Return the name of the shipped bearing that a crank bearing is, ratings included; None for any other.
 
-
-def with_named_bearing(
-    table: Mapping[str, Any],
-    problems: list[str],
-    own: Mapping[str, NamedBearing] | None = None,
-    common: Any = None,
-) -> dict[str, Any]:
-    """Return the table of a drive with the fields of a named bearing in the place of its name.
-
-    Fields beside the name must be those of the bearing. ``clearance_class`` becomes ``clearance.bearing``, its middle.
-    Where there are problems the table is no drive: another bearing may stand in it.
-
-    Parameters
-    ----------
-    table : mapping
-        Nested plain tables, as in a drive file, of a drive or of one case.
-    problems : list of str
-        What is wrong is added.
-    own : mapping of str to NamedBearing, optional
-        Of `own_bearings`.
-    common : object, optional
-        ``crank_bearing`` of the common part as it was written, whose name and class hold in a case that gives one of them.
+    Examples
+    --------
+    >>> from ltca.reading.drive_file import load_drive
+    >>> designation_of(load_drive("paper").cases["CS-1"].crank_bearing)
     """
-    part = table.get("crank_bearing")
-    if not isinstance(part, Mapping) or not {BEARING, CLEARANCE_CLASS} & part.keys():
-        return dict(table)
-    written = {**(common if isinstance(common, Mapping) else {}), **part}
-    name, clearance_class = written.get(BEARING), written.get(CLEARANCE_CLASS)
-    below = {key: value for key, value in part.items() if key not in (BEARING, CLEARANCE_CLASS)}
-    # What is not named is no missing field besides: any bearing stands in, so that other mistakes are told too.
-    unnamed = {**table, "crank_bearing": {**named_bearings()["RN205"].fields, **below}}
-    if not isinstance(name, str):
-        told = "must be the designation of a bearing" if name is not None else "must be given with clearance_class"
-        problems.append(f"crank_bearing.bearing{'' if name is None else f' = {shortened(name)}'}: {told}")
-        return unnamed
-    try:
-        bearing = named_bearing(name, own)
-    except DriveError as error:
-        problems += [f"crank_bearing.bearing = {problem}" for problem in error.problems]
-        return unnamed
-    problems += [
-        f"crank_bearing.{field} = {shortened(below[field])}: must be left out, or {value:g}, beside "
-        f"crank_bearing.bearing = {shortened(name)}"
-        for field, value in bearing.fields.items()
-        if field in below and _differs(below[field], value)
-    ]
-    found = {**table, "crank_bearing": {**bearing.fields, **below}}
-    if clearance_class is not None:
-        _set_clearance(found, bearing, clearance_class, CLEARANCE_CLASS in part, problems)
-    return found
+    for name, entry in named_bearings().items():
+        if all(getattr(part, field) == value for field, value in entry.fields.items()):
+            return name
+    return None
 
 
-def _set_clearance(
-    table: dict[str, Any], bearing: NamedBearing, clearance_class: Any, is_given: bool, problems: list[str]
-) -> None:
-    path = f"crank_bearing.clearance_class = {shortened(clearance_class)}"
-    if clearance_class not in CLASSES:
-        problems.append(f"{path}: must be {', '.join(CLASSES[:-1])} or {CLASSES[-1]}")
-        return
-    limits = clearance_range(bearing, clearance_class)
-    if limits is None:
-        most = clearance_classes().diameters[-1]
-        problems.append(f"{path}: bores up to {most:g} mm have their classes here; give clearance.bearing")
-        return
-    middle, clearance = round(0.5 * sum(limits), 9), table.get("clearance", {})
-    if not isinstance(clearance, Mapping):  # wrong, and told where tables are validated
-        return
-    if "bearing" in clearance:
-        if is_given and _differs(clearance["bearing"], middle):
-            problems.append(
-                f"clearance.bearing = {shortened(clearance['bearing'])}: must be left out, or {middle:g} mm, beside {path} "
-                f"({limits[0]:g} to {limits[1]:g} mm)"
-            )
-        return
-    table["clearance"] = {**clearance, "bearing": middle}
+NAMED_SIZES = ("inner_race_radius", "outer_race_radius", "number_of_rollers", "roller_radius", "roller_length")
 
 
-def _differs(given: Any, value: float) -> bool:
-    """Tell whether a number, or a text with a unit, is another; what is neither is told where fields are validated."""
-    try:
-        return abs(_LENGTH.validate_python(given) - value) > 1e-9
-    except ValidationError:
-        return False
-
-
-NAMING_FIELDS = {
-    "crank_bearing.bearing": (
-        "text",
-        "a designation (docs/reference/bearings.md)",
-        'Bought bearing by its name, ``"K20x26x12"``: stands for both races, number, radius and length of the rollers. '
-        'Own ones stand in ``[bearings."NAME"]``.',
-    ),
-    "crank_bearing.clearance_class": (
-        "choice",
-        ", ".join(f'"{name}"' for name in CLASSES),
-        "Group of radial internal clearance (ISO 5753-1) of a named bearing: stands for ``clearance.bearing``, its middle.",
-    ),
-}
-"""Kind, bounds and meaning of what drive files may say in the place of fields."""
+def bought_size(part: CrankBearing, path: str) -> str | None:
+    """Return why a study cannot vary a size of a crank bearing, whose maker rates it as it is; None where it can."""
+    ratings = {name: getattr(part, name) for name in ("dynamic_load_rating", "static_load_rating")}
+    given = [f"crank_bearing.{name} = {value:g} N" for name, value in ratings.items() if value is not None]
+    if not given or path not in {f"crank_bearing.{name}" for name in NAMED_SIZES}:
+        return None
+    name = designation_of(part)
+    of = "" if name is None else f" of {name}"
+    return (
+        f"{path}: cannot vary, the ratings{of} ({', '.join(given)}) are those of a bearing with this size; leave them and "
+        "crank_bearing.bearing out, or give each bearing a [[case]]"
+    )

@@ -1,4 +1,4 @@
-"""Crankshafts: their eccentrics, the circle they stand on, what supports them, and their bearings."""
+"""Crankshafts: their eccentrics, the circle they stand on, their supports and their bearings."""
 
 from __future__ import annotations
 
@@ -20,9 +20,10 @@ from ltca.drive.deviations import (
     SignedLength,
 )
 from ltca.drive.materials import LengthProfile
-from ltca.drive.units.quantities import COUNT, quantity
+from ltca.drive.units.quantities import COUNT, grows, quantity
 
 Stiffness = Annotated[float, quantity("N/mm", gt=0.0)]
+Force = Annotated[float, quantity("N", gt=0.0)]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
@@ -53,28 +54,28 @@ class Crank:
     eccentricity : float
         Eccentricity e, design distance from the crank axis to the inner-race centre, mm; the flank is generated with it.
     number : int
-        How many cranks there are; one stands in the centre.
+        Number of cranks; a single one stands in the centre.
     circle_radius : float or None
-        Radius of the circle several cranks stand on, mm.
+        Radius of the circle of several cranks, mm.
     angle : float
         Place of crank 0 on that circle, rad.
     support : CrankSupport or None
-        What lets the cranks yield; rigid when left out.
+        Bending shaft and elastic bearings of the cranks; rigid when left out.
     eccentricity_error : float
         Actual less design eccentricity, mm.
     axis_offset : AxisOffset
         Crank axis, or the centre of the crank circle, against the centre of the pin shaft.
     of : tuple of OneEccentric
-        What differs per eccentric: one entry a disc of a central crank; entries that carry disc and crank of several.
+        Values per eccentric: one entry per disc for a central crank, entries with disc and crank for several.
     """
 
-    eccentricity: PositiveLength
+    eccentricity: Annotated[PositiveLength, grows("disc")]  # that of the flank
     number: Annotated[int, Field(ge=1, le=12), COUNT] = 1
-    circle_radius: PositiveLength | None = None
+    circle_radius: Annotated[PositiveLength | None, grows("carrier")] = None
     angle: Angle = 0.0
-    support: CrankSupport | None = None
-    eccentricity_error: SignedLength = 0.0
-    axis_offset: AxisOffset = field(default_factory=AxisOffset)
+    support: Annotated[CrankSupport | None, grows("eccentric")] = None
+    eccentricity_error: Annotated[SignedLength, grows("eccentric", upon="crank.eccentricity")] = 0.0
+    axis_offset: Annotated[AxisOffset, grows("carrier")] = field(default_factory=AxisOffset)
     of: tuple[OneEccentric, ...] = ()
 
     @property
@@ -87,7 +88,7 @@ class Crank:
         )
 
     def eccentric(self, disc: int, crank: int = 0) -> OneEccentric:
-        """Return what is said of the eccentric of a disc on a crank, empty where nothing is."""
+        """Return the entry of the eccentric of a disc on a crank, an empty one where there is none."""
         return self.entries.get((disc, crank), OneEccentric())
 
     @property
@@ -119,12 +120,19 @@ class CrankBearing:
         Crown and relief of the rollers.
     roller_errors : RollerErrors
         Diameter and pocket errors of the rollers.
+    dynamic_load_rating : float or None
+        Rating C of the maker, for lives alone, N; by ISO 281 from the rollers when left out.
+    static_load_rating : float or None
+        Rating C_0 of the maker, for the static safety and the fatigue load limit alone, N; by ISO 76 from the rollers when
+        left out.
     """
 
-    inner_race_radius: PositiveLength
-    outer_race_radius: PositiveLength
+    inner_race_radius: Annotated[PositiveLength, grows("race")]
+    outer_race_radius: Annotated[PositiveLength, grows("disc")]
     number_of_rollers: Annotated[int, Field(ge=3, le=500), COUNT]
-    roller_radius: PositiveLength
-    roller_length: PositiveLength
-    roller_profile: LengthProfile = field(default_factory=LengthProfile)
-    roller_errors: RollerErrors = field(default_factory=RollerErrors)
+    roller_radius: Annotated[PositiveLength, grows("roller")]
+    roller_length: Annotated[PositiveLength, grows("roller")]
+    roller_profile: Annotated[LengthProfile, grows("roller")] = field(default_factory=LengthProfile)
+    roller_errors: Annotated[RollerErrors, grows("roller")] = field(default_factory=RollerErrors)
+    dynamic_load_rating: Force | None = None
+    static_load_rating: Force | None = None

@@ -1,7 +1,7 @@
-"""Limits of each value, from the drive file or its materials, safety and verdict.
+"""Limits of values, from the drive file or its materials, with safety and verdict.
 
-A limit of the drive file stands before that of a material. What geometry itself demands (a wall of more than nothing) is a
-limit of zero, what a theory demands (half-spaces, sampling) is that theory's bound: these move with no design, and say so.
+A limit of the drive file replaces that of a material. Demands of geometry (a wall thicker than zero) are limits of zero, demands
+of a theory (half-spaces, sampling) are the bounds of that theory; neither depends on the design, and their sources say so.
 """
 
 from __future__ import annotations
@@ -27,15 +27,15 @@ class Value:
     quantity : str
         One of `ltca.quantities.LIMITED`.
     value : float or None
-        In its unit there; None where it cannot be said.
+        In the unit of the quantity; None where it is not known.
     part : str
-        Where it is reached: pin, roller or hole with its number and disc; empty for the whole drive.
+        Part that has it: pin, roller or hole with its number and disc; empty for the whole drive.
     crank_angle : float or None
-        φ_C there, rad.
+        φ_C at which it occurs, rad.
     reason : str
-        Why it cannot be said.
+        Why it is not known.
     least : float or None
-        What a lower limit judges where that is another value: the least over a turn of what is largest in `value`.
+        Value for a lower limit, where it differs: the least over a turn of the quantity whose largest is `value`.
     """
 
     quantity: str
@@ -58,11 +58,11 @@ class Check:
     Attributes
     ----------
     value : Value
-        What is judged.
+        Value that is judged.
     limit : Limit or None
-        By what.
+        Limit that it is judged by.
     asked : bool
-        Whether the limit is one of the drive file, whose author wants it judged.
+        Whether the limit is given in the drive file, so that an unknown value fails.
     """
 
     value: Value
@@ -71,17 +71,17 @@ class Check:
 
     @property
     def fails(self) -> bool:
-        """Whether the design fails by it: beyond its limit, or unjudged though asked for."""
+        """Whether the design fails: the value is beyond its limit, or unknown although the drive file limits it."""
         return self.verdict == "fail" or (self.asked and self.verdict == "not known")
 
     @property
     def title(self) -> str:
-        """What is looked at, in words."""
+        """Title of the quantity."""
         return LIMITED[self.value.quantity].verdict_title
 
     @property
     def safety(self) -> float | None:
-        """Limit by value where less is wanted, value by limit where more is; None where one of them is no more than 0."""
+        """Limit by value for an upper bound, value by limit for a lower one; None where one of them is not positive."""
         value, limit = self.value.value, self.limit
         if value is None or limit is None or limit.value <= 0.0 or value <= 0.0:
             return None
@@ -89,7 +89,7 @@ class Check:
 
     @property
     def verdict(self) -> Verdict:
-        """Whether the value keeps its limit."""
+        """Whether the value is within its limit."""
         value, limit = self.value.value, self.limit
         if limit is None:
             return "not known" if value is None else "no limit"
@@ -100,24 +100,15 @@ class Check:
 
 
 WHOLE = Limit(quantity="carried_torque", sense="min", value=1.0, source="theory of half-spaces: half-widths by radii")
-"""A drive carries all of its torque."""
+"""Limit that a drive carries all of its torque."""
 
 
 def judge(
     drive: Drive, values: Sequence[Value], limits: Mapping[str, Limit], demanded: Mapping[str, Limit] | None = None
 ) -> list[Check]:
-    """Return a check for every value and limit; one without a limit for values that have none.
+    """Return a check for every value and limit, and one without a limit for values that have none.
 
-    Parameters
-    ----------
-    drive : Drive
-        For its materials.
-    values : sequence of Value
-        Of one case.
-    limits : mapping of str to Limit
-        Of the drive file.
-    demanded : mapping of str to Limit, optional
-        What theories demand, by quantity.
+    Limits are those of the drive file, of the materials of the drive, and those that theories demand, by quantity.
     """
     checks = []
     for value in values:
@@ -140,7 +131,7 @@ def judge(
     told = {value.quantity for value in values} | {_BOTH.get(value.quantity) for value in values}
     for limit in limits.values():
         if limit.quantity not in told:
-            reason = "there is none in this drive, or this engine cannot say it"
+            reason = "not in this drive, or not computed by this engine"
             checks.append(
                 Check(value=Value(quantity=limit.quantity, value=None, reason=reason), limit=limit, asked=True)
             )
@@ -148,18 +139,20 @@ def judge(
 
 
 def judged_by(limit: Limit, value: Value) -> Value:
-    """Return the value that a limit goes by: the least of what has a range where it is a lower limit."""
+    """Return the value that a limit applies to: for a lower limit the least, where a value has a range."""
     if limit.sense == "max" or value.least is None:
         return value
     return replace(value, value=value.least, part=", ".join(filter(None, ("least", value.part))))
 
 
 _BOTH = {"roller_pressure_mid_outer": "roller_pressure_mid", "roller_pressure_mid_inner": "roller_pressure_mid"}
-"""Quantities that a limit on another one bounds as well."""
+"""Quantities that are bounded by the limit of another one as well."""
 
 
 def _of_soft_races(drive: Drive, value: Value, own: Sequence[Limit]) -> list[Limit]:
-    """What a race bears that is no hardened steel, where one limit of the file stands for all races: it is of bearing steel."""
+    """Allowable pressure of a race that is not of hardened steel, where the file limits all races together: that limit is
+    of bearing steel.
+    """
     race = {"roller_pressure_mid_outer": "disc", "roller_pressure_mid_inner": "inner_race"}.get(value.quantity)
     if race is None or not any(one.sense == "max" and one.quantity != value.quantity for one in own):
         return []
@@ -175,7 +168,7 @@ def _own(limits: Mapping[str, Limit], sense: str, quantity: str) -> Limit | None
 
 
 def _of_shape(value: Value) -> list[Limit]:
-    """What geometry demands."""
+    """Limits of geometry."""
     if value.quantity in ("undercut_margin", "wall", "pin_hollow_margin", "roller_gap"):
         return [_limit(value, "min", 0.0, "geometry: less is no part")]
     return []
@@ -185,7 +178,7 @@ SEIZED = "geometry: parts that had play at 20 °C overlap at [temperature]"
 
 
 def _of_materials(drive: Drive, value: Value) -> tuple[list[Limit], str]:
-    """The lowest allowable of the materials that a value is one of; of which it lacks one that could be lower."""
+    """The lowest allowable of the materials that a value belongs to, and the property that is missing for a lower one."""
     parts, quantity = drive.materials, value.quantity
     disc, flank_pin, hole_pin = ("disc", parts.disc), _flank_pin(drive), _hole_pin(drive)
     pressed = {
@@ -202,7 +195,7 @@ def _of_materials(drive: Drive, value: Value) -> tuple[list[Limit], str]:
         ]
         lacking = [f"materials.{name}" for name, part in pressed[quantity] if part.allowable_pressure is None]
         found = _lowest(value, given, "allowable_pressure")
-        # What one body bears says nothing of the other, but for what is too much already.
+        # The limit of one body alone is used only where the value is beyond it already.
         kept = value.value is None or not found or value.value <= found[0].value
         told = f"{' and '.join(lacking)} has no allowable_pressure" if lacking else ""
         return ([] if lacking and kept else found), told

@@ -1,6 +1,6 @@
-"""``[limits]`` of a drive file: what its results may reach, by the names of the summary, each with its source.
+"""``[limits]`` of a drive file: bounds on results, by the names of the summary, each with its source.
 
-Limits are no part of a drive, as tolerances are not: they move no load and judge what loads do.
+Like tolerances, limits are no part of a drive: they change no load, results are judged by them.
 """
 
 from __future__ import annotations
@@ -21,18 +21,18 @@ SENSES = ("max", "min")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Limit:
-    """What a quantity may reach.
+    """A bound on a quantity.
 
     Attributes
     ----------
     quantity : str
         One of `ltca.quantities.LIMITED`.
     sense : {"max", "min"}
-        Whether it is the most or the least.
+        Upper or lower bound.
     value : float
         In the unit of the quantity.
     source : str
-        Where it comes from.
+        Origin of the bound.
     """
 
     quantity: str
@@ -51,17 +51,10 @@ Limits = dict[str, Limit]
 
 
 def parse_limits(table: Any, problems: list[str], where: str = "limits") -> Limits:
-    """Return the limits of a drive file.
+    """Return the limits of a drive file by `Limit.key`; mistakes are appended to `problems`, one sentence each.
 
-    Parameters
-    ----------
-    table : mapping
-        ``max_…`` and ``min_…`` with the names of `ltca.quantities.LIMITED`, also with the unit of the summary behind them; a
-        number in the unit of the summary, a text with a unit, or a table of value and source.
-    problems : list of str
-        Takes what is wrong, one sentence each.
-    where : str
-        Name of the table, for messages.
+    Keys are ``max_…`` and ``min_…`` with the names of `ltca.quantities.LIMITED`, also with the unit of the summary behind
+    them; values are numbers in the unit of the summary, texts with a unit, or tables of value and source.
 
     Examples
     --------
@@ -111,7 +104,7 @@ def parse_limits(table: Any, problems: list[str], where: str = "limits") -> Limi
 
 
 def _without_unit(name: str) -> str:
-    """The name of a quantity that is given with or without the unit that its key in the summary has."""
+    """The name of a quantity that is given with or without the unit of its key in the summary."""
     return next((known for known, scalar in LIMITED.items() if name == scalar.key.removeprefix("max_")), name)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from functools import cache
@@ -13,27 +14,27 @@ from ltca.errors import DriveError, nearest, shortened
 
 FILE = "named_materials.toml"
 LIKE = "like"
-"""Key of a table that takes what it does not say from a named material."""
+"""Key of a table that takes the properties it leaves out from a named material."""
 FAR = 1.25
-"""Factor beyond the scatter of a modulus at which it is that of another material."""
+"""Factor beyond the scatter of a modulus from which it belongs to another material."""
 MOST_OTHER = 3
-"""Numbers in which a material may differ from a named one and still be told as like it."""
+"""Largest number of differing properties of a material that is still printed as "like" a named one."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SourcedNumber:
-    """One number of a named material.
+    """One property of a named material.
 
     Attributes
     ----------
     value : float
         In the unit of the field.
     low, high : float
-        What parts called so are known to have.
+        Range that parts of this material are known to have.
     source : str
-        Where the value is from.
+        Source of the value.
     scatter_source : str
-        Where the scatter is from.
+        Source of the range.
     confirmed : bool
         Whether the source of the value was looked up.
     """
@@ -53,11 +54,11 @@ class NamedMaterial:
     Attributes
     ----------
     name : str
-        As drive files give it.
+        Name in drive files.
     aliases : tuple of str
-        Other names of it.
+        Other names.
     state : str
-        Heat treatment, or how it is made, that the numbers belong to.
+        Heat treatment or manufacture that the properties belong to.
     numbers : dict of str to SourcedNumber
         By field of `ltca.drive.materials.Material`.
     """
@@ -69,7 +70,7 @@ class NamedMaterial:
 
     @property
     def material(self) -> Material:
-        """What a drive is given."""
+        """The material as a drive holds it."""
         return Material(**{name: number.value for name, number in self.numbers.items()})
 
 
@@ -82,8 +83,6 @@ def named_materials() -> dict[str, NamedMaterial]:
     >>> sorted(named_materials())[:3]
     ['100Cr6', '16MnCr5', '42CrMo4']
     """
-    import tomllib
-
     table = tomllib.loads((resources.files("ltca") / "drive" / "members" / FILE).read_text(encoding="utf-8"))
     sources = table.pop("sources")
     found = {}
@@ -94,7 +93,7 @@ def named_materials() -> dict[str, NamedMaterial]:
 
 
 def _sourced(field: str, cell: Mapping[str, Any], sources: Mapping[str, Any]) -> SourcedNumber:
-    # Read as a drive file's own quantities are: by the field, with its unit and bounds.
+    # Read like quantities of a drive file: by the field, with its unit and bounds.
     value, low, high = (getattr(Material(**{field: cell[key]}), field) for key in ("value", "low", "high"))
     source = sources[cell["source"]]
     return SourcedNumber(
@@ -108,17 +107,8 @@ def _sourced(field: str, cell: Mapping[str, Any], sources: Mapping[str, Any]) ->
 
 
 def sourced_material(name: str) -> NamedMaterial:
-    """Return a named material with scatter and sources.
-
-    Parameters
-    ----------
-    name : str
-        Its name or an alias, in large letters or small ones.
-
-    Raises
-    ------
-    DriveError
-        When none is called so.
+    """Return a named material with scatter and sources, by its name or an alias in any case; DriveError for an unknown
+    name.
     """
     spelled = {
         spelling.casefold(): entry for entry in named_materials().values() for spelling in (entry.name, *entry.aliases)
@@ -137,17 +127,7 @@ def _unknown(name: str) -> str:
 
 
 def named_material(name: str) -> Material:
-    """Return a named material.
-
-    Parameters
-    ----------
-    name : str
-        Its name or an alias.
-
-    Raises
-    ------
-    DriveError
-        When none is called so.
+    """Return a named material by its name or an alias; DriveError for an unknown name.
 
     Examples
     --------
@@ -158,17 +138,7 @@ def named_material(name: str) -> Material:
 
 
 def material_sources(name: str) -> dict[str, str]:
-    """Return where the numbers of a named material are from, by field.
-
-    Parameters
-    ----------
-    name : str
-        Its name or an alias.
-
-    Raises
-    ------
-    DriveError
-        When none is called so.
+    """Return the sources of the properties of a named material, by field; DriveError for an unknown name.
 
     Examples
     --------
@@ -179,12 +149,7 @@ def material_sources(name: str) -> dict[str, str]:
 
 
 def name_of(material: Material) -> str | None:
-    """Return what a material is called: a name, a name and what is different, or None.
-
-    Parameters
-    ----------
-    material : Material
-        Of a drive.
+    """Return the name of a material, the nearest name with the fields that differ, or None.
 
     Examples
     --------
@@ -197,7 +162,7 @@ def name_of(material: Material) -> str | None:
 
 
 def _nearest(material: Material) -> tuple[str | None, list[str]]:
-    """The named material that a material differs least from, and in which fields; None where it differs in too many."""
+    """The named material with the fewest differing properties, and their fields; None beyond `MOST_OTHER`."""
     best: str | None = None
     least = [item.name for item in fields(Material)][: MOST_OTHER + 1]
     for name, entry in named_materials().items():
@@ -209,13 +174,7 @@ def _nearest(material: Material) -> tuple[str | None, list[str]]:
 
 
 def strength_warning(materials: Materials) -> str | None:
-    """Return a warning where a part has the strength of a named material but a modulus far from it, None elsewhere.
-
-    Parameters
-    ----------
-    materials : Materials
-        Of a drive.
-    """
+    """Return a warning where a part has the strength of a named material but a modulus far from it, None elsewhere."""
     told = []
     for part in PARTS:
         material: Material = getattr(materials, part)
@@ -232,14 +191,9 @@ def strength_warning(materials: Materials) -> str | None:
 
 
 def with_named_materials(table: Mapping[str, Any], problems: list[str]) -> dict[str, Any]:
-    """Return the table of a drive with the numbers of named materials in the places of their names.
+    """Return the plain tables of a drive file with the properties of named materials in the places of their names.
 
-    Parameters
-    ----------
-    table : mapping
-        Nested plain tables, as in a drive file.
-    problems : list of str
-        To which what is wrong with the names is added.
+    Mistakes are appended to `problems`.
     """
     parts = table.get("materials")
     if not isinstance(parts, Mapping):
@@ -270,17 +224,11 @@ def _resolved(part: str, given: Any, problems: list[str]) -> Any:
 
 
 def numbers_of(material: Material) -> dict[str, float | None]:
-    """Return the numbers of a material by field, None for what it has not."""
+    """Return the properties of a material by field, None for unknown ones."""
     return {item.name: getattr(material, item.name) for item in fields(Material)}
 
 
 def named_parts(materials: Materials) -> dict[str, str]:
-    """Return the parts whose materials have a name, by field of `Materials`.
-
-    Parameters
-    ----------
-    materials : Materials
-        Of a drive.
-    """
+    """Return the names of the materials by part (field of `Materials`), for the parts whose material has a name."""
     names = {part: name_of(getattr(materials, part)) for part in PARTS}
     return {part: name for part, name in names.items() if name is not None}

@@ -1,4 +1,4 @@
-"""How the drive is built in and used: the member that is held, load, speed, duty, lubricant, friction, temperatures."""
+"""Installation and use of the drive: the fixed member, load, speed, duty, lubricant, friction, temperatures."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from typing import Annotated, Literal
 from pydantic.dataclasses import dataclass
 
 from ltca.drive.deviations import STRICT, NonNegativeLength
-from ltca.drive.units.quantities import quantity
+from ltca.drive.units.quantities import grows, quantity
 
 REFERENCE_TEMPERATURE = 20.0
-"""At which lengths are given, °C (ISO 1)."""
+"""Temperature at which lengths are given, °C (ISO 1)."""
 Celsius = Annotated[float, quantity("°C", gt=-273.15, lt=1000.0)]
 Coefficient = Annotated[float, quantity("dimensionless", ge=0.0, le=1.0)]
 
@@ -22,15 +22,15 @@ class Load:
     Attributes
     ----------
     torque : float
-        Output torque T_out, on the pin wheel or, where that is held, on the pin shaft, all discs together, N·mm.
+        Output torque T_out of all discs together, on the pin wheel or, where that is held, on the pin shaft, N·mm.
     light_torque : float
-        Torque whose transmission error stands for the unloaded one, N·mm.
+        Light torque at which the transmission error is taken as the unloaded one, N·mm.
     direction : {"ccw", "cw"}
-        Sense in which the crank drives; the load opposes it.
+        Sense in which the crank drives, against the load.
     speed : float or None
-        Speed of the input, turns a minute; powers and speeds of slip are not told without it.
+        Speed of the input, revolutions per minute; without it powers and slip speeds are not given.
     driven_by : {"input", "output"}
-        Which side moves the drive: "output" is the same loaded flank, its motion reversed.
+        Side that moves the drive: "output" loads the same flank, with reversed motion.
     """
 
     torque: Annotated[float, quantity("N*mm", gt=0.0)]
@@ -42,16 +42,16 @@ class Load:
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
 class Duty:
-    """One entry of what the drive does over its life; life alone is told by it.
+    """One entry of the duty cycle of the drive, used for bearing lives alone.
 
     Attributes
     ----------
     torque : float
         Output torque of the entry, N·mm.
     speed : float
-        Speed of the input, turns a minute.
+        Speed of the input, revolutions per minute.
     share : float
-        Part of the time; those of all entries add up to one.
+        Fraction of the time; those of all entries add up to one.
     """
 
     torque: Annotated[float, quantity("N*mm", gt=0.0)]
@@ -61,7 +61,7 @@ class Duty:
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
 class Lubricant:
-    """What is between rollers and races; life alone is told by it.
+    """Lubricant between rollers and races, used for bearing lives alone.
 
     Attributes
     ----------
@@ -77,14 +77,14 @@ class Lubricant:
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
 class Installation:
-    """How the drive is built in.
+    """Installation of the drive.
 
     Attributes
     ----------
     held : {"pin-shaft", "pin-wheel"}
-        The member that stands still; ``load.torque`` acts on the other one, which is the output.
+        The fixed member; ``load.torque`` acts on the other one, which is the output.
     first_stage_ratio : float or None
-        z₂/z₁ of a spur stage between a central input and several cranks; left out, the cranks are turned in the carrier.
+        z₂/z₁ of a spur stage between a central input and several cranks; left out, the cranks are driven from the carrier.
     """
 
     held: Literal["pin-shaft", "pin-wheel"] = "pin-shaft"
@@ -93,7 +93,7 @@ class Installation:
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
 class Friction:
-    """What rubs; each entry is 0 when left out.
+    """Coefficients of friction; each is 0 when left out.
 
     Attributes
     ----------
@@ -106,11 +106,11 @@ class Friction:
     roller : float
         Rolling resistance f of the crank bearings, whose moment is f·|F_b|·(r_i + r_BR).
     support_bearing : float
-        f of the bearings of cranks and wheel, whose moment is f times the load of each times ``support_bearing_radius``.
+        f of the bearings of cranks and wheel, whose moment is f times their load times ``support_bearing_radius``.
     support_bearing_radius : float
-        Radius at which these rub, mm.
+        Radius at which the friction of these bearings acts, mm.
     no_load_torque : float
-        What seals and oil take at the input, N·mm.
+        Torque of seals and oil at the input, N·mm.
     """
 
     pin: Coefficient = 0.0
@@ -118,13 +118,13 @@ class Friction:
     hole: Coefficient = 0.0
     roller: Coefficient = 0.0
     support_bearing: Coefficient = 0.0
-    support_bearing_radius: NonNegativeLength = 0.0
+    support_bearing_radius: Annotated[NonNegativeLength, grows("eccentric")] = 0.0
     no_load_torque: Annotated[float, quantity("N*mm", ge=0.0)] = 0.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
 class Temperature:
-    """How warm the parts are in operation; lengths are given at 20 °C.
+    """Temperatures of the parts in operation; lengths are given at 20 °C.
 
     Attributes
     ----------
@@ -133,7 +133,7 @@ class Temperature:
     disc : float
         Temperature of the discs, °C.
     shaft : float
-        Temperature of cranks, carrier and shaft pins, °C; rollers are half as warm as disc and shaft together.
+        Temperature of cranks, carrier and shaft pins, °C; rollers have the mean of disc and shaft.
     """
 
     housing: Celsius = REFERENCE_TEMPERATURE

@@ -1,4 +1,4 @@
-"""Pins of the pin wheel and of the pin shaft: how they sit, loose or under a sleeve, and how they bend."""
+"""Pins of the pin wheel and of the pin shaft: fixed, loose or sleeved, rigid or bending."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from pydantic.dataclasses import dataclass
 from ltca.drive.deviations import STRICT, AxisOffset, PlacementErrors, PositiveLength
 from ltca.drive.materials import LengthProfile
 from ltca.drive.members.crank import Stiffness
-from ltca.drive.units.quantities import COUNT
+from ltca.drive.units.quantities import COUNT, grows
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
 class WheelPinSeat:
-    """How wheel pins sit.
+    """Seat of the wheel pins.
 
     Attributes
     ----------
@@ -31,14 +31,14 @@ class WheelPinSeat:
     """
 
     kind: Literal["fixed", "slot", "sleeve"] = "fixed"
-    radius: PositiveLength | None = None
-    pin_radius: PositiveLength | None = None
-    bore_radius: PositiveLength | None = None
+    radius: Annotated[PositiveLength | None, grows("wheel")] = None
+    pin_radius: Annotated[PositiveLength | None, grows("wheel_pin")] = None
+    bore_radius: Annotated[PositiveLength | None, grows("wheel_sleeve")] = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
 class ShaftPinSeat:
-    """How shaft pins sit.
+    """Seat of the shaft pins.
 
     Attributes
     ----------
@@ -51,8 +51,8 @@ class ShaftPinSeat:
     """
 
     kind: Literal["fixed", "sleeve"] = "fixed"
-    pin_radius: PositiveLength | None = None
-    bore_radius: PositiveLength | None = None
+    pin_radius: Annotated[PositiveLength | None, grows("shaft_pin")] = None
+    bore_radius: Annotated[PositiveLength | None, grows("shaft_sleeve")] = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
@@ -69,9 +69,9 @@ class WheelPinBeam:
         Diameter of the beam, mm; that of the seat's pin when left out.
     """
 
-    span: PositiveLength
+    span: Annotated[PositiveLength, grows("wheel")]
     ends: Literal["supported", "clamped"]
-    diameter: PositiveLength | None = None
+    diameter: Annotated[PositiveLength | None, grows("wheel_pin")] = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
@@ -88,9 +88,9 @@ class ShaftPinBeam:
         Diameter of the beam, mm; that of the seat's pin when left out.
     """
 
-    span: PositiveLength
+    span: Annotated[PositiveLength, grows("carrier")]
     tip: Literal["free", "tied-clamped", "tied-pinned"]
-    diameter: PositiveLength | None = None
+    diameter: Annotated[PositiveLength | None, grows("shaft_pin")] = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
@@ -104,42 +104,44 @@ class PinWheel:
     pin_circle_radius : float
         Radius R_C of the circle of the wheel pins, mm.
     pin_radius : float
-        Radius r_P of what the flank touches: of the pin, or of its sleeve outside, mm.
+        Outer radius r_P at the flank, of the pin or of its sleeve, mm.
     pin_profile : LengthProfile
         Crown and relief of the wheel pins.
     pin_errors : PlacementErrors
         Errors of the wheel pins.
     axis_offset : AxisOffset
-        Axis the wheel turns about, against the centre of the pin shaft; a pin circle eccentric to that axis is a matter of
-        ``pin_wheel.pin_errors``.
+        Axis that the wheel turns about, relative to the centre of the pin shaft; a pin circle eccentric to that axis is given
+        by ``pin_wheel.pin_errors``.
     support_stiffness : float or None
         Radial stiffness of the wheel's main bearing, N/mm; rigid when left out.
     seat : WheelPinSeat
-        How the wheel pins sit.
+        Seat of the wheel pins.
     beam : WheelPinBeam or None
-        How they bend; rigid when left out.
+        Bending of the wheel pins; rigid when left out.
     """
 
     number_of_pins: Annotated[int, Field(ge=4, le=1000), COUNT]
-    pin_circle_radius: PositiveLength
-    pin_radius: PositiveLength
-    pin_profile: LengthProfile = field(default_factory=LengthProfile)
-    pin_errors: PlacementErrors = field(default_factory=PlacementErrors)
-    axis_offset: AxisOffset = field(default_factory=AxisOffset)
+    pin_circle_radius: Annotated[PositiveLength, grows("wheel")]
+    pin_radius: Annotated[PositiveLength, grows("wheel_sleeve")]
+    pin_profile: Annotated[LengthProfile, grows("wheel_sleeve")] = field(default_factory=LengthProfile)
+    pin_errors: Annotated[PlacementErrors, grows("wheel", diameter=grows("wheel_sleeve"))] = field(
+        default_factory=PlacementErrors
+    )
+    axis_offset: Annotated[AxisOffset, grows("wheel")] = field(default_factory=AxisOffset)
     support_stiffness: Stiffness | None = None
     seat: WheelPinSeat = field(default_factory=WheelPinSeat)
     beam: WheelPinBeam | None = None
 
     @property
     def seat_play(self) -> float:
-        """By how much the seat's bore is larger in radius than the pin in it, mm; 0 for fixed pins."""
+        """Radial play of the pin in its seat, mm; 0 for fixed pins."""
         if self.seat.kind == "slot":
             return (self.seat.radius or 0.0) - self.pin_radius
         return (self.seat.bore_radius or 0.0) - (self.seat.pin_radius or 0.0) if self.seat.kind == "sleeve" else 0.0
 
     @property
     def beam_diameter(self) -> float:
-        """Of the pin that bends, mm."""
+        """Diameter of the bending pin, mm."""
         held = None if self.beam is None else self.beam.diameter
         return held or 2.0 * (self.seat.pin_radius or self.pin_radius)
 
@@ -155,39 +157,46 @@ class PinShaft:
     pin_circle_radius : float
         Radius R_PS of the circle of shaft pins and holes alike, mm.
     pin_radius : float
-        Radius r_PS of what the holes touch: of the pin, or of its sleeve outside, mm.
+        Outer radius r_PS in the hole, of the pin or of its sleeve, mm.
     hole_radius : float
         Nominal radius r_PSH of the holes in the disc (without clearance), mm.
     stiffness : float or None
         Stiffness k_PS of one pin for the full thickness of one disc, N/mm; left out where the pins are beams.
     elastic_contact : bool
-        Whether pins yield where they touch their holes, in series with ``pin_shaft.stiffness`` or ``pin_shaft.beam``; rigid
-        there when false. Without effect on half-spaces, whose springs stand for all that yields.
+        Whether the contact of pins and holes is elastic, in series with ``pin_shaft.stiffness`` or ``pin_shaft.beam``; rigid
+        when false. Without effect on half-spaces, where the springs include everything that yields.
     pin_errors : PlacementErrors
         Errors of the shaft pins.
     seat : ShaftPinSeat
-        Whether sleeves run on them.
+        Seat of the shaft pins, with or without sleeves.
     beam : ShaftPinBeam or None
-        How they bend, in the place of ``pin_shaft.stiffness``.
+        Bending of the shaft pins, in place of ``pin_shaft.stiffness``.
     """
 
     number_of_pins: Annotated[int, Field(ge=3, le=200), COUNT]
-    pin_circle_radius: PositiveLength
-    pin_radius: PositiveLength
-    hole_radius: PositiveLength
+    pin_circle_radius: Annotated[PositiveLength, grows("disc")]  # that of the holes
+    pin_radius: Annotated[PositiveLength, grows("shaft_sleeve")]
+    hole_radius: Annotated[PositiveLength, grows("disc")]
     stiffness: Stiffness | None = None
     elastic_contact: StrictBool = True
-    pin_errors: PlacementErrors = field(default_factory=PlacementErrors)
+    pin_errors: Annotated[
+        PlacementErrors,
+        grows(
+            "carrier",
+            radial=grows("carrier", upon="pin_shaft.pin_circle_radius"),
+            diameter=grows("shaft_sleeve"),
+        ),
+    ] = field(default_factory=PlacementErrors)
     seat: ShaftPinSeat = field(default_factory=ShaftPinSeat)
     beam: ShaftPinBeam | None = None
 
     @property
     def seat_play(self) -> float:
-        """By how much the sleeves' bores are larger in radius than the pins, mm; 0 without sleeves."""
+        """Radial play of the sleeves on the pins, mm; 0 without sleeves."""
         return (self.seat.bore_radius or 0.0) - (self.seat.pin_radius or 0.0) if self.seat.kind == "sleeve" else 0.0
 
     @property
     def beam_diameter(self) -> float:
-        """Of the pin that bends, mm."""
+        """Diameter of the bending pin, mm."""
         held = None if self.beam is None else self.beam.diameter
         return held or 2.0 * (self.seat.pin_radius or self.pin_radius)

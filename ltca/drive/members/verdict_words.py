@@ -1,4 +1,4 @@
-"""Checks as tables and files tell them."""
+"""Checks as tables and files print them."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ WORDS = {"pass": "pass", "fail": "FAIL", "no limit": "no limit", "not known": "â
 
 
 def verdict_table(checks: Sequence[Check], *, limited: bool = False) -> str:
-    """Return the checks of one case as a table; `limited` only counts those without a limit."""
+    """Return the checks of one case as a table; with `limited`, checks without a limit are counted only."""
     shown = [check for check in checks if check.limit is not None or not limited]
     rows = [("check", "value", "limit", "safety", "verdict", "where")]
     for check in shown:
@@ -36,7 +36,7 @@ def verdict_table(checks: Sequence[Check], *, limited: bool = False) -> str:
 
 
 def verdict_line(checks: Sequence[Check]) -> str:
-    """Return the verdict on a case in one line: how it ends, and the check that fails most or is nearest to its limit."""
+    """Return the verdict on a case in one line: pass or fail, and the check that fails worst or is nearest to its limit."""
     judged = [check for check in checks if check.fails or check.verdict == "pass"]
     if not judged:
         return "not judged: neither drive file nor materials have limits"
@@ -56,13 +56,13 @@ def verdict_line(checks: Sequence[Check]) -> str:
 
 
 def urgency(check: Check) -> tuple[bool, bool, float]:
-    """Return a key that puts what fails first, the drive before how finely it was looked at, then the least safety."""
+    """Return a sort key: failed checks first, checks of the drive before those of the sampling, then by increasing safety."""
     of_sampling = check.value.quantity == "distinct_mesh_phases"
     return not check.fails, of_sampling, float("inf") if check.safety is None else check.safety
 
 
 def place_words(check: Check) -> str:
-    """Return where the value of a check is reached, or why it is not told."""
+    """Return where the value of a check occurs, or why it is not known."""
     value = check.value
     if value.value is None or (check.limit is None and value.reason):
         return value.reason
@@ -71,7 +71,7 @@ def place_words(check: Check) -> str:
 
 
 def check_content(check: Check, case: str) -> dict[str, Any]:
-    """Return a check as files hold it, with the name of its case."""
+    """Return a check as it stands in files, with the name of its case."""
     value, limit = check.value, check.limit
     return {
         "check": check.title,

@@ -43,19 +43,10 @@ def quantity(
     lt: float | None = None,
     le: float | None = None,
 ) -> BeforeValidator:
-    """Validate a quantity: convert texts, refuse what is not finite or out of bounds.
+    """Return the validator of a quantity, for ``Annotated[float, quantity("mm", gt=0)]``.
 
-    Parameters
-    ----------
-    unit : str
-        The unit inside the suite: ``mm``, ``N``, ``MPa``, ``N*mm``, ``N/mm``, ``rad`` or ``dimensionless``.
-    gt, ge, lt, le : float, optional
-        Bounds (greater than, at least, less than, at most) in that unit.
-
-    Returns
-    -------
-    pydantic.BeforeValidator
-        To be used in ``Annotated[float, quantity("mm", gt=0)]``.
+    It converts texts, and refuses values that are not finite or out of bounds (greater than, at least, less than, at most),
+    which are in the unit inside the suite: ``mm``, ``N``, ``MPa``, ``N*mm``, ``N/mm``, ``rad``, ``dimensionless``.
     """
     bounds = (("greater than", gt), ("at least", ge), ("less than", lt), ("at most", le))
     return BeforeValidator(QuantityCheck(unit=unit, bounds=bounds))
@@ -63,7 +54,7 @@ def quantity(
 
 @dataclass(frozen=True, kw_only=True)
 class QuantityCheck:
-    """What `quantity` asks of a value; keeps the unit of the field for whoever reads the definition.
+    """Check of a value by `quantity`, with the unit and bounds of the field for readers of the definition.
 
     Attributes
     ----------
@@ -78,7 +69,7 @@ class QuantityCheck:
 
     @cached_property
     def inner(self) -> tuple[float, float]:
-        """Ends between which every number is sound."""
+        """Ends of the open interval in which every number is valid."""
         smallest, largest = range_of(self.unit)
         (_, gt), (_, ge), (_, lt), (_, le) = self.bounds
         low = max(-largest if bound is None else bound for bound in (gt, ge))
@@ -88,7 +79,7 @@ class QuantityCheck:
     def __call__(self, value: Any) -> float:
         """Return the value in the unit of the field, or refuse it."""
         low, high = self.inner
-        if type(value) is float and low < value < high:  # nearly all: studies validate millions
+        if type(value) is float and low < value < high:  # the usual case: studies validate millions
             return value
         number = value if type(value) is float else _number(value, self.unit)
         if not math.isfinite(number):
@@ -100,7 +91,7 @@ class QuantityCheck:
             and (lt is None or number < lt)
             and (le is None or number <= le)
         )
-        # Beyond any drive, and so that no product of a few of them leaves the range of floats.
+        # Far outside of any drive; products of a few such numbers stay within the range of floats.
         smallest, largest = range_of(self.unit)
         if holds and abs(number) <= largest and (gt != 0.0 or number >= smallest):
             return number
@@ -112,12 +103,48 @@ class QuantityCheck:
         raise PydanticCustomError("quantity", "must be {text}", {"text": text})
 
 
+@dataclass(frozen=True, slots=True)
+class Grows:
+    """Thermal growth of a length, or of all lengths in a table, as part of their type (`grows`).
+
+    Attributes
+    ----------
+    part : str
+        Name of the factor in `ltca.drive.members.temperatures.Growth`.
+    upon : str
+        Path of the nominal length that the field is a deviation from: what grows by the factor is their sum, and the
+        nominal length itself may grow by another one. Empty where the field grows by itself.
+    but : tuple of (str, Grows)
+        Fields of the table that grow in another way.
+    """
+
+    part: str
+    upon: str = ""
+    but: tuple[tuple[str, Grows], ...] = ()
+
+    def of(self, name: str) -> Grows:
+        """Return the growth of a field of the table."""
+        return dict(self.but).get(name, Grows(self.part))
+
+
+def grows(part: str, *, upon: str = "", **but: Grows) -> Grows:
+    """Declare how a length, or every length in a table, grows with temperature.
+
+    Examples
+    --------
+    >>> growth = grows("wheel", diameter=grows("wheel_sleeve"))
+    >>> growth.of("radial").part, growth.of("diameter").part
+    ('wheel', 'wheel_sleeve')
+    """
+    return Grows(part, upon, tuple(but.items()))
+
+
 MOST_COUNTED = 10**15
-"""Far beyond any count; what validates them takes 64 bits."""
+"""Far beyond any count, within the 64 bits of the validator."""
 
 
 class _Beyond(int):
-    """A whole number beyond any count: compared as such, told as it was given."""
+    """A whole number beyond any count: compared as such, printed as it was given."""
 
     given: int
 
@@ -131,13 +158,13 @@ class _Beyond(int):
 
 
 def check_count(value: Any) -> int:
-    """Return a count, or refuse what is none: no truth value, no text but digits, no number that is not whole."""
+    """Return a count, or refuse truth values, texts other than digits, and numbers that are not whole."""
     if isinstance(value, str) and value.isascii() and value.isdigit() and len(value) < 10:
         return int(value)
     if isinstance(value, float) and abs(value) < 1e15 and value == int(value):
         return int(value)
     if isinstance(value, Integral) and not isinstance(value, bool):
-        # Of any length: the bounds say what is too many.
+        # The bounds of the field limit it.
         whole = int(value)
         return whole if abs(whole) <= MOST_COUNTED else _Beyond(whole)
     raise PydanticCustomError("quantity", "must be a whole number")
@@ -150,28 +177,10 @@ COUNT = BeforeValidator(check_count)
 def parse_quantity(
     text: str, unit: str, name: str, *, gt: float | None = None, ge: float | None = None, le: float | None = None
 ) -> float:
-    """Return a number or a text with unit from the command line, in a unit of the suite.
+    """Return a number or a text with unit from the command line, as ``"377.3 N m"``, in a unit of the suite.
 
-    Parameters
-    ----------
-    text : str
-        ``"377300"`` or ``"377.3 N m"``.
-    unit : str
-        Unit of the result and of plain numbers.
-    name : str
-        Option, for the message.
-    gt, ge, le : float, optional
-        Bounds (greater than, at least, at most) in that unit.
-
-    Returns
-    -------
-    float
-        The value in `unit`.
-
-    Raises
-    ------
-    DriveError
-        When the text is no finite quantity of that kind within the bounds.
+    Bounds (greater than, at least, at most) are in that unit; `name` is the option, for the message. DriveError when the
+    text is no finite quantity of that kind within the bounds.
     """
     bounds = (("greater than", gt), ("at least", ge), ("less than", None), ("at most", le))
     check = QuantityCheck(unit=unit, bounds=bounds)

@@ -19,7 +19,7 @@ PI = Fraction(
 )
 """π to a hundred decimals: products with it still round to the nearest float."""
 LONGEST = 80
-"""Characters of a text: no quantity needs more, and longer ones are not looked at."""
+"""Largest number of characters of a text that is parsed; no quantity needs more."""
 
 _NUMBER = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 _UNIT = r"1/K|[%′″'\"’]|°C?|[A-Za-zµμ][A-Za-zµμ ·⋅*/²³23]*"
@@ -35,9 +35,9 @@ class Unit:
     Attributes
     ----------
     kind : str
-        What it measures; units of one kind convert into each other.
+        Physical quantity; units of one kind convert into each other.
     factor : Fraction
-        Of the unit to the first of its kind.
+        Factor to the first unit of its kind.
     offset : Fraction
         Added after the factor: temperatures alone have one.
     """
@@ -59,7 +59,7 @@ def _spelled(*spellings: str) -> tuple[str, ...]:
 
 
 _DEGREE = PI / 180
-# kind, spellings (the first one is shown), factor, offset; the first unit of a kind is what the others refer to.
+# kind, spellings (the first is printed), factor, offset; factors refer to the first unit of a kind.
 _TABLE: tuple[tuple[str, tuple[str, ...], Fraction | int, Fraction | int], ...] = (
     ("length", ("mm",), 1, 0),
     ("length", ("m",), 1000, 0),
@@ -101,13 +101,13 @@ UNITS: dict[str, dict[str, Unit]] = {}
 for _kind, _spellings, _factor, _offset in _TABLE:
     for _spelling in _spellings:
         UNITS.setdefault(_kind, {})[_spelling] = Unit(kind=_kind, factor=Fraction(_factor), offset=Fraction(_offset))
-# A ratio of one is written without a unit; results of studies name it "1", definitions "dimensionless".
+# Ratios are written without a unit; its name is "1" in results of studies, "dimensionless" in definitions.
 UNITS["ratio"][""] = UNITS["ratio"]["1"] = Unit(kind="ratio", factor=Fraction(1))
 _NAMES = {"dimensionless": ("ratio", "1"), "ΔK": ("temperature difference", "K")}
 
 
 def unit_named(name: str) -> Unit:
-    """Return a unit by the name that definitions give it: a spelling, ``dimensionless``, ``ΔK`` for a difference.
+    """Return a unit by its name in definitions: a spelling, ``dimensionless``, or ``ΔK`` for a difference.
 
     Examples
     --------
@@ -136,28 +136,14 @@ def is_plain_number(text: str) -> bool:
 
 
 class QuantityError(ValueError):
-    """A text is no quantity of the kind asked for; the message goes on after its value."""
+    """A text is not a quantity of the kind asked for; the message continues a sentence that starts with its value."""
 
 
 def read_quantity(text: str, unit: str) -> float:
-    """Return a quantity given as text, in a unit.
+    """Return a quantity given as text, ``"377.3 N m"``, in a unit (see `unit_named`); a text without a unit is in that
+    unit.
 
-    Parameters
-    ----------
-    text : str
-        A number with a point, one space or none, a unit: ``"377.3 N m"``. Without a unit it is in `unit`.
-    unit : str
-        Unit of the result, see `unit_named`.
-
-    Returns
-    -------
-    float
-        The float nearest to the value; infinite or zero where floats end.
-
-    Raises
-    ------
-    QuantityError
-        Saying how to write it.
+    The result is the nearest float; infinite or zero where floats end. QuantityError says how to write the text.
 
     Examples
     --------
@@ -187,7 +173,7 @@ def read_quantity(text: str, unit: str) -> float:
 
 
 def _plain(name: str) -> str:
-    """Letters that look alike are one: the two micro signs, the two raised dots, the two minute marks."""
+    """A unit with one sign for those that look alike: the two micro signs, raised dots and minute marks."""
     return name.replace("\u03bc", "\u00b5").replace("\u22c5", "·").replace("\u2019", "'")
 
 
@@ -231,8 +217,8 @@ RANGES = {
     "torsional stiffness": (1e-9, 1e24),
     "ratio": (1e-9, 1e9),
 }
-"""Size of what must be greater than zero, and of anything, in the first unit of a kind: far outside of any drive (a
-length from a picometre to a kilometre), well inside of the range of floats, also when a few are multiplied."""
+"""Smallest positive and largest size of a quantity in the first unit of its kind: far outside of any drive (lengths from a
+picometre to a kilometre), well inside of the range of floats, also for products of a few."""
 
 
 @cache

@@ -39,19 +39,7 @@ class Slip:
 
     @classmethod
     def of_disc(cls, geometry: ContactGeometry, crank_angle: FloatArray, pose: FloatArray, part: DiscResponse) -> Slip:
-        """Return the slip of the contacts of one disc.
-
-        Parameters
-        ----------
-        geometry : ContactGeometry
-            Of the disc in its drive.
-        crank_angle : array, shape (positions,)
-            φ_C, rad.
-        pose : array, shape (positions, coordinates)
-            q of the disc.
-        part : DiscResponse
-            Its contacts.
-        """
+        """Return the slip of the contacts of one disc at crank angles, rad, and its poses, shape (positions, coordinates)."""
         place = geometry.placement
         flank, holes = part.flank.along.copy(), part.holes.along.copy()
         # The flank lies a pin radius nearer to the disc than the pin's centre, less what the pin has given way by, its play

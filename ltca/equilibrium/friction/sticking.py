@@ -15,7 +15,7 @@ elastically, and nothing is counted for them.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -25,8 +25,8 @@ from ltca.arrays import ComplexArray, FloatArray, by_drive
 from ltca.compliance.response import DiscResponse
 from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.friction.slip import Slip
-from ltca.equilibrium.friction.turning import Rubbing, TurningFriction
-from ltca.equilibrium.reducer import Reducer
+from ltca.equilibrium.friction.turning import Rubbing
+from ltca.equilibrium.reducer import JointFriction, Reducer
 from ltca.geometry.pairs import ContactGeometry
 
 
@@ -77,19 +77,32 @@ class StickingFriction:
     tangential: FloatArray = by_drive(2)
     closed: NDArray[np.bool_] = by_drive(2)
 
-    @classmethod
-    def at_rest(cls, friction: TurningFriction, model: Reducer, found: Equilibrium) -> StickingFriction:
-        """Return the friction of a drive without any force along a tangent yet.
+    @property
+    def turns(self) -> bool:
+        """Whether the drive turns: its input is locked."""
+        return False
 
-        Parameters
-        ----------
-        friction : TurningFriction
-            Of the drive that turns, for its coefficients.
-        model : Reducer
-            Whose poses those are.
-        found : Equilibrium
-            Balanced without friction.
-        """
+    @property
+    def motion(self) -> int:
+        """Sense of the crank: it is locked."""
+        return 0
+
+    @property
+    def rolling(self) -> float:
+        """Moment of the crank bearings by their load: none, they resist elastically."""
+        return 0.0
+
+    def scaled(self, strength: float) -> StickingFriction:
+        """Return the friction with both coefficients times a factor."""
+        return replace(self, pin=strength * self.pin, hole=strength * self.hole)
+
+    def reversed(self) -> StickingFriction:
+        """Return the friction itself: contacts stick alike in both senses."""
+        return self
+
+    @classmethod
+    def at_rest(cls, friction: JointFriction, model: Reducer, found: Equilibrium) -> StickingFriction:
+        """Return the friction since a balance without friction, with the coefficients of the drive that turns."""
         return cls(pin=friction.pin, hole=friction.hole, **_state(model, found, rubbed=False))
 
     def after(self, model: Reducer, found: Equilibrium) -> StickingFriction:

@@ -19,12 +19,12 @@ from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.response import DiscResponse, bearing_pushes
 from ltca.drive.parts import Drive, PinShaft, PinWheel
 from ltca.equilibrium.friction.slip import Slip
-from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION
+from ltca.geometry.coordinates import DISC_ROTATION
 from ltca.geometry.pairs import ContactGeometry
 
-ROLLING = 1e-4
-"""Slip by the crank angle, as a part of the eccentricity, below which friction fades out: about the pitch point the sense of
-the slip turns over, and a contact that lies there neither slips one way nor the other."""
+FADING_SLIP = 1e-4
+"""Slip per crank angle, relative to the eccentricity, below which friction is reduced linearly to zero: at the pitch point the
+sense of the slip reverses."""
 
 
 def rubbing(contact: float, seat: float, part: PinWheel | PinShaft) -> float:
@@ -117,6 +117,11 @@ class TurningFriction:
             motion=drive.motion_sign,
         )
 
+    @property
+    def turns(self) -> bool:
+        """Whether the drive turns."""
+        return True
+
     def scaled(self, strength: float) -> TurningFriction:
         """Return a part of this friction."""
         return replace(self, strength=strength)
@@ -149,7 +154,7 @@ class TurningFriction:
             When the contacts come without slopes.
         """
         slip, pins = Slip.of_disc(geometry, crank_angle, pose, part), part.pin_load.shape[1]
-        soft = ROLLING * geometry.placement.mean_eccentricity
+        soft = FADING_SLIP * geometry.placement.mean_eccentricity
         sense = (self.motion * self.strength) * np.clip(slip.by_crank / soft, -1.0, 1.0)
         sense[:, :pins] *= self.pin
         sense[:, pins:] *= self.hole
@@ -166,37 +171,21 @@ class TurningFriction:
     def of_wheel(self, parts: Sequence[DiscResponse], reduction_ratio: float) -> FloatArray:
         """Return the moment by which the wheel's bearing rubs, to be overcome, ccw positive, N·mm, shape (positions,).
 
-        Parameters
-        ----------
-        parts : sequence of DiscResponse
-            Contacts of each disc, friction in them.
-        reduction_ratio : float
-            u: the wheel turns against the shaft by 1/u of the crank.
+        The wheel turns against the shaft by 1/u of the crank; the contacts of each disc come with their friction.
         """
-        load = np.abs(sum(wheel_force(part) for part in parts))
+        pins = parts[0].pin_load.shape[1]
+        load = np.abs(sum(part.pin_forces[:, :pins].sum(axis=1) for part in parts))
         return np.asarray(self.motion * self.strength * self.support * np.sign(reduction_ratio) * load)
 
     def of_cranks(self, pushes: Sequence[ComplexArray]) -> FloatArray:
         """Return the moment that rubbing takes at every crank, ccw positive, N·mm, shape (positions, cranks).
 
-        Parameters
-        ----------
-        pushes : sequence of array of complex, shape (positions, cranks)
-            Force of each crank on every disc, N.
+        `pushes` are the forces of each crank on every disc, N, complex, shape (positions, cranks).
         """
         forces = np.stack(pushes, axis=-1)
         reactions = np.abs(np.matmul(forces, self.crank_bearings.T.astype(complex))).sum(axis=-1)
         rolled = np.abs(forces).sum(axis=-1)
         return np.asarray(self.motion * self.strength * (self.rolling * rolled + self.support * reactions))
-
-
-def wheel_force(part: DiscResponse) -> ComplexArray:
-    """Return the force of the disc on the wheel, its friction included, N, shape (positions,)."""
-    pins = part.pin_load.shape[1]
-    total = np.einsum("bp,bpi->bi", part.pin_load, part.flank.gradient[..., DISC_PLACE])
-    if part.friction is not None:
-        total += np.einsum("bp,bpi->bi", part.friction[:, :pins], part.flank.along[..., DISC_PLACE])
-    return np.asarray(total[:, 0] + 1j * total[:, 1])
 
 
 def _bearing_loads(drive: Drive) -> FloatArray:

@@ -3,7 +3,7 @@
 Modules in the order data passes:
 
 ===========  ============================================================
-sleeve_wall  What a sleeve has beyond an infinite body: harmonics of a ring pressed from within and outside
+sleeve_wall  Harmonics of a sleeve less those of an infinite body: a ring under pressure inside, a line force outside
 arc          Contact of a conforming seat over a given arc: pressure, play and approach in units of the load
 series       Arc, pressure and approach of a conforming seat over the load, from Hertz to the neat fit: one Chebyshev
              series each

@@ -11,8 +11,8 @@ with η half the mismatch of (κ − 1)/4μ and c₀ that of n = 0, both times E
 a hypersingular integral that has the eigenfunctions :math:`\sqrt{1 - s^2} U_k(s)`: for a given arc few of them solve the
 equation to round-off. The approach then follows from the condition itself at θ = 0.
 
-A sleeve has harmonics of a ring in place of those of the infinite body (`ltca.laws.seats.sleeve_wall`): smooth terms more
-in the same equation.
+A sleeve has harmonics of a ring in place of those of the infinite body (`ltca.laws.seats.sleeve_wall`): additional smooth
+terms in the same equation.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from ltca.arrays import FloatArray
 from ltca.laws.seats.sleeve_wall import sleeve_wall
 
 FUNCTIONS = 20
-"""Pressure functions of even order for one arc: their error is below 1e-6 where ν differs by 0.3, else below 1e-9."""
+"""Pressure functions of even order for one arc: the error is below 1e-6 where ν differs by 0.3, else below 1e-9."""
 QUADRATURE = 80
 
 
@@ -40,9 +40,9 @@ class ArcSolution:
     half_width : float
         b = tan(α/2).
     play : float
-        ΔR that goes with it; negative beyond the arc of the neat fit.
+        ΔR at which this arc is in contact; negative beyond the arc of the neat fit.
     approach : float
-        Without what the first harmonic yields.
+        Without the first harmonic.
     coefficients : array, shape (FUNCTIONS,)
         Of √(1 − s²) U_2k(s) in the pressure.
     """
@@ -60,7 +60,7 @@ class ArcSolution:
 
 
 def _functions(s: FloatArray) -> FloatArray:
-    """√(1 − s²) U_k(s) = sin((k + 1) arccos s), k = 0, 2, …, on one more axis at the end."""
+    """√(1 − s²) U_k(s) = sin((k + 1) arccos s), k = 0, 2, …, on an additional last axis."""
     return np.asarray(np.sin(np.arccos(s)[..., None] * (2.0 * np.arange(FUNCTIONS) + 1.0)))
 
 
@@ -96,18 +96,9 @@ def _points() -> tuple[_Points, _Points, _Points]:
 def solve_arc(
     half_width: float, mismatch: float, breathing: float, sleeve: tuple[float, float, float] | None = None
 ) -> ArcSolution:
-    """Return the contact over a given arc.
+    """Return the contact over the arc of b = tan(α/2), for the mismatch η (zero for equal materials) and c₀ (one for them).
 
-    Parameters
-    ----------
-    half_width : float
-        b = tan(α/2).
-    mismatch : float
-        η; zero for equal materials.
-    breathing : float
-        c₀; one for equal materials.
-    sleeve : tuple of float, optional
-        κ, a/R and E*/4μ of a sleeve; the bore is in an infinite body without.
+    A sleeve is given by its κ, a/R and E*/4μ; without it the bore is in an infinite body.
     """
     b = half_width
     plain, logarithmic, points = _points()

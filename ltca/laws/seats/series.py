@@ -1,8 +1,8 @@
-r"""Arc, pressure and approach of a conforming seat over the load, from Hertz to the neat fit: one Chebyshev series each.
+"""Arc, pressure and approach of a conforming seat over the load, from Hertz to the neat fit: one Chebyshev series each.
 
 With load q = F/(L E* ΔR) and z² = q/(q + π b₁²), b₁ of the neat fit, the arc, the peak pressure and the approach less
-its logarithm are analytic in z from Hertz (z = 0) to the neat fit (z = 1: the play is nothing beside the approach, and the
-contact linear): one Chebyshev series each. The first harmonic adds a spring, the only part that knows the datum.
+its logarithm are analytic in z from Hertz (z = 0) to the neat fit (z = 1: the play is negligible beside the approach, and the
+contact linear): one Chebyshev series each. The first harmonic adds a spring, the only part that depends on the datum.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from ltca.arrays import FloatArray, freeze
 from ltca.laws.seats.arc import solve_arc
 
 DEGREE = 20
-"""Of the Chebyshev series over b and over z."""
+"""Degree of the Chebyshev series over b and over z."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,13 +51,13 @@ class ConformingSeries:
 
 
 def _neat_fit(mismatch: float, breathing: float, sleeve: tuple[float, float, float] | None) -> float:
-    """Return b where the play is nothing beside the load."""
+    """Return b of the neat fit, where the play is negligible beside the approach."""
 
     def left(b: float) -> float:
         """Play times b², 1/π for small arcs."""
         return b**2 * solve_arc(b, mismatch, breathing, sleeve).play
 
-    # In small steps: sleeves so thin that they bend away have more such arcs, far beyond the first.
+    # In small steps: sleeves thin enough to bend away have more such arcs, far beyond the first.
     low = 0.3 if sleeve is None else 0.002
     high = 1.2 * low
     at_low, at_high = left(low), left(high)
@@ -95,16 +95,9 @@ def _complement(z: FloatArray, approach: FloatArray) -> FloatArray:
 def conforming_series(
     mismatch: float, breathing: float, sleeve: tuple[float, float, float] | None = None
 ) -> ConformingSeries:
-    """Return the series of two materials.
+    """Return the series of two materials: η (zero for equal materials) and c₀ (one for equal materials).
 
-    Parameters
-    ----------
-    mismatch : float
-        η; zero for equal materials.
-    breathing : float
-        c₀; one for equal materials.
-    sleeve : tuple of float, optional
-        κ, a/R and E*/4μ of a sleeve; the bore is in an infinite body without.
+    A sleeve is given by its κ, a/R and E*/4μ; without it the bore is in an infinite body.
     """
     widest = _neat_fit(mismatch, breathing, sleeve)
     nodes = chebyshev.chebpts1(DEGREE + 1)

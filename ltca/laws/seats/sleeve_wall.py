@@ -1,4 +1,4 @@
-r"""What a sleeve has beyond an infinite body: harmonics of a ring pressed from within and, in line, by a line force outside.
+r"""Harmonics of a sleeve less those of an infinite body: a ring under pressure inside and a line force in line with it outside.
 
 Michell's stress functions :math:`r^{\pm n}, r^{2 \pm n}` (n ≥ 2), Lamé's solution (n = 0) and, for n = 1, those of a force in
 the middle, of the pressure inside (:math:`p_n \cos n\theta` at the radius a) and outside (at R): the load F at θ = 0 is
@@ -16,9 +16,9 @@ import numpy as np
 
 from ltca.arrays import FloatArray, freeze
 
-LEAST = 1e-12
-"""(a/R)ⁿ that is nothing."""
-MOST_HARMONICS = 600
+NEGLIGIBLE = 1e-12
+"""(a/R)ⁿ below which harmonics are left out."""
+MAX_HARMONICS = 600
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -28,13 +28,13 @@ class SleeveWall:
     Attributes
     ----------
     own : array
-        Inside by pₙ, less the infinite body's; n = 1: all of it, in the frame in which the uniform part of both is zero.
+        Inside by pₙ, less that of the infinite body; n = 1: all of it, in the frame in which the uniform part of both is zero.
     across : array
         Inside by the force outside, in F/(aL).
     back : array
         Outside at θ = 0 by pₙ.
     outside : float
-        Outside at θ = 0 by the force outside, inward, in F/(aL), less the half-plane's down to the distance R.
+        Outside at θ = 0 by the force outside, inward, in F/(aL), less that of the half-plane down to the distance R.
     """
 
     own: FloatArray
@@ -45,16 +45,8 @@ class SleeveWall:
 
 @lru_cache(maxsize=256)
 def sleeve_wall(kappa: float, ratio: float) -> SleeveWall:
-    """Return the harmonics of a sleeve.
-
-    Parameters
-    ----------
-    kappa : float
-        3 − 4ν of the sleeve.
-    ratio : float
-        a/R, less than 1.
-    """
-    count = int(np.clip(np.ceil(np.log(LEAST) / np.log(ratio)), 8, MOST_HARMONICS))
+    """Return the harmonics of a sleeve from its κ = 3 − 4ν and a/R < 1."""
+    count = int(np.clip(np.ceil(np.log(NEGLIGIBLE) / np.log(ratio)), 8, MAX_HARMONICS))
     own, across, back, outside = (np.zeros(count) for _ in range(4))
     # Of a unit pressure inside, p, and of a unit pressure outside, s: displacements inside and outside, a = 1.
     far = 1.0 / ratio

@@ -34,7 +34,7 @@ function setUp() {
   const discs = Array.from({ length: content.discs }, (_, i) => `disc ${i}`);
   el("disc-field").hidden = discs.length < 2;
   press("discs", discs, view.disc, i => { view.disc = i; setUp(); });
-  press("torques", ["full", "light"].map(each => torqueName(view, each)), view.torque === "full" ? 0 : 1, i => { view.torque = i ? "light" : "full"; setUp(); });
+  press("torques", (has("0/light/wheel") ? ["full", "light"] : ["full"]).map(each => torqueName(view, each)), view.torque === "full" ? 0 : 1, i => { view.torque = i ? "light" : "full"; setUp(); });
   const seconds = content.compared ? content.compared.cases : [];
   el("second-field").hidden = seconds.length < 2;
   press("seconds", seconds, view.second, i => { view.second = i; setUp(); });

@@ -17,22 +17,9 @@ Drivers = Mapping[str, Mapping[str, Sequence[Driver]]]
 def check_page(
     name: str, text: str, told: str, checks: Checks, drivers: Drivers, notes: Mapping[str, Sequence[str]], made: Any
 ) -> StudyPage:
-    """Return the page of a check.
+    """Return the page of a check: verdicts, what drives each value by case and quantity, and notes by case.
 
-    Parameters
-    ----------
-    name, text : str
-        Of the drive, and its file.
-    told : str
-        What was judged.
-    checks : mapping of str to sequence of Check
-        By case.
-    drivers : mapping
-        What drives each value, by case and quantity.
-    notes : mapping of str to sequence of str
-        What to know beside the checks, by case.
-    made : mapping of str to str
-        Options of the engine, positions.
+    `told` says what was judged; `made` has options of the engine and positions.
     """
     sentence, state = verdict_of(checks)
     tables = verdict_tables(checks)

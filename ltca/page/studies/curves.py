@@ -13,8 +13,9 @@ from ltca.arrays import FloatArray
 from ltca.drive.units.quantities import ARCMIN, ARCSEC
 from ltca.page.study_page import Curves, Section
 from ltca.page.tables import Table, minus, number, texts, word
+from ltca.quantities import SCALARS
 
-TOLD_ORDERS = 15
+ORDERS_SHOWN = 15
 
 
 def torque_section(curve: TorqueCurve, of: str) -> Section:
@@ -30,7 +31,7 @@ def torque_section(curve: TorqueCurve, of: str) -> Section:
         lines=lines,
     )
     rows = [
-        ("backlash at the output, all clearances", _range(curve.backlash * ARCMIN) + "′"),
+        (SCALARS["backlash_output"].verdict_title, _range(curve.backlash * ARCMIN) + "′"),
         (
             f"lost motion at ±{100.0 * curve.lost_motion_part:g} % of the torque",
             _range(curve.lost_motion * ARCMIN) + "′",
@@ -60,7 +61,7 @@ def orders_section(spectrum: Spectrum, over: str, of: str) -> Section:
             number(float(values[place])),
             number(float(spectrum.amplitude[place]) * ARCSEC, "{:.4f}", "arcsec"),
         ]
-        for place in np.argsort(-spectrum.amplitude, kind="stable")[:TOLD_ORDERS]
+        for place in np.argsort(-spectrum.amplitude, kind="stable")[:ORDERS_SHOWN]
     ]
     rows.append(
         [word("unexplained, root mean square"), word(""), number(spectrum.residual * ARCSEC, "{:.4f}", "arcsec")]
@@ -70,7 +71,7 @@ def orders_section(spectrum: Spectrum, over: str, of: str) -> Section:
 
 
 def life_section(lines: Sequence[str], of: str) -> Section:
-    """Return what is told of the life of the crank bearings."""
+    """Return the section on the life of the crank bearings."""
     return Section(heading=f"{of}Life of the crank bearings", notes=[minus(line.strip()) for line in lines])
 
 

@@ -1,4 +1,4 @@
-"""The page of ``cyclo design``: designs beside each other, the outline of each, what stands in the way."""
+"""The page of ``cyclo design``: designs compared, their outlines, relaxations."""
 
 from __future__ import annotations
 
@@ -23,19 +23,7 @@ POINTS = 24
 
 
 def write_design_page(found: Found, shown: Sequence[tuple[str, Refined]], rows: list[list[str]], path: Path) -> Path:
-    """Write the page: one file, opens offline.
-
-    Parameters
-    ----------
-    found : Found
-        What a search found.
-    shown : sequence of (str, Refined)
-        Names and designs that are compared.
-    rows : list of list of str
-        The table that compares them.
-    path : Path
-        Where to.
-    """
+    """Write the page of a search with the table (`rows`) and outlines of the named designs that are compared."""
     requirements = found.requirements
     table = Table(
         name="designs", caption="", columns=rows[0], rows=[[word(minus(cell)) for cell in row] for row in rows[1:]]
@@ -56,13 +44,7 @@ def write_design_page(found: Found, shown: Sequence[tuple[str, Refined]], rows: 
 
 
 def outline(drive: Drive) -> dict[str, object]:
-    """Return the first disc with pins, holes and bores as shapes of an SVG, mm, y downwards.
-
-    Parameters
-    ----------
-    drive : Drive
-        The drive.
-    """
+    """Return the first disc of a drive with pins, holes and bores as shapes of an SVG, mm, y downwards."""
     single = single_discs(replace(drive, temperature=None))[0]
     wheel, shaft, e = single.pin_wheel, single.pin_shaft, single.crank.eccentricity
     count = POINTS * single.disc.number_of_teeth

@@ -1,4 +1,4 @@
-"""Page of ``cyclo optimise``: the drive as it is and the one that was found."""
+"""Page of ``cyclo optimise``: starting drive and optimum."""
 
 from __future__ import annotations
 

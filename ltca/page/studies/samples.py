@@ -1,4 +1,4 @@
-"""Page of a tolerance study or a sweep: what each quantity reaches over the samples, and what matters."""
+"""Page of a tolerance study or a sweep: statistics of quantities over the samples, and their sensitivity."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ MOST_FAILURES = 50
 
 
 def samples_page(study: Study, found: StudySummary) -> StudyPage:
-    """Return the page of a study: what was asked, and what its samples gave."""
+    """Return the page of a study: settings, statistics, sensitivity and failed samples."""
     heads = ["", "nominal", "mean", "standard deviation", *(f"{part:g} %" for part in PERCENTILES), "largest", "sample"]
     rows = [
         [

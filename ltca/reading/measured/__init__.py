@@ -1,8 +1,8 @@
 """Measured flanks: from a file of points to the deviation of a flank along its normal.
 
 =========  ============================================================
-points     A CSV file of measured points: what it holds, or what is wrong with it in one sentence
+points     CSV files of measured points: columns x and y in mm, others by their names
 deviation  Points as the deviation of a flank from its design, over θ
-tables     Where a drive file names such files, and the drive with what they hold
+tables     Measured flanks in a drive file, read into its profile errors
 =========  ============================================================
 """

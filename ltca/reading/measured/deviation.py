@@ -1,7 +1,7 @@
 """Measured points as the deviation of a flank from its design along the design normal, over θ.
 
 Every point lies on one normal of the design: the foot of that normal gives θ, the distance along it the deviation. So the
-flank that is solved with passes through every measured point, whatever runout the drive has beside it.
+flank of the analysis passes through every measured point, whatever runout the drive has.
 """
 
 from __future__ import annotations
@@ -17,36 +17,28 @@ from ltca.drive.deviations import ProfileErrors
 from ltca.drive.parts import Drive
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.flank import FlankProfile
-from ltca.reading.deviation_checks import deviation_bound
+from ltca.reading.disc_checks import deviation_bound
 from ltca.reading.measured.points import MeasuredPoints
 
 LEAST_PER_LOBE = 4
-"""Points: fewer do not tell a lobe from a circle."""
+"""Least number of points per lobe, to distinguish a lobe from a circle."""
 TABLE_PER_LOBE = 128
-"""Places of the flank among which the nearest is looked for."""
+"""Places of the flank per lobe from which the nearest one is searched."""
 SAME_PLACE = 1e-9
-"""Between two values of θ of one place, rad: the first point of a turn is often repeated as its last."""
+"""Difference of θ up to which two points are one place, rad: the first point of a turn is often repeated as its last."""
 SAME_DEVIATION = 1e-3
-"""Between two measurements of one place, mm."""
+"""Largest accepted difference of two measurements of one place, mm."""
 ALONG_NORMAL = 0.5
 """Least cosine between a measured normal and that of the flank: 60°."""
 INCH = 25.4
 
 
 def measured_errors(single: Drive, measured: MeasuredPoints) -> ProfileErrors:
-    """Return the deviation of the flank of a drive of one disc that measured points show.
+    """Return the deviation of the flank of a drive of one disc, at 20 °C, from measured points.
 
-    Parameters
-    ----------
-    single : Drive
-        At 20 °C; its flank as designed, with both offsets, runout and the turn of its phase.
-    measured : MeasuredPoints
-        In the frame of the disc: centre of the bore at the origin, hole 0 on +x.
-
-    Raises
-    ------
-    DriveError
-        When they are too few or leave out more than a lobe, lie far off the flank, or contradict each other.
+    The flank is that of the design, with both offsets, runout and the turn of its phase; the points are in the frame of the
+    disc: centre of the bore at the origin, hole 0 on +x. DriveError when they are too few or leave out more than a lobe,
+    lie far off the flank, or contradict each other.
     """
     errors = single.disc.profile_errors
     profile = FlankProfile.of_drive(replace(single, disc=replace(single.disc, profile_errors=ProfileErrors())))
@@ -89,7 +81,7 @@ def _feet(profile: FlankProfile, lobes: int, measured: MeasuredPoints, bound: fl
 
 
 def _require_near(away: FloatArray, bound: float, flank: NDArray[np.complex128], measured: MeasuredPoints) -> None:
-    """Points in another frame or unit are no deviation."""
+    """Refuse points in another frame or unit."""
     worst = int(np.argmax(away))
     if away[worst] <= bound:
         return
@@ -137,7 +129,7 @@ def _require_outward(normals: NDArray[np.complex128], measured: MeasuredPoints) 
 def _each_once(
     theta: FloatArray, deviation: FloatArray, lines: NDArray[np.int64], source: str
 ) -> tuple[FloatArray, FloatArray]:
-    """Leave out what repeats a place, also across θ = 0."""
+    """Leave out repeated places, also across θ = 0."""
     after = np.append(theta[1:], theta[0] + 2.0 * pi)
     repeated = after - theta < SAME_PLACE
     apart = np.abs(np.roll(deviation, -1) - deviation)

@@ -1,4 +1,4 @@
-"""A CSV file of measured points: columns x and y in mm, others by their names; what is wrong with it in one sentence."""
+"""CSV files of measured points: columns x and y in mm, others by their names; mistakes in one sentence."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ COORDINATES = ("x", "y")
 NORMALS = ("normal_x", "normal_y")
 SEPARATORS = ",;\t"
 MOST_POINTS = 20_000
-"""Of a flank; the spline passes through every one, and more of them are noise."""
+"""Largest number of points of a flank; the spline passes through all of them, and more are noise."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -26,13 +26,13 @@ class MeasuredPoints:
     Attributes
     ----------
     source : str
-        File.
+        Name of the file.
     points : array of complex, shape (n,)
-        mm.
+        Places, mm.
     normals : array of complex, shape (n,), or None
-        Out of the disc, of any length.
+        Normals out of the disc, of any length.
     lines : array of int, shape (n,)
-        Line of the file each stands in, from 1.
+        Lines of the file, counted from 1.
     """
 
     source: str
@@ -42,20 +42,11 @@ class MeasuredPoints:
 
 
 def read_points(path: Path) -> MeasuredPoints:
-    """Return the points of a file.
+    """Return the points of a CSV file.
 
-    Lines that begin with ``#`` are remarks. The first other line names the columns; without names the first two are x and y.
-    Columns are kept apart by commas, semicolons or tabs, numbers have a point.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Raises
-    ------
-    DriveError
-        When it cannot be read, has no columns x and y, holds what is no finite number, or says that it is compensated.
+    Lines that begin with ``#`` are comments. The first other line names the columns; without names the first two are x and
+    y. Columns are separated by commas, semicolons or tabs, numbers have a point. DriveError when the file cannot be read,
+    has no columns x and y, holds anything but finite numbers, or is marked as compensated.
     """
     text, source = read_text(path), str(path)
     lines = [

@@ -1,6 +1,6 @@
-"""Where a drive file names measured flanks: ``disc.measured_flank`` and those of single discs, ``disc.of``.
+"""Measured flanks in a drive file: ``disc.measured_flank``, and those of single discs in ``disc.of``.
 
-Once read they are profile errors like any other: every model takes them or refuses them as such.
+They are read into profile errors, which every engine uses.
 """
 
 from __future__ import annotations
@@ -23,17 +23,11 @@ FIELD = "measured_flank"
 FILTER = "the spline of a measured flank passes through every point: filter noise, or leave points out"
 
 Named = dict[int | None, Any]
-"""What is named as file, by the disc; None for all discs."""
+"""File names by disc; None for all discs."""
 
 
 def without_files(table: Mapping[str, Any]) -> tuple[dict[str, Any], Named]:
-    """Return the tables of a drive without the files of measured flanks, and these.
-
-    Parameters
-    ----------
-    table : mapping
-        As in a drive file, parts may be validated already.
-    """
+    """Return the tables of a drive file, partly validated perhaps, without the files of measured flanks, and these files."""
     disc = table.get("disc")
     if not isinstance(disc, dict):
         return dict(table), {}
@@ -53,32 +47,16 @@ def _without(entry: Any) -> Any:
 
 
 class MeasuredFiles:
-    """Measured flanks of one drive file; every file is read once, however many cases there are.
-
-    Parameters
-    ----------
-    folder : Path
-        Of the drive file, which names are relative to.
-    """
+    """Measured flanks of one drive file, with paths relative to its folder; every file is read once for all cases."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._read: dict[str, MeasuredPoints] = {}
 
     def with_measured(self, drive: Drive, named: Named, problems: list[str]) -> Drive:
-        """Return a drive with the deviations of its measured flanks.
-
-        Parameters
-        ----------
-        drive : Drive
-            As its file says without them.
-        named : dict
-            From `without_files`.
-        problems : list of str
-            What is wrong is added.
-        """
+        """Return a drive with the deviations of its measured flanks (`without_files`); mistakes are appended to `problems`."""
         if find_contradictions(drive):
-            return drive  # no flank to measure from; they are told by whoever reads the drive
+            return drive  # there is no flank to measure from; the caller reports them
         for disc, name in named.items():
             path = f"disc.{FIELD}" if disc is None else f"disc.of.{disc}.{FIELD}"
             try:
@@ -87,7 +65,7 @@ class MeasuredFiles:
                 where = f": {printable(error.source)}:" if error.source else ""
                 problems += [f"{path}{where} {problem}" for problem in error.problems]
                 continue
-            # What the points leave no flank of is told by their file.
+            # Points that leave no flank are reported with their file.
             for problem in find_contradictions(drive):
                 told = problem.partition(": ")[2] or problem
                 problems.append(f"{path}: {self._folder / name}: {told}; {FILTER}")

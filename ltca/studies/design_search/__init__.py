@@ -1,4 +1,4 @@
-"""From what a person knows to a drive: ``cyclo design`` without its edge.
+"""Search for drives that meet requirements: ``cyclo design`` without its command line.
 
 Modules in the order data passes:
 

@@ -1,4 +1,4 @@
-"""What candidates reach by closed forms: rigid bodies on linear contacts, Hertz, ISO 281; all candidates at once.
+"""Closed-form values of all candidates at once: rigid bodies on linear contacts, Hertz, ISO 281.
 
 The crank is held, disc and wheel touch where their common normals pass through the pitch point (distance e z_P from the axis
 of the wheel). A pin at φ has the lever l = e z_P R_C sin φ/d about that axis, d its distance from the pitch point, and the
@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ltca.analysis.life.ratings import BEARING_STEEL, STATIC
+from ltca.analysis.life.ratings import BEARING_STEEL, STATIC_RATING_FACTOR
 from ltca.analysis.torque_curve import LOST_MOTION
 from ltca.arrays import FloatArray
 from ltca.drive.parts import contact_modulus
@@ -21,22 +21,23 @@ from ltca.drive.units.quantities import ARCMIN
 from ltca.studies.design_search.requirements import Requirements
 from ltca.studies.design_search.sizes import Sizes, stack_length
 
-PLACES = 4
-"""Places of the pins in a pitch at which loads are looked at."""
-CURVES = 33
-"""Places on half a lobe at which its curvature is looked at."""
-SLENDER = 10.0
+PIN_PHASES = 4
+"""Phases of the pins within a pitch at which loads are evaluated."""
+CURVATURE_POINTS = 33
+"""Points on half a lobe at which its curvature is evaluated."""
+LINE_CONTACT_FACTOR = 10.0
 """π E* L/F times the approach of a line contact: Palmgren's 3.84e-5 F^0.9/L^0.8 gives 8 to 12 for steel."""
-SWEEPS = 8
-"""Newton's steps for the wind-up: convex and piecewise linear, so from the far side they only come nearer."""
-TURN = 12
-"""Places of a turn over which the loads of several cranks are averaged."""
-TIGHT = 1e-9
+MAX_NEWTON_STEPS = 8
+"""Of the wind-up: its equation is convex and piecewise linear, so from the far side Newton's steps converge monotonically."""
+TURN_POSITIONS = 12
+"""Positions of a turn over which the loads of several cranks are averaged."""
+TINY = 1e-9
+"""Keeps denominators and roots from zero."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Setting:
-    """What all candidates share.
+    """Values that all candidates share.
 
     Attributes
     ----------
@@ -74,15 +75,7 @@ class Setting:
 
 
 def shape_values(sizes: Sizes, setting: Setting) -> dict[str, FloatArray]:
-    """Return room and margins of the shape by name, mm: exact but for the places at which curvatures are looked at.
-
-    Parameters
-    ----------
-    sizes : Sizes
-        Of the candidates.
-    setting : Setting
-        What they share.
-    """
+    """Return room and margins of the shape by name, mm: exact but for the places at which curvatures are evaluated."""
     asked, shop = setting.requirements.asked, setting.requirements.asked.shop
     found = flank_shape(sizes, setting)
     inner = sizes.bore - 2.0 * sizes.roller_radius
@@ -114,16 +107,16 @@ def shape_values(sizes: Sizes, setting: Setting) -> dict[str, FloatArray]:
 
 
 def flank_shape(sizes: Sizes, setting: Setting) -> dict[str, FloatArray]:
-    """Return what the flank and its pins alone give of `shape_values`."""
+    """Return those of `shape_values` that depend on the flank and its pins alone."""
     shop = setting.requirements.asked.shop
     generating = sizes.pin_radius + shop.equidistant_offset
-    convex, hollow = _locus(sizes, np.cos(np.linspace(0.0, np.pi, CURVES)))
+    convex, hollow = _locus(sizes, np.cos(np.linspace(0.0, np.pi, CURVATURE_POINTS)))
     return {
         "outer_diameter": 2.0 * (sizes.pin_circle + sizes.pin_radius + shop.housing_wall),
         "length": stack_length(sizes, shop.disc_gap) + shop.flanges,
-        "undercut_margin": 1.0 / np.maximum(convex, TIGHT) - generating,
+        "undercut_margin": 1.0 / np.maximum(convex, TINY) - generating,
         # A hollow of the path of the centres is rounder by the pin on the flank, so the pin always fits by the offset.
-        "pin_hollow_margin": 1.0 / np.maximum(-hollow, TIGHT) + shop.equidistant_offset,
+        "pin_hollow_margin": 1.0 / np.maximum(-hollow, TINY) + shop.equidistant_offset,
         "pin_gap": 2.0 * (sizes.pin_circle * np.sin(np.pi / sizes.pins) - sizes.pin_radius),
     }
 
@@ -137,41 +130,41 @@ def _locus(sizes: Sizes, cosine: FloatArray) -> tuple[FloatArray, FloatArray]:
 def _locus_curvature(sizes: Sizes, cosine: FloatArray) -> FloatArray:
     K1 = (sizes.eccentricity * sizes.pins / sizes.pin_circle)[:, None]
     z, R = sizes.pins[:, None], sizes.pin_circle[:, None]
-    S = np.sqrt(np.maximum(1.0 + K1**2 - 2.0 * K1 * cosine, TIGHT))
+    S = np.sqrt(np.maximum(1.0 + K1**2 - 2.0 * K1 * cosine, TINY))
     return np.asarray((1.0 + z * K1**2 - K1 * (1.0 + z) * cosine) / (R * S**3))
 
 
 def flank_values(sizes: Sizes, setting: Setting) -> dict[str, FloatArray]:
-    """Return what the flank reaches: pressure, load, forces on the disc, stiffness, play, losses; of one number of pins."""
+    """Return values of the flank for one number of pins: pressure, load, forces on the disc, stiffness, play, losses."""
     asked, shop = setting.requirements.asked, setting.requirements.asked.shop
     pins = int(sizes.pins[0])
-    angle = 2.0 * np.pi * (np.arange(pins)[:, None] + np.arange(PLACES) / PLACES) / pins
+    angle = 2.0 * np.pi * (np.arange(pins)[:, None] + np.arange(PIN_PHASES) / PIN_PHASES) / pins
     sine, cosine = np.sin(angle).ravel(), np.cos(angle).ravel()
-    upper = sine > TIGHT
-    sine, cosine, phase = sine[upper], cosine[upper], np.tile(np.arange(PLACES), pins)[upper]
+    upper = sine > TINY
+    sine, cosine, phase = sine[upper], cosine[upper], np.tile(np.arange(PIN_PHASES), pins)[upper]
     R, reach = sizes.pin_circle[:, None], (sizes.eccentricity * sizes.pins)[:, None]
-    distance = np.sqrt(np.maximum(R**2 + reach**2 - 2.0 * R * reach * cosine, TIGHT))
+    distance = np.sqrt(np.maximum(R**2 + reach**2 - 2.0 * R * reach * cosine, TINY))
     lever = reach * R * sine / distance
     gap = shop.equidistant_offset - shop.shifting_offset * (R - reach * cosine) / distance
-    stiffness = (np.pi * setting.flank * sizes.thickness / SLENDER)[:, None]
+    stiffness = (np.pi * setting.flank * sizes.thickness / LINE_CONTACT_FACTOR)[:, None]
     torque = wheel_torque(sizes, setting) / sizes.discs
     generating = (sizes.pin_radius + shop.equidistant_offset)[:, None]
     locus = _locus_curvature(sizes, cosine)
-    curvature = locus / np.where(np.abs(1.0 - locus * generating) < TIGHT, TIGHT, 1.0 - locus * generating)
-    relative = np.maximum(1.0 / sizes.pin_radius[:, None] + curvature, TIGHT)
+    curvature = locus / np.where(np.abs(1.0 - locus * generating) < TINY, TINY, 1.0 - locus * generating)
+    relative = np.maximum(1.0 / sizes.pin_radius[:, None] + curvature, TINY)
     pressure, largest = np.zeros((2, sizes.count))
     radial, slope, rubbed, loaded = np.zeros((4, sizes.count))
-    for place in range(PLACES):
+    for place in range(PIN_PHASES):
         here = phase == place
         load, stiff = _shared(lever[:, here], gap[:, here], stiffness, torque)
         pressure = np.maximum(
             pressure, np.sqrt(load * setting.flank * relative[:, here] / (np.pi * sizes.thickness[:, None])).max(axis=1)
         )
         largest = np.maximum(largest, load.max(axis=1))
-        radial += (load * (reach - R * cosine[here]) / distance[:, here]).sum(axis=1) / PLACES
-        slope += stiff / PLACES
-        rubbed += (load * np.abs(distance[:, here] - sizes.pin_radius[:, None])).sum(axis=1) / PLACES
-        loaded += (load > 0.0).sum(axis=1) / PLACES
+        radial += (load * (reach - R * cosine[here]) / distance[:, here]).sum(axis=1) / PIN_PHASES
+        slope += stiff / PIN_PHASES
+        rubbed += (load * np.abs(distance[:, here] - sizes.pin_radius[:, None])).sum(axis=1) / PIN_PHASES
+        loaded += (load > 0.0).sum(axis=1) / PIN_PHASES
     clearance = np.maximum((gap / lever).min(axis=1), 0.0)
     rubbing = 0.0 if asked.friction is None else asked.friction.pin
     return {
@@ -190,9 +183,9 @@ def _shared(
 ) -> tuple[FloatArray, FloatArray]:
     """Loads of the pins, and the stiffness of all of them in rotation."""
     closed = np.ones(lever.shape, dtype=bool)
-    for _ in range(SWEEPS):
+    for _ in range(MAX_NEWTON_STEPS):
         square = (stiffness * closed * lever**2).sum(axis=1)
-        wind_up = (torque + (stiffness * closed * lever * gap).sum(axis=1)) / np.maximum(square, TIGHT)
+        wind_up = (torque + (stiffness * closed * lever * gap).sum(axis=1)) / np.maximum(square, TINY)
         closed = wind_up[:, None] * lever > gap
         closed[~closed.any(axis=1)] = True
     load = stiffness * np.maximum(wind_up[:, None] * lever - gap, 0.0)
@@ -210,7 +203,7 @@ def wheel_torque(sizes: Sizes, setting: Setting) -> FloatArray:
 
 
 def inner_values(sizes: Sizes, setting: Setting, flank: dict[str, FloatArray]) -> dict[str, FloatArray]:
-    """Return what crank bearings, holes and the whole drive reach, from what the flank does (`flank_values`)."""
+    """Return values of crank bearings, holes and the whole drive, from those of the flank (`flank_values`)."""
     asked, shop = setting.requirements.asked, setting.requirements.asked.shop
     several, friction = asked.kind == "rv", asked.friction
     torque = wheel_torque(sizes, setting) / sizes.discs
@@ -220,11 +213,11 @@ def inner_values(sizes: Sizes, setting: Setting, flank: dict[str, FloatArray]) -
     holes = np.zeros(sizes.count)
     if several:
         radial, count = flank["radial"], asked.number_of_cranks
-        turning = np.exp(2j * np.pi * np.arange(TURN) / TURN)
+        turning = np.exp(2j * np.pi * np.arange(TURN_POSITIONS) / TURN_POSITIONS)
         push = (across * 1j - radial)[:, None] / count + (on_disc / (count * sizes.hole_circle))[:, None] * turning
         force = np.abs(push)
         most, mean = force.max(axis=1), (force ** (10.0 / 3.0)).mean(axis=1) ** 0.3
-        whirl = (np.pi * setting.outer * sizes.roller_length / SLENDER) * sizes.rollers / 8.0
+        whirl = (np.pi * setting.outer * sizes.roller_length / LINE_CONTACT_FACTOR) * sizes.rollers / 8.0
         turning_compliance = (1.0 - 1.0 / sizes.pins) ** 2 / (whirl * count * sizes.hole_circle**2)
         bearings = float(count)
     else:
@@ -235,7 +228,7 @@ def inner_values(sizes: Sizes, setting: Setting, flank: dict[str, FloatArray]) -
         closer = 1.0 / sizes.hole_pin - 1.0 / (sizes.hole_pin + sizes.eccentricity)
         found["pin_shaft_load"] = load
         found["pin_shaft_pressure_mid"] = np.sqrt(load * setting.hole * closer / (np.pi * sizes.thickness))
-        spring = np.pi * setting.hole * sizes.thickness / SLENDER
+        spring = np.pi * setting.hole * sizes.thickness / LINE_CONTACT_FACTOR
         if shop.shaft_pin_stiffness is None:
             span = stack_length(sizes, shop.disc_gap) + 2.0 * shop.disc_gap
             diameter = 2.0 * sizes.hole_pin
@@ -256,7 +249,7 @@ def inner_values(sizes: Sizes, setting: Setting, flank: dict[str, FloatArray]) -
     found["roller_pressure_mid_outer"] = np.sqrt(line * setting.outer * (1.0 / sizes.roller_radius - 1.0 / bore))
     found["roller_pressure_mid_inner"] = np.sqrt(line * setting.inner * (1.0 / sizes.roller_radius + 1.0 / inner))
     found |= lives_by_loads(sizes, setting, most, mean)
-    seat = bearings * np.pi * setting.outer * sizes.roller_length / SLENDER * sizes.rollers / 8.0
+    seat = bearings * np.pi * setting.outer * sizes.roller_length / LINE_CONTACT_FACTOR * sizes.rollers / 8.0
     compliance = 1.0 / flank["wheel_stiffness"] + 1.0 / (seat * reach**2) + turning_compliance
     leverage = wheel_torque(sizes, setting) / sizes.torque
     found["stiffness"] = sizes.discs / (compliance * leverage**2)
@@ -282,13 +275,6 @@ def clearance_play(sizes: Sizes, setting: Setting) -> FloatArray:
 
     A disc that moves by the radial clearance turns the wheel by the lever e z_P; one that turns in its holes turns the wheel with
     it. Bores of several cranks bound both ways of moving together, so the shorter lever counts.
-
-    Parameters
-    ----------
-    sizes : Sizes
-        Of the candidates.
-    setting : Setting
-        What they share.
     """
     asked, shop = setting.requirements.asked, setting.requirements.asked.shop
     reach = sizes.eccentricity * sizes.pins
@@ -318,25 +304,14 @@ def lives_by_loads(sizes: Sizes, setting: Setting, most: FloatArray, mean: Float
     return {
         "bearing_life_million_turns": life,
         "bearing_life_hours": life * 1e6 / (60.0 * turns),
-        "static_safety_S0": STATIC * (1.0 - g) * sizes.rollers * sizes.roller_length * diameter / most,
+        "static_safety_S0": STATIC_RATING_FACTOR * (1.0 - g) * sizes.rollers * sizes.roller_length * diameter / most,
     }
 
 
 def closed_forms(sizes: Sizes, setting: Setting) -> dict[str, FloatArray]:
-    """Return everything that closed forms say of candidates of one number of pins.
+    """Return the closed-form values of candidates of one number of pins.
 
-    Parameters
-    ----------
-    sizes : Sizes
-        Of the candidates.
-    setting : Setting
-        What they share.
-
-    Returns
-    -------
-    dict of str to array
-        By the names of `ltca.quantities.LIMITED` where there is one; mm, N, MPa, h, arcmin,
-        N·mm/rad.
+    Names are those of `ltca.quantities.LIMITED` where there is one. Units are mm, N, MPa, h, arcmin and N·mm/rad.
     """
     flank = flank_values(sizes, setting)
     return shape_values(sizes, setting) | flank | inner_values(sizes, setting, flank)

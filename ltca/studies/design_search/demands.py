@@ -1,4 +1,4 @@
-"""What is demanded of a candidate, each as a margin: by the requirements, by the parts, by limits and materials.
+"""Demands on a candidate as margins: of the requirements, of the parts, of limits and materials.
 
 A margin is the logarithm of limit by value (value by limit where more is wanted), of losses for efficiencies, and what is to
 spare in a size of the drive for walls and gaps. A candidate that keeps all of them has none below zero.
@@ -86,7 +86,7 @@ class Demand:
         return self._scalar.unit
 
     def margin(self, reached: FloatArray | float) -> FloatArray:
-        """Return how far values in the unit of the quantity keep it, negative where they break it."""
+        """Return the margin of values in the unit of the quantity, negative where they violate the demand."""
         value = np.asarray(reached, dtype=float)
         if self.kind == "shape":
             return np.asarray((value - self.value) / self.scale)
@@ -108,13 +108,6 @@ class Demand:
 def shown(value: float, unit: str) -> str:
     """Return a value in the unit that people use: N·m, N·m/arcmin, per cent where a unit has one.
 
-    Parameters
-    ----------
-    value : float
-        In its unit.
-    unit : str
-        Of the value.
-
     Examples
     --------
     >>> shown(412_000.0, "N mm")
@@ -128,7 +121,7 @@ def shown(value: float, unit: str) -> str:
 
 
 def written_limits(requirements: Requirements) -> Limits:
-    """Return what the ``[limits]`` of a drive file hold: those of the requirement file, and what else `cyclo check` knows."""
+    """Return the ``[limits]`` of the drive file: those of the requirement file, and requirements that `cyclo check` judges."""
     asked, shop, found = requirements.asked, requirements.asked.shop, {}
 
     def add(sense: str, quantity: str, value: float | None, source: str) -> None:
@@ -202,7 +195,7 @@ def _is_of(quantity: str, requirements: Requirements) -> bool:
 
 
 def prototype(requirements: Requirements) -> Drive:
-    """Return a drive whose sizes mean nothing, for what depends on materials alone."""
+    """Return a drive of arbitrary sizes, for values that depend on materials alone."""
     row = dict.fromkeys(Sizes.__dataclass_fields__, 1.0) | {
         "pins": 20.0, "discs": float(requirements.asked.discs[0]), "rollers": 10.0, "holes": 8.0, "bore": 9.0,
         "torque": requirements.asked.torque,

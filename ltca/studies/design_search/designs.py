@@ -1,4 +1,4 @@
-"""What is told of the designs found: drive files, and a table that compares them."""
+"""Output of a search: drive files of the designs, and a table that compares them."""
 
 from __future__ import annotations
 
@@ -43,32 +43,12 @@ REACHED = (
 
 
 def named_design(refined: Refined, requirements: Requirements, name: str) -> Drive:
-    """Return the drive of a design.
-
-    Parameters
-    ----------
-    refined : Refined
-        The design.
-    requirements : Requirements
-        What is asked.
-    name : str
-        Of the drive.
-    """
+    """Return the drive of a design."""
     return drive_of(refined.row, requirements, name)
 
 
 def design_text(refined: Refined, found: Found, name: str) -> str:
-    """Return a design as the text of a drive file with its limits; `cyclo check` passes it.
-
-    Parameters
-    ----------
-    refined : Refined
-        The design.
-    found : Found
-        With what was asked.
-    name : str
-        Of the drive.
-    """
+    """Return a design as the text of a drive file with its limits; `cyclo check` passes it."""
     values, positions = refined.solution.values, refined.solution.positions
     at = "" if positions == CHECK_POSITIONS else f" --positions {positions}"
     lines = [f"# Written by cyclo design; `cyclo check{at}` passes it. Reached, by a fine solution on half-spaces:"]
@@ -86,13 +66,7 @@ def design_text(refined: Refined, found: Found, name: str) -> str:
 
 
 def limits_text(limits: Limits) -> str:
-    """Return limits as the table of a drive file.
-
-    Parameters
-    ----------
-    limits : dict of str to Limit
-        To be written.
-    """
+    """Return limits as the table of a drive file."""
     lines = ["", "[limits]"]
     for key, limit in limits.items():
         source = limit.source.replace("\\", "\\\\").replace('"', '\\"')
@@ -101,17 +75,7 @@ def limits_text(limits: Limits) -> str:
 
 
 def design_content(refined: Refined, found: Found, file: str) -> dict[str, Any]:
-    """Return a design for ``design.json``.
-
-    Parameters
-    ----------
-    refined : Refined
-        The design.
-    found : Found
-        With what was asked.
-    file : str
-        Of its drive.
-    """
+    """Return the entry of a design in ``design.json``; `file` is the drive file that was written for it."""
     return {
         "file": file,
         "sizes": {name: refined.row[name] for name in SIZES if refined.row[name]},
@@ -126,15 +90,7 @@ def design_content(refined: Refined, found: Found, file: str) -> dict[str, Any]:
 
 
 def relaxation_content(relaxation: Relaxation, file: str | None) -> dict[str, Any]:
-    """Return what would have to give for ``design.json``.
-
-    Parameters
-    ----------
-    relaxation : Relaxation
-        Of one requirement, or two.
-    file : str or None
-        Of the drive that then fits.
-    """
+    """Return the entry of a relaxation in ``design.json``; `file` is that of the drive that then fits, if one was found."""
     return {
         "requirements": [
             {
@@ -154,15 +110,7 @@ def relaxation_content(relaxation: Relaxation, file: str | None) -> dict[str, An
 
 
 def comparison(found: Found, designs: list[tuple[str, Refined]]) -> list[list[str]]:
-    """Return the table that compares designs: heading, asked, then a column each.
-
-    Parameters
-    ----------
-    found : Found
-        With what was asked.
-    designs : list of (str, Refined)
-        Names and designs.
-    """
+    """Return the table that compares designs: heading, asked, then a column each."""
     asked: dict[str, Demand] = {one.quantity: one for one in found.demands if one.kind != "shape"}
     rows = [["", "asked", *(name for name, _ in designs)]]
     for quantity in REACHED:
@@ -181,13 +129,7 @@ def comparison(found: Found, designs: list[tuple[str, Refined]]) -> list[list[st
 
 
 def csv_text(rows: list[list[str]]) -> str:
-    """Return a table as CSV.
-
-    Parameters
-    ----------
-    rows : list of list of str
-        Of `comparison`.
-    """
+    """Return a table as CSV."""
     text = io.StringIO()
     csv.writer(text, lineterminator="\n").writerows(rows)
     return text.getvalue()

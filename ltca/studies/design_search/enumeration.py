@@ -22,7 +22,7 @@ from ltca.studies.design_search.demands import Demand, margins
 from ltca.studies.design_search.requirements import Requirements
 from ltca.studies.design_search.sizes import Sizes, joined
 
-CIRCLES = 1.0 / np.geomspace(1.0, 2.2, 7)
+PIN_CIRCLE_RATIOS = 1.0 / np.geomspace(1.0, 2.2, 7)
 """Radii of the pin circle that are tried, as parts of the largest; refinement goes between them."""
 THICKNESSES = np.array([1.0, 0.75, 0.5])
 BORES = np.array([1.0, 0.85, 0.7, 0.5])
@@ -34,29 +34,29 @@ STAGES = 1.0, 6.0
 SUNS = range(12, 41)
 PINS_OF_RV = range(20, 61)
 MOST_PINS_OF_RV = 6
-FARTHEST = 3.0
-"""Factor by which room is widened at most where it stands in the way."""
+MAX_ROOM_FACTOR = 3.0
+"""Largest factor by which room is widened where it is relaxed."""
 KEPT_ECCENTRICITIES = 5
 """Candidates that are kept of each number of discs and pins, pin circle and thickness: of different eccentricities."""
 LEAST_ROLLERS = 6
-SLACK = {
+CLOSED_FORM_TOLERANCES = {
     "bearing_life_hours": 1.8,
     "bearing_life_million_turns": 1.8,
     "shaft_pin_bending_stress": 0.8,
     "shaft_pin_bending_amplitude": 0.8,
     "shaft_pin_shear_stress": 0.8,
 }
-OTHER_SLACK = 0.4
-"""By how much closed forms may say that a demand is broken (ln) before a candidate is left out: they are as wrong as that."""
+CLOSED_FORM_TOLERANCE = 0.4
+"""Violation of a demand by closed forms (ln) up to which a candidate is kept: their error is of that size."""
 PENALTY, RELAXED_PENALTY = 2.0, 10.0
-"""Weight of what is broken against size, and against what is given where something gives: lives go with high powers of loads."""
-ROWS = 100_000
-"""Rows that are looked at in one go, for memory."""
+"""Weight of violations against size, and against the relaxation; lives go with high powers of loads."""
+BATCH_ROWS = 100_000
+"""Rows that are evaluated together, to bound memory."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Enumeration:
-    """What is left of all combinations.
+    """Best candidates of all combinations.
 
     Attributes
     ----------
@@ -81,22 +81,10 @@ def enumerate_candidates(
     torque: float | None = None,
     shifts: Mapping[str, float] | None = None,
 ) -> Enumeration:
-    """Return the best candidates by closed forms.
+    """Return up to `most` of the best candidates by closed forms.
 
-    Parameters
-    ----------
-    requirements : Requirements
-        What is asked.
-    demands : sequence of Demand
-        Of `find_demands`.
-    relaxed : collection of str
-        Names of demands that may be broken.
-    most : int
-        Candidates wanted.
-    torque : float, optional
-        On the output, N·mm; that asked for by default.
-    shifts : mapping of str to float, optional
-        By how much margins of loaded drives were above those of closed forms, by name.
+    Demands in `relaxed` may be broken; `torque` on the output, N·mm, replaces that of the requirements; `shifts` are by name how
+    far margins of solved drives lay above those of closed forms.
     """
     setting = Setting.of(requirements)
     found: list[Sizes] = []
@@ -144,11 +132,11 @@ def _scores(
     requirements: Requirements,
     shifts: Mapping[str, float],
 ) -> tuple[FloatArray, FloatArray, NDArray[np.bool_]]:
-    """Number to make small, sum of what is broken, and whether closed forms leave a chance."""
+    """Objective, sum of violations, and whether a combination is kept as a candidate."""
     judged = [one for one in demands if one.kind != "shape" and one.quantity in reached]
     each = margins(judged, reached) + np.array([shifts.get(one.name, 0.0) for one in judged])
     free = np.array([one.name in relaxed for one in judged])
-    slack = np.array([SLACK.get(one.quantity, OTHER_SLACK) for one in judged])
+    slack = np.array([CLOSED_FORM_TOLERANCES.get(one.quantity, CLOSED_FORM_TOLERANCE) for one in judged])
     fits = np.all((each >= -slack) | free, axis=1)
     breaks = np.where(free, 0.0, np.maximum(-each, 0.0)).sum(axis=1)
     given = np.where(free, np.maximum(-each, 0.0), 0.0).max(axis=1)
@@ -158,15 +146,7 @@ def _scores(
 
 
 def size_of(reached: dict[str, FloatArray], smallest: str) -> FloatArray:
-    """Return the logarithm of what is to be small, in the manner of a length.
-
-    Parameters
-    ----------
-    reached : dict of str to array
-        With ``outer_diameter`` and ``length``, mm.
-    smallest : str
-        Of the requirements.
-    """
+    """Return the logarithm of the size to be minimised, as a length; `reached` has ``outer_diameter`` and ``length`` in mm."""
     diameter, length = np.log(reached["outer_diameter"]), np.log(reached["length"])
     if smallest == "diameter":
         return np.asarray(diameter + 1e-3 * length)
@@ -176,13 +156,7 @@ def size_of(reached: dict[str, FloatArray], smallest: str) -> FloatArray:
 
 
 def teeth(requirements: Requirements) -> list[tuple[int, float, int, int]]:
-    """Return numbers of pins that give the ratio, each with the first stage, its sun and its planet.
-
-    Parameters
-    ----------
-    requirements : Requirements
-        What is asked.
-    """
+    """Return numbers of pins that give the ratio, with the first stage, its sun and its planet."""
     asked = requirements.asked
     allowed, more = asked.ratio * asked.ratio_tolerance + 1e-9, 1 if asked.held == "pin-wheel" else 0
     if asked.kind == "discs":
@@ -206,11 +180,11 @@ def teeth(requirements: Requirements) -> list[tuple[int, float, int, int]]:
 def _flanks(
     requirements: Requirements, setting: Setting, demands: Sequence[Demand], relaxed: Collection[str], torque: float
 ) -> Iterator[tuple[Sizes, dict[str, FloatArray], int]]:
-    """Flanks with their pins that closed forms leave a chance, by number of discs and pins."""
+    """Flanks with their pins that are kept by closed forms, by number of discs and pins."""
     asked, shop, stock = requirements.asked, requirements.asked.shop, requirements.stock
-    wider = FARTHEST if "outer_diameter" in relaxed else 1.0
-    longer = FARTHEST if "length" in relaxed else 1.0
-    circles = np.geomspace(0.9, wider, 10) if wider > 1.0 else CIRCLES
+    wider = MAX_ROOM_FACTOR if "outer_diameter" in relaxed else 1.0
+    longer = MAX_ROOM_FACTOR if "length" in relaxed else 1.0
+    circles = np.geomspace(0.9, wider, 10) if wider > 1.0 else PIN_CIRCLE_RATIOS
     for discs in asked.discs:
         room = (longer * asked.length - shop.flanges - (discs - 1) * shop.disc_gap) / discs
         if room <= 0.0:
@@ -252,7 +226,7 @@ def _different(
     judged = [one for one in demands if one.quantity == "pin_pressure_mid"]
     each = margins(judged, values).min(axis=1) if judged else -np.log(values["pin_pressure_mid"])
     if judged and not any(one.name in relaxed for one in judged):
-        allowed = each >= -OTHER_SLACK
+        allowed = each >= -CLOSED_FORM_TOLERANCE
     else:
         allowed = np.ones(sizes.count, dtype=bool)
     best: dict[tuple[float, float, float], int] = {}
@@ -274,7 +248,7 @@ def _different(
 def _inner(
     flank: Sizes, values: dict[str, FloatArray], requirements: Requirements
 ) -> Iterator[tuple[Sizes, dict[str, FloatArray]]]:
-    """Crank bearings and holes that go into flanks, in pieces; what closed forms say of the flanks goes along.
+    """Yield crank bearings and holes that fit into flanks, in batches, with the closed-form values of the flanks.
 
     Of rollers of one diameter the longest that the disc is thick for is taken, of shaft pins of one diameter as many as
     stand beside each other: neither is ever worse but in friction, which they do not change.
@@ -286,7 +260,7 @@ def _inner(
     several = asked.kind == "rv"
     pins = np.array([0.0]) if several else 0.5 * np.array(stock.shaft_pins)
     roller, pin, part = (grid.ravel() for grid in np.meshgrid(0.5 * diameters, pins, BORES, indexing="ij"))
-    piece = max(1, ROWS // roller.size)
+    piece = max(1, BATCH_ROWS // roller.size)
     for first in range(0, flank.count, piece):
         rows = np.arange(first, min(first + piece, flank.count))
         own, other = (grid.ravel() for grid in np.meshgrid(rows, np.arange(roller.size), indexing="ij"))

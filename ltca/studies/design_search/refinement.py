@@ -1,9 +1,9 @@
-"""Continuous sizes by scipy, closed forms corrected by what the solution said.
+"""Continuous sizes by scipy, on closed forms corrected by solutions of the loaded drive.
 
-The loaded drive is dear, closed forms are cheap and wrong by some tenths. So the drive is solved, every margin of the closed
-forms is moved to what came out, the sizes are optimised on the corrected ones within a step (sequential least squares), and
-the drive is solved again (space mapping: Bandler et al., IEEE Trans. Microwave Theory Tech. 52, 2004). What counts in the
-end is the solution alone.
+The loaded drive is expensive, closed forms are cheap and wrong by some tenths. So the drive is solved, every margin of the
+closed forms is shifted to the solution, the sizes are optimised on the corrected forms within a step (sequential least squares),
+and the drive is solved again (space mapping: Bandler et al., IEEE Trans. Microwave Theory Tech. 52, 2004). Only the solution
+counts in the end.
 """
 
 from __future__ import annotations
@@ -25,26 +25,26 @@ from ltca.studies.design_search.requirements import Requirements
 from ltca.studies.design_search.sizes import CONTINUOUS, Sizes, drive_of
 from ltca.studies.design_search.solution import Solution, solve_coarsely, solve_finely
 
-ROUNDS = 6
+MAX_COARSE_SOLUTIONS = 6
 """Solutions of a candidate over few positions."""
-FINE_ROUNDS = 2
+MAX_FINE_SOLUTIONS = 2
 """Solutions over those of a check."""
-STEP = 0.2
-"""By how much a size may change between two solutions (ln)."""
+MAX_SIZE_STEP = 0.2
+"""Largest change of a size between two solutions (ln)."""
 DIFFERENCE = 1e-5
-STILL = 2e-3
-ENOUGH = 5e-3
-"""What another solution has to gain in what is to be small (ln)."""
-SLOW = 0.7
-"""Part of what was broken before that may still be: of candidates that come on slower nothing is hoped for."""
-NEARLY = 0.03
-"""What is broken by so little (ln) the next step may mend."""
-HARD = 30.0
-"""Weight of what is broken against what is to be small."""
+LEAST_SIZE_STEP = 2e-3
+LEAST_GAIN = 5e-3
+"""Gain in the objective below which no further solution is made (ln)."""
+LEAST_PROGRESS = 0.7
+"""Ratio of violations in succession above which a candidate is given up."""
+SMALL_VIOLATION = 0.03
+"""Violation (ln) that the next step may remove, whatever the progress."""
+VIOLATION_WEIGHT = 30.0
+"""Weight of violations against the objective."""
 DECIMALS = 3
-"""Of the sizes, mm: what a drawing has."""
-TOUCH = 1e-2
-"""By how much sizes may be beyond their room before it is more than rounding, mm."""
+"""Decimals of sizes in mm, as on a drawing."""
+ROOM_TOLERANCE = 1e-2
+"""Excess of sizes over their room that counts as rounding, mm."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -71,7 +71,7 @@ class Task:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Refined:
-    """What came of a candidate.
+    """A refined candidate.
 
     Attributes
     ----------
@@ -80,17 +80,17 @@ class Refined:
     solution : Solution
         Of `refine` a coarse one, of `finish` a fine one.
     fits : bool
-        Whether it does.
+        Whether it keeps all demands.
     given : float
-        By how much relaxed demands are broken at most (ln).
+        Largest violation of the relaxed demands (ln).
     broken : dict of str to float
-        What it breaks of the others, by name (ln).
+        Violations of the others, by name (ln).
     relaxed : tuple of str
         As asked.
     solved : int
         Solutions.
     shifts : dict of str to float
-        By how much margins of the solution are above those of closed forms, by name.
+        Margins of the solution less those of closed forms, by name.
     """
 
     row: dict[str, float]
@@ -104,18 +104,12 @@ class Refined:
 
 
 def refine(task: Task) -> Refined:
-    """Return a candidate with its best continuous sizes, solved coarsely: `finish` says whether it fits.
-
-    Parameters
-    ----------
-    task : Task
-        The candidate.
-    """
+    """Return a candidate with its best continuous sizes, solved coarsely: `finish` says whether it fits."""
     row, best, last, solved = dict(task.row), None, None, 0
     life: float | None = None
     broken = np.inf
     row["rollers"] = float(max(most_rollers(row, task), row["rollers"]))
-    for _ in range(ROUNDS):
+    for _ in range(MAX_COARSE_SOLUTIONS):
         row = _rounded(row, task)
         solution, solved = solve_coarsely(row, task.requirements, task.demands, life), solved + 1
         life = solution.life_factor or life
@@ -133,12 +127,12 @@ def refine(task: Task) -> Refined:
             gained = np.inf if best is None else _aim(best[1], _actual(best[1], task), task) - aim
             if gained > 0.0:
                 best = row, solution
-            if gained < ENOUGH:
+            if gained < LEAST_GAIN:
                 break
-        elif broken > max(SLOW * worse, NEARLY) and best is None:
+        elif broken > max(LEAST_PROGRESS * worse, SMALL_VIOLATION) and best is None:
             break
         moved = _improve(row, each, task)
-        if max(abs(np.log(moved[name] / row[name])) for name in _varied(task)) < STILL:
+        if max(abs(np.log(moved[name] / row[name])) for name in _varied(task)) < LEAST_SIZE_STEP:
             break
         row = moved
     if best is None:
@@ -148,19 +142,11 @@ def refine(task: Task) -> Refined:
 
 
 def finish(task: Task, solved: int = 0) -> Refined:
-    """Return a refined candidate solved finely; where that finds more, a step back by what it found.
-
-    Parameters
-    ----------
-    task : Task
-        With the refined sizes.
-    solved : int
-        Solutions so far.
-    """
+    """Return a refined candidate solved finely; where that finds larger values, sizes step back by as much."""
     row, solution = dict(task.row), Solution(values={})
     # A life that gives way has no limit in the file any more, and has to be known all the same.
     lives = not task.relaxed or any(one.quantity in LIVES for one in task.demands)
-    for _ in range(FINE_ROUNDS):
+    for _ in range(MAX_FINE_SOLUTIONS):
         try:
             drive = drive_of(row, task.requirements)
         except CycloError as error:
@@ -181,29 +167,13 @@ def finish(task: Task, solved: int = 0) -> Refined:
 
 
 def relaxed_limits(limits: Limits, task: Task) -> Limits:
-    """Return limits without those of demands that are relaxed.
-
-    Parameters
-    ----------
-    limits : dict
-        Of a drive file.
-    task : Task
-        With the names of what is relaxed.
-    """
+    """Return limits without those of demands that are relaxed."""
     gone = {f"{one.sense}_{one.quantity}" for one in task.demands if one.name in task.relaxed}
     return {key: limit for key, limit in limits.items() if key not in gone}
 
 
 def most_rollers(row: dict[str, float], task: Task) -> int:
-    """Return how many rollers go beside each other in the bearing of a candidate.
-
-    Parameters
-    ----------
-    row : dict of str to float
-        Of `Sizes.row`.
-    task : Task
-        For the gap of the cage.
-    """
+    """Return how many rollers go beside each other in the bearing of a candidate."""
     radius = row["roller_radius"]
     part = radius * (1.0 + task.requirements.asked.shop.cage_gap) / (row["bore"] - radius)
     return max(3, floor(pi / asin(part) + 1e-9)) if part < 1.0 else 3
@@ -214,7 +184,7 @@ def _varied(task: Task) -> tuple[str, ...]:
 
 
 def _actual(solution: Solution, task: Task) -> FloatArray:
-    """Margins by the solution; of what it does not say, none."""
+    """Margins by the solution; not a number where it has no value."""
     values = {name: np.array([value]) for name, value in solution.values.items()}
     return np.asarray(margins(task.demands, values)[0])
 
@@ -242,18 +212,20 @@ def _aim(solution: Solution, each: FloatArray, task: Task) -> float:
 
 
 def _rounded(row: dict[str, float], task: Task) -> dict[str, float]:
-    """Sizes as a drawing has them, within the room there is."""
+    """Sizes rounded as on a drawing, within the room there is."""
     found = {name: round(value, DECIMALS) if name in CONTINUOUS else value for name, value in row.items()}
     asked, shop = task.requirements.asked, task.requirements.asked.shop
     if "outer_diameter" not in task.relaxed:
         most = 0.5 * asked.outer_diameter - shop.housing_wall - row["pin_radius"]
         found["pin_circle"] = (
-            min(found["pin_circle"], most) if found["pin_circle"] - most < TOUCH else found["pin_circle"]
+            min(found["pin_circle"], most) if found["pin_circle"] - most < ROOM_TOLERANCE else found["pin_circle"]
         )
     if "length" not in task.relaxed:
         most = (asked.length - shop.flanges - (row["discs"] - 1.0) * shop.disc_gap) / row["discs"]
-        found["thickness"] = min(found["thickness"], most) if found["thickness"] - most < TOUCH else found["thickness"]
-    if 0.0 < row["roller_length"] - found["thickness"] < TOUCH:
+        found["thickness"] = (
+            min(found["thickness"], most) if found["thickness"] - most < ROOM_TOLERANCE else found["thickness"]
+        )
+    if 0.0 < row["roller_length"] - found["thickness"] < ROOM_TOLERANCE:
         found["thickness"] = row["roller_length"]
     found["torque"] = row["torque"] if row["torque"] == asked.torque else float(f"{row['torque']:.5g}")
     return found
@@ -264,7 +236,7 @@ def _between(first: dict[str, float], second: dict[str, float]) -> dict[str, flo
 
 
 def _improve(row: dict[str, float], actual: FloatArray, task: Task) -> dict[str, float]:
-    """Optimise on closed forms that say at `row` what the solution said there."""
+    """Optimise on closed forms shifted so that they equal the solution at `row`."""
     from scipy.optimize import minimize
 
     setting, names, held = Setting.of(task.requirements), _varied(task), _held(task)
@@ -304,11 +276,11 @@ def _improve(row: dict[str, float], actual: FloatArray, task: Task) -> dict[str,
 
     def objective(full: FloatArray) -> float:
         _, _, size, _ = known(full)
-        return float((full[count] + 1e-3 * size if relaxes else size) + HARD * full[count + 1])
+        return float((full[count] + 1e-3 * size if relaxes else size) + VIOLATION_WEIGHT * full[count + 1])
 
     def slope(full: FloatArray) -> FloatArray:
         _, _, _, size = known(full)
-        return np.concatenate([(1e-3 if relaxes else 1.0) * size, [1.0 if relaxes else 0.0, HARD]])
+        return np.concatenate([(1e-3 if relaxes else 1.0) * size, [1.0 if relaxes else 0.0, VIOLATION_WEIGHT]])
 
     def kept(full: FloatArray) -> FloatArray:
         return np.asarray(known(full)[0] + np.where(held, full[count + 1], full[count]))
@@ -321,10 +293,16 @@ def _improve(row: dict[str, float], actual: FloatArray, task: Task) -> dict[str,
         max(0.0, float(np.max(-first[~held], initial=0.0))),
         max(0.0, float(np.max(-first[held], initial=0.0))),
     )
-    bounds = [(place - STEP, place + STEP) for place in start] + [(0.0, given + 3.0), (0.0, broken + 1.0)]
+    bounds = [(place - MAX_SIZE_STEP, place + MAX_SIZE_STEP) for place in start] + [
+        (0.0, given + 3.0),
+        (0.0, broken + 1.0),
+    ]
     if "torque" in names:
         at = names.index("torque")
-        bounds[at] = (start[at] - 2.0 * STEP, min(start[at] + STEP, float(np.log(task.requirements.asked.torque))))
+        bounds[at] = (
+            start[at] - 2.0 * MAX_SIZE_STEP,
+            min(start[at] + MAX_SIZE_STEP, float(np.log(task.requirements.asked.torque))),
+        )
     found = minimize(
         objective,
         np.concatenate([start, [given, broken]]),

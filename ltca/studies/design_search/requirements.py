@@ -1,4 +1,4 @@
-"""What is asked of a drive, as a TOML file: numbers in the units of drive files, texts with their own (docs/how-to/design.md)."""
+"""Requirement files (TOML): numbers in the units of drive files, texts with a unit (docs/how-to/design.md)."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ Counts = Annotated[
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
 class Shop:
-    """What can be made, and how parts are put together.
+    """Manufacturing limits and rules of assembly.
 
     Attributes
     ----------
@@ -163,7 +163,7 @@ class Requirements:
     asked : Asked
         What is asked.
     stock : Stock
-        What there is to choose from.
+        Sizes to choose from.
     materials : Materials
         Of the parts, as in a drive file.
     material_table : dict
@@ -181,25 +181,9 @@ class Requirements:
     limits: Limits
     text: str
 
-    @property
-    def input_speed(self) -> float:
-        """Turns a minute of the input at the ratio that is asked for."""
-        return self.asked.speed * self.asked.ratio
-
 
 def load_requirements(path: Path) -> Requirements:
-    """Read a requirement file.
-
-    Parameters
-    ----------
-    path : Path
-        TOML.
-
-    Raises
-    ------
-    DriveError
-        With every mistake: field, value, bound, unit.
-    """
+    """Read a requirement file (TOML); `DriveError` names every mistake: field, value, bound, unit."""
     return parse_requirements(read_text(path, NO_FILE), str(path), path.parent, path.stem)
 
 
@@ -208,16 +192,7 @@ def parse_requirements(
 ) -> Requirements:
     """Validate the text of a requirement file; see `load_requirements`.
 
-    Parameters
-    ----------
-    text : str
-        TOML.
-    source : str
-        Where it is from, for messages.
-    folder : Path, optional
-        In which a stock file is looked for.
-    name : str
-        Of the designs where the file gives none.
+    `source` is named in messages, a stock file is looked for in `folder`; `name` is that of the designs where the file has none.
     """
     table = parse_toml(text, source)
     table.setdefault("name", name)
@@ -278,7 +253,7 @@ def _materials(table: Any, problems: list[str]) -> Materials | None:
 
 
 def _stock(table: dict[str, Any], folder: Path, problems: list[str]) -> Stock | None:
-    """The stock: of the package, of a file, and of ``[shop]``, whose entries stand before both."""
+    """The stock: entries of ``[shop]``, then those of a stock file, or of the package."""
     shop = table.get("shop", {})
     own: dict[str, Any] = {}
     given: dict[str, Any] = {}

@@ -1,7 +1,7 @@
-"""From requirements to designs; where none fits, what stands in the way and how much it would have to give.
+"""From requirements to designs; where none fits, the relaxations that would make one fit.
 
-Each requirement alone is dropped and becomes what is to be broken least, all others held: its own enumeration and refinement
-say what would do. Where no single one is enough, pairs give alike (the same factor on both).
+Each requirement in turn becomes the objective, violated as little as possible with all others held: enumeration and refinement
+say which value would do. Where no single one is enough, pairs are relaxed by the same factor.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from math import ceil, exp, floor, log10
 import numpy as np
 
 from ltca.studies.design_search.demands import Demand, find_demands
-from ltca.studies.design_search.enumeration import FARTHEST, Enumeration, enumerate_candidates, size_of
+from ltca.studies.design_search.enumeration import MAX_ROOM_FACTOR, Enumeration, enumerate_candidates, size_of
 from ltca.studies.design_search.refinement import Refined, Task, finish, refine
 from ltca.studies.design_search.requirements import Requirements
 from ltca.studies.design_search.sizes import Sizes
@@ -23,32 +23,32 @@ from ltca.studies.design_search.sizes import Sizes
 CANDIDATES = 6
 """Candidates that are refined."""
 RELAXED_CANDIDATES = 3
-TORQUES = 0.85, 0.7, 0.55, 0.4, 0.28, 0.2, 0.14, 0.1
-"""Parts of the torque that are tried where it stands in the way."""
-PASSES = 2
-"""Enumerations: the second with closed forms moved by what loaded drives said, where the first found nothing."""
-CHANCE = 0.1
-"""What a candidate may break by closed forms (ln) to be taken for one."""
-PAIRS = 6
-"""Pairs of requirements that are refined at most, of all that closed forms leave a chance."""
+TORQUE_PARTS = 0.85, 0.7, 0.55, 0.4, 0.28, 0.2, 0.14, 0.1
+"""Parts of the torque that are tried where it is relaxed."""
+MAX_ENUMERATIONS = 2
+"""The second is with closed forms shifted by the margins of solved drives, where the first leads to no design."""
+CANDIDATE_TOLERANCE = 0.1
+"""Candidate tolerance on logarithmic margins of closed forms."""
+MAX_PAIRS = 6
+"""Pairs of requirements that are refined, those first that closed forms violate least."""
 DIGITS = 4
-"""Of what would do; rounded to the side that does."""
+"""Significant digits of values that would do."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Relaxation:
-    """What one requirement, or two, would have to give.
+    """Smallest relaxation of one or two requirements that makes the design feasible.
 
     Attributes
     ----------
     demands : tuple of Demand
-        Which.
+        Those that are relaxed.
     refined : Refined or None
         The design that then fits; None where none was found.
     combinations : int
-        That were looked at.
+        Combinations of sizes that were enumerated.
     broken : float or None
-        Least sum of what the best candidate breaks of the others by closed forms (ln); None without candidates.
+        Least sum of violations of the others by closed forms (ln); None without candidates.
     """
 
     demands: tuple[Demand, ...]
@@ -58,17 +58,11 @@ class Relaxation:
 
     @property
     def name(self) -> str:
-        """Of the requirements."""
+        """Names of the requirements, joined."""
         return "-and-".join(one.name for one in self.demands)
 
     def would_do(self, demand: Demand) -> float | None:
-        """Return the value of a requirement that would do, rounded to the side that does.
-
-        Parameters
-        ----------
-        demand : Demand
-            One of `demands`.
-        """
+        """Return the value of a requirement that would do, rounded to the side that does."""
         if self.refined is None:
             return None
         return rounded_safely(self.refined.solution.values[demand.quantity], demand.sense)
@@ -80,7 +74,7 @@ class Relaxation:
         if self.refined is None:
             alone = "alone" if len(self.demands) == 1 else "together"
             room = any(one.name in ("outer_diameter", "length") for one in self.demands)
-            return f"{asked}: not enough {alone}{f' (tried to × {FARTHEST:g})' if room else ''}"
+            return f"{asked}: not enough {alone}{f' (tried to × {MAX_ROOM_FACTOR:g})' if room else ''}"
         found = " with ".join(one.words(self.would_do(one)) for one in self.demands)
         return f"{asked}: {found} would do"
 
@@ -102,7 +96,7 @@ class Found:
     relaxations : tuple of Relaxation
         Where nothing fits: what would do first, by how little.
     combinations, solved : int
-        Looked at by closed forms; loaded drives that were solved.
+        Combinations evaluated by closed forms; loaded drives that were solved.
     """
 
     requirements: Requirements
@@ -115,14 +109,7 @@ class Found:
 
 
 def rounded_safely(value: float, sense: str) -> float:
-    """Return a value with a few digits, rounded up where it is the most that is allowed, down where the least.
-
-    Parameters
-    ----------
-    value : float
-        What was reached.
-    sense : {"max", "min"}
-        Of the limit.
+    """Return a value with a few digits, rounded up for a limit of sense ``max`` and down for ``min``.
 
     Examples
     --------
@@ -138,27 +125,17 @@ def rounded_safely(value: float, sense: str) -> float:
 
 
 def relax(requirements: Requirements, demands: tuple[Demand, ...], names: tuple[str, ...]) -> Relaxation:
-    """Return the least that requirements would have to give, all others held.
-
-    Parameters
-    ----------
-    requirements : Requirements
-        What is asked.
-    demands : tuple of Demand
-        Of it.
-    names : tuple of str
-        Of the demands that give.
-    """
+    """Return the smallest relaxation of the named demands that makes the design feasible, all others held."""
     combinations, best = 0, None
     shifts: dict[str, float] = {}
     giving = tuple(one for one in demands if one.name in names)
-    for _ in range(PASSES):
-        # Less torque changes what goes into a drive: the first part of it that closed forms leave a chance is where to start.
-        for part in TORQUES if "torque" in names else (1.0,):
+    for _ in range(MAX_ENUMERATIONS):
+        # Less torque changes what fits into a drive: start from the largest part of it for which there is a candidate.
+        for part in TORQUE_PARTS if "torque" in names else (1.0,):
             torque = part * requirements.asked.torque
             found = enumerate_candidates(requirements, demands, names, RELAXED_CANDIDATES, torque, shifts)
             combinations += found.combinations
-            if found.broken.size and found.broken.min() < CHANCE:
+            if found.broken.size and found.broken.min() < CANDIDATE_TOLERANCE:
                 break
         tasks = [Task(requirements=requirements, demands=demands, row=row, relaxed=names) for row in _rows(found)]
         refined = [refine(task) for task in tasks]
@@ -175,18 +152,8 @@ def relax(requirements: Requirements, demands: tuple[Demand, ...], names: tuple[
 
 
 def least_broken(requirements: Requirements, demands: tuple[Demand, ...], names: tuple[str, ...]) -> float:
-    """Return the least that closed forms say is broken of all other requirements (ln); infinite where none has a chance.
-
-    Parameters
-    ----------
-    requirements : Requirements
-        What is asked.
-    demands : tuple of Demand
-        Of it.
-    names : tuple of str
-        Of the demands that give.
-    """
-    torque = requirements.asked.torque * (TORQUES[-1] if "torque" in names else 1.0)
+    """Return the least violation of all other requirements by closed forms (ln); infinite where no candidate is left."""
+    torque = requirements.asked.torque * (TORQUE_PARTS[-1] if "torque" in names else 1.0)
     return float(np.min(enumerate_candidates(requirements, demands, names, 1, torque).broken, initial=np.inf))
 
 
@@ -196,18 +163,9 @@ def find_designs(
     told: Callable[[str], None] = lambda step: None,
     best: int = 3,
 ) -> Found:
-    """Return the designs that fit, or what stands in the way.
+    """Return up to `best` designs that fit, or the relaxations that would make one fit.
 
-    Parameters
-    ----------
-    requirements : Requirements
-        What is asked.
-    executor : Executor
-        That refines candidates.
-    told : callable
-        Told of every step.
-    best : int
-        Designs wanted.
+    The executor refines candidates; `told` is called with a line for each step of the search.
     """
     demands = find_demands(requirements)
     told("combinations")
@@ -216,7 +174,7 @@ def find_designs(
     refined = _refine_all(requirements, demands, _rows(found), executor, told)
     looked = found.combinations
     if not any(one.fits for one in refined) and (shifts := mean_shifts(refined)):
-        # Closed forms that are wrong on one side pick the wrong candidates: once more with what loaded drives said.
+        # Closed forms that err on one side choose the wrong candidates: once more, shifted by the solved drives.
         found = enumerate_candidates(requirements, demands, (), most, shifts=shifts)
         refined += _refine_all(requirements, demands, _rows(found), executor, told)
         looked += found.combinations
@@ -238,7 +196,7 @@ def find_designs(
         relaxations = _stand_in_the_way(requirements, demands, missed, executor, told)
         looked += sum(one.combinations for one in relaxations)
         solved += sum(one.refined.solved for one in relaxations if one.refined is not None)
-        # What has nothing to give after all fits as it is, if a solution with every limit in its place says so.
+        # A relaxation of nothing fits as it is, if a solution with every limit in place confirms it.
         whole = [one.refined for one in relaxations if one.refined is not None and one.refined.given <= 0.0]
         fine = [finish(Task(requirements=requirements, demands=demands, row=one.row)) for one in whole]
         designs = [one for one in fine if one.fits]
@@ -259,13 +217,7 @@ def _rows(found: Enumeration) -> list[dict[str, float]]:
 
 
 def mean_shifts(refined: list[Refined]) -> dict[str, float]:
-    """Return by how much margins of loaded drives are above those of closed forms, by name: the mean of all.
-
-    Parameters
-    ----------
-    refined : list of Refined
-        What was solved.
-    """
+    """Return by name the mean difference between margins of solved drives and those of closed forms."""
     each = [one.shifts for one in refined if one.shifts]
     names = set().union(*each) if each else set()
     return {name: float(np.mean([one[name] for one in each if name in one])) for name in sorted(names)}
@@ -282,7 +234,7 @@ def _refine_all(
     executor: Executor,
     told: Callable[[str], None],
 ) -> list[Refined]:
-    """In the order of the rows, whoever is done first."""
+    """Refine candidates by the executor; results are in the order of the rows."""
     futures = {}
     for number, row in enumerate(rows):
         told(f"candidate {number + 1} of {len(rows)}")
@@ -305,7 +257,7 @@ def _stand_in_the_way(
     single = _relax_all(requirements, demands, [(one.name,) for one in asked], executor, told)
     if any(one.refined is not None for one in single):
         return sorted(single, key=_least)
-    # All pairs by closed forms, those that have a chance by loaded drives; of equal ones what candidates broke goes first.
+    # All pairs by closed forms, the likeliest by loaded drives; of equal ones those that candidates violated come first.
     broken = {name for one in tried for name in one.broken}
     room = ("outer_diameter", "length", "torque")
     order = sorted(asked, key=lambda one: (one.name not in broken, one.name not in room))
@@ -314,7 +266,7 @@ def _stand_in_the_way(
     chances = [
         future.result() for future in [executor.submit(least_broken, requirements, demands, own) for own in names]
     ]
-    likely = sorted(range(len(names)), key=lambda place: chances[place])[:PAIRS]
+    likely = sorted(range(len(names)), key=lambda place: chances[place])[:MAX_PAIRS]
     pairs = [names[place] for place in likely if np.isfinite(chances[place])]
     return sorted(_relax_all(requirements, demands, pairs, executor, told), key=_least) + single
 
@@ -342,7 +294,7 @@ def _least(relaxation: Relaxation) -> float:
 
 
 def factor_words(relaxation: Relaxation) -> str:
-    """Return by which factor a relaxed requirement gives, as told beside it; empty where nothing does."""
+    """Return the factor by which a requirement is relaxed, as text; empty where no relaxation was found."""
     if relaxation.refined is None:
         return ""
     return f"× {exp(relaxation.refined.given):.3g}"

@@ -89,17 +89,7 @@ def stack_length(sizes: Sizes, gap: float) -> FloatArray:
 
 
 def drive_table(row: dict[str, float], requirements: Requirements, name: str) -> dict[str, Any]:
-    """Return the drive of one candidate as plain tables, as in a drive file.
-
-    Parameters
-    ----------
-    row : dict of str to float
-        Of `Sizes.row`.
-    requirements : Requirements
-        For all that is not varied.
-    name : str
-        Of the drive.
-    """
+    """Return the drive of one candidate (a row of `Sizes.row`) as plain tables, as in a drive file."""
     asked, shop = requirements.asked, requirements.asked.shop
     discs, several = int(row["discs"]), asked.kind == "rv"
     pitch, stack = row["thickness"] + shop.disc_gap, discs * row["thickness"] + (discs - 1) * shop.disc_gap
@@ -177,20 +167,5 @@ def drive_table(row: dict[str, float], requirements: Requirements, name: str) ->
 
 
 def drive_of(row: dict[str, float], requirements: Requirements, name: str | None = None) -> Drive:
-    """Return the drive of one candidate, fully checked.
-
-    Parameters
-    ----------
-    row : dict of str to float
-        Of `Sizes.row`.
-    requirements : Requirements
-        For all that is not varied.
-    name : str, optional
-        Of the drive; that of the requirements by default.
-
-    Raises
-    ------
-    DriveError
-        When it cannot be built.
-    """
+    """Return the drive of one candidate (a row of `Sizes.row`), fully checked; `DriveError` where it cannot be built."""
     return build_drive(drive_table(row, requirements, name or requirements.asked.name))

@@ -1,4 +1,4 @@
-"""What the loaded drive of a candidate reaches, judged as `cyclo check` judges it."""
+"""Values of the loaded drive of a candidate, judged as by `cyclo check`."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ COARSE_POSITIONS = 24
 TURNS, HOURS = "bearing_life_million_turns", "bearing_life_hours"
 CHECK_POSITIONS = 360
 """Of `cyclo check`."""
-BESIDE = 1e-3
-"""Between the positions of a turn, so that nothing is refined, rad."""
+OFFSET = 1e-3
+"""Offset of positions from those of a whole turn, between which extremes would be refined, rad."""
 CURVE_ANGLES = np.array([0.0, 0.1])
 """Crank angles at which stiffness and lost motion are read, rad."""
 CURVE_POINTS = 4
@@ -38,7 +38,7 @@ CURVE_POINTS = 4
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Solution:
-    """What a candidate reaches.
+    """Values of a candidate by a solution.
 
     Attributes
     ----------
@@ -69,24 +69,15 @@ class Solution:
 def solve_coarsely(
     row: dict[str, float], requirements: Requirements, demands: tuple[Demand, ...], life_factor: float | None = None
 ) -> Solution:
-    """Return what a candidate reaches over few positions.
+    """Return the values of a candidate over few positions.
 
-    Parameters
-    ----------
-    row : dict of str to float
-        Of `Sizes.row`.
-    requirements : Requirements
-        What is asked.
-    demands : tuple of Demand
-        For what has to be known.
-    life_factor : float, optional
-        Of an earlier solution of much the same sizes: lives follow from the forces then. Rollers in slices, which tell them
-        without, take longer than all else.
+    `life_factor` is that of an earlier solution of nearly the same sizes: lives then follow from the forces, as rollers in slices
+    take longer than all else.
     """
     try:
         drive = drive_of(row, requirements)
         positions = COARSE_POSITIONS if drive.disc.number_of_discs == 1 else COARSE_POSITIONS // 2
-        analysis = analyse(drive, position_angles(positions) + BESIDE)
+        analysis = analyse(drive, position_angles(positions) + OFFSET)
         by_forces = _lives_by_forces(row, analysis, requirements)
         asked = [one for one in demands if one.quantity in LIVES]
         # ISO 281 with the mean force falls short of the slices by a factor of two or so: what it finds enough is.
@@ -120,20 +111,9 @@ def own_values(
     demands: tuple[Demand, ...],
     angles: NDArray[np.float64] = CURVE_ANGLES,
 ) -> dict[str, float]:
-    """Return what `cyclo check` does not tell: room, torque, margins of the shape as far as demanded, stiffness, lost motion.
+    """Return values that `cyclo check` has not: room, torque, margins of the shape as far as demanded, stiffness, lost motion.
 
-    Parameters
-    ----------
-    row : dict of str to float
-        Of `Sizes.row`.
-    drive : Drive
-        The same, built.
-    requirements : Requirements
-        What is asked.
-    demands : tuple of Demand
-        Stiffness and lost motion take a curve of their own, and are told where they are demanded.
-    angles : array
-        Crank angles of that curve, rad.
+    Stiffness and lost motion need a torque curve, at `angles` in rad, which is solved where they are demanded.
     """
     shape = shape_values(Sizes.of_rows([row]), Setting.of(requirements))
     found = {name: float(shape[name][0]) for name in (*OF_SHAPE, "outer_diameter", "length", "torque")}
@@ -145,13 +125,7 @@ def own_values(
 
 
 def check_positions(drive: Drive) -> int:
-    """Return the positions at which to check a drive: those of `cyclo check`, one more where they alias with its teeth.
-
-    Parameters
-    ----------
-    drive : Drive
-        The drive.
-    """
+    """Return at how many positions to check a drive: as many as `cyclo check`, one more where those alias with the teeth."""
     distinct = CHECK_POSITIONS // gcd(CHECK_POSITIONS, drive.disc.number_of_teeth)
     return CHECK_POSITIONS if distinct >= RESOLVED else CHECK_POSITIONS + 1
 
@@ -165,22 +139,9 @@ def solve_finely(
     *,
     lives: bool = True,
 ) -> Solution:
-    """Return what a drive reaches, with the checks of `cyclo check`.
+    """Return the values of a drive, with the checks of `cyclo check`.
 
-    Parameters
-    ----------
-    row : dict of str to float
-        Of `Sizes.row`.
-    drive : Drive
-        As it is written.
-    limits : dict of str to Limit
-        Of its file.
-    requirements : Requirements
-        What is asked.
-    demands : tuple of Demand
-        For what has to be known beside the checks.
-    lives : bool
-        Whether lives are wanted where no limit asks for them.
+    `row` and `drive` are the same candidate; `lives` tells whether lives are wanted where no limit asks for them.
     """
     positions = check_positions(drive)
     try:

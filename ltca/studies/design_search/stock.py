@@ -1,4 +1,4 @@
-"""Diameters and lengths that pins and rollers come in, eccentricities that grinders offer; typical ones are data."""
+"""Stock: diameters and lengths of pins and rollers, available eccentricities; typical ones are data."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ TYPICAL = "stock_sizes.toml"
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
 class Stock:
-    """What there is to choose from.
+    """Sizes to choose from.
 
     Attributes
     ----------
@@ -39,13 +39,7 @@ class Stock:
 
 
 def stock_table(path: Path | None = None) -> dict[str, Any]:
-    """Return the table of a stock file.
-
-    Parameters
-    ----------
-    path : Path, optional
-        Of the user; the typical sizes of the package by default.
-    """
+    """Return the table of a stock file; the typical sizes of the package by default."""
     if path is None:
         text = (resources.files("ltca") / "studies" / "design_search" / TYPICAL).read_text(encoding="utf-8")
         return parse_toml(text, TYPICAL)
@@ -53,19 +47,7 @@ def stock_table(path: Path | None = None) -> dict[str, Any]:
 
 
 def build_stock(table: dict[str, Any], source: str = "shop") -> Stock:
-    """Return the stock of a table.
-
-    Parameters
-    ----------
-    table : dict
-        As in a stock file.
-    source : str
-        Where it is from, for messages.
-
-    Raises
-    ------
-    DriveError
-        With every mistake.
+    """Return the stock of the table of a stock file; `DriveError` names every mistake.
 
     Examples
     --------
@@ -80,13 +62,7 @@ def build_stock(table: dict[str, Any], source: str = "shop") -> Stock:
 
 
 def first_mistakes(error: ValidationError) -> list[Any]:
-    """Return the mistakes of an error, without arrays that are too short because an entry is wrong.
-
-    Parameters
-    ----------
-    error : ValidationError
-        Of pydantic.
-    """
+    """Return the mistakes of a validation error, without arrays that are too short because an entry is wrong."""
     found = error.errors()
     places = [detail["loc"] for detail in found]
 

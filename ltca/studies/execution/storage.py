@@ -1,55 +1,42 @@
-"""Files of a study: finished batches while it runs, then one dataset and one table that are whole or not there.
+"""The folder of a study: its plan and finished batches while it runs, then one dataset and one table.
 
-Nothing in the final files depends on time, on who solved it or on the order in which batches came.
+Each file is whole or not there. A batch says whose it is and carries a checksum; nothing in it is executed.
 """
 
 from __future__ import annotations
 
+import hashlib
 import json
+import re
+import zipfile
+import zlib
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from ltca.arrays import FloatArray
-from ltca.drive.fields import field_kind, with_whose
 from ltca.errors import CycloError, DamagedFileError, one_line
 from ltca.output.files import whole_file, write_json
-from ltca.output.netcdf import DiscStream, netcdf_stream, require_sound_netcdf
-from ltca.output.provenance import code_hash, code_version
-from ltca.output.regular_files import read_regular
+from ltca.output.provenance import code_version
+from ltca.output.regular_files import read_regular, regular_file
 from ltca.output.run_folder import BATCHES, PLAN
-from ltca.quantities import SCALARS
-from ltca.reading.writing import drive_text
-from ltca.studies.designs import SweepDesign
-from ltca.studies.execution.batch_files import DAMAGE, batch_files, read_batch, write_batch
 from ltca.studies.study import BatchResult, Study
+from ltca.studies.study_results import CHUNK, Failures, write_results
 
 WHAT_DIFFERS = "drive, tolerances, samples, positions, seed, quantities, compliance, coefficients or the code differ"
 LARGEST_PLAN = 1_000_000
 """Bytes of a plan, which has five short entries."""
-CHUNK = 4096
-"""Samples of one chunk of the final files."""
-
-
-@contextmanager
-def opened_results(path: Path) -> Iterator[Any]:
-    """Open the dataset of a finished study (h5netcdf); `DamagedFileError` where it is unreadable within the block."""
-    import h5netcdf
-
-    try:
-        require_sound_netcdf(path, "the results of a study", whole=False)
-        with h5netcdf.File(path, "r") as file:
-            yield file
-    except DamagedFileError as error:
-        raise DamagedFileError(f"{error}; solve it again with --force") from error
-    except (*DAMAGE, AttributeError, IndexError) as error:
-        raise DamagedFileError(
-            f"{path}: cannot be read as the results of a study: {one_line(error)}; solve it again with --force"
-        ) from error
+BATCH_NAME = re.compile(r"[0-9]{8}\.npz")
+PARTS = ("number", "factors", "values", "messages", "fingerprint", "checksum")
+# What numpy and zip raise on files that are cut off, foreign, encrypted or declare what no memory holds.
+DAMAGE = (
+    OSError, ValueError, KeyError, TypeError, EOFError, OverflowError, MemoryError, NotImplementedError, RuntimeError,
+    zipfile.BadZipFile, zlib.error,
+)  # fmt: skip
+LARGEST_BATCH = 1 << 31
+"""Bytes that no batch has."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -99,25 +86,13 @@ class StudyFolder:
         *,
         replace: bool = False,
     ) -> list[int]:
-        """Make the folder ready and return the batches that are still to be solved.
+        """Make the folder ready and return the numbers of the batches that are still to be solved.
 
-        Parameters
-        ----------
-        study : Study
-            What is to be solved.
-        resume : bool
-            Whether to continue what the folder holds.
-        told : callable
-            Told which batches are set aside, and why.
-        replace : bool
-            Whether another study in the folder, finished or not, makes room.
-
-        Raises
-        ------
-        CycloError
-            When the folder holds another or an unfinished study and that was not expected.
+        With `resume` the study that the folder holds goes on; with `replace` another one, finished or not, makes room. Raises
+        `CycloError` when the folder holds another or an unfinished study and neither was asked for. `told` is called with a
+        line for each batch that is set aside.
         """
-        fingerprint = study.fingerprint()
+        fingerprint = study.fingerprint
         held = None if replace else self._held()
         unfinished = self.has_batches()
         if resume:
@@ -188,146 +163,86 @@ class StudyFolder:
         except DamagedFileError as error:
             raise DamagedFileError(f"{error}; continue with --resume, which solves its samples again") from error
 
-    def _in_chunks(self, study: Study) -> Iterator[tuple[int, FloatArray, FloatArray, list[str]]]:
-        """Samples in order: first number, factors, values and messages of each chunk."""
-        factors: list[FloatArray] = []
-        values: list[FloatArray] = []
-        messages: list[str] = []
-        first = 0
+    def _samples(self, study: Study) -> Iterator[BatchResult]:
+        """Samples in order, batches joined to parts of some `CHUNK`."""
+        waiting: list[BatchResult] = []
         for number in range(study.batches):
-            batch = self._load(study, number)
-            factors.append(batch.factors)
-            values.append(batch.values)
-            messages += batch.messages
-            if len(messages) >= CHUNK or number == study.batches - 1:
-                yield first, np.concatenate(factors), np.concatenate(values), messages
-                first += len(messages)
-                factors, values, messages = [], [], []
+            waiting.append(self._load(study, number))
+            if sum(len(batch.messages) for batch in waiting) >= CHUNK or number == study.batches - 1:
+                yield BatchResult(
+                    number=waiting[0].number,
+                    factors=np.concatenate([batch.factors for batch in waiting]),
+                    values=np.concatenate([batch.values for batch in waiting]),
+                    messages=tuple(message for batch in waiting for message in batch.messages),
+                )
+                waiting = []
 
-    def failures(self, study: Study) -> list[tuple[int, str]]:
-        """Return the failed samples of the finished dataset and why."""
-        with opened_results(self.results) as file:
-            if "failed_sample" not in file.variables:
-                return []
-            numbers = file.variables["failed_sample"][...].tolist()
-            reasons = file.variables["failure_message"][...]
-            texts = [reason.decode() if isinstance(reason, bytes) else str(reason) for reason in reasons]
-            return list(zip(numbers, texts, strict=True))
-
-    def finish(self, study: Study) -> list[tuple[int, str]]:
-        """Write dataset and table from all batches, then remove those; return failed samples and why.
-
-        Memory holds one chunk at a time.
-        """
-        failures: list[tuple[int, str]] = []
-        for first, _, _, messages in self._in_chunks(study):
-            failures += [(first + place, message) for place, message in enumerate(messages) if message]
-        with whole_file(self.results) as part, netcdf_stream(part) as stream:
-            self._write_dataset(study, stream, failures)
-        with whole_file(self.table) as part:
-            self._write_table(study, part)
+    def finish(self, study: Study) -> Failures:
+        """Write dataset and table from all batches, then remove those; return failed samples and why."""
+        with whole_file(self.results) as dataset, whole_file(self.table) as table:
+            failures = write_results(study, self._samples(study), dataset, table)
         for path in list(batch_files(self._batches)):
             path.unlink()
         with suppress(OSError):  # what is not ours stays, and so does the folder then
             self._batches.rmdir()
         return failures
 
-    def _write_dataset(self, study: Study, stream: DiscStream, failures: list[tuple[int, str]]) -> None:
-        import h5netcdf
 
-        samples, names = study.design.samples, study.design.names
-        with h5netcdf.File(stream, "w") as file:
-            file.dimensions = {"sample": samples, "factor": len(names), "failure": len(failures)}
-            file.attrs.update(_attributes(study))
-            text = {"dtype": h5netcdf.core.h5py.string_dtype()}
-            file.create_variable("factor", ("factor",), **text)[:] = np.array(names, dtype=object)
-            units = file.create_variable("factor_units", ("factor",), **text)
-            units[:] = np.array([_factor_column(study, name)["units"] for name in names], dtype=object)
-            units.attrs["long_name"] = "unit of each factor"
-            file.create_variable("sample", ("sample",), dtype="i8")[:] = np.arange(samples)
-            length = min(CHUNK, samples)
-            drawn = file.create_variable("factor_value", ("sample", "factor"), dtype="f8", chunks=(length, len(names)))
-            drawn.attrs["long_name"] = "value of each factor, in its unit (factor_units); of a text its level"
-            failed = file.create_variable("failed", ("sample",), dtype="i1")
-            failed.attrs["long_name"] = "1 where the sample failed; its quantities are no numbers then"
-            columns = []
-            for name in study.quantities:
-                column = file.create_variable(name, ("sample",), dtype="f8")
-                column.attrs.update({"units": SCALARS[name].unit, "long_name": SCALARS[name].title})
-                columns.append(column)
-            if failures:
-                numbers = file.create_variable("failed_sample", ("failure",), dtype="i8")
-                numbers[:] = np.array([number for number, _ in failures])
-                reasons = file.create_variable("failure_message", ("failure",), **text)
-                reasons[:] = np.array([message for _, message in failures], dtype=object)
-            for first, factors, values, messages in self._in_chunks(study):
-                rows = slice(first, first + len(messages))
-                drawn[rows] = factors
-                failed[rows] = np.array([bool(message) for message in messages], dtype="i1")
-                for column, numbers_of in zip(columns, values.T, strict=True):
-                    column[rows] = numbers_of
-                stream.check()
+def batch_files(folder: Path) -> Iterator[Path]:
+    """Yield the files of batches in a folder, by number; none when it is not there."""
+    if folder.is_dir():
+        yield from sorted(path for path in folder.iterdir() if BATCH_NAME.fullmatch(path.name))
 
-    def _write_table(self, study: Study, path: Path) -> None:
-        import pyarrow as pa
-        from pyarrow import parquet
 
-        schema = pa.schema(
-            [
-                pa.field("sample", pa.int64(), metadata={"units": "1", "description": "number of the sample, from 0"}),
-                *(pa.field(name, pa.float64(), metadata=_factor_column(study, name)) for name in study.design.names),
-                *(pa.field(name, pa.float64(), metadata=quantity_column(name)) for name in study.quantities),
-                pa.field("message", pa.string(), metadata={"units": "", "description": "why it failed, else empty"}),
-            ],
-            metadata={name: str(value) for name, value in _attributes(study).items()},
+def write_batch(path: Path, study: Study, result: BatchResult) -> None:
+    """Write one batch, whole or not at all."""
+    messages = np.array(result.messages, dtype=str)
+    with whole_file(path) as part, part.open("wb") as stream:
+        np.savez(
+            stream,
+            number=np.array(result.number),
+            factors=result.factors,
+            values=result.values,
+            messages=messages,
+            fingerprint=np.array(study.fingerprint),
+            checksum=np.array(_checksum(result, study.fingerprint)),
         )
-        with parquet.ParquetWriter(path, schema) as writer:
-            for first, factors, values, messages in self._in_chunks(study):
-                columns = [np.arange(first, first + len(messages)), *factors.T, *values.T]
-                arrays = [pa.array(column) for column in columns]
-                writer.write_table(pa.Table.from_arrays([*arrays, pa.array(messages)], schema=schema))
 
 
-def _attributes(study: Study) -> dict[str, Any]:
-    """What a file of a study says of itself; no clock and no folder among it."""
-    found = {
-        "Conventions": "CF-1.11",
-        "title": f"study of {study.name}",
-        "source": f"cyclo {code_version()}",
-        "version": code_version(),
-        "code_hash": code_hash("ltca"),
-        "study": study.name,
-        "study_definition": study.definition,
-        "drive_file": study.drive_file or drive_text(study.cases[0][1]),
-        "fingerprint": study.fingerprint(),
-        "positions": study.positions,
-        "samples": study.design.samples,
-        **study.engine.options,
-    }
-    if owners := study.eccentrics():
-        found["eccentrics"] = json.dumps(owners)
-    if isinstance(study.design, SweepDesign):
-        found["levels"] = json.dumps({f.path: list(f.levels) for f in study.design.factors if f.is_text})
-    return found
+def read_batch(path: Path, study: Study) -> BatchResult:
+    """Read one batch; `DamagedFileError` when it is damaged, or belongs to another study or to another number."""
+    try:
+        # Opened here: of a file that is no archive numpy leaves its own stream open.
+        with regular_file(path, LARGEST_BATCH) as stream, zipfile.ZipFile(stream) as archive:
+            declared = sum(entry.file_size for entry in archive.infolist())
+        if declared > LARGEST_BATCH:
+            raise DamagedFileError(f"{path}: declares {declared:,} bytes, which no batch has")
+        with regular_file(path, LARGEST_BATCH) as stream, np.load(stream, allow_pickle=False) as stored:
+            found = {name: stored[name] for name in PARTS}
+        result = BatchResult(
+            number=int(found["number"]),
+            factors=found["factors"],
+            values=found["values"],
+            messages=tuple(str(text) for text in found["messages"].tolist()),
+        )
+    except DAMAGE as error:
+        raise DamagedFileError(f"{path}: cannot be read as a batch of a study: {one_line(error)}") from error
+    if str(found["fingerprint"]) != study.fingerprint:
+        raise DamagedFileError(f"{path}: belongs to another study")
+    if str(found["checksum"]) != _checksum(result, study.fingerprint):
+        raise DamagedFileError(f"{path}: is damaged (checksum)")
+    if f"{result.number:08d}" != path.stem or not 0 <= result.number < study.batches:
+        raise DamagedFileError(f"{path}: is batch {result.number} of the study")
+    first, last = study.samples_of(result.number)
+    if not len(result.factors) == len(result.values) == len(result.messages) == last - first:
+        raise DamagedFileError(f"{path}: has not the {last - first} samples of its number")
+    return result
 
 
-def quantity_column(name: str) -> dict[str, str]:
-    """Return the metadata of the column of a quantity in a table."""
-    return {"units": SCALARS[name].unit, "description": SCALARS[name].title}
-
-
-def field_column(path: str, owner: str = "") -> dict[str, str]:
-    """Return the metadata of the column of a field of the drive in a table, with whose it is."""
-    kind = field_kind(path) or field_kind(path.rpartition(".")[0])
-    plain = "" if kind is None else kind.unit
-    unit = {"": "1", "dimensionless": "1"}.get(plain, plain.replace("*", " "))
-    return {"units": unit, "description": f"drive field {with_whose(path, owner)}"}
-
-
-def _factor_column(study: Study, name: str) -> dict[str, str]:
-    if isinstance(study.design, SweepDesign):
-        factor = next(item for item in study.design.factors if item.path == name)
-        if factor.is_text:
-            levels = ", ".join(f"{number} {level}" for number, level in enumerate(factor.levels))
-            return {"units": "1", "description": f"number of the level of {name}: {levels}"}
-    return field_column(name, study.whose(name))
+def _checksum(result: BatchResult, fingerprint: str) -> str:
+    digest = hashlib.sha256(f"{fingerprint} {result.number}".encode())
+    for values in (result.factors, result.values):
+        digest.update(f"{values.shape} {values.dtype.str}".encode())
+        digest.update(np.ascontiguousarray(values).tobytes())
+    digest.update("\0".join(result.messages).encode())
+    return digest.hexdigest()

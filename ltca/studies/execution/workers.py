@@ -19,13 +19,13 @@ from ltca.errors import CycloError, FaultError
 from ltca.output.process_pools import become_worker, process_pool
 from ltca.studies.study import BatchResult, Study, run_batch
 
-ANSWERING = 10.0
+SCHEDULER_TIMEOUT = 10.0
 """Time, s, in which a scheduler has to answer."""
 
-LOSSES = 3
+MAX_POOL_RESTARTS = 3
 """Times the local pool is built anew after a worker has died before the study gives up."""
 
-QUEUE = 4
+BATCHES_PER_WORKER = 4
 """Batches handed out for each worker: enough that none waits, few enough that memory stays flat."""
 
 
@@ -56,13 +56,7 @@ class Workers:
 
     @contextmanager
     def executor(self) -> Iterator[tuple[Executor, int]]:
-        """Give the executor and its number of workers.
-
-        Raises
-        ------
-        CycloError
-            When dask.distributed is not installed or the scheduler does not answer.
-        """
+        """Give the executor and its number of workers; `CycloError` where dask.distributed or its scheduler is missing."""
         if self.scheduler:
             with _cluster(self.scheduler) as found:
                 yield found
@@ -99,44 +93,27 @@ def _cluster(address: str) -> Iterator[tuple[Executor, int]]:
     for name in ("distributed", "distributed.client", "distributed.core", "tornado", "asyncio"):
         logging.getLogger(name).setLevel(logging.CRITICAL + 1)  # some have levels of their own
     try:
-        client: Any = cast(Any, Client)(address, timeout=ANSWERING, set_as_default=False)
+        client: Any = cast(Any, Client)(address, timeout=SCHEDULER_TIMEOUT, set_as_default=False)
     except (OSError, ValueError) as error:
         raise CycloError(f"--scheduler = {address}: no scheduler answers there: {error}") from error
     try:
         workers = max(1, sum(client.nthreads().values()))
-        yield client.get_executor(pure=False, retries=LOSSES), workers
+        yield client.get_executor(pure=False, retries=MAX_POOL_RESTARTS), workers
     finally:
         client.close()
 
 
 def solve_batches(study: Study, numbers: Iterable[int], workers: Workers) -> Iterator[BatchResult]:
-    """Solve batches and yield them as they are done.
+    """Solve batches and yield them as they are done, in no particular order.
 
-    Parameters
-    ----------
-    study : Study
-        The study.
-    numbers : iterable of int
-        Batches to solve.
-    workers : Workers
-        Where.
-
-    Yields
-    ------
-    BatchResult
-        In no particular order.
-
-    Raises
-    ------
-    FaultError
-        When workers die again and again, or the scheduler is gone.
+    Raises `FaultError` when workers die again and again, or the scheduler is gone.
     """
     left = list(numbers)[::-1]
-    for _ in range(LOSSES + 1):
+    for _ in range(MAX_POOL_RESTARTS + 1):
         done: set[int] = set()
         try:
             with workers.executor() as (executor, count):
-                for result in _flow(study, left, executor, QUEUE * count):
+                for result in _flow(study, left, executor, BATCHES_PER_WORKER * count):
                     done.add(result.number)
                     yield result
             return
@@ -150,7 +127,8 @@ def solve_batches(study: Study, numbers: Iterable[int], workers: Workers) -> Ite
                 "are kept, continue with --resume"
             ) from error
     raise FaultError(
-        f"workers died {LOSSES + 1} times; {len(left)} batches are left: finished ones are kept, continue with --resume"
+        f"workers died {MAX_POOL_RESTARTS + 1} times; {len(left)} batches are left: finished ones are kept, continue with "
+        "--resume"
     )
 
 

@@ -91,7 +91,7 @@ def test_limit_gives_history():
 @pytest.mark.parametrize("seed", range(6))
 def test_unknowns_exchanged_one_by_one_find_the_set(seed, monkeypatch):
     """Murty's rule, which takes over where whole sets would flip for ever: from any start, here from all in contact."""
-    monkeypatch.setattr(unilateral, "PATIENCE", 0)
+    monkeypatch.setattr(unilateral, "MAX_PLAIN_STEPS", 0)
     monkeypatch.setattr(unilateral, "find_active_set", lambda problem: np.ones(7, dtype=bool))
     problem = random_problem(seed)
     found = solve_floating_contact(problem, np.zeros(7, dtype=bool), limit=400)

@@ -7,6 +7,7 @@ import pytest
 
 from fem.coefficients.bodies import derive_roller
 from fem.coefficients.dataset import derive_coefficients
+from fem.options import SolutionOptions
 from fem.reducer.solution import solve_reducer
 from fem.shapes import CircleShape
 from ltca.analysis.engines import PlaneStrain
@@ -59,7 +60,7 @@ def test_fe_agrees_with_meshed_shaft_pins(make, tmp_path):
     derive_coefficients(drive, stations=1.0, size=2.0).to_netcdf(path, engine="h5netcdf")
     engine = PlaneStrain(coefficients=load_coefficients(path, drive))
     found = analyse(drive, np.array([ANGLE]), engine=engine)
-    (disc,) = (full := solve_reducer(drive, ANGLE, scale=2.0)).discs
+    (disc,) = (full := solve_reducer(drive, ANGLE, SolutionOptions(size=2.0))).discs
     contacts, own = disc.contacts, found.full.response
     for name, theirs, ours in (
         ("pins", contacts.pin_load, own.pin_load[0]),

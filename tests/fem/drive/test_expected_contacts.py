@@ -7,8 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fem.contact.hertz import hertz_half_width, hertz_peak_pressure
-from fem.drive.expected_contacts import expect_contacts
+from fem.drive.expected_contacts import expect_contacts, hertz_half_width
 from ltca.drive.parts import Drive
 from ltca.geometry.placement import Placement
 from ltca.reading.drive_file import load_drive
@@ -19,13 +18,10 @@ def drive() -> Drive:
     return load_drive("paper").cases["CS-1"]
 
 
-def test_hertz_formulas_carry_the_load_and_match_a_published_case() -> None:
-    width, peak = hertz_half_width(250.0, 8.0, 1.1e5), hertz_peak_pressure(250.0, 8.0, 1.1e5)
-    assert 0.5 * np.pi * width * peak == pytest.approx(250.0)
-    # NAFEMS benchmark CGS-1, cylinder on block: R 50 mm, 35 kN/mm, E 210/70 GPa, ν 0.3: 3585 MPa, 6.21 mm.
+def test_the_half_width_matches_a_published_case() -> None:
+    # NAFEMS benchmark CGS-1, cylinder on block: R 50 mm, 35 kN/mm, E 210/70 GPa, ν 0.3: 6.21 mm.
     modulus = 1.0 / ((1.0 - 0.09) / 210e3 + (1.0 - 0.09) / 70e3)
     assert float(hertz_half_width(35e3, 50.0, modulus)) == pytest.approx(6.21, abs=0.01)
-    assert float(hertz_peak_pressure(35e3, 50.0, modulus)) == pytest.approx(3585.0, abs=5.0)
 
 
 @pytest.mark.parametrize("angle", [0.0, 0.5, 1.0, 3.0, -2.0])

@@ -5,9 +5,11 @@ import pytest
 
 from fem.drive.contact_results import DeformedContacts
 from fem.drive.expected_contacts import expect_contacts
-from fem.drive.grading import grade_contacts, measure_gaps
+from fem.drive.grading import grade_contacts
 from fem.drive.meshes import wall_refinements
+from fem.drive.rigid_bodies import RigidBodies
 from fem.drive.solution import solve_disc
+from fem.options import SolutionOptions
 from fem.shapes import DriveShapes
 from ltca.drive.single_discs import single_discs
 from ltca.geometry.flank import FlankProfile
@@ -23,7 +25,7 @@ def drive():
 
 
 def test_nominal_gaps(drive):
-    gaps = measure_gaps(drive, 0.4, 0j, 0.0, 0.0)
+    gaps = RigidBodies.of_drive(drive, 0.4).gaps(0j, 0.0, 0.0)
     # Tip, root and flank of the modified profile: 0.060 to 0.081 mm (notes on the paper).
     assert gaps.pins.min() > 0.059
     assert gaps.pins.max() < 0.082
@@ -34,7 +36,7 @@ def test_nominal_gaps(drive):
 def test_gaps_at_a_pose_by_sampling(drive):
     """The nearest of many flank points, bore and hole distances by hand."""
     displacement, rotation, wheel = 0.012 - 0.02j, -4e-4, -2e-3
-    gaps = measure_gaps(drive, 0.7, displacement, rotation, wheel)
+    gaps = RigidBodies.of_drive(drive, 0.7).gaps(displacement, rotation, wheel)
     place, profile = Placement.of_drive(drive), FlankProfile.of_drive(drive)
     centre = 4.0 * np.exp(0.7j) + displacement
     flank = centre + profile.flank(np.linspace(0.0, 2.0 * np.pi, 400_001)) * np.exp(1j * rotation)
@@ -55,11 +57,11 @@ def test_candidates_and_their_half_widths(drive):
     guess = expect_contacts(drive, 0.7)
     loads = (guess.pins.load, guess.rollers_outer.load, guess.holes.load)
     pose = (complex(guess.disc_x, guess.disc_y), guess.disc_rotation, guess.wheel_angle)
-    graded = grade_contacts(drive, 0.7, *pose, loads, margin=0.0, smallest_share=0.05)
+    graded = grade_contacts(drive, RigidBodies.of_drive(drive, 0.7), *pose, loads, margin=0.0, smallest_share=0.05)
     loaded = guess.pins.load > 0.05 * guess.pins.load.max()
     np.testing.assert_allclose(graded.pins.half_width[loaded], guess.pins.half_width[loaded], rtol=1e-9)
     assert np.all((graded.pins.half_width > 0.0) == (guess.pins.load > 0.0))
-    wide = grade_contacts(drive, 0.7, *pose, loads, margin=10.0, smallest_share=0.05)
+    wide = grade_contacts(drive, RigidBodies.of_drive(drive, 0.7), *pose, loads, margin=10.0, smallest_share=0.05)
     assert np.all(wide.pins.half_width > 0.0)
     assert np.all(wide.rollers_inner.half_width > 0.0)
     # The guess puts the bore contact on the cage ray; seen from the bore's own centre it is off by the displacement.
@@ -67,7 +69,7 @@ def test_candidates_and_their_half_widths(drive):
     assert off.max() < 1.3 * abs(pose[0])
     np.testing.assert_allclose(np.abs(graded.bore_points), drive.bore_radius, rtol=1e-12)
     yielding = with_fields(drive, {"pin_shaft.elastic_contact": True})
-    soft = grade_contacts(yielding, 0.7, *pose, loads, margin=0.0, smallest_share=0.05)
+    soft = grade_contacts(yielding, RigidBodies.of_drive(yielding, 0.7), *pose, loads, margin=0.0, smallest_share=0.05)
     on = guess.holes.load > 0.0
     np.testing.assert_allclose(soft.holes.half_width[on] / graded.holes.half_width[on], np.sqrt(2.0), rtol=1e-12)
 
@@ -77,10 +79,10 @@ def test_elements_lie_where_a_soft_disc_presses(drive):
     guess = expect_contacts(drive, 0.7)
     loads = (guess.pins.load, guess.rollers_outer.load, guess.holes.load)
     pose = (complex(guess.disc_x, guess.disc_y), guess.disc_rotation, guess.wheel_angle)
-    rigid = grade_contacts(drive, 0.7, *pose, loads, margin=0.0, smallest_share=0.05)
+    rigid = grade_contacts(drive, RigidBodies.of_drive(drive, 0.7), *pose, loads, margin=0.0, smallest_share=0.05)
     profile, loaded = FlankProfile.of_drive(drive), np.flatnonzero(guess.pins.load > 0.0)
     far, near = loaded[0], loaded[1]
-    theta = measure_gaps(drive, 0.7, *pose).flank_parameters
+    theta = RigidBodies.of_drive(drive, 0.7).gaps(*pose).flank_parameters
     moved = theta.copy()
     # A thousandth of a radian of θ is some 0.06 mm: half-widths are 0.1 mm and less.
     moved[far] += 3e-3
@@ -94,7 +96,9 @@ def test_elements_lie_where_a_soft_disc_presses(drive):
         bore_points=rigid.bore_points * np.exp(0.02j),
         hole_points=np.full(len(guess.hole_points), np.nan),
     )
-    graded = grade_contacts(drive, 0.7, *pose, loads, margin=0.0, smallest_share=0.05, deformed=found)
+    graded = grade_contacts(
+        drive, RigidBodies.of_drive(drive, 0.7), *pose, loads, margin=0.0, smallest_share=0.05, deformed=found
+    )
     # Newton's method finds the nearest point again to its tolerance, 1e-12 of the pin circle.
     assert graded.flank_points[far] == pytest.approx(profile.flank(moved)[far], abs=1e-9)
     outward = profile.normal(moved[[far]])[0] * np.exp(1j * pose[1])
@@ -112,7 +116,7 @@ def test_elements_lie_where_a_soft_disc_presses(drive):
 def test_a_plastic_disc_is_answered():
     """Failed after five gradings, the pressure at the end of a zone that lay where the undeformed flank is."""
     drive, angle = practical_drive(5)
-    found = solve_disc(single_discs(drive)[0], angle, drive.wheel_moment() / 2.0, scale=4.0)
+    found = solve_disc(single_discs(drive)[0], angle, drive.wheel_moment() / 2.0, SolutionOptions(size=4.0))
     assert drive.materials.disc.youngs_modulus == 2600.0
     # The pose is iterated until loads change by a tenth of a newton; the wheel carries 2,700 N at the pin circle.
     assert found.contacts.equilibrium_residual < 1e-4 * found.contacts.pin_load.sum()

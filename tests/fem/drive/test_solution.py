@@ -9,6 +9,7 @@ from fem.drive.disc_stress import recover_disc_stress, stress_variables, summari
 from fem.drive.fields import recover_fields
 from fem.drive.solution import solve_drive, solve_load
 from fem.errors import MemoryLimitError
+from fem.options import SolutionOptions
 from fem.reducer.solution import ReducerSolution
 from fem.reducer.solution_files import summarise
 from ltca.errors import ConvergenceError, DriveError
@@ -34,7 +35,7 @@ def drive(case="CS-1"):
 @pytest.fixture(scope="module")
 def coarse():
     """A third of the elements: quick, loads good to some hundredths of a per cent."""
-    return solve_drive(drive(), 0.5, scale=3.0)
+    return solve_drive(drive(), 0.5, SolutionOptions(size=3.0))
 
 
 @pytest.fixture(scope="module")
@@ -115,7 +116,7 @@ def test_arrays_have_full_length(coarse):
 
 def test_start_pose_does_not_matter(coarse):
     """From 0.1 mm and 1 mrad away, past the backlash on the wrong side, the same loads."""
-    again = solve_drive(drive(), 0.5, scale=3.0, start=(0.05, -0.08, 1.0e-3, 1.0e-3))
+    again = solve_drive(drive(), 0.5, SolutionOptions(size=3.0), start=(0.05, -0.08, 1.0e-3, 1.0e-3))
     for name, _ in CONTACT_KINDS:
         first, second = getattr(coarse.contacts, name), getattr(again.contacts, name)
         assert np.max(np.abs(first - second)) < 1e-3 * first.max()
@@ -131,7 +132,7 @@ def test_further_load_uses_the_same_factors(coarse):
 
 def test_further_load_is_that_of_fresh_meshes(coarse):
     more = solve_load(coarse, 1.1 * 377_300.0)
-    fresh = solve_drive(drive(), 0.5, torque=1.1 * 377_300.0, scale=3.0)
+    fresh = solve_drive(drive(), 0.5, SolutionOptions(size=3.0), torque=1.1 * 377_300.0)
     for name, _ in CONTACT_KINDS:
         first, second = getattr(more.contacts, name), getattr(fresh.contacts, name)
         assert np.max(np.abs(first - second)) < 3e-3 * first.max()
@@ -139,7 +140,7 @@ def test_further_load_is_that_of_fresh_meshes(coarse):
 
 @pytest.fixture(scope="module")
 def coarse_fields(coarse):
-    return recover_fields(coarse.model, coarse.state)
+    return recover_fields(coarse)
 
 
 def test_deformed_bodies_touch(coarse, coarse_fields):
@@ -258,8 +259,8 @@ def test_reverse_drive_mirrors_forward():
     """result(φ, cw) is the mirror image of result(−φ, ccw)."""
     forward = drive()
     backward = dataclasses.replace(forward, load=dataclasses.replace(forward.load, direction="cw"))
-    first = solve_drive(forward, -0.3, scale=4.0).contacts
-    second = solve_drive(backward, 0.3, scale=4.0).contacts
+    first = solve_drive(forward, -0.3, SolutionOptions(size=4.0)).contacts
+    second = solve_drive(backward, 0.3, SolutionOptions(size=4.0)).contacts
     mirrored = second.pin_load[(-np.arange(14)) % 14]
     # Different triangles on both sides of the mirror at two elements for each half-width.
     assert np.max(np.abs(first.pin_load - mirrored)) < 3e-3 * first.pin_load.max()
@@ -271,7 +272,7 @@ def test_reverse_drive_mirrors_forward():
     [
         ({"crank_bearing.roller_length": 8.0}, r"crank_bearing.roller_length = 8 mm: must be 11.8 mm"),
         ({"crank_bearing.roller_profile.crown_drop": 0.01}, r"crank_bearing.roller_profile.crown_drop = 0.01 mm"),
-        ({"pin_wheel.pin_profile.logarithmic_factor": 1.0}, r"pin_wheel.pin_profile.logarithmic_factor = 1: must be 0"),
+        ({"pin_wheel.pin_profile.logarithmic_factor": 1.0}, r"pin_wheel.pin_profile.logarithmic_factor = 1"),
     ],
 )
 def test_what_varies_along_the_length_is_refused_before_any_work(fields, named, monkeypatch):
@@ -281,15 +282,13 @@ def test_what_varies_along_the_length_is_refused_before_any_work(fields, named, 
         raise AssertionError("work was begun")
 
     monkeypatch.setattr("fem.drive.solution.expect_contacts", never)
-    with pytest.raises(
-        DriveError, match=f"{named}.* in two dimensions .full finite elements.; use --compliance hybrid"
-    ):
+    with pytest.raises(DriveError, match=f"{named}.* for full finite elements .*; use --compliance hybrid"):
         solve_drive(with_fields(drive(), fields), 0.5)
 
 
 def test_too_fine_is_refused_with_the_number():
     with pytest.raises(MemoryLimitError, match="unknowns"):
-        solve_drive(drive(), 0.5, scale=0.002)
+        solve_drive(drive(), 0.5, SolutionOptions(size=0.002))
 
 
 def test_nothing_that_can_carry_is_one_error():
@@ -297,7 +296,7 @@ def test_nothing_that_can_carry_is_one_error():
     loose = drive()
     loose = dataclasses.replace(loose, disc=dataclasses.replace(loose.disc, shifting_offset=-12.0))
     with pytest.raises(ConvergenceError):
-        solve_drive(loose, 0.5, scale=3.0)
+        solve_drive(loose, 0.5, SolutionOptions(size=3.0))
 
 
 @pytest.mark.parametrize("case", ["CS-1", pytest.param("CS-3", marks=pytest.mark.nightly)])
@@ -316,7 +315,7 @@ def test_default_drive_balances(case, default):
 @pytest.mark.nightly
 def test_halved_mesh_changes_little():
     """What the issue asks of the default size, held already from one and a half times that size."""
-    start, fine = (solve_drive(drive(), 0.5, scale=scale) for scale in (1.5, 0.75))
+    start, fine = (solve_drive(drive(), 0.5, SolutionOptions(size=scale)) for scale in (1.5, 0.75))
     for load, pressure in CONTACT_KINDS:
         first, second = getattr(start.contacts, load), getattr(fine.contacts, load)
         assert np.max(np.abs(first - second)) < 3e-3 * second.max()
@@ -346,7 +345,7 @@ def test_rigid_body_limit_comes_near_the_half_space_drive(coarse):
     steel = drive()
     soft, hard = (Material(youngs_modulus=value, poisson_ratio=0.3) for value in (103.0e3, 206.0e6))
     materials = dataclasses.replace(steel.materials, disc=hard, inner_race=hard, wheel_pin=soft, roller=soft)
-    contacts = solve_drive(dataclasses.replace(steel, materials=materials), 0.5, scale=3.0).contacts
+    contacts = solve_drive(dataclasses.replace(steel, materials=materials), 0.5, SolutionOptions(size=3.0)).contacts
     elastic = coarse.contacts
     half_space = analyse(steel, np.array([0.5]), None).full.response
     for name, limit, theirs in (
@@ -362,7 +361,7 @@ def test_rigid_body_limit_comes_near_the_half_space_drive(coarse):
 
 def test_elastic_shaft_pins_halve_the_contact_modulus(coarse):
     """Disc and pin alike: E* is half that of a rigid pin, so at one load b grows and p0 falls by √2 (Hertz)."""
-    yielding = solve_drive(with_fields(drive(), {"pin_shaft.elastic_contact": True}), 0.5, scale=3.0)
+    yielding = solve_drive(with_fields(drive(), {"pin_shaft.elastic_contact": True}), 0.5, SolutionOptions(size=3.0))
     check_balance(yielding)
     rigid, soft = coarse.contacts, yielding.contacts
     on = rigid.pin_shaft_load > 0.0
@@ -373,15 +372,15 @@ def test_elastic_shaft_pins_halve_the_contact_modulus(coarse):
     )
     # The pins give way locally by some micrometres, so the wheel turns back further.
     assert yielding.pose.wheel_angle < coarse.pose.wheel_angle
-    kinds = [field.kind for field in recover_fields(yielding.model, yielding.state)]
+    kinds = [field.kind for field in recover_fields(yielding)]
     assert kinds.count("shaft_pin") == 8
-    assert "shaft_pin" not in [field.kind for field in recover_fields(coarse.model, coarse.state)]
+    assert "shaft_pin" not in [field.kind for field in recover_fields(coarse)]
 
 
 def test_shaft_pins_of_a_material_that_does_not_yield_are_rigid(coarse):
     """A pin a million times stiffer than steel: loads, pressures and wheel of the rigid circle, but for its mesh."""
     stiff = {"pin_shaft.elastic_contact": True, "materials.shaft_pin.youngs_modulus": 2e11}
-    found = solve_drive(with_fields(drive(), stiff, check=False), 0.5, scale=3.0)
+    found = solve_drive(with_fields(drive(), stiff, check=False), 0.5, SolutionOptions(size=3.0))
     # A mesh of quadratic edges stands for the circle: of a peak over three elements for the half-width 0.1 % (found), with
     # room for other meshers; loads feel the mean. Pins of steel move them by 2 % and 30 %.
     for name, part in (("pin_load", 1e-3), ("pin_shaft_load", 1e-3), ("pin_shaft_pressure_mid", 5e-3)):

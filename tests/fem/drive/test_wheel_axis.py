@@ -10,5 +10,7 @@ from ltca.reading.changes import with_fields
 
 def test_offset_wheel_axis_is_refused(paper_cases):
     drive = with_fields(paper_cases["CS-1"], {"pin_wheel.axis_offset.x": 0.02})
-    with pytest.raises(DriveError, match=r"pin_wheel\.axis_offset = \(0\.02, 0\) mm: must be \(0, 0\) mm"):
+    with pytest.raises(
+        DriveError, match=r"pin_wheel\.axis_offset \(pin_wheel\.axis_offset\.x = 0\.02 mm\): must be left"
+    ):
         expect_contacts(drive, float(np.pi / 6.0))

@@ -24,6 +24,7 @@ from fem.mesh.gmsh_session import gmsh_model
 from fem.mesh.memory_need import require_memory, solution_memory
 from fem.mesh.quality import measure_quality
 from fem.mesh.triangulation import estimate_unknowns, mesh_circle, mesh_disc, mesh_ring
+from fem.options import SolutionOptions
 from fem.shapes import CircleShape, DriveShapes, RingShape
 from ltca.drive.parts import Drive
 from ltca.output.resources import available_memory
@@ -128,8 +129,8 @@ def test_boundaries_are_complete_disjoint_and_closed(shapes: DriveShapes, order:
         # Body on the left: the right-hand normal of each edge is the outward normal of the curve.
         outward = curve.normals(curve.parameter_of(middle))
         assert np.all((-1j * along * outward.conjugate()).real > 0.9 * np.abs(along))
-        rows = body.mesh.facets[:, body.facets_of(curve.name)]
-        np.testing.assert_array_equal(np.sort(rows, axis=0), np.sort(nodes[:, [0, -1]].T, axis=0))
+        facets = np.sort(body.mesh.facets[:, body.mesh.boundaries[curve.name]].T, axis=1)
+        assert sorted(facets.tolist()) == sorted(np.sort(nodes[:, [0, -1]], axis=1).tolist())
 
 
 @pytest.mark.parametrize("order", [1, 2])
@@ -234,7 +235,7 @@ def test_the_same_input_gives_the_same_mesh_in_another_process(
 @pytest.mark.parametrize("angle", [0.0, 2.0])
 def test_drive_meshes_are_good_and_of_the_estimated_size(drive: Drive, shapes: DriveShapes, angle: float) -> None:
     contacts = expect_contacts(drive, angle)
-    meshes = mesh_drive(shapes, contacts, scale=1.5)
+    meshes = mesh_drive(shapes, contacts, SolutionOptions(size=1.5))
     assert [body.name for body in meshes.bodies][:2] == ["disc", "pin_0"]
     for body in meshes.bodies:
         quality = measure_quality(body)
@@ -250,7 +251,7 @@ def test_drive_meshes_are_good_and_of_the_estimated_size(drive: Drive, shapes: D
 def test_contacts_of_the_turned_meshes_meet_the_expected_places(drive: Drive, shapes: DriveShapes) -> None:
     """The smallest edges of every loaded pin and roller lie where the contact is expected."""
     contacts = expect_contacts(drive, 1.0)
-    meshes = mesh_drive(shapes, contacts, scale=2.0)
+    meshes = mesh_drive(shapes, contacts, SolutionOptions(size=2.0))
     for bodies, group in ((meshes.wheel_pins, contacts.pins), (meshes.rollers, contacts.rollers_outer)):
         assert np.any(group.half_width > 0.0)
         for body, width, direction in zip(bodies, group.half_width, group.direction, strict=True):
@@ -285,7 +286,7 @@ def test_a_mesh_too_large_for_memory_is_refused_with_the_number(drive: Drive, sh
     with pytest.raises(MemoryLimitError, match=r"about [\d,]+ unknowns and need about .* GB .* are available"):
         mesh_disc(shapes.disc, [Refinement(60.0, 60.0, 1e-6, 1.0)])
     with pytest.raises(MemoryLimitError) as caught:
-        mesh_drive(shapes, expect_contacts(drive, 0.0), scale=1e-4)
+        mesh_drive(shapes, expect_contacts(drive, 0.0), SolutionOptions(size=1e-4))
     assert caught.value.needed > caught.value.available > 0.0
     assert caught.value.unknowns > 1e9
 
@@ -319,7 +320,7 @@ def test_wrong_sizes_are_refused(shapes: DriveShapes, make, message: str) -> Non
 @pytest.mark.parametrize("scale", [0.0, -1.0, float("nan"), float("inf")])
 def test_wrong_scales_are_refused(drive: Drive, shapes: DriveShapes, scale: float) -> None:
     with pytest.raises(MeshError, match="element size"):
-        mesh_drive(shapes, expect_contacts(drive, 0.0), scale=scale)
+        mesh_drive(shapes, expect_contacts(drive, 0.0), SolutionOptions(size=scale))
 
 
 def test_a_missing_boundary_is_named(disc: BodyMesh) -> None:

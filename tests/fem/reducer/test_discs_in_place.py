@@ -9,7 +9,7 @@ import pytest
 
 from fem.coefficients.dataset import derive_coefficients
 from fem.drive.expected_contacts import expect_contacts
-from fem.drive.grading import measure_gaps
+from fem.drive.rigid_bodies import RigidBodies
 from fem.drive.solution import solve_drive
 from fem.reducer.solution import expect_shares
 from ltca.drive.deviations import OneDisc, Runout
@@ -34,7 +34,7 @@ def test_gaps_are_those_of_the_pairs(three, disc):
     """Finite elements start from the same rigid bodies as the LTCA: gap = −approach, at any pose and phase."""
     single, angle = single_discs(three)[disc], np.array([1.3])
     x, y, rotation, wheel = POSE[0].tolist()
-    gaps = measure_gaps(single, 1.3, complex(x, y), rotation, wheel)
+    gaps = RigidBodies.of_drive(single, 1.3).gaps(complex(x, y), rotation, wheel)
     geometry = ContactGeometry.of_drive(single)
     flank = geometry.flank(angle, POSE)
     np.testing.assert_allclose(gaps.pins, -flank.approach[0], rtol=0.0, atol=1e-11)

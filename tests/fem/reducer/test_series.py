@@ -13,6 +13,7 @@ from fem.drive.condensed import ENTRIES_KEPT, condense_drive, keep_rounds
 from fem.drive.expected_contacts import expect_contacts
 from fem.drive.meshes import mesh_drive
 from fem.errors import MeshError
+from fem.options import SolutionOptions
 from fem.reducer.series import solve_positions
 from fem.reducer.solution import solve_reducer
 from fem.reducer.solution_files import summarise
@@ -30,8 +31,8 @@ def answer(solution):
 @pytest.mark.slow
 def test_a_position_after_its_neighbour_is_that_position_alone(paper_cases):
     """To the last bit, not to a tolerance: so a resumed or reordered series ends with the same files."""
-    first, second = solve_positions(paper_cases["CS-1"], ANGLES, scale=SIZE)
-    alone = solve_reducer(paper_cases["CS-1"], ANGLES[1], scale=SIZE)
+    first, second = solve_positions(paper_cases["CS-1"], ANGLES, SolutionOptions(size=SIZE))
+    alone = solve_reducer(paper_cases["CS-1"], ANGLES[1], SolutionOptions(size=SIZE))
     (one,), (other,) = second.discs, alone.discs
     np.testing.assert_array_equal(one.state.contact.pressure, other.state.contact.pressure)
     np.testing.assert_array_equal(one.pose.roller_distances, other.pose.roller_distances)
@@ -45,7 +46,7 @@ def condense(paper_cases):
     """Condense the drive of another make on meshes of one: coarse, none is solved."""
     drive = paper_cases["CS-1"]
     shapes, contacts = DriveShapes.of_drive(drive), expect_contacts(drive, 0.5)
-    meshes = mesh_drive(shapes, contacts, scale=8.0, growth=0.6)
+    meshes = mesh_drive(shapes, contacts, SolutionOptions(size=8.0, growth=0.6))
 
     def of(made, known=(), **options):
         return condense_drive(made, shapes, contacts, meshes, known=known, **options).groups
@@ -70,21 +71,20 @@ def test_pins_and_rollers_are_taken_only_where_all_that_they_are_made_of_is_the_
     other_rollers = dataclasses.replace(drive, materials=dataclasses.replace(drive.materials, roller=soft))
     assert reused(other_rollers) == [True] * pins + [False] * (len(known) - pins)
     assert not any(reused(dataclasses.replace(drive, disc=dataclasses.replace(drive.disc, thickness=10.0))))
-    assert not any(reused(drive, state="stress"))
+    assert not any(reused(drive, plane="stress"))
 
 
 def test_a_coarse_mesh_too_flat_for_fast_growth_is_made_with_slow_growth():
     """Fast growth saves time; where gmsh makes bad triangles of it, the drive is solved all the same."""
     tried = []
 
-    def condense(contacts, scale, rounds, watch, *, growth=stages.DEFAULT_GROWTH):
-        tried.append((scale, growth))
-        if growth == stages.COARSE_GROWTH:
+    def mesh(contacts, options, rounds):
+        tried.append((options.size, options.growth))
+        if options.growth == stages.COARSE_GROWTH:
             raise MeshError("too distorted")
-        return "model"
 
-    task = SimpleNamespace(scale=1.0, condense=condense)
-    assert stages._Task._condense_coarse(task, None, ()) == "model"
+    task = SimpleNamespace(options=SolutionOptions(), mesh=mesh, condense=lambda *words: "model")
+    assert stages._Task.condense_coarse(task, None, ()) == "model"
     assert tried == [(3.5, 0.6), (3.5, 0.3)]
 
 

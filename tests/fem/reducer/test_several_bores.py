@@ -13,8 +13,9 @@ from fem.coefficients.dataset import derive_coefficients
 from fem.commands import fem as command
 from fem.drive.expected_contacts import expect_contacts
 from fem.drive.fields import recover_fields
-from fem.drive.grading import measure_gaps
+from fem.drive.rigid_bodies import RigidBodies
 from fem.drive.solution import solve_disc
+from fem.options import SolutionOptions
 from fem.pictures.mesh_picture import choose_zooms, place_bodies
 from fem.reducer.solution import solve_reducer
 from fem.reducer.solution_files import build_dataset, summarise
@@ -63,7 +64,7 @@ def small(rv):
 
 @pytest.fixture(scope="module")
 def solved(small):
-    return solve_reducer(small, ANGLE, scale=6.0)
+    return solve_reducer(small, ANGLE, SolutionOptions(size=6.0))
 
 
 def renumbered(drive):
@@ -82,7 +83,7 @@ def test_gaps_are_those_of_the_pairs(rv, disc):
     }
     single, angle = single_discs(with_fields(rv, fields))[disc], np.array([1.3])
     pose = np.array([[0.012, -0.02, 3e-4, -1.9e-3]])
-    gaps = measure_gaps(single, 1.3, complex(0.012, -0.02), 3e-4, -1.9e-3)
+    gaps = RigidBodies.of_drive(single, 1.3).gaps(complex(0.012, -0.02), 3e-4, -1.9e-3)
     geometry = ContactGeometry.of_drive(single)
     rays, bores = geometry.rollers(angle), geometry.bores(angle, pose)
     displacement = bores.each(bores.displacement, gaps.rollers.size)
@@ -165,7 +166,7 @@ def test_a_held_wheel_takes_the_moment_of_the_sun(solved, small):
 
 @pytest.mark.slow
 def test_numbering_of_the_cranks_is_a_matter_of_names(solved, small):
-    one, other = solved.discs[0], solve_disc(renumbered(small), ANGLE, solved.wheel_moment, scale=6.0)
+    one, other = solved.discs[0], solve_disc(renumbered(small), ANGLE, solved.wheel_moment, SolutionOptions(size=6.0))
     for name, shift in (("pin_load", 0), ("roller_load", ROLLERS), ("roller_load_inner", ROLLERS)):
         first, second = getattr(one.contacts, name), getattr(other.contacts, name)
         # The same circles in another order give other meshes: 1.3 elements for a half-width, a load is good to 1 % or 2.
@@ -184,7 +185,9 @@ def test_rigid_body_limit_comes_near_the_half_space_drive(solved, small):
     """
     soft, hard = (Material(youngs_modulus=value, poisson_ratio=0.3) for value in (103.0e3, 206.0e6))
     materials = replace(small.materials, disc=hard, inner_race=hard, wheel_pin=soft, roller=soft)
-    contacts = solve_disc(replace(small, materials=materials), ANGLE, solved.wheel_moment, scale=6.0).contacts
+    contacts = solve_disc(
+        replace(small, materials=materials), ANGLE, solved.wheel_moment, SolutionOptions(size=6.0)
+    ).contacts
     half_space = analyse(small, np.array([ANGLE]), None).full.response
     for name, limit, theirs in (
         ("pin_load", 0.17, half_space.pin_load[0]),
@@ -214,7 +217,7 @@ def test_the_ltca_on_plane_strain_bodies_says_the_same(small, tmp_path):
     assert equal_parts(two)
     path = tmp_path / "coefficients.nc"
     write_coefficients(derive_coefficients(single_discs(two)[0], stations=0.5, size=2.0), path)
-    full = solve_reducer(two, ANGLE, scale=4.0)
+    full = solve_reducer(two, ANGLE, SolutionOptions(size=4.0))
     assert full.wheel_moment == pytest.approx(-two.load.torque, rel=1e-7)
     assert full.transmission_error == -full.wheel_angle
     answer = analyse(two, np.array([ANGLE]), engine=PlaneStrain(coefficients=(path,)))
@@ -241,7 +244,7 @@ def test_files_are_by_crank(solved, small, tmp_path, monkeypatch, capsys):
     np.testing.assert_array_equal(data["roller_load"].values.ravel(), disc.contacts.roller_load)
     np.testing.assert_array_equal(data["bearing_tangential"].values.ravel(), disc.bearing_components[:, 1])
     assert len(summarise(solved)["bearing_radial_N"]) == 3
-    monkeypatch.setattr("fem.reducer.solution.solve_reducer", lambda drive, angle, **options: solved)
+    monkeypatch.setattr("fem.reducer.solution.solve_reducer", lambda *words, **options: solved)
     source = tmp_path / "small.toml"
     source.write_text(drive_text(small), encoding="utf-8")
     parser = argparse.ArgumentParser()
@@ -281,7 +284,7 @@ def test_pictures_place_every_race_with_its_rollers(solved):
 def test_every_race_bends_under_its_own_rollers(solved):
     """Against the force of its bearing on the disc, and is pressed on that side."""
     (disc,) = solved.discs
-    races = [field for field in recover_fields(disc.model, disc.state) if field.kind == "inner_race"]
+    races = [field for field in recover_fields(disc) if field.kind == "inner_race"]
     assert [field.body.name for field in races] == ["inner_race_0", "inner_race_1", "inner_race_2"]
     forces = disc.contacts.bearing_force
     for race, force in zip(races, forces.tolist(), strict=True):

@@ -13,6 +13,7 @@ import xarray as xr
 from fem.coefficients.dataset import derive_coefficients
 from fem.commands import fem as command
 from fem.drive.disc_stress import recover_disc_stress
+from fem.options import SolutionOptions
 from fem.reducer.solution import solve_reducer
 from fem.reducer.solution_files import build_dataset, summarise
 from fem.reducer.verdict import judge_solution
@@ -46,7 +47,7 @@ def uneven(paper_cases):
 
 @pytest.fixture(scope="module")
 def solved(uneven):
-    return solve_reducer(uneven, ANGLE, scale=4.0)
+    return solve_reducer(uneven, ANGLE, SolutionOptions(size=4.0))
 
 
 def test_two_discs_at_one_wheel_angle(solved, uneven):
@@ -105,7 +106,7 @@ def test_equal_discs_and_a_held_wheel(paper_cases):
     a per cent, the slope of the transmission error.
     """
     drive = with_fields(paper_cases["CS-3"], {"disc.number_of_discs": 2, "installation.held": "pin-wheel"})
-    found = solve_reducer(drive, ANGLE, scale=6.0)
+    found = solve_reducer(drive, ANGLE, SolutionOptions(size=6.0))
     first, second = (disc.contacts for disc in found.discs)
     for name, shift in (("pin_load", 7), ("roller_load", 0), ("pin_shaft_load", 4)):
         one, other = getattr(first, name), np.roll(getattr(second, name), shift)
@@ -120,7 +121,7 @@ def test_equal_discs_and_a_held_wheel(paper_cases):
 
 
 def test_the_command_writes_files_by_disc(solved, uneven, tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr("fem.reducer.solution.solve_reducer", lambda drive, angle, **options: solved)
+    monkeypatch.setattr("fem.reducer.solution.solve_reducer", lambda *words, **options: solved)
     source = tmp_path / "two.toml"
     source.write_text(drive_text(uneven), encoding="utf-8")
     parser = argparse.ArgumentParser()

@@ -11,6 +11,7 @@ from fem.body.elasticity import assemble_stiffness
 from fem.body.surface import OppositeZone
 from fem.drive.meshes import RoundEnd, RoundGrading
 from fem.drive.solution import solve_drive
+from fem.options import SolutionOptions
 from fem.referee.calculix_deck import PENALTY_FACTOR, even_support, write_deck
 from ltca.drive.parts import Material
 from ltca.reading.changes import with_fields
@@ -28,7 +29,7 @@ def test_the_penalty_gives_way_alike_on_every_mesh(tmp_path):
     drive = load_drive("paper").cases["CS-1"]
     stiffness = {}
     for size in (6.0, 4.0):
-        solution = solve_drive(drive, 0.5, scale=size)
+        solution = solve_drive(drive, 0.5, SolutionOptions(size=size))
         lines = write_deck(solution, tmp_path / "drive.inp").read_text(encoding="ascii").splitlines()
         found = np.array(values_after(lines, "*SURFACE BEHAVIOR"), dtype=float)
         width = np.array([pair.expected_half_width for pair in solution.model.pairs])
@@ -73,7 +74,7 @@ def test_elastic_shaft_pins_are_bodies_of_their_own(tmp_path):
     """The deck refused them."""
     fields = {"pin_shaft.elastic_contact": True, "materials.shaft_pin.youngs_modulus": 110_000.0}
     drive = with_fields(load_drive("paper").cases["CS-1"], fields)
-    solution = solve_drive(drive, 0.5, scale=6.0)
+    solution = solve_drive(drive, 0.5, SolutionOptions(size=6.0))
     lines = write_deck(solution, tmp_path / "drive.inp").read_text(encoding="ascii").splitlines()
     holes = [pair.index for pair in solution.model.pairs if pair.kind == "hole"]
     assert len(holes) >= 2

@@ -10,7 +10,7 @@ import pytest
 from ltca.analysis import extremes
 from ltca.analysis.engines import HalfSpace, Hybrid
 from ltca.analysis.extremes import (
-    GAIN,
+    RELATIVE_REFINEMENT_TOLERANCE,
     PeakSearch,
     is_full_turn,
     passages_per_turn,
@@ -60,7 +60,7 @@ def test_smooth_peaks_and_kinks_are_found(phase):
     for name, height in (("smooth", 4.0), ("kink", 2.0), ("both", 7.0 + 0.4 + 0.5), ("valley", -1.0)):
         range_or_size = 1.0 if groups[name][1] else height
         assert found[name] <= height + 1e-12
-        assert found[name] == pytest.approx(height, abs=GAIN * range_or_size), name
+        assert found[name] == pytest.approx(height, abs=RELATIVE_REFINEMENT_TOLERANCE * range_or_size), name
     assert asked < 200
 
 
@@ -71,7 +71,7 @@ def test_the_largest_of_several_columns_is_one_extreme():
         return np.stack([np.cos(3.0 * x), 1.01 * np.cos(3.0 * (x - TURN / 120.0))], axis=1)
 
     found, _ = search_of(curve, 61, {"pins": (slice(0, 2), False)})
-    assert found["pins"] == pytest.approx(1.01, abs=GAIN * 1.01)
+    assert found["pins"] == pytest.approx(1.01, abs=RELATIVE_REFINEMENT_TOLERANCE * 1.01)
 
 
 def test_columns_that_are_no_numbers_stay_so():
@@ -83,7 +83,7 @@ def test_columns_that_are_no_numbers_stay_so():
     )
     search.add(places := search.promising(), np.column_stack([np.full(places.size, np.nan), np.sin(places)]))
     assert np.isnan(search.largest()["none"])
-    assert search.largest()["sine"] == pytest.approx(1.0, abs=2.0 * GAIN)  # its range is 2
+    assert search.largest()["sine"] == pytest.approx(1.0, abs=2.0 * RELATIVE_REFINEMENT_TOLERANCE)  # its range is 2
 
 
 def extremes_of(analysis):
@@ -141,7 +141,7 @@ def test_refined_values_do_not_hang_on_the_positions(paper_cases, case, position
 @pytest.mark.slow
 def test_other_engines_are_refined_on_their_own_loads(paper_cases, monkeypatch):
     """Hybrid with C = 0 is the half-space; grids are searched on tables and solved at the places found."""
-    monkeypatch.setattr(extremes, "SCANNED", 8)  # quicker, and the same for all
+    monkeypatch.setattr(extremes, "SCAN_POSITIONS_PER_PASSAGE", 8)  # quicker, and the same for all
     drive = paper_cases["CS-3"]
     angle = position_angles(4)
     tables = refine_extremes(analyse(drive, angle))

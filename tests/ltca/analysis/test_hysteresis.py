@@ -62,7 +62,7 @@ def test_the_loop_lies_between_the_turning_branches(paper, name):
     ways = [model.friction, model.friction.reversed()]
     ends = [
         [
-            solve_at_output(replace(model, friction=way), drive, ANGLE, float(value)).pose[0, WHEEL_ANGLE]
+            solve_at_output(replace(model, friction=way), [drive], ANGLE, float(value)).pose[0, WHEEL_ANGLE]
             for value in path
         ]
         for way in ways

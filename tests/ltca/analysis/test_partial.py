@@ -13,7 +13,6 @@ import ltca
 from ltca.analysis import engines, loaded_analysis
 from ltca.analysis.loaded_analysis import analyse
 from ltca.commands.program import main
-from ltca.drive.parts import Drive
 from ltca.equilibrium.balance import Equilibrium
 from ltca.errors import ConvergenceError
 from ltca.figures.run_figures import draw_figure
@@ -29,13 +28,12 @@ def failing(monkeypatch):
     real = engines.solve_at_output
 
     def fail(which):
-        def solve(model, drive, angle, torque, start=None):
-            full = drive.load.torque if isinstance(drive, Drive) else drive[0].load.torque
-            light = np.max(torque) < 0.5 * full
+        def solve(model, drives, angle, torque, start=None):
+            light = np.max(torque) < 0.5 * drives[0].load.torque
             bad = np.isclose(angle, ANGLES[2]) | np.isclose(angle, ANGLES[5])
             if np.any(bad) and (which == "both" or light == (which == "light")):
                 raise ConvergenceError("no equilibrium at some crank angle", [1.0, 2.0])
-            return real(model, drive, angle, torque, start)
+            return real(model, drives, angle, torque, start)
 
         for module in (engines, loaded_analysis):  # case by case, and cases as one batch
             monkeypatch.setattr(module, "solve_at_output", solve)

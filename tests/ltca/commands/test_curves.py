@@ -8,7 +8,7 @@ import re
 import numpy as np
 import pytest
 
-import ltca.commands.curves as curves
+import ltca.commands.actions.curves as curves
 import ltca.figures.curve_figures as curve_figures
 from ltca.analysis import engines, loaded_analysis, transmission_error_orders as orders
 from ltca.analysis.life.bearing_lives import bearing_lives
@@ -239,7 +239,7 @@ def make_coarse(monkeypatch):
     monkeypatch.setattr(curves, "ANGLES", 1)
     monkeypatch.setattr(curves, "POSITIONS_PER_TURN", 44)
     monkeypatch.setattr(
-        orders, "known_orders", lambda drive, harmonics: (orders.Order(8.0, "a"), orders.Order(13.0, "b"))
+        curves, "known_orders", lambda drive, harmonics: (orders.Order(8.0, "a"), orders.Order(13.0, "b"))
     )
 
 

@@ -17,8 +17,8 @@ def few(monkeypatch):
     """Fewer candidates and solutions of each: the first ones of these files do."""
     monkeypatch.setattr(search, "CANDIDATES", 2)
     monkeypatch.setattr(search, "RELAXED_CANDIDATES", 1)
-    monkeypatch.setattr(refinement, "ROUNDS", 2)
-    monkeypatch.setattr(search, "PASSES", 1)
+    monkeypatch.setattr(refinement, "MAX_COARSE_SOLUTIONS", 2)
+    monkeypatch.setattr(search, "MAX_ENUMERATIONS", 1)
 
 
 def passes_check(path, out):

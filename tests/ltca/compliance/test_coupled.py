@@ -157,7 +157,7 @@ def test_contacts_that_are_left_out_change_nothing(paper_cases, closed_form, mon
     model = CoupledCompliance.of_drive(drive, closed_form(drive), near_field)
     pose = solve_equilibrium(Reducer(discs=(model,)), ANGLES, drive.wheel_moment()).pose
     few = model.respond(ANGLES, pose)
-    monkeypatch.setattr(coupled, "MARGIN", np.inf)
+    monkeypatch.setattr(coupled, "CANDIDATE_MARGIN", np.inf)
     everything = model.respond(ANGLES, pose)
     within = coupled.UndeformedBodies.within
     asked = []

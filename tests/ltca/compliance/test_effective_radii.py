@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ltca.analysis.loaded_analysis import analyse
-from ltca.compliance.half_space import SAMPLES, _effective_radii
+from ltca.compliance.half_space import SAMPLES_PER_LOBE, _effective_radii
 from ltca.drive.single_discs import single_discs
 from ltca.geometry.flank import FlankProfile
 from ltca.reading.drive_file import parse_drive, shipped_drive
@@ -26,7 +26,7 @@ def test_the_range_of_effective_radii(eccentricity):
     drive = single_discs(crowned(eccentricity))[0]
     profile, wheel = FlankProfile.of_drive(drive), drive.pin_wheel
     pitch = 2.0 * np.pi / wheel.number_of_pins
-    found = _effective_radii(profile, np.array([wheel.pin_radius]), np.linspace(0.0, pitch, SAMPLES + 1))
+    found = _effective_radii(profile, np.array([wheel.pin_radius]), np.linspace(0.0, pitch, SAMPLES_PER_LOBE + 1))
     # A million places of a pitch: the sharpest of these tips is five hundred of them wide.
     all_radii = profile.effective_radius(np.linspace(0.0, pitch, 1_000_001), wheel.pin_radius)
     smallest, largest = all_radii.min(), all_radii.max()

@@ -15,7 +15,6 @@ from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.equilibrium.balance import solve_equilibrium
 from ltca.equilibrium.reducer import Reducer
-from ltca.laws.series import approach_at_load
 from ltca.reading.changes import with_fields
 
 ANGLES = np.array([0.5, 2.0])
@@ -143,7 +142,7 @@ def test_a_shaft_pin_yields_as_one_approach_at_one_load(drive, closed_form):
     nu, modulus = STEEL[1], STEEL[0]
     share = 2.0 * (1.0 - nu**2) / (np.pi * modulus * drive.disc.thickness)
     yielding = [
-        float(approach_at_load(model.near_field.hole, load, radius)[0][0, 0]) + model.own.hole * 2000.0
+        float(model.near_field.hole.approach_at_load(load, radius)[0][0, 0]) + model.own.hole * 2000.0
         for model in (rigid, soft)
     ]
     line, gap = 2000.0 / drive.disc.thickness, compliance(STEEL)

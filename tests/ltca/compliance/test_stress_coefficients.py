@@ -14,7 +14,7 @@ from ltca.compliance.coefficients import load_coefficients
 from ltca.compliance.stress_coefficients import WallContacts, evaluate_wall_stress
 from ltca.compliance.wall_stress import CLEAR_HALF_WIDTHS, wall_profiles, wall_stresses
 from ltca.contact.hertz import line_contact_stress
-from ltca.contact.subsurface import LINE_DEPTH, line_contact_shear
+from ltca.contact.subsurface import LINE_SHEAR_DEPTH, line_contact_shear
 from ltca.errors import CycloError
 from ltca.geometry.boundary_stations import Boundary
 from ltca.testing.closed_form_bodies import closed_form_coefficients
@@ -184,7 +184,7 @@ def test_stress_under_contacts(analysis):
 def test_many_positions_are_as_each_alone(analysis, monkeypatch):
     """Chunks join in order."""
     together = stresses_of(analysis)
-    monkeypatch.setattr(wall_stress, "CHUNK", 2)
+    monkeypatch.setattr(wall_stress, "POSITIONS_PER_CHUNK", 2)
     chunked = stresses_of(analysis)
     for name in ("root", "root_parameter", "bore", "hole", "roller_contact"):
         np.testing.assert_allclose(getattr(chunked, name), getattr(together, name), rtol=1e-12, err_msg=name)
@@ -244,5 +244,5 @@ def test_shear_below_a_line_contact_in_a_stressed_wall():
     for along in (0.0, 62.0, -30.0):
         shear = 0.5 * (alone.across + along - alone.depthwise)
         assert float(line_contact_shear(1000.0, along)) == pytest.approx(shear.max(), rel=1e-6)
-        assert depth[np.argmax(shear)] == pytest.approx(LINE_DEPTH * 0.2, abs=1e-4)
+        assert depth[np.argmax(shear)] == pytest.approx(LINE_SHEAR_DEPTH * 0.2, abs=1e-4)
     np.testing.assert_array_equal(line_contact_shear(np.zeros(2), np.array([50.0, -50.0])), 0.0)

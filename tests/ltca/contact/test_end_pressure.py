@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ltca.contact.end_pressure import largest_pressure_ratio
-from ltca.contact.generator import generator_profile
+from ltca.contact.length_profile import generator_profile
 from ltca.contact.tracked_grid import ContactKind
 from ltca.drive.parts import LengthProfile
 

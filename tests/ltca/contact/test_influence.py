@@ -7,7 +7,39 @@ import pytest
 from scipy.integrate import quad
 
 import ltca.contact.influence
-from ltca.contact.influence import assemble_influence_matrix, lagged_influence, love_displacement
+from ltca.contact.influence import assemble_influence_matrix, lagged_influence
+
+
+def love_displacement(x, y, half_length_x, half_length_y):
+    """Integral of 1/r over a rectangle centred on the origin, from points of the surface (Love 1929; Johnson Eq. 3.25), mm."""
+    x, y, a, b = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, half_length_x, half_length_y)))
+    total = np.zeros(x.shape)
+    # Sum of signed corner terms X asinh(Y/|X|) + Y asinh(X/|Y|), paired so that far points do not cancel:
+    # asinh differences are formed from one quotient instead of two large logarithms.
+    for near, far, half_near, half_far in ((x, y, a, b), (y, x, b, a)):
+        for sign in (1.0, -1.0):
+            edge = near + sign * half_near
+            size = np.abs(edge)
+            safe = np.where(size > 0.0, size, 1.0)
+            upper, lower = (far + half_far) / safe, (far - half_far) / safe
+            total += sign * np.where(
+                size > 0.0, edge * _inverse_sinh_difference(upper, lower, 2.0 * half_far / safe), 0.0
+            )
+    return total
+
+
+def _inverse_sinh_difference(upper, lower, difference):
+    """asinh(upper) − asinh(lower), upper − lower given exactly: no cancellation when both are large or close."""
+    root_upper, root_lower = np.hypot(1.0, upper), np.hypot(1.0, lower)
+    same_side = upper * lower > 0.0
+    # asinh u − asinh v = asinh(u √(1+v²) − v √(1+u²)); on the same side u²−v² over the sum avoids the difference.
+    total = upper * root_lower + lower * root_upper
+    argument = np.where(
+        same_side,
+        difference * (upper + lower) / np.where(same_side, total, 1.0),
+        upper * root_lower - lower * root_upper,
+    )
+    return np.asarray(np.arcsinh(argument))
 
 
 def integrate_inverse_distance(x, y, a, b):

@@ -6,10 +6,14 @@ import numpy as np
 import pytest
 
 from ltca.contact.free_end import free_end_factor
-from ltca.contact.pressure_cells import PatchGrid, parabolic_separation, solve_cylinder_patch, solve_patch
+from ltca.contact.pressure_cells import PatchGrid, solve_cylinder_patch, solve_patch
 
 MODULUS = 113_187.0
 LENGTH = 11.8
+
+
+def parabolic_separation(effective_radius):
+    return lambda x, y: x**2 / (2.0 * effective_radius) + 0.0 * y
 
 
 def cylinder(approach, radius=2.0, **options):
@@ -77,13 +81,13 @@ def test_half_grid_serves_separations_that_lean():
     assert second.load == pytest.approx(first.load, rel=1e-5)
     assert second.stiffness == pytest.approx(first.stiffness, rel=1e-5)
     assert second.mid_pressure == pytest.approx(first.mid_pressure, rel=1e-4)
-    for ours, theirs in zip(second.whole_field(), first.whole_field(), strict=True):
+    for ours, theirs in zip(second.unfolded(), first.unfolded(), strict=True):
         np.testing.assert_allclose(ours, theirs, rtol=2e-3, atol=1e-9)
 
 
-def test_whole_field_carries_the_load():
+def test_the_unfolded_pressure_carries_the_load():
     solution = cylinder(4e-3)
-    x, y, pressure = solution.whole_field()
+    x, y, pressure = solution.unfolded()
     assert np.all(np.diff(x) > 0)
     assert np.all(np.diff(y) > 0)
     assert float(np.sum(pressure * solution.grid.whole().areas)) == pytest.approx(solution.load, rel=1e-12)
@@ -94,7 +98,7 @@ def test_a_sheared_separation_moves_the_contact_and_keeps_the_load():
     """x²/(2ρ) + s x is the same parabola moved by −sρ and raised by −s²ρ/2: same contact elsewhere."""
     radius, slope = 2.0, 0.01
     shift = -slope * radius
-    base = cylinder(4e-3, cells=12, y_cells=8)
+    base = cylinder(4e-3, cells=12)
     width = float(base.grid.x_edges[1])
     cells = round(1.5 * base.half_width / width)
     edges = width * np.arange(-cells, cells + 1)
@@ -144,6 +148,13 @@ def test_ends_carry_a_peak_that_grows_with_finer_cells_and_bulge():
     assert reach[-1] > 1.3 * reach[0]
 
 
+def test_open_patch_gives_zeros():
+    grid = cylinder(4e-3, cells=8).grid
+    solution = solve_patch(grid, grid.cell_means(parabolic_separation(2.0)), MODULUS, -1e-3)
+    assert solution.load == solution.stiffness == solution.energy == 0.0
+    assert solution.half_width == solution.mid_pressure == solution.max_pressure == 0.0
+
+
 def test_free_ends_take_the_peak_away_and_soften_the_contact():
     half_space = cylinder(5e-3)
     mirrored = cylinder(5e-3, end_factor=1.0)
@@ -154,10 +165,3 @@ def test_free_ends_take_the_peak_away_and_soften_the_contact():
     # the sizes stated in ltca.contact.free_end
     assert corrected.load / half_space.load == pytest.approx(0.742, abs=0.005)
     assert corrected.mid_pressure / half_space.mid_pressure == pytest.approx(0.906, abs=0.003)
-
-
-def test_open_patch_gives_zeros():
-    grid = cylinder(4e-3, cells=8).grid
-    solution = solve_patch(grid, grid.cell_means(parabolic_separation(2.0)), MODULUS, -1e-3)
-    assert solution.load == solution.stiffness == solution.energy == 0.0
-    assert solution.half_width == solution.mid_pressure == solution.max_pressure == 0.0

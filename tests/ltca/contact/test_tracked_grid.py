@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ltca.contact.generator import generator_profile
 from ltca.contact.grid_ladder import BLEND, RUNG, find_patch_length, unit_grid
+from ltca.contact.length_profile import generator_profile
 from ltca.contact.pressure_cells import PatchGrid, solve_patch
 from ltca.contact.tracked_grid import (
     ContactKind,

@@ -10,8 +10,8 @@ import pytest
 import ltca
 from ltca.analysis.life.ratings import RollerBearing
 from ltca.analysis.loaded_analysis import analyse
+from ltca.drive.declaration import find_fields
 from ltca.drive.members.bearings import CLASSES, clearance_range, named_bearing, named_bearings
-from ltca.drive.reference.field_descriptions import find_fields
 from ltca.errors import DriveError
 from ltca.reading.drive_file import parse_drive, shipped_drive
 

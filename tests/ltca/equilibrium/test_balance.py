@@ -13,7 +13,7 @@ from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import WHEEL_ANGLE, Coordinates
 from ltca.geometry.first_contact import unloaded_transmission_error
-from ltca.laws.series import SpringLaw
+from ltca.laws.spring import SpringLaw
 from ltca.testing.balance_check import find_imbalance
 from ltca.testing.random_drives import COORDINATES, random_drive
 

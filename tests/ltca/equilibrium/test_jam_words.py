@@ -27,7 +27,7 @@ def test_a_balance_that_is_lost_without_growing_loads_is_no_jam(monkeypatch):
 
     monkeypatch.setattr(output_torque, "_solve", lost)
     with pytest.raises(ConvergenceError, match="no balance was found between") as caught:
-        output_torque.solve_at_output(HalfSpace().prepare(drive).model, drive, np.array([0.3]), drive.load.torque)
+        output_torque.solve_at_output(HalfSpace().prepare(drive).model, [drive], np.array([0.3]), drive.load.torque)
     told = re.search(r"friction.pin = (\S+) to (\S+) of 0.05", str(caught.value)).groups()
     least, most = (float(part) / 0.05 for part in told)
     # A step is halved until it is at most a hundredth, and told with three digits.

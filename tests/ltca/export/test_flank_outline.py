@@ -10,7 +10,7 @@ from scipy.interpolate import BSpline
 from ltca.drive.single_discs import single_discs
 from ltca.errors import DriveError
 from ltca.export import flank_outline
-from ltca.export.flank_outline import CLOSE, MOST_SPANS, MadeFlank, departures, follow_flank
+from ltca.export.flank_outline import MOST_SPANS, TOLERANCE, MadeFlank, departures, follow_flank
 from ltca.geometry.flank import FlankProfile
 
 MICRON = 1e-3
@@ -39,7 +39,7 @@ def test_the_spline_departs_by_less_than_a_fifth_of_a_micron(kinds_of_drives, ki
     """A micron is promised; nowhere, not only where it was looked at, is it more than the fifth it is refined to."""
     spline = follow_flank(flank_of(kinds_of_drives[kind], inward))
     # A tenth of slack: between the places looked at a quartic remainder rises by less.
-    assert np.max(np.abs(departures(spline, ELSEWHERE))) < 1.1 * CLOSE
+    assert np.max(np.abs(departures(spline, ELSEWHERE))) < 1.1 * TOLERANCE
 
 
 def test_48_points_a_lobe_are_a_tenth_of_a_micron_off_on_the_papers_drive(kinds_of_drives):

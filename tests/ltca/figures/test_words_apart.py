@@ -32,7 +32,7 @@ from ltca.figures.study_figures import chance_of, study_figures
 from ltca.geometry.placement import position_angles
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
-from ltca.studies.optimiser import Optimum, Problem, Variable, parse_limit
+from ltca.studies.optimiser import Optimum, Problem, Variable, parse_bound
 from ltca.studies.sweep_file import parse_sweep
 from ltca.studies.tolerance_study import tolerance_study
 
@@ -228,7 +228,7 @@ def test_words_of_optima_stand_apart(aims):
     """Limits made the title leave the canvas; angles were told in rad, lengths without a unit."""
     paths = ("disc.equidistant_offset", "disc.runout.angle", "crank.eccentricity_error")
     variables = tuple(Variable(path=path, low=0.01, high=0.02) for path in paths)
-    limits = (parse_limit("max_pin_pressure_mid <= 1500 MPa"), parse_limit("min_backlash_wheel >= 8 arcmin"))
+    limits = (parse_bound("max_pin_pressure_mid <= 1500 MPa"), parse_bound("min_backlash_wheel >= 8 arcmin"))
     problem = Problem(drive=load_drive("paper").cases["CS-1"], variables=variables, aims=aims, limits=limits)
     points = np.random.default_rng(1).uniform(0.01, 0.02, (40, 3))
     optimum = Optimum(

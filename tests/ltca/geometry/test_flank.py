@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
+import ltca.geometry.flank
 from ltca.errors import ConvergenceError
 from ltca.geometry.flank import FlankProfile
 
@@ -149,10 +150,11 @@ def test_nearest_point_against_brute_force(drives):
             assert np.angle(np.exp(1j * (parameter - answer.x))) == pytest.approx(0.0, abs=1e-6)
 
 
-def test_nearest_point_says_when_it_fails():
+def test_nearest_point_says_when_it_fails(monkeypatch):
+    monkeypatch.setattr(ltca.geometry.flank, "MAX_ITERATIONS", 2)
     profile = FlankProfile(generating_radius=88.09, eccentricity=4.0, reduction_ratio=14.0, offset=6.65)
     with pytest.raises(ConvergenceError, match="contact points on the flank") as caught:
-        profile.nearest_parameter(np.array([80.0 + 5.0j]), np.array([1.0]), limit=2)
+        profile.nearest_parameter(np.array([80.0 + 5.0j]), np.array([1.0]))
     assert len(caught.value.history) == 2
 
 

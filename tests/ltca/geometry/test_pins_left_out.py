@@ -168,7 +168,7 @@ def test_pins_that_are_left_out_have_a_radius_of_the_flank():
     """Their stand-in of 1 mm was none that the table of a crowned pin holds."""
     joint = parse_drive(shipped_drive("robot-joint"), "robot-joint").cases["nominal"]
     model = HalfSpace().prepare(joint).model
-    found = solve_at_output(model, joint, position_angles(12), joint.load.torque, gaps=False).response.flank
+    found = solve_at_output(model, [joint], position_angles(12), joint.load.torque, gaps=False).response.flank
     assert found.left_out.any()
     turn = np.linspace(0.0, 2.0 * np.pi / 40.0, 2001)
     radii = FlankProfile.of_drive(single_discs(joint)[0]).effective_radius(turn, joint.pin_wheel.pin_radius)

@@ -12,7 +12,7 @@ from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.first_contact import first_contact
 from ltca.geometry.pairs import ContactGeometry
-from ltca.geometry.play import rigid_play, rigid_poses
+from ltca.geometry.play import free_play, rigid_poses
 from ltca.testing.practical_drives import light_limit, pair_approaches
 
 CASES = ("CS-1", "CS-2", "CS-3", "CS-4", "CS-5", "CS-6")
@@ -68,7 +68,7 @@ def test_drives_of_other_kinds_have_an_answer(vary, paper_cases):
     angles = np.array([0.1, 1.7, 4.0])
     unmodified = vary(disc={"equidistant_offset": 0.0, "shifting_offset": 0.0})
     assert_farthest(unmodified, angles)
-    np.testing.assert_allclose(rigid_play(ContactGeometry.of_drive(unmodified), angles), 0.0, atol=1e-10)
+    np.testing.assert_allclose(free_play([ContactGeometry.of_drive(unmodified)], angles).play, 0.0, atol=1e-10)
     bearing = replace(unmodified, clearance=Clearance(bearing=0.05, pin_hole=0.0))
     assert_farthest(bearing, angles)
     plastic = vary(

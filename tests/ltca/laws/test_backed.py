@@ -32,7 +32,7 @@ def test_approaches_add_up(name, flexibility):
     """From 1e-12 mm to 1 mm at once, the contact nearly all of it or nearly nothing; to round-off."""
     whole, radius = np.geomspace(1e-12, 1.0, 60)[None], np.full((1, 60), 2.0)
     law = series(name, flexibility, 60)
-    near = law.contact_approach(whole, radius)
+    _, near = law.surface(whole, radius)
     load, stiffness = law.load_and_stiffness(whole, radius)
     np.testing.assert_allclose(law.contact.load_and_stiffness(near, radius)[0], load, rtol=1e-14)
     behind, slope = law.behind(load)
@@ -48,7 +48,7 @@ def test_open_pairs_beside_closed_ones(name):
     whole, radius = np.array([[-0.01, 0.005, 0.0]]), np.full((1, 3), 2.0)
     load, stiffness = law.load_and_stiffness(whole, radius)
     assert np.flatnonzero(load[0]).tolist() == np.flatnonzero(stiffness[0]).tolist() == [1]
-    np.testing.assert_array_equal(law.contact_approach(whole, radius)[0, [0, 2]], whole[0, [0, 2]])
+    np.testing.assert_array_equal(law.surface(whole, radius)[1][0, [0, 2]], whole[0, [0, 2]])
     alone = series(name, 1e-5, 1).load_and_stiffness(whole[:, [1]], radius[:, [1]])
     assert load[0, 1] == alone[0][0, 0]
     assert not law.load_and_stiffness(-np.abs(whole), radius)[0].any()

@@ -14,7 +14,7 @@ def test_inverse_derivative_and_energy_belong_together():
     approach, radius = np.array([1e-9, 1e-4, 3e-3, 0.02]), np.array([2.0, 4.0, 6.0, 30.0])
     load, stiffness = LAW.load_and_stiffness(approach, radius)
     # Newton's last step is below 1e-7 of the load and convergence quadratic: 1e-13 is left.
-    np.testing.assert_allclose(LAW.approach_and_compliance(load, radius)[0], approach, rtol=1e-12)
+    np.testing.assert_allclose(LAW.approach_at_load(load, radius)[0], approach, rtol=1e-12)
     step = 1e-5 * approach
     up, down = (LAW.load_and_stiffness(approach + sign * step, radius)[0] for sign in (1, -1))
     # Central differences of a function like δ^1.1: (1e-5)² and round-off over the step, 1e-10.

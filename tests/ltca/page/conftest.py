@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from ltca.analysis.engines import HalfSpace
+from ltca.analysis.life.bearing_lives import bearing_lives
+from ltca.analysis.light_torque import at_light_torque
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.results import build_dataset
 from ltca.analysis.summary import summarise
@@ -23,11 +26,15 @@ def run_of(file, positions=POSITIONS, cases=None, compared=None):
     checks = {
         name: judge_analysis(one, summaries[name], file.limits[name], lives=False) for name, one in analyses.items()
     }
+    dataset = build_dataset(file.name, analyses, file.text)
+    light = {name: at_light_torque(one) for name, one in analyses.items()}
     run = Run(
-        name=file.name, text=file.text, analyses=analyses, summaries=summaries, checks=checks,
-        sampling=["means over 8 positions", "warning: <b>few</b> positions"], compared=compared,
+        dataset=dataset, drives=chosen, engine=HalfSpace(), summaries=summaries, checks=checks,
+        lives={name: bearing_lives(one) for name, one in analyses.items()},
+        sampling=["means over 8 positions", "warning: <b>few</b> positions"],
+        light=build_dataset(file.name, light, file.text), compared=compared,
     )  # fmt: skip
-    return run, build_dataset(file.name, analyses, file.text)
+    return run, dataset
 
 
 @pytest.fixture(scope="session", name="run_of")

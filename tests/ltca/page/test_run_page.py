@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from ltca.errors import DriveError
+from ltca.output.netcdf import read_netcdf
 from ltca.page import run_arrays as arrays_module
 from ltca.page.compared import read_compared
 from ltca.page.packing import unpack
@@ -17,6 +18,7 @@ from ltca.page.run_arrays import run_arrays, shown_positions
 from ltca.page.run_page import run_page
 from ltca.page.tables import minus
 from ltca.page.verdict_tables import verdict_of
+from ltca.quantities import SCHEMA_VERSION
 
 
 def script(text, name):
@@ -74,14 +76,39 @@ def test_same_run_same_page(page, paper_run):
     assert run_page(paper_run[0]) == page
 
 
+@pytest.mark.slow
+def test_a_page_is_made_from_results_read_back(page, paper_run, tmp_path):
+    """Without the answers at the light torque the page has all else; their transmission error is in the results."""
+    run, dataset = paper_run
+    dataset.to_netcdf(tmp_path / "results.nc", engine="h5netcdf")
+    read = read_netcdf(tmp_path / "results.nc", "results of cyclo run")
+    _, numbers = numbers_of(page)
+    _, again = numbers_of(run_page(replace(run, dataset=read, light=None)))
+    light = {name for name in numbers if "/light/" in name and not name.endswith("/te")}
+    assert light
+    assert again.keys() == numbers.keys() - light
+    assert all(np.array_equal(again[name], numbers[name]) for name in again)
+
+
+def test_results_of_a_later_schema_are_refused(paper_run, tmp_path):
+    path = tmp_path / "results.nc"
+    paper_run[1].assign_attrs(schema_version=SCHEMA_VERSION + 1).to_netcdf(path, engine="h5netcdf")
+    with pytest.raises(DriveError, match=f"schema version {SCHEMA_VERSION + 1}.*up to {SCHEMA_VERSION}: update cyclo"):
+        read_compared(tmp_path)
+
+
 def test_names_are_texts_whatever_they_contain(paper_run):
     """A case that ends a script element, or begins one, runs nothing."""
     odd = "</script><script>alert(1)</script>"
     run = paper_run[0]
-    (first, analysis), *_ = run.analyses.items()
+    (first, drive), *_ = run.drives.items()
+    attributes = {"drive": f"<img onerror=alert(1)> {odd}", "drive_file": f'name = "{odd}"'}
+    dataset, light = (
+        each.isel(case=[0]).assign_coords(case=[odd]).assign_attrs(attributes) for each in (run.dataset, run.light)
+    )
     named = replace(
-        run, name=f"<img onerror=alert(1)> {odd}", text=f'name = "{odd}"',
-        analyses={odd: analysis}, summaries={odd: run.summaries[first]}, checks={odd: run.checks[first]},
+        run, dataset=dataset, light=light, drives={odd: drive}, summaries={odd: run.summaries[first]},
+        checks={odd: run.checks[first]}, lives={odd: run.lives[first]},
     )  # fmt: skip
     text = run_page(named)
     assert "<script>alert" not in text
@@ -137,11 +164,11 @@ def test_one_minus_sign(page):
 
 def test_runs_of_many_positions_are_thinned(paper_run, monkeypatch):
     run = paper_run[0]
-    assert shown_positions(run.analyses).tolist() == list(range(8))
+    assert shown_positions(run.dataset).tolist() == list(range(8))
     monkeypatch.setattr(arrays_module, "MOST_VALUES", 2000)
-    shown = shown_positions(run.analyses)
+    shown = shown_positions(run.dataset)
     assert 1 <= shown.size < 8
-    assert sum(each.size for each in run_arrays(run.analyses, shown).values()) < 3000
+    assert sum(each.size for each in run_arrays(run.dataset, run.light, shown).values()) < 3000
     assert "th is shown, tables know all" in run_page(run)
 
 
@@ -189,8 +216,9 @@ def test_a_second_run_beside_the_first(paper_run, tmp_path):
     (tmp_path / "summary.json").write_text(json.dumps({"drive": "paper", "cases": run.summaries}), encoding="utf-8")
     name = "CS-6"
     alone = replace(
-        run, analyses={name: run.analyses[name]}, summaries={name: run.summaries[name]},
-        checks={name: run.checks[name]}, compared=read_compared(tmp_path),
+        run, dataset=dataset.sel(case=[name]), light=run.light.sel(case=[name]), drives={name: run.drives[name]},
+        summaries={name: run.summaries[name]}, checks={name: run.checks[name]}, lives={name: run.lives[name]},
+        compared=read_compared(tmp_path),
     )  # fmt: skip
     text = run_page(alone)
     content, numbers = numbers_of(text)

@@ -19,7 +19,7 @@ from ltca.page.tables import number, word
 
 @pytest.fixture(scope="module")
 def page(paper_run):
-    curve = torque_curve(paper_run[0].analyses["CS-1"].drive, np.array([0.0, 0.1]), points=6)
+    curve = torque_curve(paper_run[0].drives["CS-1"], np.array([0.0, 0.1]), points=6)
     return curve, study_page(
         StudyPage(name="a </script><b>", told="curves", sections=[torque_section(curve, "CS-1: ")])
     )

@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from ltca.contact.round_bodies import compressed_cylinder
 from ltca.reading.coefficient_laws import (
     NEIGHBOURS,
     check_coefficients,
-    compressed_cylinder,
     even_pressure,
     near_field_unit,
     station_resultants,
     unstated_laws,
 )
-from ltca.reading.held_ring import LARGEST_DISTANCE, missed_between_stations, wall_bending
+from ltca.reading.station_walls import LARGEST_DISTANCE, missed_between_stations, wall_bending
 from ltca.testing.closed_form_bodies import closed_form_coefficients
 
 RADIUS, COUNT, THICKNESS = 20.0, 24, 11.8

@@ -122,7 +122,7 @@ def test_error_arrays_are_read():
         ("stiffness = 1.0e6", "stiffness = '1 N'", "pin_shaft.stiffness = '1 N': must have the unit N/mm"),
         ("bearing = 0.0 ", "bearing = -0.01 ", "clearance.bearing = -0.01: must be at least 0 mm"),
         ("poisson_ratio = 0.3 }", "poisson_ratio = 0.5 }", "must be at least 0 and less than 0.5"),
-        ("# phases = [", "torque_share = 0.55 # [", "disc.torque_share: is no field any more"),
+        ("# phases = [", "torque_share = 0.55 # [", "disc.torque_share: is no longer a field"),
         ("[crank]\neccentricity = 4.0", "crank = 4.0", "crank = 4.0: must be a table"),
     ],
 )

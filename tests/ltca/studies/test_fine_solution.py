@@ -16,7 +16,7 @@ from ltca.commands import optimise
 from ltca.geometry.placement import position_angles
 from ltca.reading.drive_file import load_drive
 from ltca.studies.fine_solution import solve_finely
-from ltca.studies.optimiser import Limit, Problem, broken_limits
+from ltca.studies.optimiser import Bound, Problem, broken_limits
 from ltca.studies.quantities import OF_FRICTION, STAGES, quantities_for
 
 ARCMIN, ARCSEC = 10_800.0 / np.pi, 648_000.0 / np.pi
@@ -54,8 +54,8 @@ def test_every_quantity_finely(drive):
 
 def test_limits_broken_when_solved_finely(drive):
     limits = (
-        Limit(quantity="max_pin_load", sense=1, value=100.0),
-        Limit(quantity="min_backlash_wheel", sense=-1, value=8.0),
+        Bound(quantity="max_pin_load", sense=1, value=100.0),
+        Bound(quantity="min_backlash_wheel", sense=-1, value=8.0),
     )
     problem = Problem(drive=drive, variables=(), aims=("max_pin_load",), limits=limits)
     assert broken_limits(problem, {"max_pin_load": 100.00001, "min_backlash_wheel": 8.1}) == ()

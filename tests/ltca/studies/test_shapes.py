@@ -183,18 +183,20 @@ def test_methods_that_studies_would_leave_out_are_refused(paper, method):
 def test_engines_travel_to_workers(paper):
     for engine in (HalfSpace(), ALONE, PlaneStrain(), engine_named("fe", coefficients=None)):
         study = tolerance_study(paper, samples=2, positions=2, engine=engine)
-        assert pickle.loads(pickle.dumps(study)).fingerprint() == study.fingerprint()
+        assert pickle.loads(pickle.dumps(study)).fingerprint == study.fingerprint
 
 
 def test_kept_coefficients_are_those_of_the_shape_and_few(paper, derived):
     drive = paper.cases["CS-1"]
-    others = [with_fields(drive, {"disc.thickness": 12.0 + 0.1 * number}) for number in range(shapes.KEPT + 1)]
+    others = [
+        with_fields(drive, {"disc.thickness": 12.0 + 0.1 * number}) for number in range(shapes.MAX_KEPT_SHAPES + 1)
+    ]
     first = shapes.with_kept_coefficients(ALONE, drive)
     assert shapes.with_kept_coefficients(ALONE, with_fields(drive, {"load.torque": 1e5})) is first
     assert shapes.with_kept_coefficients(Hybrid(), drive) is not first
     for other in others:
         assert shapes.with_kept_coefficients(ALONE, other).coefficients.thickness == other.disc.thickness
-    assert len(shapes._ENGINES) == shapes.KEPT
+    assert len(shapes._ENGINES) == shapes.MAX_KEPT_SHAPES
     assert shapes.with_kept_coefficients(HalfSpace(), drive) == HalfSpace()
 
 

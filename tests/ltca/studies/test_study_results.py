@@ -11,7 +11,8 @@ import xarray as xr
 from ltca.drive.tolerances import Factors
 from ltca.reading.drive_file import load_drive
 from ltca.studies.designs import SweepDesign, SweepFactor, ToleranceDesign
-from ltca.studies.study_results import PERCENTILES, factor_groups, rank, read_quantity, sobol_of, summarise_quantity
+from ltca.studies.sensitivity import factor_groups, rank, sobol_of
+from ltca.studies.study_results import PERCENTILES, read_quantity, summarise_quantity
 
 
 def written(path, factors, values, failed):

@@ -23,13 +23,13 @@ from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
 from ltca.studies import optimiser
 from ltca.studies.optimiser import (
-    Limit,
+    Bound,
     Optimum,
     Problem,
     Variable,
     batch_analysis,
     optimise as search,
-    parse_limit,
+    parse_bound,
     parse_variable,
 )
 from ltca.studies.study import run_batch
@@ -163,7 +163,7 @@ def test_optimum_of_a_parabola(drive):
 @pytest.mark.slow
 def test_limit_is_kept_and_met(drive):
     """Least of the first with the second at most 2e-3: on the line between both centres, where the circle cuts it."""
-    limits = (Limit(quantity="max_roller_load", sense=1, value=2e-3),)
+    limits = (Bound(quantity="max_roller_load", sense=1, value=2e-3),)
     problem = Problem(drive=drive, variables=VARIABLES, aims=("max_pin_load",), limits=limits)
     found = search(problem, quadratic, seed=1)
     line = np.array([0.08, 0.03]) / np.hypot(0.08, 0.03)
@@ -173,7 +173,7 @@ def test_limit_is_kept_and_met(drive):
         search(
             Problem(
                 drive=drive, variables=VARIABLES, aims=("max_pin_load",),
-                limits=(Limit(quantity="max_roller_load", sense=1, value=1e-4),),
+                limits=(Bound(quantity="max_roller_load", sense=1, value=1e-4),),
             ), quadratic, generations=2,
         )  # fmt: skip
 
@@ -214,14 +214,14 @@ def test_names_ranges_and_limits(drive):
         ("ptp_transmission_error <= 0.05 arcmin", 3.0),
         ("ptp_transmission_error <= 3 arcsec", 3.0),
     ):
-        assert parse_limit(text).value == pytest.approx(value), text
+        assert parse_bound(text).value == pytest.approx(value), text
     for text, message in (
         ("max_pin_load < 3 N", "write it as"),
         ("beauty <= 3", "is no quantity"),
         ("max_pin_load <= 3 mm", "N"),
     ):
         with pytest.raises(DriveError, match=message):
-            parse_limit(text)
+            parse_bound(text)
 
 
 def test_models_of_one_drive_serve_the_optimiser(drive):
@@ -236,7 +236,7 @@ def test_models_of_one_drive_serve_the_optimiser(drive):
 @pytest.mark.slow
 def test_optimum_of_the_drive_beats_it_within_the_limit(drive):
     """By the batch solver: less transmission error, the backlash kept, and the re-run drive says the same."""
-    limits = (parse_limit("max_pin_pressure_mid <= 1500 MPa"), parse_limit("min_backlash_wheel >= 8 arcmin"))
+    limits = (parse_bound("max_pin_pressure_mid <= 1500 MPa"), parse_bound("min_backlash_wheel >= 8 arcmin"))
     problem = Problem(drive=drive, variables=VARIABLES, aims=("ptp_transmission_error",), limits=limits)
     analysis = batch_analysis(problem, 13)
     found = search(problem, analysis, generations=6)

@@ -17,7 +17,7 @@ def check_seeds(first, count, draw=practical_drive):
     for seed in range(first, first + count):
         drive, angle = draw(seed)
         model = HalfSpace().prepare(drive).model
-        balanced = solve_at_output(model, drive, np.array([angle]), drive.load.torque)
+        balanced = solve_at_output(model, [drive], np.array([angle]), drive.load.torque)
         assert find_imbalance(drive, model, balanced, torque=drive.load.torque) == [], seed
 
 

@@ -54,7 +54,7 @@ def reducer_outcome(seed):
         return "impossible"
     drive, angle = drawn
     model = HalfSpace().prepare(drive).model
-    balanced = solve_at_output(model, drive, np.array([angle]), drive.load.torque)
+    balanced = solve_at_output(model, [drive], np.array([angle]), drive.load.torque)
     assert find_imbalance(drive, model, balanced, torque=drive.load.torque) == [], seed
     return "balanced"
 

@@ -9,10 +9,10 @@ import pytest
 
 import validation.report.costs
 import validation.study
+from fem.options import SolutionOptions
 from ltca.errors import CycloError
 from ltca.output.run_folder import MANIFEST
 from validation.commands import validate
-from validation.compare.finite_element_positions import Settings
 from validation.rows import failed_rows
 from validation.study import plan_study
 
@@ -79,8 +79,8 @@ def test_default_plan(paper_cases):
     from ltca.reading.drive_file import load_drive
 
     file = load_drive("paper")
-    quick = plan_study(file, None, None, "quick", Settings())
-    full = plan_study(file, None, None, "full", Settings())
+    quick = plan_study(file, None, None, "quick", SolutionOptions())
+    full = plan_study(file, None, None, "full", SolutionOptions())
     assert list(quick.drives) == list(full.drives) == ["CS-1", "CS-3", "CS-6"]
     assert len(quick.crank_angles) == 2
     # twelve angles over one period of the flank, 2π/13, end not included
@@ -88,6 +88,6 @@ def test_default_plan(paper_cases):
     period = 2.0 * 3.141592653589793 / 13.0
     assert full.crank_angles[1] == pytest.approx(period / 12.0)
     assert max(full.crank_angles) < period
-    chosen = plan_study(file, ["CS-2"], [0.1, 0.1], "quick", Settings())
+    chosen = plan_study(file, ["CS-2"], [0.1, 0.1], "quick", SolutionOptions())
     assert list(chosen.drives) == ["CS-2"]
     assert chosen.crank_angles == (0.1,)

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from ltca.drive.units.quantities import ARCSEC
 from validation.compare.comparison import (
-    ARCSECONDS,
     KINDS,
     KindAnswer,
     PositionAnswer,
@@ -99,7 +99,7 @@ def test_open_reference_is_refused():
 
 
 def test_positions(answer):
-    second = 1.0 / ARCSECONDS
+    second = 1.0 / ARCSEC
     other = replace(
         answer,
         kinds=answer.kinds | {"hole": kind([0.0, 100.0, 380.0])},

@@ -11,8 +11,9 @@ import pytest
 import validation.compare.finite_element_positions as kept
 from fem.body.wall_stress import WallStress
 from fem.drive.disc_stress import DiscStress
+from fem.options import SolutionOptions
 from ltca.errors import ConvergenceError
-from validation.compare.finite_element_positions import Settings, solve_position, solve_positions
+from validation.compare.finite_element_positions import solve_positions
 
 ANGLE = 0.5
 
@@ -49,8 +50,8 @@ def solved(monkeypatch):
     """Replace the solver by one that counts its calls."""
     calls = []
 
-    def solve(drive, crank_angle, **options):
-        calls.append((crank_angle, options["scale"], options["state"], options["rounds"]))
+    def solve(drive, crank_angle, options, *, rounds, progress):
+        calls.append((crank_angle, options.size, options.plane, rounds))
         return SimpleNamespace(discs=(None,), drive=drive, crank_angle=crank_angle, rounds=(crank_angle,))
 
     monkeypatch.setattr(kept, "solve_reducer", solve)
@@ -61,8 +62,8 @@ def solved(monkeypatch):
 
 def test_a_finished_position_is_not_solved_again(solved, paper_cases, tmp_path):
     drive = paper_cases["CS-1"]
-    (first,) = solve_position(drive, "CS-1", ANGLE, tmp_path, Settings())
-    (again,) = solve_position(drive, "CS-1", ANGLE, tmp_path, Settings())
+    (first,) = next(solve_positions(drive, "CS-1", [ANGLE], tmp_path, SolutionOptions()))
+    (again,) = next(solve_positions(drive, "CS-1", [ANGLE], tmp_path, SolutionOptions()))
     assert len(solved) == 1
     assert first.seconds == again.seconds == 3.25
     for kind, own in first.answer.kinds.items():
@@ -82,12 +83,14 @@ def test_in_a_series_pins_and_rollers_travel_and_files_are_those_of_positions_al
     drive, said = paper_cases["CS-1"], []
     (tmp_path / "alone").mkdir(), (tmp_path / "series").mkdir()
     for angle in (0.1, 0.2, 0.3):
-        solve_position(drive, "CS-1", angle, tmp_path / "alone", Settings())
+        next(solve_positions(drive, "CS-1", [angle], tmp_path / "alone", SolutionOptions()))
     (tmp_path / "series" / next((tmp_path / "alone").glob("*_0.2*")).name).write_bytes(
         next((tmp_path / "alone").glob("*_0.2*")).read_bytes()
     )
     solved.clear()
-    found = list(solve_positions(drive, "CS-1", (0.1, 0.2, 0.3), tmp_path / "series", Settings(), begin=said.append))
+    found = list(
+        solve_positions(drive, "CS-1", (0.1, 0.2, 0.3), tmp_path / "series", SolutionOptions(), begin=said.append)
+    )
     # The one kept is not solved again and passes on what came before it.
     assert [(call[0], call[3]) for call in solved] == [(0.1, ()), (0.3, (0.1,))]
     assert [position.crank_angle for (position,) in found] == [0.1, 0.2, 0.3]
@@ -97,12 +100,12 @@ def test_in_a_series_pins_and_rollers_travel_and_files_are_those_of_positions_al
 
 
 def test_another_drive_angle_or_setting_is_another_file(solved, paper_cases, tmp_path, vary):
-    solve_position(paper_cases["CS-1"], "CS-1", ANGLE, tmp_path, Settings())
-    solve_position(paper_cases["CS-1"], "CS-1", ANGLE + 1e-6, tmp_path, Settings())
-    solve_position(paper_cases["CS-1"], "CS-1", ANGLE, tmp_path, Settings(size=2.0))
-    solve_position(paper_cases["CS-1"], "CS-1", ANGLE, tmp_path, Settings(plane="stress"))
-    solve_position(paper_cases["CS-3"], "CS-3", ANGLE, tmp_path, Settings())
-    solve_position(vary(disc={"thickness": 12.0}), "CS-1", ANGLE, tmp_path, Settings())
+    next(solve_positions(paper_cases["CS-1"], "CS-1", [ANGLE], tmp_path, SolutionOptions()))
+    next(solve_positions(paper_cases["CS-1"], "CS-1", [ANGLE + 1e-6], tmp_path, SolutionOptions()))
+    next(solve_positions(paper_cases["CS-1"], "CS-1", [ANGLE], tmp_path, SolutionOptions(size=2.0)))
+    next(solve_positions(paper_cases["CS-1"], "CS-1", [ANGLE], tmp_path, SolutionOptions(plane="stress")))
+    next(solve_positions(paper_cases["CS-3"], "CS-3", [ANGLE], tmp_path, SolutionOptions()))
+    next(solve_positions(vary(disc={"thickness": 12.0}), "CS-1", [ANGLE], tmp_path, SolutionOptions()))
     assert len(solved) == 6
     assert len(list(tmp_path.glob("*.json"))) == 6
 
@@ -110,7 +113,7 @@ def test_another_drive_angle_or_setting_is_another_file(solved, paper_cases, tmp
 @pytest.mark.parametrize("damage", ["", "{", "[]", '{"key": 1}', "another version", "another code", "one digit"])
 def test_damaged_or_foreign_files_are_solved_again(damage, solved, paper_cases, tmp_path):
     drive = paper_cases["CS-1"]
-    solve_position(drive, "CS-1", ANGLE, tmp_path, Settings())
+    next(solve_positions(drive, "CS-1", [ANGLE], tmp_path, SolutionOptions()))
     path = next(tmp_path.glob("*.json"))
     text = path.read_text(encoding="utf-8")
     content = json.loads(text)
@@ -122,23 +125,23 @@ def test_damaged_or_foreign_files_are_solved_again(damage, solved, paper_cases, 
         content["summary"]["pin_load_N"][0][3] += 1.0
     damage = json.dumps(content) if damage.startswith(("another", "one")) else damage
     path.write_text(damage, encoding="utf-8")
-    solve_position(drive, "CS-1", ANGLE, tmp_path, Settings())
+    next(solve_positions(drive, "CS-1", [ANGLE], tmp_path, SolutionOptions()))
     assert len(solved) == 2
     assert path.read_text(encoding="utf-8") == text
 
 
 def test_what_older_code_kept_is_solved_again(solved, paper_cases, tmp_path, monkeypatch):
-    solve_position(paper_cases["CS-1"], "CS-1", ANGLE, tmp_path, Settings())
+    next(solve_positions(paper_cases["CS-1"], "CS-1", [ANGLE], tmp_path, SolutionOptions()))
     monkeypatch.setattr(kept, "code_hash", lambda *packages: "another")
-    solve_position(paper_cases["CS-1"], "CS-1", ANGLE, tmp_path, Settings())
+    next(solve_positions(paper_cases["CS-1"], "CS-1", [ANGLE], tmp_path, SolutionOptions()))
     assert len(solved) == 2
 
 
 def test_a_failed_solution_leaves_nothing(monkeypatch, paper_cases, tmp_path):
-    def fail(drive, crank_angle, **options):
+    def fail(*words, **options):
         raise ConvergenceError("no", [1.0])
 
     monkeypatch.setattr(kept, "solve_reducer", fail)
     with pytest.raises(ConvergenceError):
-        solve_position(paper_cases["CS-1"], "CS-1", ANGLE, tmp_path, Settings())
+        next(solve_positions(paper_cases["CS-1"], "CS-1", [ANGLE], tmp_path, SolutionOptions()))
     assert not list(tmp_path.iterdir())

@@ -12,6 +12,7 @@ import pytest
 import fem.drive.contact_results as contact_results
 import validation.levels.other_code_problems as problems
 import validation.levels.other_codes as other_codes
+from fem.options import SolutionOptions
 from ltca.drive.parts import Material
 from ltca.errors import CycloError
 from ltca.laws.line_contact import LineContactLaw
@@ -30,7 +31,7 @@ def alone(monkeypatch):
 @pytest.fixture(scope="module")
 def solved():
     """The drive of level 2 as our finite elements solve it."""
-    return problems.solve_drive(problems.coarse_drive(), problems.CRANK_ANGLE, scale=problems.SIZE)
+    return problems.solve_drive(problems.coarse_drive(), problems.CRANK_ANGLE, SolutionOptions(size=problems.SIZE))
 
 
 def only(monkeypatch, name, **changes):
@@ -50,8 +51,8 @@ def rows_of(kept=None):
 def test_todays_code_meets_the_stored_answers(alone, monkeypatch, solved):
     asked = []
 
-    def solve(drive, crank_angle, *, scale):
-        asked.append((drive, crank_angle, scale))
+    def solve(drive, crank_angle, options):
+        asked.append((drive, crank_angle, options.size))
         return solved
 
     monkeypatch.setattr(problems, "solve_drive", solve)

@@ -72,7 +72,7 @@ def test_drives_with_clearance_are_refused():
 
 def test_cells_that_do_not_settle_are_counted(monkeypatch):
     """The history of the error is how many cells and holes changed, of all contacts together."""
-    monkeypatch.setattr(clearance_free, "FACTORISATIONS", 1)
+    monkeypatch.setattr(clearance_free, "MAX_FACTORISATIONS", 1)
     system = clearance_free._System(PAPER["CS-1"], 0.3, -377_300.0, 6)
     cells, holes = [patch.carrying.copy() for patch in system.patches.values()], system.hole_carrying.copy()
     with pytest.raises(ConvergenceError, match="do not settle") as caught:

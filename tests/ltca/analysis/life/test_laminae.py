@@ -7,9 +7,9 @@ import pytest
 from scipy.integrate import quad
 from scipy.interpolate import PchipInterpolator
 
-from ltca.analysis.life.laminae import LAMINAE, RUNG, SolvedLaminae, solve_laminae
-from ltca.contact.generator import generator_profile
+from ltca.analysis.life.laminae import APPROACH_RATIO, LAMINAE, SolvedLaminae, solve_laminae
 from ltca.contact.hertz import solve_point_contact
+from ltca.contact.length_profile import generator_profile
 from ltca.drive.parts import LengthProfile
 from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.profiled_line_contact import solve_profiled_patch
@@ -67,8 +67,8 @@ def test_straight_rollers_of_all_sizes_are_one():
     """Each bore and each modulus solved its own contacts: half of what a check of six cases cost. Here at its own size."""
     of = laminae()
     height = LENGTH**2 / RHO
-    number = round(np.log(0.01 / height) / np.log(RUNG))
-    part, row = solve_laminae(None, LENGTH, RHO, height * RUNG**number)
+    number = round(np.log(0.01 / height) / np.log(APPROACH_RATIO))
+    part, row = solve_laminae(None, LENGTH, RHO, height * APPROACH_RATIO**number)
     # at the load of a rung nothing is interpolated; differences of cubes over the grid leave 1e-7 of round-off
     found = of.shares(np.array([MODULUS * part]))[0]
     np.testing.assert_allclose(found, row, rtol=1e-6)

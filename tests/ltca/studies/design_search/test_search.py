@@ -102,7 +102,7 @@ def test_where_no_single_one_is_enough_pairs_are_tried(monkeypatch):
 
 def test_pairs_with_a_chance_are_tried_first_and_no_more_than_said(monkeypatch):
     """The last pair of the list is the likeliest; one that closed forms rule out is not tried."""
-    monkeypatch.setattr(search, "PAIRS", 2)
+    monkeypatch.setattr(search, "MAX_PAIRS", 2)
     chances = dict.fromkeys(
         map(frozenset, combinations(("outer_diameter", "length", "torque", "backlash"), 2)), math.inf
     )

@@ -130,7 +130,7 @@ def test_files_say_what_they_hold_and_what_made_them(paper, reference):
     assert attributes["version"] == ltca.__version__
     assert attributes["code_hash"] == code_hash("ltca")
     assert attributes["Conventions"].startswith("CF-")
-    assert (attributes["compliance"], attributes["fingerprint"]) == ("half-space", study.fingerprint())
+    assert (attributes["compliance"], attributes["fingerprint"]) == ("half-space", study.fingerprint)
     told = json.loads((reference.path / "summary.json").read_text(encoding="utf-8"))
     assert told["units"] == {"ptp_transmission_error": "arcsec", "max_pin_load": "N"}
     # thousands of N and tens of arcsec, not 1e-4 rad
@@ -190,13 +190,13 @@ def test_whatever_the_results_depend_on_is_in_the_fingerprint(paper, tmp_path):
         replace(study, engine=Hybrid(hole_near_field=False)),
         replace(study, engine=Hybrid(coefficients=without_coupling(paper.cases["CS-6"]))),
     ]
-    assert len({item.fingerprint() for item in [study, *others]}) == 12
+    assert len({item.fingerprint for item in [study, *others]}) == 12
     one, two = (write_text(tmp_path / name, name) for name in ("one.nc", "two.nc"))
     files = [replace(study, engine=Hybrid(coefficients=path)) for path in (one, two)]
-    assert len({item.fingerprint() for item in (study, *files)}) == 3
+    assert len({item.fingerprint for item in (study, *files)}) == 3
     same = write_text(tmp_path / "same.nc", "one.nc")
-    assert replace(study, engine=Hybrid(coefficients=same)).fingerprint() == files[0].fingerprint()
-    assert small_study(paper).fingerprint() == study.fingerprint()
+    assert replace(study, engine=Hybrid(coefficients=same)).fingerprint == files[0].fingerprint
+    assert small_study(paper).fingerprint == study.fingerprint
 
 
 def test_damaged_and_foreign_batches_are_solved_again(paper, tmp_path):
@@ -264,10 +264,11 @@ from pathlib import Path
 from ltca.reading.drive_file import load_drive
 from ltca.studies.execution.workers import Workers
 from ltca.studies.run_study import run_study
+from ltca.studies import study_results
 from ltca.studies.execution import storage
 from ltca.studies.execution.storage import StudyFolder
 from ltca.studies.tolerance_study import tolerance_study
-storage.CHUNK = 1024  # so that the smaller study fills several as well
+storage.CHUNK = study_results.CHUNK = 1024  # so that the smaller study fills several as well
 paper, samples = load_drive("paper"), int(sys.argv[1])
 study = tolerance_study(paper, case="CS-6", samples=samples, positions=1, quantities=("max_pin_load",))
 run_study(study, StudyFolder(path=Path(sys.argv[2])), Workers())

@@ -207,7 +207,7 @@ def test_dask_cluster_of_processes_survives_a_killed_worker(study, straight, tmp
 
 @pytest.mark.slow
 def test_scheduler_that_does_not_answer_is_told(study, tmp_path, monkeypatch):
-    monkeypatch.setattr(workers_module, "ANSWERING", 1.0)
+    monkeypatch.setattr(workers_module, "SCHEDULER_TIMEOUT", 1.0)
     pytest.importorskip("distributed", reason="dask.distributed (extra 'cluster') is not installed")
     with pytest.raises(CycloError, match="no scheduler answers there"):
         run_study(study, StudyFolder(path=tmp_path), Workers(scheduler="tcp://127.0.0.1:9"))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from ltca.contact.generator import generator_profile
+from ltca.contact.length_profile import generator_profile
 from ltca.drive.parts import LengthProfile
 
 LENGTH, RADIUS = 11.8, 5.0

@@ -1,10 +1,4 @@
-r"""A round body held along an inner circle, loaded by a patch on its outer one: the closed form of wheel pins and races.
-
-Plane elasticity in Kolosov's potentials (Muskhelishvili, *Some Basic Problems of the Mathematical Theory of Elasticity*,
-§ 56–60): with :math:`\varphi = A \ln z + \sum a_n z^n` and :math:`\psi = -\kappa A \ln z + \sum b_n z^n` the harmonics
-:math:`\pm m` of displacement and traction take four coefficients, which the held circle and the load give.
-Beside it what a thin wall, as a beam, bends under a patch, and what stations far apart miss of what happens across it.
-"""
+r"""Walls of a disc between its stations: how they bend as beams, and what stations far apart miss of the load across them."""
 
 from __future__ import annotations
 
@@ -19,102 +13,12 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-# Harmonics times half-width over radius: what is left out falls with the cube, to 1e-6 of the patch's own.
-RESOLUTION = 60.0
-# Below, a patch on itself goes with the logarithm of its width and others do not feel it, but for (b/R)² of some 0.3.
-NARROW = 0.01
-
-
-# Distance of stations, by the thickness of the wall, from which sums over them may miss all of what crosses it.
 LARGEST_DISTANCE = 2.0 * float(np.pi) / float(np.log(3.0))
-
-
-def held_ring_approach(inner: float, outer: float, half_width: float, kolosov: float, angle: FloatArray) -> FloatArray:
-    r"""Return approaches at angles from a loaded patch, as multiple of 2(1 − ν²)/(πEt).
-
-    Load and measure are those of a coefficient file: a semi-elliptic pressure along the wall, in the direction of the
-    normal at its middle, and the mean of the displacement with the same weights.
-
-    Parameters
-    ----------
-    inner, outer : float
-        Radii of the held and of the loaded circle, mm.
-    half_width : float
-        Of the patches, along the wall, mm.
-    kolosov : float
-        Kolosov's constant: 3 − 4ν in plane strain, (3 − ν)/(1 + ν) in plane stress.
-    angle : array, shape (m,)
-        Between load and place, rad.
-
-    Returns
-    -------
-    array, shape (m,)
-        Positive into the body.
-    """
-    width, ratio = max(half_width / outer, NARROW), inner / outer
-    count = max(int(RESOLUTION / width), 64)
-    order = np.arange(1, count + 1)
-    weight = _weights(width, count + 2)
-    # Everything in units of 1 N/mm, the outer radius and 2G; a newton pushes along −x at angle 0.
-    load = -weight / (2.0 * np.pi)
-    level = _level(ratio, kolosov, load[1])
-    plus, minus = _harmonics(ratio, kolosov, order, load)
-    seen = level * weight[1] + (np.cos(np.outer(angle, order)) @ (plus * weight[order + 1] + minus * weight[order - 1]))
-    # Displacements over 2G, and the unit is (κ + 1)/(2π) over 2G for a newton each millimetre.
-    narrower = np.where(np.abs(angle) < width, np.log(width * outer / half_width), 0.0)
-    return np.asarray(narrower - seen * 2.0 * np.pi / (kolosov + 1.0))
-
-
-def _weights(width: float, count: int) -> FloatArray:
-    """Means of cos(kt) over a semi-elliptic patch, 2 J₁(kb)/(kb), for k = 0 … count."""
-    from scipy.special import j1
-
-    argument = width * np.arange(1, count + 1)
-    return np.concatenate([[1.0], 2.0 * j1(argument) / argument])
-
-
-def _level(ratio: float, kolosov: float, load: float) -> float:
-    """Harmonic 0 of the displacement at the outer circle, which the load squeezes evenly."""
-    # κ a r − a r − b/r = 0 where it is held, 2a + b = load outside.
-    uniform = load / (2.0 + (kolosov - 1.0) * ratio**2)
-    return uniform * (kolosov - 1.0) * (1.0 - ratio**2)
-
-
-def _harmonics(
-    ratio: float, kolosov: float, order: NDArray[np.int_], load: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Harmonics +m and −m of the displacement at the outer circle."""
-    m = order.astype(float)
-    # Unknown: a of 1 + m and b of m − 1 by powers of the outer radius, a of 1 − m and b of −m − 1 by those of the inner.
-    inside, nothing = ratio**m, np.zeros_like(m)
-    held_plus = [kolosov * ratio * inside, nothing, m - 1.0, -np.ones_like(m)]
-    held_minus = [-(1.0 + m) * ratio * inside, -inside / ratio, kolosov * np.ones_like(m), nothing]
-    pulled_plus = [(1.0 + m) * (1.0 - m), 1.0 - m, (1.0 - m) * inside / ratio, nothing]
-    pulled_minus = [1.0 + m, nothing, (1.0 - m) * (1.0 + m) * inside / ratio, (m + 1.0) * ratio * inside]
-    moved_plus = [kolosov + nothing, nothing, (m - 1.0) * inside / ratio, -ratio * inside]
-    moved_minus = [-(1.0 + m), nothing - 1.0, kolosov * inside / ratio, nothing]
-    # Of the first harmonic two are others: in the place of a of 0 stands A ln z, in that of b of 0 a shift of the whole.
-    for row, entry in (
-        (held_plus, (kolosov * ratio**2, 0.0, -1.0, -1.0)),
-        (held_minus, (-2.0 * ratio**2, 1.0, 2.0 * kolosov * np.log(ratio), 0.0)),
-        (pulled_plus, (0.0, 0.0, 1.0 + kolosov, 0.0)),
-        (pulled_minus, (2.0, 0.0, 2.0, 2.0 * ratio**2)),
-        (moved_plus, (kolosov, 0.0, -1.0, -(ratio**2))),
-        (moved_minus, (-2.0, 1.0, 0.0, 0.0)),
-    ):
-        for column, value in zip(row, entry, strict=True):
-            column[0] = value
-    rows = (held_plus, held_minus, pulled_plus, pulled_minus)
-    system = np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
-    # Tractions of harmonic k are those of the patch's weight of k − 1: its direction is that of its middle.
-    right = np.stack([nothing, nothing, load[order - 1], load[order + 1]], axis=-1)
-    found = np.linalg.solve(system, right[..., None])[..., 0]
-    plus, minus = (np.sum(np.stack(row, axis=-1) * found, axis=-1) for row in (moved_plus, moved_minus))
-    return plus, minus
+"""Spacing of stations by the thickness of the wall from which sums over them may miss all of the load across it."""
 
 
 PER_STATION = 12
-"""Points of a wall for each station: a twelfth of their spacing apart they tell the thickness of a thin one to some per cent."""
+"""Points of a wall per station: a twelfth of their spacing apart they give the thickness of a thin wall to some per cent."""
 
 
 def wall_bending(dataset: xr.Dataset, stations: NDArray[np.integer]) -> FloatArray:
@@ -206,7 +110,9 @@ def missed_between_stations(boundary: NDArray[np.integer], points: ComplexArray)
 def _walls(
     boundary: NDArray[np.integer], points: ComplexArray
 ) -> tuple[dict[int, ComplexArray], dict[int, FloatArray]]:
-    """Return points along each boundary, `PER_STATION` for each station, and how far the next boundary is from them, mm."""
+    """Return points along each boundary, `PER_STATION` for each station, and their distance to the nearest other boundary,
+    mm.
+    """
     numbers = np.unique(boundary).tolist()
     curves = {number: _between(points[boundary == number]) for number in numbers}
     thickness = {

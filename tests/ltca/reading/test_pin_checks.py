@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from ltca.commands.program import main
+from ltca.drive.engine_support import require
 from ltca.drive.materials import MAY_BE_UNKNOWN
-from ltca.drive.plane_strain import require_fixed_pins
 from ltca.drive.tolerances import Factors, parse_tolerances
 from ltca.errors import DriveError
 from ltca.reading.changes import with_fields
@@ -73,7 +73,7 @@ WRONG = [
     # beams
     ({"pin_wheel.beam.span": 21.9}, "pin_wheel.beam.span = 21.9 mm: must be at least 22 mm, or disc 0 from -11 to -1 mm"),
     ({"pin_wheel.beam.span": 0.0}, "pin_wheel.beam.span = 0.0: must be greater than 0 mm"),
-    ({"pin_wheel.beam.diameter": 7.1}, "pin_wheel.beam.diameter = 7.1 mm: must be at most 7 mm, the pin's own (pin_wheel.pin_r"),
+    ({"pin_wheel.beam.diameter": 7.1}, "pin_wheel.beam.diameter = 7.1 mm: must be at most 7 mm, that of the pin (pin_wheel.pin_"),
     ({"pin_wheel.beam.diameter": -1.0}, "pin_wheel.beam.diameter = -1.0: must be greater than 0 mm"),
     ({"pin_wheel.beam.ends": "hinged"}, "pin_wheel.beam.ends = 'hinged': must be 'supported' or 'clamped'"),
     (BEAMS | {"pin_shaft.beam.span": 20.0}, "pin_shaft.beam.span = 20 mm: must be at least 22 mm, or disc 0 from -11 to -1 mm"),
@@ -204,10 +204,10 @@ def test_every_number_can_scatter(sleeved):
     assert problem.startswith("tolerances.pin_wheel.seat.kind: is not a field of the drive that can scatter")
 
 
-def test_what_knows_fixed_pins_alone_names_the_fields(sleeved):
-    require_fixed_pins(load_drive("paper").cases["CS-1"], "a test")
+def test_a_model_of_fixed_pins_names_the_fields(sleeved):
+    require(load_drive("paper").cases["CS-1"], "direct")
     with pytest.raises(DriveError) as caught:
-        require_fixed_pins(with_fields(sleeved, BEAMS), "a test")
+        require(with_fields(sleeved, BEAMS), "direct")
     told = caught.value.problems
     starts = ("pin_wheel.seat (", "pin_wheel.beam (", "pin_shaft.seat (", "pin_shaft.beam (")
     assert len(told) == 4

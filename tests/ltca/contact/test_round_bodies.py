@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ltca.reading.coefficient_laws import compressed_cylinder
-from ltca.reading.held_ring import NARROW, held_ring_approach
+from ltca.contact.round_bodies import NARROW, compressed_cylinder, held_ring_approach
 
 KOLOSOV = [3.0 - 4.0 * 0.3, (3.0 - 0.3) / (1.0 + 0.3)]
 

@@ -1,0 +1,205 @@
+"""Search of ``cyclo optimise``; the starting drive and the optimum are solved finely, written, drawn and printed."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ltca.analysis.engines import Engine, describe_engine
+from ltca.analysis.extremes import sampling_warning
+from ltca.commands.actions.study import tell
+from ltca.compliance.coefficient_files import expected_seconds, told_seconds
+from ltca.drive.fields import read_field, whose, with_whose
+from ltca.drive.parts import Drive
+from ltca.errors import DriveError, did_you_mean, shortened, told_twice
+from ltca.geometry.placement import position_angles
+from ltca.output.files import whole_file, write_json
+from ltca.output.progress import progress
+from ltca.output.provenance import code_hash, code_version
+from ltca.page.studies.optimum import optimum_page
+from ltca.page.study_page import write_study_page
+from ltca.quantities import SCALARS
+from ltca.reading.writing import drive_text
+from ltca.studies.fine_solution import FineSolution, solve_finely
+from ltca.studies.optimiser import (
+    Optimum,
+    Problem,
+    batch_analysis,
+    broken_limits,
+    describe_bound,
+    most_candidates,
+    optimise,
+    parse_bound,
+    parse_variable,
+    varies_shape,
+)
+from ltca.studies.quantities import STAGES, with_what_varies
+from ltca.studies.shapes import find_beforehand, shapes_of
+from ltca.studies.study_results import field_column, quantity_column
+
+
+def search_and_write(
+    problem: Problem, name: str, case: str, engine: Engine, arguments: argparse.Namespace, out: Path
+) -> int:
+    """Search, solve starting drive and optimum finely, write, draw and print the results; return the exit status."""
+    _tell_beforehand(problem, engine, arguments)
+    with progress("candidates", most_candidates(problem, arguments.generations), at_most=True) as bar:
+        optimum = optimise(
+            problem,
+            batch_analysis(problem, arguments.positions, engine),
+            seed=arguments.seed,
+            generations=arguments.generations,
+            told=lambda candidates: bar("solved", candidates),
+        )
+    best = optimum.drive(optimum.best)
+    fine = [solve_finely(drive, problem.quantities, engine) for drive in (problem.drive, best)]
+    with whole_file(out / "optimum.toml") as part:
+        part.write_text(drive_text(best), encoding="utf-8")
+    _write_candidates(optimum, out / "candidates.parquet")
+    outcome = _outcome(optimum, fine, engine, arguments.positions)
+    write_json(out / "optimum.json", outcome)
+    if not arguments.no_page:
+        told = f"least {' and '.join(problem.aims)} of {case}, {problem.drive.load_words()}, {describe_engine(engine)}"
+        write_study_page(optimum_page(name, told, optimum, outcome, drive_text(best)), out)
+    print(f"{name} {case}, {problem.drive.load_words()}, {describe_engine(engine)}")
+    _print(optimum, fine, arguments.positions)
+    print("results: " + ", ".join(str(out / name) for name in ("optimum.toml", "optimum.json", "candidates.parquet")))
+    if arguments.figures:
+        from ltca.figures.optimum_figures import write_optimum_figure
+
+        print(f"figure: {write_optimum_figure(optimum, arguments.positions, out, arguments.figures)}")
+    return 0
+
+
+def problem_of(drive: Drive, arguments: argparse.Namespace) -> Problem:
+    """Return the problem that the arguments describe."""
+    aims = tuple(arguments.minimise)
+    unknown = [aim for aim in aims if aim not in STAGES]
+    if unknown:
+        meant = did_you_mean(unknown[0], STAGES) or "; there are " + ", ".join(STAGES)
+        told = f"is no quantity of a study{meant}"
+        raise DriveError([f"--minimise {shortened(unknown[0])[1:-1]}: {told}"])
+    if len(aims) > 2 or told_twice(aims):
+        raise DriveError(
+            [f"--minimise {shortened(' '.join(aims), 200)[1:-1]}: give one quantity, or two different ones"]
+        )
+    drive = with_what_varies(drive, [text.strip() for text in arguments.vary])
+    variables = tuple(parse_variable(text, drive) for text in arguments.vary)
+    if repeated := told_twice([variable.path for variable in variables]):
+        raise DriveError([f"--vary {repeated}: is given twice"])
+    return Problem(
+        drive=drive, variables=variables, aims=aims, limits=tuple(parse_bound(text) for text in arguments.subject)
+    )
+
+
+def _tell_beforehand(problem: Problem, engine: Engine, arguments: argparse.Namespace) -> None:
+    """Warn of few positions, and say what has to be derived; derive it for the drive as it is."""
+    warning = sampling_warning(problem.drive, position_angles(arguments.positions), refined=False)
+    if warning is not None:
+        tell(f"warning: {warning}")
+    if not engine.batches and varies_shape(problem):
+        if arguments.coefficients is not None:
+            raise DriveError(
+                [
+                    f"--coefficients {' '.join(map(str, arguments.coefficients))}: serves one shape, and --vary "
+                    f"{' '.join(arguments.vary)} changes it; leave it out, so that each candidate gets its own"
+                ]
+            )
+        tell(
+            f"every candidate is a shape of its own: up to {most_candidates(problem, arguments.generations)} of them are "
+            f"derived, {told_seconds(sum(expected_seconds(shapes_of([problem.drive]).values())))} each, and kept"
+        )
+    find_beforehand(engine, shapes_of([problem.drive]), tell)
+
+
+def _write_candidates(optimum: Optimum, path: Path) -> None:
+    import pyarrow as pa
+    from pyarrow import parquet
+
+    problem = optimum.problem
+    front = np.zeros(len(optimum.variables), dtype=bool)
+    front[optimum.front] = True
+    flags = {
+        "feasible": (optimum.feasible, "whether it is sound and within the limits"),
+        "front": (front, "whether it is on the Pareto front, or the best of one aim"),
+    }
+    schema = pa.schema(
+        [
+            *(
+                pa.field(v.path, pa.float64(), metadata=field_column(v.path, whose(problem.drive, v.path)))
+                for v in problem.variables
+            ),
+            *(pa.field(name, pa.float64(), metadata=quantity_column(name)) for name in problem.quantities),
+            *(
+                pa.field(name, pa.bool_(), metadata={"units": "1", "description": text})
+                for name, (_, text) in flags.items()
+            ),
+        ],
+        metadata={"version": code_version(), "code_hash": code_hash("ltca")},
+    )
+    columns = [*optimum.variables.T, *optimum.values.T, *(values for values, _ in flags.values())]
+    with whole_file(path) as part:
+        parquet.write_table(pa.Table.from_arrays([pa.array(column) for column in columns], schema=schema), part)
+
+
+def _outcome(optimum: Optimum, fine: list[FineSolution], engine: Engine, positions: int) -> dict[str, Any]:
+    """Content of ``optimum.json``: starting drive and optimum, solved finely and at the positions of the search."""
+    problem, nominal, found = optimum.problem, *fine
+    return {
+        "drive": problem.drive.name,
+        "version": code_version(),
+        "code_hash": code_hash("ltca"),
+        **engine.options,
+        "candidates": len(optimum.variables),
+        "positions_of_candidates": positions,
+        "positions": found.positions,
+        "extremes": "refined between the positions",
+        "variables": {
+            variable.path: {
+                **field_column(variable.path, whose(problem.drive, variable.path)),
+                "low": variable.low,
+                "high": variable.high,
+                "as_it_is": float(read_field(problem.drive, variable.path)),
+                "found": float(value),
+            }
+            for variable, value in zip(problem.variables, optimum.variables[optimum.best], strict=True)
+        },
+        "quantities": {
+            name: {
+                **quantity_column(name),
+                "as_it_is": nominal.values[name],
+                "found": found.values[name],
+                "as_it_is_in_search": float(optimum.start[column]),
+                "found_in_search": float(optimum.values[optimum.best, column]),
+            }
+            for column, name in enumerate(problem.quantities)
+        },
+        "limits": [describe_bound(limit) for limit in problem.limits],
+        "broken_limits": [describe_bound(limit) for limit in broken_limits(problem, found.values)],
+    }
+
+
+def _print(optimum: Optimum, fine: list[FineSolution], positions: int) -> None:
+    problem, nominal, found = optimum.problem, *fine
+    print(
+        f"{len(optimum.variables)} candidates × {positions} positions in {optimum.generations} batches, "
+        f"{optimum.feasible.sum()} within the limits"
+    )
+    print(f"{'':<48}{f'{found.positions} positions, refined':>24}{f'{positions} positions':>24}")
+    print(f"{'':<48}{'as it is':>12}{'found':>12}{'as it is':>12}{'found':>12}")
+    for variable, value in zip(problem.variables, optimum.variables[optimum.best], strict=True):
+        head = with_whose(variable.path, whose(problem.drive, variable.path))
+        print(f"{head:<48}{float(read_field(problem.drive, variable.path)):>12.5g}{value:>12.5g}")
+    for column, name in enumerate(problem.quantities):
+        values = nominal.values[name], found.values[name], optimum.start[column], optimum.values[optimum.best, column]
+        print(f"{SCALARS[name].heading:<48}" + "".join(f"{value:>12.5g}" for value in values))
+    for limit in broken_limits(problem, found.values):
+        print(
+            f"beyond {describe_bound(limit)} when solved finely: {found.values[limit.quantity]:.5g}; the search saw "
+            f"{positions} positions only, more --positions come nearer"
+        )
+    if len(problem.aims) == 2:
+        print(f"Pareto front of {optimum.front.size} candidates; the one found is its compromise")

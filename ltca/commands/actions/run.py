@@ -1,0 +1,263 @@
+"""Solve the cases of ``cyclo run``; write dataset, summary, page and figures, print verdicts and the table of scalars."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from shutil import get_terminal_size
+from typing import NamedTuple
+
+from xarray import Dataset
+
+from ltca.analysis.engines import Engine, describe_engine
+from ltca.analysis.extremes import is_full_turn, sampling_warning
+from ltca.analysis.life.bearing_lives import BearingLives, bearing_lives
+from ltca.analysis.life.equivalent_load import covers_whole_turns
+from ltca.analysis.light_torque import at_light_torque
+from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse_cases
+from ltca.analysis.pressure_fields import build_pressure_dataset
+from ltca.analysis.results import build_dataset
+from ltca.analysis.summary import refined_value, summarise
+from ltca.analysis.summary_rows import rows_of, with_residual_part
+from ltca.analysis.verdict.proportions import odd_proportions
+from ltca.analysis.verdict.values import judge_analysis
+from ltca.arrays import FloatArray
+from ltca.drive.members.judgement import Check
+from ltca.drive.members.limits import Limits
+from ltca.drive.members.verdict_words import verdict_line
+from ltca.drive.parts import Drive
+from ltca.errors import ConvergenceError, CycloError
+from ltca.output.files import whole_file, write_json
+from ltca.output.netcdf import write_netcdf
+from ltca.output.progress import progress
+from ltca.page.compared import Compared
+from ltca.reading.drive_file import DriveFile
+
+Analyses = dict[str, LoadedAnalysis]
+Summaries = dict[str, dict[str, float | None]]
+
+
+class RunTask(NamedTuple):
+    """Settings of ``cyclo run``.
+
+    Attributes
+    ----------
+    file : DriveFile
+        The drive.
+    cases : dict of str to Drive
+        Those of its cases that are analysed.
+    engine : Engine
+        What they are solved on.
+    torque : float or None
+        Output torque, N·mm; that of the drive otherwise.
+    angles : array, shape (positions,)
+        φ_C, rad.
+    pressure_angles : array or None
+        φ_C of pressure fields, rad.
+    figures : str or None
+        What figures are written as.
+    page : bool
+        Whether a page is written.
+    compared : Compared or None
+        What the page shows beside the run.
+    """
+
+    file: DriveFile
+    cases: dict[str, Drive]
+    engine: Engine
+    torque: float | None
+    angles: FloatArray
+    pressure_angles: FloatArray | None
+    figures: str | None
+    page: bool
+    compared: Compared | None
+
+
+def solve_and_write(task: RunTask, out: Path) -> int:
+    """Solve the cases, write and print the results; return the exit status."""
+    file, engine, angles, torque = task.file, task.engine, task.angles, task.torque
+    analyses, failures = _analyse(task.cases, angles, torque, engine, "cases")
+    cases = {name: analysis.drive for name, analysis in analyses.items()}
+    shown: Analyses = {}
+    if task.pressure_angles is not None:
+        shown, also = _analyse(cases, task.pressure_angles, torque, engine, "pressure fields")
+        if also:  # a field of a position without an answer is no field
+            raise next(iter(also.values()))
+    summaries = {name: summarise(analysis) for name, analysis in analyses.items()}
+    dataset = build_dataset(file.name, analyses, file.text)
+    with whole_file(out / "results.nc") as part:
+        write_netcdf(dataset, part)
+    write_json(out / "summary.json", {"drive": file.name, "cases": summaries})
+    files, fields = ["results.nc", "summary.json"], None
+    if shown:
+        fields = build_pressure_dataset(file.name, shown, drive_file=file.text)
+        packed = {name: {"zlib": True} for name in fields if str(name).endswith(("_pressure", "_outer", "_inner"))}
+        with whole_file(out / "pressure.nc") as part:
+            write_netcdf(fields, part, packed)
+        files.append("pressure.nc")
+    loads = {name: drive.load_words(torque) for name, drive in cases.items()}
+    (load, *others) = dict.fromkeys(loads.values())
+    how = [describe_engine(engine), _many(angles)]
+    print(f"{file.name}: {', '.join(how if others else [load, *how])}")
+    yields = any(drive.crank.support or drive.pin_wheel.support_stiffness for drive in cases.values())
+    checks = _checks(analyses, summaries, file.limits)
+    sampling = _sampling(analyses, summaries, angles)
+    proportions = _proportions(analyses)
+    print(_verdicts(checks, proportions))
+    print(_table(summaries, loads if others else {}, bool(yields)))
+    print("\n".join(sampling))
+    if task.page:
+        told = [*sampling, *dict.fromkeys(f"warning: {one}" for each in proportions.values() for one in each)]
+        files.append(_write_page(task, analyses, dataset, summaries, checks, told, out))
+    print("results: " + ", ".join(str(out / name) for name in files))
+    for name, failure in failures.items():
+        left = 2 * angles.size
+        if failure.partial is not None:
+            left = sum(int((~known).sum()) for known in (failure.partial.balanced, failure.partial.balanced_light))
+        told_of = f"case {name}: partial: {left} of {2 * angles.size} states have no answer"
+        print(f"cyclo: error: {told_of}: {failure}", file=sys.stderr)
+    if task.figures:
+        _draw(dataset, fields, cases, out / "figures", task.figures)
+    return ConvergenceError.exit_status if failures else 0
+
+
+def _write_page(
+    task: RunTask, analyses: Analyses, dataset: Dataset, summaries: Summaries, checks: dict[str, list[Check]],
+    sampling: list[str], out: Path,
+) -> str:  # fmt: skip
+    """Write the page of the run; return its name."""
+    from ltca.page.run_page import PAGE, Run, run_page
+    from ltca.page.writing import write_page
+
+    light = {name: at_light_torque(analysis) for name, analysis in analyses.items()}
+    run = Run(
+        dataset=dataset,
+        drives={name: analysis.as_written for name, analysis in analyses.items()},
+        engine=task.engine,
+        summaries=summaries,
+        checks=checks,
+        lives={name: _lives(analysis) for name, analysis in analyses.items()},
+        sampling=sampling,
+        light=build_dataset(task.file.name, light, task.file.text),
+        compared=task.compared,
+    )
+    write_page(out / PAGE, run_page(run))
+    return PAGE
+
+
+def _lives(analysis: LoadedAnalysis) -> BearingLives | str:
+    """Lives of the crank bearings of a case, or why it has none."""
+    if not (analysis.is_complete and covers_whole_turns(analysis.full.crank_angle)):
+        return "positions cover no whole turn or have no answer."
+    try:
+        return bearing_lives(analysis)
+    except CycloError as error:
+        return str(error)
+
+
+def _analyse(
+    cases: dict[str, Drive], angles: FloatArray, torque: float | None, engine: Engine, title: str
+) -> tuple[Analyses, dict[str, ConvergenceError]]:
+    """Analyses of all cases; those without an answer at some positions, and why."""
+    analyses, failures = {}, {}
+    with progress(title, len(cases)) as advance:
+        for name, found in analyse_cases(cases, angles, torque, engine):
+            if isinstance(found, ConvergenceError):
+                failures[name] = found
+                found = found.partial
+            if found is not None:
+                analyses[name] = found
+            advance(name)
+    if not analyses:
+        raise next(iter(failures.values()))
+    return analyses, failures
+
+
+def _checks(analyses: Analyses, summaries: Summaries, limits: Mapping[str, Limits]) -> dict[str, list[Check]]:
+    """The checks of each case that has an answer everywhere."""
+    return {
+        name: judge_analysis(analysis, summaries[name], limits[name], lives=False)
+        for name, analysis in analyses.items()
+        if analysis.is_complete
+    }
+
+
+def _proportions(analyses: Analyses) -> dict[str, list[str]]:
+    """Unusual proportions of each case that has an answer everywhere."""
+    return {
+        name: [*odd_proportions(analysis.as_written)] for name, analysis in analyses.items() if analysis.is_complete
+    }
+
+
+def _verdicts(checks: dict[str, list[Check]], proportions: dict[str, list[str]]) -> str:
+    """A line for each case with the check nearest to its limit, then unusual proportions."""
+    if not checks:
+        return "no verdict on partial results"
+    width = max(map(len, checks))
+    told = ["verdict, with the check nearest to its limit"]
+    told += [f"  {name:<{width}}  {verdict_line(each)}" for name, each in checks.items()]
+    told += [f"  note: {note}" for note in dict.fromkeys(note for each in proportions.values() for note in each)]
+    return "\n".join([*told, "every check, what drives it and would mend it: cyclo check"])
+
+
+def _draw(dataset: Dataset, fields: Dataset | None, cases: dict[str, Drive], folder: Path, kind: str) -> None:
+    from ltca.figures.pressure_figures import write_pressure_figures
+    from ltca.figures.run_figures import figure_names, write_figures
+
+    names = figure_names(dataset.sizes["disc"], dataset.sizes["hole"], dataset.sizes["crank"])
+    with progress("figures", len(names)) as advance:
+        for path in write_figures(dataset, folder, kind):
+            advance(path.name)
+    print(f"figures: {folder} ({len(names)} as {kind.upper()})")
+    if fields is None:
+        return
+    with progress("pressure figures", 3 + len(cases)) as advance:
+        for path in write_pressure_figures(dataset, fields, next(iter(cases.values())), folder, kind):
+            advance(path.name)
+
+
+def _table(summaries: Summaries, loads: dict[str, str], yields: bool) -> str:
+    summaries = {name: with_residual_part(case) for name, case in summaries.items()}
+    rows = [("case", list(summaries))]
+    if loads:  # of cases that differ in them
+        rows.append(("torque, direction of the crank", list(loads.values())))
+    for row in rows_of(summaries, yields=yields):
+        values = [refined_value(case, row.key) for case in summaries.values()]
+        rows.append((row.heading, ["–" if value is None else f"{value:{row.digits}}" for value in values]))
+    return "\n".join(_side_by_side(rows))
+
+
+def _side_by_side(rows: list[tuple[str, list[str]]]) -> list[str]:
+    """Rows with their cells in columns, as many columns beside each other as a terminal shows."""
+    head = max(len(title) for title, _ in rows)
+    widths = [max(10, *(len(cells[column]) + 2 for _, cells in rows)) for column in range(len(rows[0][1]))]
+    seen = get_terminal_size(fallback=(10_000, 24)).columns if sys.stdout.isatty() else 10_000
+    many = max(1, (seen - head) // max(widths))
+    return [
+        f"{title:<{head}}" + "".join(f"{cells[c]:>{widths[c]}}" for c in range(first, min(first + many, len(widths))))
+        for first in range(0, len(widths), many)
+        for title, cells in rows
+    ]
+
+
+def _many(angles: FloatArray) -> str:
+    return f"{angles.size} positions" if angles.size > 1 else f"1 position, φ_C = {angles[0]:g} rad"
+
+
+def _sampling(analyses: Analyses, summaries: Summaries, angles: FloatArray) -> list[str]:
+    """Lines on the positions behind the values, and warnings on sampling, drive and solution."""
+    many = _many(angles)
+    whole = is_full_turn(angles)
+    lines = [f"means over {many}; extremes over the turn, refined between them" if whole else f"values of {many}"]
+    lines += sorted({analysis.hole_words for analysis in analyses.values()} - {""})
+    warnings = {
+        warning
+        for analysis in analyses.values()
+        for warning in (sampling_warning(analysis.drive, angles), *analysis.warnings)
+        if warning is not None
+    }
+    for name, case in summaries.items():
+        if whole and analyses[name].is_complete and case["refined_max_pin_load_N"] is None:
+            warnings.add(f"extremes of case {name} are those of its positions: one between them has no answer")
+    return [*lines, *(f"warning: {text}" for text in sorted(warnings))]

@@ -1,0 +1,147 @@
+"""Run of a study: claim its folder, solve its samples, then write, draw and print the results."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from ltca.analysis.engines import describe_engine
+from ltca.analysis.extremes import sampling_warning
+from ltca.errors import DriveError
+from ltca.geometry.placement import position_angles
+from ltca.output.processes import Terminated
+from ltca.output.progress import progress
+from ltca.output.resources import require_room
+from ltca.output.run_folder import BATCHES, claimed_folder, figure_files
+from ltca.page.studies.samples import samples_page
+from ltca.page.study_page import write_study_page
+from ltca.quantities import SCALARS
+from ltca.reading.arguments import tell_unit_mistakes
+from ltca.studies.execution.storage import StudyFolder
+from ltca.studies.execution.workers import Workers
+from ltca.studies.run_study import StudySummary, run_study, sample_file, write_sample
+from ltca.studies.study import Study
+
+COPIES = 3
+"""Of all numbers of a study there are for a while batches, dataset and table."""
+MOST_REASONS = 5
+"""Reasons of failing samples that are printed."""
+
+
+def execute_study(study: Study, folder: StudyFolder, arguments: argparse.Namespace) -> int:
+    """Run a study with progress; write its figures and page, print its results."""
+    workers = Workers(processes=arguments.workers, scheduler=arguments.scheduler)
+    if arguments.sample is not None:
+        if not 0 <= arguments.sample < study.design.samples:
+            raise DriveError([f"--sample = {arguments.sample}: must be from 0 to {study.design.samples - 1}"])
+        with claimed_folder(
+            folder.path, "study", writes=[sample_file(f"{arguments.sample:08d}")], adding=True, beside=(BATCHES,)
+        ):
+            print(f"drive of sample {arguments.sample}: {write_sample(study, folder, arguments.sample)}")
+        return 0
+    columns = len(study.design.names) + len(study.quantities)
+    size = COPIES * 8.0 * columns * study.design.samples
+    require_room(size, memory=0.0, folder=folder.path, option=f"{study.design.samples} samples")
+    figures = figure_files(arguments.figures, "responses", "distributions", "sensitivity")
+    writes = [*(path.name for path in folder.files), "summary.json", sample_file("[0-9]" * 8), *figures]
+    writes += [] if arguments.no_page else ["report.html"]
+    # Of its own files that are not as it wrote them a study tells what to do, or it was told to replace them.
+    renewing = tuple(path.name for path in folder.files) if arguments.resume or arguments.force else ()
+    with claimed_folder(folder.path, "study", writes=writes, beside=(BATCHES,), renewing=renewing) as held:
+        if arguments.resume:
+            if not folder.has_batches():
+                held.require_whole(*folder.files[1:])
+            held.keep(*folder.files)
+        try:
+            return _solve_and_write(study, folder, workers, arguments)
+        except (KeyboardInterrupt, Terminated):
+            if folder.has_batches():
+                tell(f"finished batches are kept in {folder.path}: continue with --resume")
+            raise
+
+
+def _solve_and_write(study: Study, folder: StudyFolder, workers: Workers, arguments: argparse.Namespace) -> int:
+    warning = sampling_warning(study.cases[0][1], position_angles(study.positions), refined=False)
+    if warning is not None:
+        tell(f"warning: {warning}")
+    tell_unit_mistakes(drive for _, drive in study.cases)
+    with progress("samples", study.design.samples) as bar:
+
+        def advance(samples: int, rate: float) -> None:
+            bar(f"{rate:.0f} positions/s" if rate else "", samples)
+
+        found = run_study(
+            study, folder, workers, resume=arguments.resume, replace=arguments.force, advance=advance, told=tell
+        )
+    _print(study, folder, found, _compliance_words(study, arguments.coefficients))
+    if not arguments.no_page:
+        print(f"page: {write_study_page(samples_page(study, found), folder.path)}")
+    if found.quantities and arguments.figures:
+        from ltca.figures.study_figures import write_study_figures
+
+        paths = list(write_study_figures(folder, study, found.ranking, found.nominal, arguments.figures))
+        print(f"figures: {folder.path / 'figures'} ({len(paths)} as {arguments.figures.upper()})")
+    if found.failures:
+        # Said last and as `run` says it: what stands above is that of the samples that have an answer.
+        tell(f"cyclo: error: partial: {len(found.failures)} of {study.design.samples} samples failed")
+    return 1 if found.failures else 0
+
+
+def tell(message: str) -> None:
+    """Print a message to stderr, beside the results."""
+    print(message, file=sys.stderr)
+
+
+def _print(study: Study, folder: StudyFolder, found: StudySummary, compliance: str) -> None:
+    samples = f"{study.design.samples} samples × {study.positions} positions"
+    print(f"{study.name}, {study.load_words()}: {samples}, {describe_engine(study.engine)}")
+    if found.solved_positions:
+        rate = found.solved_positions / found.seconds
+        print(f"solved in {found.seconds:.1f} s, {rate:.0f} positions/s")
+    print(f"{'':<48}{'nominal':>10}{'mean':>10}{'1 %':>10}{'50 %':>10}{'99 %':>10}{'largest':>10}  sample")
+    for name, summary in found.quantities.items():
+        numbers = [found.nominal.get(name, float("nan")), summary.mean, *(summary.percentiles[i] for i in (1, 3, 5))]
+        cells = "".join(f"{value:>10.4g}" for value in [*numbers, summary.largest])
+        print(f"{SCALARS[name].heading:<48}{cells}  {summary.largest_sample}")
+    print(f"sensitivity: {found.ranking['method']}")
+    for name, entry in list(found.ranking["quantities"].items())[:3]:
+        first = [
+            f"{study.field_words(path)} {100.0 * share:.0f} %" for path, share in list(entry["shares"].items())[:3]
+        ]
+        print(f"  {SCALARS[name].title}: {', '.join(first)} (first order together: {100.0 * entry['explained']:.0f} %)")
+    linear = [entry["explained"] for entry in found.ranking["quantities"].values()]
+    if "regression" in found.ranking["method"] and linear and min(linear) < 0.5:
+        print("  regression misses what is curved or mutual; 'cyclo tolerance --design saltelli' ranks that too")
+    _print_failures(study, folder, found)
+    leading = next(iter(found.quantities), None)
+    if leading is not None:
+        summary = found.quantities[leading]
+        worst = summary.smallest_sample if SCALARS[leading].more_is_better else summary.largest_sample
+        words = f"{write_sample(study, folder, worst)}{compliance}"
+        print(f"worst by {SCALARS[leading].title}: cyclo run {words}")
+    print(f"results: {folder.results}, {folder.table}, {folder.path / 'summary.json'}")
+
+
+def _print_failures(study: Study, folder: StudyFolder, found: StudySummary) -> None:
+    """Print how many samples failed, and their reasons with the first sample of each."""
+    if not found.failures:
+        return
+    print(f"{len(found.failures)} of {study.design.samples} samples failed; their drives: {folder.path / 'samples'}")
+    reasons: dict[str, list[int]] = {}
+    for sample, message in found.failures:
+        reasons.setdefault(" ".join(message.split()), []).append(sample)
+    for message, samples in list(reasons.items())[:MOST_REASONS]:
+        more = f" and {len(samples) - 1} more" if len(samples) > 1 else ""
+        print(f"  sample {samples[0]}{more}: {message[:300]}")
+    if len(reasons) > MOST_REASONS:
+        print(f"  and {len(reasons) - MOST_REASONS} other reasons")
+
+
+def _compliance_words(study: Study, coefficients: Sequence[Path] | None) -> str:
+    """Options with which `cyclo run` solves a sample as the study did."""
+    options = study.engine.options
+    words = "" if options["compliance"] == "half-space" else f" --compliance {options['compliance']}"
+    words += "".join(f" --coefficients {path}" for path in coefficients or ())
+    return words + (" --no-hole-near-field" if options.get("hole_near_field") == "no" else "")

@@ -1,0 +1,194 @@
+"""Which engine refuses which fields: the one table behind engines, finite elements, validation and the reference pages.
+
+A field that a model cannot represent has a row in `REFUSALS`, and `require` refuses every drive that gives it. The contract
+(``tests/contract``, and ``benchmarks/contract.py`` for full finite elements) holds the table against the engines, field by
+field.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import MISSING, dataclass, fields, is_dataclass
+from operator import attrgetter
+from typing import Any
+
+from ltca.drive.declaration import ANY, declared_fields
+from ltca.drive.parts import Drive
+from ltca.drive.units.table import label
+from ltca.errors import DriveError
+
+ENGINES = {
+    "tables": "half-space, tabulated laws (`--method tables`, the default)",
+    "direct": "half-space, contact grids (`--method direct`)",
+    "paper": "the paper's iteration (`--method paper`)",
+    "fe": "plane strain (`--compliance fe`)",
+    "hybrid": "half-spaces of finite length on bodies (`--compliance hybrid`)",
+    "full FE": "full finite elements (`cyclo fem`, `validate`)",
+}
+"""Engines that a user can choose, with their descriptions for the reference pages."""
+_IN_MESSAGES = {
+    "direct": "method direct",
+    "paper": "method paper",
+    "fe": "compliance fe",
+    "full FE": "full finite elements",
+    "FE mesh": "meshes of full finite elements",
+    "clearance-free": "the clearance-free analysis",
+}
+"""Names of engines in messages. The last two are no choice of an analysis: ``cyclo mesh`` and a reference of the tests."""
+
+
+@dataclass(frozen=True, slots=True)
+class Refusal:
+    """A field or table that some engines cannot represent.
+
+    Attributes
+    ----------
+    path : str
+        Of the field or table, with ``N`` for the number of an entry.
+    engines : tuple of str
+        Engines that refuse it.
+    reason : str
+        Why, as it stands behind "refused by ENGINE:".
+    instead : str
+        What to do instead, for the message; empty where leaving the field out is all that can be done.
+    equals : str
+        Path of the field whose value is accepted; by default the value of a drive that leaves the field out is.
+    accepts : callable, optional
+        Further values that are accepted, because they mean the same as leaving the field out.
+    """
+
+    path: str
+    engines: tuple[str, ...]
+    reason: str
+    instead: str = ""
+    equals: str = ""
+    accepts: Callable[[Any], bool] | None = None
+
+
+_PLANE = ("fe", "full FE")
+_TWO_DIMENSIONS = (
+    "the model is two-dimensional: nothing varies along the length, and rollers are as long as the disc is thick"
+)
+_RIGID = ("paper", "full FE", "FE mesh", "clearance-free")
+_FIXED = ("direct", *_RIGID)
+_ONE_BORE = ("paper", "clearance-free")
+_HYBRID = "use --compliance hybrid"
+
+REFUSALS = (
+    Refusal("crank.number", _ONE_BORE, "the model has one crank"),
+    Refusal("crank.circle_radius", _ONE_BORE, "the model has one crank"),
+    Refusal("crank.angle", _ONE_BORE, "the model has one crank"),
+    Refusal("crank.support", _RIGID, "cranks are rigid in the model"),
+    Refusal("pin_wheel.pin_profile", _PLANE, _TWO_DIMENSIONS, _HYBRID, accepts=attrgetter("is_cylinder")),
+    Refusal("pin_wheel.axis_offset", ("full FE", "FE mesh"), "wheel and pin shaft have the same axis in the model"),
+    Refusal("pin_wheel.support_stiffness", _RIGID, "the axis of the wheel is fixed in the model"),
+    Refusal("pin_wheel.seat", _FIXED, "pins are fixed in the model"),
+    Refusal("pin_wheel.beam", _FIXED, "pins do not bend in the model"),
+    Refusal("disc.number_of_discs", ("paper",), "the model has one disc"),
+    Refusal(f"disc.of.{ANY}.bore_errors", _ONE_BORE, "the model has one crank"),
+    Refusal("crank_bearing.roller_length", _PLANE, _TWO_DIMENSIONS, _HYBRID, equals="disc.thickness"),
+    Refusal("crank_bearing.roller_profile", _PLANE, _TWO_DIMENSIONS, _HYBRID, accepts=attrgetter("is_cylinder")),
+    Refusal("pin_shaft.seat", _FIXED, "pins are fixed in the model"),
+    Refusal("pin_shaft.beam", _FIXED, "pins do not bend in the model", "give pin_shaft.stiffness"),
+    Refusal("installation.first_stage_ratio", _ONE_BORE, "the model has one crank"),
+    Refusal("friction", _FIXED, "the model is frictionless"),
+)
+"""Everything that an engine refuses, in the order of the definition of a drive."""
+ROUNDING = 1e-9
+"""Relative difference up to which two lengths are equal."""
+
+
+def require(drive: Drive, engine: str) -> None:
+    """Refuse a drive with anything that an engine cannot represent: DriveError with one sentence for each field.
+
+    Examples
+    --------
+    >>> from ltca.reading.changes import with_fields
+    >>> from ltca.reading.drive_file import load_drive
+    >>> require(with_fields(load_drive("paper").cases["CS-1"], {"crank_bearing.roller_length": 8.0}), "hybrid")
+    """
+    problems = [problem for row in REFUSALS if engine in row.engines for problem in _problems(drive, row, engine)]
+    if problems:
+        raise DriveError(problems)
+
+
+def refusal(engine: str, path: str) -> str | None:
+    """Return why an engine refuses a field; None where it takes it.
+
+    Examples
+    --------
+    >>> refusal("full FE", "friction.pin")
+    'the model is frictionless'
+    >>> refusal("fe", "disc.thickness")
+    """
+    return next((row.reason for row in REFUSALS if engine in row.engines and _covers(row, path)), None)
+
+
+def refusals(path: str) -> dict[str, list[str]]:
+    """Return the engines that refuse a field, by reason."""
+    found: dict[str, list[str]] = {}
+    for engine in ENGINES:
+        if (reason := refusal(engine, path)) is not None:
+            found.setdefault(reason, []).append(engine)
+    return found
+
+
+def _covers(row: Refusal, path: str) -> bool:
+    return path == row.path or path.startswith(f"{row.path}.")
+
+
+def _problems(drive: Drive, row: Refusal, engine: str) -> Iterator[str]:
+    """One sentence for every place where a drive gives what a row refuses."""
+    for path, value, default in _given(drive, row.path.split(".")):
+        bound, unit = "left out", _unit(row.path)
+        if row.equals:
+            ((_, accepted, _),) = _given(drive, row.equals.split("."))
+            if abs(value - accepted) <= ROUNDING * accepted:
+                continue
+            bound = f"{accepted:g}{unit} ({row.equals})"
+        elif value == default or (row.accepts is not None and row.accepts(value)):
+            continue
+        elif default is not None and not is_dataclass(default):
+            bound = f"{default:g}{unit}"
+        named = f"{path} ({_contents(path, value, row.path)})" if is_dataclass(value) else f"{path} = {value:g}{unit}"
+        instead = f"; {row.instead}" if row.instead else ""
+        yield f"{named}: must be {bound} for {_IN_MESSAGES[engine]} ({row.reason}){instead}"
+
+
+def _given(part: Any, names: Sequence[str], above: str = "") -> Iterator[tuple[str, Any, Any]]:
+    """Path, value and default of a field, of every entry where its path has ``N``; nothing where its table is left out."""
+    name, *below = names
+    value, path = getattr(part, name), f"{above}{name}"
+    if not below:
+        yield path, value, _default(part, name)
+    elif below[0] == ANY:
+        for number, entry in enumerate(value):
+            yield from _given(entry, below[1:], f"{path}.{number}.")
+    elif value is not None:
+        yield from _given(value, below, f"{path}.")
+
+
+def _default(part: Any, name: str) -> Any:
+    item = next(item for item in fields(part) if item.name == name)
+    return item.default_factory() if item.default_factory is not MISSING else item.default
+
+
+def _contents(path: str, table: Any, declared: str) -> str:
+    """Fields of a table with their values where they differ from the default; all names where none does."""
+    told = {item.name: getattr(table, item.name) for item in fields(table)}
+    changed = {name: value for name, value in told.items() if value != _default(table, name)}
+    if not changed:
+        return ", ".join(f"{path}.{name}" for name in told)
+    return ", ".join(f"{path}.{name} = {_shown(value)}{_unit(f'{declared}.{name}')}" for name, value in changed.items())
+
+
+def _shown(value: Any) -> str:
+    if isinstance(value, tuple):
+        return f"[{', '.join(_shown(each) for each in value)}]"
+    return f'"{value}"' if isinstance(value, str) else f"{value:g}"
+
+
+def _unit(path: str) -> str:
+    """Unit of a field as it stands behind its value."""
+    declared = declared_fields().get(path)
+    return f" {label(declared.unit)}".rstrip() if declared is not None else ""

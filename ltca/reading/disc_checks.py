@@ -1,0 +1,466 @@
+"""Checks of a drive of one disc: tooth numbers, flank, pins, bearing, holes and bores, and their deviations."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import lru_cache
+from math import pi, sin
+
+import numpy as np
+
+from ltca.arrays import ComplexArray, FloatArray
+from ltca.drive.deviations import BoreErrors
+from ltca.drive.parts import Drive, LengthProfile, PlacementErrors, RollerErrors
+from ltca.geometry.flank import CurveFrame, FlankProfile
+from ltca.geometry.interference import ROUNDING, drawn_interference
+from ltca.geometry.rotation import unit
+
+ELASTIC = "a tenth of the smallest pin or roller radius, beyond what bodies yield elastically"
+"""Bound of overlaps in words: bodies strained by a tenth are no longer linear-elastic; sharper limits need a load."""
+POINTS_PER_WAVE = 24
+"""Points at which the flank is checked, per wave of the highest order."""
+
+
+def find_disc_problems(drive: Drive) -> list[str]:
+    """Contradictions of a drive of one disc."""
+    problems = [problem for check in FIRST for problem in check(drive)]
+    if problems:
+        return problems  # the geometry below needs them
+    problems += _flank(drive)
+    if not problems:
+        problems += find_flank_problems(drive)
+    return problems + [problem for check in BESIDE for problem in check(drive)]
+
+
+def _tooth_numbers(drive: Drive) -> Iterator[str]:
+    pins, teeth = drive.pin_wheel.number_of_pins, drive.disc.number_of_teeth
+    if pins - teeth != 1:
+        yield (
+            f"disc.number_of_teeth = {teeth}: must be {pins - 1}, one less than pin_wheel.number_of_pins = {pins} "
+            "(other tooth-number differences are not supported)"
+        )
+
+
+def _flank(drive: Drive) -> Iterator[str]:
+    wheel, disc, e = drive.pin_wheel, drive.disc, drive.crank.eccentricity
+    pitch_radius = e * drive.reduction_ratio
+    smallest = min(wheel.pin_circle_radius, wheel.pin_circle_radius + disc.shifting_offset)
+    if pitch_radius >= smallest:
+        yield (
+            f"crank.eccentricity = {e:g} mm: must be less than {smallest / drive.reduction_ratio:.6g} mm "
+            "(pin circle radius by number of pins, shifting offset included), or the flank has loops"
+        )
+        return
+    profile = FlankProfile.of_drive(drive)
+    if profile.offset <= 0.0:
+        yield (
+            f"disc.equidistant_offset = {disc.equidistant_offset:g} mm: must be greater than "
+            f"{-wheel.pin_radius:g} mm (minus the pin radius)"
+        )
+        return
+    smallest_radius = _smallest_path_radius(wheel.pin_circle_radius + disc.shifting_offset, e, drive.reduction_ratio)
+    if smallest_radius <= profile.offset:
+        yield (
+            f"pin_wheel.pin_radius = {wheel.pin_radius:g} mm: must be less than "
+            f"{smallest_radius - disc.equidistant_offset:.6g} mm (smallest radius of the pin-centre path on its "
+            "convex side less the equidistant offset), or the flank is undercut"
+        )
+    if profile.root_radius <= 0.0:
+        yield (
+            f"pin_wheel.pin_circle_radius = {wheel.pin_circle_radius:g} mm: leaves a root radius of "
+            f"{profile.root_radius:.6g} mm, must be greater than 0 mm"
+        )
+    overlap = drawn_interference(drive).pins
+    bound = deviation_bound(drive)
+    if overlap > bound + ROUNDING:
+        yield (
+            f"disc.equidistant_offset = {disc.equidistant_offset:g} mm: must be at least "
+            f"{disc.equidistant_offset + overlap - bound:.6g} mm with this shifting offset, or disc and pins overlap by "
+            f"more than {bound:g} mm, {ELASTIC}"
+        )
+
+
+@lru_cache(maxsize=64)
+def _smallest_path_radius(radius: float, eccentricity: float, ratio: float) -> float:
+    """Smallest convex radius of the pin-centre path, mm; cached, since studies check one design thousands of times."""
+    path = FlankProfile(generating_radius=radius, eccentricity=eccentricity, reduction_ratio=ratio, offset=0.0)
+    largest = float(np.max(path.locus_curvature(np.linspace(0.0, 2.0 * pi / ratio, 4001))))
+    return 1.0 / largest if largest > 0.0 else float("inf")
+
+
+def _pins(drive: Drive) -> Iterator[str]:
+    wheel = drive.pin_wheel
+    room = wheel.pin_circle_radius * sin(pi / wheel.number_of_pins)
+    if wheel.pin_radius >= room:
+        yield (
+            f"pin_wheel.pin_radius = {wheel.pin_radius:g} mm: must be less than {room:.6g} mm, "
+            "or neighbouring pins overlap"
+        )
+    shaft = drive.pin_shaft
+    if shaft is None:
+        return
+    room = shaft.pin_circle_radius * sin(pi / shaft.number_of_pins)
+    if shaft.pin_radius >= room:
+        yield (
+            f"pin_shaft.pin_radius = {shaft.pin_radius:g} mm: must be less than {room:.6g} mm, "
+            "or neighbouring pins overlap"
+        )
+
+
+def _bearing(drive: Drive) -> Iterator[str]:
+    bearing = drive.crank_bearing
+    space = bearing.outer_race_radius - bearing.inner_race_radius
+    if space <= 0.0:
+        fitting = bearing.outer_race_radius - 2.0 * bearing.roller_radius
+        bound = f"at most {fitting:g} mm" if fitting > 0.0 else f"less than {bearing.outer_race_radius:g} mm"
+        yield (
+            f"crank_bearing.inner_race_radius = {bearing.inner_race_radius:g} mm: must be {bound}, or the rollers have no "
+            f"room below the outer race (outer_race_radius = {bearing.outer_race_radius:g} mm)"
+        )
+    elif (overlap := drawn_interference(drive).rollers) > (elastic := deviation_bound(drive)) + ROUNDING:
+        yield (
+            f"crank_bearing.roller_radius = {bearing.roller_radius:g} mm: must be at most "
+            f"{bearing.roller_radius - 0.5 * (overlap - elastic):.6g} mm, or it overlaps the races by more than {elastic:g} mm, "
+            f"{ELASTIC}"
+        )
+    elif 2.0 * bearing.roller_radius < 0.9 * space:
+        yield (
+            f"crank_bearing.roller_radius = {bearing.roller_radius:g} mm: must be at least {0.45 * space:.6g} mm, "
+            "or the rollers are loose between the races (give clearance as clearance.bearing)"
+        )
+    room = (bearing.inner_race_radius + bearing.roller_radius) * sin(pi / bearing.number_of_rollers)
+    if bearing.roller_radius >= room:
+        yield (
+            f"crank_bearing.number_of_rollers = {bearing.number_of_rollers}: rollers of radius "
+            f"{bearing.roller_radius:g} mm overlap, their radius must be less than {room:.6g} mm"
+        )
+    if bearing.roller_length > drive.disc.thickness + ROUNDING:
+        yield (
+            f"crank_bearing.roller_length = {bearing.roller_length:g} mm: must be at most "
+            f"{drive.disc.thickness:g} mm, the thickness of the disc"
+        )
+    if drive.clearance.bearing > bearing.roller_radius:
+        yield (
+            f"clearance.bearing = {drive.clearance.bearing:g} mm: must be at most {bearing.roller_radius:g} mm, "
+            "the roller radius"
+        )
+
+
+def _holes(drive: Drive) -> Iterator[str]:
+    shaft, e = drive.pin_shaft, drive.crank.eccentricity
+    if shaft is None:
+        return
+    play = shaft.hole_radius - shaft.pin_radius
+    # Seen from the hole, a sleeve with play is a smaller fixed pin. Pins in tight holes push the disc along the
+    # eccentricity: by half of it they would lead it no more.
+    most = min(deviation_bound(drive), 0.5 * e)
+    smallest = shaft.pin_radius - shaft.seat_play + e - drive.clearance.pin_hole - most
+    if shaft.hole_radius < smallest - ROUNDING:
+        yield (
+            f"pin_shaft.hole_radius = {shaft.hole_radius:g} mm: must be at least {smallest:g} mm, or it overlaps its pin by more "
+            f"than {most:g} mm, {ELASTIC} (and half the eccentricity at most)"
+        )
+    elif play > 1.5 * e:
+        yield (
+            f"pin_shaft.hole_radius = {shaft.hole_radius:g} mm: must be at most {shaft.pin_radius + 1.5 * e:g} mm, "
+            "pin radius plus 1.5 eccentricities, or the pins cannot lead the disc"
+        )
+    if drive.clearance.pin_hole > 0.5 * e:
+        yield (
+            f"clearance.pin_hole = {drive.clearance.pin_hole:g} mm: must be at most {0.5 * e:g} mm, "
+            "half the eccentricity"
+        )
+    radius, circle = drive.hole_radius, shaft.pin_circle_radius
+    # A hole has to clear its pin by the eccentricity: where it cannot shrink enough, the circle it stands on is wrong.
+    fitting = shaft.pin_radius - shaft.seat_play + e
+
+    def hole_or_circle(excess: float, trouble: str, circle_bound: str) -> str:
+        bound = shaft.hole_radius - excess
+        if bound > fitting or play + shaft.seat_play < e - ROUNDING:
+            return f"pin_shaft.hole_radius = {shaft.hole_radius:g} mm: {trouble}; must be less than {max(bound, 0.0):.6g} mm"
+        return f"pin_shaft.pin_circle_radius = {circle:g} mm: {trouble}; must be {circle_bound}"
+
+    wall = circle - radius - drive.bore_radius
+    if wall <= 0.0 and drive.crank.number == 1:
+        yield hole_or_circle(
+            -wall, f"holes cut into the bore by {-wall:.6g} mm", f"greater than {circle - wall:.6g} mm"
+        )
+    sine = sin(pi / shaft.number_of_pins)
+    wall = 2.0 * (circle * sine - radius)
+    if wall <= 0.0:
+        yield hole_or_circle(
+            -0.5 * wall,
+            f"neighbouring holes cut into each other by {-wall:.6g} mm",
+            f"greater than {radius / sine:.6g} mm",
+        )
+    root = FlankProfile.of_drive(drive).root_radius
+    wall = root - circle - radius
+    inside = drive.bore_radius if drive.crank.number == 1 else 0.0
+    if wall <= 0.0 and root - radius > radius + inside:
+        yield hole_or_circle(
+            -wall,
+            f"holes cut through the root circle of the disc (radius {root:.6g} mm) by {-wall:.6g} mm",
+            f"less than {root - radius:.6g} mm",
+        )
+    elif wall <= 0.0 and drive.pin_wheel.pin_circle_radius + drive.disc.shifting_offset > 0.0:
+        # No circle has room for the holes; an offset that leaves no pin circle is reported with the flank.
+        wheel = drive.pin_wheel
+        yield (
+            f"pin_wheel.pin_circle_radius = {wheel.pin_circle_radius:g} mm: holes cut through the root circle of the disc "
+            f"(radius {root:.6g} mm) by {-wall:.6g} mm; must be greater than {wheel.pin_circle_radius - wall:.6g} mm"
+        )
+    if drive.bore_radius >= root > 0.0:
+        yield (
+            f"crank_bearing.outer_race_radius = {drive.crank_bearing.outer_race_radius:g} mm: must be less than "
+            f"{root:.6g} mm, the root radius of the disc"
+        )
+
+
+def _length_profiles(drive: Drive) -> Iterator[str]:
+    bearing = drive.crank_bearing
+    profiles: list[tuple[str, LengthProfile, float, float]] = [
+        (
+            "crank_bearing.roller_profile",
+            bearing.roller_profile,
+            bearing.roller_length,
+            bearing.roller_radius,
+        ),
+        (
+            "pin_wheel.pin_profile",
+            drive.pin_wheel.pin_profile,
+            drive.disc.thickness,
+            drive.pin_wheel.pin_radius,
+        ),
+    ]
+    for path, profile, length, radius in profiles:
+        if profile.end_relief_length > 0.5 * length:
+            yield (
+                f"{path}.end_relief_length = {profile.end_relief_length:g} mm: must be at most "
+                f"{0.5 * length:g} mm, half the contact length"
+            )
+        for name in ("crown_drop", "end_relief_depth"):
+            if (drop := getattr(profile, name)) > 0.1 * radius:
+                yield f"{path}.{name} = {drop:g} mm: must be at most {0.1 * radius:g} mm, a tenth of the radius"
+        if profile.logarithmic_factor > 100.0:
+            yield f"{path}.logarithmic_factor = {profile.logarithmic_factor:g}: must be at most 100"
+
+
+def _bores(drive: Drive) -> Iterator[str]:
+    """Problems of the walls around the bores of several cranks."""
+    crank, radius = drive.crank, drive.bore_radius
+    if crank.number == 1 or crank.circle_radius is None:
+        return
+    circle = crank.circle_radius
+    path = f"crank.circle_radius = {circle:g} mm"
+    sine = sin(pi / crank.number)
+    wall = 2.0 * (circle * sine - radius)
+    if wall <= 0.0:
+        yield (
+            f"{path}: neighbouring bores of {crank.number} cranks cut into each other by {-wall:.6g} mm; must be greater than "
+            f"{radius / sine:.6g} mm"
+        )
+    root = FlankProfile.of_drive(drive).root_radius
+    wall = root - circle - radius
+    if wall <= 0.0:
+        yield (
+            f"{path}: bores cut through the root circle of the disc (radius {root:.6g} mm) by {-wall:.6g} mm; must be less "
+            f"than {root - radius:.6g} mm"
+        )
+    shaft = drive.pin_shaft
+    if shaft is None:
+        return
+    holes = shaft.pin_circle_radius * np.exp(2j * np.pi * np.arange(shaft.number_of_pins) / shaft.number_of_pins)
+    distance = float(np.min(np.abs(holes[:, None] - np.array(crank.places))))
+    wall = distance - drive.hole_radius - radius
+    if wall <= 0.0:
+        yield (
+            f"{path}: a bore and a hole (pin_shaft.pin_circle_radius = {shaft.pin_circle_radius:g} mm) cut into each other by "
+            f"{-wall:.6g} mm; other radii or crank.angle must leave a wall"
+        )
+
+
+def _friction(drive: Drive) -> Iterator[str]:
+    """Problems of coefficients of absent joints, and of support bearings without radius."""
+    friction, shaft = drive.friction, drive.pin_shaft
+    if friction is None:
+        return
+    seats = {drive.pin_wheel.seat.kind} | (set() if shaft is None else {shaft.seat.kind})
+    if friction.seat and seats == {"fixed"}:
+        yield (
+            f"friction.seat = {friction.seat:g}: must be left out, or 0, where no pin lies loose or carries a sleeve "
+            "(pin_wheel.seat, pin_shaft.seat)"
+        )
+    if friction.hole and shaft is None:
+        yield f"friction.hole = {friction.hole:g}: must be left out, or 0, without a pin shaft"
+    if friction.support_bearing and not friction.support_bearing_radius:
+        yield (
+            f"friction.support_bearing_radius = 0 mm: must be given, greater than 0 mm, with friction.support_bearing = "
+            f"{friction.support_bearing:g}"
+        )
+
+
+def deviation_bound(drive: Drive) -> float:
+    """Return the largest deviation accepted, mm: beyond a tenth of the smallest radius it is a different design."""
+    radii = [drive.pin_wheel.pin_radius, drive.crank_bearing.roller_radius]
+    return 0.1 * min(radii if drive.pin_shaft is None else [*radii, drive.pin_shaft.pin_radius])
+
+
+def find_deviation_problems(drive: Drive) -> Iterator[str]:
+    """Yield the problems of numbers and sizes of the deviations, one sentence each."""
+    pins, holes = drive.pin_wheel.number_of_pins, drive.number_of_holes
+    rollers = drive.crank_bearing.number_of_rollers
+    parts: list[tuple[str, PlacementErrors | RollerErrors, int, str]] = [
+        ("pin_wheel.pin_errors", drive.pin_wheel.pin_errors, pins, "pins"),
+        ("disc.hole_errors", drive.disc.hole_errors, holes, "holes"),
+        ("crank_bearing.roller_errors", drive.crank_bearing.roller_errors, rollers, "rollers"),
+    ]
+    if drive.pin_shaft is not None:
+        parts.append(("pin_shaft.pin_errors", drive.pin_shaft.pin_errors, holes, "pins"))
+    bound = deviation_bound(drive)
+    for path, errors, count, things in parts:
+        yield from part_errors(path, errors, count, things, bound)
+    lengths = {
+        "crank.eccentricity_error": drive.crank.eccentricity_error,
+        "crank.axis_offset.x": drive.crank.axis_offset.x,
+        "crank.axis_offset.y": drive.crank.axis_offset.y,
+        "pin_wheel.axis_offset.x": drive.pin_wheel.axis_offset.x,
+        "pin_wheel.axis_offset.y": drive.pin_wheel.axis_offset.y,
+        "disc.runout.amount": drive.disc.runout.amount,
+    }
+    limit = min(bound, 0.5 * drive.crank.eccentricity)
+    for path, value in lengths.items():
+        if abs(value) > limit:
+            yield (
+                f"{path} = {value:g} mm: must be at most {limit:g} mm in size, a tenth of the smallest pin or "
+                "roller radius and half the eccentricity"
+            )
+    yield from _profile_errors(drive, bound)
+
+
+def part_errors(
+    path: str, errors: PlacementErrors | RollerErrors | BoreErrors, count: int, things: str, bound: float
+) -> Iterator[str]:
+    """Problems of numbers and sizes of the errors of single pins, holes, rollers or bores."""
+    for name in ("radial", "tangential", "diameter"):
+        values = getattr(errors, name, ())
+        if values and len(values) != count:
+            yield f"{path}.{name} has {len(values)} values: must have {count}, one for each of the {things}"
+        worst = max(values, key=abs, default=0.0)
+        if abs(worst) > bound:
+            yield (
+                f"{path}.{name} holds {worst:g} mm: must be at most {bound:g} mm in size, "
+                "a tenth of the smallest pin or roller radius"
+            )
+
+
+def _profile_errors(drive: Drive, bound: float) -> Iterator[str]:
+    errors = drive.disc.profile_errors
+    path = "disc.profile_errors"
+    if len(set(errors.orders)) != len(errors.orders):
+        yield f"{path}.orders: must name each order once"
+    for name in ("cosine", "sine"):
+        values = getattr(errors, name)
+        if values and len(values) != len(errors.orders):
+            yield f"{path}.{name} has {len(values)} values: must have {len(errors.orders)}, one for each of the orders"
+    if len(errors.deviation) != len(errors.parameter):
+        yield (
+            f"{path}.deviation has {len(errors.deviation)} values: must have {len(errors.parameter)}, "
+            "one for each measured parameter"
+        )
+    if errors.parameter:
+        at = np.array(errors.parameter)
+        if at.size < 3 or at[0] < 0.0 or at[-1] >= 2.0 * pi or not np.all(np.diff(at) > 0.0):
+            yield f"{path}.parameter: must be at least 3 angles ascending from 0 rad or more to less than 2π rad"
+    size = sum(abs(value) for value in (*errors.cosine, *errors.sine)) + max(map(abs, errors.deviation), default=0.0)
+    if size > bound:
+        yield (
+            f"{path} reaches {size:g} mm: must be at most {bound:g} mm, a tenth of the smallest pin or roller radius"
+        )
+
+
+def find_flank_problems(drive: Drive) -> Iterator[str]:
+    """Yield the problem of a flank, designed or deviated, that folds or is more hollow than its pins are round."""
+    profile = FlankProfile.of_drive(drive)
+    # As designed the flank is hollowest in its roots: the curvature of the trochoid falls toward them as long as it
+    # is hollow at all.
+    designed = _hollow_radius(float(profile.locus_curvature(np.zeros(1))[0]), float(profile.offset))
+    theta, actual = 0.0, designed
+    if profile.deviation is not None:
+        waves = max(
+            (drive.pin_wheel.number_of_pins, *profile.deviation.orders, len(drive.disc.profile_errors.parameter))
+        )
+        places, direction, frame = _looked_at(
+            float(profile.generating_radius), float(profile.eccentricity), profile.reduction_ratio, waves
+        )
+        # Without rotation and runout, which do not change its shape.
+        flank = replace(profile, turn=1.0, centre=0.0).deviated(frame, direction)
+        forward = (flank.tangent * frame.tangent.conjugate()).real
+        if np.min(forward) <= 0.0:
+            worst = float(places[np.argmin(forward)])
+            yield f"disc.profile_errors: the flank folds back on itself at θ = {worst:.4g} rad; reduce amplitude or order"
+            return
+        hollowest = np.argmin(curvature := flank.curvature)
+        theta, actual = (
+            float(places[hollowest]),
+            _hollow_radius(float(curvature[hollowest]), float(profile.contact_offset)),
+        )
+    yield from _hollow(drive, designed, actual, theta)
+
+
+def _hollow(drive: Drive, designed: float, actual: float, theta: float) -> Iterator[str]:
+    """A pin rounder than a hollow of the flank touches it at two points."""
+    nominal = drive.pin_wheel.pin_radius
+    growth = max(drive.pin_wheel.pin_errors.diameter, default=0.0)
+    largest = nominal + 0.5 * max(growth, 0.0)
+    if actual > largest:
+        return
+    if designed <= nominal:
+        field = f"disc.equidistant_offset = {drive.disc.equidistant_offset:g} mm"
+    elif actual <= nominal:
+        field = "disc.profile_errors"
+    else:
+        field = f"pin_wheel.pin_errors.diameter holds {growth:g} mm"
+    yield (
+        f"{field}: the flank has a hollow of radius {actual:.6g} mm at θ = {theta:.4g} rad, must be greater than "
+        f"{largest:g} mm, the radius of the largest pin, or pins touch it at two points at once"
+    )
+
+
+def _hollow_radius(curvature: float, offset: float) -> float:
+    """Radius of curvature where a flank is hollow, infinite elsewhere, mm; `curvature` is that of its parallel at an
+    offset.
+    """
+    return 1.0 / max(-curvature / (1.0 - offset * curvature), 1e-300)
+
+
+@lru_cache(maxsize=8)
+def _looked_at(
+    radius: float, eccentricity: float, ratio: float, waves: int
+) -> tuple[FloatArray, ComplexArray, CurveFrame]:
+    """Parameters θ at which a deviated flank is checked, e^{iθ} and the designed frame there.
+
+    They resolve every wave, and the roots however sharp. They are cached, since studies check one design thousands of
+    times.
+    """
+    even = np.linspace(0.0, 2.0 * pi, POINTS_PER_WAVE * waves, endpoint=False)
+    # |c′|² = (R − e u)² + 2 R e u (1 − cos (u − 1)θ): what is special in a root is so within this of it.
+    pitch_radius, teeth = eccentricity * ratio, round(ratio) - 1
+    sharp = (radius - pitch_radius) / (np.sqrt(radius * pitch_radius) * (ratio - 1.0))
+    about = sharp * np.linspace(-3.0, 3.0, POINTS_PER_WAVE + 1)
+    roots = 2.0 * pi * np.arange(teeth)[:, None] / teeth + about
+    places = np.mod(np.concatenate([even, roots.ravel()]), 2.0 * pi)
+    direction = unit(places)
+    design = FlankProfile(generating_radius=radius, eccentricity=eccentricity, reduction_ratio=ratio, offset=0.0)
+    frame = design.frame(direction)
+    for kept in (places, direction, *frame):
+        kept.setflags(write=False)
+    return places, direction, frame
+
+
+FIRST = (find_deviation_problems, _tooth_numbers)
+"""Checks that the geometry needs."""
+BESIDE = (_pins, _bearing, _holes, _bores, _length_profiles, _friction)
+"""Checks that do not depend on the flank."""
+CHECKS = (*FIRST, *BESIDE, _flank, find_flank_problems)
+"""All of them, the cheap ones first."""

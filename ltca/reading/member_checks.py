@@ -1,0 +1,335 @@
+"""Checks of the members of a drive together: cranks, values per disc, supports, seats and beams of pins, duty."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from itertools import pairwise
+from math import fsum, pi, sin
+
+from ltca.drive.fields import ANY, OWN
+from ltca.drive.members.pins import PinShaft, PinWheel, ShaftPinBeam, WheelPinBeam
+from ltca.drive.mistakes import entry_words
+from ltca.drive.parts import Drive, Material
+from ltca.reading.disc_checks import deviation_bound, part_errors
+
+SHARE_ROUNDING = 1e-9
+"""Round-off accepted in the sum of the shares of a duty."""
+ROUNDING = 1e-9
+"""Difference up to which lengths are equal, mm: round-off of a sum, and less than any real play."""
+BELONGS = {"radius": "slot", "pin_radius": "sleeve", "bore_radius": "sleeve"}
+"""Fields of a seat, and the kind of seat they belong to."""
+
+
+def find_member_problems(drive: Drive) -> Iterator[str]:
+    """Yield the problems of cranks, supports, pins, duty and values per disc, one sentence each."""
+    yield from _installation(drive)
+    yield from _per_disc(drive)
+
+
+def _installation(drive: Drive) -> Iterator[str]:
+    """Problems of fields that belong to one crank or to several, and of supports, pins and duty."""
+    crank, stage = drive.crank, drive.installation.first_stage_ratio
+    if crank.number == 1:
+        if drive.pin_shaft is None:
+            yield "pin_shaft: must be given with one crank (crank.number = 1), which alone cannot hold the disc against turning"
+        if crank.circle_radius is not None:
+            yield (
+                f"crank.circle_radius = {crank.circle_radius:g} mm: must be left out with one crank (crank.number = 1), which "
+                "stands in the centre"
+            )
+        if crank.angle:
+            yield (
+                f"crank.angle = {crank.angle:g} rad: must be left out with one crank (crank.number = 1), which stands in the "
+                "centre"
+            )
+        if stage is not None:
+            yield (
+                f"installation.first_stage_ratio = {stage:g}: must be left out with one crank (crank.number = 1), which is "
+                "the input itself"
+            )
+    elif crank.circle_radius is None:
+        yield f"crank.circle_radius: must be given with several cranks (crank.number = {crank.number})"
+    if drive.pin_shaft is None:
+        if drive.clearance.pin_hole:
+            yield f"clearance.pin_hole = {drive.clearance.pin_hole:g} mm: must be left out without a pin shaft"
+        for number, own in enumerate(drive.disc.of):
+            if own.clearance is not None and own.clearance.pin_hole:
+                yield (
+                    f"disc.of.{number}.clearance.pin_hole = {own.clearance.pin_hole:g} mm: must be left out without a pin shaft"
+                )
+        if drive.materials.shaft_pin != Material():
+            yield "materials.shaft_pin: must be left out without a pin shaft"
+    yield from (*_crank_support(drive), *find_pin_problems(drive), *_duty(drive))
+
+
+def _duty(drive: Drive) -> Iterator[str]:
+    total = fsum(entry.share for entry in drive.duty)
+    if drive.duty and abs(total - 1.0) > SHARE_ROUNDING:
+        named = ", ".join(f"duty.{number}.share = {entry.share:g}" for number, entry in enumerate(drive.duty))
+        yield f"{named}: must add up to 1, they add up to {total:.10g}"
+    if drive.lubricant is not None and not drive.duty and drive.load.speed is None:
+        yield (
+            f"lubricant.viscosity = {drive.lubricant.viscosity:g} mm²/s: needs a speed, load.speed or those of [[duty]]; "
+            "without one no film can be computed"
+        )
+
+
+def _crank_support(drive: Drive) -> Iterator[str]:
+    support = drive.crank.support
+    if support is None:
+        expands = drive.temperature is not None and drive.materials.crankshaft.thermal_expansion is not None
+        if drive.materials.crankshaft != Material() and not expands:
+            yield (
+                "materials.crankshaft: must be left out without crank.support, where cranks are rigid, but for its "
+                "thermal_expansion beside [temperature]"
+            )
+        return
+    start, end = support.positions
+    if end <= start:
+        yield f"crank.support.positions holds {start:g} and {end:g} mm: must ascend"
+        return
+    bore = 2.0 * drive.crank_bearing.inner_race_radius
+    if support.diameter > bore:
+        yield (
+            f"crank.support.diameter = {support.diameter:g} mm: must be at most {bore:g} mm, the diameter of the inner race on it"
+        )
+    planes = drive.disc.disc_planes
+    reach = end - start
+    for plane in (min(planes), max(planes)):
+        if not start - reach <= plane <= end + reach:
+            yield (
+                f"crank.support.positions holds {start:g} and {end:g} mm: a disc at {plane:g} mm (disc.planes) hangs over by "
+                f"more than their distance {reach:g} mm"
+            )
+            return
+
+
+def _per_disc(drive: Drive) -> Iterator[str]:
+    """Yield the problems of values per disc, which need an entry for every disc or none at all, one sentence each."""
+    discs = drive.disc.number_of_discs
+    for path, entries in (
+        ("disc.phases", drive.disc.phases),
+        ("disc.planes", drive.disc.planes),
+        ("disc.of", drive.disc.of),
+        ("crank.of", drive.crank.of if all(entry.disc is None for entry in drive.crank.of) else ()),
+    ):
+        if entries and len(entries) != discs:
+            yield f"{path} has {len(entries)} entries: must have {discs}, one for each disc (disc.number_of_discs)"
+    planes, thickness = sorted(drive.disc.planes), drive.disc.thickness
+    for before, after in pairwise(planes):
+        if after - before < thickness * (1.0 - 1e-9):
+            yield (
+                f"disc.planes holds {before:g} and {after:g} mm: must be at least {thickness:g} mm apart, the thickness of "
+                "a disc"
+            )
+    # One disc may be one of several checked alone; where shafts or pins bend, the axis has its zero at supports and beams.
+    shaft = drive.pin_shaft
+    placed = (drive.crank.support, drive.pin_wheel.beam, None if shaft is None else shaft.beam)
+    if discs > 1 and not any(placed) and abs(sum(planes)) > 1e-6 * len(planes) * thickness:
+        mean = sum(planes) / len(planes)
+        yield f"disc.planes has the mean {mean:g} mm: must be 0 mm, planes are centred on 0 where nothing bends"
+    yield from _eccentric_problems(drive)
+    bound = min(deviation_bound(drive), 0.5 * drive.crank.eccentricity) / drive.crank.eccentricity
+    for number, entry in enumerate(drive.crank.of):
+        if abs(entry.phase_error) > bound:
+            yield (
+                f"{_entry(drive, number)}: phase_error = {entry.phase_error:g} rad: must be at most {bound:.4g} rad in size: the "
+                "eccentric's centre moves by a tenth of the smallest pin or roller radius, or by half the eccentricity"
+            )
+
+
+def _eccentric_problems(drive: Drive) -> Iterator[str]:
+    """Problems of the index keys of ``crank.of``, and of the errors of bores."""
+    discs, cranks, entries = drive.disc.number_of_discs, drive.crank.number, drive.crank.of
+    told = [entry.disc is not None for entry in entries]
+    if entries and not all(told) and (any(told) or cranks > 1):
+        number = told.index(False)
+        yield (
+            f"{entry_words(number)}: disc is left out: every entry must give its disc"
+            + (f" and its crank (crank.number = {cranks})" if cranks > 1 else ", or none")
+        )
+        return
+    seen = set()
+    for number, entry in enumerate(entries):
+        if entry.disc is not None and entry.disc >= discs:
+            yield (
+                f"{entry_words(number)}: disc = {entry.disc}: must be less than {discs}, the number of discs, which count "
+                "from 0"
+            )
+        if entry.crank is not None and entry.crank >= cranks:
+            yield (
+                f"{entry_words(number)}: crank = {entry.crank}: must be less than {cranks}, crank.number; cranks count from 0"
+            )
+        if entry.crank is None and cranks > 1:
+            yield (
+                f"{entry_words(number)}: crank is left out: every entry must give its disc and its crank (crank.number = "
+                f"{cranks})"
+            )
+        if entry.disc is not None and (place := (entry.disc, entry.crank or 0)) in seen:
+            yield f"{entry_words(number)}: disc {place[0]} on crank {place[1]} has an entry already"
+        seen.add((number if entry.disc is None else entry.disc, entry.crank or 0))
+    bound = deviation_bound(drive)
+    for number, own in enumerate(drive.disc.of):
+        if own.bore_errors is None:
+            continue
+        if cranks == 1:
+            for name in ("radial", "tangential"):
+                yield (
+                    f"disc.of.{number}.bore_errors.{name}: must be left out with one crank, whose bore is the centre of the "
+                    "disc (give disc.runout)"
+                )
+            continue
+        yield from part_errors(f"disc.of.{number}.bore_errors", own.bore_errors, cranks, "bores", bound)
+    size = min(bound, 0.5 * drive.crank.eccentricity)
+    for number, entry in enumerate(entries):
+        if cranks > 1 and abs(entry.eccentricity_error or 0.0) > size:
+            yield (
+                f"{_entry(drive, number)}: eccentricity_error = {entry.eccentricity_error:g} mm: must be at most {size:g} mm in "
+                "size, a tenth of the smallest pin or roller radius and half the eccentricity"
+            )
+
+
+def _entry(drive: Drive, number: int) -> str:
+    """An entry of ``crank.of`` with disc and crank, where it gives them."""
+    entry = drive.crank.of[number]
+    told = [f"{name} {value}" for name, value in (("disc", entry.disc), ("crank", entry.crank)) if value is not None]
+    return entry_words(number) + (f" ({', '.join(told)})" if told else "")
+
+
+def named_in_disc(drive: Drive, problem: str, disc: int) -> str:
+    """Return a problem of a drive of one disc as one of the whole drive, with the paths of the values per disc."""
+    for common, own in OWN.items():
+        table, _, name = own.replace(ANY, "").replace("..", ".").partition(".of.")
+        if table == "crank" and drive.crank.number > 1:
+            continue  # several cranks are checked with the whole drive
+        entry = (drive.disc.of[disc] if drive.disc.of else None) if table == "disc" else drive.crank.eccentric(disc)
+        if entry is not None and getattr(entry, name) is not None:
+            problem = re.sub(rf"\b{re.escape(common)}\b", own.replace(ANY, str(disc)), problem)
+    return problem
+
+
+def find_pin_problems(drive: Drive) -> Iterator[str]:
+    """Yield the problems of seats and beams of pins and of their materials, one sentence each; single numbers are valid
+    already.
+    """
+    wheel, shaft = drive.pin_wheel, drive.pin_shaft
+    yield from _seat(wheel, "pin_wheel", 1.0, drive.crank.eccentricity)
+    yield from _slots(wheel)
+    if wheel.beam is not None:
+        yield from _beam(drive, wheel, wheel.beam, "pin_wheel")
+    if shaft is not None:
+        yield from _seat(shaft, "pin_shaft", 0.5, drive.crank.eccentricity)
+        if shaft.beam is not None:
+            yield from _beam(drive, shaft, shaft.beam, "pin_shaft")
+        yield from _one_compliance(shaft)
+        if not shaft.elastic_contact and shaft.seat.kind == "sleeve":
+            yield 'pin_shaft.elastic_contact = false: must be true with sleeves (pin_shaft.seat.kind = "sleeve"), which yield'
+    kinds = {wheel.seat.kind} | (set() if shaft is None else {shaft.seat.kind})
+    if "slot" not in kinds and drive.materials.wheel_seat != Material() and not _expands(drive, "wheel_seat"):
+        yield (
+            'materials.wheel_seat: must be left out without slots (pin_wheel.seat.kind = "slot"), but for its thermal_expansion '
+            "beside [temperature]"
+        )
+    if "sleeve" not in kinds and drive.materials.sleeve != Material():
+        yield 'materials.sleeve: must be left out without sleeves (pin_wheel.seat, pin_shaft.seat: kind = "sleeve")'
+
+
+def _expands(drive: Drive, part: str) -> bool:
+    """Whether a material is used for its thermal expansion, whatever else it is given for."""
+    return drive.temperature is not None and getattr(drive.materials, part).thermal_expansion is not None
+
+
+def _one_compliance(shaft: PinShaft) -> Iterator[str]:
+    if shaft.beam is None and shaft.stiffness is None:
+        yield "pin_shaft.stiffness: is missing; pins of the shaft need it, or pin_shaft.beam in its place"
+    elif shaft.beam is not None and shaft.stiffness is not None:
+        yield (
+            f"pin_shaft.stiffness = {shaft.stiffness:g} N/mm: must be left out beside pin_shaft.beam, which determines how "
+            "the pins bend"
+        )
+
+
+def _seat(part: PinWheel | PinShaft, path: str, most: float, eccentricity: float) -> Iterator[str]:
+    """Problems of the fields and radii of a seat; the play is at most the fraction `most` of the eccentricity."""
+    kind = part.seat.kind
+    given = {name: getattr(part.seat, name, None) for name in BELONGS}
+    said = f'{path}.seat.kind = "{kind}"' + (" (the default)" if kind == "fixed" else "")
+    sound = True
+    for name, value in given.items():
+        if value is not None and BELONGS[name] != kind:
+            sound = False
+            yield f'{path}.seat.{name} = {value:g} mm: must be left out with {said}; it belongs to "{BELONGS[name]}"'
+        elif value is None and BELONGS[name] == kind:
+            sound = False
+            yield f"{path}.seat.{name}: must be given with {said}"
+    if kind == "fixed" or not sound:
+        return
+    errors = part.pin_errors.diameter
+    growth, shrinkage = max((*errors, 0.0)), -min((*errors, 0.0))
+    play, largest, outer = part.seat_play, most * eccentricity, part.pin_radius
+    inner, pin, bore, hole = (
+        (outer, f"{path}.pin_radius", given["radius"] or 0.0, "radius")
+        if kind == "slot"
+        else (given["pin_radius"] or 0.0, f"{path}.seat.pin_radius", given["bore_radius"] or 0.0, "bore_radius")
+    )
+    what = "slot" if kind == "slot" else "sleeve"
+    named = f"{path}.seat.{hole} = {bore:g} mm"
+    if play <= ROUNDING:
+        yield f"{named}: must be greater than {inner:g} mm ({pin}), or the pin has no play in its {what}"
+    elif kind == "slot" and bore >= 2.0 * outer - ROUNDING:
+        yield (
+            f"{named}: must be less than {2.0 * outer:g} mm, twice {pin}, or the pin is no guide any more (its effective "
+            f"radius {2.0 * outer - bore:g} mm is none)"
+        )
+    elif kind == "sleeve" and bore >= outer - ROUNDING:
+        yield f"{named}: must be less than {outer:g} mm ({path}.pin_radius), or the sleeve has no wall"
+    elif play > largest + ROUNDING:
+        part_of = "the eccentricity" if most == 1.0 else "half the eccentricity"
+        yield (
+            f"{named}: must be at most {inner + largest:g} mm, {pin} and {part_of}, or the pins cannot lead the disc "
+            f"(play {play:g} mm)"
+        )
+    elif kind == "slot" and 0.5 * growth >= play - ROUNDING:
+        yield (
+            f"{path}.pin_errors.diameter holds {growth:g} mm: must be less than {2.0 * play:.6g} mm, twice the play of "
+            f"{path}.seat.radius, or the pin does not fit its slot"
+        )
+    elif kind == "slot" and bore >= 2.0 * outer - shrinkage - ROUNDING:
+        yield (
+            f"{path}.pin_errors.diameter holds {-shrinkage:g} mm: must be greater than {bore - 2.0 * outer:.6g} mm, or the "
+            f"slot ({path}.seat.radius) is twice as wide as the pin"
+        )
+    elif kind == "sleeve" and outer - 0.5 * shrinkage <= bore + ROUNDING:
+        yield (
+            f"{path}.pin_errors.diameter holds {-shrinkage:g} mm: must be greater than {2.0 * (bore - outer):.6g} mm, or the "
+            f"sleeve ({path}.seat.bore_radius) has no wall"
+        )
+
+
+def _slots(wheel: PinWheel) -> Iterator[str]:
+    room, radius = wheel.pin_circle_radius * sin(pi / wheel.number_of_pins), wheel.seat.radius or 0.0
+    # Pins that overlap, or have no hold in their slots, are reported elsewhere.
+    if wheel.seat.kind == "slot" and radius >= room > wheel.pin_radius > 0.5 * radius:
+        yield (
+            f"pin_wheel.seat.radius = {radius:g} mm: must be less than {room:.6g} mm, or neighbouring slots cut into each other"
+        )
+
+
+def _beam(drive: Drive, part: PinWheel | PinShaft, beam: WheelPinBeam | ShaftPinBeam, path: str) -> Iterator[str]:
+    half, thickness, planes = 0.5 * beam.span, drive.disc.thickness, drive.disc.disc_planes
+    disc = max(range(len(planes)), key=lambda number: abs(planes[number]))
+    reach = abs(planes[disc]) + 0.5 * thickness
+    if half < reach - ROUNDING * max(reach, 1.0):
+        which = "the disc" if len(planes) == 1 else f"disc {disc}"
+        low, high = planes[disc] - 0.5 * thickness, planes[disc] + 0.5 * thickness
+        held = "walls" if isinstance(beam, WheelPinBeam) else "flange and tip"
+        yield (
+            f"{path}.beam.span = {beam.span:g} mm: must be at least {2.0 * reach:.6g} mm, or {which} from {low:.6g} to "
+            f"{high:.6g} mm (disc.planes, disc.thickness) is not between the {held} at ±{half:g} mm"
+        )
+    sleeved = part.seat.kind == "sleeve" and part.seat.bore_radius is not None
+    widest = 2.0 * ((part.seat.bore_radius or 0.0) if sleeved else part.pin_radius)
+    of = f"the bore of its sleeve ({path}.seat.bore_radius)" if sleeved else f"that of the pin ({path}.pin_radius)"
+    if beam.diameter is not None and beam.diameter > widest + ROUNDING:
+        yield f"{path}.beam.diameter = {beam.diameter:g} mm: must be at most {widest:g} mm, {of}"

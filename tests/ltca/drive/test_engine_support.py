@@ -1,0 +1,126 @@
+"""Fields that an engine cannot represent are refused by name."""
+
+from __future__ import annotations
+
+import pytest
+
+from ltca.drive.declaration import declared_fields, declared_tables
+from ltca.drive.engine_support import ENGINES, REFUSALS, refusals, require
+from ltca.drive.single_discs import single_discs
+from ltca.errors import DriveError
+from ltca.reading.changes import with_fields
+from ltca.reading.drive_file import parse_drive, shipped_drive
+from ltca.reading.writing import drive_text
+from ltca.testing.field_changes import EXCEPTIONS
+
+PROFILES = ("crank_bearing.roller_profile", "pin_wheel.pin_profile")
+
+
+@pytest.mark.parametrize("profile", PROFILES)
+@pytest.mark.parametrize(
+    ("fields", "named"),
+    [
+        ({"crown_drop": 0.003}, ["crown_drop = 0.003 mm"]),
+        ({"logarithmic_factor": 1.0}, ["logarithmic_factor = 1"]),
+        (
+            {"end_relief_length": 1.0, "end_relief_depth": 0.01},
+            ["end_relief_length = 1 mm", "end_relief_depth = 0.01 mm"],
+        ),
+    ],
+)
+def test_crown_and_relief_are_refused(profile, fields, named, paper_cases):
+    drive = with_fields(paper_cases["CS-1"], {f"{profile}.{name}": value for name, value in fields.items()})
+    with pytest.raises(DriveError) as refused:
+        require(drive, "fe")
+    (problem,) = refused.value.problems
+    told = ", ".join(f"{profile}.{field}" for field in named)
+    assert problem.startswith(f"{profile} ({told}): must be left out for compliance fe (the model is two-dimensional")
+    assert problem.endswith("; use --compliance hybrid")
+
+
+def test_shorter_rollers_are_refused(paper_cases):
+    drive = with_fields(paper_cases["CS-1"], {"crank_bearing.roller_length": 8.0})
+    with pytest.raises(
+        DriveError,
+        match=r"crank_bearing.roller_length = 8 mm: must be 11.8 mm \(disc.thickness\) .*use --compliance hybrid",
+    ):
+        require(drive, "full FE")
+
+
+@pytest.mark.parametrize("engine", sorted({engine for row in REFUSALS for engine in row.engines}))
+def test_every_problem_is_named_at_once(engine):
+    """All rows of an engine, on a drive that has everything: one sentence each, with the path, the engine and the reason."""
+    drive = with_fields(
+        parse_drive(shipped_drive("sleeved"), "sleeved").cases["nominal"],
+        {
+            "pin_wheel.beam.span": 40.0,
+            "pin_wheel.beam.ends": "supported",
+            "pin_shaft.beam.span": 40.0,
+            "pin_shaft.beam.tip": "free",
+            "pin_shaft.stiffness": None,
+            "pin_wheel.support_stiffness": 5e5,
+            "pin_wheel.axis_offset.y": 0.01,
+            "pin_wheel.pin_profile.crown_drop": 0.002,
+            "crank_bearing.roller_length": 8.0,
+            "crank_bearing.roller_profile.logarithmic_factor": 1.0,
+            "crank.support.diameter": 20.0,
+            "crank.support.positions": (-20.0, 20.0),
+            "crank.support.stiffness": (2e5, 3e5),
+            "friction.pin": 0.05,
+        },
+        check=False,
+    )
+    of_cranks = ("crank.number", "crank.circle_radius", "crank.angle", "disc.of.", "installation.")
+    rows = [row for row in REFUSALS if engine in row.engines and not row.path.startswith(of_cranks)]
+    with pytest.raises(DriveError) as refused:
+        require(drive, engine)
+    for row, problem in zip(rows, refused.value.problems, strict=True):
+        assert problem.startswith((f"{row.path} = ", f"{row.path} (")), problem
+        assert f" ({row.reason})" in problem
+
+
+def test_fields_of_several_cranks_are_refused_together():
+    drive = parse_drive(shipped_drive("rv"), "rv").cases["nominal"]
+    drive = with_fields(drive, {"crank.angle": 0.3, "disc.of.1.bore_errors.radial.0": 0.001})
+    with pytest.raises(DriveError) as refused:
+        require(drive, "paper")
+    told = {problem.partition(" ")[0]: problem for problem in refused.value.problems}
+    assert told["crank.number"] == "crank.number = 3: must be 1 for method paper (the model has one crank)"
+    assert told["crank.angle"].startswith("crank.angle = 0.3 rad: must be 0 rad")
+    assert "disc.of.1.bore_errors.radial = [0.001, 0, 0]" in told["disc.of.1.bore_errors"]
+    assert {"crank.circle_radius", "installation.first_stage_ratio", "disc.number_of_discs"} <= set(told)
+
+
+def test_the_table_names_fields_and_engines():
+    declared = {*declared_fields(), *declared_tables()}
+    for row in REFUSALS:
+        assert row.path in declared, row.path
+        assert row.equals == "" or row.equals in declared, row.path
+    assert set(ENGINES) == set(EXCEPTIONS) - {"curves", "studies"}
+    assert refusals("friction.pin") == {"the model is frictionless": ["direct", "paper", "full FE"]}
+
+
+@pytest.mark.parametrize(
+    "fields",
+    [
+        {},
+        # without a length a depth relieves nothing, nor a length without a depth
+        {"crank_bearing.roller_profile.end_relief_depth": 0.01},
+        {"pin_wheel.pin_profile.end_relief_length": 1.0},
+        # 11.8 mm from a drawing in inches
+        {"crank_bearing.roller_length": 11.8 / 25.4 * 25.4 * (1.0 + 1e-15)},
+    ],
+)
+def test_even_drives_are_taken(fields, paper_cases):
+    require(with_fields(paper_cases["CS-6"], fields), "fe")
+
+
+def test_a_file_says_whether_shaft_pins_yield(paper_cases):
+    """True where nothing is said; what is written reads back; the shape of the bodies does not know it."""
+    assert not paper_cases["CS-1"].pin_shaft.elastic_contact
+    joint = parse_drive(shipped_drive("robot-joint"), "robot-joint").cases["nominal"]
+    assert joint.pin_shaft.elastic_contact
+    for value in (True, False):
+        own = with_fields(joint, {"pin_shaft.elastic_contact": value})
+        assert parse_drive(drive_text(own)).cases["nominal"] == own
+        assert single_discs(own)[0].body_shape() == single_discs(joint)[0].body_shape()
