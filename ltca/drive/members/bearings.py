@@ -59,15 +59,15 @@ class NamedBearing:
     roller_length : float
         Effective length L_we of the rollers, mm.
     number_of_rollers : int
-        Z.
+        Number Z of rollers.
     series : str
-        K, RN, or what the user calls it.
+        Series: K, RN, or any other.
     bore : float or None
         Bore of the inner ring, mm; without one the crank itself is the inner race.
     width : float or None
         Width of cage or inner ring, mm.
     dynamic_load_rating, static_load_rating : float or None
-        C and C_0 of the maker, N; those of ISO 281 and ISO 76 when left out.
+        Rating C (for lives) and C_0 (for static safety) of the maker, N; by ISO 281 and ISO 76 when left out.
     source : str
         Where the numbers are from.
     """

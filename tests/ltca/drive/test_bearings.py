@@ -11,9 +11,13 @@ import ltca
 from ltca.analysis.life.ratings import RollerBearing
 from ltca.analysis.loaded_analysis import analyse
 from ltca.drive.declaration import find_fields
-from ltca.drive.members.bearings import CLASSES, clearance_range, named_bearing, named_bearings
+from ltca.drive.members.bearings import CLASSES, clearance_range, designation_of, named_bearing, named_bearings
 from ltca.errors import DriveError
+from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import parse_drive, shipped_drive
+from ltca.reading.writing import drive_text
+from ltca.studies.optimiser import parse_variable
+from ltca.studies.sweep_file import load_sweep
 
 DOCUMENT = Path(ltca.__file__).parents[1] / "docs" / "reference" / "bearings.md"
 BEARINGS = named_bearings()
@@ -150,6 +154,60 @@ def test_own_bearings_are_checked():
 def test_the_fields_are_found():
     assert "crank_bearing.bearing" in {field.path for field in find_fields("bearing")}
     assert find_fields("clearance_class")
+    assert {field.table for field in find_fields("bearings")} == {"bearings.NAME"}
+
+
+def test_the_makers_ratings_come_with_the_name():
+    part = drive("K30x37x18")["nominal"].crank_bearing
+    assert (part.dynamic_load_rating, part.static_load_rating) == (25_500.0, 38_000.0)
+    assert designation_of(part) == "K30x37x18"
+    (problem,) = mistakes("K30x37x18", 'dynamic_load_rating = "30 kN"')
+    assert "must be left out, or 25500" in problem
+
+
+def test_ratings_of_another_bearing_do_not_stay():
+    """The case names a bearing of its own without ratings: those of the common part are not its."""
+    own = "[bearings.MY]\ninner_race_diameter = 30\nouter_race_diameter = 40\nroller_length = 10\nnumber_of_rollers = 15\n"
+    found = drive("K30x37x18", case=f'{own}[[case]]\nname = "a"\ncrank_bearing.bearing = "MY"')["a"].crank_bearing
+    assert (found.outer_race_radius, found.dynamic_load_rating, found.static_load_rating) == (20.0, None, None)
+
+
+def test_a_case_cannot_change_a_size_of_a_named_bearing():
+    """It replaced the length in silence, and the name said another."""
+    (problem,) = mistakes("K30x37x18", case='[[case]]\nname = "a"\ncrank_bearing.roller_length = 10.0')
+    assert problem.startswith("case a: crank_bearing.roller_length = 10.0: must be left out, or 13.8")
+
+
+def test_messages_on_sizes_that_nobody_wrote_name_the_bearing():
+    with pytest.raises(DriveError) as caught:
+        drive("K30x40x30")
+    (problem,) = caught.value.problems
+    assert problem.startswith('crank_bearing.roller_length = 27.8 mm (of bearing "K30x40x30"): must be at most 14 mm')
+
+
+def test_studies_take_names_and_refuse_sizes_of_rated_bearings():
+    bought = drive("K30x37x18")["nominal"]
+    other = with_fields(bought, {"crank_bearing.bearing": "K28x33x17"})
+    assert designation_of(other.crank_bearing) == "K28x33x17"
+    with pytest.raises(DriveError, match="needle cage"):
+        with_fields(bought, {"crank_bearing.bearing": "HK3020"})
+    with pytest.raises(DriveError, match="stands for other fields in a drive file"):
+        with_fields(bought, {"crank_bearing.clearance_class": "C3"})
+    with pytest.raises(DriveError, match="cannot vary, the ratings of K30x37x18"):
+        parse_variable("roller_length=9:10", bought)
+
+
+def test_sweeps_take_names_and_refuse_sizes_of_rated_bearings(tmp_path):
+    text = drive_text(drive("K30x37x18")["nominal"])
+    (tmp_path / "drive.toml").write_text(text, encoding="utf-8")
+    path = tmp_path / "study.toml"
+    study = 'drive = "drive.toml"\npositions = 2\n[factors]\n'
+    path.write_text(f'{study}"crank_bearing.bearing" = ["K30x37x18", "K28x33x17"]', encoding="utf-8")
+    found = load_sweep(path)
+    assert [designation_of(found.sample_drive(number).crank_bearing) for number in range(2)] == ["K30x37x18", "K28x33x17"]
+    path.write_text(f"{study}crank_bearing.roller_length = [9.0, 10.0]", encoding="utf-8")
+    with pytest.raises(DriveError, match="cannot vary, the ratings of K30x37x18"):
+        load_sweep(path)
 
 
 def test_the_document_shows_the_data():
