@@ -204,7 +204,10 @@ def test_sweeps_take_names_and_refuse_sizes_of_rated_bearings(tmp_path):
     study = 'drive = "drive.toml"\npositions = 2\n[factors]\n'
     path.write_text(f'{study}"crank_bearing.bearing" = ["K30x37x18", "K28x33x17"]', encoding="utf-8")
     found = load_sweep(path)
-    assert [designation_of(found.sample_drive(number).crank_bearing) for number in range(2)] == ["K30x37x18", "K28x33x17"]
+    assert [designation_of(found.sample_drive(number).crank_bearing) for number in range(2)] == [
+        "K30x37x18",
+        "K28x33x17",
+    ]
     path.write_text(f"{study}crank_bearing.roller_length = [9.0, 10.0]", encoding="utf-8")
     with pytest.raises(DriveError, match="cannot vary, the ratings of K30x37x18"):
         load_sweep(path)
