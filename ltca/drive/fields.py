@@ -265,7 +265,10 @@ def _own_value(single: Drive, crank: int, name: str, count: int | None) -> Any:
 
 
 _FOLLOWS = {
+    "crank_bearing.roller_length": "roller_length",
     "disc.phases": "disc.disc_phases",
+    "pin_shaft.beam.span": "shaft_pin_span",
+    "pin_wheel.beam.span": "wheel_pin_span",
     "disc.planes": "disc.disc_planes",
     "pin_shaft.beam.diameter": "pin_shaft.beam_diameter",
     "pin_wheel.beam.diameter": "pin_wheel.beam_diameter",

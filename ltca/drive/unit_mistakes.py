@@ -94,19 +94,19 @@ def _yielding(drive: Drive, share: float) -> list[str]:
     """Problems of pins so soft, or so long, that they would leave their place."""
     wheel, shaft = drive.pin_wheel, drive.pin_shaft
     if wheel.beam is not None:
-        bending = 48.0 * _bending_stiffness(drive.materials.wheel_pin, wheel.beam_diameter) / wheel.beam.span**3
+        bending = 48.0 * _bending_stiffness(drive.materials.wheel_pin, wheel.beam_diameter) / drive.wheel_pin_span**3
         load = _pin_load(drive, share)
         if load / bending > 0.5 * wheel.pin_radius:
-            return [_too_long("pin_wheel.beam", wheel.beam.span, wheel.beam_diameter, load / bending)]
+            return [_too_long("pin_wheel.beam", drive.wheel_pin_span, wheel.beam_diameter, load / bending)]
     if shaft is None:
         return []
     # Some third of the pins carry, on a lever of about two thirds of their circle.
     load = share / (0.2 * shaft.number_of_pins * shaft.pin_circle_radius)
     if shaft.beam is not None:
         # In the middle of the span, half of it from the flange.
-        bending = 24.0 * _bending_stiffness(drive.materials.shaft_pin, shaft.beam_diameter) / shaft.beam.span**3
+        bending = 24.0 * _bending_stiffness(drive.materials.shaft_pin, shaft.beam_diameter) / drive.shaft_pin_span**3
         if load / bending > 0.5 * shaft.hole_radius:
-            return [_too_long("pin_shaft.beam", shaft.beam.span, shaft.beam_diameter, load / bending)]
+            return [_too_long("pin_shaft.beam", drive.shaft_pin_span, shaft.beam_diameter, load / bending)]
     if shaft.stiffness is not None and load / shaft.stiffness > 0.5 * shaft.hole_radius:
         return [
             f"pin_shaft.stiffness = {shaft.stiffness:g} N/mm: a shaft pin would yield by {load / shaft.stiffness:.3g} mm "
@@ -315,15 +315,18 @@ def _lengths_beside(drive: Drive) -> Iterator[tuple[str, float, float, str]]:
     yield "disc.thickness", thickness, half_circle, "half the pin circle radius"
     if not SHORT * half_circle <= thickness <= LONG * half_circle:
         return  # the others stand beside it
-    yield "crank_bearing.roller_length", bearing.roller_length, thickness, "the thickness of the disc"
+    yield "crank_drive.roller_length", drive.roller_length, thickness, "the thickness of the disc"
     support, stack = drive.crank.support, drive.disc.number_of_discs * thickness
     if support is not None:
         inner = 2.0 * bearing.inner_race_radius
         yield "crank.support.diameter", support.diameter, inner, "the diameter of the inner race on it"
-    for name, part in (("pin_wheel", wheel), ("pin_shaft", shaft)):
+    for name, part, span in (
+        ("pin_wheel", wheel, drive.wheel_pin_span),
+        ("pin_shaft", shaft, drive.shaft_pin_span),
+    ):
         if part is not None and part.beam is not None:
             yield f"{name}.beam.diameter", part.beam_diameter, 2.0 * part.pin_radius, f"twice {name}.pin_radius"
-            yield f"{name}.beam.span", part.beam.span, stack, "the thickness of all discs"
+            yield f"{name}.beam.span", span, stack, "the thickness of all discs"
 
 
 def _odd_speeds(drive: Drive) -> Iterator[str]:

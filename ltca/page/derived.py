@@ -193,14 +193,14 @@ def _pins(drive: Drive) -> Rows:
         wall = 2.0 * (wheel.pin_circle_radius * sin(pi / wheel.number_of_pins) - radius)
         rows.append(("wall between neighbouring slots", _wall(wall, radius)))
     if wheel.beam is not None:
-        walls = f"{wheel.beam.span:g} mm between the walls, ends {wheel.beam.ends}"
+        walls = f"{drive.wheel_pin_span:g} mm between the walls, ends {wheel.beam.ends}"
         rows.append(("wheel pins, as beams", f"⌀ {wheel.beam_diameter:g} mm, {walls}"))
     if shaft is None:
         return rows
     rows += _seat(shaft, "shaft pins", "the holes")
     if shaft.beam is not None:
         tips = {"free": "free", "tied-clamped": "clamped in a ring", "tied-pinned": "pinned in a ring"}[shaft.beam.tip]
-        reach = f"{shaft.beam.span:g} mm from the flange at {-0.5 * shaft.beam.span:g} mm, tips {tips}"
+        reach = f"{drive.shaft_pin_span:g} mm from the flange at {-0.5 * drive.shaft_pin_span:g} mm, tips {tips}"
         rows.append(("shaft pins, as beams", f"⌀ {shaft.beam_diameter:g} mm, {reach}"))
     return rows
 

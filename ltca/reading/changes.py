@@ -59,6 +59,8 @@ def with_fields(drive: Drive, values: Mapping[str, Any], *, check: bool = True) 
     arrays: dict[str, list[Any]] = {}
     whole = {}
     values = _without_names(values)
+    if "disc.planes" in values or "disc.gap" in values:  # one stands in the place of the other
+        values = {"disc.planes": (), "disc.gap": 0.0, **values}
     for path, value in values.items():
         parent, _, last = path.rpartition(".")
         if is_element(last) and field_kind(parent) is not None:

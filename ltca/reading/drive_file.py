@@ -268,7 +268,7 @@ def _merged(below: Any, value: Any) -> Any:
     return {**kept, **{key: _merged(below.get(key), over) for key, over in value.items()}}
 
 
-INSTEAD = {"stiffness": "beam", "beam": "stiffness"}
+INSTEAD = {"stiffness": "beam", "beam": "stiffness", "planes": "gap", "gap": "planes"}
 """Alternative fields of one table: a case that gives one removes the other."""
 _ADAPTER = TypeAdapter(Drive)
 

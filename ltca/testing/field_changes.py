@@ -82,6 +82,7 @@ DIAMETERS = tuple(path for path in field_kinds() if path.endswith("_errors.diame
 _NAME = {
     "name": "names a drive and its files, nothing else",
     "disc.planes": "axial places have no effect where neither pins nor cranks bend",
+    "disc.gap": "axial places have no effect where neither pins nor cranks bend",
     "materials.crankshaft.poisson_ratio": "a shaft without shear and torsion bends by its modulus alone",
 }
 _NAME |= {f"materials.{part}.{name}": "moves no load: results are judged by it" for part in PARTS for name in JUDGED_BY}

@@ -114,8 +114,8 @@ class CrankBearing:
         Number of rollers n_BR of one bearing.
     roller_radius : float
         Radius r_BR of the rollers, mm.
-    roller_length : float
-        Length of the rollers, at most the thickness of the disc, mm.
+    roller_length : float or None
+        Length of the rollers, at most the thickness of the disc, mm; as long as that when left out.
     roller_profile : LengthProfile
         Crown and relief of the rollers.
     roller_errors : RollerErrors
@@ -131,7 +131,7 @@ class CrankBearing:
     outer_race_radius: Annotated[PositiveLength, grows("disc")]
     number_of_rollers: Annotated[int, Field(ge=3, le=500), COUNT]
     roller_radius: Annotated[PositiveLength, grows("roller")]
-    roller_length: Annotated[PositiveLength, grows("roller")]
+    roller_length: Annotated[PositiveLength | None, grows("roller")] = None
     roller_profile: Annotated[LengthProfile, grows("roller")] = field(default_factory=LengthProfile)
     roller_errors: Annotated[RollerErrors, grows("roller")] = field(default_factory=RollerErrors)
     dynamic_load_rating: Force | None = None
