@@ -315,7 +315,7 @@ def _lengths_beside(drive: Drive) -> Iterator[tuple[str, float, float, str]]:
     yield "disc.thickness", thickness, half_circle, "half the pin circle radius"
     if not SHORT * half_circle <= thickness <= LONG * half_circle:
         return  # the others stand beside it
-    yield "crank_drive.roller_length", drive.roller_length, thickness, "the thickness of the disc"
+    yield "crank_bearing.roller_length", drive.roller_length, thickness, "the thickness of the disc"
     support, stack = drive.crank.support, drive.disc.number_of_discs * thickness
     if support is not None:
         inner = 2.0 * bearing.inner_race_radius
