@@ -53,5 +53,5 @@ def chosen_case(arguments: argparse.Namespace) -> tuple[DriveFile, str, Drive]:
 
     file = load_drive(arguments.drive)
     case, drive = next(iter(file.select_warm([arguments.case] if arguments.case else None).items()))
-    tell_unit_mistakes([file.cases[case]])
+    tell_unit_mistakes([file.cases[case]], getattr(arguments, "torque", None))
     return file, case, drive

@@ -90,13 +90,13 @@ class HertzContacts:
     def on_bore(self, load: FloatArray, candidate: BoolArray, direction: ComplexArray) -> ContactGroup:
         """Return the contacts of rollers with the bores."""
         roller, bore = self.rigid.placement.roller_radii, self.rigid.placement.bore_radius
-        radius, length = roller * bore / (bore - roller), self.drive.crank_bearing.roller_length
+        radius, length = roller * bore / (bore - roller), self.drive.roller_length
         return self._group(load, candidate, direction, radius, self.outer_modulus, length)
 
     def on_race(self, load: FloatArray, candidate: BoolArray, direction: ComplexArray) -> ContactGroup:
         """Return the contacts of rollers with the inner races."""
         roller, race = self.rigid.placement.roller_radii, self.rigid.placement.inner_race_radius
-        radius, length = roller * race / (race + roller), self.drive.crank_bearing.roller_length
+        radius, length = roller * race / (race + roller), self.drive.roller_length
         return self._group(load, candidate, direction, radius, self.inner_modulus, length)
 
     def in_holes(self, load: FloatArray, candidate: BoolArray, direction: ComplexArray) -> ContactGroup:
@@ -254,7 +254,7 @@ def expect_contacts(
     pins, rollers = len(placement.wheel_pin_radii), len(placement.roller_radii)
     flank_stiffness = np.pi * hertz.pin_modulus * drive.disc.thickness / APPROACH_LOGARITHM
     roller_modulus = 1.0 / (1.0 / hertz.outer_modulus + 1.0 / hertz.inner_modulus)
-    roller_stiffness = np.pi * roller_modulus * drive.crank_bearing.roller_length / APPROACH_LOGARITHM
+    roller_stiffness = np.pi * roller_modulus * drive.roller_length / APPROACH_LOGARITHM
     counts = [pins, rollers, len(placement.hole_radii)]
     stiffness = np.repeat([flank_stiffness, roller_stiffness, drive.hole_stiffness], counts)
     moment = drive.wheel_moment(torque) if wheel_moment is None else wheel_moment

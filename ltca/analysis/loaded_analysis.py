@@ -227,9 +227,10 @@ class LoadedAnalysis:
     @property
     def warnings(self) -> list[str]:
         """What to know of drive and answer before they are used, one sentence each."""
-        found = [*unit_warnings(self.as_written), preload_warning(self.drive), self._lost_play()]
+        units = unit_warnings(self.as_written, self.torque)
+        found = [*units, preload_warning(self.drive), self._lost_play()]
         found.append(strength_warning(self.drive.materials))
-        if self.drive.load.light_torque > self.torque:
+        if not units and self.drive.load.light_torque > self.torque:
             found.append(
                 f"load.light_torque = {self.drive.load.light_torque:g} N·mm is more than the torque of {self.torque:g} N·mm "
                 "that it is light against: are the two swapped, or is one in N·m?"

@@ -18,6 +18,15 @@ EXAMPLES = (
     ("cyclo init joint.toml --like robot-joint", "two discs, the housing held"),
 )
 
+FOLLOWING = (
+    ('# beam = { tip = "tied-clamped" }\nstiffness = ', 'beam = { tip = "tied-clamped" }\n# stiffness = '),
+    ("{ span = 24.0, tip", "{ tip"),
+    ("{ span = 26.0, ends", "{ ends"),
+    ("\nroller_length = ", "\n# roller_length = "),
+)
+"""Lines of shipped drives, and what becomes of them in a file to start from: lengths follow the thickness and number of discs
+that a reader changes, and shaft pins are beams, whose stiffness follows from their sizes."""
+
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
@@ -45,6 +54,8 @@ def execute(arguments: argparse.Namespace) -> int:
         raise CycloError(f"{path}: exists already; --force overwrites it")
     own = f"name = {json.dumps(path.stem, ensure_ascii=False)}"
     text = shipped_drive(arguments.like).replace(f'name = "{arguments.like}"', own, 1)
+    for shipped, following in FOLLOWING:
+        text = text.replace(shipped, following)
     with whole_file(path) as part:
         part.write_text(text, encoding="utf-8")
     word = shlex.quote(str(path))

@@ -136,7 +136,7 @@ class CoupledCompliance:
         place = geometry.placement
         yields = hole_near_field and shaft_pins_yield(drive)
         laws = NearFieldLaws.of_drive(drive, near_field, rigid_shaft_pins=hole_near_field and not yields)
-        body = coefficients.placed_in(drive).with_roller_length(drive.crank_bearing.roller_length)
+        body = coefficients.placed_in(drive).with_roller_length(drive.roller_length)
         stiffness = shaft_pin_stiffness(drive)
         at_hole = laws.hole if hole_near_field else SpringLaw(stiffness=stiffness)
         # A sleeve's own law has all that it yields (`ltca.laws.backed`).

@@ -67,7 +67,7 @@ class HalfSpaceCompliance(UncoupledContacts[ContactLaw]):
         def roller_law(race: Material, effective_radii: FloatArray) -> ContactLaw:
             return law_for_profile(
                 bearing.roller_profile,
-                length=bearing.roller_length,
+                length=drive.roller_length,
                 radius=bearing.roller_radius,
                 contact_modulus=contact_modulus(race, parts.roller),
                 effective_radii=effective_radii,

@@ -194,7 +194,7 @@ class OwnParts:
             held = material.plane_strain_compliance * finite_length_approach(thickness, half_width)
             return float(joined + factor * (np.log(2.0 * datum / half_width) + SELF_ENERGY) - held)
 
-        thickness, length = drive.disc.thickness, bearing.roller_length
+        thickness, length = drive.disc.thickness, drive.roller_length
         # Where the pitch circle cuts the flank the pins carry most.
         steep = np.array([0.25 * 2.0 * np.pi / drive.reduction_ratio])
         at_pin = (

@@ -95,7 +95,7 @@ class ContactKinds:
     def of_drive(cls, drive: Drive, cells: int = CELLS) -> ContactKinds:
         """Return the kinds of contact of a drive, with `cells` over each half-width and over half of each length."""
         bearing, wheel, parts = drive.crank_bearing, drive.pin_wheel, drive.materials
-        roller = generator_profile(bearing.roller_profile, bearing.roller_length, bearing.roller_radius)
+        roller = generator_profile(bearing.roller_profile, drive.roller_length, bearing.roller_radius)
         return cls(
             pins=ContactKind(
                 length=drive.disc.thickness,
@@ -105,14 +105,14 @@ class ContactKinds:
                 cells=cells,
             ),
             inner=ContactKind(
-                length=bearing.roller_length,
+                length=drive.roller_length,
                 contact_modulus=contact_modulus(parts.inner_race, parts.roller),
                 generator=roller,
                 symmetric=True,
                 cells=cells,
             ),
             outer=ContactKind(
-                length=bearing.roller_length,
+                length=drive.roller_length,
                 contact_modulus=contact_modulus(parts.disc, parts.roller),
                 generator=roller,
                 symmetric=True,

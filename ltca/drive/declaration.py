@@ -20,6 +20,7 @@ from pydantic.fields import FieldInfo
 from pydantic.functional_validators import BeforeValidator
 
 from ltca.drive.materials import PARTS
+from ltca.drive.members.bearings import BearingName, NamedBearing
 from ltca.drive.names import Name
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import COUNT, Grows, QuantityCheck
@@ -31,6 +32,8 @@ REQUIRED = "required"
 LEFT_OUT = "left out"
 ANY_PART = "PART"
 """Stands for each part of `materials`, which have the same fields."""
+OWN_BEARING = "bearings.NAME"
+"""Table of a bearing in a drive file."""
 INDICES = ("crank.of.N.disc", "crank.of.N.crank")
 """Index keys of an entry, as opposed to fields: which eccentric the entry belongs to."""
 
@@ -151,8 +154,24 @@ def declared_tables() -> dict[str, Table]:
     return {entry.path: entry for entry in _walk(Drive, "", None) if isinstance(entry, Table)}
 
 
+@cache
+def naming_fields() -> dict[str, Field]:
+    """Return the keys of a drive file that stand for fields of the drive, by path: names of bearings and their entries.
+
+    Examples
+    --------
+    >>> naming_fields()["crank_bearing.clearance_class"].choices
+    ('C2', 'CN', 'C3', 'C4', 'C5')
+    """
+    walked = (*_walk(BearingName, "crank_bearing.", None), *_walk(NamedBearing, f"{OWN_BEARING}.", None))
+    return {entry.path: entry for entry in walked if isinstance(entry, Field)}
+
+
 def table_of(path: str) -> Table:
-    """Return the declaration of a table, also of ``materials.PART``."""
+    """Return the declaration of a table, also of ``materials.PART`` and ``bearings.NAME``."""
+    if path == OWN_BEARING:
+        meaning = "Bearing of your own, or of a catalogue, that ``crank_bearing.bearing`` then names."
+        return Table(path=path, optional=True, meaning=meaning)
     if path != f"materials.{ANY_PART}":
         return declared_tables()[path]
     parts = (f"{part} ({declared_tables()[f'materials.{part}'].meaning.rstrip('.')})" for part in PARTS)
@@ -168,35 +187,43 @@ def by_table(chosen: tuple[Field, ...]) -> dict[str, list[Field]]:
 
 
 def gathered() -> tuple[Field, ...]:
-    """Return every field, with those of all parts of `materials` once, as ``materials.PART``."""
+    """Return every field and the keys that stand for some, with those of all parts of `materials` once, as
+    ``materials.PART``.
+    """
     first, others = PARTS[0], tuple(f"materials.{part}." for part in PARTS[1:])
-    return tuple(
+    fields_once = (
         replace(field, path=path.replace(f"materials.{first}.", f"materials.{ANY_PART}."))
         for path, field in declared_fields().items()
         if not path.startswith(others)
     )
+    return (*fields_once, *naming_fields().values())
 
 
 def find_fields(name: str) -> tuple[Field, ...]:
-    """Return the fields that a name may mean: a path, a table with all in it, or the last part of paths; empty for none.
+    """Return the fields that a name may mean: a path, a table with all in it, or the last part of paths of fields or tables;
+    empty for none.
 
     Parameters
     ----------
     name : str
-        ``disc.thickness``, ``pin_wheel``, ``disc.of.0.runout`` or ``thickness``; a number stands for ``N``.
+        ``disc.thickness``, ``pin_wheel``, ``disc.of.0.runout``, ``thickness`` or ``beam``; a number stands for ``N``.
     """
     plain = re.sub(r"\.[0-9]+(?=\.|$)", f".{ANY}", name).removesuffix(".")
-    known = gathered() if plain.startswith(f"materials.{ANY_PART}") else tuple(declared_fields().values())
+    every = (*declared_fields().values(), *naming_fields().values())
+    known = gathered() if plain.startswith(f"materials.{ANY_PART}") else every
     within = tuple(f for f in known if f.path == plain or f.path.startswith(f"{plain}."))
     if not within:  # an element of an array: disc.phases.1
         within = tuple(f for f in known if f.is_array and f"{f.path}.{ANY}" == plain)
-    return within or tuple(f for f in known if f.name == plain)
+    if not within:
+        within = tuple(f for f in known if f.name == plain)
+    return within or tuple(f for f in known if f".{plain}." in f".{f.path}")  # tables of that name: beam
 
 
 def known_paths() -> tuple[str, ...]:
     """Return the names that `find_fields` knows: paths of fields and tables, and last parts of paths."""
-    paths = [path for path in declared_fields() if path not in INDICES]
-    return (*paths, *declared_tables(), *dict.fromkeys(path.rpartition(".")[2] for path in paths))
+    paths = [path for path in (*declared_fields(), *naming_fields()) if path not in INDICES]
+    tables = [*declared_tables(), OWN_BEARING]
+    return (*paths, *tables, *dict.fromkeys(path.rpartition(".")[2] for path in (*paths, *tables)))
 
 
 def _walk(owner: type, prefix: str, grows: Grows | None) -> Iterator[Field | Table]:

@@ -141,6 +141,8 @@ def _problems(drive: Drive, row: Refusal, engine: str) -> Iterator[str]:
     """One sentence for every place where a drive gives what a row refuses."""
     for path, value, default in _given(drive, row.path.split(".")):
         bound, unit = "left out", _unit(row.path)
+        if row.equals and value is None:
+            continue
         if row.equals:
             ((_, accepted, _),) = _given(drive, row.equals.split("."))
             if abs(value - accepted) <= ROUNDING * accepted:

@@ -14,7 +14,7 @@ from dataclasses import replace
 from functools import cache, lru_cache
 from typing import Any
 
-from ltca.drive.declaration import ANY as ANY, INDICES, LEFT_OUT, Field, declared_fields
+from ltca.drive.declaration import ANY as ANY, INDICES, LEFT_OUT, Field, declared_fields, naming_fields
 from ltca.drive.parts import Drive, Friction
 from ltca.drive.single_discs import single_discs
 from ltca.errors import DriveError, nearest
@@ -127,6 +127,8 @@ def not_a_field(drive: Drive | None, path: str, known: Iterable[str] | None = No
 
     Candidates are `known`, all fields by default; without a drive (None) also those that a drive may be without.
     """
+    if path in naming_fields():
+        return "stands for other fields in a drive file and is none itself; give each bearing a [[case]], or vary those fields"
     there = tuple(
         name
         for name in (field_kinds() if known is None else known)
@@ -263,7 +265,10 @@ def _own_value(single: Drive, crank: int, name: str, count: int | None) -> Any:
 
 
 _FOLLOWS = {
+    "crank_bearing.roller_length": "roller_length",
     "disc.phases": "disc.disc_phases",
+    "pin_shaft.beam.span": "shaft_pin_span",
+    "pin_wheel.beam.span": "wheel_pin_span",
     "disc.planes": "disc.disc_planes",
     "pin_shaft.beam.diameter": "pin_shaft.beam_diameter",
     "pin_wheel.beam.diameter": "pin_wheel.beam_diameter",

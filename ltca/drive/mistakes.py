@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from functools import cache
 from typing import Any
 
+from ltca.drive.declaration import naming_fields
 from ltca.drive.fields import field_kind, field_kinds
 from ltca.errors import did_you_mean, nearest, printable, shortened
 
@@ -107,4 +108,5 @@ def fields_of(table: str) -> tuple[str, ...]:
     """
     table = re.sub(r"(\.of|^duty)\.[0-9]+\b", r"\1.N", table)
     head = f"{table}." if table else ""
-    return tuple(dict.fromkeys(path[len(head) :].partition(".")[0] for path in field_kinds() if path.startswith(head)))
+    paths = (*field_kinds(), *naming_fields())
+    return tuple(dict.fromkeys(path[len(head) :].partition(".")[0] for path in paths if path.startswith(head)))

@@ -70,7 +70,10 @@ class Disc:
     phases : tuple of float
         Phase ζ of each disc's eccentric against that of the crank angle, rad; 2πk/n when left out.
     planes : tuple of float
-        Axial place of each disc's middle, mm; side by side about 0 when left out. They matter where pins or shafts bend.
+        Axial place of each disc's middle, mm; side by side about 0 when left out, ``disc.gap`` apart. They matter where pins
+        or shafts bend.
+    gap : float
+        Axial gap between neighbouring discs, in place of ``disc.planes``, mm.
     equidistant_offset : float
         Δr_P: the flank is generated with pins of radius r_P + Δr_P, mm (Eq. 1).
     shifting_offset : float
@@ -90,6 +93,7 @@ class Disc:
     number_of_discs: Annotated[int, Field(ge=1, le=10), COUNT] = 1
     phases: tuple[Angle, ...] = ()
     planes: Annotated[tuple[SignedLength, ...], grows("planes")] = ()
+    gap: Annotated[NonNegativeLength, grows("planes")] = 0.0
     equidistant_offset: Annotated[SignedLength, grows("disc", upon="pin_wheel.pin_radius")] = 0.0
     shifting_offset: Annotated[SignedLength, grows("disc", upon="pin_wheel.pin_circle_radius")] = 0.0
     hole_errors: Annotated[PlacementErrors, grows("disc")] = field(default_factory=PlacementErrors)
@@ -114,7 +118,13 @@ class Disc:
     def disc_planes(self) -> tuple[float, ...]:
         """Axial place of every disc, mm."""
         count = self.number_of_discs
-        return self.planes or tuple(self.thickness * (disc - 0.5 * (count - 1)) for disc in range(count))
+        pitch = self.thickness + self.gap
+        return self.planes or tuple(pitch * (disc - 0.5 * (count - 1)) for disc in range(count))
+
+    @property
+    def stack_length(self) -> float:
+        """Length about the zero of the planes that holds all discs, with a gap beside the outer ones, mm."""
+        return 2.0 * max(abs(plane) for plane in self.disc_planes) + self.thickness + 2.0 * self.gap
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
@@ -330,6 +340,24 @@ class Drive:
     def part_turn(self) -> tuple[float, int, int]:
         """Part and orientation of the disc of a drive of one disc (`part_turn`)."""
         return part_turn(self.flank_turn, self.disc.number_of_teeth, self.pattern)
+
+    @property
+    def roller_length(self) -> float:
+        """Length of the rollers, mm."""
+        length = self.crank_bearing.roller_length
+        return self.disc.thickness if length is None else length
+
+    @property
+    def wheel_pin_span(self) -> float:
+        """Distance of the walls that hold the ends of bending wheel pins, mm; placeholder for pins that are rigid."""
+        beam = self.pin_wheel.beam
+        return self.disc.stack_length if beam is None or beam.span is None else beam.span
+
+    @property
+    def shaft_pin_span(self) -> float:
+        """Distance from the flange to the tips of bending shaft pins, mm; placeholder for pins that are springs."""
+        beam = None if self.pin_shaft is None else self.pin_shaft.beam
+        return self.disc.stack_length if beam is None or beam.span is None else beam.span
 
     @property
     def bore_radius(self) -> float:

@@ -67,13 +67,23 @@ def _single(drive: Drive, number: int) -> Drive:
         )
     rollers = drive.crank_bearing
     return replace(
-        drive,
+        _with_spans(drive),
         crank=_eccentrics_alone(crank, number),
         disc=_alone(disc, own, number),
         crank_bearing=rollers if own.roller_errors is None else replace(rollers, roller_errors=own.roller_errors),
         clearance=clearance,
         load=replace(load, torque=load.torque / discs, light_torque=load.light_torque / discs),
     )
+
+
+def _with_spans(drive: Drive) -> Drive:
+    """The drive with the spans of its pins that follow from all discs, of which a single one knows nothing."""
+    wheel, shaft = drive.pin_wheel, drive.pin_shaft
+    if wheel.beam is not None:
+        wheel = replace(wheel, beam=replace(wheel.beam, span=drive.wheel_pin_span))
+    if shaft is not None and shaft.beam is not None:
+        shaft = replace(shaft, beam=replace(shaft.beam, span=drive.shaft_pin_span))
+    return replace(drive, pin_wheel=wheel, pin_shaft=shaft)
 
 
 def _eccentrics_alone(crank: Crank, disc: int) -> Crank:
@@ -93,6 +103,7 @@ def _alone(disc: Disc, own: OneDisc, number: int) -> Disc:
         number_of_discs=1,
         phases=(disc.disc_phases[number],),
         planes=(disc.disc_planes[number],),
+        gap=0.0,
         of=() if own.bore_errors is None else (OneDisc(bore_errors=own.bore_errors),),
         runout=disc.runout if own.runout is None else own.runout,
         profile_errors=disc.profile_errors if own.profile_errors is None else own.profile_errors,

@@ -1,17 +1,19 @@
-"""Likely mistakes of units behind a drive that cannot carry its load: looked for when a solution fails, never before.
+"""Plain numbers that were probably meant in another unit.
 
-A soft drive under a light torque is sound (printed plastics have some 3000 MPa, TPU 30 MPa), so no modulus is refused, and
-values that no drive has give a warning (`unit_warnings`). Where no equilibrium exists, a modulus like that of rubber, a torque
-beyond the strength of steel or a pin deflection larger than its hole is a likelier cause than slipping teeth.
+Nothing is refused for it. Values that no drive has, and values a hundred times from the rest of the drive, give a warning
+(`unit_warnings`). A small drive is told apart by its own sizes and materials: a torque is compared with what this drive
+carries, a length with the lengths beside it, never with those of other drives. A soft drive under a light torque is sound
+(printed plastics have some 3000 MPa, TPU 30 MPa). Where no equilibrium exists, a modulus like that of rubber, a torque beyond
+the strength of steel or a pin deflection larger than its hole is a likelier cause than slipping teeth (`explain_failure`).
 """
 
 from __future__ import annotations
 
 import functools
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import fields
-from math import pi, sqrt
+from math import pi, sin, sqrt
 from typing import ParamSpec, TypeVar
 
 from ltca.drive.parts import Drive, Material, Materials, contact_modulus
@@ -32,6 +34,25 @@ HOTTEST = 200.0
 """Temperature at which bearing steel softens, °C; a cold room in kelvin is beyond it."""
 BORNE = 10_000.0
 """Pressure beyond the strength of any gear: bearing steel yields below 6000 MPa, MPa."""
+UNLOADED = 1.0 / 500.0
+"""Fraction of the torque that a drive carries (`carried_torque`) below which its torque is likely in newton metres: rated
+torques are a fifth of it and more, a hundredth of them is above; newton metres read as N·mm are at most a thousandth."""
+OVERLOADED = 100.0
+"""Multiple of it above which a torque is likely a thousandfold."""
+LIGHTEST = 1.0 / 5000.0
+"""Fraction of the torque below which the light torque is likely in newton metres: usual ones are 1/100 to 1/10."""
+STRENGTH = 0.0075, 0.03
+"""Allowable flank pressure by Young's modulus of metals and of plastics without a given one: 1500 of 206000 MPa for bearing
+steel, 75 of 3000 MPa for PLA."""
+STRONGEST = 0.05
+"""Largest allowable pressure by Young's modulus: of polyamide."""
+SHORT, LONG = 0.01, 100.0
+"""Ratios of a length to the one beside it that no drive has; metres read as mm are at 0.001 of a usual ratio."""
+FINEST, FINE = 3e-4, 5e-5
+"""Offset or clearance below what machines hold: in mm, a third of a micrometre, and by the pin radius, for micro drives. A
+thousandth of it is a number of its own."""
+SLOW_INPUT, SLOW_OUTPUT = 60.0, 5.0
+"""Speeds of input and output, rpm, below which a speed is likely in Hz: motors make 10 to 100 turns a second."""
 
 
 def _parts(drive: Drive) -> list[str]:
@@ -48,12 +69,14 @@ def likely_unit_mistakes(drive: Drive, torque: float | None = None) -> list[str]
     `torque` is the output torque, N·mm; that of the load by default.
     """
     used = drive.load.torque if torque is None else torque
-    if beyond := unit_warnings(drive):
+    if beyond := _impossible(drive):
         return beyond
     modulus = _modulus(drive)
     if modulus:
         return modulus  # the others follow from it
     share = used / drive.disc.number_of_discs
+    if lengths := [*_odd_lengths(drive)]:
+        return _yielding(drive, share) or lengths
     for named, value in (
         ("load.torque" if used == drive.load.torque else "torque", used),
         ("load.light_torque", drive.load.light_torque),
@@ -71,19 +94,19 @@ def _yielding(drive: Drive, share: float) -> list[str]:
     """Problems of pins so soft, or so long, that they would leave their place."""
     wheel, shaft = drive.pin_wheel, drive.pin_shaft
     if wheel.beam is not None:
-        bending = 48.0 * _bending_stiffness(drive.materials.wheel_pin, wheel.beam_diameter) / wheel.beam.span**3
+        bending = 48.0 * _bending_stiffness(drive.materials.wheel_pin, wheel.beam_diameter) / drive.wheel_pin_span**3
         load = _pin_load(drive, share)
         if load / bending > 0.5 * wheel.pin_radius:
-            return [_too_long("pin_wheel.beam", wheel.beam.span, wheel.beam_diameter, load / bending)]
+            return [_too_long("pin_wheel.beam", drive.wheel_pin_span, wheel.beam_diameter, load / bending)]
     if shaft is None:
         return []
     # Some third of the pins carry, on a lever of about two thirds of their circle.
     load = share / (0.2 * shaft.number_of_pins * shaft.pin_circle_radius)
     if shaft.beam is not None:
         # In the middle of the span, half of it from the flange.
-        bending = 24.0 * _bending_stiffness(drive.materials.shaft_pin, shaft.beam_diameter) / shaft.beam.span**3
+        bending = 24.0 * _bending_stiffness(drive.materials.shaft_pin, shaft.beam_diameter) / drive.shaft_pin_span**3
         if load / bending > 0.5 * shaft.hole_radius:
-            return [_too_long("pin_shaft.beam", shaft.beam.span, shaft.beam_diameter, load / bending)]
+            return [_too_long("pin_shaft.beam", drive.shaft_pin_span, shaft.beam_diameter, load / bending)]
     if shaft.stiffness is not None and load / shaft.stiffness > 0.5 * shaft.hole_radius:
         return [
             f"pin_shaft.stiffness = {shaft.stiffness:g} N/mm: a shaft pin would yield by {load / shaft.stiffness:.3g} mm "
@@ -190,10 +213,138 @@ def stiffness_warning(drive: Drive) -> str | None:
     return None
 
 
-def unit_warnings(drive: Drive) -> list[str]:
-    """Return values that no drive has, with the values that were probably meant, one sentence each; of the drive as
+def unit_warnings(drive: Drive, torque: float | None = None) -> list[str]:
+    """Return values that were probably meant in another unit, with what was meant, one sentence each; of the drive as
     written.
+
+    First values that no drive has; where there are none, those far from the rest of the drive. `torque` is the output
+    torque, N·mm; that of the load by default.
     """
+    # What a drive carries follows from its lengths.
+    return _impossible(drive) or [*_odd_lengths(drive)] or [*_odd_torques(drive, torque), *_odd_speeds(drive)]
+
+
+def carried_torque(drive: Drive) -> float:
+    """Return the output torque at which a third of the wheel pins has the allowable pressure, N·mm: an estimate, good to a
+    factor of a few.
+    """
+    pair = (drive.materials.disc, drive.flank_pin)
+    known = [part.allowable_pressure for part in pair if part.allowable_pressure is not None]
+    softest = min(part.youngs_modulus for part in pair)
+    allowed = min(*known, STRONGEST * softest) if known else STRENGTH[softest < METALS[0]] * softest
+    return drive.disc.number_of_discs * (allowed / _pressure(drive, 1.0)) ** 2
+
+
+def _odd_torques(drive: Drive, torque: float | None) -> Iterator[str]:
+    """Torques in newton metres that were read as N·mm, by what the drive carries."""
+    load, carried = drive.load, carried_torque(drive)
+    used = [("load.torque", load.torque) if torque is None or torque == load.torque else ("torque", torque)]
+    if drive.duty:
+        largest = max(range(len(drive.duty)), key=lambda entry: drive.duty[entry].torque)
+        used.append((f"duty.{largest}.torque", drive.duty[largest].torque))
+    of_it = f"what this drive carries (some {_rounded(carried / 1000.0)} N·m by the pressure of its flank)"
+    beyond = False
+    for path, value in used:
+        if value < UNLOADED * carried:
+            share = _fraction(value / carried)
+            yield f'{_newton_metres(path, value)}, {share} of {of_it}; did you mean "{value:g} N m"?'
+        elif value > OVERLOADED * carried:
+            beyond = True
+            yield (
+                f"{_newton_metres(path, value)}, {_rounded(value / carried)} times {of_it}; a plain number is N·mm, did you "
+                f'mean "{value / 1e6:g} N m"?'
+            )
+    if not beyond and load.light_torque < LIGHTEST * load.torque:
+        yield (
+            f"{_newton_metres('load.light_torque', load.light_torque)}, {_fraction(load.light_torque / load.torque)} of "
+            f'load.torque; did you mean "{load.light_torque:g} N m"?'
+        )
+
+
+def _newton_metres(path: str, value: float) -> str:
+    return f"{path} = {value:g} N·mm is {value / 1000.0:g} N·m"
+
+
+def _fraction(ratio: float) -> str:
+    """A small ratio in words: "a thousandth", or "1/4200"."""
+    return "a thousandth" if 0.8e-3 < ratio < 1.25e-3 else f"1/{_rounded(1.0 / ratio)}"
+
+
+def _rounded(value: float) -> str:
+    """A number to two figures, without an exponent up to a million."""
+    return f"{float(f'{value:.2g}'):g}"
+
+
+def _odd_lengths(drive: Drive) -> Iterator[str]:
+    """Lengths in metres or micrometres that were read as mm, by the lengths beside them, and offsets finer than any made."""
+    for path, value, beside, what in _lengths_beside(drive):
+        if value < SHORT * beside:
+            yield (
+                f"{path} = {value:g} mm is {_fraction(value / beside)} of {what} ({beside:.3g} mm); did you mean "
+                f'"{value:g} m", {1000.0 * value:g} mm?'
+            )
+        elif value > LONG * beside:
+            yield (
+                f"{path} = {value:g} mm is {_rounded(value / beside)} times {what} ({beside:.3g} mm); did you mean "
+                f'"{value:g} µm", {value / 1000.0:g} mm?'
+            )
+    fine = {
+        "disc.equidistant_offset": drive.disc.equidistant_offset,
+        "disc.shifting_offset": drive.disc.shifting_offset,
+        "clearance.bearing": drive.clearance.bearing,
+        "clearance.pin_hole": drive.clearance.pin_hole,
+    }
+    finest = min(FINEST, FINE * drive.pin_wheel.pin_radius)
+    for path, value in fine.items():
+        if 1e-3 * finest <= abs(value) < finest:
+            yield (
+                f"{path} = {value:g} mm is {1000.0 * value:g} µm, finer than machines hold; did you mean "
+                f'"{value:g} m", {1000.0 * value:g} mm?'
+            )
+
+
+def _lengths_beside(drive: Drive) -> Iterator[tuple[str, float, float, str]]:
+    """Path and value of lengths with a length beside them, and what that is."""
+    wheel, shaft, bearing = drive.pin_wheel, drive.pin_shaft, drive.crank_bearing
+    circle, thickness = wheel.pin_circle_radius, drive.disc.thickness
+    half = circle * sin(pi / wheel.number_of_pins)
+    yield "pin_wheel.pin_radius", wheel.pin_radius, half, "half the distance of neighbouring pins"
+    rolling = circle / wheel.number_of_pins
+    yield "crank.eccentricity", drive.crank.eccentricity, rolling, "the pin circle radius by the number of pins"
+    half_circle = 0.5 * circle
+    yield "disc.thickness", thickness, half_circle, "half the pin circle radius"
+    if not SHORT * half_circle <= thickness <= LONG * half_circle:
+        return  # the others stand beside it
+    yield "crank_bearing.roller_length", drive.roller_length, thickness, "the thickness of the disc"
+    support, stack = drive.crank.support, drive.disc.number_of_discs * thickness
+    if support is not None:
+        inner = 2.0 * bearing.inner_race_radius
+        yield "crank.support.diameter", support.diameter, inner, "the diameter of the inner race on it"
+    for name, part, span in (
+        ("pin_wheel", wheel, drive.wheel_pin_span),
+        ("pin_shaft", shaft, drive.shaft_pin_span),
+    ):
+        if part is not None and part.beam is not None:
+            yield f"{name}.beam.diameter", part.beam_diameter, 2.0 * part.pin_radius, f"twice {name}.pin_radius"
+            yield f"{name}.beam.span", span, stack, "the thickness of all discs"
+
+
+def _odd_speeds(drive: Drive) -> Iterator[str]:
+    """A speed in Hz, or in rad/s, that was read as rpm; of a duty its fastest entry."""
+    speeds = {} if drive.load.speed is None else {"load.speed": drive.load.speed}
+    if drive.duty:
+        fastest = max(range(len(drive.duty)), key=lambda entry: drive.duty[entry].speed)
+        speeds[f"duty.{fastest}.speed"] = drive.duty[fastest].speed
+    for path, value in speeds.items():
+        if value < SLOW_INPUT and value / abs(drive.transmission_ratio) < SLOW_OUTPUT:
+            yield (
+                f"{path} = {value:g} rpm at the input is less than a turn a second; did you mean "
+                f'"{value:g} Hz" ({60.0 * value:g} rpm) or "{value:g} rad/s" ({30.0 / pi * value:.3g} rpm)?'
+            )
+
+
+def _impossible(drive: Drive) -> list[str]:
+    """Values that no drive has, with the values that were probably meant."""
     stiff, size = stiffness_warning(drive), drive.pin_wheel.pin_circle_radius
     found = [] if stiff is None else [stiff]
     named = f"pin_wheel.pin_circle_radius = {size:g} mm"

@@ -300,7 +300,7 @@ def _pins_of_wheel(drive: Drive, place: Placement) -> tuple[list[Body], list[Wal
     """Pins, sleeves and slots, on the axis of the discs' planes."""
     wheel, stack = drive.pin_wheel, _stack(drive)
     seat = wheel.seat
-    low, high = stack if wheel.beam is None else (-0.5 * wheel.beam.span, 0.5 * wheel.beam.span)
+    low, high = stack if wheel.beam is None else (-0.5 * drive.wheel_pin_span, 0.5 * drive.wheel_pin_span)
     bodies, walls = [], []
     for number, (centre, radius) in enumerate(
         zip(place.wheel_pin_centres.tolist(), place.wheel_pin_radii.tolist(), strict=True)
@@ -321,7 +321,7 @@ def _pins_of_shaft(drive: Drive, place: Placement) -> list[Body]:
     shaft, stack = drive.pin_shaft, _stack(drive)
     if shaft is None:
         return []
-    low, high = stack if shaft.beam is None else (-0.5 * shaft.beam.span, 0.5 * shaft.beam.span)
+    low, high = stack if shaft.beam is None else (-0.5 * drive.shaft_pin_span, 0.5 * drive.shaft_pin_span)
     bodies = []
     for number, (centre, radius) in enumerate(
         zip(place.shaft_pin_centres.tolist(), place.shaft_pin_radii.tolist(), strict=True)
@@ -426,7 +426,7 @@ def _disc_and_bearings(single: Drive, place: Placement, name: str) -> Iterator[B
     start = np.zeros(1)
     disc = _moved(_disc_body(single, name, 0.0), complex(place.race_centre(start)[0]))
     yield replace(disc, of=name, bottom=plane - 0.5 * disc.top, top=plane + 0.5 * disc.top)
-    low, high = plane - 0.5 * bearing.roller_length, plane + 0.5 * bearing.roller_length
+    low, high = plane - 0.5 * single.roller_length, plane + 0.5 * single.roller_length
     races = place.race_centres(start)[0]
     for crank, centre in enumerate(races.tolist()):
         of = _numbered(f"inner race of {name}", crank, len(races))

@@ -224,7 +224,7 @@ def wheel_pin_beam(drive: Drive) -> PinBeam | None:
         return None
     material = drive.materials.wheel_pin
     return PinBeam(
-        span=wheel.beam.span,
+        span=drive.wheel_pin_span,
         ends=(wheel.beam.ends, wheel.beam.ends),
         diameter=wheel.beam_diameter,
         youngs_modulus=material.youngs_modulus,
@@ -240,7 +240,7 @@ def shaft_pin_beam(drive: Drive) -> PinBeam | None:
     tips: dict[str, End] = {"free": "free", "tied-clamped": "clamped", "tied-pinned": "supported"}
     material = drive.materials.shaft_pin
     return PinBeam(
-        span=shaft.beam.span,
+        span=drive.shaft_pin_span,
         ends=("clamped", tips[shaft.beam.tip]),
         diameter=shaft.beam_diameter,
         youngs_modulus=material.youngs_modulus,

@@ -7,6 +7,7 @@ from math import degrees, pi, sin
 import numpy as np
 
 from ltca.analysis.verdict.geometry import roller_gap, walls
+from ltca.drive.members.bearings import designation_of
 from ltca.drive.members.named_materials import named_parts
 from ltca.drive.members.temperatures import temperature_words
 from ltca.drive.parts import Drive, PinShaft, PinWheel
@@ -54,6 +55,7 @@ def _properties(drive: Drive, plays: bool) -> Rows:
         (f"bore radius{of} with clearance", f"{single.bore_radius:.4f} mm"),
         (f"play of a roller{of} between the races", f"{roller_play:.4f} mm"),
         ("gap between neighbouring rollers", f"{roller_gap(drive):.4f} mm"),
+        *_bought(drive),
         *_walls(single, of),
         ("mean tangential bearing load of a disc", f"{tangential:.1f} N"),
     ]  # fmt: skip
@@ -88,6 +90,15 @@ def _plays(geometries: list[ContactGeometry], leverage: float) -> Rows:
             f"{wheel.mean():.2f}′ ({wheel.min():.2f}′ … {wheel.max():.2f}′)",
         ),
     ]
+
+
+def _bought(drive: Drive) -> Rows:
+    """Name of the crank bearing where it is one of the shipped ones, and ratings of its maker."""
+    part, name = drive.crank_bearing, designation_of(drive.crank_bearing)
+    ratings = (("C", part.dynamic_load_rating), ("C0", part.static_load_rating))
+    told = ", ".join(f"{rating} {value:.0f} N" for rating, value in ratings if value is not None)
+    rows = [] if name is None else [("crank bearing", name)]
+    return rows + ([("ratings of the maker", told)] if told else [])
 
 
 def _warmth(drive: Drive) -> Rows:
@@ -182,14 +193,14 @@ def _pins(drive: Drive) -> Rows:
         wall = 2.0 * (wheel.pin_circle_radius * sin(pi / wheel.number_of_pins) - radius)
         rows.append(("wall between neighbouring slots", _wall(wall, radius)))
     if wheel.beam is not None:
-        walls = f"{wheel.beam.span:g} mm between the walls, ends {wheel.beam.ends}"
+        walls = f"{drive.wheel_pin_span:g} mm between the walls, ends {wheel.beam.ends}"
         rows.append(("wheel pins, as beams", f"⌀ {wheel.beam_diameter:g} mm, {walls}"))
     if shaft is None:
         return rows
     rows += _seat(shaft, "shaft pins", "the holes")
     if shaft.beam is not None:
         tips = {"free": "free", "tied-clamped": "clamped in a ring", "tied-pinned": "pinned in a ring"}[shaft.beam.tip]
-        reach = f"{shaft.beam.span:g} mm from the flange at {-0.5 * shaft.beam.span:g} mm, tips {tips}"
+        reach = f"{drive.shaft_pin_span:g} mm from the flange at {-0.5 * drive.shaft_pin_span:g} mm, tips {tips}"
         rows.append(("shaft pins, as beams", f"⌀ {shaft.beam_diameter:g} mm, {reach}"))
     return rows
 

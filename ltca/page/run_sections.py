@@ -63,6 +63,9 @@ def lives_of_cases(lives: Mapping[str, BearingLives | str]) -> Section:
             notes.append(f"{name}: ISO 281 rates no such crank bearing, {'; '.join(found.not_rated)}")
         else:
             rows.append(_life_row(name, found))
+    makers = [name for name, found in lives.items() if not isinstance(found, str) and found.of_maker]
+    if makers:
+        notes.append(f"Of {', '.join(makers)} C and C0 are those of the maker where the drive gives them.")
     columns = ["case", "shortest of", "C, N", "P, N", "L10r, million turns", "L10r, h", "S0"]
     table = Table(name="life", caption="", columns=columns, rows=rows, words=1)
     notes.append(

@@ -8,6 +8,7 @@ arguments           Arguments that commands share: the same names, metavars, uni
 toml_text           TOML files as plain tables: any file is read, or refused in one sentence
 drive_file          Reading drive files: TOML to validated drives, one for each case, with every mistake reported at
                     once
+bearing_names       Bought bearings in drive files, as fields: names, clearance classes, entries of the user's own
 measured            Files of measured flanks, as deviations
 physical_checks     Physical checks of a drive: contradictions between numbers that are valid by themselves
 member_checks       Checks of the members together: cranks, values per disc, supports, seats and beams of pins, duty

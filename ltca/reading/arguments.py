@@ -235,9 +235,12 @@ def count_argument(option: str, least: int, most: int) -> Callable[[str], int]:
     return read
 
 
-def tell_unit_mistakes(drives: Iterable[Drive]) -> None:
-    """Print warnings to stderr about values of drives, as written, that were probably meant in another unit, each once."""
+def tell_unit_mistakes(drives: Iterable[Drive], torque: float | None = None) -> None:
+    """Print warnings to stderr about values of drives, as written, that were probably meant in another unit, each once.
+
+    `torque` is the output torque of the command, N·mm; that of the drives for None.
+    """
     from ltca.drive.unit_mistakes import unit_warnings
 
-    for text in dict.fromkeys(warning for drive in drives for warning in unit_warnings(drive)):
+    for text in dict.fromkeys(warning for drive in drives for warning in unit_warnings(drive, torque)):
         print(f"warning: {text}", file=sys.stderr)

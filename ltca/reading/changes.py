@@ -22,6 +22,7 @@ from ltca.drive.fields import (
     read_field,
 )
 from ltca.drive.materials import PARTS
+from ltca.drive.members.bearings import named_bearing
 from ltca.drive.members.named_materials import named_material, numbers_of
 from ltca.drive.mistakes import describe_mistakes
 from ltca.drive.parts import Drive, Duty
@@ -37,7 +38,8 @@ def with_fields(drive: Drive, values: Mapping[str, Any], *, check: bool = True) 
     drive : Drive
         The drive to start from.
     values : mapping of str to value
-        New values by dotted path, see `read_field`; ``materials.disc`` and the like take a material's name.
+        New values by dotted path, see `read_field`; ``materials.disc`` and the like take a material's name,
+        ``crank_bearing.bearing`` that of a shipped bearing.
     check : bool
         Whether to look for physical contradictions as well.
 
@@ -57,6 +59,8 @@ def with_fields(drive: Drive, values: Mapping[str, Any], *, check: bool = True) 
     arrays: dict[str, list[Any]] = {}
     whole = {}
     values = _without_names(values)
+    if "disc.planes" in values or "disc.gap" in values:  # one stands in the place of the other
+        values = {"disc.planes": (), "disc.gap": 0.0, **values}
     for path, value in values.items():
         parent, _, last = path.rpartition(".")
         if is_element(last) and field_kind(parent) is not None:
@@ -94,19 +98,35 @@ def with_fields(drive: Drive, values: Mapping[str, Any], *, check: bool = True) 
 
 
 def _without_names(values: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Changes with named materials as their properties, which properties given beside them replace."""
-    named = {f"materials.{part}" for part in PARTS} & values.keys()
+    """Changes with named materials and bearings as their properties, which properties given beside them replace."""
+    readers = {f"materials.{part}": (_numbers_of_material, "a material") for part in PARTS}
+    readers[BEARING] = (_numbers_of_bearing, "a bearing")
+    named = readers.keys() & values.keys()
     if not named:
         return values
     found: dict[str, Any] = {}
     for path in sorted(named):
+        numbers, what = readers[path]
         if not isinstance(values[path], str):
-            raise DriveError([f"{path} = {shortened(values[path])}: must be the name of a material"])
+            raise DriveError([f"{path} = {shortened(values[path])}: must be the name of {what}"])
         try:
-            found |= {f"{path}.{name}": number for name, number in numbers_of(named_material(values[path])).items()}
+            table = path.removesuffix(".bearing")
+            found |= {f"{table}.{name}": number for name, number in numbers(values[path]).items()}
         except DriveError as error:
             raise DriveError([f"{path} = {problem}" for problem in error.problems]) from error
     return found | {path: value for path, value in values.items() if path not in named}
+
+
+BEARING = "crank_bearing.bearing"
+"""Path that takes the name of a shipped bearing."""
+
+
+def _numbers_of_material(name: str) -> Mapping[str, Any]:
+    return numbers_of(named_material(name))
+
+
+def _numbers_of_bearing(name: str) -> Mapping[str, Any]:
+    return named_bearing(name).fields
 
 
 @cache

@@ -135,9 +135,9 @@ def _bearing(drive: Drive) -> Iterator[str]:
             f"crank_bearing.number_of_rollers = {bearing.number_of_rollers}: rollers of radius "
             f"{bearing.roller_radius:g} mm overlap, their radius must be less than {room:.6g} mm"
         )
-    if bearing.roller_length > drive.disc.thickness + ROUNDING:
+    if drive.roller_length > drive.disc.thickness + ROUNDING:
         yield (
-            f"crank_bearing.roller_length = {bearing.roller_length:g} mm: must be at most "
+            f"crank_bearing.roller_length = {drive.roller_length:g} mm: must be at most "
             f"{drive.disc.thickness:g} mm, the thickness of the disc"
         )
     if drive.clearance.bearing > bearing.roller_radius:
@@ -223,7 +223,7 @@ def _length_profiles(drive: Drive) -> Iterator[str]:
         (
             "crank_bearing.roller_profile",
             bearing.roller_profile,
-            bearing.roller_length,
+            drive.roller_length,
             bearing.roller_radius,
         ),
         (

@@ -18,6 +18,7 @@ from ltca.drive.names import NAMING, names_a_file
 from ltca.drive.parts import Drive
 from ltca.drive.tolerances import Tolerances, find_absent, parse_tolerances
 from ltca.errors import DriveError, did_you_mean, shortened
+from ltca.reading.bearing_names import BearingNames
 from ltca.reading.contradictions import explain_contradictions, find_cause
 from ltca.reading.measured.tables import MeasuredFiles, Named, without_files
 from ltca.reading.physical_checks import find_contradictions
@@ -140,6 +141,8 @@ def parse_drive(text: str, source: str = "drive") -> DriveFile:
     measured = MeasuredFiles(Path(source).parent)
     # Mistakes of the common part would repeat in every case: it is validated first, alone.
     base_problems: list[str] = []
+    bearings, written = BearingNames.of_table(table.pop("bearings", {}), base_problems), table.get("crank_bearing")
+    table = bearings.resolved(table, base_problems)
     base = _validate(table, base_problems, measured)
     tolerances = parse_tolerances(scatter, problems, base)
     named = _named_cases(cases, problems)
@@ -151,15 +154,18 @@ def parse_drive(text: str, source: str = "drive") -> DriveFile:
     limits = parse_limits(bounds, problems)
     own = {name: parse_limits(overrides.pop("limits", {}), problems) for name, overrides in named.items()}
     if base_problems or base is None:
-        raise DriveError(problems + base_problems, source)
+        raise DriveError(problems + bearings.told(base_problems), source)
     drives: dict[str, Drive] = {}
     mistakes: dict[str, list[str]] = {}
     for name, overrides in named.items():
+        overrides = bearings.resolved(overrides, mistakes.setdefault(name, []), written)
+        if mistakes[name]:
+            continue
         # Parts that a case does not change are valid already; a measured flank deviates from the design of every case.
         changed = {key: _merged(table.get(key), value) for key, value in overrides.items()}
         if without_files(table)[1]:
             changed.setdefault("disc", table["disc"])
-        drive = _validate({**_parts(base), **changed, "case": name}, mistakes.setdefault(name, []), measured)
+        drive = _validate({**_parts(base), **changed, "case": name}, mistakes[name], measured)
         if drive is not None:
             drives[name] = drive
     problems += _once(mistakes, {})
@@ -169,7 +175,7 @@ def parse_drive(text: str, source: str = "drive") -> DriveFile:
     problems += found
     problems = problems or find_absent(tolerances, drives.values())
     if problems:
-        raise DriveError(problems, source, f"{left} cases not checked" if left else "")
+        raise DriveError(bearings.told(problems), source, f"{left} cases not checked" if left else "")
     each = {name: {**limits, **own.get(name, {})} for name in drives}
     return DriveFile(
         name=str(table["name"]), source=source, cases=drives, tolerances=tolerances, limits=each, text=text
@@ -267,7 +273,7 @@ def _merged(below: Any, value: Any) -> Any:
     return {**kept, **{key: _merged(below.get(key), over) for key, over in value.items()}}
 
 
-INSTEAD = {"stiffness": "beam", "beam": "stiffness"}
+INSTEAD = {"stiffness": "beam", "beam": "stiffness", "planes": "gap", "gap": "planes"}
 """Alternative fields of one table: a case that gives one removes the other."""
 _ADAPTER = TypeAdapter(Drive)
 
@@ -279,11 +285,13 @@ def build_drive(table: dict[str, Any]) -> Drive:
     Tolerances and limits are no part of a drive and are ignored.
     """
     problems: list[str] = []
-    drive = _validate({name: value for name, value in table.items() if name not in BESIDE_THE_DRIVE}, problems)
-    if drive is not None:
+    bearings = BearingNames.of_table(table.get("bearings", {}), problems)
+    plain = {name: value for name, value in table.items() if name not in (*BESIDE_THE_DRIVE, "bearings")}
+    drive = _validate(bearings.resolved(plain, problems), problems)
+    if drive is not None and not problems:
         problems += explain_contradictions(drive, find_contradictions(drive))
     if problems or drive is None:
-        raise DriveError(problems)
+        raise DriveError(bearings.told(problems))
     return drive
 
 

@@ -117,6 +117,8 @@ def _per_disc(drive: Drive) -> Iterator[str]:
         if entries and len(entries) != discs:
             yield f"{path} has {len(entries)} entries: must have {discs}, one for each disc (disc.number_of_discs)"
     planes, thickness = sorted(drive.disc.planes), drive.disc.thickness
+    if planes and drive.disc.gap:
+        yield f"disc.gap = {drive.disc.gap:g} mm: must be left out beside disc.planes, which say where the discs stand"
     for before, after in pairwise(planes):
         if after - before < thickness * (1.0 - 1e-9):
             yield (
@@ -317,7 +319,8 @@ def _slots(wheel: PinWheel) -> Iterator[str]:
 
 
 def _beam(drive: Drive, part: PinWheel | PinShaft, beam: WheelPinBeam | ShaftPinBeam, path: str) -> Iterator[str]:
-    half, thickness, planes = 0.5 * beam.span, drive.disc.thickness, drive.disc.disc_planes
+    span = drive.wheel_pin_span if isinstance(beam, WheelPinBeam) else drive.shaft_pin_span
+    half, thickness, planes = 0.5 * span, drive.disc.thickness, drive.disc.disc_planes
     disc = max(range(len(planes)), key=lambda number: abs(planes[number]))
     reach = abs(planes[disc]) + 0.5 * thickness
     if half < reach - ROUNDING * max(reach, 1.0):
@@ -325,7 +328,7 @@ def _beam(drive: Drive, part: PinWheel | PinShaft, beam: WheelPinBeam | ShaftPin
         low, high = planes[disc] - 0.5 * thickness, planes[disc] + 0.5 * thickness
         held = "walls" if isinstance(beam, WheelPinBeam) else "flange and tip"
         yield (
-            f"{path}.beam.span = {beam.span:g} mm: must be at least {2.0 * reach:.6g} mm, or {which} from {low:.6g} to "
+            f"{path}.beam.span = {span:g} mm: must be at least {2.0 * reach:.6g} mm, or {which} from {low:.6g} to "
             f"{high:.6g} mm (disc.planes, disc.thickness) is not between the {held} at ±{half:g} mm"
         )
     sleeved = part.seat.kind == "sleeve" and part.seat.bore_radius is not None

@@ -31,12 +31,14 @@ import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
 from ltca.analysis.engines import Engine, engine_of
+from ltca.drive.declaration import naming_fields
 from ltca.drive.fields import field_kind, may_be_left_out, read_field
+from ltca.drive.members.bearings import bought_size
 from ltca.drive.mistakes import describe_mistakes
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import quantity
 from ltca.errors import MOST_TOLD, DriveError, did_you_mean, shortened
-from ltca.reading.changes import with_fields
+from ltca.reading.changes import BEARING, with_fields
 from ltca.reading.drive_file import listed, load_drive
 from ltca.reading.toml_text import parse_toml, read_text
 from ltca.studies.designs import SweepDesign, SweepFactor
@@ -151,7 +153,7 @@ def parse_sweep(table: Mapping[str, Any], drive: str, source: str = "study", eng
 def _is_whole(path: str) -> bool:
     """Tell whether a field takes no fractions; elements of arrays all have a unit."""
     kind = field_kind(path)
-    return kind is not None and not kind.unit
+    return path == BEARING or (kind is not None and not kind.unit)
 
 
 def _is_count(value: Any) -> bool:
@@ -178,8 +180,11 @@ def _factors(table: Mapping[str, Any], drive: Drive, cases: Mapping[str, Drive],
             else:
                 found.append(SweepFactor(path=path, levels=tuple(names)))
             continue
+        if refused := bought_size(drive.crank_bearing, path):
+            reader.problems.append(f"factors.{refused}")
+            continue
         try:
-            if not may_be_left_out(path):
+            if not may_be_left_out(path) and path != BEARING:
                 read_field(drive, path)
         except DriveError as error:
             reader.problems += [f"factors.{problem}" for problem in error.problems]
@@ -233,7 +238,7 @@ def _flat(table: Mapping[str, Any], prefix: str) -> list[tuple[str, Any]]:
 
 
 def _factor(path: str, entry: Any, reader: _Reader) -> SweepFactor | None:
-    own = field_kind(path)
+    own = naming_fields()[path] if path == BEARING else field_kind(path)
     kind = own or field_kind(path.rpartition(".")[0])
     if kind is None:
         raise ValueError(f"{path} is no field")  # looked up before

@@ -56,6 +56,8 @@ _LEFT_OUT = {
     "pin_wheel.support_stiffness": 5e5,
     "installation.first_stage_ratio": 2.0,
     "crank.circle_radius": 6.0,
+    "crank_bearing.dynamic_load_rating": 5e4,
+    "crank_bearing.static_load_rating": 6e4,
 }
 _LEFT_OUT |= {
     f"materials.{part}.{name}": value
@@ -81,12 +83,17 @@ _NAME = {
     "name": "names a drive and its files, nothing else",
     "analysis.compliance": "chooses the engine where none is named; here one is",
     "disc.planes": "axial places have no effect where neither pins nor cranks bend",
+    "disc.gap": "axial places have no effect where neither pins nor cranks bend",
     "materials.crankshaft.poisson_ratio": "a shaft without shear and torsion bends by its modulus alone",
 }
 _NAME |= {f"materials.{part}.{name}": "moves no load: results are judged by it" for part in PARTS for name in JUDGED_BY}
 _OF_LIFE = dict.fromkeys(
     ("duty.0.torque", "duty.0.speed", "duty.0.share", "lubricant.viscosity", "lubricant.contamination"),
     "duty and lubricant concern lives of bearings alone, and here none is told",
+)
+_OF_LIFE |= dict.fromkeys(
+    ("crank_bearing.dynamic_load_rating", "crank_bearing.static_load_rating"),
+    "ratings of the maker concern lives of bearings alone, and here none is told",
 )
 _EVERYWHERE = _NAME | _OF_LIFE
 _SPRINGS = _EVERYWHERE | {

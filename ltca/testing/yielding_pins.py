@@ -216,7 +216,7 @@ def beam_stiffness(drive: Drive, part: PinWheel | PinShaft, material: Material) 
     beam = part.beam
     if beam is None:
         return None
-    span, width = beam.span, drive.disc.thickness
+    span, width = drive.disc.stack_length if beam.span is None else beam.span, drive.disc.thickness
     middles = [plane + 0.5 * span for plane in drive.disc.disc_planes]
     if isinstance(beam, WheelPinBeam):
         basis, held, kept = "between", 2 if beam.ends == "clamped" else 0, len(middles)

@@ -74,7 +74,7 @@ def widen(drive: Drive, coefficients: InfluenceCoefficients, width: float) -> tu
     wide = replace(
         drive,
         disc=replace(drive.disc, thickness=width * drive.disc.thickness),
-        crank_bearing=replace(bearing, roller_length=width * bearing.roller_length),
+        crank_bearing=replace(bearing, roller_length=width * drive.roller_length),
         pin_shaft=shaft
         if shaft is None or shaft.stiffness is None
         else replace(shaft, stiffness=width * shaft.stiffness),

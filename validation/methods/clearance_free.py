@@ -224,7 +224,7 @@ class _System:
         modulus = contact_modulus(drive.materials.disc, drive.materials.wheel_pin)
         self.step_bound = abs(self.load[WHEEL]) / (0.1 * modulus * drive.disc.thickness)
 
-        parts, bearing = drive.materials, drive.crank_bearing
+        parts, length = drive.materials, drive.roller_length
         flank = geometry.flank(angle, self.start)
         self.patches: dict[tuple[str, int], _Patch] = {}
         for pin in range(self.pins):
@@ -245,10 +245,10 @@ class _System:
             outward[4 + roller], inward[4 + roller] = 1.0, -1.0
             modulus = contact_modulus(parts.disc, parts.roller)
             effective = float(place.outer_effective_radii[roller])
-            self._add(("outer", roller), modulus, effective, bearing.roller_length, 0.0, outward, bool(zone[roller]))
+            self._add(("outer", roller), modulus, effective, length, 0.0, outward, bool(zone[roller]))
             modulus = contact_modulus(parts.inner_race, parts.roller)
             effective = float(place.inner_effective_radii[roller])
-            self._add(("inner", roller), modulus, effective, bearing.roller_length, 0.0, inward, bool(zone[roller]))
+            self._add(("inner", roller), modulus, effective, length, 0.0, inward, bool(zone[roller]))
         holes = geometry.holes(angle, self.start)
         self.hole_stiffness = drive.hole_stiffness
         self.hole_approach = holes.approach[0]

@@ -108,7 +108,9 @@ class BearingLives:
         Q_ci and Q_ce.
     not_rated : tuple of str
         Why the ratings are not those of its parts: lives and safeties are numbers, and mean nothing. Empty where they
-        are, or where the maker rates.
+        are, or where a rating of the maker was passed for them.
+    of_maker : tuple of str
+        Which of C and C0 are those of the maker; the others are by ISO 281 and ISO 76.
     """
 
     bearings: tuple[BearingLife, ...]
@@ -117,6 +119,7 @@ class BearingLives:
     fatigue_load_limit: float
     ratings: RaceRatings
     not_rated: tuple[str, ...] = ()
+    of_maker: tuple[str, ...] = ()
 
     @property
     def shortest(self) -> BearingLife:
@@ -142,7 +145,7 @@ def bearing_lives(
     analysis : LoadedAnalysis
         At positions evenly spread over whole turns of the crank, all balanced.
     dynamic_load_rating : float, optional
-        C_r of the maker, N; by ISO 281 otherwise.
+        C_r of the maker, N; ``crank_bearing.dynamic_load_rating`` by default, by ISO 281 without it.
     speed : float, optional
         Of the cranks against the discs, turns a minute; that of ``load.speed`` by default. Duty has its own.
 
@@ -317,10 +320,12 @@ def lives_of_entries(
     entries : sequence of EntryLoads
         All with a speed, or a single one without.
     dynamic_load_rating : float, optional
-        C_r of the maker, N; by ISO 281 otherwise.
+        C_r of the maker, N; ``crank_bearing.dynamic_load_rating`` by default, by ISO 281 without it.
     """
-    bearing = RollerBearing.of_drive(drive)
-    capacity = bearing.dynamic_load_rating if dynamic_load_rating is None else dynamic_load_rating
+    bearing, part = RollerBearing.of_drive(drive), drive.crank_bearing
+    capacity = dynamic_load_rating or part.dynamic_load_rating or bearing.dynamic_load_rating
+    static = part.static_load_rating or bearing.static_load_rating
+    limit = bearing.fatigue_load_limit * static / bearing.static_load_rating
     ratings = bearing.race_ratings(capacity)
     turned = [entry.share * (1.0 if entry.speed is None else entry.speed) for entry in entries]
     per_minute = None if entries[0].speed is None else sum(turned)
@@ -340,15 +345,24 @@ def lives_of_entries(
                 equivalent_load=float(capacity * life**-0.3),
                 static_load=float(entry.largest_force[disc, crank]),
             )
-            own.append(_modified(found, drive, bearing))
-        lives.append(_joined(disc, crank, own, per_minute, capacity, bearing.static_load_rating))
+            own.append(_modified(found, drive, bearing.pitch_diameter, limit))
+        lives.append(_joined(disc, crank, own, per_minute, capacity, static))
     return BearingLives(
         bearings=tuple(lives),
         dynamic_load_rating=capacity,
-        static_load_rating=bearing.static_load_rating,
-        fatigue_load_limit=bearing.fatigue_load_limit,
+        static_load_rating=static,
+        fatigue_load_limit=limit,
         ratings=ratings,
+        # Catalogues rate their rollers on hardened steel, also where the disc is something else.
         not_rated=not_rated(drive) if dynamic_load_rating is None else (),
+        of_maker=tuple(
+            name
+            for name, rating in (
+                ("C", dynamic_load_rating or part.dynamic_load_rating),
+                ("C0", part.static_load_rating),
+            )
+            if rating is not None
+        ),
     )
 
 
@@ -385,12 +399,12 @@ def _miner(parts: Sequence[tuple[float, float]]) -> float:
     return 1.0 / spent if spent > 0.0 else float("inf")
 
 
-def _modified(entry: EntryLife, drive: Drive, bearing: RollerBearing) -> EntryLife:
+def _modified(entry: EntryLife, drive: Drive, pitch_diameter: float, fatigue_load_limit: float) -> EntryLife:
     """The entry with what the lubricant makes of it."""
     lubricant = drive.lubricant
     if lubricant is None or entry.speed is None:
         return entry
-    ratio = lubricant.viscosity / reference_viscosity(entry.speed, bearing.pitch_diameter)
-    limit = bearing.fatigue_load_limit / entry.equivalent_load if entry.equivalent_load > 0.0 else float("inf")
+    ratio = lubricant.viscosity / reference_viscosity(entry.speed, pitch_diameter)
+    limit = fatigue_load_limit / entry.equivalent_load if entry.equivalent_load > 0.0 else float("inf")
     factor = life_modification_factor(ratio, lubricant.contamination, limit)
     return replace(entry, viscosity_ratio=ratio, modification=factor)

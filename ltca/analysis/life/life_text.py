@@ -54,6 +54,7 @@ def life_content(lives: BearingLives, drive: Drive) -> dict[str, Any]:
         "dynamic_load_rating_N": lives.dynamic_load_rating,
         "static_load_rating_N": lives.static_load_rating,
         "fatigue_load_limit_N": lives.fatigue_load_limit,
+        "ratings_of_maker": [*lives.of_maker],
         "least_static_safety_S0": None if lives.not_rated else _finite(lives.static_safety),
         "not_rated": [*lives.not_rated],
         "laminae": LAMINAE,
@@ -125,15 +126,18 @@ def life_lines(lives: BearingLives, drive: Drive, speed: str | None) -> list[str
     if lives.not_rated:
         told = "ISO 281 rates no such crank bearing (--load-rating gives the maker's): no life, no static safety"
         return [told, *(f"  {reason}" for reason in lives.not_rated), f"  largest force {found.static_load:.0f} N"]
+    dynamic, static = (
+        _rating(lives, *one) for one in (("C", lives.dynamic_load_rating), ("C0", lives.static_load_rating))
+    )
     lines = [
         f"rating life of the crank bearing{which} ({_over(drive)})",
-        f"  C {lives.dynamic_load_rating:.0f} N, P {found.equivalent_load:.0f} N, L10r {found.life:.1f} million turns",
+        f"  {dynamic}, P {found.equivalent_load:.0f} N, L10r {found.life:.1f} million turns",
     ]
     at = f" at {speed}" if speed is not None else ""
     if found.hours is not None:
         lines.append(f"  {found.hours:.0f} h{at}")
     lines.append(
-        f"  C0 {lives.static_load_rating:.0f} N, largest force {found.static_load:.0f} N, S0 {found.static_safety:.2f}"
+        f"  {static}, largest force {found.static_load:.0f} N, S0 {found.static_safety:.2f}"
         + (f", least of all {lives.static_safety:.2f}" if lives.static_safety < found.static_safety else "")
     )
     if drive.duty:
@@ -142,6 +146,11 @@ def life_lines(lives: BearingLives, drive: Drive, speed: str | None) -> list[str
             for entry in found.entries
         ]
     return lines + _modified_lines(found)
+
+
+def _rating(lives: BearingLives, name: str, value: float) -> str:
+    """A rating with its name and unit, and whose it is where it is not that of the standard."""
+    return f"{name} {value:.0f} N" + (" (of the maker)" if name in lives.of_maker else "")
 
 
 def _over(drive: Drive) -> str:

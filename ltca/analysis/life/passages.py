@@ -92,12 +92,12 @@ def laminae_of(analysis: LoadedAnalysis) -> tuple[Laminae, Laminae]:
     if analysis.engine.compliance == "fe":
         return EvenLaminae(), EvenLaminae()
     part, materials = drive.crank_bearing, drive.materials
-    profile = generator_profile(part.roller_profile, part.roller_length, part.roller_radius)
+    profile = generator_profile(part.roller_profile, drive.roller_length, part.roller_radius)
 
     def solved(curvature: float, race_modulus: float) -> SolvedLaminae:
         return SolvedLaminae(
             profile=profile,
-            length=part.roller_length,
+            length=drive.roller_length,
             effective_radius=1.0 / (1.0 / part.roller_radius + curvature),
             contact_modulus=race_modulus,
         )

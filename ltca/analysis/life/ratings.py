@@ -98,7 +98,7 @@ class RollerBearing:
         return cls(
             rollers=part.number_of_rollers,
             roller_diameter=2.0 * part.roller_radius,
-            roller_length=part.roller_length,
+            roller_length=drive.roller_length,
             pitch_diameter=part.inner_race_radius + part.outer_race_radius,
         )
 

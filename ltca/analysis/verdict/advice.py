@@ -212,7 +212,7 @@ def _inputs(drive: Drive, torque: float) -> list[_Input]:
         return value - 2.0 * more
 
     shaft = drive.pin_shaft is not None
-    wide = drive.crank_bearing.roller_length
+    wide = drive.roller_length
     thickness = drive.disc.thickness
     hole = {"pin_shaft.hole_radius": grown} if shaft else {}
     chosen = [

@@ -5,6 +5,8 @@ Modules in the order data passes:
 ===============  ============================================================
 named_materials  Materials by name: ``materials.disc = "PA12"`` stands for numbers that ship as data, each with its scatter
                  and source
+bearings         Bought crank bearings by name: ``crank_bearing.bearing = "K20x26x12"`` stands for races and rollers, a
+                 clearance class for ``clearance.bearing``
 operation        Installation and use: the fixed member, load, speed, duty, lubricant, friction and temperatures
 crank            Crankshafts: their eccentrics, the circle they stand on, their supports and their bearings
 pins             Pins of the pin wheel and of the pin shaft: fixed, loose or sleeved, rigid or bending

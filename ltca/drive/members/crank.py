@@ -23,6 +23,7 @@ from ltca.drive.materials import LengthProfile
 from ltca.drive.units.quantities import COUNT, grows, quantity
 
 Stiffness = Annotated[float, quantity("N/mm", gt=0.0)]
+Force = Annotated[float, quantity("N", gt=0.0)]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
@@ -113,18 +114,25 @@ class CrankBearing:
         Number of rollers n_BR of one bearing.
     roller_radius : float
         Radius r_BR of the rollers, mm.
-    roller_length : float
-        Length of the rollers, at most the thickness of the disc, mm.
+    roller_length : float or None
+        Length of the rollers, at most the thickness of the disc, mm; as long as that when left out.
     roller_profile : LengthProfile
         Crown and relief of the rollers.
     roller_errors : RollerErrors
         Diameter and pocket errors of the rollers.
+    dynamic_load_rating : float or None
+        Rating C of the maker, for lives alone, N; by ISO 281 from the rollers when left out.
+    static_load_rating : float or None
+        Rating C_0 of the maker, for the static safety and the fatigue load limit alone, N; by ISO 76 from the rollers when
+        left out.
     """
 
     inner_race_radius: Annotated[PositiveLength, grows("race")]
     outer_race_radius: Annotated[PositiveLength, grows("disc")]
     number_of_rollers: Annotated[int, Field(ge=3, le=500), COUNT]
     roller_radius: Annotated[PositiveLength, grows("roller")]
-    roller_length: Annotated[PositiveLength, grows("roller")]
+    roller_length: Annotated[PositiveLength | None, grows("roller")] = None
     roller_profile: Annotated[LengthProfile, grows("roller")] = field(default_factory=LengthProfile)
     roller_errors: Annotated[RollerErrors, grows("roller")] = field(default_factory=RollerErrors)
+    dynamic_load_rating: Force | None = None
+    static_load_rating: Force | None = None

@@ -61,15 +61,15 @@ class WheelPinBeam:
 
     Attributes
     ----------
-    span : float
-        Distance of the walls, mm.
+    span : float or None
+        Distance of the walls, mm; when left out as long as the discs with the gaps between and beside them (``disc.gap``).
     ends : {"supported", "clamped"}
         Whether the ends may turn in the walls.
     diameter : float or None
         Diameter of the beam, mm; that of the seat's pin when left out.
     """
 
-    span: Annotated[PositiveLength, grows("wheel")]
+    span: Annotated[PositiveLength | None, grows("wheel")] = None
     ends: Literal["supported", "clamped"]
     diameter: Annotated[PositiveLength | None, grows("wheel_pin")] = None
 
@@ -80,15 +80,16 @@ class ShaftPinBeam:
 
     Attributes
     ----------
-    span : float
-        Distance from the flange to the tip, mm.
+    span : float or None
+        Distance from the flange to the tip, mm; when left out as long as the discs with the gaps between and beside them
+        (``disc.gap``).
     tip : {"free", "tied-clamped", "tied-pinned"}
         Free, or tied to the other tips by a rigid ring that floats: clamped in it, or free to turn.
     diameter : float or None
         Diameter of the beam, mm; that of the seat's pin when left out.
     """
 
-    span: Annotated[PositiveLength, grows("carrier")]
+    span: Annotated[PositiveLength | None, grows("carrier")] = None
     tip: Literal["free", "tied-clamped", "tied-pinned"]
     diameter: Annotated[PositiveLength | None, grows("shaft_pin")] = None
 

@@ -222,9 +222,9 @@ def _with_bore_errors(drive: Drive, growth: Growth) -> Drive:
 def _with_roller_length(warm: Drive, cold: Drive, growth: Growth) -> Drive:
     """The warm drive with rollers that stay as long as the disc is thick, or do not become longer than it."""
     # A ten-thousandth of the length would be an end that presses.
-    length, thickness = cold.crank_bearing.roller_length * growth.roller, warm.disc.thickness
-    if cold.crank_bearing.roller_length == cold.disc.thickness:
+    length, thickness = cold.roller_length * growth.roller, warm.disc.thickness
+    if cold.roller_length == cold.disc.thickness:
         length = thickness
-    elif cold.crank_bearing.roller_length < cold.disc.thickness:
+    elif cold.roller_length < cold.disc.thickness:
         length = min(length, thickness)
     return replace(warm, crank_bearing=replace(warm.crank_bearing, roller_length=length))

@@ -320,7 +320,14 @@ def test_cases_share_their_nominal_shape(paper_cases):
     assert nominal_shape(paper_cases["CS-6"]).bore_radius == pytest.approx(29.515)
 
 
-LEFT_OUT = ("pin_wheel.support_stiffness", "installation.first_stage_ratio", "crank.circle_radius", "load.speed")
+RATINGS = ("crank_bearing.dynamic_load_rating", "crank_bearing.static_load_rating")
+LEFT_OUT = (
+    "pin_wheel.support_stiffness",
+    "installation.first_stage_ratio",
+    "crank.circle_radius",
+    "load.speed",
+    *RATINGS,
+)
 TABLES_LEFT_OUT = (
     "crank.support",
     "pin_wheel.seat",

@@ -33,7 +33,7 @@ def test_help_shows_the_examples(name, capsys):
 def test_fields_tells_one_field(capsys):
     assert main(["fields", "crank_bearing.roller_length"]) == 0
     told = capsys.readouterr().out
-    assert "crank_bearing.roller_length: mm; greater than 0; required" in told
+    assert "crank_bearing.roller_length: mm; greater than 0; default left out" in told
     assert "refused by fe, full FE" in told
     assert main(["fields"]) == 0
     assert "materials.PART.youngs_modulus: MPa; greater than 0; default 206000" in capsys.readouterr().out

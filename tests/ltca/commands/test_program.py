@@ -13,9 +13,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from ltca.commands.init import FOLLOWING
 from ltca.commands.program import main
 from ltca.output.run_folder import MANIFEST
-from ltca.reading.drive_file import load_drive, shipped_drive
+from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
 
 ROOT = Path(__file__).parents[3]
 
@@ -206,6 +207,28 @@ def test_init_writes_a_runnable_commented_copy(tmp_path, capsys, monkeypatch):
     assert main(["init", "my.toml"]) == 2
     assert "exists already" in capsys.readouterr().err
     assert main(["init", "my.toml", "--force"]) == 0
+
+
+@pytest.mark.parametrize("like", ["paper", "robot-joint", "rv", "sleeved"])
+def test_a_template_holds_back_no_change_of_thickness_or_number(like, tmp_path):
+    """Phases, planes, rollers and pins of robot-joint refused a thickness or a third disc that the reader changed alone."""
+    path = tmp_path / "my.toml"
+    assert main(["init", str(path), "--like", like]) == 0
+    text = path.read_text(encoding="utf-8")
+    for thickness, discs in ((8, 1), (10, 2), (14, 3)):
+        changed = re.sub(r"(?m)^thickness = [0-9.]+", f"thickness = {thickness}", text)
+        changed = re.sub(r"(?m)^number_of_discs = [0-9]", f"number_of_discs = {discs}", changed)
+        drive = next(iter(parse_drive(changed).cases.values()))
+        assert len(drive.disc.disc_planes) == len(drive.disc.disc_phases) == discs
+        assert drive.roller_length == thickness
+    assert drive.pin_shaft is None or like == "paper" or drive.pin_shaft.beam is not None
+
+
+def test_lines_that_init_changes_are_there():
+    """A replacement that matches nothing any more is to go."""
+    texts = [shipped_drive(like) for like in ("paper", "robot-joint", "rv", "sleeved")]
+    for line, _ in FOLLOWING:
+        assert any(line in text for text in texts), line
 
 
 def test_init_with_a_name_that_toml_must_escape(tmp_path):

@@ -20,7 +20,7 @@ def test_degrees_as_radians_are_pointed_out(command, tmp_path, capsys):
     """`tolerance` took phases = [0, 180] without a word."""
     path = tmp_path / "drive.toml"
     text = shipped_drive("robot-joint")
-    changed = re.sub(r"phases = .*", "phases = [0.0, 180.0]", text)
+    changed = re.sub(r"# phases = .*", "phases = [0.0, 180.0]", text)
     assert changed != text
     path.write_text(changed, encoding="utf-8")
     main([command, str(path), *COMMANDS[command], "--out", str(tmp_path / "out")])

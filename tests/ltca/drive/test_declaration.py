@@ -17,6 +17,7 @@ from ltca.drive.declaration import (
     declared_tables,
     find_fields,
     gathered,
+    naming_fields,
 )
 from ltca.drive.fields import absence, field_kinds, read_field
 from ltca.drive.materials import PARTS
@@ -143,5 +144,7 @@ def test_names_find_fields():
     assert {f.table for f in find_fields("disc.of.0.runout")} == {"disc.of.N.runout"}
     assert {f.path for f in find_fields("span")} == {"pin_wheel.beam.span", "pin_shaft.beam.span"}
     assert [f.path for f in find_fields("disc.phases.1")] == ["disc.phases"]
+    assert {f.table for f in find_fields("beam")} == {"pin_wheel.beam", "pin_shaft.beam"}
     assert find_fields("nothing") == ()
-    assert len(gathered()) == len(DECLARED) - 7 * 9  # nine fields of seven more parts, told once
+    # nine fields of seven more parts, told once; names of bearings and their entries stand for fields
+    assert len(gathered()) == len(DECLARED) - 7 * 9 + len(naming_fields())

@@ -61,7 +61,14 @@ def test_length_profile_of_a_cylinder():
         assert not profile.is_cylinder
 
 
-LEFT_OUT = ("pin_wheel.support_stiffness", "installation.first_stage_ratio", "crank.circle_radius", "load.speed")
+RATINGS = ("crank_bearing.dynamic_load_rating", "crank_bearing.static_load_rating")
+LEFT_OUT = (
+    "pin_wheel.support_stiffness",
+    "installation.first_stage_ratio",
+    "crank.circle_radius",
+    "load.speed",
+    *RATINGS,
+)
 OF_PARTS = ("crank.support", "materials.crankshaft", "materials.sleeve", "materials.wheel_seat", "duty", "lubricant")
 OF_PINS = ("pin_wheel.seat", "pin_wheel.beam", "pin_shaft.seat", "pin_shaft.beam")
 # What plane finite-element bodies are made of: flank, bore, holes and thickness of the disc; pins, rollers, race; materials.

@@ -9,6 +9,7 @@ import pytest
 
 from ltca.analysis.loaded_analysis import analyse
 from ltca.commands.program import main
+from ltca.drive.fields import field_kinds, read_field
 from ltca.drive.unit_mistakes import explain_failure, likely_unit_mistakes, stiffness_warning, unit_warnings
 from ltca.errors import ConvergenceError, CycloError, DriveError
 from ltca.reading.changes import with_fields
@@ -123,6 +124,86 @@ def test_what_no_drive_has_is_pointed_out_in_one_line(vary, changes, told):
     """They slipped by: pascals, files in SI units, metres, degrees as radians, kelvin."""
     (found,) = unit_warnings(with_fields(vary(), changes, check=False))
     assert re.search(told, found)
+
+
+@pytest.mark.parametrize(
+    ("shipped", "changes", "told"),
+    [
+        ("robot-joint", {"load.torque": 400.0}, r'0.4 N·m, 1/4200 of what this drive carries .* mean "400 N m"\?$'),
+        ("rv", {"load.torque": 800.0}, r'0.8 N·m, 1/3700 of .* mean "800 N m"\?$'),
+        ("sleeved", {"load.light_torque": 15.0}, r'0.015 N·m, 1/33000 of load.torque; did you mean "15 N m"\?$'),
+        ("robot-joint", {"load.torque": 4e8}, r'400000 N·m, 240 times what this drive carries .* mean "400 N m"\?$'),
+        ("robot-joint", {"pin_wheel.pin_radius": 0.0025}, r'^pin_wheel.pin_radius = .* mean "0.0025 m", 2.5 mm\?$'),
+        ("rv", {"crank.eccentricity": 0.00125}, r'^crank.eccentricity = .* mean "0.00125 m", 1.25 mm\?$'),
+        ("rv", {"crank.support.diameter": 0.02}, r'^crank.support.diameter = .* mean "0.02 m", 20 mm\?$'),
+        ("rv", {"crank_bearing.roller_length": 0.012}, r'^crank_bearing.roller_length = .* mean "0.012 m", 12 mm\?$'),
+        (
+            "robot-joint",
+            {"disc.thickness": 0.01, "disc.planes": (), "crank_bearing.roller_length": 0.01},
+            r'^disc.thickness = .* mean "0.01 m", 10 mm\?$',
+        ),
+        ("sleeved", {"pin_wheel.beam.span": 26_000.0}, r'^pin_wheel.beam.span = .* mean "26000 µm", 26 mm\?$'),
+        ("sleeved", {"pin_shaft.beam.diameter": 0.009}, r'^pin_shaft.beam.diameter = .* mean "0.009 m", 9 mm\?$'),
+        ("robot-joint", {"clearance.bearing": 5e-6}, r'^clearance.bearing = .* finer .* mean "5e-06 m", 0.005 mm\?$'),
+        (
+            "robot-joint",
+            {"load.speed": 25.0},
+            r'^load.speed = 25 rpm .* "25 Hz" \(1500 rpm\) or "25 rad/s" \(239 rpm\)\?$',
+        ),
+        (
+            "robot-joint",
+            {"duty.0.torque": 400.0, "duty.0.speed": 1500.0, "duty.0.share": 1.0},
+            r"^duty.0.torque = 400 N",
+        ),
+    ],
+)
+def test_plain_numbers_in_another_unit_are_pointed_out(shipped, changes, told):
+    """All of these passed without a word."""
+    (drive,) = parse_drive(shipped_drive(shipped), shipped).cases.values()
+    (found,) = unit_warnings(with_fields(drive, changes))
+    assert re.search(told, found)
+
+
+def test_a_torque_of_the_command_is_pointed_out(vary):
+    (found,) = unit_warnings(vary(), 377.3)
+    assert found.startswith("torque = 377.3 N·mm is 0.3773 N·m")
+
+
+@pytest.mark.parametrize("shrunk", [0.5, 0.2, 0.05])
+@pytest.mark.parametrize("modulus", [206_000.0, 3000.0])
+def test_a_small_drive_is_told_apart_by_its_own_sizes(shrunk, modulus):
+    """All lengths by one factor, torques by its cube: the same pressures, nothing to point out down to a pin circle of 3 mm,
+    and of plastic by the strength of plastic. A thousandth of its torque is pointed out all the same.
+    """
+    (drive,) = parse_drive(shipped_drive("robot-joint"), "robot-joint").cases.values()
+    lengths = [
+        path for path, field in field_kinds().items() if field.unit == "mm" and not field.is_array and ".N." not in path
+    ]
+    held = {path: shrunk * read_field(drive, path) for path in lengths if _has(drive, path)}
+    held["disc.planes"] = tuple(shrunk * plane for plane in drive.disc.planes)
+    soft = modulus / 206_000.0
+    torques = {f"load.{name}": soft * shrunk**3 * getattr(drive.load, name) for name in ("torque", "light_torque")}
+    materials = {f"materials.{part}.youngs_modulus": modulus for part in ("disc", "wheel_pin")}
+    materials |= {f"materials.{part}.allowable_pressure": None for part in ("disc", "wheel_pin")}
+    small = with_fields(drive, held | torques | materials, check=False)
+    assert unit_warnings(small) == []
+    light = {"load.torque": 1e-3 * small.load.torque, "load.light_torque": 1e-5 * small.load.torque}
+    (found,) = unit_warnings(with_fields(small, light, check=False))
+    assert found.startswith("load.torque = ")
+
+
+def _has(drive, path):
+    try:
+        return isinstance(read_field(drive, path), float)
+    except DriveError:
+        return False
+
+
+def test_a_hundredth_of_the_torque_is_no_mistake():
+    """Studies at light loads, and parts of a duty: practical drives have their rated torque or a hundredth of it."""
+    for name in ("paper", "robot-joint", "rv", "sleeved"):
+        drive = next(iter(parse_drive(shipped_drive(name), name).cases.values()))
+        assert unit_warnings(drive, 0.01 * drive.load.torque) == []
 
 
 def test_sound_drives_are_not_pointed_out():

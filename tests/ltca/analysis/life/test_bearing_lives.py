@@ -317,6 +317,36 @@ def test_a_makers_rating_scales_the_life(papers):
     )
 
 
+@pytest.mark.usefixtures("even")
+def test_the_ratings_of_a_drive_are_used(papers):
+    """L10r goes with C⁴, S0 with C0, as above; C_u is C0/8.2 below 100 mm. Round-off of products."""
+    own = bearing_lives(papers)
+    ratings = {"crank_bearing.dynamic_load_rating": 60_000.0, "crank_bearing.static_load_rating": "70 kN"}
+    makers = bearing_lives(replace(papers, drive=with_fields(papers.drive, ratings)))
+    ratio = 60_000.0 / own.dynamic_load_rating
+    assert makers.shortest.life == pytest.approx(own.shortest.life * ratio**4, rel=1e-12)
+    assert makers.static_safety == pytest.approx(own.static_safety * 70_000.0 / own.static_load_rating, rel=1e-12)
+    assert makers.fatigue_load_limit == pytest.approx(70_000.0 / 8.2, rel=1e-12)
+    assert (own.of_maker, makers.of_maker) == ((), ("C", "C0"))
+    assert "C 60000 N (of the maker)" in "\n".join(life_lines(makers, papers.drive, None))
+    # The option of a command goes before the field.
+    assert (
+        bearing_lives(replace(papers, drive=makers_drive(papers)), dynamic_load_rating=50_000.0).dynamic_load_rating
+        == 5e4
+    )
+
+
+def makers_drive(analysis):
+    return with_fields(analysis.drive, {"crank_bearing.dynamic_load_rating": 60_000.0})
+
+
+@pytest.mark.usefixtures("even")
+def test_a_catalogue_rates_no_bore_of_plastic(papers):
+    """Its C is that of hardened rings; the bore of the disc is the outer one."""
+    soft = with_fields(makers_drive(papers), {"materials.disc.youngs_modulus": 3000.0})
+    assert bearing_lives(replace(papers, drive=soft)).not_rated
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("parts", [2, 7])
 def test_lives_of_positions_solved_part_by_part(paper_cases, parts):
