@@ -37,8 +37,8 @@ Given: TypeAlias = InfluenceCoefficients | Sequence[InfluenceCoefficients] | Pat
 """Influence coefficients as an engine takes them."""
 
 SHARED_BODY = 0.002
-"""Relative change of a dimension or an elastic constant up to which a body keeps its coefficients in studies: 0.2 % more of a hole's
-radius moves single loads of the paper's drive by 0.3 %, of bore and flank by less than 0.1 % (docs/theory/coefficients.md)."""
+"""Relative change of a dimension or an elastic constant up to which a body keeps its coefficients in studies: 0.2 % more of the
+radius of its holes moves single loads of the paper's drive by 0.3 %, of bore and flank by less than 0.1 %."""
 METHODS = "cyclo.methods"
 """Entry points of methods that other packages bring: ``paper`` prepares the paper's iteration for a drive."""
 
