@@ -118,7 +118,8 @@ def commands_page() -> str:
     text = """# Commands
 
 This page has the contents of `cyclo COMMAND --help`. Numerical options may carry a unit (`--torque "377.3 N m"`,
-[Quantities and units](../units.md)); `DRIVE` is a drive file, or `paper` for the shipped drive.
+[Quantities and units](../units.md)); `DRIVE` is a drive file, or the name of a shipped drive (`paper`, `robot-joint`, `rv`,
+`sleeved`).
 Several angles are separated by spaces and may be negative. Every printed table names torque, direction of the crank,
 model, positions and case. Exit statuses, output folders and interrupted runs:
 [Exit statuses, files and processes](../files_and_processes.md).

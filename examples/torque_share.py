@@ -11,9 +11,8 @@ import numpy as np
 
 import ltca
 from ltca.reading.changes import with_fields
-from ltca.reading.drive_file import parse_drive, shipped_drive
 
-drive = parse_drive(shipped_drive("robot-joint")).cases["nominal"]
+drive = ltca.load_drive("robot-joint").cases["nominal"]
 runout = np.array([0.0, 3.0, 6.0])
 largest = {}
 for torque in ("400 N m", "40 N m"):

@@ -18,7 +18,9 @@ from ltca.errors import DriveError, shortened
 if TYPE_CHECKING:
     from ltca.drive.parts import Drive
 
-DRIVE = "drive file (TOML), or 'paper' for the shipped drive"
+SHIPPED_DRIVES = ("paper", "robot-joint", "rv", "sleeved")
+"""Names of the drives that ship with the package, each that of a file in ``ltca/drives``."""
+DRIVE = f"drive file (TOML), or the name of a shipped drive: {', '.join(SHIPPED_DRIVES)}"
 LONGEST_PART = 255
 """Largest number of bytes in the name of a file or folder on common file systems."""
 LONGEST_COUNT = 19
