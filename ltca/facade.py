@@ -20,9 +20,11 @@ from ltca.analysis.results import build_dataset
 from ltca.analysis.summary import refined_value, summarise
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.drive.parts import Drive
+from ltca.drive.units.quantities import parse_quantity
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.placement import position_angles
 from ltca.quantities import SCALARS, unit_sign
+from ltca.reading.arguments import torque_argument
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -189,7 +191,7 @@ def analyse(
     positions: int | None = None,
     *,
     crank_angle: ArrayLike | None = None,
-    torque: float | None = None,
+    torque: float | str | None = None,
     compliance: str | Engine = "half-space",
     method: str | None = None,
     contacts: str | None = None,
@@ -206,9 +208,9 @@ def analyse(
     positions : int, optional
         Crank angles 2πk/N, k = 0 … N−1; 360 by default.
     crank_angle : array, shape (positions,), optional
-        Crank angles φ_C, rad, instead.
-    torque : float, optional
-        Output torque, N·mm; the drive's own by default.
+        Crank angles φ_C, rad, instead; each may be a text with a unit, ``"20 deg"``.
+    torque : float or str, optional
+        Output torque, N·mm, or a text with a unit, ``"400 N·m"``; the drive's own by default.
     compliance : {"half-space", "fe", "hybrid"} or engine
         How the bodies yield; an engine (`ltca.HalfSpace`, `ltca.PlaneStrain`, `ltca.Hybrid`) brings its options.
     method : {"tables", "direct", "paper"}, optional
@@ -241,6 +243,9 @@ def analyse(
     >>> result = ltca.analyse(drive, crank_angle=[0.5])
     >>> print(f"{float(result.dataset['bearing_tangential'].sum()):.0f} N")
     6738 N
+    >>> half = ltca.analyse(drive, crank_angle="20 deg", torque="188.65 N·m")
+    >>> print(f"{float(half.dataset['bearing_tangential'].sum()):.0f} N")
+    3369 N
     """
     if not isinstance(drive, Drive):
         raise DriveError([f"drive: must be one Drive, not a {type(drive).__name__}; a drive file has them in .cases"])
@@ -251,17 +256,36 @@ def analyse(
         if isinstance(count, bool) or not isinstance(count, int | np.integer) or not 1 <= count <= MOST_POSITIONS:
             raise DriveError([f"positions = {count!r}: must be a whole number from 1 to {MOST_POSITIONS}"])
         crank_angle = position_angles(int(count))
+    angles: Any = angles_given(crank_angle)
+    carried = torque_argument(torque, "torque") if isinstance(torque, str) else torque
     name = drive.case if case is None else case
     given: Any = Path(coefficients) if isinstance(coefficients, str) else coefficients
     engine = engine_named(
         compliance, method=method, contacts=contacts, coefficients=given, hole_near_field=hole_near_field
     )
     try:
-        return AnalysisResult(case=name, loaded=loaded_analysis.analyse(drive, np.asarray(crank_angle), torque, engine))
+        return AnalysisResult(case=name, loaded=loaded_analysis.analyse(drive, angles, carried, engine))
     except ConvergenceError as error:
         if isinstance(error.partial, LoadedAnalysis):
             error.partial = AnalysisResult(case=name, loaded=error.partial)
         raise
+
+
+def angles_given(crank_angle: Any) -> Any:
+    """Return crank angles as they were given, texts with a unit as numbers in rad; DriveError for other texts.
+
+    Examples
+    --------
+    >>> angles_given(["90 deg", 0.5])
+    [1.5707963267948966, 0.5]
+    """
+    if isinstance(crank_angle, str):
+        return [parse_quantity(crank_angle, "rad", "crank_angle")]
+    if isinstance(crank_angle, np.ndarray) and crank_angle.dtype.kind == "U":
+        crank_angle = crank_angle.tolist()
+    if not isinstance(crank_angle, list | tuple):
+        return np.asarray(crank_angle)
+    return [parse_quantity(one, "rad", "crank_angle") if isinstance(one, str) else one for one in crank_angle]
 
 
 def derivatives(result: AnalysisResult, fields: Iterable[str]) -> xr.Dataset:

@@ -161,12 +161,18 @@ def quantity_argument(
     return read
 
 
-def torque_argument(text: str) -> float:
-    """Return the output torque of ``--torque``, N·mm; DriveError for anything else."""
+def torque_argument(text: str, name: str = "--torque") -> float:
+    """Return the output torque of ``--torque``, or of an argument `name` of a function, N·mm; DriveError for anything else.
+
+    Examples
+    --------
+    >>> torque_argument("400 N·m")
+    400000.0
+    """
     from ltca.drive.units.quantities import parse_quantity
 
     try:
-        return parse_quantity(text, "N*mm", "--torque", gt=0.0)
+        return parse_quantity(text, "N*mm", name, gt=0.0)
     except DriveError as error:
         (problem,) = error.problems
         hint = " (load.direction turns it)" if problem.endswith("must be greater than 0 N·mm") else ""
