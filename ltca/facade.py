@@ -245,7 +245,7 @@ def analyse(
     6738 N
     >>> half = ltca.analyse(drive, crank_angle="20 deg", torque="188.65 N·m")
     >>> print(f"{float(half.dataset['bearing_tangential'].sum()):.0f} N")
-    3369 N
+    3370 N
     """
     if not isinstance(drive, Drive):
         raise DriveError([f"drive: must be one Drive, not a {type(drive).__name__}; a drive file has them in .cases"])

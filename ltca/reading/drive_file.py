@@ -19,6 +19,7 @@ from ltca.drive.parts import Drive
 from ltca.drive.tolerances import Tolerances, find_absent, parse_tolerances
 from ltca.errors import DriveError, did_you_mean, shortened
 from ltca.reading.arguments import SHIPPED_DRIVES
+from ltca.reading.changes import INSTEAD
 from ltca.reading.contradictions import explain_contradictions, find_cause
 from ltca.reading.measured.tables import MeasuredFiles, Named, without_files
 from ltca.reading.physical_checks import find_contradictions
@@ -270,8 +271,6 @@ def _merged(below: Any, value: Any) -> Any:
     return {**kept, **{key: _merged(below.get(key), over) for key, over in value.items()}}
 
 
-INSTEAD = {"stiffness": "beam", "beam": "stiffness"}
-"""Alternative fields of one table: a case that gives one removes the other."""
 _ADAPTER = TypeAdapter(Drive)
 
 
