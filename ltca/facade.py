@@ -15,13 +15,13 @@ from numpy.typing import ArrayLike
 from ltca.analysis import loaded_analysis
 from ltca.analysis.engines import Engine, engine_named
 from ltca.analysis.extremes import sampling_warning
-from ltca.analysis.loaded_analysis import LoadedAnalysis
+from ltca.analysis.loaded_analysis import LoadedAnalysis, check_torque
 from ltca.analysis.results import build_dataset
 from ltca.analysis.summary import refined_value, summarise
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import parse_quantity
-from ltca.errors import ConvergenceError, DriveError
+from ltca.errors import ConvergenceError, DriveError, shortened
 from ltca.geometry.placement import position_angles
 from ltca.quantities import SCALARS, unit_sign
 from ltca.reading.arguments import torque_argument
@@ -29,6 +29,8 @@ from ltca.reading.arguments import torque_argument
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+COMPLIANCE = "half-space"
+"""How bodies yield where nothing is said."""
 MOST_POSITIONS = 1_000_000
 _SHOWN = (
     "mean_bearing_load", "max_pin_load", "max_pin_pressure_mid", "max_roller_load", "max_pin_shaft_load",
@@ -192,7 +194,7 @@ def analyse(
     *,
     crank_angle: ArrayLike | None = None,
     torque: float | str | None = None,
-    compliance: str | Engine = "half-space",
+    compliance: str | Engine = COMPLIANCE,
     method: str | None = None,
     contacts: str | None = None,
     coefficients: InfluenceCoefficients | Path | str | None = None,
@@ -247,21 +249,16 @@ def analyse(
     >>> print(f"{float(half.dataset['bearing_tangential'].sum()):.0f} N")
     3370 N
     """
-    if not isinstance(drive, Drive):
-        raise DriveError([f"drive: must be one Drive, not a {type(drive).__name__}; a drive file has them in .cases"])
+    require_drive(drive)
     if positions is not None and crank_angle is not None:
         raise DriveError(["positions and crank_angle: give one of them"])
     if crank_angle is None:
-        count = 360 if positions is None else positions
-        if isinstance(count, bool) or not isinstance(count, int | np.integer) or not 1 <= count <= MOST_POSITIONS:
-            raise DriveError([f"positions = {count!r}: must be a whole number from 1 to {MOST_POSITIONS}"])
-        crank_angle = position_angles(int(count))
+        crank_angle = position_angles(counted(360 if positions is None else positions, "positions", 1, MOST_POSITIONS))
     angles: Any = angles_given(crank_angle)
-    carried = torque_argument(torque, "torque") if isinstance(torque, str) else torque
+    carried = torque_given(drive, torque)
     name = drive.case if case is None else case
-    given: Any = Path(coefficients) if isinstance(coefficients, str) else coefficients
-    engine = engine_named(
-        compliance, method=method, contacts=contacts, coefficients=given, hole_near_field=hole_near_field
+    engine = engine_given(
+        compliance, method=method, contacts=contacts, coefficients=coefficients, hole_near_field=hole_near_field
     )
     try:
         return AnalysisResult(case=name, loaded=loaded_analysis.analyse(drive, angles, carried, engine))
@@ -269,6 +266,39 @@ def analyse(
         if isinstance(error.partial, LoadedAnalysis):
             error.partial = AnalysisResult(case=name, loaded=error.partial)
         raise
+
+
+def require_drive(drive: Drive) -> None:
+    """Refuse what is no drive, a drive file above all."""
+    if not isinstance(drive, Drive):
+        raise DriveError([f"drive: must be one Drive, not a {type(drive).__name__}; a drive file has them in .cases"])
+
+
+def counted(number: int, name: str, least: int, most: int) -> int:
+    """Return a whole number within its bounds; DriveError for anything else."""
+    if isinstance(number, bool) or not isinstance(number, int | np.integer) or not least <= number <= most:
+        raise DriveError([f"{name} = {shortened(number)}: must be a whole number from {least} to {most}"])
+    return int(number)
+
+
+def torque_given(drive: Drive, torque: float | str | None) -> float:
+    """Return the output torque asked for, a number or a text with a unit, the drive's own for None, N·mm."""
+    return check_torque(drive, torque_argument(torque, "torque") if isinstance(torque, str) else torque)
+
+
+def engine_given(
+    compliance: str | Engine,
+    *,
+    method: str | None = None,
+    contacts: str | None = None,
+    coefficients: InfluenceCoefficients | Path | str | None = None,
+    hole_near_field: bool | None = None,
+) -> Engine:
+    """Return the engine that the arguments ask for (`engine_named`); coefficients may be the name of a file."""
+    given: Any = Path(coefficients) if isinstance(coefficients, str) else coefficients
+    return engine_named(
+        compliance, method=method, contacts=contacts, coefficients=given, hole_near_field=hole_near_field
+    )
 
 
 def angles_given(crank_angle: Any) -> Any:
