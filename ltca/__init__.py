@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     from ltca.facade import analyse, derivatives
     from ltca.front.checks import check
     from ltca.front.curves import curves
+    from ltca.front.joined import concat
     from ltca.reading.drive_file import load_drive
 
     __version__: str
@@ -57,14 +58,15 @@ _HOMES = {
     "PlaneStrain": "ltca.analysis.engines",
     "analyse": "ltca.facade",
     "check": "ltca.front.checks",
+    "concat": "ltca.front.joined",
     "curves": "ltca.front.curves",
     "derivatives": "ltca.facade",
     "load_drive": "ltca.reading.drive_file",
 }
 
 __all__ = [
-    "Drive", "HalfSpace", "Hybrid", "PlaneStrain", "__version__", "analyse", "check", "curves",
-    "derivatives", "load_drive",
+    "Drive", "HalfSpace", "Hybrid", "PlaneStrain", "__version__", "analyse", "check", "concat",
+    "curves", "derivatives", "load_drive",
 ]  # fmt: skip
 
 

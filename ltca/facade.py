@@ -70,8 +70,11 @@ class AnalysisResult:
 
     @property
     def dataset(self) -> xr.Dataset:
-        """Labelled dataset as in ``results.nc``, of this one case; its arrays are read-only."""
-        found = build_dataset(self.drive.name, {self.case: self.loaded})
+        """Labelled dataset as in ``results.nc``, of this one case; its arrays are read-only.
+
+        Positions are found by their number or by their crank angle, ``.sel(crank_angle=0.5, method="nearest")``.
+        """
+        found = by_angle(build_dataset(self.drive.name, {self.case: self.loaded}))
         for variable in found.variables.values():
             if isinstance(variable.data, np.ndarray):
                 variable.data.flags.writeable = False
@@ -91,6 +94,67 @@ class AnalysisResult:
         """What to know of drive, positions and answer before they are used, one sentence each, as `cyclo run` prints it."""
         sampled = sampling_warning(self.drive, self.loaded.full.crank_angle)
         return [*self.loaded.warnings, *([] if sampled is None else [sampled])]
+
+    def pressure(
+        self,
+        contact: str = "pin",
+        number: int | None = None,
+        *,
+        position: int | None = None,
+        crank_angle: float | str | None = None,
+        disc: int | None = None,
+        crank: int | None = None,
+        cells: int = 16,
+    ) -> xr.DataArray:
+        """Return the pressure over the patch of one contact at one position: along the profile and along the width.
+
+        Solved on a grid at the load of the contact, with its true separation: half-spaces of finite length near the contact,
+        whatever yields beyond. What is left open is where the contact carries most.
+
+        Parameters
+        ----------
+        contact : {"pin", "roller_outer", "roller_inner", "hole"}
+            Wheel pin and flank, roller in the bore or on the inner race, shaft pin and hole.
+        number : int, optional
+            Which pin, roller or hole.
+        position : int, optional
+            Number of the position.
+        crank_angle : float or str, optional
+            Its crank angle instead, rad or a text with a unit: one of those analysed.
+        disc, crank : int, optional
+            Which disc, and for rollers which crank.
+        cells : int
+            Cells over the half-width and over half the length.
+
+        Returns
+        -------
+        xarray.DataArray, shape (x, y)
+            Mean pressure of the cells, MPa, over their middles, mm; ``x_size`` and ``y_size`` are their sizes. Which contact it
+            is are scalar coordinates; load, half-width, largest pressure and shear below the surface are attributes.
+
+        Raises
+        ------
+        DriveError
+            When there is no such contact, it carries nothing, or bodies are in plane strain (``fe``), which has no width.
+
+        Examples
+        --------
+        >>> import ltca
+        >>> result = ltca.analyse(ltca.load_drive("paper").cases["CS-1"], crank_angle=[0.3])
+        >>> field = result.pressure("pin", 3)
+        >>> carried, load = (field * field.x_size * field.y_size).sum(), result.dataset["pin_load"].sel(pin=3)
+        >>> f"{carried.item():.0f} N of {load.item():.0f} N"
+        '3524 N of 3524 N'
+        >>> along = field.max("x")  # over the width: the ends carry more than the middle
+        >>> f"{float(along.sel(y=0.0, method='nearest')):.0f} MPa in the middle"
+        '1391 MPa in the middle'
+        """
+        from ltca.front.pressures import contact_pressure
+
+        return contact_pressure(
+            self.loaded, self.case, contact, number,
+            position=position, crank_angle=crank_angle, disc=disc, crank=crank, cells=cells,
+        )  # fmt: skip
 
     @property
     def plot(self) -> Plots:
@@ -355,4 +419,9 @@ def derivatives(result: AnalysisResult, fields: Iterable[str]) -> xr.Dataset:
     """
     from ltca.analysis.derivatives import derivatives as of_analysis
 
-    return of_analysis(result.loaded, fields)
+    return by_angle(of_analysis(result.loaded, fields))
+
+
+def by_angle(dataset: xr.Dataset) -> xr.Dataset:
+    """Return a dataset whose positions are found by their crank angle, too."""
+    return dataset.set_xindex("crank_angle")

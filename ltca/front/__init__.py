@@ -1,8 +1,9 @@
 """What `import ltca` gives beside `ltca.facade`: the commands that answer one question, as functions.
 
-=======  =====================================================================
-checks   `ltca.check`: the verdict of ``cyclo check``
-curves   `ltca.curves`: torque curve, orders, lives, pressure of ``cyclo curves``
-joined   `ltca.concat`: several results in one dataset
-=======  =====================================================================
+=========  =====================================================================
+checks     `ltca.check`: the verdict of ``cyclo check``
+curves     `ltca.curves`: torque curve, orders, lives, pressure of ``cyclo curves``
+joined     `ltca.concat`: several results in one dataset
+pressures  The pressure over one contact of a result, as a labelled array
+=========  =====================================================================
 """
