@@ -147,7 +147,7 @@ class AnalysisResult:
         '3524 N of 3524 N'
         >>> along = field.max("x")  # over the width: the ends carry more than the middle
         >>> f"{float(along.sel(y=0.0, method='nearest')):.0f} MPa in the middle"
-        '1391 MPa in the middle'
+        '1387 MPa in the middle'
         """
         from ltca.front.pressures import contact_pressure
 

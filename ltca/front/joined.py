@@ -52,7 +52,7 @@ def concat(
     (200000.0, 2)
     """
     analyses = {name: result.loaded for name, result in _named(results, names).items()}
-    check_common_shape({name: analysis.drive for name, analysis in analyses.items()})
+    check_common_shape({name: analysis.drive for name, analysis in analyses.items()}, "leave it out")
     _check_angles_and_teeth(analyses)
     dataset = build_dataset(", ".join(dict.fromkeys(one.drive.name for one in analyses.values())), analyses)
     own = [build_dataset(one.drive.name, {name: one}).attrs for name, one in analyses.items()]

@@ -54,17 +54,18 @@ def contact_pressure(
         "crank": crank if of_roller else 0,
         "number": number,
     }
+    if not loads.shape[3]:
+        raise DriveError([f"contact = {contact!r}: there is none in this drive"])
     for (name, value), size in zip(asked.items(), loads.shape, strict=True):
         if value is not None:
-            if size == 0:
-                raise DriveError([f"contact = {contact!r}: there is none in this drive"])
             asked[name] = counted(value, name, 0, size - 1)
     chosen = np.ix_(
         *(range(size) if one is None else [one] for one, size in zip(asked.values(), loads.shape, strict=True))
     )
     part = np.where(known[chosen], loads[chosen], 0.0)
-    if not part.size or not np.any(part > 0.0):
-        where = ", ".join(f"{name} {value}" for name, value in asked.items() if value is not None)
+    if not np.any(part > 0.0):
+        given = {"disc": disc, "position": asked["position"], "crank": crank, "number": number}
+        where = ", ".join(f"{name} {value}" for name, value in given.items() if value is not None)
         raise DriveError([f"contact = {contact!r}: carries nothing" + (f" at {where}" if where else "")])
     place = [
         int(axis.flat[index]) for axis, index in zip(chosen, np.unravel_index(np.argmax(part), part.shape), strict=True)
