@@ -174,7 +174,8 @@ def dataset_page() -> str:
 
 `results.nc` of `cyclo run` is a netCDF file; `result.dataset` in Python has the same contents for one case. `pressure.nc`
 (`--pressure`) and `fem.nc` (`cyclo fem`) use the same names. Dimensions are in the order `case`, `disc`, `crank`, `position`,
-then `pin`, `roller`, `hole` or `lobe`; dimensions of size 1 are kept.
+then `pin`, `roller`, `hole` or `lobe`; dimensions of size 1 are kept. In Python `crank_angle` is an index beside `position`
+(`.sel(crank_angle=0.5, method="nearest")`); of a file `.set_xindex("crank_angle")` makes it one.
 The attribute `units` has the unit of a variable, `long_name` its meaning. Discs, cranks, pins, rollers and holes are
 numbered from 0, counter-clockwise; signs and frames: [Conventions](../../theory/conventions.md).
 

@@ -1,4 +1,4 @@
-"""Pressure over every loaded contact at chosen crank angles: solved on grids at the pose found, as one dataset.
+"""Pressure over every loaded contact at chosen crank angles: solved on grids that carry the loads found, as one dataset.
 
 Layout of ``pressure.nc``: dimensions, coordinates and names of ``results.nc``, and the cells ``pin_cell_x``,
 ``pin_cell_y``, ``roller_cell_x``, ``roller_cell_y`` of each patch. Patches differ in size, so each has edges of its
