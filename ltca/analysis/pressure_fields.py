@@ -24,8 +24,9 @@ from ltca.analysis.results import coordinates, provenance
 from ltca.analysis.summary import LOADED_FRACTION
 from ltca.arrays import FloatArray
 from ltca.contact.end_pressure import largest_pressure
+from ltca.contact.pressure_cells import PatchSolution
 from ltca.contact.subsurface import find_subsurface_shear
-from ltca.contact.tracked_grid import ContactKind, ContactKinds, Departure, PatchSolution, solve_fitted
+from ltca.contact.tracked_grid import ContactKind, ContactKinds, Departure, solve_fitted
 from ltca.drive.hole_contact import hole_modulus
 from ltca.errors import ConvergenceError
 from ltca.geometry.separation import circle_departure, flank_departure
@@ -103,25 +104,22 @@ def _solve_at_load(kind: ContactKind, load: float, effective_radius: float, depa
     """
     law = LineContactLaw(kind.length, kind.contact_modulus)
     approach = float(law.approach_at_load(np.array(load), np.array(effective_radius))[0])
-    best, slope, last = None, 1.0 / 1.1, None
+    slope, best, last, misses = 1.0 / 1.1, None, None, list[float]()
     for _ in range(MOST_SECANTS):
         solved = solve_fitted(kind, approach, effective_radius, departure)
         miss = float(np.log(load / solved.load)) if solved.load > 0.0 else 1.0
-        if best is None or abs(miss) < abs(best[0]):
-            best = miss, solved
+        misses.append(abs(miss))
+        if best is None or abs(miss) == min(misses):
+            best = solved
         if abs(miss) < LOAD_TOLERANCE:
             break
         if last is not None and abs(last[1] - miss) > LOAD_TOLERANCE:
             slope = float(np.clip((np.log(approach) - last[0]) / (last[1] - miss), 0.5, 1.2))
         last = float(np.log(approach)), miss
         approach *= float(np.exp(np.clip(slope * miss, -2.0, 2.0)))
-    assert best is not None
-    miss, solved = best
-    if abs(miss) > GRID_STEP:
-        raise ConvergenceError(
-            f"no pressure field at a load of {load:g} N; least deviations of the load, part of it", [0], [abs(miss)]
-        )
-    return solved
+    if best is None or min(misses) > GRID_STEP:
+        raise ConvergenceError(f"no pressure field carries {load:g} N; deviations of the load, part of it", misses)
+    return best
 
 
 CONTACTS = {

@@ -44,9 +44,10 @@ _options = threading.Lock()
 def write_drawing(part: Part, path: Path) -> None:
     """Write a part as a DXF file in mm; `FaultError` when the file cannot be written."""
     import ezdxf
+    from ezdxf.filemanagement import new
 
     with _without_clock(ezdxf):
-        document = ezdxf.new(RELEASE, units=ezdxf.units.MM)
+        document = new(RELEASE, units=ezdxf.units.MM)
         for name, remark in zip(REMARKS, part.remarks, strict=False):
             document.header.custom_vars.append(name, remark)
         space = document.modelspace()

@@ -32,8 +32,8 @@ def contact_pressure(
     """Return the pressure over one contact; see `ltca.facade.AnalysisResult.pressure`."""
     if contact not in CONTACTS:
         meant = did_you_mean(contact, CONTACTS) if isinstance(contact, str) else ""
-        known = ", ".join(map(repr, CONTACTS))
-        raise DriveError([f"contact = {shortened(contact)}: is unknown; must be one of {known}{meant}"])
+        names = ", ".join(map(repr, CONTACTS))
+        raise DriveError([f"contact = {shortened(contact)}: is unknown; must be one of {names}{meant}"])
     if loaded.engine.compliance == "fe":
         raise DriveError(
             ["compliance = fe: plane strain has no pressure over the width; analyse on hybrid or half-space"]
@@ -47,7 +47,7 @@ def contact_pressure(
         )
     loads = np.stack([loads_of(one, contact) for one in discs])
     loads = loads.reshape(*loads.shape[:2], cranks if of_roller else 1, -1)  # (discs, positions, cranks, pairs)
-    known = np.stack([is_loaded(one, contact) for one in discs]).reshape(loads.shape)
+    has_field = np.stack([is_loaded(one, contact) for one in discs]).reshape(loads.shape)
     asked = {
         "disc": disc,
         "position": _position(loaded, position, crank_angle),
@@ -62,13 +62,14 @@ def contact_pressure(
     chosen = np.ix_(
         *(range(size) if one is None else [one] for one, size in zip(asked.values(), loads.shape, strict=True))
     )
-    part = np.where(known[chosen], loads[chosen], 0.0)
-    if not np.any(part > 0.0):
+    carried = np.where(has_field[chosen], loads[chosen], 0.0)
+    if not np.any(carried > 0.0):
         given = {"disc": disc, "position": asked["position"], "crank": crank, "number": number}
         where = ", ".join(f"{name} {value}" for name, value in given.items() if value is not None)
         raise DriveError([f"contact = {contact!r}: carries nothing" + (f" at {where}" if where else "")])
     place = [
-        int(axis.flat[index]) for axis, index in zip(chosen, np.unravel_index(np.argmax(part), part.shape), strict=True)
+        int(axis.flat[index])
+        for axis, index in zip(chosen, np.unravel_index(np.argmax(carried), carried.shape), strict=True)
     ]
     in_disc, at, on_crank, pair = place
     field = pressure_field(discs[in_disc], contact, at, on_crank * loads.shape[3] + pair, grid)

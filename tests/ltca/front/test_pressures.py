@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import ltca
+from ltca.analysis.pressure_fields import build_pressure_dataset
 from ltca.compliance.coefficients import without_coupling
 from ltca.errors import DriveError
 from ltca.reading.drive_file import load_drive
@@ -70,6 +72,8 @@ def test_hybrid_bodies_have_it_too():
     assert float((field * field.x_size * field.y_size).sum()) == pytest.approx(float(load), rel=2e-5)
     told = float(hybrid.dataset["pin_pressure_mid"].max())
     assert field.attrs["pressure_mid_MPa"] == pytest.approx(told, rel=2e-3)
+    fields = build_pressure_dataset("paper", {"CS-1": hybrid.loaded}, cells=6)  # what cyclo run --pressure writes
+    xr.testing.assert_allclose(fields["pin_field_load"].max(), load, rtol=2e-5)
     plane = ltca.analyse(drive, crank_angle=[0.3], compliance="fe", coefficients=coefficients)
     with pytest.raises(DriveError, match="compliance = fe: plane strain has no pressure over the width"):
         plane.pressure()
