@@ -31,7 +31,7 @@ for column, (name, patch) in zip(axes, fields.items(), strict=True):
     )
     column.set(title=f"{name} rollers", xlabel="along the width [mm]")
 axes[0].set(ylabel="along the profile [mm]", ylim=(-0.15, 0.15))
-figure.colorbar(drawn, ax=axes, label="pressure [MPa]")
+figure.colorbar(drawn, ax=axes).set_label("pressure [MPa]")
 
 # %%
 # Along the width, on the middle of the strip. At an end without relief the pressure between elastic bodies is singular: what is

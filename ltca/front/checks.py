@@ -12,7 +12,7 @@ from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.drive.members.limits import Limit, Limits, parse_limits
 from ltca.drive.parts import Drive
 from ltca.errors import DriveError, shortened
-from ltca.facade import COMPLIANCE, counted, engine_given, require_drive, torque_given
+from ltca.front.arguments import COMPLIANCE, counted, engine_given, require_drive, torque_given
 from ltca.reading.drive_file import DriveFile, listed
 
 MOST_POSITIONS = 100_000

@@ -13,7 +13,7 @@ from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import parse_quantity
 from ltca.errors import DriveError
-from ltca.facade import COMPLIANCE, counted, engine_given
+from ltca.front.arguments import COMPLIANCE, counted, engine_given
 from ltca.front.checks import drive_and_limits
 from ltca.reading.drive_file import DriveFile
 

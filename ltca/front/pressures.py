@@ -10,7 +10,7 @@ import xarray as xr
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.analysis.pressure_fields import CONTACTS, FIELD_CELLS, is_loaded, loads_of, pressure_field
 from ltca.errors import DriveError, did_you_mean, shortened
-from ltca.facade import angles_given, counted
+from ltca.front.arguments import angles_given, counted
 
 MOST_CELLS = 60
 SAME_ANGLE = 1e-9
