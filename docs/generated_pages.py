@@ -118,7 +118,8 @@ def commands_page() -> str:
     text = """# Commands
 
 This page has the contents of `cyclo COMMAND --help`. Numerical options may carry a unit (`--torque "377.3 N m"`,
-[Quantities and units](../units.md)); `DRIVE` is a drive file, or `paper` for the shipped drive.
+[Quantities and units](../units.md)); `DRIVE` is a drive file, or the name of a shipped drive (`paper`, `robot-joint`, `rv`,
+`sleeved`).
 Several angles are separated by spaces and may be negative. Every printed table names torque, direction of the crank,
 model, positions and case. Exit statuses, output folders and interrupted runs:
 [Exit statuses, files and processes](../files_and_processes.md).
@@ -173,7 +174,8 @@ def dataset_page() -> str:
 
 `results.nc` of `cyclo run` is a netCDF file; `result.dataset` in Python has the same contents for one case. `pressure.nc`
 (`--pressure`) and `fem.nc` (`cyclo fem`) use the same names. Dimensions are in the order `case`, `disc`, `crank`, `position`,
-then `pin`, `roller`, `hole` or `lobe`; dimensions of size 1 are kept.
+then `pin`, `roller`, `hole` or `lobe`; dimensions of size 1 are kept. In Python `crank_angle` is an index beside `position`
+(`.sel(crank_angle=0.5, method="nearest")`); of a file `.set_xindex("crank_angle")` makes it one.
 The attribute `units` has the unit of a variable, `long_name` its meaning. Discs, cranks, pins, rollers and holes are
 numbered from 0, counter-clockwise; signs and frames: [Conventions](../../theory/conventions.md).
 

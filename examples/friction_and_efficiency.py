@@ -10,13 +10,12 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import ltca
-from ltca.reading.changes import with_fields
 
 drive = ltca.load_drive("paper").cases["CS-3"]
 coefficients = np.array([0.0, 0.02, 0.06, 0.12])
 forward, back = [], []
 for mu in coefficients:
-    rubbing = with_fields(drive, {"friction.pin": mu, "friction.hole": mu})
+    rubbing = drive.with_fields({"friction.pin": mu, "friction.hole": mu})
     summary = ltca.analyse(rubbing, positions=3).summary
     forward.append(summary["mean_efficiency"])
     back.append(summary["mean_efficiency_back"])

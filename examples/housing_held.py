@@ -10,9 +10,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import ltca
-from ltca.reading.drive_file import parse_drive, shipped_drive
 
-drive = parse_drive(shipped_drive("robot-joint")).cases["nominal"]
+drive = ltca.load_drive("robot-joint").cases["nominal"]
 result = ltca.analyse(drive, crank_angle=[0.5])
 data = result.dataset.isel(case=0, position=0)
 

@@ -10,7 +10,6 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import ltca
-from ltca.reading.changes import with_fields
 from ltca.studies.batch_analysis import BatchSettings, analyse_samples
 
 file = ltca.load_drive("paper")
@@ -21,7 +20,7 @@ radial = file.tolerances["pin_wheel.pin_errors.radial"]
 samples = []
 for _ in range(200):
     errors = radial.quantile(random.random(drive.pin_wheel.number_of_pins))
-    samples.append(with_fields(drive, {"pin_wheel.pin_errors.radial": tuple(errors.tolist())}))
+    samples.append(drive.with_fields({"pin_wheel.pin_errors.radial": tuple(errors.tolist())}))
 settings = BatchSettings(
     crank_angle=2.0 * np.pi * np.arange(8) / 8, quantities=("max_pin_load", "max_pin_pressure_mid")
 )

@@ -9,9 +9,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import ltca
-from ltca.reading.drive_file import parse_drive, shipped_drive
 
-drive = parse_drive(shipped_drive("rv")).cases["nominal"]
+drive = ltca.load_drive("rv").cases["nominal"]
 result = ltca.analyse(drive, positions=24)
 data = result.dataset.isel(case=0)
 turn = np.degrees(data["crank_angle"])

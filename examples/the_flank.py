@@ -13,7 +13,6 @@ from matplotlib.patches import Circle
 import ltca
 from ltca.geometry.first_contact import backlash
 from ltca.geometry.pairs import ContactGeometry
-from ltca.reading.changes import with_fields
 
 WHEEL = -1  # the last coordinate of a pose
 
@@ -39,7 +38,7 @@ angle = 2.0 * np.pi * np.arange(13) / 13 / 13
 offsets = np.linspace(0.05, 0.25, 9)
 play = []
 for offset in offsets:
-    changed = with_fields(drive, {"disc.equidistant_offset": offset, "disc.shifting_offset": 0.0})
+    changed = drive.with_fields({"disc.equidistant_offset": offset, "disc.shifting_offset": 0.0})
     play.append(np.degrees(np.mean(backlash(ContactGeometry.of_drive(changed), angle, WHEEL))) * 60.0)
 
 figure, axes = plt.subplots(figsize=(6.0, 3.2))

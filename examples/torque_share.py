@@ -10,16 +10,14 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import ltca
-from ltca.reading.changes import with_fields
-from ltca.reading.drive_file import parse_drive, shipped_drive
 
-drive = parse_drive(shipped_drive("robot-joint")).cases["nominal"]
+drive = ltca.load_drive("robot-joint").cases["nominal"]
 runout = np.array([0.0, 3.0, 6.0])
 largest = {}
 for torque in ("400 N m", "40 N m"):
     shares = []
     for amount in runout:
-        changed = with_fields(drive, {"disc.of.0.runout.amount": amount * 1e-3, "load.torque": torque})
+        changed = drive.with_fields({"disc.of.0.runout.amount": amount * 1e-3, "load.torque": torque})
         shares.append(ltca.analyse(changed, positions=8).loaded.torque_share.max())
     largest[torque] = np.array(shares)
 

@@ -11,19 +11,18 @@ import numpy as np
 import ltca
 from ltca.drive.members.temperatures import warm_drive
 from ltca.geometry.pairs import ContactGeometry
-from ltca.reading.changes import with_fields
 
 drive = ltca.load_drive("paper").cases["CS-3"]
 expansion = dict.fromkeys(
     (f"materials.{part}.thermal_expansion" for part in ("roller", "inner_race", "shaft_pin")), 11.4e-6
 )
-plastic = with_fields(drive, {"materials.disc": "PA12", "load.torque": "5 N m", **expansion})
+plastic = drive.with_fields({"materials.disc": "PA12", "load.torque": "5 N m", **expansion})
 
 warmth = np.array([20.0, 22.0, 24.0, 26.0, 28.0])
 angle = 2.0 * np.pi * np.arange(52) / 52
 gap = []
 for celsius in warmth:
-    warm = warm_drive(with_fields(plastic, {"temperature.disc": celsius}))
+    warm = warm_drive(plastic.with_fields({"temperature.disc": celsius}))
     approach = ContactGeometry.of_drive(warm).flank(angle, np.zeros((52, 4))).approach
     gap.append(-float(approach.max()))
 

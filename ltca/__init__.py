@@ -28,7 +28,8 @@ figures        Pictures of results, by matplotlib and pyvista
 page           Pages of results that open offline
 export         Parts carried out: exact outlines, DXF drawings, tables of points (STEP and STL: ``fem.export``)
 testing        What serves checking alone, importable by tests of your own
-facade         The front door: `load_drive`, `analyse`, engines; what ``import ltca`` gives
+facade         The front door: `analyse`, its result, derivatives
+front          What else ``import ltca`` gives: `check`, `curves`, `concat`
 commands       The program ``cyclo``
 drives         Drives that ship with the package
 =============  ============================================================
@@ -42,6 +43,9 @@ if TYPE_CHECKING:
     from ltca.analysis.engines import HalfSpace, Hybrid, PlaneStrain
     from ltca.drive.parts import Drive
     from ltca.facade import analyse, derivatives
+    from ltca.front.checks import check
+    from ltca.front.curves import curves
+    from ltca.front.joined import concat
     from ltca.reading.drive_file import load_drive
 
     __version__: str
@@ -53,11 +57,17 @@ _HOMES = {
     "Hybrid": "ltca.analysis.engines",
     "PlaneStrain": "ltca.analysis.engines",
     "analyse": "ltca.facade",
+    "check": "ltca.front.checks",
+    "concat": "ltca.front.joined",
+    "curves": "ltca.front.curves",
     "derivatives": "ltca.facade",
     "load_drive": "ltca.reading.drive_file",
 }
 
-__all__ = ["Drive", "HalfSpace", "Hybrid", "PlaneStrain", "__version__", "analyse", "derivatives", "load_drive"]
+__all__ = [
+    "Drive", "HalfSpace", "Hybrid", "PlaneStrain", "__version__", "analyse", "check", "concat",
+    "curves", "derivatives", "load_drive",
+]  # fmt: skip
 
 
 def __getattr__(name: str) -> Any:

@@ -13,7 +13,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from ltca.analysis import loaded_analysis
-from ltca.analysis.engines import Engine, engine_of
+from ltca.analysis.engines import Engine
 from ltca.analysis.extremes import sampling_warning
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.analysis.results import build_dataset
@@ -21,6 +21,7 @@ from ltca.analysis.summary import refined_value, summarise
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.drive.parts import Drive
 from ltca.errors import ConvergenceError, DriveError
+from ltca.front.arguments import angles_given, counted, engine_given, require_drive, torque_given
 from ltca.geometry.placement import position_angles
 from ltca.quantities import SCALARS, unit_sign
 
@@ -66,8 +67,11 @@ class AnalysisResult:
 
     @property
     def dataset(self) -> xr.Dataset:
-        """Labelled dataset as in ``results.nc``, of this one case; its arrays are read-only."""
-        found = build_dataset(self.drive.name, {self.case: self.loaded})
+        """Labelled dataset as in ``results.nc``, of this one case; its arrays are read-only.
+
+        Positions are found by their number or by their crank angle, ``.sel(crank_angle=0.5, method="nearest")``.
+        """
+        found = by_angle(build_dataset(self.drive.name, {self.case: self.loaded}))
         for variable in found.variables.values():
             if isinstance(variable.data, np.ndarray):
                 variable.data.flags.writeable = False
@@ -87,6 +91,67 @@ class AnalysisResult:
         """What to know of drive, positions and answer before they are used, one sentence each, as `cyclo run` prints it."""
         sampled = sampling_warning(self.drive, self.loaded.full.crank_angle)
         return [*self.loaded.warnings, *([] if sampled is None else [sampled])]
+
+    def pressure(
+        self,
+        contact: str = "pin",
+        number: int | None = None,
+        *,
+        position: int | None = None,
+        crank_angle: float | str | None = None,
+        disc: int | None = None,
+        crank: int | None = None,
+        cells: int = 16,
+    ) -> xr.DataArray:
+        """Return the pressure over the patch of one contact at one position: along the profile and along the width.
+
+        Solved on a grid at the load of the contact, with its true separation: half-spaces of finite length near the contact,
+        whatever yields beyond. What is left open is where the contact carries most.
+
+        Parameters
+        ----------
+        contact : {"pin", "roller_outer", "roller_inner", "hole"}
+            Wheel pin and flank, roller in the bore or on the inner race, shaft pin and hole.
+        number : int, optional
+            Which pin, roller or hole.
+        position : int, optional
+            Number of the position.
+        crank_angle : float or str, optional
+            Its crank angle instead, rad or a text with a unit: one of those analysed.
+        disc, crank : int, optional
+            Which disc, and for rollers which crank.
+        cells : int
+            Cells over the half-width and over half the length.
+
+        Returns
+        -------
+        xarray.DataArray, shape (x, y)
+            Mean pressure of the cells, MPa, over their middles, mm; ``x_size`` and ``y_size`` are their sizes. Which contact it
+            is are scalar coordinates; load, half-width, largest pressure and shear below the surface are attributes.
+
+        Raises
+        ------
+        DriveError
+            When there is no such contact, it carries nothing, or bodies are in plane strain (``fe``), which has no width.
+
+        Examples
+        --------
+        >>> import ltca
+        >>> result = ltca.analyse(ltca.load_drive("paper").cases["CS-1"], crank_angle=[0.3])
+        >>> field = result.pressure("pin", 3)
+        >>> carried, load = (field * field.x_size * field.y_size).sum(), result.dataset["pin_load"].sel(pin=3)
+        >>> f"{carried.item():.0f} N of {load.item():.0f} N"
+        '3524 N of 3524 N'
+        >>> along = field.max("x")  # over the width: the ends carry more than the middle
+        >>> f"{float(along.sel(y=0.0, method='nearest')):.0f} MPa in the middle"
+        '1387 MPa in the middle'
+        """
+        from ltca.front.pressures import contact_pressure
+
+        return contact_pressure(
+            self.loaded, self.case, contact, number,
+            position=position, crank_angle=crank_angle, disc=disc, crank=crank, cells=cells,
+        )  # fmt: skip
 
     @property
     def plot(self) -> Plots:
@@ -189,7 +254,7 @@ def analyse(
     positions: int | None = None,
     *,
     crank_angle: ArrayLike | None = None,
-    torque: float | None = None,
+    torque: float | str | None = None,
     compliance: str | Engine | None = None,
     method: str | None = None,
     contacts: str | None = None,
@@ -206,9 +271,9 @@ def analyse(
     positions : int, optional
         Crank angles 2πk/N, k = 0 … N−1; 360 by default.
     crank_angle : array, shape (positions,), optional
-        Crank angles φ_C, rad, instead.
-    torque : float, optional
-        Output torque, N·mm; the drive's own by default.
+        Crank angles φ_C, rad, instead; each may be a text with a unit, ``"20 deg"``.
+    torque : float or str, optional
+        Output torque, N·mm, or a text with a unit, ``"400 N·m"``; the drive's own by default.
     compliance : {"half-space", "fe", "hybrid"} or engine, optional
         How the bodies yield; an engine (`ltca.HalfSpace`, `ltca.PlaneStrain`, `ltca.Hybrid`) brings its options. Left out,
         ``drive.analysis.compliance`` says it: ``hybrid`` unless the drive file has another; a `method` or `contacts` is of
@@ -243,23 +308,23 @@ def analyse(
     >>> result = ltca.analyse(drive, crank_angle=[0.5])
     >>> print(f"{float(result.dataset['bearing_tangential'].sum()):.0f} N")
     6738 N
+    >>> half = ltca.analyse(drive, crank_angle="20 deg", torque="188.65 N·m")
+    >>> print(f"{float(half.dataset['bearing_tangential'].sum()):.0f} N")
+    3370 N
     """
-    if not isinstance(drive, Drive):
-        raise DriveError([f"drive: must be one Drive, not a {type(drive).__name__}; a drive file has them in .cases"])
+    require_drive(drive)
     if positions is not None and crank_angle is not None:
         raise DriveError(["positions and crank_angle: give one of them"])
     if crank_angle is None:
-        count = 360 if positions is None else positions
-        if isinstance(count, bool) or not isinstance(count, int | np.integer) or not 1 <= count <= MOST_POSITIONS:
-            raise DriveError([f"positions = {count!r}: must be a whole number from 1 to {MOST_POSITIONS}"])
-        crank_angle = position_angles(int(count))
+        crank_angle = position_angles(counted(360 if positions is None else positions, "positions", 1, MOST_POSITIONS))
+    angles: Any = angles_given(crank_angle)
+    carried = torque_given(drive, torque)
     name = drive.case if case is None else case
-    given: Any = Path(coefficients) if isinstance(coefficients, str) else coefficients
-    engine = engine_of(
-        [drive], compliance, method=method, contacts=contacts, coefficients=given, hole_near_field=hole_near_field
+    engine = engine_given(
+        drive, compliance, method=method, contacts=contacts, coefficients=coefficients, hole_near_field=hole_near_field
     )
     try:
-        return AnalysisResult(case=name, loaded=loaded_analysis.analyse(drive, np.asarray(crank_angle), torque, engine))
+        return AnalysisResult(case=name, loaded=loaded_analysis.analyse(drive, angles, carried, engine))
     except ConvergenceError as error:
         if isinstance(error.partial, LoadedAnalysis):
             error.partial = AnalysisResult(case=name, loaded=error.partial)
@@ -303,4 +368,9 @@ def derivatives(result: AnalysisResult, fields: Iterable[str]) -> xr.Dataset:
     """
     from ltca.analysis.derivatives import derivatives as of_analysis
 
-    return of_analysis(result.loaded, fields)
+    return by_angle(of_analysis(result.loaded, fields))
+
+
+def by_angle(dataset: xr.Dataset) -> xr.Dataset:
+    """Return a dataset whose positions are found by their crank angle, too."""
+    return dataset.set_xindex("crank_angle")

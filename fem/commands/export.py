@@ -98,13 +98,10 @@ def execute(arguments: argparse.Namespace) -> int:
 
 
 def _require_libraries(kind: str) -> None:
-    """Raise an error before any work when a library is missing."""
+    """Raise an error before any work when a library of the system is missing."""
     from fem.mesh.gmsh_session import load_gmsh
-    from ltca.export.drawing import load_ezdxf
 
-    if kind == "dxf":
-        load_ezdxf()
-    elif kind in SOLID:
+    if kind in SOLID:
         load_gmsh()
 
 

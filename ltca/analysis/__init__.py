@@ -24,6 +24,7 @@ torque_curve               Torque against wind-up over both directions, and what
                            motion, torsional stiffness
 transmission_error_orders  Orders of the transmission error by name, fitted together
 life                       Rating life and static safety of the crank bearings from the loads of their rollers
+drive_curves               Curves of one drive: torque curve, orders, lives and pressure over turns
 verdict                    A verdict on a design: values against limits that each have a source, and advice
 pressure_safety            Safety of the flank pressure against a limit
 memory_need                Memory and disc that an analysis of many positions will need, estimated before it starts

@@ -1,4 +1,4 @@
-"""Pressure over every loaded contact at chosen crank angles: solved on grids at the pose found, as one dataset.
+"""Pressure over every loaded contact at chosen crank angles: solved on grids that carry the loads found, as one dataset.
 
 Layout of ``pressure.nc``: dimensions, coordinates and names of ``results.nc``, and the cells ``pin_cell_x``,
 ``pin_cell_y``, ``roller_cell_x``, ``roller_cell_y`` of each patch. Patches differ in size, so each has edges of its
@@ -12,24 +12,34 @@ zero on cells of no size, so sums of pressure times area are loads without excep
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.analysis.results import coordinates, provenance
 from ltca.analysis.summary import LOADED_FRACTION
 from ltca.arrays import FloatArray
 from ltca.contact.end_pressure import largest_pressure
+from ltca.contact.pressure_cells import PatchSolution
 from ltca.contact.subsurface import find_subsurface_shear
 from ltca.contact.tracked_grid import ContactKind, ContactKinds, Departure, solve_fitted
+from ltca.drive.hole_contact import hole_modulus
+from ltca.errors import ConvergenceError
 from ltca.geometry.separation import circle_departure, flank_departure
+from ltca.laws.line_contact import LineContactLaw
 from ltca.quantities import QUANTITIES
 
 FIELD_CELLS = 16
 """Cells over each half-width and half of each length."""
+MOST_SECANTS = 12
+LOAD_TOLERANCE = 1e-5
+"""Relative deviation of the load of a field from that of its contact."""
+GRID_STEP = 1e-3
+"""Largest such deviation: from one grid of the ladder to the next the load at an approach jumps by some 2e-4."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,14 +74,14 @@ class PressureField:
 
 
 def recover_pressure(
-    kind: ContactKind, approach: float, effective_radius: float, departure: Departure, poisson_ratio: float
+    kind: ContactKind, load: float, effective_radius: float, departure: Departure, poisson_ratio: float
 ) -> PressureField:
-    """Solve one contact at an approach δ and radius ρ, mm, and unfold its symmetry.
+    """Solve one contact that carries a load, N, at an effective radius ρ, mm, and unfold its symmetry.
 
     `departure` is the true separation over the distance along the tangent, mm; `poisson_ratio` that of the body whose shear
     stress is wanted.
     """
-    solved = solve_fitted(kind, approach, effective_radius, departure)
+    solved = _solve_at_load(kind, load, effective_radius, departure)
     shear = find_subsurface_shear(solved, poisson_ratio)
     x, y, pressure = solved.unfolded()
     return PressureField(
@@ -87,58 +97,113 @@ def recover_pressure(
     )
 
 
+def _solve_at_load(kind: ContactKind, load: float, effective_radius: float, departure: Departure) -> PatchSolution:
+    """The grid at the approach at which it carries a load, by secants over the logarithms of both.
+
+    What lies behind a contact, seats, bent pins, the body, has its part of the approach of the bodies: the load has not.
+    """
+    law = LineContactLaw(kind.length, kind.contact_modulus)
+    approach = float(law.approach_at_load(np.array(load), np.array(effective_radius))[0])
+    slope, best, last, misses = 1.0 / 1.1, None, None, list[float]()
+    for _ in range(MOST_SECANTS):
+        solved = solve_fitted(kind, approach, effective_radius, departure)
+        miss = float(np.log(load / solved.load)) if solved.load > 0.0 else 1.0
+        misses.append(abs(miss))
+        if best is None or abs(miss) == min(misses):
+            best = solved
+        if abs(miss) < LOAD_TOLERANCE:
+            break
+        if last is not None and abs(last[1] - miss) > LOAD_TOLERANCE:
+            slope = float(np.clip((np.log(approach) - last[0]) / (last[1] - miss), 0.5, 1.2))
+        last = float(np.log(approach)), miss
+        approach *= float(np.exp(np.clip(slope * miss, -2.0, 2.0)))
+    if best is None or min(misses) > GRID_STEP:
+        raise ConvergenceError(f"no pressure field carries {load:g} N; deviations of the load, part of it", misses)
+    return best
+
+
+CONTACTS = {
+    "pin": "wheel pin",
+    "roller_outer": "roller in the bore",
+    "roller_inner": "roller on the inner race",
+    "hole": "shaft pin",
+}
+"""Contacts with a pressure over their width, by the names of the dataset."""
+
+
+def loads_of(analysis: LoadedAnalysis, contact: str) -> FloatArray:
+    """Return the loads of one kind of `CONTACTS` of a drive of one disc, N, shape (positions, pairs)."""
+    contacts = analysis.full.response
+    return {
+        "pin": contacts.pin_load,
+        "roller_outer": contacts.rollers.outer_load,
+        "roller_inner": contacts.rollers.inner_load,
+        "hole": contacts.hole_load,
+    }[contact]
+
+
+def pressure_field(
+    analysis: LoadedAnalysis, contact: str, position: int, pair: int, cells: int = FIELD_CELLS
+) -> PressureField:
+    """Return the pressure over one loaded contact of `CONTACTS` at one position of a drive of one disc.
+
+    The bodies near it are half-spaces of finite length, whatever yields beyond; in plane strain there is no such field.
+    """
+    drive, place = analysis.drive, analysis.model.discs[0].geometry.placement
+    kinds, parts, load = ContactKinds.of_drive(drive, cells), drive.materials, loads_of(analysis, contact)
+    if contact == "pin":
+        profile, theta = analysis.model.discs[0].geometry.profile, analysis.full.response.flank.parameter
+        at, pin_radius = float(theta[position, pair]), float(place.wheel_pin_radii[pair])
+        kind, radius, material = kinds.pins, analysis.full.response.flank.effective_radius[position, pair], parts.disc
+
+        def departure(x: FloatArray) -> FloatArray:
+            return flank_departure(profile, at, x) + circle_departure(x, pin_radius)
+
+    elif contact == "hole":
+        own, wall = float(place.shaft_pin_radii[pair]), float(place.hole_radii[pair])
+        modulus = hole_modulus(drive, rigid_shaft_pins=analysis.pressures.rigid_shaft_pins)
+        kind, radius, material = (
+            replace(kinds.holes, contact_modulus=modulus),
+            place.hole_effective_radii[pair],
+            parts.disc,
+        )
+
+        def departure(x: FloatArray) -> FloatArray:
+            return circle_departure(x, own) + circle_departure(x, -wall)
+
+    else:
+        outer, own = contact == "roller_outer", float(place.roller_radii[pair])
+        kind, material = kinds.outer if outer else kinds.inner, parts.roller
+        radius = (place.outer_effective_radii if outer else place.inner_effective_radii)[pair]
+        race = -float(place.bore_radius) if outer else float(place.inner_race_radius)
+
+        def departure(x: FloatArray) -> FloatArray:
+            return circle_departure(x, own) + circle_departure(x, race)
+
+    return recover_pressure(kind, float(load[position, pair]), float(radius), departure, material.poisson_ratio)
+
+
 def pin_fields(analysis: LoadedAnalysis, position: int, cells: int = FIELD_CELLS) -> dict[int, PressureField]:
     """Return the pressure fields of the loaded wheel pins of one position of a drive of one disc, by pin."""
-    kind = ContactKinds.of_drive(analysis.drive, cells).pins
-    contacts, geometry = analysis.full.response, analysis.model.discs[0].geometry
-    fields = {}
-    for pin in _loaded(contacts.pin_load, position):
-        theta = float(contacts.flank.parameter[position, pin])
-        radius = float(geometry.placement.wheel_pin_radii[pin])
-
-        def departure(x: FloatArray, theta: float = theta, radius: float = radius) -> FloatArray:
-            return flank_departure(geometry.profile, theta, x) + circle_departure(x, radius)
-
-        fields[pin] = recover_pressure(
-            kind,
-            float(contacts.flank.approach[position, pin]),
-            float(contacts.flank.effective_radius[position, pin]),
-            departure,
-            analysis.drive.materials.disc.poisson_ratio,
-        )
-    return fields
+    return _fields(analysis, "pin", position, cells)
 
 
 def roller_fields(
     analysis: LoadedAnalysis, position: int, side: str, cells: int = FIELD_CELLS
 ) -> dict[int, PressureField]:
     """Return the pressure fields of the loaded rollers of one disc at one position, by roller, in the bore or on the race."""
-    kinds = ContactKinds.of_drive(analysis.drive, cells)
-    rollers, place = analysis.full.response.rollers, analysis.model.discs[0].geometry.placement
-    outer = side == "outer"
-    kind = kinds.outer if outer else kinds.inner
-    approach = rollers.outer_approach if outer else rollers.inner_approach
-    race = -float(place.bore_radius) if outer else float(place.inner_race_radius)
-    effective_radii = place.outer_effective_radii if outer else place.inner_effective_radii
-    fields = {}
-    for roller in _loaded(rollers.outer_load, position):
-        radius = float(place.roller_radii[roller])
-
-        def departure(x: FloatArray, radius: float = radius) -> FloatArray:
-            return circle_departure(x, radius) + circle_departure(x, race)
-
-        fields[roller] = recover_pressure(
-            kind,
-            float(approach[position, roller]),
-            float(effective_radii[roller]),
-            departure,
-            analysis.drive.materials.roller.poisson_ratio,
-        )
-    return fields
+    return _fields(analysis, f"roller_{side}", position, cells)
 
 
-def _loaded(load: FloatArray, position: int) -> list[int]:
-    return [int(pair) for pair in np.nonzero(load[position] > LOADED_FRACTION * np.max(load))[0]]
+def _fields(analysis: LoadedAnalysis, contact: str, position: int, cells: int) -> dict[int, PressureField]:
+    pairs = np.nonzero(is_loaded(analysis, contact)[position])[0]
+    return {int(pair): pressure_field(analysis, contact, position, int(pair), cells) for pair in pairs}
+
+
+def is_loaded(analysis: LoadedAnalysis, contact: str) -> NDArray[np.bool_]:
+    """Tell which contacts of a kind have a field, shape (positions, pairs): those with some load beside the largest."""
+    load = loads_of(analysis, contact)
+    return np.asarray(load > LOADED_FRACTION * np.max(load, initial=0.0, where=np.isfinite(load)))
 
 
 FIELD_VALUES = {

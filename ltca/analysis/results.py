@@ -142,8 +142,8 @@ def coordinates(analyses: Mapping[str, LoadedAnalysis]) -> dict[str, Any]:
     }
 
 
-def check_common_shape(cases: Mapping[str, Drive]) -> None:
-    """Refuse cases with different numbers of pins, rollers, holes or discs: they do not fit one dataset.
+def check_common_shape(cases: Mapping[str, Drive], mend: str = "run it alone with --case") -> None:
+    """Refuse cases with different numbers of pins, rollers, holes or discs: they do not fit one dataset; `mend` says what to do.
 
     Raises
     ------
@@ -164,7 +164,7 @@ def check_common_shape(cases: Mapping[str, Drive]) -> None:
     things = ("wheel pins", "rollers", "shaft pins", "discs", "cranks")
     problems = [
         f"case {name}: has {_counted(shape, things)}: must be {_counted(shapes[first], things)} as in case {first} to share "
-        "one result (run it alone with --case)"
+        f"one result ({mend})"
         for name, shape in shapes.items()
         if shape != shapes[first]
     ]

@@ -91,14 +91,9 @@ def execute(arguments: argparse.Namespace) -> int:
     tell_unit_mistakes(file.cases[name] for name in cases)
     out = arguments.out or default_folder(file.name, "curves")
     require_folder(out)
+    from ltca.analysis.drive_curves import CurveSettings, positions_per_turn, require_turns
     from ltca.analysis.memory_need import require_room_for_parts
-    from ltca.commands.actions.curves import (
-        CurveSettings,
-        positions_per_turn,
-        require_turns,
-        solve_and_write,
-        tell_of_turns,
-    )
+    from ltca.commands.actions.curves import solve_and_write, tell_of_turns
 
     asked = (arguments.pressure_limit, arguments.load_rating, arguments.speed, arguments.lost_motion)
     settings, engine = CurveSettings(*asked), compliance_of(arguments, cases.values())

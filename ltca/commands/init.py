@@ -8,7 +8,7 @@ import shlex
 from pathlib import Path
 
 from ltca.errors import CycloError, DriveError, shortened
-from ltca.reading.arguments import path_argument
+from ltca.reading.arguments import SHIPPED_DRIVES, path_argument
 
 SUMMARY = (
     "write a commented drive file to start from: the paper's drive, a robot joint's, an RV reducer's, one of loose pins"
@@ -33,7 +33,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", metavar="FILE", type=path_argument("FILE"), help="TOML file to write, e.g. my.toml")
     parser.add_argument(
         "--like",
-        choices=("paper", "robot-joint", "rv", "sleeved"),
+        choices=SHIPPED_DRIVES,
         default="paper",
         help="the paper's drive: one disc, pin shaft held (default); or made up: a robot joint's, two discs, housing held; an RV "
         "reducer's, two discs on three cranks; wheel pins loose in slots and sleeves on the output pins",

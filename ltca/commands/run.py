@@ -119,9 +119,9 @@ def execute(arguments: argparse.Namespace) -> int:
 
     positions = DEFAULT_POSITIONS if arguments.positions is None else arguments.positions
     angles = position_angles(positions) if arguments.angles is None else np.array(arguments.angles)
-    if arguments.pressure is not None and arguments.compliance != "half-space":
+    if arguments.pressure is not None and arguments.compliance == "fe":
         raise DriveError(
-            [f"--pressure: fields over the width need --compliance half-space, not {arguments.compliance}"]
+            ["--pressure: plane strain has no fields over the width; take --compliance hybrid or half-space"]
         )
     check_common_shape(cases)
     task = RunTask(

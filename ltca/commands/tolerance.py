@@ -11,7 +11,7 @@ from ltca.commands.study_arguments import (
     add_study_arguments,
     check_study_arguments,
 )
-from ltca.reading.arguments import add_case_argument, add_drive_argument, count_argument, default_folder
+from ltca.reading.arguments import DRIVE, add_case_argument, add_drive_argument, count_argument, default_folder
 
 SUMMARY = "tolerance study: percentiles, worst sample, what matters"
 EXAMPLES = (
@@ -27,7 +27,7 @@ DEFAULT_SAMPLES = 1000
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    add_drive_argument(parser, "drive file with [tolerances], or 'paper' for the shipped drive")
+    add_drive_argument(parser, f"{DRIVE}; with [tolerances]")
     add_case_argument(parser, "case to study; default the first", several=False)
     parser.add_argument(
         "--samples",

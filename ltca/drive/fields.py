@@ -134,6 +134,8 @@ def not_a_field(drive: Drive | None, path: str, known: Iterable[str] | None = No
         for name in (field_kinds() if known is None else known)
         if drive is None or absence(drive, name.replace(f".{ANY}.", ".0.")) is None
     )
+    if inside := [name for name in there if name.startswith(f"{path}.") and f".{ANY}." not in name]:
+        return f"is a table; name its fields, as `{inside[0]}`"
     written = re.fullmatch(r"(disc|crank)\.of\.(\w+)\.(.*)", path)
     plain = path if written is None else f"{written.group(1)}.of.{ANY}.{written.group(3)}"
     table, _, name = path.partition(".")

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import field, replace
 from math import gcd, pi
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import Field
 from pydantic.dataclasses import dataclass
@@ -368,6 +369,42 @@ class Drive:
     def hole_radius(self) -> float:
         """Pin-hole radius with the pin-hole clearance, mm; 0 without a pin shaft."""
         return 0.0 if self.pin_shaft is None else self.pin_shaft.hole_radius + self.clearance.pin_hole
+
+    def with_fields(self, changes: Mapping[str, Any]) -> Drive:
+        """Return a drive with some fields replaced, checked like a drive file.
+
+        Cases, tolerances and limits stand beside the drives of a file: the changed drive keeps the name of its case, and
+        ``file.limits[drive.case]`` are still its limits. Lengths are those at 20 °C where the drive has temperatures.
+
+        Parameters
+        ----------
+        changes : mapping of str to value
+            New values by the names of a drive file: dotted, ``"pin_wheel.pin_radius"``, with an index for an element or an
+            entry, ``"pin_wheel.pin_errors.radial.3"``, ``"disc.of.1.runout.amount"``, or tables as a file nests them. Numbers
+            in mm, N, MPa, N·mm and rad, or texts with a unit; ``materials.disc`` and the like take a material's name. A
+            ``pin_shaft.beam`` replaces ``pin_shaft.stiffness``, and the other way round.
+
+        Returns
+        -------
+        Drive
+            A new drive; this one stays as it is.
+
+        Raises
+        ------
+        DriveError
+            When a name is no field, or a value or the whole is wrong; all mistakes together.
+
+        Examples
+        --------
+        >>> import ltca
+        >>> drive = ltca.load_drive("paper").cases["CS-1"]
+        >>> thick = drive.with_fields({"pin_wheel.pin_radius": "6.1 mm", "clearance": {"bearing": "30 µm"}})
+        >>> thick.pin_wheel.pin_radius, thick.clearance.bearing, drive.clearance.bearing
+        (6.1, 0.03, 0.0)
+        """
+        from ltca.reading.changes import with_fields
+
+        return with_fields(self, changes)
 
     def fingerprint(self) -> str:
         """Return a hash of the whole definition of the drive in this case (hex, 16 digits), whatever analyses it."""

@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ltca.arrays import ComplexArray
-from ltca.errors import DriveError
 from ltca.export.flank_outline import FlankSpline
 from ltca.export.parts import Body, Circle, Part
 from ltca.output.files import whole_file
@@ -25,7 +24,6 @@ if TYPE_CHECKING:
     from types import ModuleType
 
 
-MISSING = "--format dxf: ezdxf is not installed; pip install 'cyclo-ltca[cad]' brings it"
 RELEASE = "R2010"
 PLANAR = 8
 """Flag of splines in one plane."""
@@ -43,21 +41,13 @@ MARGIN = 1.1
 _options = threading.Lock()
 
 
-def load_ezdxf() -> ModuleType:
-    """Import ezdxf; `DriveError` when it is not installed."""
-    try:
-        import ezdxf
-    except ImportError as error:
-        raise DriveError([MISSING]) from error
-    module: ModuleType = ezdxf
-    return module
-
-
 def write_drawing(part: Part, path: Path) -> None:
-    """Write a part as a DXF file in mm; `DriveError` without ezdxf, `FaultError` when the file cannot be written."""
-    ezdxf = load_ezdxf()
+    """Write a part as a DXF file in mm; `FaultError` when the file cannot be written."""
+    import ezdxf
+    from ezdxf.filemanagement import new
+
     with _without_clock(ezdxf):
-        document = ezdxf.new(RELEASE, units=ezdxf.units.MM)
+        document = new(RELEASE, units=ezdxf.units.MM)
         for name, remark in zip(REMARKS, part.remarks, strict=False):
             document.header.custom_vars.append(name, remark)
         space = document.modelspace()

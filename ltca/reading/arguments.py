@@ -18,7 +18,9 @@ from ltca.errors import DriveError, shortened
 if TYPE_CHECKING:
     from ltca.drive.parts import Drive
 
-DRIVE = "drive file (TOML), or 'paper' for the shipped drive"
+SHIPPED_DRIVES = ("paper", "robot-joint", "rv", "sleeved")
+"""Names of the drives that ship with the package, each that of a file in ``ltca/drives``."""
+DRIVE = f"drive file (TOML), or the name of a shipped drive: {', '.join(SHIPPED_DRIVES)}"
 LONGEST_PART = 255
 """Largest number of bytes in the name of a file or folder on common file systems."""
 LONGEST_COUNT = 19
@@ -173,12 +175,18 @@ def quantity_argument(
     return read
 
 
-def torque_argument(text: str) -> float:
-    """Return the output torque of ``--torque``, N·mm; DriveError for anything else."""
+def torque_argument(text: str, name: str = "--torque") -> float:
+    """Return the output torque of ``--torque``, or of an argument `name` of a function, N·mm; DriveError for anything else.
+
+    Examples
+    --------
+    >>> torque_argument("400 N·m")
+    400000.0
+    """
     from ltca.drive.units.quantities import parse_quantity
 
     try:
-        return parse_quantity(text, "N*mm", "--torque", gt=0.0)
+        return parse_quantity(text, "N*mm", name, gt=0.0)
     except DriveError as error:
         (problem,) = error.problems
         hint = " (load.direction turns it)" if problem.endswith("must be greater than 0 N·mm") else ""

@@ -23,7 +23,7 @@ from ltca.drive.fields import (
 )
 from ltca.drive.materials import PARTS
 from ltca.drive.members.bearings import named_bearing
-from ltca.drive.members.named_materials import named_material, numbers_of
+from ltca.drive.members.named_materials import LIKE, named_material, numbers_of
 from ltca.drive.mistakes import describe_mistakes
 from ltca.drive.parts import Drive, Duty
 from ltca.errors import DriveError, shortened
@@ -38,8 +38,9 @@ def with_fields(drive: Drive, values: Mapping[str, Any], *, check: bool = True) 
     drive : Drive
         The drive to start from.
     values : mapping of str to value
-        New values by dotted path, see `read_field`; ``materials.disc`` and the like take a material's name,
-        ``crank_bearing.bearing`` that of a shipped bearing.
+        New values by dotted path, see `read_field`, or tables of them as a drive file nests them; ``materials.disc`` and the
+        like take a material's name, ``crank_bearing.bearing`` that of a shipped bearing. Numbers in the units of the suite,
+        or texts with a unit.
     check : bool
         Whether to look for physical contradictions as well.
 
@@ -54,11 +55,13 @@ def with_fields(drive: Drive, values: Mapping[str, Any], *, check: bool = True) 
     >>> drive = load_drive("paper").cases["CS-1"]
     >>> with_fields(drive, {"crank.axis_offset.x": 0.01}).crank.axis_offset.x
     0.01
+    >>> with_fields(drive, {"clearance": {"bearing": "30 µm"}}).clearance.bearing
+    0.03
     """
     tree: dict[str, Any] = {}
     arrays: dict[str, list[Any]] = {}
     whole = {}
-    values = _without_names(values)
+    values = _without_names(_by_path(values))
     if "disc.planes" in values or "disc.gap" in values:  # one stands in the place of the other
         values = {"disc.planes": (), "disc.gap": 0.0, **values}
     for path, value in values.items():
@@ -74,8 +77,10 @@ def with_fields(drive: Drive, values: Mapping[str, Any], *, check: bool = True) 
         else:
             whole[path] = value
             missing = missing_part(drive, path)
-            if missing is not None and not all(name in values for name in _required(missing)):
-                raise DriveError([f"{path}: there is no {missing} in this drive"])
+            if missing is not None and (lacking := [name for name in _required(missing) if name not in values]):
+                raise DriveError(
+                    [f"{path}: there is no {missing} in this drive; to add it, give {', '.join(lacking)}, too"]
+                )
     own: dict[tuple[str, int], dict[str, Any]] = {}
     for path, value in {**whole, **{name: tuple(row) for name, row in arrays.items()}}.items():
         if (place := numbered(path)) is not None:
@@ -86,6 +91,8 @@ def with_fields(drive: Drive, values: Mapping[str, Any], *, check: bool = True) 
         for step in above:
             branch = branch.setdefault(step, {})
         branch[name] = value
+    if drive.pin_shaft is not None and len(given := INSTEAD.keys() & tree.get("pin_shaft", {}).keys()) == 1:
+        tree["pin_shaft"][INSTEAD[given.pop()]] = None
     problems: list[str] = []
     changed: Drive = _replaced(drive, tree, "", problems)
     if own and not problems:
@@ -95,6 +102,26 @@ def with_fields(drive: Drive, values: Mapping[str, Any], *, check: bool = True) 
     if problems:
         raise DriveError(problems)
     return changed
+
+
+INSTEAD = {"stiffness": "beam", "beam": "stiffness", "planes": "gap", "gap": "planes"}
+"""Alternative fields of one table: a case or a change that gives one removes the other."""
+
+
+def _by_path(values: Mapping[str, Any], above: str = "") -> dict[str, Any]:
+    """Changes by dotted path, the tables among them by their fields; the name behind ``like`` is that of the table."""
+    if not isinstance(values, Mapping) or not all(isinstance(name, str) for name in values):
+        raise DriveError(
+            [f"changes = {shortened(values)}: must be values by the names of their fields, as disc.thickness"]
+        )
+    found: dict[str, Any] = {}
+    for name, value in values.items():
+        path = f"{above}{name}".removesuffix(f".{LIKE}")
+        each = _by_path(value, f"{path}.") if isinstance(value, Mapping) and value else {path: value}
+        if twice := found.keys() & each.keys():
+            raise DriveError([f"{one}: is given twice" for one in sorted(twice)])
+        found |= each
+    return found
 
 
 def _without_names(values: Mapping[str, Any]) -> Mapping[str, Any]:

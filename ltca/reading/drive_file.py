@@ -18,7 +18,9 @@ from ltca.drive.names import NAMING, names_a_file
 from ltca.drive.parts import Drive
 from ltca.drive.tolerances import Tolerances, find_absent, parse_tolerances
 from ltca.errors import DriveError, did_you_mean, shortened
+from ltca.reading.arguments import SHIPPED_DRIVES
 from ltca.reading.bearing_names import BearingNames
+from ltca.reading.changes import INSTEAD
 from ltca.reading.contradictions import explain_contradictions, find_cause
 from ltca.reading.measured.tables import MeasuredFiles, Named, without_files
 from ltca.reading.physical_checks import find_contradictions
@@ -101,12 +103,12 @@ def shipped_drive(name: str = "paper") -> str:
 
 
 def load_drive(source: str | Path) -> DriveFile:
-    """Read a drive from a TOML file or, by the name ``paper``, from the package.
+    """Read a drive from a TOML file or, by its name, one that ships with the package.
 
     Parameters
     ----------
     source : str or Path
-        File name, or ``paper``.
+        File name, or ``paper``, ``robot-joint``, ``rv`` or ``sleeved``; a file of such a name is ``./rv``.
 
     Returns
     -------
@@ -122,13 +124,20 @@ def load_drive(source: str | Path) -> DriveFile:
     --------
     >>> load_drive("paper").cases["CS-3"].clearance.bearing
     0.03
+    >>> load_drive("robot-joint").cases["nominal"].disc.number_of_discs
+    2
     """
-    if str(source) == "paper":
-        return parse_drive(shipped_drive(), "paper")
+    if not isinstance(source, str | Path):
+        raise DriveError([f"source = {shortened(source)}: must be the name of a file or of a shipped drive"])
+    name = str(source)
+    if name in SHIPPED_DRIVES:
+        return parse_drive(shipped_drive(name), name)
     path = Path(source)
-    own = f"{path.name}.toml --like {path.name}" if path.name in ("robot-joint", "rv", "sleeved") else path.name
-    hint = f"no such file; give a TOML file or 'paper' ('cyclo init {own}' writes a drive to start from)"
-    return parse_drive(read_text(path, hint), str(source))
+    hint = (
+        f"no such file; give a TOML file or a shipped drive, {', '.join(SHIPPED_DRIVES)}{did_you_mean(name, SHIPPED_DRIVES)} "
+        f"('cyclo init {path.name}' writes a drive to start from)"
+    )
+    return parse_drive(read_text(path, hint), name)
 
 
 def parse_drive(text: str, source: str = "drive") -> DriveFile:
@@ -273,8 +282,6 @@ def _merged(below: Any, value: Any) -> Any:
     return {**kept, **{key: _merged(below.get(key), over) for key, over in value.items()}}
 
 
-INSTEAD = {"stiffness": "beam", "beam": "stiffness", "planes": "gap", "gap": "planes"}
-"""Alternative fields of one table: a case that gives one removes the other."""
 _ADAPTER = TypeAdapter(Drive)
 
 

@@ -2,7 +2,7 @@
 
 ::
 
-    drive = "paper"                  # or a drive file, relative to this file
+    drive = "paper"                  # or another shipped drive, or a drive file, relative to this file
     case = "CS-3"                    # default the first
     positions = 90                   # crank angles 2πk/N; default 28
     quantities = ["ptp_transmission_error", "max_pin_pressure_mid"]   # default all at the torque of the drive
@@ -38,6 +38,7 @@ from ltca.drive.mistakes import describe_mistakes
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import quantity
 from ltca.errors import MOST_TOLD, DriveError, did_you_mean, shortened
+from ltca.reading.arguments import SHIPPED_DRIVES
 from ltca.reading.changes import BEARING, with_fields
 from ltca.reading.drive_file import listed, load_drive
 from ltca.reading.toml_text import parse_toml, read_text
@@ -84,9 +85,9 @@ def load_sweep(path: Path, engine: EngineChoice = engine_of) -> Study:
     source = table.get("drive")
     if not isinstance(source, str) or not source:
         told = "drive: is missing" if source is None else f"drive = {shortened(source)}: is no name of a file"
-        raise DriveError([f"{told}; give 'paper' or a drive file"], str(path))
+        raise DriveError([f"{told}; give 'paper', another shipped drive or a drive file"], str(path))
     # A drive file is looked for beside the study, so that both can be moved together.
-    study = parse_sweep(table, source if source == "paper" else str(path.parent / source), str(path), engine)
+    study = parse_sweep(table, source if source in SHIPPED_DRIVES else str(path.parent / source), str(path), engine)
     return replace(study, definition=text)
 
 

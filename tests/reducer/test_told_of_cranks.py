@@ -8,11 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from ltca.analysis.drive_curves import speed_words
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.results import build_dataset
 from ltca.analysis.summary import summarise
 from ltca.analysis.transmission_error_orders import Order, Spectrum
-from ltca.commands.actions.curves import _speed_words
 from ltca.commands.program import main
 from ltca.commands.show import _loads
 from ltca.drive.units.quantities import ARCSEC
@@ -126,11 +126,11 @@ def test_rollers_of_several_cranks_are_three_curves_in_their_ranges(solved):
 def test_the_speed_of_a_life_says_whose_it_is(rv, installation, elsewhere):
     """`--speed` was a crank speed, against the input, the housing or the carrier."""
     drive = replace(rv, installation=replace(rv.installation, **installation))
-    assert _speed_words(drive, 1000.0).startswith(elsewhere)
+    assert speed_words(drive, 1000.0).startswith(elsewhere)
 
 
 def test_the_speed_of_a_central_crank_is_against_the_held_member():
-    assert _speed_words(load_drive("paper").cases["CS-1"], 1500.0).endswith("of the crank against the held pin shaft")
+    assert speed_words(load_drive("paper").cases["CS-1"], 1500.0).endswith("of the crank against the held pin shaft")
 
 
 def test_a_crank_that_carries_nothing_is_said_to_carry_none(rv):

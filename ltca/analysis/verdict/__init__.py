@@ -11,5 +11,6 @@ assembly     Plays at temperature; deflections of bearings and supports against 
 duty         Entries of a duty that ask more than the load
 values       What is judged: values with the part and the crank angle where they are reached
 advice       Which inputs drive a value, and how much of which would mend it
+drive_check  The verdict on one drive: checks, advice and notes together
 ===========  ===============================================================================
 """

@@ -5,6 +5,8 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
+from ltca.reading.arguments import DRIVE
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
@@ -19,9 +21,7 @@ EXAMPLES = (
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument(
-        "--drive", metavar="DRIVE", help="drive file (TOML), or 'paper': tell what it has not, and its limits"
-    )
+    parser.add_argument("--drive", metavar="DRIVE", help=f"{DRIVE}: tell what it has not, and its limits")
 
 
 def execute(arguments: argparse.Namespace) -> int:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from numbers import Integral
+from numbers import Integral, Real
 from typing import Any
 
 from pydantic import BeforeValidator
@@ -175,17 +175,23 @@ COUNT = BeforeValidator(check_count)
 
 
 def parse_quantity(
-    text: str, unit: str, name: str, *, gt: float | None = None, ge: float | None = None, le: float | None = None
+    given: object, unit: str, name: str, *, gt: float | None = None, ge: float | None = None, le: float | None = None
 ) -> float:
-    """Return a number or a text with unit from the command line, as ``"377.3 N m"``, in a unit of the suite.
+    """Return a number, or a text with unit as ``"377.3 N m"``, of a command or function, in a unit of the suite.
 
-    Bounds (greater than, at least, at most) are in that unit; `name` is the option, for the message. DriveError when the
-    text is no finite quantity of that kind within the bounds.
+    Bounds (greater than, at least, at most) are in that unit; `name` is the option or argument, for the message. DriveError
+    when it is no finite quantity of that kind within the bounds.
+
+    Examples
+    --------
+    >>> parse_quantity("377.3 N m", "N*mm", "torque"), parse_quantity(0.5, "rad", "crank_angle")
+    (377300.0, 0.5)
     """
     bounds = (("greater than", gt), ("at least", ge), ("less than", None), ("at most", le))
     check = QuantityCheck(unit=unit, bounds=bounds)
+    number = float(given) if isinstance(given, Real) and not isinstance(given, int) else given  # those of numpy, too
     try:
-        return check(text)
+        return check(number)
     except PydanticCustomError as error:
-        told = text if is_plain_number(text) else shortened(text)
+        told = number if isinstance(number, str) and is_plain_number(number) else shortened(number)
         raise DriveError([f"{name} = {told}: {error.message()}"]) from error

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import sys
-
 import pytest
 
 from ltca.commands.program import main
@@ -104,12 +102,4 @@ def test_wrong_input_is_one_line(tmp_path, capsys, words, told):
     assert error.startswith("cyclo: error: ")
     assert error.count("\n") == 1
     assert told in error
-    assert not (tmp_path / "out").exists()
-
-
-def test_without_ezdxf_the_extra_is_named(tmp_path, capsys, monkeypatch):
-    monkeypatch.setitem(sys.modules, "ezdxf", None)
-    assert main(["export", "paper", "--format", "dxf", "--out", str(tmp_path / "out")]) == 2
-    error = capsys.readouterr().err
-    assert error == "cyclo: error: --format dxf: ezdxf is not installed; pip install 'cyclo-ltca[cad]' brings it\n"
     assert not (tmp_path / "out").exists()

@@ -8,7 +8,7 @@ import pytest
 import xarray as xr
 
 from ltca.analysis.loaded_analysis import analyse
-from ltca.analysis.pressure_fields import build_pressure_dataset, pin_fields, roller_fields
+from ltca.analysis.pressure_fields import LOAD_TOLERANCE, build_pressure_dataset, pin_fields, roller_fields
 from ltca.commands.program import main
 from ltca.drive.parts import LengthProfile
 from ltca.figures.pressure_figures import draw_roller_pressure, even_cells
@@ -27,14 +27,15 @@ def fields():
 
 @pytest.mark.parametrize("kind", ["pin", "roller"])
 def test_pressure_sums_to_the_load(fields, kind):
-    """Also where nothing touches; and the field carries what the tables say, within the grid's 0.02 %."""
+    """Also where nothing touches; and the field carries what the contact carries, to which it is solved."""
     side = "_outer" if kind == "roller" else ""
     x, y = (np.diff(fields[f"{kind}_{along}_edge{side}"].values) for along in "xy")
     total = (fields[f"{kind}_pressure{side}"].values * x[..., :, None] * y[..., None, :]).sum(axis=(-2, -1))
     np.testing.assert_allclose(total, fields[f"{kind}_field_load{side}"].values, rtol=1e-12, atol=1e-9)
     contacts = analyse(CASES["CS-1"], ANGLE).full.response
     expected = contacts.pin_load if kind == "pin" else contacts.rollers.outer_load
-    assert np.max(np.abs(total[0].reshape(expected.shape) - expected)) < 2e-4 * np.max(expected)
+    loaded = expected > 1e-3 * np.max(expected)  # others have no field
+    np.testing.assert_allclose(total[0].reshape(expected.shape)[loaded], expected[loaded], rtol=1.1 * LOAD_TOLERANCE)
 
 
 def test_subsurface_shear_of_a_line_contact(fields):

@@ -8,7 +8,7 @@ import re
 import numpy as np
 import pytest
 
-import ltca.commands.actions.curves as curves
+import ltca.analysis.drive_curves as curves
 import ltca.figures.curve_figures as curve_figures
 from ltca.analysis import engines, loaded_analysis, transmission_error_orders as orders
 from ltca.analysis.life.bearing_lives import bearing_lives

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import ezdxf
@@ -12,7 +13,6 @@ import numpy as np
 import pytest
 
 from ltca.drive.single_discs import single_discs
-from ltca.errors import DriveError
 from ltca.export.drawing import write_drawing
 from ltca.export.parts import make_parts
 from ltca.geometry.flank import FlankProfile
@@ -105,8 +105,8 @@ def test_the_same_input_gives_the_same_bytes(paper_cases, tmp_path):
     assert (tmp_path / "here.dxf").read_bytes() == (tmp_path / "there.dxf").read_bytes()
 
 
-def test_without_ezdxf_the_extra_is_named(kinds_of_drives, tmp_path, monkeypatch):
-    monkeypatch.setitem(sys.modules, "ezdxf", None)
-    with pytest.raises(DriveError, match=r"ezdxf is not installed; pip install 'cyclo-ltca\[cad\]' brings it"):
-        write_drawing(make_parts(kinds_of_drives["paper"], "CS-1")[0], tmp_path / "part.dxf")
-    assert list(tmp_path.iterdir()) == []
+def test_drawings_come_with_the_default_install():
+    """`cyclo export --format dxf` refused until an extra was installed; the name of the extra stays."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert any(name.startswith("ezdxf>=") for name in project["dependencies"])
+    assert project["optional-dependencies"]["cad"] == []

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+import ltca
 from ltca.drive.single_discs import single_discs
 from ltca.errors import DriveError
+from ltca.reading.arguments import SHIPPED_DRIVES
 from ltca.reading.drive_file import build_drive, load_drive, parse_drive, shipped_drive
 from ltca.reading.writing import drive_text
 
@@ -178,8 +182,30 @@ def test_unknown_case_names_the_known_ones():
     assert list(file.select(None)) == list(file.cases)
 
 
+def test_every_shipped_drive_is_loaded_by_its_name():
+    """`load_drive("robot-joint")` said that there was no such file."""
+    folder = Path(ltca.__file__).parent / "drives"
+    assert sorted(path.stem for path in folder.glob("*.toml")) == sorted(SHIPPED_DRIVES)
+    for name in SHIPPED_DRIVES:
+        assert load_drive(name).name == name
+        assert load_drive(name).cases == load_drive(folder / f"{name}.toml").cases
+
+
+@pytest.mark.parametrize(("name", "meant"), [("robotjoint", "robot-joint"), ("papper", "paper"), ("anything", None)])
+def test_a_wrong_name_lists_the_shipped_drives(name, meant):
+    with pytest.raises(DriveError, match="shipped drive, paper, robot-joint, rv, sleeved") as caught:
+        load_drive(name)
+    assert ("did you mean" in str(caught.value)) == (meant is not None)
+    assert meant is None or f"did you mean `{meant}`?" in str(caught.value)
+
+
+def test_only_names_are_loaded():
+    with pytest.raises(DriveError, match="source = 3: must be the name of a file or of a shipped drive"):
+        load_drive(3)
+
+
 def test_files_that_cannot_be_read(tmp_path):
-    with pytest.raises(DriveError, match="no such file; give a TOML file or 'paper'"):
+    with pytest.raises(DriveError, match="no such file; give a TOML file or a shipped drive"):
         load_drive(tmp_path / "none.toml")
     with pytest.raises(DriveError, match="cannot be read"):
         load_drive(tmp_path)
