@@ -108,7 +108,7 @@ def test_rows_of_rollers_name_the_crank(drive):
         "pin 0", "pin 1", *(f"crank {place} {side}" for place in ("0 roller 1", "0 roller 2", "1 roller 1", "1 roller 2")
                             for side in ("bore", "race")),
     }  # fmt: skip
-    assert position.differences["fe"].missing == ("crank 1 roller 1 bore", "crank 1 roller 1 race")
+    assert position.differences["fe"].missing == ("crank 1, roller 1 bore", "crank 1, roller 1 race")
 
 
 def test_rows_of_a_disc_without_shaft_pins(drive):
@@ -177,7 +177,7 @@ def test_stresses_of_bores_name_the_crank(drive):
     full = made_position(drive).full
     rows = disc_stress_rows(SimpleNamespace(full=full, stress={"fe": difference}))
     assert len(rows) == 2 + 2 + 2
-    assert {row.contact for row in rows} >= {"crank 0 roller 1 bore", "crank 1 roller 2 bore", "root 0"}
+    assert {row.contact for row in rows} >= {"crank 0, roller 1 bore", "crank 1, roller 2 bore", "root 0"}
 
 
 @pytest.mark.slow

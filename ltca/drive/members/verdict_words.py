@@ -6,22 +6,42 @@ from collections.abc import Sequence
 from math import degrees
 from typing import Any
 
-from ltca.drive.members.judgement import Check
+from ltca.drive.members.judgement import Check, Value
+from ltca.drive.parts import Drive
 from ltca.quantities import unit_sign
 
+CLOSE = ("°", "′", "″")
+"""Signs that stand right behind their number."""
 WORDS = {"pass": "pass", "fail": "FAIL", "no limit": "no limit", "not known": "–"}
 
 
+def part_words(drive: Drive, name: str, pair: int, pairs: int, disc: int | None = None) -> str:
+    """Return what a part is called where it is told: "disc 1, crank 2, roller 5", without what a drive has one of.
+
+    `pair` is its place among the `pairs` of one disc, `disc` the number of that disc, none for what all discs share; rollers
+    count anew in every bearing.
+    """
+    told = [] if disc is None or drive.disc.number_of_discs == 1 else [f"disc {disc}"]
+    if "roller" in name and drive.crank.number > 1:
+        crank, pair = divmod(pair, pairs // drive.crank.number)
+        told.append(f"crank {crank}")
+    words = name if pairs == 1 else f"{name} {pair}"
+    return ", ".join([*told, *([words] if words else [])])
+
+
 def verdict_table(checks: Sequence[Check], *, limited: bool = False) -> str:
-    """Return the checks of one case as a table; with `limited`, checks without a limit are counted only."""
-    shown = [check for check in checks if check.limit is not None or not limited]
+    """Return the checks of one case as a table: what fails, what passes by its safety, what only informs; then what is not
+    known, and why.
+
+    With `limited`, checks without a limit are counted only.
+    """
+    known = [check for check in checks if check.value.value is not None and (check.limit is not None or not limited)]
     rows = [("check", "value", "limit", "safety", "verdict", "where")]
-    for check in shown:
+    for check in sorted(known, key=lambda check: (check.limit is None, urgency(check))):
         value, limit = check.value, check.limit
-        unit = f" {unit_sign(value.unit)}".rstrip()
-        bound = "" if limit is None else f"{'≤' if limit.sense == 'max' else '≥'} {limit.value:.5g}{unit}"
+        bound = "" if limit is None else f"{'≤' if limit.sense == 'max' else '≥'} {_with_unit(limit.value, value, 5)}"
         safety = "" if check.safety is None else f"{check.safety:.3f}"
-        told = "–" if value.value is None else f"{value.value:.5g}{unit}"
+        told = _with_unit(value.value or 0.0, value, 5)
         rows.append((check.title, told, bound, safety, WORDS[check.verdict], place_words(check)))
     widths = [max(len(row[column]) for row in rows) for column in range(5)]
     lines = [
@@ -29,10 +49,21 @@ def verdict_table(checks: Sequence[Check], *, limited: bool = False) -> str:
         f"{row[4]:<{widths[4]}}  {row[5]}".rstrip()
         for row in rows
     ]
+    unknown: dict[str, list[str]] = {}
+    for check in checks:
+        if check.value.value is None and (check.limit is not None or not limited):
+            unknown.setdefault(check.value.reason, []).append(check.title)
+    lines += [f"  not known: {', '.join(dict.fromkeys(titles))}: {reason}" for reason, titles in unknown.items()]
     counts = {verdict: sum(check.verdict == verdict for check in checks) for verdict in WORDS}
     words = {"pass": "passed", "fail": "failed", "no limit": "without a limit", "not known": "not known"}
     lines.append("  " + ", ".join(f"{counts[verdict]} {word}" for verdict, word in words.items()))
     return "\n".join(lines)
+
+
+def _with_unit(number: float, value: Value, digits: int) -> str:
+    """A number with the unit of a value, whose minutes and seconds of arc stand right behind it."""
+    sign = unit_sign(value.unit)
+    return f"{number:.{digits}g}" + (sign if sign in CLOSE else f" {sign}" if sign else "")
 
 
 def verdict_line(checks: Sequence[Check]) -> str:
@@ -47,18 +78,24 @@ def verdict_line(checks: Sequence[Check]) -> str:
     if nearest.value.value is None:
         told += f" cannot be judged: {nearest.value.reason}"
     elif nearest.limit is not None:
-        unit = f" {unit_sign(nearest.value.unit)}".rstrip()
-        bound = f"{'≤' if nearest.limit.sense == 'max' else '≥'} {nearest.limit.value:.4g}{unit}"
-        told += f" {nearest.value.value:.4g}{unit} ({bound})"
+        bound = f"{'≤' if nearest.limit.sense == 'max' else '≥'} {_with_unit(nearest.limit.value, nearest.value, 4)}"
+        told += f" {_with_unit(nearest.value.value, nearest.value, 4)} ({bound})"
     if nearest.safety is not None:
         told += f", safety {nearest.safety:.3g}"
     return told + (f"; {failed} of {len(judged)} checks fail" if failed > 1 else "")
 
 
 def urgency(check: Check) -> tuple[bool, bool, float]:
-    """Return a sort key: failed checks first, checks of the drive before those of the sampling, then by increasing safety."""
+    """Return a sort key: failed checks first, checks of the drive before those of the sampling, then by increasing safety.
+
+    A value beyond a limit that no ratio measures, as a wall thinner than nothing, is worst of all; one that keeps such a limit,
+    or is not known, comes last.
+    """
     of_sampling = check.value.quantity == "distinct_mesh_phases"
-    return not check.fails, of_sampling, float("inf") if check.safety is None else check.safety
+    safety = check.safety
+    if safety is None:
+        safety = 0.0 if check.verdict == "fail" else float("inf")
+    return not check.fails, of_sampling, safety
 
 
 def place_words(check: Check) -> str:
