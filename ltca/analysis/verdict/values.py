@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from math import isfinite
+from math import inf, isclose, isfinite
 
 import numpy as np
 
@@ -105,8 +105,10 @@ def _least(quantity: str, discs: Sequence[Mapping[str, float]]) -> Value:
     value = discs[number][name]
     if not isfinite(value):
         return Value(quantity=quantity, value=None, reason="the flank has no hollow")
-    differs = any(named.get(name) != value for named in discs)
-    return Value(quantity=quantity, value=value, part=", ".join(filter(None, (f"disc {number}" * differs, name))))
+    differs = any(not isclose(named.get(name, inf), value) for named in discs)
+    return Value(
+        quantity=quantity, value=value, part=", ".join(filter(None, (f"disc {number}" if differs else "", name)))
+    )
 
 
 def _of_loads(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) -> Iterator[Value]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Mapping, Sequence
+from math import log
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,7 @@ from ltca.analysis.verdict.values import judge_analysis, notes as notes_of
 from ltca.drive.members.judgement import WHOLE, Check, Value, judge
 from ltca.drive.members.limits import Limits
 from ltca.drive.members.temperatures import warm_drive
-from ltca.drive.members.verdict_words import check_content, verdict_table
+from ltca.drive.members.verdict_words import check_content, urgency, verdict_table
 from ltca.drive.parts import Drive
 from ltca.errors import DriveError
 from ltca.geometry.placement import position_angles
@@ -112,9 +113,7 @@ def _seized(drive: Drive, limits: Limits, error: DriveError) -> tuple[list[Check
 def _advice(checks: Sequence[Check], drivers: Mapping[str, Sequence[Driver]]) -> str:
     """Text on failed checks: the inputs that drive them, and changes that would mend them."""
     lines = []
-    for check in checks:
-        if not check.fails:
-            continue
+    for check in sorted((check for check in checks if check.fails), key=urgency):
         limit = check.limit
         source = "" if limit is None else f" (limit: {limit.source})"
         told = "fails" if check.verdict == "fail" else f"cannot be judged: {check.value.reason}"
@@ -127,12 +126,34 @@ def _advice(checks: Sequence[Check], drivers: Mapping[str, Sequence[Driver]]) ->
         ]
         if each and not helping:
             named = ", ".join(f"{driver.input} ({driver.elasticity:+.2f})" for driver in each[:MAX_INPUTS])
-            lines.append(f"    driven by {named}; no single change by a factor of three mends it")
-    return "".join(f"{line}\n" for line in lines)
+            lines.append(f"    driven by {named}; no single change by a factor of three mends it and keeps the others")
+        lines += [
+            f"    not {driver.input}: what mends this fails {', '.join(driver.breaks)}"
+            for driver in [driver for driver in each if driver.breaks][:MAX_INPUTS]
+        ]
+    return "".join(f"{line}\n" for line in [*lines, *_at_once(checks, drivers)])
+
+
+def _at_once(checks: Sequence[Check], drivers: Mapping[str, Sequence[Driver]]) -> list[str]:
+    """Changes of one input that mend all failed checks together: of each input that mends every one, the largest change."""
+    failed = [drivers.get(check.value.quantity, ()) for check in checks if check.fails]
+    if len(failed) < 2:
+        return []
+    each = [{driver.input: driver for driver in one if driver.factor is not None} for one in failed]
+    common = [name for name in each[0] if all(name in one for one in each)]
+    farthest = [max((one[name] for one in each), key=lambda driver: abs(log(driver.factor or 1.0))) for name in common]
+    told = "; ".join(f"{driver.input}: {driver.change}" for driver in farthest)
+    return [f"  all of them at once: {told}"] if told else []
 
 
 def _drivers(drivers: Sequence[Driver]) -> list[dict[str, Any]]:
     return [
-        {"input": driver.input, "elasticity": driver.elasticity, "change": driver.change, "factor": driver.factor}
+        {
+            "input": driver.input,
+            "elasticity": driver.elasticity,
+            "change": driver.change,
+            "factor": driver.factor,
+            "breaks": [*driver.breaks],
+        }
         for driver in drivers
     ]

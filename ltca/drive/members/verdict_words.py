@@ -53,7 +53,7 @@ def verdict_table(checks: Sequence[Check], *, limited: bool = False) -> str:
     for check in checks:
         if check.value.value is None and (check.limit is not None or not limited):
             unknown.setdefault(check.value.reason, []).append(check.title)
-    lines += [f"  not known: {', '.join(dict.fromkeys(titles))}: {reason}" for reason, titles in unknown.items()]
+    lines += [f"  not known ({reason}): {'; '.join(dict.fromkeys(titles))}" for reason, titles in unknown.items()]
     counts = {verdict: sum(check.verdict == verdict for check in checks) for verdict in WORDS}
     words = {"pass": "passed", "fail": "failed", "no limit": "without a limit", "not known": "not known"}
     lines.append("  " + ", ".join(f"{counts[verdict]} {word}" for verdict, word in words.items()))
