@@ -273,7 +273,7 @@ _DECLARED = (
                 judged="backlash at the output, all clearances", by_load=False,
             ),
             Scalar("max_{}", "backlash at the output, all clearances, largest", in_summary=False),
-            Scalar("min_{}", "backlash at the output, all clearances, least"),
+            Scalar("min_{}", "backlash at the output, all clearances, least", digits="z.2f"),
         ),
     ),
     _scalar("1", Scalar("preloaded_part_of_turn", "part of the turn where parts overlap in every pose", digits=".2f")),
