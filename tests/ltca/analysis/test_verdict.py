@@ -12,13 +12,16 @@ import pytest
 from ltca.analysis.half_width_guard import displacement_warning
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.summary import summarise
-from ltca.analysis.verdict.advice import _all_sizes, advise
+from ltca.analysis.verdict.advice import Driver, _all_sizes, _without_contradictions, advise
 from ltca.analysis.verdict.geometry import pin_hollow_margin, roller_gap, undercut_margin, walls
 from ltca.analysis.verdict.pin_stress import pin_stress, worst_cycle
 from ltca.analysis.verdict.values import find_values, judge_analysis
+from ltca.commands.actions.check import _at_once
 from ltca.commands.program import main
-from ltca.drive.members.limits import parse_limits
+from ltca.drive.members.judgement import Check, Value
+from ltca.drive.members.limits import Limit, parse_limits
 from ltca.drive.members.pins import WheelPinSeat
+from ltca.drive.members.verdict_words import part_words, verdict_table
 from ltca.drive.parts import Material
 from ltca.errors import DriveError
 from ltca.geometry.coordinates import DISC_PLACE
@@ -535,3 +538,98 @@ def test_yielding_that_is_no_small_displacement_is_told(like, changes, told):
     (warning,) = (w for w in analyse(with_fields(drive, changes), ANGLES[:2]).warnings if "displacement" in w)
     assert re.search(told, warning)
     assert f"from 0.1 eccentricities ({0.1 * drive.crank.eccentricity:.3g} mm) on" in warning
+
+
+def rv():
+    return parse_drive(shipped_drive("rv"), "rv").cases["nominal"]
+
+
+def test_nothing_is_said_of_shaft_pins_that_are_not_there():
+    """An RV had "materials.shaft_pin has no yield_strength" three times, and a limit on the stress along its holes."""
+    analysis = analyse(rv(), ANGLES[:1])
+    checks = judge_analysis(analysis, summarise(analysis), parse_limits({}, []), lives=False)
+    told = [f"{check.value.quantity} {check.title} {check.value.reason} {check.value.part}" for check in checks]
+    assert not [line for line in told if re.search("shaft|hole", line)]
+    asked = parse_limits({"max_pin_shaft_pressure_mid": 1500.0, "max_hole_stress": 100.0}, [])
+    limited = [check for check in judge_analysis(analysis, summarise(analysis), asked, lives=False) if check.asked]
+    assert [check.value.reason for check in limited] == 2 * ["this drive has no shaft pins"]
+    assert all(check.fails for check in limited)
+
+
+def test_parts_are_told_by_disc_and_crank(paper):
+    """Rollers were counted over all cranks: roller 37 of 3 times 14."""
+    drive = rv()
+    assert part_words(drive, "roller", 37, 42, 1) == "disc 1, crank 2, roller 9"
+    assert part_words(drive, "below roller", 0, 42, 0) == "disc 0, crank 0, below roller 0"
+    assert part_words(drive, "wheel pin", 7, 40, 1) == "disc 1, wheel pin 7"
+    assert part_words(drive, "wheel pin", 7, 40) == "wheel pin 7"
+    assert part_words(drive, "crank", 2, 3, 0) == "disc 0, crank 2"
+    assert part_words(drive, "bore", 0, 1, 1) == "disc 1, bore"
+    assert part_words(paper, "roller", 5, 11, 0) == "roller 5"
+    assert part_words(paper, "", 0, 1, 0) == ""
+
+
+def check_of(quantity, value, limit, sense="max"):
+    return Check(
+        value=Value(quantity=quantity, value=value), limit=Limit(quantity=quantity, sense=sense, value=limit, source="")
+    )
+
+
+def driver_of(name, elasticity, factor):
+    return Driver(input=name, elasticity=elasticity, change="" if factor is None else f"× {factor}", factor=factor)
+
+
+def test_no_advice_fails_another_check():
+    """Pressure and strain of one contact were to be mended by a lower modulus and by a higher one.
+
+    By hand: pins thicker by 1.2 lower the pressure to 1000, and take 1.2 · 3 = 3.6 mm from a wall of 2 mm.
+    """
+    checks = {
+        "pin_pressure_mid": check_of("pin_pressure_mid", 1200.0, 1000.0),
+        "wall": check_of("wall", 2.0, 0.0, "min"),
+        "backlash_output": check_of("backlash_output", 4.0, 3.0),
+    }
+    found = _without_contradictions(
+        {
+            "pin_pressure_mid": [
+                driver_of("radius", -1.0, 1.2),
+                driver_of("torque", 0.5, 0.7),
+                driver_of("offset", -0.2, 2.5),
+            ],
+            "wall": [driver_of("radius", -6.0, None)],
+            "backlash_output": [driver_of("offset", 1.0, 0.75)],
+        },
+        checks,
+    )
+    radius, torque, offset = found["pin_pressure_mid"]
+    assert (radius.change, radius.factor, radius.breaks) == ("", None, ("thinnest wall",))
+    assert (torque.factor, torque.breaks) == (0.7, ())
+    assert (offset.factor, offset.breaks) == (None, ("backlash at the output, all clearances",))
+    (narrower,) = found["backlash_output"]  # which raises the pressure that fails
+    assert (narrower.factor, narrower.breaks) == (None, ("flank pressure",))
+
+
+def test_a_change_that_mends_every_failed_check_is_told_once():
+    failed = [check_of("pin_pressure_mid", 1200.0, 1000.0), check_of("pin_load", 150.0, 100.0)]
+    each = {
+        "pin_pressure_mid": [driver_of("torque", 0.5, 0.7), driver_of("radius", -1.0, 1.2)],
+        "pin_load": [driver_of("torque", 1.0, 0.67)],
+    }
+    assert _at_once(failed, each) == ["  all of them at once: torque: × 0.67"]
+    assert _at_once(failed[:1], each) == []
+
+
+def test_failed_checks_stand_first_and_what_is_not_known_is_grouped():
+    checks = [
+        check_of("wall", 2.0, 0.0, "min"),
+        check_of("pin_load", 90.0, 100.0),
+        check_of("pin_pressure_mid", 1200.0, 1000.0),
+        Check(value=Value(quantity="root_stress", value=None, reason="no walls"), limit=None),
+        Check(value=Value(quantity="bore_stress", value=None, reason="no walls"), limit=None),
+        Check(value=Value(quantity="disc_shear", value=3.0), limit=None),
+    ]
+    lines = verdict_table(checks).splitlines()
+    assert [line.split("  ")[1] for line in lines[1:5]] == [
+        "flank pressure", "largest load of a wheel pin", "thinnest wall", "shear below the surface of the disc",
+    ]  # fmt: skip
+    assert lines[5] == "  not known (no walls): stress along lobe roots; stress along bores"
