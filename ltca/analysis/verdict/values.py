@@ -78,7 +78,7 @@ def notes(analysis: LoadedAnalysis) -> list[str]:
     drive, shaft = analysis.drive, analysis.drive.pin_shaft
     found = [*analysis.warnings, *odd_proportions(analysis.as_written)]
     found += [analysis.hole_words] if analysis.hole_words else []
-    if shaft is not None and shaft.stiffness is not None:
+    if shaft is not None and shaft.stiffness is not None and analysis.engine.compliance == "half-space":
         disc = drive.materials.disc.youngs_modulus * drive.disc.thickness
         if shaft.stiffness > STIFF_PINS * disc:
             found.append(

@@ -97,7 +97,7 @@ def _judge(
         )
     if arguments.no_advice:
         return checks, {}, told
-    if arguments.compliance != "half-space" and any(check.fails for check in checks):
+    if engine.compliance != "half-space" and any(check.fails for check in checks):
         told.append("what drives each value is found on half-spaces, whatever judges it")
     # Between those of a turn, so that nothing is refined.
     angles = position_angles(min(arguments.positions, ADVICE_POSITIONS)) + OFFSET

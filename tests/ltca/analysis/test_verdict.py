@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from ltca.analysis.engines import Hybrid
 from ltca.analysis.half_width_guard import displacement_warning
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.summary import summarise
@@ -195,6 +196,8 @@ def test_pins_that_dwarf_the_disc_are_pointed_out(paper):
     stiff = replace(soft, pin_shaft=replace(soft.pin_shaft, stiffness=1e6))
     assert any("pin_shaft.stiffness = 1e+06 N/mm dwarfs the disc" in note for note in notes(analyse(stiff, ANGLES)))
     assert not any("dwarfs" in note for note in notes(analyse(paper, ANGLES)))
+    on_bodies = replace(analyse(stiff, ANGLES), engine=Hybrid())  # which has the walls, and was told to try itself
+    assert not any("dwarfs" in note for note in notes(on_bodies))
 
 
 @pytest.mark.slow
