@@ -62,11 +62,13 @@ def verdict_tables(checks: Checks) -> list[Table]:
         ]
         columns = ["check", "limit", "why there is no value", "where the limit comes from"]
         found.append(
-            Table(name="not_known", caption="limits that meet no value of this run", columns=columns, rows=rows)
+            Table(
+                name="not_known", caption="limits that meet no value of this run", columns=columns, rows=rows, words=3
+            )
         )
     if others:
         rows = [[word(title), *(_told(each.get(case)) for case in checks)] for (title, _, _), each in others.items()]
-        columns = ["value", *(list(checks) if several else [""])]
+        columns = ["", *(list(checks) if several else ["value"])]
         found.append(Table(name="without_limit", caption="values without a limit", columns=columns, rows=rows))
     return found
 

@@ -194,7 +194,7 @@ def _driver(drive: Drive, one: _Input, elasticity: float, check: Check, part: fl
         with_fields(drive, one.changed(factor))
     except CycloError:  # such a drive cannot be built
         return Driver(input=one.name, elasticity=elasticity, change="", factor=None)
-    told = f"× {factor:.3g}"
+    told = f"× {factor:.4g}"
     if one.start is not None:
         scale, unit = (1e-3, "N·m") if one.name == TORQUE else (1.0, label(one.unit))
         told = f"{scale * one.start:.4g} → {scale * factor * one.start:.4g} {unit}".rstrip()

@@ -17,7 +17,7 @@ from ltca.analysis.verdict.values import judge_analysis, notes as notes_of
 from ltca.drive.members.judgement import WHOLE, Check, Value, judge
 from ltca.drive.members.limits import Limits
 from ltca.drive.members.temperatures import warm_drive
-from ltca.drive.members.verdict_words import check_content, urgency, verdict_table
+from ltca.drive.members.verdict_words import check_content, is_of_sampling, urgency, verdict_table
 from ltca.drive.parts import Drive
 from ltca.errors import DriveError
 from ltca.geometry.placement import position_angles
@@ -118,6 +118,8 @@ def _advice(checks: Sequence[Check], drivers: Mapping[str, Sequence[Driver]]) ->
         source = "" if limit is None else f" (limit: {limit.source})"
         told = "fails" if check.verdict == "fail" else f"cannot be judged: {check.value.reason}"
         lines.append(f"  {check.title} {told}{source}")
+        if is_of_sampling(check):
+            lines.append("    this is a matter of --positions, not of the drive")
         each = drivers.get(check.value.quantity, ())
         helping = [driver for driver in each if driver.change]
         lines += [
@@ -136,7 +138,7 @@ def _advice(checks: Sequence[Check], drivers: Mapping[str, Sequence[Driver]]) ->
 
 def _at_once(checks: Sequence[Check], drivers: Mapping[str, Sequence[Driver]]) -> list[str]:
     """Changes of one input that mend all failed checks together: of each input that mends every one, the largest change."""
-    failed = [drivers.get(check.value.quantity, ()) for check in checks if check.fails]
+    failed = [drivers.get(check.value.quantity, ()) for check in checks if check.fails and not is_of_sampling(check)]
     if len(failed) < 2:
         return []
     each = [{driver.input: driver for driver in one if driver.factor is not None} for one in failed]

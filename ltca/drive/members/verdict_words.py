@@ -91,11 +91,15 @@ def urgency(check: Check) -> tuple[bool, bool, float]:
     A value beyond a limit that no ratio measures, as a wall thinner than nothing, is worst of all; one that keeps such a limit,
     or is not known, comes last.
     """
-    of_sampling = check.value.quantity == "distinct_mesh_phases"
     safety = check.safety
     if safety is None:
         safety = 0.0 if check.verdict == "fail" else float("inf")
-    return not check.fails, of_sampling, safety
+    return not check.fails, is_of_sampling(check), safety
+
+
+def is_of_sampling(check: Check) -> bool:
+    """Whether a check is of the positions of a run, not of the drive."""
+    return check.value.quantity == "distinct_mesh_phases"
 
 
 def place_words(check: Check) -> str:
