@@ -6,9 +6,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ltca.drive.members.judgement import Check
-from ltca.drive.members.verdict_words import WORDS, place_words, urgency
+from ltca.drive.members.verdict_words import WORDS, place_words, urgency, with_unit
 from ltca.page.tables import NOTHING, Cell, Table, minus, number, word
-from ltca.quantities import unit_sign
 
 Checks = Mapping[str, Sequence[Check]]
 """By case."""
@@ -84,9 +83,11 @@ def _by_check(checks: Checks, wanted: Any) -> dict[tuple[str, str, str], dict[st
     found: dict[tuple[str, str, str], dict[str, Check]] = {}
     for case, each in checks.items():
         for check in filter(wanted, each):
-            limit, unit = check.limit, unit_sign(check.value.unit)
+            limit = check.limit
             bound = (
-                NOTHING if limit is None else f"{'≤' if limit.sense == 'max' else '≥'} {limit.value:.5g} {unit}".strip()
+                NOTHING
+                if limit is None
+                else f"{'≤' if limit.sense == 'max' else '≥'} {with_unit(limit.value, check.value, 5)}"
             )
             found.setdefault((check.title, bound, "" if limit is None else limit.source), {})[case] = check
     return found

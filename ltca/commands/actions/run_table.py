@@ -57,8 +57,8 @@ GROUPS: tuple[Group, ...] = (
 """Headings with the unit, and rows with the scalar of each; ``#`` stands for every disc or crank where there are several."""
 WHERE_NOT_ZERO = ("preloaded_part_of_turn", "interference")
 """Scalars that have a row where they are not zero."""
-WHERE_KNOWN = ("pin_shaft", "shaft_pin", "seat", "stress", "deflection")
-"""Parts of names of scalars that not every drive and engine has."""
+WHERE_KNOWN = ("pin_shaft", "shaft_pin", "seat", "stress", "deflection", "ptp")
+"""Parts of names of scalars that not every drive, engine and run has: a single position has no range."""
 LOSSES: Group = (
     "efficiency and losses",
     (

@@ -39,9 +39,9 @@ def verdict_table(checks: Sequence[Check], *, limited: bool = False) -> str:
     rows = [("check", "value", "limit", "safety", "verdict", "where")]
     for check in sorted(known, key=lambda check: (check.limit is None, urgency(check))):
         value, limit = check.value, check.limit
-        bound = "" if limit is None else f"{'≤' if limit.sense == 'max' else '≥'} {_with_unit(limit.value, value, 5)}"
+        bound = "" if limit is None else f"{'≤' if limit.sense == 'max' else '≥'} {with_unit(limit.value, value, 5)}"
         safety = "" if check.safety is None else f"{check.safety:.3f}"
-        told = _with_unit(value.value or 0.0, value, 5)
+        told = with_unit(value.value or 0.0, value, 5)
         rows.append((check.title, told, bound, safety, WORDS[check.verdict], place_words(check)))
     widths = [max(len(row[column]) for row in rows) for column in range(5)]
     lines = [
@@ -60,29 +60,34 @@ def verdict_table(checks: Sequence[Check], *, limited: bool = False) -> str:
     return "\n".join(lines)
 
 
-def _with_unit(number: float, value: Value, digits: int) -> str:
-    """A number with the unit of a value, whose minutes and seconds of arc stand right behind it."""
+def with_unit(number: float, value: Value, digits: int) -> str:
+    """Return a number with the unit of a value; minutes and seconds of arc stand right behind it."""
     sign = unit_sign(value.unit)
     return f"{number:.{digits}g}" + (sign if sign in CLOSE else f" {sign}" if sign else "")
 
 
 def verdict_line(checks: Sequence[Check]) -> str:
-    """Return the verdict on a case in one line: pass or fail, and the check that fails worst or is nearest to its limit."""
+    """Return the verdict on a case in one line: pass or fail, and the check that fails worst or is nearest to its limit.
+
+    Positions that are too few fail no drive; it is told.
+    """
     judged = [check for check in checks if check.fails or check.verdict == "pass"]
-    if not judged:
+    of_drive = [check for check in judged if not is_of_sampling(check)]
+    if not of_drive:
         return "not judged: neither drive file nor materials have limits"
-    failed = sum(check.fails for check in judged)
-    word = WORDS["fail" if failed else "pass"]
-    nearest = min(judged, key=urgency)
+    failed, few = sum(check.fails for check in of_drive), sum(check.fails for check in judged if is_of_sampling(check))
+    word = WORDS["fail"] if failed else "pass at these positions" if few else WORDS["pass"]
+    nearest = min(of_drive, key=urgency)
     told = f"{word}  {nearest.title}"
     if nearest.value.value is None:
         told += f" cannot be judged: {nearest.value.reason}"
     elif nearest.limit is not None:
-        bound = f"{'≤' if nearest.limit.sense == 'max' else '≥'} {_with_unit(nearest.limit.value, nearest.value, 4)}"
-        told += f" {_with_unit(nearest.value.value, nearest.value, 4)} ({bound})"
+        bound = f"{'≤' if nearest.limit.sense == 'max' else '≥'} {with_unit(nearest.limit.value, nearest.value, 4)}"
+        told += f" {with_unit(nearest.value.value, nearest.value, 4)} ({bound})"
     if nearest.safety is not None:
         told += f", safety {nearest.safety:.3g}"
-    return told + (f"; {failed} of {len(judged)} checks fail" if failed > 1 else "")
+    told += f"; {failed} of {len(of_drive)} checks fail" if failed > 1 else ""
+    return told + ("; too few positions for the peaks" if few else "")
 
 
 def urgency(check: Check) -> tuple[bool, bool, float]:

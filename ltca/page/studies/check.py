@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ltca.analysis.verdict.advice import Driver
+from ltca.drive.members.verdict_words import urgency
 from ltca.page.study_page import Section, StudyPage
 from ltca.page.tables import Table, minus, number, word
 from ltca.page.verdict_tables import Checks, verdict_of, verdict_tables
@@ -31,7 +32,7 @@ def check_page(
             word(minus(driver.change) or (f"none: it would fail {', '.join(driver.breaks)}" if driver.breaks else "")),
         ]
         for case, each in checks.items()
-        for check in sorted(each, key=lambda check: not check.fails)
+        for check in sorted(each, key=urgency)
         for driver in drivers[case].get(check.value.quantity, ())
     ]  # fmt: skip
     if rows:

@@ -22,7 +22,7 @@ from ltca.commands.program import main
 from ltca.drive.members.judgement import Check, Value
 from ltca.drive.members.limits import Limit, parse_limits
 from ltca.drive.members.pins import WheelPinSeat
-from ltca.drive.members.verdict_words import part_words, verdict_table
+from ltca.drive.members.verdict_words import part_words, verdict_line, verdict_table
 from ltca.drive.parts import Material
 from ltca.errors import DriveError
 from ltca.geometry.coordinates import DISC_PLACE
@@ -636,3 +636,15 @@ def test_failed_checks_stand_first_and_what_is_not_known_is_grouped():
         "flank pressure", "largest load of a wheel pin", "thinnest wall", "shear below the surface of the disc",
     ]  # fmt: skip
     assert lines[5] == "  not known (no walls): stress along lobe roots; stress along bores"
+
+
+def test_few_positions_fail_no_drive():
+    """A run of one angle ended with "FAIL  different places in a mesh period 1 (≥ 8)"."""
+    few = check_of("distinct_mesh_phases", 1.0, 8.0, "min")
+    assert few.fails
+    line = verdict_line([check_of("pin_pressure_mid", 900.0, 1000.0), few])
+    assert line.startswith(
+        "pass at these positions  flank pressure 900 MPa (≤ 1000 MPa), safety 1.11; too few positions"
+    )
+    assert verdict_line([check_of("pin_pressure_mid", 1200.0, 1000.0), few]).startswith("FAIL  flank pressure")
+    assert verdict_line([few]).startswith("not judged")
