@@ -105,7 +105,7 @@ def test_rows_of_rollers_name_the_crank(drive):
     position = made_position(drive)
     names = {row.contact for row in _contact_rows(position, "fe") if row.quantity == "load"}
     assert names == {
-        "pin 0", "pin 1", *(f"crank {place} {side}" for place in ("0 roller 1", "0 roller 2", "1 roller 1", "1 roller 2")
+        "pin 0", "pin 1", *(f"crank {place} {side}" for place in ("0, roller 1", "0, roller 2", "1, roller 1", "1, roller 2")
                             for side in ("bore", "race")),
     }  # fmt: skip
     assert position.differences["fe"].missing == ("crank 1, roller 1 bore", "crank 1, roller 1 race")
