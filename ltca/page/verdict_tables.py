@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ltca.drive.members.judgement import Check
-from ltca.drive.members.verdict_words import WORDS, place_words, urgency, with_unit
+from ltca.drive.members.verdict_words import WORDS, is_of_sampling, place_words, urgency, with_unit
 from ltca.page.tables import NOTHING, Cell, Table, minus, number, word
 
 Checks = Mapping[str, Sequence[Check]]
@@ -26,6 +26,11 @@ def verdict_of(checks: Checks) -> tuple[str, str]:
     if not checks:
         return "No verdict: some positions have no answer.", "fail"
     if failed:
+        if all(is_of_sampling(check) for check in failed):
+            return (
+                f"All {len(kept)} checks of the drive pass at these positions, which are too few for the peaks.",
+                "fail",
+            )
         cases = sum(any(check.fails for check in case) for case in checks.values())
         of = f", in {cases} of {len(checks)} cases" if len(checks) > 1 else ""
         return f"{len(failed)} of {len(failed) + len(kept)} checks fail{of}.", "fail"

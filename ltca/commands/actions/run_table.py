@@ -120,14 +120,15 @@ def _rows(title: str, name: str, summaries: Summaries, *, known: bool = False) -
     return [(title, [_number(value, scalar.digits) for value in values])]
 
 
-def _of_races(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) -> dict[str, float]:
+def _of_races(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) -> dict[str, float | None]:
     """The largest pressure in the bore and on the inner race, of which a summary has the larger one, also between positions."""
     sampled = {BORE: analysis.pressures.outer.mid, RACE: analysis.pressures.inner.mid}
-    found = {name: float(np.nanmax(pressure)) for name, pressure in sampled.items()}
-    larger = max(found, key=lambda name: found[name])
-    refined = refined_value(summary, scalar_named("max_roller_pressure_mid").key)
-    found[larger] = max(found[larger], refined or 0.0)
-    return {scalar_named(name).key: value for name, value in found.items()}
+    known = {name: pressure[np.isfinite(pressure)] for name, pressure in sampled.items()}
+    found = {name: float(np.max(pressure)) for name, pressure in known.items() if pressure.size}
+    if found:
+        larger = max(found, key=lambda name: found[name])
+        found[larger] = max(found[larger], refined_value(summary, scalar_named("max_roller_pressure_mid").key) or 0.0)
+    return {scalar_named(name).key: found.get(name) for name in sampled}
 
 
 def _life(title: str, name: str, digits: str, lives: Lives) -> list[tuple[str, list[str]]]:
