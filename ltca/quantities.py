@@ -564,7 +564,7 @@ _DECLARED = (
         in_fem="largest shear stress in the disc below shaft pins",
     ),
     _checked("disc_shear", "MPa", "shear below the surface of the disc"),
-    _checked("shear_depth", "mm", "depth of that shear"),
+    _checked("shear_depth", "mm", "depth of the shear below the widest contact"),
     _checked("core_shear", "MPa", "shear in the core of the disc, below its case"),
     # pressure over the contacts
     *(

@@ -19,7 +19,7 @@ from ltca.analysis.verdict.pin_stress import pin_stress, worst_cycle
 from ltca.analysis.verdict.values import find_values, judge_analysis
 from ltca.commands.actions.check import _at_once
 from ltca.commands.program import main
-from ltca.drive.members.judgement import Check, Value
+from ltca.drive.members.judgement import Check, Value, judge
 from ltca.drive.members.limits import Limit, parse_limits
 from ltca.drive.members.pins import WheelPinSeat
 from ltca.drive.members.verdict_words import part_words, verdict_line, verdict_table
@@ -648,3 +648,15 @@ def test_few_positions_fail_no_drive():
     )
     assert verdict_line([check_of("pin_pressure_mid", 1200.0, 1000.0), few]).startswith("FAIL  flank pressure")
     assert verdict_line([few]).startswith("not judged")
+
+
+def test_a_case_is_judged_once_by_shear_of_the_core_or_by_depth(paper):
+    """Both judged the case of one disc: by the core's shear where its strength is known, by the depth of the shear otherwise."""
+    values = [Value(quantity="core_shear", value=200.0), Value(quantity="shear_depth", value=0.2)]
+    for material, limits in (
+        (Material(hardness_depth=0.6, yield_strength=590.0), [295.0, None]),
+        (Material(hardness_depth=0.6), [None, 0.6]),
+    ):
+        drive = replace(paper, materials=replace(paper.materials, disc=material))
+        found = judge(drive, values, {})
+        assert [None if check.limit is None else check.limit.value for check in found] == limits
