@@ -273,7 +273,7 @@ _DECLARED = (
                 judged="backlash at the output, all clearances", by_load=False,
             ),
             Scalar("max_{}", "backlash at the output, all clearances, largest", in_summary=False),
-            Scalar("min_{}", "backlash at the output, all clearances, least"),
+            Scalar("min_{}", "backlash at the output, all clearances, least", digits="z.2f"),
         ),
     ),
     _scalar("1", Scalar("preloaded_part_of_turn", "part of the turn where parts overlap in every pose", digits=".2f")),
@@ -564,7 +564,7 @@ _DECLARED = (
         in_fem="largest shear stress in the disc below shaft pins",
     ),
     _checked("disc_shear", "MPa", "shear below the surface of the disc"),
-    _checked("shear_depth", "mm", "depth of that shear"),
+    _checked("shear_depth", "mm", "depth of the shear below the widest contact"),
     _checked("core_shear", "MPa", "shear in the core of the disc, below its case"),
     # pressure over the contacts
     *(

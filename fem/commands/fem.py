@@ -154,9 +154,10 @@ def _print_contacts(solution: FullSolution) -> None:
     from fem.drive.contact_kinds import CONTACT_KINDS
 
     cranks = solution.model.placement.cranks
-    print(f"{'contact':<16}{'load, N':>10}{'peak, MPa':>11}{'half-width, µm':>16}")
+    print(f"{'contact':<24}{'load, N':>10}{'peak, MPa':>11}{'half-width, µm':>16}")
     for kind, index, load, peak, width in solution.contacts.loaded:
-        print(f"{CONTACT_KINDS[kind].name.format(index):<16}{load:>10.1f}{peak:>11.1f}{1e3 * width:>16.1f}")
+        name = CONTACT_KINDS[kind].name_of(index, solution.model.placement)
+        print(f"{name:<24}{load:>10.1f}{peak:>11.1f}{1e3 * width:>16.1f}")
     for crank, (radial, tangential) in enumerate(solution.bearing_components.tolist()):
         which = "" if cranks == 1 else f" at crank {crank}"
         print(f"bearing force on the disc{which}: radial {radial:.1f} N, tangential {tangential:.1f} N")

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+from ltca.geometry.placement import Placement
+
 PairKind = Literal["pin", "roller_outer", "roller_inner", "hole"]
 
 
@@ -28,6 +30,22 @@ class ContactKind:
     part: str
     name: str
     title: str
+
+    def name_of(self, index: int, placement: Placement) -> str:
+        """Return what one contact is called in short."""
+        return _numbered(self.name, index, placement)
+
+    def title_of(self, index: int, placement: Placement) -> str:
+        """Return what one contact is called in full."""
+        return _numbered(self.title, index, placement)
+
+
+def _numbered(text: str, index: int, placement: Placement) -> str:
+    """A text with the number of a contact: rollers of several cranks count anew in every bearing."""
+    if not text.startswith("roller") or placement.cranks == 1:
+        return text.format(index)
+    crank, roller = divmod(index, placement.roller_radii.size // placement.cranks)
+    return f"crank {crank}, {text.format(roller)}"
 
 
 CONTACT_KINDS: dict[PairKind, ContactKind] = {

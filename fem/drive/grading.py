@@ -110,7 +110,7 @@ def find_shortcoming(model: DriveModel, solution: PoseSolution, results: Contact
     """Return why the meshes do not serve a solution with these contacts, "" when they do."""
     for pair, detail in zip(model.pairs, results.details, strict=True):
         own = solution.contact.pressure[pair.unknowns]
-        name = CONTACT_KINDS[pair.kind].name.format(pair.index)
+        name = CONTACT_KINDS[pair.kind].name_of(pair.index, model.placement)
         if own[0] > 0.0 or own[-1] > 0.0:
             return f"the pressure of {name} reaches the end of its zone"
         if (
@@ -150,7 +150,6 @@ def _closed_without_zone(model: DriveModel, solution: PoseSolution) -> str:
             nearest = int(np.argmin(np.abs(nodes - points[index])))
             left = gap[index] - (moved[nearest] * np.conj(normals[index])).real
             if left < 0.0:
-                return (
-                    f"{CONTACT_KINDS[kind].name.format(index)} closes by {-1e3 * left:.3g} µm and has no contact zone"
-                )
+                name = CONTACT_KINDS[kind].name_of(index, place)
+                return f"{name} closes by {-1e3 * left:.3g} µm and has no contact zone"
     return ""

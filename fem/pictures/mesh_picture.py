@@ -119,7 +119,7 @@ def choose_zooms(contacts: ExpectedContacts, placement: Placement) -> list[Zoom]
         if width > 0.0:
             zooms.append(
                 Zoom(
-                    title=f"{CONTACT_KINDS[kind].title.format(index)}\n"
+                    title=f"{CONTACT_KINDS[kind].title_of(index, placement)}\n"
                     f"expected half-width {1000.0 * width:.3g} µm, window {2.0 * reach:.3g} mm",
                     centre=complex(points[index]),
                     half_side=reach,

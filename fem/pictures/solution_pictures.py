@@ -152,7 +152,7 @@ def _zooms(solution: FullSolution, fields: Sequence[BodyField]) -> list[Panel]:
         panels.append(
             Panel(
                 title=(
-                    f"{CONTACT_KINDS[pair.kind].title.format(pair.index)}: {detail.load:.0f} N\n"
+                    f"{CONTACT_KINDS[pair.kind].title_of(pair.index, solution.model.placement)}: {detail.load:.0f} N\n"
                     f"white: pressure, peak {detail.peak_pressure:.0f} MPa, half-width {1e3 * detail.half_width:.1f} µm"
                 ),
                 centre=middle,

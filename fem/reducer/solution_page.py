@@ -51,7 +51,7 @@ def _contacts(solution: FullSolution) -> Iterator[list[Cell]]:
     """Yield a row for each loaded contact."""
     for kind, index, load, peak, width in solution.contacts.loaded:
         yield [
-            word(CONTACT_KINDS[kind].title.format(index)),
+            word(CONTACT_KINDS[kind].title_of(index, solution.model.placement)),
             number(load, "{:.1f}"),
             number(peak, "{:.1f}"),
             number(1e3 * width, "{:.1f}"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import partial
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from fem.reducer.solution import ReducerSolution
 from ltca.arrays import FloatArray
 from ltca.drive.members.judgement import Check, Value, judge
 from ltca.drive.members.limits import Limit
+from ltca.drive.members.verdict_words import part_words
 from ltca.drive.parts import Drive
 from ltca.quantities import LIMITED
 
@@ -39,10 +41,14 @@ def judge_solution(
         for part, name in parts[quantity]:
             for disc, (of_disc, stress) in enumerate(zip(solution.discs, stresses, strict=True)):
                 source = of_disc.contacts if hasattr(of_disc.contacts, name) else stress
-                template = f"{part} {{}} of disc {disc}" if len(solution.discs) > 1 else f"{part} {{}}"
-                yield np.asarray(getattr(source, name), dtype=float).ravel(), template.format, solution.crank_angle
+                values = np.asarray(getattr(source, name), dtype=float).ravel()
+                yield values, partial(_words, solution.drive, part, values.size, disc), solution.crank_angle
 
     return judge_largest(solution.drive, {quantity: candidates(quantity) for quantity in parts}, limits)
+
+
+def _words(drive: Drive, part: str, pairs: int, disc: int, pair: int) -> str:
+    return part_words(drive, part, pair, pairs, disc)
 
 
 def judged_contacts() -> list[tuple[str, PairKind, ContactKind]]:

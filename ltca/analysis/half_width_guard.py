@@ -19,6 +19,7 @@ import numpy as np
 from ltca.arrays import FloatArray
 from ltca.compliance.grids import GridCompliance
 from ltca.compliance.response import ContactPressures, DiscModel, Response, split_shifts
+from ltca.drive.members.verdict_words import part_words
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import BORNE
@@ -82,10 +83,10 @@ def check_half_widths(
             worst = np.unravel_index(int(np.argmax(ratio)), ratio.shape)
             bound = float(half_width[worst] / ratio[worst])
             disc, pair = divmod(int(worst[1]), ratio.shape[1] // discs)
-            place = f"{pair}" if discs == 1 else f"{pair} of disc {disc}"
+            place = part_words(drive, name, pair, ratio.shape[1] // discs, disc)
             named = _cause(single_discs(drive)[disc], contacts, name, worst, torque)
             problems.append(
-                f"{named} cannot be carried: contact half-width {half_width[worst]:.4g} mm of {name} {place}, must "
+                f"{named} cannot be carried: contact half-width {half_width[worst]:.4g} mm of {place}, must "
                 f"be at most {bound:.4g} mm ({HALF_WIDTH_BOUND:g} of the smallest radius in contact)"
             )
     if problems:
@@ -161,18 +162,21 @@ def separation_warning(
         found = GridCompliance.of_drive(drive).respond(angle, pose)
     except ConvergenceError:
         return f"contacts are wider at {at} than the flank goes on: the parabola of the tables does not stand for it"
-    worst, name, number = 0.0, "", 0
+    worst, name = 0.0, ""
     for kind, tables, grids in (
         (PIN, contacts.pin_load[row], found.pin_load[0]),
         (OUTER, contacts.rollers.outer_load[row], found.rollers.outer_load[0]),
     ):
         difference = np.abs(tables - grids) / max(float(np.max(grids)), 1e-300)
         if np.max(difference) > worst:
-            worst, name, number = float(np.max(difference)), kind, int(np.argmax(difference))
+            worst, name = (
+                float(np.max(difference)),
+                part_words(drive, kind, int(np.argmax(difference)), difference.size),
+            )
     if worst < LOAD_DIFFERENCE:
         return None
     return (
-        f"at {at} the load of {name} {number} differs by {100.0 * worst:.2g} % of the largest between the parabola of the "
+        f"at {at} the load of {name} differs by {100.0 * worst:.2g} % of the largest between the parabola of the "
         "tables and the true separation, which is right: take --method direct"
     )
 

@@ -33,10 +33,11 @@ def rows_of(summaries: Summaries, *, yields: bool) -> list[Scalar]:
     needed = ("preloaded_part_of_turn", "interference")
     found += [*_share_rows(summaries), *_compliance_rows(summaries, yields)]
     found += [scalar_named(name) for name in ("max_equilibrium_residual", "residual_part", "interference", *WALL_ROWS)]
+    shafts = any(case.get(scalar_named("max_pin_shaft_load").key) is not None for case in summaries.values())
     return [
         row
         for row in found
-        if row.name in ROWS
+        if (row.name in ROWS and (shafts or "pin_shaft" not in row.name))
         or any(
             case.get(row.key) if row.name in needed else case.get(row.key) is not None for case in summaries.values()
         )

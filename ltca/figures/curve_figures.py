@@ -153,7 +153,7 @@ def draw_pressure(
 ) -> Path:
     """Draw the largest flank pressure over the crank angle with the limit; return the file."""
     disc, number = divmod(safety.pin, pressure.shape[1] // discs)
-    pin = f"pin {number}" if discs == 1 else f"pin {number} on disc {disc}"
+    pin = f"pin {number}" if discs == 1 else f"disc {disc}, pin {number}"
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(7.2, 3.6))
         axes = figure.subplots()

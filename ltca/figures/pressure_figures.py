@@ -54,8 +54,8 @@ def hardest_roller(fields: xr.Dataset, case: str) -> tuple[str, dict[str, int]]:
 def _named(fields: xr.Dataset, side: str, place: dict[str, int]) -> str:
     angle = float(np.degrees(fields["crank_angle"].values[place["position"]]))
     race = "bore" if side == "outer" else "inner race"
-    disc = f" of disc {place['disc']}" if fields.sizes["disc"] > 1 else ""
-    return f"roller {place['roller']} on the {race}{disc}, crank angle {angle:.4g}°"
+    several = "".join(f"{part} {place[part]}, " for part in ("disc", "crank") if fields.sizes[part] > 1)
+    return f"{several}roller {place['roller']} on the {race}, crank angle {angle:.4g}°"
 
 
 def flank_arc_length(profile: FlankProfile) -> tuple[FloatArray, FloatArray]:

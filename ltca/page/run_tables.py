@@ -15,6 +15,7 @@ from ltca.analysis.summary_rows import FRICTION_ROWS, rows_of, with_residual_par
 from ltca.analysis.transmission_error_orders import known_orders
 from ltca.arrays import FloatArray
 from ltca.drive.fields import field_kind
+from ltca.drive.materials import Material
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import ARCSEC, label
 from ltca.page.derived import derived_rows
@@ -100,7 +101,10 @@ def orders_table(dataset: xr.Dataset, drives: Mapping[str, Drive]) -> Table | No
 
 def input_tables(drives: Mapping[str, Drive]) -> list[Table]:
     """Return every field that is given, with its unit: those in which cases differ, and what all have."""
-    flat = {name: dict(_leaves(drive, "")) for name, drive in drives.items()}
+    flat = {
+        name: {path: value for path, value in _leaves(drive, "") if not path.startswith(_not_there(drive))}
+        for name, drive in drives.items()
+    }
     paths = list(dict.fromkeys(path for each in flat.values() for path in each))
     differing, common = [], []
     for path in paths:
@@ -120,6 +124,22 @@ def input_tables(drives: Mapping[str, Drive]) -> list[Table]:
             Table(name="inputs", caption="What all cases have", columns=tables[0].columns, rows=common, words=2),
         ]
     return tables
+
+
+def _not_there(drive: Drive) -> tuple[str, ...]:
+    """How fields begin of parts that a drive is without; properties that warmth has use for elsewhere stay."""
+    shaft, parts = drive.pin_shaft, drive.materials
+    kinds = {drive.pin_wheel.seat.kind, shaft.seat.kind if shaft is not None else ""}
+    there = {
+        "shaft_pin": shaft is not None,
+        "crankshaft": drive.crank.support is not None,
+        "wheel_seat": drive.pin_wheel.seat.kind == "slot",
+        "sleeve": "sleeve" in kinds,
+    }
+    without = [
+        f"materials.{part}." for part, is_there in there.items() if not is_there and getattr(parts, part) == Material()
+    ]
+    return (*without, *(() if shaft is not None else ("clearance.pin_hole",)))
 
 
 def _leaves(part: Any, path: str) -> Iterator[tuple[str, Any]]:

@@ -6,10 +6,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from math import isfinite
 
+from ltca.drive.members.verdict_words import CLOSE
 from ltca.quantities import unit_sign
 
-CLOSE = ("°", "′", "″")
-"""Signs that stand right behind their number."""
 NOTHING = "–"
 
 

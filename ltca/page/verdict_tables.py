@@ -6,9 +6,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ltca.drive.members.judgement import Check
-from ltca.drive.members.verdict_words import WORDS, place_words, urgency
+from ltca.drive.members.verdict_words import WORDS, is_of_sampling, place_words, urgency, with_unit
 from ltca.page.tables import NOTHING, Cell, Table, minus, number, word
-from ltca.quantities import unit_sign
 
 Checks = Mapping[str, Sequence[Check]]
 """By case."""
@@ -27,6 +26,11 @@ def verdict_of(checks: Checks) -> tuple[str, str]:
     if not checks:
         return "No verdict: some positions have no answer.", "fail"
     if failed:
+        if all(is_of_sampling(check) for check in failed):
+            return (
+                f"All {len(kept)} checks of the drive pass at these positions, which are too few for the peaks.",
+                "fail",
+            )
         cases = sum(any(check.fails for check in case) for case in checks.values())
         of = f", in {cases} of {len(checks)} cases" if len(checks) > 1 else ""
         return f"{len(failed)} of {len(failed) + len(kept)} checks fail{of}.", "fail"
@@ -62,11 +66,13 @@ def verdict_tables(checks: Checks) -> list[Table]:
         ]
         columns = ["check", "limit", "why there is no value", "where the limit comes from"]
         found.append(
-            Table(name="not_known", caption="limits that meet no value of this run", columns=columns, rows=rows)
+            Table(
+                name="not_known", caption="limits that meet no value of this run", columns=columns, rows=rows, words=3
+            )
         )
     if others:
         rows = [[word(title), *(_told(each.get(case)) for case in checks)] for (title, _, _), each in others.items()]
-        columns = ["value", *(list(checks) if several else [""])]
+        columns = ["", *(list(checks) if several else ["value"])]
         found.append(Table(name="without_limit", caption="values without a limit", columns=columns, rows=rows))
     return found
 
@@ -82,9 +88,11 @@ def _by_check(checks: Checks, wanted: Any) -> dict[tuple[str, str, str], dict[st
     found: dict[tuple[str, str, str], dict[str, Check]] = {}
     for case, each in checks.items():
         for check in filter(wanted, each):
-            limit, unit = check.limit, unit_sign(check.value.unit)
+            limit = check.limit
             bound = (
-                NOTHING if limit is None else f"{'≤' if limit.sense == 'max' else '≥'} {limit.value:.5g} {unit}".strip()
+                NOTHING
+                if limit is None
+                else f"{'≤' if limit.sense == 'max' else '≥'} {with_unit(limit.value, check.value, 5)}"
             )
             found.setdefault((check.title, bound, "" if limit is None else limit.source), {})[case] = check
     return found

@@ -182,12 +182,12 @@ def contact_name(kind: Kind, number: int, rollers: int | None = None) -> str:
     Examples
     --------
     >>> contact_name("roller_outer", 11), contact_name("roller_outer", 11, 9)
-    ('roller 11 bore', 'crank 1 roller 2 bore')
+    ('roller 11 bore', 'crank 1, roller 2 bore')
     """
     name = CONTACT_KINDS[kind].name
     if rollers is None or kind not in ("roller_outer", "roller_inner"):
         return name.format(number)
-    return f"crank {number // rollers} " + name.format(number % rollers)
+    return f"crank {number // rollers}, " + name.format(number % rollers)
 
 
 def _rollers_of_each(load: FloatArray, of_cranks: FloatArray) -> int | None:

@@ -2,14 +2,15 @@
 
 Every input is changed by a little, with what belongs to it, and the drive is solved again, on half-spaces: elasticities
 d ln v/d ln x of all values come from one solution for each input. What a change would have to be follows from a power law,
-so the change is approximate; nothing is said of changes beyond `MAX_FACTOR`, nor of such that make no drive. Of counts it is
-the next whole number; those of wheel pins and teeth are the ratio, and no advice.
+so the change is approximate; nothing is said of changes beyond `MAX_FACTOR`, nor of such that make no drive or that would fail
+another check, so that no two pieces of advice contradict each other. Of counts it is the next whole number; those of wheel pins
+and teeth are the ratio, and no advice. Nor is a Young's modulus: another one is another material, with a strength of its own.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import ceil, exp, floor, isfinite, log
 from typing import Any
 
@@ -51,12 +52,15 @@ class Driver:
         What would bring the value to its limit, in words; empty where nothing within `MAX_FACTOR` does.
     factor : float or None
         The same as a factor.
+    breaks : tuple of str
+        Titles of the checks that such a change would fail, or fail by more: it is no advice, and neither told nor a factor.
     """
 
     input: str
     elasticity: float
     change: str
     factor: float | None
+    breaks: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -124,9 +128,46 @@ def advise(
             elasticity = log(after / before) / log(1.0 + step)
             if abs(elasticity) >= LEAST_ELASTICITY:
                 found[quantity].append(_driver(drive, one, elasticity, check, part))
+    if part == 1.0:
+        found = _without_contradictions(found, wanted)
     return {
         quantity: sorted(drivers, key=lambda driver: -abs(driver.elasticity)) for quantity, drivers in found.items()
     }
+
+
+def _without_contradictions(
+    found: Mapping[str, Sequence[Driver]], checks: Mapping[str, Check]
+) -> dict[str, list[Driver]]:
+    """Drivers whose changes mend one check without failing another; the others with what they would break instead."""
+    kept: dict[str, list[Driver]] = {quantity: [] for quantity in found}
+    for quantity, drivers in found.items():
+        for driver in drivers:
+            breaks: tuple[str, ...] = ()
+            if driver.factor is not None:
+                breaks = tuple(
+                    checks[other].title
+                    for other, others in found.items()
+                    if other != quantity
+                    for one in others
+                    if one.input == driver.input and _fails_more(checks[other], one.elasticity, driver.factor)
+                )
+            kept[quantity].append(replace(driver, change="", factor=None, breaks=breaks) if breaks else driver)
+    return kept
+
+
+def _fails_more(check: Check, elasticity: float, factor: float) -> bool:
+    """Whether a factor on an input takes a value beyond its limit, or farther beyond it."""
+    value, limit = check.value.value, check.limit
+    if value is None or limit is None:
+        return False
+    after = value * (1.0 + elasticity * (factor - 1.0)) if _is_linear(check) else value * factor**elasticity
+    worse = after > value if limit.sense == "max" else after < value
+    return worse and (check.fails or (after > limit.value if limit.sense == "max" else after < limit.value))
+
+
+def _is_linear(check: Check) -> bool:
+    """Whether a value is a margin or a play, which is what sizes leave less what others take: a power law goes past its end."""
+    return check.safety is None or check.value.quantity.startswith("backlash")
 
 
 def _driver(drive: Drive, one: _Input, elasticity: float, check: Check, part: float) -> Driver:
@@ -136,9 +177,7 @@ def _driver(drive: Drive, one: _Input, elasticity: float, check: Check, part: fl
         farthest, whole = MAX_SIZE_FACTOR, part ** (-1.0 / 3.0)
     elif part < 1.0 and one.name != TORQUE:
         safety = None
-    # A play is what sizes leave less what others take: a power law goes past its end.
-    margin = check.safety is None or check.value.quantity.startswith("backlash")
-    linear = margin and part == 1.0 and check.limit is not None and check.value.value
+    linear = _is_linear(check) and part == 1.0 and check.limit is not None and check.value.value
     if check.verdict == "pass" or check.limit is None or not (linear or safety):
         return Driver(input=one.name, elasticity=elasticity, change="", factor=None)
     if linear:  # margins and plays at or below nothing follow no power law
@@ -155,9 +194,10 @@ def _driver(drive: Drive, one: _Input, elasticity: float, check: Check, part: fl
         with_fields(drive, one.changed(factor))
     except CycloError:  # such a drive cannot be built
         return Driver(input=one.name, elasticity=elasticity, change="", factor=None)
-    told = f"× {factor:.3g}"
+    told = f"× {factor:.4g}"
     if one.start is not None:
-        told = f"{one.start:.4g} → {factor * one.start:.4g}{f' {label(one.unit)}' if label(one.unit) else ''}"
+        scale, unit = (1e-3, "N·m") if one.name == TORQUE else (1.0, label(one.unit))
+        told = f"{scale * one.start:.4g} → {scale * factor * one.start:.4g} {unit}".rstrip()
     if one.beside:
         told += f" (with {', '.join(one.beside)})"
     return Driver(input=one.name, elasticity=elasticity, change=told, factor=factor)
@@ -227,7 +267,6 @@ def _inputs(drive: Drive, torque: float) -> list[_Input]:
         field("pin_shaft.pin_radius", hole) if shaft else None,
         field("pin_shaft.pin_circle_radius") if shaft else None,
         field("pin_shaft.stiffness") if shaft and drive.pin_shaft is not None and drive.pin_shaft.stiffness else None,
-        field("materials.disc.youngs_modulus"),
         field("disc.equidistant_offset"),
         field("disc.shifting_offset"),
         field("clearance.bearing"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from math import log
 
 from ltca.analysis.engines import Engine, describe_engine
 from ltca.analysis.loaded_analysis import analyse
@@ -14,7 +15,7 @@ from ltca.analysis.verdict.values import judge_analysis, notes as notes_of
 from ltca.drive.members.judgement import WHOLE, Check, Value, judge
 from ltca.drive.members.limits import Limit
 from ltca.drive.members.temperatures import warm_drive
-from ltca.drive.members.verdict_words import verdict_table
+from ltca.drive.members.verdict_words import is_of_sampling, urgency, verdict_table
 from ltca.drive.parts import Drive
 from ltca.errors import DriveError
 from ltca.geometry.placement import position_angles
@@ -86,11 +87,13 @@ class DriveCheck:
     def advice(self) -> str:
         """What drives the checks that fail and would mend them, as text."""
         lines = []
-        for check in self.failed:
+        for check in sorted(self.failed, key=urgency):
             limit = check.limit
             source = "" if limit is None else f" (limit: {limit.source})"
             told = "fails" if check.verdict == "fail" else f"cannot be judged: {check.value.reason}"
             lines.append(f"  {check.title} {told}{source}")
+            if is_of_sampling(check):
+                lines.append("    this is a matter of --positions, not of the drive")
             each = self.drivers.get(check.value.quantity, ())
             helping = [driver for driver in each if driver.change]
             lines += [
@@ -99,8 +102,27 @@ class DriveCheck:
             ]
             if each and not helping:
                 named = ", ".join(f"{driver.input} ({driver.elasticity:+.2f})" for driver in each[:MAX_INPUTS])
-                lines.append(f"    driven by {named}; no single change by a factor of three mends it")
-        return "".join(f"{line}\n" for line in lines)
+                lines.append(
+                    f"    driven by {named}; no single change by a factor of three mends it and keeps the others"
+                )
+            lines += [
+                f"    not {driver.input}: what mends this fails {', '.join(driver.breaks)}"
+                for driver in [driver for driver in each if driver.breaks][:MAX_INPUTS]
+            ]
+        return "".join(f"{line}\n" for line in [*lines, *self._at_once()])
+
+    def _at_once(self) -> list[str]:
+        """Changes of one input that mend all failed checks together: of each input that mends every one, the largest change."""
+        failed = [self.drivers.get(check.value.quantity, ()) for check in self.failed if not is_of_sampling(check)]
+        if len(failed) < 2:
+            return []
+        each = [{driver.input: driver for driver in one if driver.factor is not None} for one in failed]
+        common = [name for name in each[0] if all(name in one for one in each)]
+        farthest = [
+            max((one[name] for one in each), key=lambda driver: abs(log(driver.factor or 1.0))) for name in common
+        ]
+        told = "; ".join(f"{driver.input}: {driver.change}" for driver in farthest)
+        return [f"  all of them at once: {told}"] if told else []
 
 
 def check_drive(

@@ -9,6 +9,7 @@ import numpy as np
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.arrays import FloatArray
 from ltca.drive.members.judgement import Value
+from ltca.drive.members.verdict_words import part_words
 
 
 def most_of(values: Iterable[Value]) -> Value:
@@ -34,10 +35,7 @@ def largest_value(
     position, pair = np.unravel_index(int(np.nanargmax(values)), values.shape)
     count = len(analysis.model.discs) if discs is None else discs
     disc, number = divmod(int(pair), values.shape[1] // count)
-    alone = values.shape[1] == count
-    part = name if alone else f"{name} {number}"
-    if count > 1:
-        part = f"{part} of disc {disc}"
+    part = part_words(analysis.drive, name, number, values.shape[1] // count, disc if discs is None else None)
     largest = float(values[position, pair])
     return Value(
         quantity=quantity,

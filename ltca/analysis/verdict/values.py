@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from math import isfinite
+from collections.abc import Iterator, Mapping, Sequence
+from math import inf, isclose, isfinite
 
 import numpy as np
 
@@ -78,7 +78,7 @@ def notes(analysis: LoadedAnalysis) -> list[str]:
     drive, shaft = analysis.drive, analysis.drive.pin_shaft
     found = [*analysis.warnings, *odd_proportions(analysis.as_written)]
     found += [words for words in (analysis.engine_words, analysis.hole_words) if words]
-    if shaft is not None and shaft.stiffness is not None:
+    if shaft is not None and shaft.stiffness is not None and analysis.engine.compliance == "half-space":
         disc = drive.materials.disc.youngs_modulus * drive.disc.thickness
         if shaft.stiffness > STIFF_PINS * disc:
             found.append(
@@ -90,32 +90,25 @@ def notes(analysis: LoadedAnalysis) -> list[str]:
 
 def _of_shape(analysis: LoadedAnalysis) -> Iterator[Value]:
     singles = single_discs(analysis.drive)
-    yield _least(
-        "undercut_margin", [(_disc(number, singles), undercut_margin(one)) for number, one in enumerate(singles)]
-    )
-    yield _least(
-        "pin_hollow_margin", [(_disc(number, singles), pin_hollow_margin(one)) for number, one in enumerate(singles)]
-    )
-    yield _least(
-        "wall",
-        [
-            (" ".join((name, _disc(number, singles))).strip(), wall)
-            for number, one in enumerate(singles)
-            for name, wall in walls(one)
-        ],
-    )
+    yield _least("undercut_margin", [{"": undercut_margin(one)} for one in singles])
+    yield _least("pin_hollow_margin", [{"": pin_hollow_margin(one)} for one in singles])
+    yield _least("wall", [dict(walls(one)) for one in singles])
     yield Value(quantity="roller_gap", value=roller_gap(analysis.drive), part="between neighbouring rollers")
 
 
-def _least(quantity: str, named: list[tuple[str, float]]) -> Value:
-    part, value = min(named, key=lambda item: item[1])
+def _least(quantity: str, discs: Sequence[Mapping[str, float]]) -> Value:
+    """The least of the named values of all discs; the disc is named where another one has more in the same place."""
+    number, name = min(
+        ((number, name) for number, named in enumerate(discs) for name in named),
+        key=lambda place: discs[place[0]][place[1]],
+    )
+    value = discs[number][name]
     if not isfinite(value):
         return Value(quantity=quantity, value=None, reason="the flank has no hollow")
-    return Value(quantity=quantity, value=value, part=part)
-
-
-def _disc(number: int, discs: list[object] | tuple[object, ...]) -> str:
-    return "" if len(discs) == 1 else f"of disc {number}"
+    differs = any(not isclose(named.get(name, inf), value) for named in discs)
+    return Value(
+        quantity=quantity, value=value, part=", ".join(filter(None, (f"disc {number}" if differs else "", name)))
+    )
 
 
 def _of_loads(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) -> Iterator[Value]:
@@ -137,14 +130,16 @@ def _of_loads(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) -> 
     bearing = np.hypot(analysis.bearing_radial, analysis.bearing_tangential).reshape(angle.size, -1)
     arrays = contact_arrays(analysis.full.response, analysis.pressures) | {"bearing_load": bearing}
     for quantity in OF_LOADS:
-        each, name = arrays[quantity], PARTS.get(QUANTITIES[quantity].of, "bearing")
+        several = "crank" if analysis.drive.crank.number > 1 else ""
+        each, name = arrays[quantity], PARTS.get(QUANTITIES[quantity].of, several)
         if each.shape[1]:
             yield largest_value(analysis, quantity, each, name, refined_value(summary, LIMITED[quantity].key))
 
 
 def _of_pins(analysis: LoadedAnalysis) -> Iterator[Value]:
     """Stress and deflection of pins, pressure of their seats."""
-    for pins, name in (("wheel", "wheel pin"), ("shaft", "shaft pin")):
+    for pins in ("wheel", "shaft") if analysis.drive.pin_shaft is not None else ("wheel",):
+        name = f"{pins} pin"
         stress = pin_stress(analysis, "wheel" if pins == "wheel" else "shaft")
         yield _bending_fatigue(analysis, stress, pins)
         for kind in ("bending", "shear"):
@@ -175,7 +170,7 @@ def _bending_fatigue(analysis: LoadedAnalysis, stress: PinStress | None, pins: s
 
 def _of_walls(analysis: LoadedAnalysis) -> Iterator[Value]:
     """Stresses of the disc: along its walls where the engine knows them, and below its contacts."""
-    for wall in ("root", "bore", "hole"):
+    for wall in ("root", "bore", "hole") if analysis.drive.pin_shaft is not None else ("root", "bore"):
         if not analysis.wall_stresses:
             told = "half-spaces have no walls (--compliance fe or hybrid)"
             yield Value(quantity=f"{wall}_stress", value=None, reason=told)

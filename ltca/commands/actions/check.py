@@ -63,6 +63,12 @@ def judge_and_write(
 
 def _drivers(drivers: Sequence[Driver]) -> list[dict[str, Any]]:
     return [
-        {"input": driver.input, "elasticity": driver.elasticity, "change": driver.change, "factor": driver.factor}
+        {
+            "input": driver.input,
+            "elasticity": driver.elasticity,
+            "change": driver.change,
+            "factor": driver.factor,
+            "breaks": [*driver.breaks],
+        }
         for driver in drivers
     ]

@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 from collections.abc import Mapping
 from pathlib import Path
-from shutil import get_terminal_size
 from typing import NamedTuple
 
 from xarray import Dataset
@@ -18,11 +17,12 @@ from ltca.analysis.light_torque import at_light_torque
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse_cases
 from ltca.analysis.pressure_fields import build_pressure_dataset
 from ltca.analysis.results import build_dataset
-from ltca.analysis.summary import refined_value, summarise
-from ltca.analysis.summary_rows import rows_of, with_residual_part
+from ltca.analysis.summary import summarise
+from ltca.analysis.summary_rows import with_residual_part
 from ltca.analysis.verdict.proportions import odd_proportions
 from ltca.analysis.verdict.values import judge_analysis
 from ltca.arrays import FloatArray
+from ltca.commands.actions.run_table import lives_told, run_table
 from ltca.drive.members.judgement import Check
 from ltca.drive.members.limits import Limits
 from ltca.drive.members.verdict_words import verdict_line
@@ -100,16 +100,16 @@ def solve_and_write(task: RunTask, out: Path) -> int:
     (load, *others) = dict.fromkeys(loads.values())
     how = [describe_engine(engine), _many(angles)]
     print(f"{file.name}: {', '.join(how if others else [load, *how])}")
-    yields = any(drive.crank.support or drive.pin_wheel.support_stiffness for drive in cases.values())
     checks = _checks(analyses, summaries, file.limits)
     sampling = _sampling(analyses, summaries, angles)
     proportions = _proportions(analyses)
+    lives = {name: _lives(analysis) for name, analysis in analyses.items()}
     print(_verdicts(checks, proportions))
-    print(_table(summaries, loads if others else {}, bool(yields)))
-    print("\n".join(sampling))
+    print(run_table(analyses, summaries, lives, loads if others else {}))
+    print("\n".join([*lives_told(lives), *sampling]))
     if task.page:
         told = [*sampling, *dict.fromkeys(f"warning: {one}" for each in proportions.values() for one in each)]
-        files.append(_write_page(task, analyses, dataset, summaries, checks, told, out))
+        files.append(_write_page(task, analyses, dataset, summaries, checks, lives, told, out))
     print("results: " + ", ".join(str(out / name) for name in files))
     for name, failure in failures.items():
         left = 2 * angles.size
@@ -124,7 +124,7 @@ def solve_and_write(task: RunTask, out: Path) -> int:
 
 def _write_page(
     task: RunTask, analyses: Analyses, dataset: Dataset, summaries: Summaries, checks: dict[str, list[Check]],
-    sampling: list[str], out: Path,
+    lives: dict[str, BearingLives | str], sampling: list[str], out: Path,
 ) -> str:  # fmt: skip
     """Write the page of the run; return its name."""
     from ltca.page.run_page import PAGE, Run, run_page
@@ -137,7 +137,7 @@ def _write_page(
         engine=task.engine,
         summaries=summaries,
         checks=checks,
-        lives={name: _lives(analysis) for name, analysis in analyses.items()},
+        lives=lives,
         sampling=sampling,
         light=build_dataset(task.file.name, light, task.file.text),
         compared=task.compared,
@@ -198,7 +198,7 @@ def _verdicts(checks: dict[str, list[Check]], proportions: dict[str, list[str]])
     told = ["verdict, with the check nearest to its limit"]
     told += [f"  {name:<{width}}  {verdict_line(each)}" for name, each in checks.items()]
     told += [f"  note: {note}" for note in dict.fromkeys(note for each in proportions.values() for note in each)]
-    return "\n".join([*told, "every check, what drives it and would mend it: cyclo check"])
+    return "\n".join([*told, "  every check, what drives it and would mend it: cyclo check", ""])
 
 
 def _draw(dataset: Dataset, fields: Dataset | None, cases: dict[str, Drive], folder: Path, kind: str) -> None:
@@ -217,30 +217,6 @@ def _draw(dataset: Dataset, fields: Dataset | None, cases: dict[str, Drive], fol
             advance(path.name)
 
 
-def _table(summaries: Summaries, loads: dict[str, str], yields: bool) -> str:
-    summaries = {name: with_residual_part(case) for name, case in summaries.items()}
-    rows = [("case", list(summaries))]
-    if loads:  # of cases that differ in them
-        rows.append(("torque, direction of the crank", list(loads.values())))
-    for row in rows_of(summaries, yields=yields):
-        values = [refined_value(case, row.key) for case in summaries.values()]
-        rows.append((row.heading, ["–" if value is None else f"{value:{row.digits}}" for value in values]))
-    return "\n".join(_side_by_side(rows))
-
-
-def _side_by_side(rows: list[tuple[str, list[str]]]) -> list[str]:
-    """Rows with their cells in columns, as many columns beside each other as a terminal shows."""
-    head = max(len(title) for title, _ in rows)
-    widths = [max(10, *(len(cells[column]) + 2 for _, cells in rows)) for column in range(len(rows[0][1]))]
-    seen = get_terminal_size(fallback=(10_000, 24)).columns if sys.stdout.isatty() else 10_000
-    many = max(1, (seen - head) // max(widths))
-    return [
-        f"{title:<{head}}" + "".join(f"{cells[c]:>{widths[c]}}" for c in range(first, min(first + many, len(widths))))
-        for first in range(0, len(widths), many)
-        for title, cells in rows
-    ]
-
-
 def _many(angles: FloatArray) -> str:
     return f"{angles.size} positions" if angles.size > 1 else f"1 position, φ_C = {angles[0]:g} rad"
 
@@ -250,6 +226,9 @@ def _sampling(analyses: Analyses, summaries: Summaries, angles: FloatArray) -> l
     many = _many(angles)
     whole = is_full_turn(angles)
     lines = [f"means over {many}; extremes over the turn, refined between them" if whole else f"values of {many}"]
+    parts = [part for case in summaries.values() if (part := with_residual_part(case)["residual_part"]) is not None]
+    if parts:
+        lines[0] += f"; forces balance within {max(parts):.1e} of the largest bearing load"
     lines += sorted({words for one in analyses.values() for words in (one.engine_words, one.hole_words)} - {""})
     warnings = {
         warning

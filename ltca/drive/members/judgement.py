@@ -1,7 +1,12 @@
 """Limits of values, from the drive file or its materials, with safety and verdict.
 
-A limit of the drive file replaces that of a material. Demands of geometry (a wall thicker than zero) are limits of zero, demands
-of a theory (half-spaces, sampling) are the bounds of that theory; neither depends on the design, and their sources say so.
+Every value is judged once in each sense, by the strictest limit that applies. A limit of the drive file replaces that of a
+material, but for first yield. Demands of geometry (a wall thicker than zero) are limits of zero, demands of a theory
+(half-spaces, sampling) are the bounds of that theory; neither depends on the design, and their sources say so.
+
+A joint is judged by its pressure: by the lowest allowable pressure of its bodies, and by first yield below a line contact where
+hardness or yield strength of a body is known. Shear below the surface and strain of the contact are that pressure times
+constants, and say the same again: they are told.
 """
 
 from __future__ import annotations
@@ -106,36 +111,50 @@ WHOLE = Limit(quantity="carried_torque", sense="min", value=1.0, source="theory 
 def judge(
     drive: Drive, values: Sequence[Value], limits: Mapping[str, Limit], demanded: Mapping[str, Limit] | None = None
 ) -> list[Check]:
-    """Return a check for every value and limit, and one without a limit for values that have none.
+    """Return a check for every value and sense of limit, and one without a limit for values that have none.
 
-    Limits are those of the drive file, of the materials of the drive, and those that theories demand, by quantity.
+    Limits are those of the drive file, of the materials of the drive, and those that theories demand, by quantity; of several in
+    one sense the strictest is the one that judges.
     """
     checks = []
     for value in values:
         own = [one for sense in SENSES if (one := _own(limits, sense, value.quantity)) is not None]
-        allowed, lacking = _of_materials(drive, value)
-        found = [
-            *own,
-            *(limit for limit in allowed if limit.sense not in {one.sense for one in own}),
-            *_of_soft_races(drive, value, own),
-            *_of_shape(value),
-        ]
+        allowed, lacking = _of_materials(drive, value, own)
+        found = [*own, *allowed, *_of_shape(value)]
         if value.quantity == "play_at_temperature" and not any(one.sense == "min" for one in own):
             found.append(_limit(value, "min", 0.0, SEIZED))
         if demanded is not None and value.quantity in demanded:
             found.append(demanded[value.quantity])
+        asked = {one.sense for one in own}
         judged = value if found or not lacking else replace(value, reason=lacking)
-        checks += [Check(value=judged_by(limit, judged), limit=limit, asked=limit in own) for limit in found] or [
-            Check(value=judged, limit=None)
-        ]
+        checks += [
+            Check(value=judged_by(limit, judged), limit=limit, asked=limit.sense in asked)
+            for limit in _strictest(found)
+        ] or [Check(value=judged, limit=None)]
     told = {value.quantity for value in values} | {_BOTH.get(value.quantity) for value in values}
     for limit in limits.values():
         if limit.quantity not in told:
             reason = "not in this drive, or not computed by this engine"
+            if drive.pin_shaft is None and limit.quantity.startswith(OF_SHAFT_PINS):
+                reason = "this drive has no shaft pins"
             checks.append(
                 Check(value=Value(quantity=limit.quantity, value=None, reason=reason), limit=limit, asked=True)
             )
     return checks
+
+
+OF_SHAFT_PINS = ("pin_shaft_", "shaft_pin_", "hole_")
+"""How quantities begin that only drives with a pin shaft have."""
+
+
+def _strictest(limits: Sequence[Limit]) -> list[Limit]:
+    """The lowest upper and the highest lower limit, the first of equal ones."""
+    upper = [one for one in limits if one.sense == "max"]
+    lower = [one for one in limits if one.sense == "min"]
+    return [
+        *([min(upper, key=lambda one: one.value)] if upper else []),
+        *([max(lower, key=lambda one: one.value)] if lower else []),
+    ]
 
 
 def judged_by(limit: Limit, value: Value) -> Value:
@@ -147,19 +166,6 @@ def judged_by(limit: Limit, value: Value) -> Value:
 
 _BOTH = {"roller_pressure_mid_outer": "roller_pressure_mid", "roller_pressure_mid_inner": "roller_pressure_mid"}
 """Quantities that are bounded by the limit of another one as well."""
-
-
-def _of_soft_races(drive: Drive, value: Value, own: Sequence[Limit]) -> list[Limit]:
-    """Allowable pressure of a race that is not of hardened steel, where the file limits all races together: that limit is
-    of bearing steel.
-    """
-    race = {"roller_pressure_mid_outer": "disc", "roller_pressure_mid_inner": "inner_race"}.get(value.quantity)
-    if race is None or not any(one.sense == "max" and one.quantity != value.quantity for one in own):
-        return []
-    part: Material = getattr(drive.materials, race)
-    if part.is_bearing_steel or part.allowable_pressure is None:
-        return []
-    return _lowest(value, [(part.allowable_pressure, race)], "allowable_pressure")
 
 
 def _own(limits: Mapping[str, Limit], sense: str, quantity: str) -> Limit | None:
@@ -177,84 +183,104 @@ def _of_shape(value: Value) -> list[Limit]:
 SEIZED = "geometry: parts that had play at 20 °C overlap at [temperature]"
 
 
-def _of_materials(drive: Drive, value: Value) -> tuple[list[Limit], str]:
-    """The lowest allowable of the materials that a value belongs to, and the property that is missing for a lower one."""
+def _of_materials(drive: Drive, value: Value, own: Sequence[Limit]) -> tuple[list[Limit], str]:
+    """Limits that the materials of a value's parts set, and the property that is missing where they set none.
+
+    `own` are the limits of the file on that value.
+    """
     parts, quantity = drive.materials, value.quantity
-    disc, flank_pin, hole_pin = ("disc", parts.disc), _flank_pin(drive), _hole_pin(drive)
-    pressed = {
-        "pin_pressure_mid": (disc, flank_pin),
-        "pin_shaft_pressure_mid": (disc, hole_pin),
+    disc = ("disc", parts.disc)
+    upper = next((one for one in own if one.sense == "max"), None)
+    joints = {
+        "pin_pressure_mid": (disc, _flank_pin(drive)),
+        "pin_shaft_pressure_mid": (disc, _hole_pin(drive)),
         "roller_pressure_mid_outer": (disc, ("roller", parts.roller)),
         "roller_pressure_mid_inner": (("roller", parts.roller), ("inner_race", parts.inner_race)),
+    }
+    if quantity in joints:
+        return _of_joint(value, joints[quantity], upper)
+    if upper is not None:
+        return [], ""
+    seats = {
         "pin_seat_pressure": (("wheel_pin", parts.wheel_pin), _seat(drive)),
         "hole_seat_pressure": (("shaft_pin", parts.shaft_pin), ("sleeve", parts.sleeve)),
     }
-    if quantity in pressed:
-        given = [
-            (part.allowable_pressure, name) for name, part in pressed[quantity] if part.allowable_pressure is not None
-        ]
-        lacking = [f"materials.{name}" for name, part in pressed[quantity] if part.allowable_pressure is None]
-        found = _lowest(value, given, "allowable_pressure")
-        # The limit of one body alone is used only where the value is beyond it already.
-        kept = value.value is None or not found or value.value <= found[0].value
-        told = f"{' and '.join(lacking)} has no allowable_pressure" if lacking else ""
-        return ([] if lacking and kept else found), told
+    if quantity in seats:
+        given = {name: [_endured(value, name, part)] for name, part in seats[quantity] if part.allowable_pressure}
+        return _of_bodies(value, given, [name for name, _ in seats[quantity]], "allowable_pressure")
     bent = {"wheel": ("wheel_pin", parts.wheel_pin), "shaft": ("shaft_pin", parts.shaft_pin)}
     which, _, rest = quantity.partition("_pin_")
     if rest == "bending_amplitude":
         name, part = bent[which]
-        given = [] if part.bending_fatigue_limit is None else [(part.bending_fatigue_limit, name)]
-        return _lowest(
-            value, given, "bending_fatigue_limit"
-        ), f"not judged: materials.{name} has no bending_fatigue_limit"
+        limit = _of_property(value, part.bending_fatigue_limit, f"materials.{name}.bending_fatigue_limit")
+        return limit, f"not judged: materials.{name} has no bending_fatigue_limit"
     if rest in ("bending_stress", "shear_stress"):
         name, part = bent[which]
         factor, how = (1.0, "yield_strength") if rest.startswith("bending") else (3.0**-0.5, "yield_strength/√3")
-        given = [] if part.yield_strength is None else [(factor * part.yield_strength, name)]
-        return _lowest(value, given, how), f"materials.{name} has no yield_strength"
+        limit = _of_property(value, part.yield_strength, f"materials.{name}.{how}", factor)
+        return limit, f"materials.{name} has no yield_strength"
+    strength = parts.disc.yield_strength
     if quantity in ("root_stress", "bore_stress", "hole_stress"):
-        given = [] if parts.disc.yield_strength is None else [(parts.disc.yield_strength, "disc")]
-        return _lowest(value, given, "yield_strength"), "materials.disc has no yield_strength"
-    if quantity == "contact_strain":
-        name, part = min((disc, flank_pin), key=lambda body: body[1].youngs_modulus)
-        return _strain(value, name, part), f"materials.{name} has neither hardness nor yield_strength"
-    if quantity == "shear_depth" and parts.disc.hardness_depth is not None:
-        return [_limit(value, "max", parts.disc.hardness_depth, "materials.disc.hardness_depth")], ""
-    if quantity == "core_shear" and parts.disc.yield_strength is not None:
-        return [_limit(value, "max", 0.5 * parts.disc.yield_strength, "materials.disc.yield_strength/2 (Tresca)")], ""
-    if quantity == "disc_shear":
-        return _shear(value, parts.disc), "materials.disc has neither hardness nor yield_strength"
+        limit = _of_property(value, strength, "materials.disc.yield_strength")
+        return limit, "materials.disc has no yield_strength"
+    if quantity == "core_shear":
+        return _of_property(value, strength, "materials.disc.yield_strength/2 (Tresca)", 0.5), ""
+    if quantity == "shear_depth" and strength is None:  # the core is judged by its shear where its strength is known
+        return _of_property(value, parts.disc.hardness_depth, "materials.disc.hardness_depth"), ""
     return [], ""
 
 
-FIRST_YIELD = "1.67: first yield below a line contact (Johnson, Contact Mechanics, 1985, sect. 4.2)"
+FIRST_YIELD = "first yield below a line contact, 1.67 Y (Johnson, Contact Mechanics, 1985, sect. 4.2)"
 YIELD_BY_HARDNESS = 9.81 / 3.0
 """Yield strength of a surface by its Vickers hardness, MPa by HV (Tabor, The Hardness of Metals, 1951): of hardened parts the
 yield strength is that of the core. Fatigue is a matter of the allowable pressure."""
 
 
-def _strain(value: Value, name: str, part: Material) -> list[Limit]:
+def _of_joint(value: Value, bodies: Sequence[tuple[str, Material]], upper: Limit | None) -> tuple[list[Limit], str]:
+    """What the bodies of a line contact bear: their allowable pressures, which an upper limit of the file replaces, and their
+    first yield.
+
+    A limit on all races together is one of bearing steel, and replaces nothing of other bodies.
+    """
+    given: dict[str, list[Limit]] = {}
+    for name, part in bodies:
+        replaced = upper is not None and (upper.quantity == value.quantity or part.is_bearing_steel)
+        endured = [] if replaced or part.allowable_pressure is None else [_endured(value, name, part)]
+        found = [*endured, *_first_yield(value, name, part)]
+        if found:
+            given[name] = found
+    if upper is not None:  # which judges what the materials leave open
+        return [limit for found in given.values() for limit in found], ""
+    return _of_bodies(value, given, [name for name, _ in bodies], "allowable_pressure, hardness or yield_strength")
+
+
+def _of_bodies(
+    value: Value, given: Mapping[str, Sequence[Limit]], names: Sequence[str], lacked: str
+) -> tuple[list[Limit], str]:
+    """The strictest limit of two bodies; that of one alone only where the value is beyond it already."""
+    found = _strictest([limit for limits in given.values() for limit in limits])
+    lacking = [f"materials.{name}" for name in names if name not in given]
+    kept = value.value is None or not found or value.value <= found[0].value
+    told = f"{' and '.join(lacking)} has no {lacked}" if lacking else ""
+    return ([] if lacking and kept else found), told
+
+
+def _endured(value: Value, name: str, part: Material) -> Limit:
+    return _limit(value, "max", part.allowable_pressure or 0.0, f"materials.{name}.allowable_pressure")
+
+
+def _first_yield(value: Value, name: str, part: Material) -> list[Limit]:
     if part.hardness is not None:
-        strength, field = YIELD_BY_HARDNESS * part.hardness, "hardness · 9.81/3 (Tabor 1951)"
+        strength, known = YIELD_BY_HARDNESS * part.hardness, "hardness · 9.81/3 (Tabor 1951)"
     elif part.yield_strength is not None:
-        strength, field = part.yield_strength, "yield_strength"
+        strength, known = part.yield_strength, "yield_strength"
     else:
         return []
-    source = f"{FIRST_YIELD} of materials.{name}.{field} / youngs_modulus"
-    return [_limit(value, "max", 1.67 * strength / part.youngs_modulus, source)]
+    return [_limit(value, "max", 1.67 * strength, f"{FIRST_YIELD}, Y = materials.{name}.{known}")]
 
 
-def _shear(value: Value, disc: Material) -> list[Limit]:
-    if disc.hardness is not None:
-        source = "materials.disc.hardness · 9.81/6: yield by hardness (Tabor 1951) and Tresca"
-        return [_limit(value, "max", 0.5 * YIELD_BY_HARDNESS * disc.hardness, source)]
-    if disc.yield_strength is not None:
-        return [_limit(value, "max", 0.5 * disc.yield_strength, "materials.disc.yield_strength/2 (Tresca)")]
-    return []
-
-
-def _lowest(value: Value, given: list[tuple[float, str]], field: str) -> list[Limit]:
-    return [_limit(value, "max", number, f"materials.{name}.{field}") for number, name in sorted(given)[:1]]
+def _of_property(value: Value, number: float | None, source: str, factor: float = 1.0) -> list[Limit]:
+    return [] if number is None else [_limit(value, "max", factor * number, source)]
 
 
 def _limit(value: Value, sense: str, number: float, source: str) -> Limit:

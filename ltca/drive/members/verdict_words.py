@@ -6,22 +6,42 @@ from collections.abc import Sequence
 from math import degrees
 from typing import Any
 
-from ltca.drive.members.judgement import Check
+from ltca.drive.members.judgement import Check, Value
+from ltca.drive.parts import Drive
 from ltca.quantities import unit_sign
 
+CLOSE = ("°", "′", "″")
+"""Signs that stand right behind their number."""
 WORDS = {"pass": "pass", "fail": "FAIL", "no limit": "no limit", "not known": "–"}
 
 
+def part_words(drive: Drive, name: str, pair: int, pairs: int, disc: int | None = None) -> str:
+    """Return what a part is called where it is told: "disc 1, crank 2, roller 5", without what a drive has one of.
+
+    `pair` is its place among the `pairs` of one disc, `disc` the number of that disc, none for what all discs share; rollers
+    count anew in every bearing.
+    """
+    told = [] if disc is None or drive.disc.number_of_discs == 1 else [f"disc {disc}"]
+    if "roller" in name and drive.crank.number > 1:
+        crank, pair = divmod(pair, pairs // drive.crank.number)
+        told.append(f"crank {crank}")
+    words = name if pairs == 1 else f"{name} {pair}"
+    return ", ".join([*told, *([words] if words else [])])
+
+
 def verdict_table(checks: Sequence[Check], *, limited: bool = False) -> str:
-    """Return the checks of one case as a table; with `limited`, checks without a limit are counted only."""
-    shown = [check for check in checks if check.limit is not None or not limited]
+    """Return the checks of one case as a table: what fails, what passes by its safety, what only informs; then what is not
+    known, and why.
+
+    With `limited`, checks without a limit are counted only.
+    """
+    known = [check for check in checks if check.value.value is not None and (check.limit is not None or not limited)]
     rows = [("check", "value", "limit", "safety", "verdict", "where")]
-    for check in shown:
+    for check in sorted(known, key=lambda check: (check.limit is None, urgency(check))):
         value, limit = check.value, check.limit
-        unit = f" {unit_sign(value.unit)}".rstrip()
-        bound = "" if limit is None else f"{'≤' if limit.sense == 'max' else '≥'} {limit.value:.5g}{unit}"
+        bound = "" if limit is None else f"{'≤' if limit.sense == 'max' else '≥'} {with_unit(limit.value, value, 5)}"
         safety = "" if check.safety is None else f"{check.safety:.3f}"
-        told = "–" if value.value is None else f"{value.value:.5g}{unit}"
+        told = with_unit(value.value or 0.0, value, 5)
         rows.append((check.title, told, bound, safety, WORDS[check.verdict], place_words(check)))
     widths = [max(len(row[column]) for row in rows) for column in range(5)]
     lines = [
@@ -29,36 +49,62 @@ def verdict_table(checks: Sequence[Check], *, limited: bool = False) -> str:
         f"{row[4]:<{widths[4]}}  {row[5]}".rstrip()
         for row in rows
     ]
+    unknown: dict[str, list[str]] = {}
+    for check in checks:
+        if check.value.value is None and (check.limit is not None or not limited):
+            unknown.setdefault(check.value.reason, []).append(check.title)
+    lines += [f"  not known ({reason}): {'; '.join(dict.fromkeys(titles))}" for reason, titles in unknown.items()]
     counts = {verdict: sum(check.verdict == verdict for check in checks) for verdict in WORDS}
     words = {"pass": "passed", "fail": "failed", "no limit": "without a limit", "not known": "not known"}
     lines.append("  " + ", ".join(f"{counts[verdict]} {word}" for verdict, word in words.items()))
     return "\n".join(lines)
 
 
+def with_unit(number: float, value: Value, digits: int) -> str:
+    """Return a number with the unit of a value; minutes and seconds of arc stand right behind it."""
+    sign = unit_sign(value.unit)
+    return f"{number:.{digits}g}" + (sign if sign in CLOSE else f" {sign}" if sign else "")
+
+
 def verdict_line(checks: Sequence[Check]) -> str:
-    """Return the verdict on a case in one line: pass or fail, and the check that fails worst or is nearest to its limit."""
+    """Return the verdict on a case in one line: pass or fail, and the check that fails worst or is nearest to its limit.
+
+    Positions that are too few fail no drive; it is told.
+    """
     judged = [check for check in checks if check.fails or check.verdict == "pass"]
-    if not judged:
+    of_drive = [check for check in judged if not is_of_sampling(check)]
+    if not of_drive:
         return "not judged: neither drive file nor materials have limits"
-    failed = sum(check.fails for check in judged)
-    word = WORDS["fail" if failed else "pass"]
-    nearest = min(judged, key=urgency)
+    failed, few = sum(check.fails for check in of_drive), sum(check.fails for check in judged if is_of_sampling(check))
+    word = WORDS["fail"] if failed else "pass at these positions" if few else WORDS["pass"]
+    nearest = min(of_drive, key=urgency)
     told = f"{word}  {nearest.title}"
     if nearest.value.value is None:
         told += f" cannot be judged: {nearest.value.reason}"
     elif nearest.limit is not None:
-        unit = f" {unit_sign(nearest.value.unit)}".rstrip()
-        bound = f"{'≤' if nearest.limit.sense == 'max' else '≥'} {nearest.limit.value:.4g}{unit}"
-        told += f" {nearest.value.value:.4g}{unit} ({bound})"
+        bound = f"{'≤' if nearest.limit.sense == 'max' else '≥'} {with_unit(nearest.limit.value, nearest.value, 4)}"
+        told += f" {with_unit(nearest.value.value, nearest.value, 4)} ({bound})"
     if nearest.safety is not None:
         told += f", safety {nearest.safety:.3g}"
-    return told + (f"; {failed} of {len(judged)} checks fail" if failed > 1 else "")
+    told += f"; {failed} of {len(of_drive)} checks fail" if failed > 1 else ""
+    return told + ("; too few positions for the peaks" if few else "")
 
 
 def urgency(check: Check) -> tuple[bool, bool, float]:
-    """Return a sort key: failed checks first, checks of the drive before those of the sampling, then by increasing safety."""
-    of_sampling = check.value.quantity == "distinct_mesh_phases"
-    return not check.fails, of_sampling, float("inf") if check.safety is None else check.safety
+    """Return a sort key: failed checks first, checks of the drive before those of the sampling, then by increasing safety.
+
+    A value beyond a limit that no ratio measures, as a wall thinner than nothing, is worst of all; one that keeps such a limit,
+    or is not known, comes last.
+    """
+    safety = check.safety
+    if safety is None:
+        safety = 0.0 if check.verdict == "fail" else float("inf")
+    return not check.fails, is_of_sampling(check), safety
+
+
+def is_of_sampling(check: Check) -> bool:
+    """Whether a check is of the positions of a run, not of the drive."""
+    return check.value.quantity == "distinct_mesh_phases"
 
 
 def place_words(check: Check) -> str:

@@ -43,7 +43,7 @@ const KINDS = { pin: "wheel pin", outer: "roller", hole: "shaft pin" };
 function contactName(kind, number) {
   if (kind !== "outer" || content.cranks === 1) return `${KINDS[kind]} ${number}`;
   const each = shapeOf("0/full/outer/load")[1] / content.cranks;
-  return `roller ${number % each} of crank ${Math.floor(number / each)}`;
+  return `crank ${Math.floor(number / each)}, roller ${number % each}`;
 }
 
 // Everything at one position: parts as circles, contacts with place and direction of the force on the disc.

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ltca.analysis.verdict.advice import Driver
+from ltca.drive.members.verdict_words import urgency
 from ltca.page.study_page import Section, StudyPage
 from ltca.page.tables import Table, minus, number, word
 from ltca.page.verdict_tables import Checks, verdict_of, verdict_tables
@@ -28,15 +29,18 @@ def check_page(
     rows = [
         [
             word(case), word(check.title), word(driver.input), number(driver.elasticity, "{:+.2f}"),
-            word(minus(driver.change)),
+            word(minus(driver.change) or (f"none: it would fail {', '.join(driver.breaks)}" if driver.breaks else "")),
         ]
         for case, each in checks.items()
-        for check in sorted(each, key=lambda check: not check.fails)
+        for check in sorted(each, key=urgency)
         for driver in drivers[case].get(check.value.quantity, ())
     ]  # fmt: skip
     if rows:
         columns = ["case", "check", "input", "d ln value/d ln input", "change that would about mend it"]
         table = Table(name="drivers", caption="", columns=columns, rows=rows, words=2)
-        note = "A change by a factor stands only where the value fails its limit and one input alone would mend it."
+        note = (
+            "A change stands only where the value fails its limit and one input alone would mend it without failing another "
+            "check."
+        )
         sections.append(Section(heading="What drives each value", notes=[note], tables=[table]))
     return StudyPage(name=name, told=told, sentence=sentence, state=state, sections=sections, made=made, text=text)

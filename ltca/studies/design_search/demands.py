@@ -34,9 +34,8 @@ ROLLER_PRESSURE = 4000.0
 SAFETY = 0.02
 """By which part demands are kept in the search: a fine solution finds larger peaks than a coarse one."""
 OF_MATERIALS = (
-    "pin_pressure_mid", "pin_shaft_pressure_mid", "roller_pressure_mid_outer", "roller_pressure_mid_inner", "disc_shear",
-    "shaft_pin_bending_stress", "shaft_pin_bending_amplitude", "shaft_pin_shear_stress", "contact_strain",
-    "half_width_ratio",
+    "pin_pressure_mid", "pin_shaft_pressure_mid", "roller_pressure_mid_outer", "roller_pressure_mid_inner",
+    "shaft_pin_bending_stress", "shaft_pin_bending_amplitude", "shaft_pin_shear_stress", "half_width_ratio",
 )  # fmt: skip
 OF_SHAPE = ("undercut_margin", "pin_hollow_margin", "pin_gap", "wall", "cage_room", "race", "roller_room")
 
@@ -144,7 +143,7 @@ def find_demands(requirements: Requirements) -> tuple[Demand, ...]:
     found: dict[tuple[str, str], Demand] = {}
 
     def add(name: str, quantity: str, sense: str, value: float | None, kind: Kind, source: str = "") -> None:
-        if value is None or (kind == "material" and (quantity, sense) in found):
+        if value is None:
             return
         scale = asked.outer_diameter / 50.0
         told = source or "requirement"

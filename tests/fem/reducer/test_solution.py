@@ -153,7 +153,7 @@ def test_full_solutions_are_judged_by_the_limits_of_the_drive(solved):
     assert (found.verdict, found.value.value) == ("fail", largest)
     assert found.safety == pytest.approx(0.9)
     worst = int(np.argmax([disc.contacts.pin_pressure_mid.max() for disc in solved.discs]))
-    assert found.value.part == f"wheel pin {np.argmax(solved.discs[worst].contacts.pin_pressure_mid)} of disc {worst}"
+    assert found.value.part == f"disc {worst}, wheel pin {np.argmax(solved.discs[worst].contacts.pin_pressure_mid)}"
     assert found.value.crank_angle == ANGLE
     assert "backlash_output" not in checks
     assert checks["pin_load"].verdict == "no limit"

@@ -16,9 +16,11 @@ from ltca.page.compared import read_compared
 from ltca.page.packing import unpack
 from ltca.page.run_arrays import run_arrays, shown_positions
 from ltca.page.run_page import run_page
+from ltca.page.run_tables import input_tables
 from ltca.page.tables import minus
 from ltca.page.verdict_tables import verdict_of
 from ltca.quantities import SCHEMA_VERSION
+from ltca.reading.drive_file import parse_drive, shipped_drive
 
 
 def script(text, name):
@@ -226,3 +228,22 @@ def test_a_second_run_beside_the_first(paper_run, tmp_path):
     assert np.array_equal(numbers["b/1/full/outer/load"], numbers["0/full/outer/load"])
     assert "second run, CS-6" in text
     assert "+0.00 %" in text
+
+
+def test_inputs_are_those_of_parts_that_are_there():
+    """The page of an RV listed the material of shaft pins, that of the paper's drive sleeves and crankshafts."""
+    paths = {
+        name: {
+            cell.text
+            for table in input_tables(parse_drive(shipped_drive(name), name).cases)
+            for (cell, *_) in table.rows
+        }
+        for name in ("rv", "sleeved", "paper")
+    }
+    assert not [
+        path for path in paths["rv"] if any(part in path for part in ("shaft_pin", "pin_shaft", "sleeve", "pin_hole"))
+    ]
+    assert "materials.crankshaft.youngs_modulus" in paths["rv"]
+    assert {"materials.sleeve.youngs_modulus", "materials.shaft_pin.youngs_modulus"} <= paths["sleeved"]
+    assert not [path for path in paths["paper"] if any(part in path for part in ("crankshaft", "sleeve", "wheel_seat"))]
+    assert {"materials.shaft_pin.youngs_modulus", "clearance.pin_hole"} <= paths["paper"]

@@ -247,3 +247,14 @@ def test_a_life_that_gives_way_is_known_all_the_same(monkeypatch):
     found = finish(Task(requirements=requirements, demands=demands, row=ROW | {"pin_circle": 88.4}, relaxed=("life",)))
     assert found.solution.values["bearing_life_hours"] > 0.0
     assert found.given == pytest.approx(np.log(1e9 / found.solution.values["bearing_life_hours"]), rel=1e-9)
+
+
+def test_a_soft_bore_is_demanded_by_its_own_limit():
+    """The 4000 MPa of a limit on all races stood in the search before the 73 MPa of a plastic bore, which `check` judges by."""
+    plastic = STEEL.replace('disc = "100Cr6"', 'disc = "printed PETG"')
+    limits = "\n[limits]\nmax_roller_pressure_mid = 4000.0\nmax_pin_pressure_mid = 100.0\n"
+    demands = {one.quantity: one.value for one in find_demands(parse_requirements(PAPER + plastic + limits))}
+    assert demands["roller_pressure_mid_outer"] == 73.0
+    assert demands["roller_pressure_mid_inner"] == 4000.0
+    assert demands["pin_pressure_mid"] == pytest.approx(1.67 * 44.0)  # first yield, which no limit of a file replaces
+    assert not {"disc_shear", "contact_strain"} & set(demands)

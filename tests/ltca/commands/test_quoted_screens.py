@@ -1,0 +1,40 @@
+"""Screens that the first page of the documentation quotes are what the commands print."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from ltca.commands.program import main
+from ltca.reading.drive_file import shipped_drive
+
+PAGE = Path(__file__).parents[3] / "docs" / "start" / "index.md"
+DRIVE = "robot-joint"
+
+
+def quoted():
+    """The quoted lines of the page, by the command that stands before them."""
+    found, command = {}, ""
+    for kind, body in re.findall(r"```(sh|text)\n(.*?)```", PAGE.read_text(encoding="utf-8"), flags=re.DOTALL):
+        if kind == "sh":
+            command = body.strip()
+        else:
+            found[command] = [" ".join(line.split()) for line in body.splitlines() if line.strip("… ")]
+    return found
+
+
+@pytest.mark.slow
+def test_the_first_page_quotes_what_is_printed(tmp_path, monkeypatch, capsys):
+    """Rows of `check` had places and limits of former versions."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "my.toml").write_text(shipped_drive(DRIVE), encoding="utf-8")
+    screens = quoted()
+    assert {command.split()[1] for command in screens} == {"show", "check", "run"}
+    for command, lines in screens.items():
+        words = command.split()
+        without = {"check": ["--no-advice", "--no-page"], "run": ["--no-page"], "show": []}[words[1]]
+        assert main([*words[1:], *without]) == 0
+        printed = {" ".join(line.split()) for line in capsys.readouterr().out.splitlines()}
+        assert [line for line in lines if line not in printed] == []
