@@ -29,6 +29,7 @@ def mine(tmp_path_factory):
     return path
 
 
+@pytest.mark.slow
 def test_it_is_the_verdict_of_the_command(mine, tmp_path):
     """Limits of the file count: one drive alone would pass here, and the command fails."""
     words = ["check", str(mine), "--positions", "8", "--no-advice", "--no-page", "--out", str(tmp_path / "out")]
@@ -110,6 +111,7 @@ def test_what_makes_no_sense_is_refused_by_name(options, message):
         ltca.check(**({"drive": FILE, "case": "CS-1"} | options))
 
 
+@pytest.mark.slow
 def test_what_is_judged_is_what_was_analysed():
     drive = FILE.cases["CS-3"]
     found = ltca.check(drive, 8, advice=False)

@@ -40,6 +40,7 @@ def test_names_may_be_given(results):
     assert ltca.concat(iter(results))["case"].values.tolist() == ["CS-1", "CS-3"]
 
 
+@pytest.mark.slow
 def test_torques_and_engines_may_differ():
     drive = FILE.cases["CS-1"]
     each = {
@@ -56,6 +57,7 @@ def test_torques_and_engines_may_differ():
     assert float(mean.sel(case="half") / mean.sel(case="grids")) == pytest.approx(0.5, abs=2e-3)  # three positions
 
 
+@pytest.mark.slow
 def test_what_one_case_has_alone_is_no_number_in_the_others(tmp_path):
     plain = FILE.cases["CS-1"]
     bent = plain.with_fields({"pin_wheel.beam.span": "30 mm", "pin_wheel.beam.ends": "clamped"})

@@ -49,6 +49,7 @@ def test_it_is_the_contact_that_carries_most(result, contact):
     assert float(middle.max()) == pytest.approx(told, rel=0.02)  # means of cells beside the middle
 
 
+@pytest.mark.slow
 def test_the_profile_is_the_ellipse_of_hertz():
     """Away from the ends p = p0 √(1 − x²/b²), and the mean of a line contact is π/4 of the largest."""
     result = ltca.analyse(load_drive("paper").cases["CS-1"], crank_angle=[0.3])
