@@ -117,7 +117,9 @@ def input_tables(drives: Mapping[str, Drive]) -> list[Table]:
         )
         tables = [
             differ,
-            Table(name="inputs", caption="What all cases have", columns=tables[0].columns, rows=common, words=2),
+            Table(
+                name="inputs", caption="fields that all cases share", columns=tables[0].columns, rows=common, words=2
+            ),
         ]
     return tables
 
@@ -167,5 +169,17 @@ def derived_tables(written: Mapping[str, Drive], drives: Mapping[str, Drive]) ->
     cases = list(each.values())
     if all(case == cases[0] for case in cases):
         return [Table(name="derived", caption="", columns=["", "value"], rows=texts(cases[0].items()), words=1)]
-    rows = [[word(title), *(word(minus(case.get(title, NOTHING))) for case in cases)] for title in titles]
-    return [Table(name="derived", caption="", columns=["", *each], rows=rows, words=len(cases))]
+    same = [title for title in titles if len({case.get(title, NOTHING) for case in cases}) == 1]
+    rows = [
+        [word(title), *(word(minus(case.get(title, NOTHING))) for case in cases)]
+        for title in titles
+        if title not in same
+    ]
+    differing = Table(
+        name="derived_by_case", caption="What differs between cases", columns=["", *each], rows=rows, words=len(cases)
+    )
+    common = texts((title, cases[0].get(title, NOTHING)) for title in same)
+    return [
+        differing,
+        Table(name="derived", caption="What all cases have", columns=["", "value"], rows=common, words=1),
+    ]
