@@ -46,11 +46,29 @@ class Curves:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Picture:
+    """A picture of one or several panels.
+
+    Attributes
+    ----------
+    name, title : str
+        Of its kind, and what it shows.
+    panels : sequence of (str, str)
+        What each shows, and the panel as SVG, whose texts are escaped and whose colours are classes of ``page.css``.
+    """
+
+    name: str
+    title: str
+    panels: Sequence[tuple[str, str]]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Section:
-    """Part of a page: a heading, then sentences, curves and tables in this order."""
+    """Part of a page: a heading, then sentences, pictures, curves and tables in this order."""
 
     heading: str
     notes: Sequence[str] = ()
+    pictures: Sequence[Picture] = ()
     curves: Sequence[Curves] = ()
     tables: Sequence[Table] = ()
 
