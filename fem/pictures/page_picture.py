@@ -33,7 +33,7 @@ def panel_svg(panel: Panel, image: NDArray[np.uint8], side: int = SIDE) -> str:
     """Return a panel as SVG from its field, of shape (side, side, 4), of which `side` pixels are kept; texts are escaped."""
     name = escape(" ".join(panel.title.split()), {'"': "&quot;"})
     parts = [
-        f'<svg class="field" viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-label="{name}">',
+        f'<svg class="stress" viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-label="{name}">',
         f'<image x="{LEFT}" y="{TOP}" width="{FIELD}" height="{FIELD}" href="{_webp(image, side)}"/>',
         f'<rect class="frame" x="{LEFT}" y="{TOP}" width="{FIELD}" height="{FIELD}"/>',
     ]
@@ -58,7 +58,7 @@ def _webp(image: NDArray[np.uint8], side: int) -> str:
 
 def _text(x: float, y: float, words: str, anchor: str, turned: bool = False) -> str:
     turn = f' transform="rotate(-90 {x:.1f} {y:.1f})"' if turned else ""
-    return f'<text class="field-text" x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}"{turn}>{escape(words)}</text>'
+    return f'<text class="stress-text" x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}"{turn}>{escape(words)}</text>'
 
 
 def _scale(centre: float, half_side: float, label: str, *, upright: bool) -> list[str]:

@@ -2,22 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from math import ceil, floor, log10
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from ltca.arrays import FloatArray
-from ltca.drive.units.quantities import ARCSEC
+from ltca.drive.units.quantities import ARCMIN, ARCSEC
 
 if TYPE_CHECKING:
     import xarray as xr
+
+    from ltca.analysis.pressure_safety import PressureSafety
+    from ltca.analysis.torque_curve import TorqueCurve
+    from ltca.analysis.transmission_error_orders import Spectrum
 
 STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
 """Between ticks, times a power of ten."""
 MOST_INTERVALS = 4
 """Between the ticks of an axis: labels of panels an inch high stand apart."""
+MOST_OF_A_PLOT, MOST_ORDERS = 6, 8
+"""Of plots with the room of a figure, and along their axis of orders."""
 FLAT = 1e-9
 """Range, as a part of the largest value, below which values count as all alike."""
 LEAST_SHARE = 0.02
@@ -55,8 +61,8 @@ class Axis(NamedTuple):
         return np.asarray(self.step * (round(self.low / self.step) + np.arange(count + 1)))
 
 
-def axis_of(*values: FloatArray, zero: bool = False) -> Axis:
-    """Return the axis that holds all finite values, with zero on it where that is asked for.
+def axis_of(*values: FloatArray, zero: bool = False, most: int = MOST_INTERVALS) -> Axis:
+    """Return the axis that holds all finite values in `most` intervals, with zero on it where that is asked for.
 
     Examples
     --------
@@ -71,11 +77,11 @@ def axis_of(*values: FloatArray, zero: bool = False) -> Axis:
     if high - low <= FLAT * max(abs(low), abs(high)):
         room = 0.1 * abs(high) or 1.0
         low, high = (low, high + room) if zero else (low - room, high + room)
-    power = 10.0 ** floor(log10((high - low) / MOST_INTERVALS))
+    power = 10.0 ** floor(log10((high - low) / most))
     for step in (power * each for each in (*STEPS, 20.0)):
         # A hair beyond a tick is the tick.
         first, last = floor(low / step + FLAT), ceil(high / step - FLAT)
-        if last - first <= MOST_INTERVALS:
+        if last - first <= most:
             break
     return Axis(first * step, last * step, step)
 
@@ -130,3 +136,47 @@ def run_axes(values: Mapping[str, FloatArray], discs: int) -> dict[str, Axis]:
         else:
             axes[name] = axis_of(each, zero=name.endswith(("load", "pressure")))
     return axes
+
+
+LEAST_AMPLITUDE = 0.004
+"""Amplitudes below this part of the largest are thinner than a line: the axis of orders ends behind the last one above."""
+BEYOND_ORDERS = 1.05
+"""Of the last order seen, and of the largest amplitude, at least: room for its number."""
+
+
+class Plane(NamedTuple):
+    """Axes of curves.
+
+    Attributes
+    ----------
+    x, y : Axis
+        Along and up.
+    """
+
+    x: Axis
+    y: Axis
+
+
+def torque_axes(curves: Iterable[TorqueCurve]) -> Plane:
+    """Return the axes of torque curves: torque, N·m, and angle of the output, arc minutes."""
+    torques, angles = list[FloatArray](), list[FloatArray]()
+    for curve in curves:
+        torques.append(curve.torque / 1e3)
+        angles += [curve.output_angle] if curve.loop is None else [curve.loop.rising, curve.loop.falling]
+    return Plane(axis_of(*torques), axis_of(*(angle * ARCMIN for angle in angles), most=MOST_OF_A_PLOT))
+
+
+def order_axes(spectra: Iterable[Spectrum]) -> Plane:
+    """Return the axes of orders of the transmission error: order by turn of the crank, and amplitude, arc seconds."""
+    values, amplitudes = list[FloatArray](), list[FloatArray]()
+    for spectrum in spectra:
+        seen = spectrum.amplitude >= LEAST_AMPLITUDE * spectrum.amplitude.max()
+        values.append(np.array([order.value for order in spectrum.orders])[seen])
+        amplitudes.append(spectrum.amplitude * ARCSEC)
+    told = (values, MOST_ORDERS), (amplitudes, MOST_OF_A_PLOT)
+    return Plane(*(axis_of(*(BEYOND_ORDERS * each for each in those), zero=True, most=most) for those, most in told))
+
+
+def pressure_axis(found: Iterable[PressureSafety]) -> Axis:
+    """Return the axis of flank pressures, MPa, with their limits."""
+    return axis_of(*(np.array([each.largest, each.limit]) for each in found), zero=True, most=MOST_OF_A_PLOT)

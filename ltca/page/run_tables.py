@@ -109,19 +109,13 @@ def input_tables(drives: Mapping[str, Drive]) -> list[Table]:
             common.append([word(path), _input(values[0], path), word(_unit(path))])
         else:
             differing.append([word(path), word(_unit(path)), *(_input(value, path) for value in values)])
-    heads = ["field", "unit", *drives]
-    tables = [Table(name="inputs", caption="", columns=["field", "value", "unit"], rows=common, words=2)]
-    if differing:
-        differ = Table(
-            name="inputs_by_case", caption="What differs between cases", columns=heads, rows=differing, words=1
-        )
-        tables = [
-            differ,
-            Table(
-                name="inputs", caption="fields that all cases share", columns=tables[0].columns, rows=common, words=2
-            ),
-        ]
-    return tables
+    told = f"{len(common)} fields" + (" that all cases share" if differing else "")
+    columns = ["field", "value", "unit"]
+    tables = [Table(name="inputs", caption=told, columns=columns, rows=common, words=2, folded=True)]
+    if not differing:
+        return tables
+    heads, caption = ["field", "unit", *drives], "What differs between cases"
+    return [Table(name="inputs_by_case", caption=caption, columns=heads, rows=differing, words=1), *tables]
 
 
 def _leaves(part: Any, path: str) -> Iterator[tuple[str, Any]]:

@@ -53,6 +53,8 @@ class Table:
         How many columns after the first are words, which stand on the left; numbers stand on the right.
     last_words : int
         How many of the last columns are.
+    folded : bool
+        Whether its caption has to be clicked to see it.
     """
 
     name: str
@@ -61,6 +63,7 @@ class Table:
     rows: Sequence[Sequence[Cell]]
     words: int = field(default=0)
     last_words: int = field(default=0)
+    folded: bool = field(default=False)
 
 
 def minus(text: str) -> str:

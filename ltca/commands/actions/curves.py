@@ -28,7 +28,13 @@ from ltca.drive.units.quantities import ARCMIN, ARCSEC
 from ltca.errors import DriveError
 from ltca.output.files import write_json
 from ltca.output.progress import progress
-from ltca.page.studies.curves import life_section, orders_section, pressure_section, torque_section
+from ltca.page.studies.curves import (
+    TurnOfPressure,
+    life_section,
+    orders_section,
+    pressure_section,
+    torque_section,
+)
 from ltca.page.study_page import Section, StudyPage, write_study_page
 from ltca.reading.drive_file import DriveFile
 
@@ -135,8 +141,7 @@ def solve_and_write(
     out: Path,
 ) -> int:
     """Solve every case, write curves.json, page and figures, print the results; return the exit status."""
-    contents, figures = {}, []
-    sections: list[Section] = []
+    contents, every, speeds = {}, dict[str, CaseCurves](), dict[str, str | None]()
     turns_of = {name: arguments.turns or drive.pin_wheel.number_of_pins for name, drive in cases.items()}
     total = sum(turns * positions_per_turn(cases[name]) for name, turns in turns_of.items())
     with progress("positions", total) as advance:
@@ -150,19 +155,15 @@ def solve_and_write(
             found = _solve(drive, turns_of[name], own, engine, lambda size, case=name: advance(case, size))  # type: ignore[misc]
             contents[name] = {"drive": title, **engine.options, **_content(found, drive)}
             _print(found, title, drive, engine, own)
-            if not arguments.no_page:
-                sections += _sections(found, drive, own, f"{name}: " if len(cases) > 1 else "")
-            if arguments.figures:
-                ending = f"_{name}" if len(cases) > 1 else ""
-                figures += _draw(
-                    found, title, drive.disc.number_of_discs, out / "figures", f"{ending}.{arguments.figures}"
-                )
-    if figures:
+            every[name], speeds[name] = found, _life_speed(drive, own)
+    if arguments.figures:
+        figures = _draw(every, cases, file.name, out / "figures", arguments.figures)
         print(f"figures: {out / 'figures'} ({len(figures)} as {arguments.figures.upper()})")
     (first, *others) = contents.values()
     write_json(out / "curves.json", {"drive": file.name, "cases": contents} if others else first)
     files = [out / "curves.json"]
-    if sections:
+    if not arguments.no_page:
+        sections = _sections(every, cases, speeds)
         loads = dict.fromkeys(drive.load_words() for drive in cases.values())
         told = f"curves at {', '.join(loads)}, {describe_engine(engine)}"
         page = StudyPage(name=file.name, told=told, sections=sections, made=engine.options, text=file.text)
@@ -171,14 +172,20 @@ def solve_and_write(
     return 0
 
 
-def _sections(found: CaseCurves, drive: Drive, settings: CurveSettings, of: str) -> list[Section]:
-    """What the page shows of a case; `of` names it where there are several."""
-    over = f"over {found.turns} turns, {found.positions} positions"
+def _sections(
+    every: Mapping[str, CaseCurves], cases: Mapping[str, Drive], speeds: Mapping[str, str | None]
+) -> list[Section]:
+    """What the page shows of all cases; `speeds` are those behind the hours of lives."""
+    lives = {name: found.lives for name, found in every.items()}
+    turns = {name: TurnOfPressure(found.crank_angle, found.pressure, found.safety) for name, found in every.items()}
     return [
-        torque_section(found.curve, of),
-        orders_section(found.spectrum, over, of),
-        life_section(life_lines(found.lives, drive, _life_speed(drive, settings)), of),
-        pressure_section(found.crank_angle, found.pressure, found.safety, of),
+        torque_section({name: found.curve for name, found in every.items()}),
+        orders_section(
+            {name: found.spectrum for name, found in every.items()},
+            [f"over {found.turns} turns, {found.positions} positions" for found in every.values()],
+        ),
+        life_section(lives, {name: life_lines(each, cases[name], speeds[name]) for name, each in lives.items()}),
+        pressure_section(turns),
     ]
 
 
@@ -288,16 +295,33 @@ def _range(values: Any) -> str:
     return f"{values.min():.4g} … {values.max():.4g}"
 
 
-def _draw(found: CaseCurves, title: str, discs: int, folder: Path, ending: str) -> list[Path]:
+def _draw(
+    every: Mapping[str, CaseCurves], cases: Mapping[str, Drive], name: str, folder: Path, kind: str
+) -> list[Path]:
     from ltca.figures import curve_figures as figures
+    from ltca.figures.shared_axes import order_axes, pressure_axis, torque_axes
 
-    return [
-        figures.draw_torque_curve(found.curve, title, folder / f"torque_curve{ending}"),
-        figures.draw_spectrum(found.spectrum, title, folder / f"transmission_error_orders{ending}"),
-        figures.draw_pressure(
-            found.crank_angle, found.pressure, found.safety, title, folder / f"flank_pressure{ending}", discs
-        ),
-    ]
+    torques = torque_axes(found.curve for found in every.values())
+    orders = order_axes(found.spectrum for found in every.values())
+    pressures = pressure_axis(found.safety for found in every.values())
+    files = []
+    for case, found in every.items():
+        title, ending = f"{name} {case}", f"_{case}.{kind}" if len(every) > 1 else f".{kind}"
+        discs = cases[case].disc.number_of_discs
+        files += [
+            figures.draw_torque_curve(found.curve, title, folder / f"torque_curve{ending}", torques),
+            figures.draw_spectrum(found.spectrum, title, folder / f"transmission_error_orders{ending}", orders),
+            figures.draw_pressure(
+                found.crank_angle,
+                found.pressure,
+                found.safety,
+                title,
+                folder / f"flank_pressure{ending}",
+                discs,
+                pressures,
+            ),
+        ]
+    return files
 
 
 def _finite(value: float) -> float | None:

@@ -142,7 +142,7 @@ def test_pictures(tmp_path):
         assert (tmp_path / name).stat().st_size > 20_000
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     # The drive twice, and the most loaded contact of the flank, of the holes and of the rollers
-    assert page.count('<svg class="field"') == page.count("data:image/webp;base64,") == 5
+    assert page.count('<svg class="stress"') == page.count("data:image/webp;base64,") == 5
     assert len(page) < 2_500_000
 
 

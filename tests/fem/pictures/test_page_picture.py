@@ -44,7 +44,7 @@ def test_pictures_of_a_dark_page_are_not_white(panel):
     assert abs(clear.mean() - 0.75) <= (42.0**2 - 40.0**2) / 80.0**2 + 1e-12
     assert not clear[24:56, 24:56].any()
     drawn = ElementTree.fromstring(panel_svg(panel, image, 40))
-    assert {text.get("class") for text in drawn.iter("text")} == {"field-text"}
+    assert {text.get("class") for text in drawn.iter("text")} == {"stress-text"}
     assert not [text for text in drawn.iter("text") if text.get("fill") or text.get("style")]
     (kept,) = drawn.iter("image")
     found = base64.b64decode(re.sub("^data:image/webp;base64,", "", kept.get("href")))

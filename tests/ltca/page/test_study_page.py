@@ -21,7 +21,7 @@ from ltca.page.tables import number, word
 def page(paper_run):
     curve = torque_curve(paper_run[0].drives["CS-1"], np.array([0.0, 0.1]), points=6)
     return curve, study_page(
-        StudyPage(name="a </script><b>", told="curves", sections=[torque_section(curve, "CS-1: ")])
+        StudyPage(name="a </script><b>", told="curves", sections=[torque_section({"CS-1": curve, "CS-1 again": curve})])
     )
 
 
@@ -32,7 +32,8 @@ def test_curves_are_those_computed(page):
     assert np.allclose(numbers["plot/0/x"], curve.torque / 1e3, rtol=1e-6)
     mean = np.degrees(np.mean(curve.output_angle, axis=0)) * 60.0
     assert np.allclose(numbers["plot/0/0"], mean, rtol=1e-6, atol=1e-6)
-    assert content["plots"][0]["names"] == ["mean of 2 crank angles"]
+    assert content["plots"][0]["names"] == ["CS-1", "CS-1 again"]
+    assert "Means of 2 crank angles" in text
 
 
 def test_names_are_texts(page):
