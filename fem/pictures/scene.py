@@ -240,8 +240,9 @@ def _painted_by_matplotlib(panel: Panel, side: int) -> NDArray[np.uint8]:
     from matplotlib.collections import LineCollection
     from matplotlib.figure import Figure
 
-    figure, norm = Figure(figsize=(1.0, 1.0), dpi=side, facecolor="none", layout="none"), colour_norm(panel)
-    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    figure, norm = Figure(figsize=(1.0, 1.0), dpi=side, facecolor="none"), colour_norm(panel)
+    figure.set_layout_engine("none")
+    axes: Any = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     axes.set_axis_off()
     for surface in panel.triangles:
         coloured = surface.values is not None
@@ -262,7 +263,7 @@ def _painted_by_matplotlib(panel: Panel, side: int) -> NDArray[np.uint8]:
     reach, middle = panel.half_side, panel.centre
     axes.set_xlim(middle.real - reach, middle.real + reach)
     axes.set_ylim(middle.imag - reach, middle.imag + reach)
-    canvas = FigureCanvasAgg(figure)
+    canvas: Any = FigureCanvasAgg(figure)
     canvas.draw()
     return np.array(canvas.buffer_rgba(), dtype=np.uint8)
 

@@ -123,7 +123,12 @@ def curves_content(sections: Sequence[Section]) -> tuple[dict[str, FloatArray], 
             arrays[f"{first}/x"] = np.asarray(curves.x, dtype=float)
             for place, values in enumerate(curves.lines.values()):
                 arrays[f"{first}/{place}"] = np.asarray(values, dtype=float)
-            told = {"title": curves.title, "unit": curves.unit, "axis": curves.axis, "names": list(curves.lines)}
+            told: dict[str, Any] = {
+                "title": curves.title,
+                "unit": curves.unit,
+                "axis": curves.axis,
+                "names": list(curves.lines),
+            }
             told |= {"kind": curves.kind, "degrees": curves.degrees, "along": curves.along, "up": curves.up}
             plots.append(told | {"dashed": [name in curves.dashed for name in curves.lines]})
     return arrays, plots

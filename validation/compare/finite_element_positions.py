@@ -211,12 +211,12 @@ def _draw(solution: FullSolution, title: str, folder: Path, prefix: str) -> None
     fields = recover_fields(solution)
     folder.mkdir(parents=True, exist_ok=True)
     drawn = draw_solution(solution, fields, title, folder, side=PICTURE_SIDE, prefix=prefix)
-    write_json(folder / f"{prefix}{PICTURES}", [asdict(picture) for picture in drawn.pictures])
+    write_json(folder / f"{prefix}{PICTURES}", {"pictures": [asdict(picture) for picture in drawn.pictures]})
 
 
 def kept_pictures(path: Path) -> list[Picture]:
     """Return the pictures of a disc that were kept."""
-    return [Picture(**each) for each in json.loads(read_regular(path, LARGEST_KEPT))]
+    return [Picture(**each) for each in json.loads(read_regular(path, LARGEST_KEPT))["pictures"]]
 
 
 def answer_of_summary(summary: dict[str, Any], single: Drive, disc: int) -> PositionAnswer:
