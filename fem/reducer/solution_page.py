@@ -11,7 +11,7 @@ from fem.reducer.solution import ReducerSolution
 from ltca.drive.members.judgement import Check
 from ltca.drive.units.quantities import ARCSEC
 from ltca.page.study_page import Picture, Section, StudyPage
-from ltca.page.tables import Cell, Table, minus, number, texts, word
+from ltca.page.tables import Cell, Table, folded, minus, number, texts, word
 from ltca.page.verdict_tables import verdict_of, verdict_tables
 
 
@@ -28,7 +28,7 @@ def solution_page(
     `told` describes the problem, `text` is the drive file, and `pictures` are those of every disc, none where they were left out.
     """
     sentence, state = verdict_of({case: checks})
-    sections = [Section(heading="Verdict at this position", tables=verdict_tables({case: checks}))]
+    sections = [Section(heading="Verdict at this position", tables=folded(verdict_tables({case: checks})))]
     several = len(solution.discs) > 1
     for place, own in enumerate(pictures):
         sections.append(

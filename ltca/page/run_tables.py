@@ -109,7 +109,7 @@ def input_tables(drives: Mapping[str, Drive]) -> list[Table]:
             common.append([word(path), _input(values[0], path), word(_unit(path))])
         else:
             differing.append([word(path), word(_unit(path)), *(_input(value, path) for value in values)])
-    told = f"{len(common)} fields" + (" that all cases share" if differing else "")
+    told = "fields that all cases share" if differing else "fields"
     columns = ["field", "value", "unit"]
     tables = [Table(name="inputs", caption=told, columns=columns, rows=common, words=2, folded=True)]
     if not differing:

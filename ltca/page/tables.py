@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import isfinite
 
 from ltca.quantities import unit_sign
@@ -54,7 +54,7 @@ class Table:
     last_words : int
         How many of the last columns are.
     folded : bool
-        Whether its caption has to be clicked to see it.
+        Whether a line with the number of rows and the caption has to be clicked to see it.
     """
 
     name: str
@@ -64,6 +64,11 @@ class Table:
     words: int = field(default=0)
     last_words: int = field(default=0)
     folded: bool = field(default=False)
+
+
+def folded(tables: Sequence[Table]) -> list[Table]:
+    """Return tables of which the first stands open and the others are folded."""
+    return [replace(table, folded=number > 0) for number, table in enumerate(tables)]
 
 
 def minus(text: str) -> str:

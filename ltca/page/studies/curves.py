@@ -122,7 +122,9 @@ def life_section(lives: Mapping[str, BearingLives], lines: Mapping[str, Sequence
     if len(lives) == 1:
         return Section(heading=heading, notes=[minus(line.strip()) for each in lines.values() for line in each])
     told = [[word(case), word(minus("; ".join(line.strip() for line in each)))] for case, each in lines.items()]
-    words = Table(name="life_in_words", caption="In words", columns=["case", "rating"], rows=told, words=1, folded=True)
+    words = Table(
+        name="life_in_words", caption="ratings in words", columns=["case", "rating"], rows=told, words=1, folded=True
+    )
     return Section(heading=heading, tables=[*lives_of_cases(lives).tables, words])
 
 

@@ -55,6 +55,28 @@ def test_a_check_tells_what_drives_what(paper_run):
     assert re.search(r"flank pressure</td><td[^>]*>disc.thickness</td><td[^>]*>−0.50</td>", text)
 
 
+def test_what_all_cases_have_is_told_once(paper_run):
+    """Six cases had the same note six times, and what drives the value nearest to its limit stood in the middle."""
+    checks = paper_run[0].checks
+    cases = list(checks)
+    notes = {cases[0]: ["stiff pins", "soft <i>"], cases[1]: ["stiff pins"]}
+    drivers = {
+        case: {
+            check.value.quantity: [Driver(input="load.torque", elasticity=0.5, change="", factor=None)]
+            for check in each
+        }
+        for case, each in checks.items()
+    }
+    page = check_page("paper", "", "verdict", checks, drivers, notes, {})
+    assert list(page.sections[0].notes) == ["stiff pins", f"{cases[0]}: soft <i>"]
+    assert [table.folded for table in page.sections[0].tables] == [False, True, True]
+    safeties = {check.title: check.safety for check in checks[cases[0]]}
+    first = [safeties[row[1].text] for row in page.sections[1].tables[0].rows if row[0].text == cases[0]]
+    judged = [safety for safety in first if safety is not None][:5]
+    assert judged == sorted(judged)
+    assert judged[0] == safeties["flank pressure"]
+
+
 def test_cells_keep_their_numbers():
     cell = number(-1234.5678, "{:.1f}", "arcsec", note="there")
     assert (cell.text, cell.value, cell.note) == ("−1234.6″", "-1234.5678", "there")
