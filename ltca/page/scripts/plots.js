@@ -21,6 +21,12 @@ function stepTicks(axis) {
   return { found: Array.from({ length: count + 1 }, (_, i) => (first + i) * step), digits: digits + (Math.abs(part - Math.round(part)) > 1e-6 ? 1 : 0) };
 }
 
+function ends(lines) {
+  let low = Infinity, high = -Infinity;
+  for (const values of lines) for (const value of values) if (known(value)) { low = Math.min(low, value); high = Math.max(high, value); }
+  return [low, high];
+}
+
 class Plot {
   // spec: {id, title, unit, x, xTitle, degrees, zero, stems, pick(index), digits, axis, along}; axes are [low, high, step]
   constructor(parent, spec) {
@@ -66,7 +72,7 @@ class Plot {
     return best;
   }
 
-  // series: {name, values, x, colour, faint, dashed, thin}
+  // series: {name, values, x, colour, faint, dashed, thin}; of many lines drawn as one: {many, key}
   set(title, series) {
     this.title.textContent = title + (this.spec.unit ? `, ${this.spec.unit}` : "");
     this.button.setAttribute("aria-label", `Figure ${title} as SVG`);
@@ -74,14 +80,22 @@ class Plot {
     this.draw();
   }
 
+  again() {
+    this.width = 0;
+    this.draw();
+  }
+
   draw() {
-    const spec = this.spec, width = (this.width = Math.max(260, Math.round(this.figure.clientWidth || 520))), height = spec.height || 190;
+    // To ask for the width lays the page out: once, and when it changes.
+    const spec = this.spec, width = this.width || (this.width = Math.max(260, Math.round(this.figure.clientWidth || 520))), height = spec.height || 190;
     const left = (this.left = 54), right = 18, top = 10, bottom = 34, svg = this.svg;
     svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
     svg.replaceChildren();
     let low = Infinity, high = -Infinity, first = Infinity, last = -Infinity;
     for (const line of this.series) {
-      for (const value of line.values) if (known(value)) { low = Math.min(low, value); high = Math.max(high, value); }
+      const [least, most] = line.many ? this.extremes(line) : ends([line.values]);
+      low = Math.min(low, least);
+      high = Math.max(high, most);
       for (const x of line.x || spec.x) { first = Math.min(first, x); last = Math.max(last, x); }
     }
     if (low > high) { low = 0; high = 1; }
@@ -119,12 +133,29 @@ class Plot {
         line.values.forEach((value, i) => { if (known(value)) node("line", { class: "stem", "stroke-width": step, x1: X(spec.x[i]), x2: X(spec.x[i]), y1: Y(0), y2: Y(value) }, group); });
       } else if (spec.points) {
         line.values.forEach((value, i) => { if (known(value)) node("circle", { class: "mark", r: 1.9, cx: X(spec.x[i]), cy: Y(value) }, group); });
-      } else node("path", { class: `curve${line.faint || line.thin ? " thin" : ""}${line.dashed ? " dashed" : ""}`, d: this.path(line) }, group);
+      } else if (line.many) frame.replaceChild(this.together(line, [width, this.low, this.high, low, high].join()), group);
+      else node("path", { class: `curve${line.faint || line.thin ? " thin" : ""}${line.dashed ? " dashed" : ""}`, d: this.path(line) }, group);
     }
     this.svg.setAttribute("aria-label", `${this.title.textContent}, from ${figure(told[0])} to ${figure(told[1])}`);
     this.line = spec.pick ? node("line", { class: "cursor", y1: top, y2: height - bottom }, frame) : null;
     this.marks = spec.pick ? this.series.map(line => (line.faint || line.x ? null : node("circle", { class: `mark ${line.colour}`, r: 3.2 }, frame))) : [];
     this.tell(this.index);
+  }
+
+  extremes(line) {
+    if (!this.ends || this.ends.key !== line.key) this.ends = { key: line.key, found: ends(line.many) };
+    return this.ends.found;
+  }
+
+  // Many lines in one element, kept as long as lines and scales are the same.
+  together(line, scales) {
+    const key = `${line.key},${scales}`;
+    if (!this.kept || this.kept.key !== key) {
+      const group = node("g", { class: line.colour });
+      node("path", { class: "curve thin", d: line.many.map(values => this.path({ values: values })).join("") }, group);
+      this.kept = { key: key, group: group };
+    }
+    return this.kept.group;
   }
 
   path(line) {

@@ -76,7 +76,9 @@ function curve(id, where, title, unit, options, series) {
 function contactCurves(quantity, title, unit) {
   const { kind, number } = view.chosen, name = `${view.kase}/${view.torque}/${kind}/${quantity}`, series = [];
   const count = shapeOf(name)[1];
-  for (let i = 0; i < count; i++) if (i !== number) series.push({ values: row(name, view.disc, i), colour: "c-faint", faint: true, name: i === (number ? 0 : 1) ? `the other ${KINDS[kind]}s` : "" });
+  // All of them are one line: it stands while the chosen one changes.
+  const every = Array.from({ length: count }, (_, i) => row(name, view.disc, i));
+  if (count > 1) series.push({ many: every, key: `${name}/${view.disc}`, values: every[0], colour: "c-faint", faint: true, name: `the other ${KINDS[kind]}s` });
   series.push({ values: row(name, view.disc, number), colour: `k-${kind}`, name: contactName(kind, number) });
   const second = `b/${view.second}/full/${kind}/${quantity}`;
   if (view.torque === "full" && has(second)) {
@@ -172,7 +174,7 @@ function listen() {
   matchMedia(DARK).addEventListener("change", recolour);
   for (const name of ["beforeprint", "afterprint"]) addEventListener(name, () => { printing = name === "beforeprint"; recolour(); });
   let width = innerWidth;
-  const again = () => { for (const name in plots) plots[name].draw(); };
+  const again = () => { for (const name in plots) plots[name].again(); };
   addEventListener("resize", () => { if (innerWidth !== width) { width = innerWidth; again(); } });
 }
 
