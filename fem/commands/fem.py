@@ -10,13 +10,14 @@ from fem.commands.position_arguments import add_position_arguments, body_files, 
 from ltca.reading.arguments import add_out_argument, add_page_argument, default_folder, torque_argument
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from fem.drive.full_solution import FullSolution
     from fem.reducer.solution import ReducerSolution
     from ltca.drive.members.judgement import Check
     from ltca.drive.members.limits import Limits
     from ltca.drive.parts import Drive
+    from ltca.page.study_page import Picture
 
 SUMMARY: str = "solve the whole drive by finite elements at one crank angle"
 EXAMPLES = (
@@ -80,13 +81,13 @@ def execute(arguments: argparse.Namespace) -> int:
     own += ["calculix.dat"] if referee else []
     writes += [f"{disc_prefix(disc, discs)}{file}" for disc in range(discs) for file in own]
     with claimed_folder(out, "fem", writes=writes):
-        solution, checks = _solve_and_write(name, case, drive, file.limits[case], arguments, out, referee)
+        solution, checks, pictures = _solve_and_write(name, case, drive, file.limits[case], arguments, out, referee)
         if not arguments.no_page:
             from fem.reducer.solution_page import solution_page
             from ltca.page.study_page import write_study_page
 
             words = f"case {case}, {drive.load_words(arguments.torque)}, full finite elements, plane {arguments.plane}"
-            write_study_page(solution_page(solution, checks, case, words, file.text), out)
+            write_study_page(solution_page(solution, checks, case, words, file.text, pictures), out)
     return 0
 
 
@@ -98,7 +99,7 @@ def _solve_and_write(
     arguments: argparse.Namespace,
     out: Path,
     referee: Callable[[FullSolution, Path], None] | None,
-) -> tuple[ReducerSolution, list[Check]]:
+) -> tuple[ReducerSolution, list[Check], list[Sequence[Picture]]]:
     from fem.drive.fields import recover_fields
     from fem.options import SolutionOptions
     from fem.reducer.solution import solve_reducer
@@ -123,6 +124,7 @@ def _solve_and_write(
         f"{name} {case}, {load}, full finite elements, plane {arguments.plane}: 1 position, φ_C = {arguments.angle:g} rad"
     )
     count, problem = len(solution.discs), ""
+    pictures: list[Sequence[Picture]] = []
     for number, disc in enumerate(solution.discs):
         if count > 1:
             share = solution.torque_share[number]
@@ -132,7 +134,8 @@ def _solve_and_write(
             from fem.pictures.solution_pictures import draw_solution
 
             headline = title if count == 1 else f"{title}, disc {number}"
-            problem = draw_solution(disc, fields[number], headline, out, prefix=disc_prefix(number, count))
+            problem, drawn = draw_solution(disc, fields[number], headline, out, prefix=disc_prefix(number, count))
+            pictures.append(drawn)
     _print_drive(solution)
     print("verdict by full finite elements at this position")
     print(verdict_table(checks, limited=True))
@@ -147,7 +150,7 @@ def _solve_and_write(
         if referee:
             referee(disc, deck)
     print(f"written to {out}")
-    return solution, checks
+    return solution, checks, pictures
 
 
 def _print_contacts(solution: FullSolution) -> None:

@@ -49,7 +49,7 @@ def _at_height(points: ComplexArray, height: float) -> FloatArray:
 def snapshot(
     layers: Sequence[tuple[Any, dict[str, Any]]], centre: complex, half_side: float, side: int
 ) -> NDArray[np.uint8]:
-    """Return a square window of `side` pixels as an image without annotations, shape (side, side, 3).
+    """Return a square window of `side` pixels as an image without annotations and with a clear ground, shape (side, side, 4).
 
     `layers` are pairs of a mesh and options of `pyvista.Plotter.add_mesh`, from below; centre and half side are in mm.
     """
@@ -59,7 +59,7 @@ def snapshot(
         # Without light: colours are those of the scale.
         plotter.add_mesh(mesh, lighting=False, **options)
     look_down(plotter, centre, half_side, 10.0 * half_side)
-    image = np.asarray(plotter.screenshot(None, return_img=True))
+    image = np.asarray(plotter.screenshot(None, return_img=True, transparent_background=True))
     plotter.close()
     return image
 

@@ -106,14 +106,30 @@ class Panel:
 
 def render(path: Path, panels: Sequence[Panel], *, side: int = 1100) -> str:
     """Render panels of `side` pixels side by side into a PNG file; return why matplotlib drew it, "" when pyvista did."""
+    write_panels(path, panels, paint_panels(panels, side), side)
+    return rendering_problem()
+
+
+def paint_panels(panels: Sequence[Panel], side: int) -> list[NDArray[np.uint8]]:
+    """Return the fields of panels without their axes, on a clear ground, of shape (side, side, 4) each."""
+    paint = _painted_by_matplotlib if rendering_problem() else _painted_by_pyvista
+    return [paint(_clip(panel), side) for panel in panels]
+
+
+def write_panels(path: Path, panels: Sequence[Panel], images: Sequence[NDArray[np.uint8]], side: int) -> None:
+    """Write panels side by side into a PNG file from their painted fields (`paint_panels`)."""
     import matplotlib as mpl
 
-    problem = rendering_problem()
-    clipped = [_clip(panel) for panel in panels]
+    left = iter(images)
+
+    def paint(axes: Any, panel: Panel, *_: Any) -> None:
+        reach, middle = panel.half_side, panel.centre
+        extent = (middle.real - reach, middle.real + reach, middle.imag - reach, middle.imag + reach)
+        axes.imshow(next(left), extent=extent, interpolation="antialiased")
+
     with mpl.rc_context({**STYLE, "axes.grid": False}), whole_file(path) as part:
-        figure = compose(clipped, side, _paint_with_matplotlib if problem else _paint_with_pyvista)
+        figure = compose(panels, side, paint)
         figure.savefig(part, dpi=side / _inches(side))
-    return problem
 
 
 def _clip(panel: Panel) -> Panel:
@@ -138,7 +154,6 @@ def compose(panels: Sequence[Panel], side: int, paint: Callable[[Any, Panel, Any
     """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.cm import ScalarMappable
-    from matplotlib.colors import LogNorm, Normalize
     from matplotlib.figure import Figure
     from matplotlib.ticker import MaxNLocator
 
@@ -146,7 +161,7 @@ def compose(panels: Sequence[Panel], side: int, paint: Callable[[Any, Panel, Any
     figure = Figure(figsize=((width + BAR_INCHES) * len(panels), width + TITLE_INCHES), layout="constrained")
     FigureCanvasAgg(figure)
     for axes, panel in zip(figure.subplots(1, len(panels), squeeze=False)[0], panels, strict=True):
-        norm = LogNorm(*panel.limits, clip=True) if panel.logarithmic else Normalize(*panel.limits)
+        norm = colour_norm(panel)
         paint(axes, panel, norm, side)
         letters = int(LETTERS_PER_INCH * width)
         axes.set_title("\n".join(fill(line, letters) for line in panel.title.split("\n")), parse_math=False)
@@ -163,13 +178,35 @@ def compose(panels: Sequence[Panel], side: int, paint: Callable[[Any, Panel, Any
                 extend="min" if panel.logarithmic else "neither",
             )  # fmt: skip
             bar.outline.set_visible(False)
-            if panel.logarithmic:
-                ticks = _round_values(*panel.limits)
-                bar.set_ticks(ticks, labels=[f"{tick:g}" for tick in ticks])
-                bar.minorticks_off()
-            else:
-                bar.set_ticks([tick for tick in MaxNLocator(6).tick_values(*panel.limits) if tick <= panel.limits[1]])
+            ticks = bar_ticks(panel)
+            bar.set_ticks([tick for tick, _ in ticks], labels=[words for _, words in ticks])
+            bar.minorticks_off()
     return figure
+
+
+def colour_norm(panel: Panel) -> Any:
+    """Return what takes values of a panel to parts of its colours."""
+    from matplotlib.colors import LogNorm, Normalize
+
+    return LogNorm(*panel.limits, clip=True) if panel.logarithmic else Normalize(*panel.limits)
+
+
+def bar_ticks(panel: Panel) -> list[tuple[float, str]]:
+    """Return ticks of the scale of the colours, and what they say."""
+    from matplotlib.ticker import MaxNLocator
+
+    if panel.logarithmic:
+        return [(tick, f"{tick:g}") for tick in _round_values(*panel.limits)]
+    ticks = MaxNLocator(6).tick_values(*panel.limits)
+    return [(float(tick), f"{tick:g}") for tick in ticks if tick <= panel.limits[1]]
+
+
+def window_ticks(centre: float, half_side: float) -> list[float]:
+    """Return ticks of an axis of a window, mm."""
+    from matplotlib.ticker import MaxNLocator
+
+    low, high = centre - half_side, centre + half_side
+    return [float(tick) for tick in MaxNLocator(5).tick_values(low, high) if low <= tick <= high]
 
 
 def _inches(side: int) -> float:
@@ -183,8 +220,8 @@ def _round_values(low: float, high: float) -> list[float]:
     return [step * 10.0**power for power in powers for step in (1.0, 2.0, 5.0) if low <= step * 10.0**power <= high]
 
 
-def _paint_with_pyvista(axes: Any, panel: Panel, norm: Any, side: int) -> None:
-    layers: list[tuple[Any, dict[str, Any]]] = []
+def _painted_by_pyvista(panel: Panel, side: int) -> NDArray[np.uint8]:
+    norm, layers = colour_norm(panel), list[tuple[Any, dict[str, Any]]]()
     for surface in panel.triangles:
         mesh = flat_surface(surface.points, surface.faces)
         if surface.values is None:
@@ -195,15 +232,18 @@ def _paint_with_pyvista(axes: Any, panel: Panel, norm: Any, side: int) -> None:
     for number, item in enumerate(panel.lines):
         height = (0.01 + 1e-4 * number) * panel.half_side
         layers.append((flat_lines(item.points, height), {"color": item.colour, "line_width": item.width}))
-    image = snapshot(layers, panel.centre, panel.half_side, side)
-    reach, middle = panel.half_side, panel.centre
-    extent = (middle.real - reach, middle.real + reach, middle.imag - reach, middle.imag + reach)
-    axes.imshow(image, extent=extent, interpolation="antialiased")
+    return snapshot(layers, panel.centre, panel.half_side, side)
 
 
-def _paint_with_matplotlib(axes: Any, panel: Panel, norm: Any, side: int) -> None:
+def _painted_by_matplotlib(panel: Panel, side: int) -> NDArray[np.uint8]:
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.collections import LineCollection
+    from matplotlib.figure import Figure
 
+    figure, norm = Figure(figsize=(1.0, 1.0), dpi=side, facecolor="none"), colour_norm(panel)
+    figure.set_layout_engine("none")
+    axes: Any = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    axes.set_axis_off()
     for surface in panel.triangles:
         coloured = surface.values is not None
         axes.tripcolor(
@@ -218,9 +258,14 @@ def _paint_with_matplotlib(axes: Any, panel: Panel, norm: Any, side: int) -> Non
         )
     for number, item in enumerate(panel.lines):
         segments = coordinate_pairs(item.points)
-        axes.add_collection(
-            LineCollection(segments, colors=item.colour, linewidths=0.4 * item.width, zorder=3 + 0.01 * number)
-        )
+        width = item.width * 72.0 / side  # points, of which 72 are the side
+        axes.add_collection(LineCollection(segments, colors=item.colour, linewidths=width, zorder=3 + 0.01 * number))
+    reach, middle = panel.half_side, panel.centre
+    axes.set_xlim(middle.real - reach, middle.real + reach)
+    axes.set_ylim(middle.imag - reach, middle.imag + reach)
+    canvas: Any = FigureCanvasAgg(figure)
+    canvas.draw()
+    return np.array(canvas.buffer_rgba(), dtype=np.uint8)
 
 
 def _single(colour: str) -> Any:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -11,8 +12,11 @@ from fem.contact.pressure_measures import vertex_means
 from fem.drive.contact_kinds import CONTACT_KINDS
 from fem.drive.fields import BodyField
 from fem.drive.full_solution import FullSolution
-from fem.pictures.scene import Lines, Panel, Triangles, render
+from fem.pictures.offscreen import rendering_problem
+from fem.pictures.page_picture import SIDE, SIDE_OF_SEVERAL, panel_svg
+from fem.pictures.scene import Lines, Panel, Triangles, paint_panels, write_panels
 from ltca.arrays import ComplexArray, FloatArray
+from ltca.page.study_page import Picture
 
 # Colours over the whole drive run over ratios, from where this share of its area is below up to the largest stress: on an
 # even scale the spots under the contacts would leave the rest of the drive in one colour.
@@ -25,6 +29,29 @@ ZOOM_HALF_WIDTHS = 3.5
 PRESSURE_HALF_WIDTHS = 1.5
 
 
+TITLES = {
+    "von_mises": "von Mises stress at the loaded pose",
+    "deformed": "Elastic displacement, magnified",
+    "contacts": "The most loaded contact of each kind: mesh, stress, pressure",
+}
+ZOOM_SIDE = 1100
+
+
+class Drawn(NamedTuple):
+    """Pictures of a solution.
+
+    Attributes
+    ----------
+    problem : str
+        Why matplotlib drew them; empty when pyvista did.
+    pictures : tuple of Picture
+        For a page, without the headline.
+    """
+
+    problem: str
+    pictures: tuple[Picture, ...]
+
+
 def draw_solution(
     solution: FullSolution,
     fields: Sequence[BodyField],
@@ -33,8 +60,8 @@ def draw_solution(
     *,
     side: int = 1600,
     prefix: str = "",
-) -> str:
-    """Draw ``von_mises.png``, ``contacts.png`` and ``deformed.png``; return why matplotlib drew them, "" when pyvista did.
+) -> Drawn:
+    """Draw ``von_mises.png``, ``contacts.png`` and ``deformed.png``, and return them as pictures of a page.
 
     The pictures of the whole drive have `side` pixels; text keeps its size. `prefix` is put before the names of the files.
     """
@@ -53,8 +80,6 @@ def draw_solution(
         limits=(lowest, highest),
         logarithmic=True,
     )
-    problem = render(folder / f"{prefix}von_mises.png", [whole], side=side)
-    render(folder / f"{prefix}contacts.png", _zooms(solution, fields))
     largest = max(float(np.max(np.abs(field.elastic))) for field in fields)
     scale = _round_down(DEFORMED_SHARE * reach / largest)
     deformed = Panel(
@@ -72,8 +97,24 @@ def draw_solution(
         label="elastic displacement [µm]",
         limits=(0.0, 1e3 * largest),
     )
-    render(folder / f"{prefix}deformed.png", [deformed], side=side)
-    return problem
+    zooms = _zooms(solution, fields)
+    pictures = []
+    for name, panels, pixels in (
+        ("von_mises", [whole], side),
+        ("deformed", [deformed], side),
+        ("contacts", zooms, ZOOM_SIDE),
+    ):
+        images = paint_panels(panels, pixels)
+        write_panels(folder / f"{prefix}{name}.png", panels, images, pixels)
+        drawn = [
+            (
+                panel.title.removeprefix(f"{headline}\n"),
+                panel_svg(panel, image, SIDE if len(panels) == 1 else SIDE_OF_SEVERAL),
+            )
+            for panel, image in zip(panels, images, strict=True)
+        ]
+        pictures.append(Picture(name=name, title=TITLES[name], panels=tuple(drawn)))
+    return Drawn(problem=rendering_problem(), pictures=tuple(pictures))
 
 
 def _stress_below(fields: Sequence[BodyField], share: float) -> float:

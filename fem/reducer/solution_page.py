@@ -1,4 +1,4 @@
-"""``report.html`` of a full solution: verdict, contacts of every disc, the drive."""
+"""``report.html`` of a full solution: verdict, pictures and contacts of every disc, the drive."""
 
 from __future__ import annotations
 
@@ -10,16 +10,30 @@ from fem.drive.full_solution import FullSolution
 from fem.reducer.solution import ReducerSolution
 from ltca.drive.members.judgement import Check
 from ltca.drive.units.quantities import ARCSEC
-from ltca.page.study_page import Section, StudyPage
-from ltca.page.tables import Cell, Table, minus, number, texts, word
+from ltca.page.study_page import Picture, Section, StudyPage
+from ltca.page.tables import Cell, Table, folded, minus, number, texts, word
 from ltca.page.verdict_tables import verdict_of, verdict_tables
 
 
-def solution_page(solution: ReducerSolution, checks: Sequence[Check], case: str, told: str, text: str) -> StudyPage:
-    """Return the page of a full solution with its verdict; `told` describes the problem, `text` is the drive file."""
+def solution_page(
+    solution: ReducerSolution,
+    checks: Sequence[Check],
+    case: str,
+    told: str,
+    text: str,
+    pictures: Sequence[Sequence[Picture]] = (),
+) -> StudyPage:
+    """Return the page of a full solution with its verdict.
+
+    `told` describes the problem, `text` is the drive file, and `pictures` are those of every disc, none where they were left out.
+    """
     sentence, state = verdict_of({case: checks})
-    sections = [Section(heading="Verdict at this position", tables=verdict_tables({case: checks}))]
+    sections = [Section(heading="Verdict at this position", tables=folded(verdict_tables({case: checks})))]
     several = len(solution.discs) > 1
+    for place, own in enumerate(pictures):
+        sections.append(
+            Section(heading=f"Stress and displacement{f' of disc {place}' if several else ''}", pictures=own)
+        )
     for place, disc in enumerate(solution.discs):
         of = f" of disc {place}" if several else ""
         columns = ["contact", "load, N", "largest pressure, MPa", "half-width, µm"]

@@ -7,6 +7,7 @@ house_style       One look for every picture: colours, maps, fonts, proper symbo
                   same input
 field_scale       Units in which values of fields of a drive are drawn: small angles in minutes or degrees
 free_labels       Words beside points where nothing else stands
+shared_axes       Range and ticks of what figures and pages both draw
 curve_panels      Curves in panels of their own, the others grey behind; discs and cranks as cases of their own
 mesh_range        Which pin is shown over its mesh, and over which crank angles
 crank_figures     Figures of several cranks: moment and deflection of each, and the loads of its rollers

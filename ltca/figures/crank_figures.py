@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -20,8 +21,10 @@ from ltca.figures.curve_panels import (
     name_panel,
     one_by_one,
     panel_grid,
+    set_axis,
 )
 from ltca.figures.house_style import COLOURS, CRANK, OTHERS, formula
+from ltca.figures.shared_axes import Axis, axis_of
 
 SECTORS, FEWEST_IN_A_SECTOR = 60, 8
 """Places of the rollers about a crank at which mean and range are taken, and rollers of one disc that pass each."""
@@ -29,7 +32,7 @@ HALF_TURN = 180.0
 """Places of rollers run from minus to plus this, degrees: what the eccentricity loads stands in the middle."""
 
 
-def draw_rollers_of_each_crank(figure: Figure, data: xr.Dataset, place: FloatArray, title: str) -> None:
+def draw_rollers_of_each_crank(figure: Figure, data: xr.Dataset, place: FloatArray, title: str, axis: Axis) -> None:
     """Draw mean and range of the roller loads of each crank, all its discs together, a panel for each crank.
 
     `place` is the angle of the rollers from the eccentricity, degrees from −180 to 180, of shape (discs and cranks, positions,
@@ -61,7 +64,7 @@ def draw_rollers_of_each_crank(figure: Figure, data: xr.Dataset, place: FloatArr
             if other is not mean:
                 axes.plot(middle, other, color=OTHERS, linewidth=0.9, zorder=2.0)
         name_panel(axes, name, 1 if len(drawn) < TWO_COLUMNS_FROM else 2)
-    panels[0].set_ylim(0.0, 1.06 * max(float(np.nanmax(high)) for *_, high in drawn) + 1e-9)
+    set_axis(panels[0], axis)
     mark_a_half_turn(panels[0])
     label_all(figure, panels, "angle of the roller from the eccentricity [°]", "load on the bore [N]")
     figure.suptitle(title)
@@ -73,7 +76,7 @@ def mark_a_half_turn(axes: Any) -> None:
     axes.set_xticks(np.arange(-HALF_TURN, HALF_TURN + 1.0, 90.0))
 
 
-def draw_cranks(figure: Figure, data: xr.Dataset) -> None:
+def draw_cranks(figure: Figure, data: xr.Dataset, axes_of: Mapping[str, Axis]) -> None:
     """Draw the torque of each crank, and where they yield how far each goes in the plane of each disc."""
     cranks, yields = data.sizes["crank"], "crank_deflection_radial" in data
     torque = one_by_one(data.isel(disc=[0]), cranks)
@@ -90,7 +93,8 @@ def draw_cranks(figure: Figure, data: xr.Dataset) -> None:
         for other in np.delete(values, row, axis=0):
             axes.plot(x[order], other[order], color=OTHERS, linewidth=0.9, zorder=2.0)
         name_panel(axes, names[row], 1 + yields)
-    grid[0, 0].margins(x=0.0, y=0.06)
+    grid[0, 0].margins(x=0.0)
+    set_axis(grid[0, 0], axes_of["crank"])
     heading = "Moment that holds each crank"
     if yields:
         shown = data.isel(case=np.unique(torque["of_case"].values))
@@ -104,14 +108,14 @@ def draw_cranks(figure: Figure, data: xr.Dataset) -> None:
             for disc, curve in enumerate(moved[row]):
                 dashes = DASHES[disc % len(DASHES)]
                 axes.plot(x[order], curve[order], color=colours[row], linestyle=dashes, label=f"disc {disc}")
-        grid[0, 1].set_ylim(0.0, 1.06 * float(np.nanmax(moved)) + 1e-9)
+        set_axis(grid[0, 1], axis_of(moved, zero=True))
         if moved.shape[1] > 1:
             handles, words = grid[0, 1].get_legend_handles_labels()
             figure.legend(
                 handles, words, loc="outside lower right", ncols=min(len(words), 5), frameon=False, fontsize=8.0
             )
         heading += ", and how far it yields on its bearings"
-    for axes, label in zip(grid[rows // 2], ("torque [N m]", "deflection at the disc [µm]"), strict=False):
+    for axes, label in zip(grid[rows // 2], ("torque [N·m]", "deflection at the disc [µm]"), strict=False):
         axes.set_ylabel(label)
     for axes in grid[-1]:
         formula(axes.set_xlabel(CRANK))

@@ -15,12 +15,22 @@ from ltca.analysis.torque_curve import TorqueCurve
 from ltca.analysis.transmission_error_orders import Spectrum
 from ltca.arrays import FloatArray
 from ltca.drive.units.quantities import ARCMIN, ARCSEC
-from ltca.figures.house_style import COLOURS, CRANK, DASHED, MARK, STYLE, formula, save_figure, shortened_name
+from ltca.figures.curve_panels import mark_a_turn, set_axis
+from ltca.figures.house_style import (
+    COLOURS,
+    CRANK,
+    CRANK_ANGLE,
+    DASHED,
+    MARK,
+    STYLE,
+    formula,
+    save_figure,
+    shortened_name,
+)
+from ltca.figures.shared_axes import LEAST_AMPLITUDE, Axis, Plane, order_axes, pressure_axis, torque_axes
 
 ORDERS_NAMED = 10
 """Orders listed by name in the figure, the largest."""
-LEAST_AMPLITUDE = 0.004
-"""Amplitudes below this part of the largest are thinner than a line: the axis ends behind the last one above."""
 NUMBER_SIZE = 0.055, 0.04
 """Width and height of a number at a line, as parts of the axes: where two would overlap the larger amplitude has it."""
 
@@ -33,8 +43,12 @@ def _save(figure: Figure, path: Path) -> Path:
     return save_figure(figure, path)
 
 
-def draw_torque_curve(curve: TorqueCurve, title: str, path: Path) -> Path:
-    """Draw torque against wind-up over all crank angles, the stiffness marked and the play magnified; return the file."""
+def draw_torque_curve(curve: TorqueCurve, title: str, path: Path, plane: Plane | None = None) -> Path:
+    """Draw wind-up over torque at all crank angles, the stiffness marked and the play magnified; return the file.
+
+    `plane` are axes that several curves share; by default those of this one.
+    """
+    plane = torque_axes([curve]) if plane is None else plane
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(7.2, 4.4))
         axes, close = figure.subplots(1, 2, width_ratios=(3, 2))
@@ -49,22 +63,24 @@ def draw_torque_curve(curve: TorqueCurve, title: str, path: Path) -> Path:
                 loop = curve.loop.torque / 1e3
                 _band(axis, curve.loop.rising * ARCMIN, loop, COLOURS[1], "torque rising")
                 _band(axis, curve.loop.falling * ARCMIN, loop, COLOURS[5], "torque falling")
-            axis.axhline(0.0, color=MARK, linewidth=0.6)
-            axis.set_xlabel("angle of the output [′]")
-            axis.xaxis.set_major_locator(mpl.ticker.MaxNLocator(5))
+            axis.axvline(0.0, color=MARK, linewidth=0.6)
+            axis.set_xlabel("torque at the output [N·m]")
+        axes.set_xlim(plane.x.low, plane.x.high)
+        axes.set_xticks(plane.x.ticks)
+        set_axis(axes, plane.y)
         _mark_stiffness(axes, curve)
-        axes.set_ylabel("torque on the output [N m]")
+        axes.set_ylabel("angle of the output [′]")
         axes.legend(frameon=False, fontsize=7.5, loc="upper left", borderaxespad=0.2)
-        axes.set_ylim(float(torque.min()) * 1.05, float(torque.max()) * 1.3)
         seen = np.abs(torque) <= 2.0 * part if curve.loop is None else np.abs(curve.loop.torque / 1e3) <= 2.0 * part
         shown = [curve.output_angle] if curve.loop is None else [curve.loop.rising, curve.loop.falling]
         if seen.sum() > 1:
             within = np.concatenate([one[:, seen].ravel() for one in shown]) * ARCMIN
             room = 0.12 * max(float(np.ptp(within)), 1e-9)
-            close.set_xlim(within.min() - room, within.max() + room)
-        close.set_ylim(-2.0 * part, 2.0 * part)
+            close.set_ylim(within.min() - room, within.max() + room)
+        close.set_xlim(-2.0 * part, 2.0 * part)
+        close.xaxis.set_major_locator(mpl.ticker.MaxNLocator(4))
         for side in (-part, part):
-            close.axhline(side, color=COLOURS[2], linewidth=0.8, linestyle=DASHED)
+            close.axvline(side, color=COLOURS[2], linewidth=0.8, linestyle=DASHED)
         lost = np.array([curve.lost_motion.min(), curve.lost_motion.max()]) * ARCMIN
         close.set_title(
             f"play: lost motion {_from_to(*lost)}′\nbetween ±{100.0 * curve.lost_motion_part:g} % of the rated torque (dashed)",
@@ -85,8 +101,8 @@ def _from_to(low: float, high: float) -> str:
 def _band(axes: Any, angle: FloatArray, torque: FloatArray, colour: str, label: str) -> None:
     """Draw mean and range of curves at several crank angles, which would otherwise hide each other."""
     low, mean, high = angle.min(axis=0), angle.mean(axis=0), angle.max(axis=0)
-    axes.fill_betweenx(torque, low, high, color=colour, alpha=0.25, linewidth=0.0)
-    axes.plot(mean, torque, color=colour, label=label)
+    axes.fill_between(torque, low, high, color=colour, alpha=0.25, linewidth=0.0)
+    axes.plot(torque, mean, color=colour, label=label)
 
 
 def _mark_stiffness(axes: Any, curve: TorqueCurve) -> None:
@@ -95,21 +111,22 @@ def _mark_stiffness(axes: Any, curve: TorqueCurve) -> None:
     given = curve.output_angle.mean(axis=0) * ARCMIN
     ends = np.array([STIFFNESS_FROM, 1.0]) * rated
     first, last = np.interp(ends, curve.torque / 1e3, given)
-    axes.plot([first, last], ends, color=COLOURS[2], linewidth=4.0, alpha=0.6, solid_capstyle="butt", zorder=2.6)
-    for at in ends:
-        axes.plot([axes.get_xlim()[0], first if at == ends[0] else last], [at, at], color=MARK, linewidth=0.5)
+    axes.plot(ends, [first, last], color=COLOURS[2], linewidth=4.0, alpha=0.6, solid_capstyle="butt", zorder=2.6)
+    for at, angle in zip(ends, (first, last), strict=True):
+        axes.plot([at, at], [axes.get_ylim()[0], angle], color=MARK, linewidth=0.5)
     low, high = (float(pick(curve.stiffness)) / ARCMIN / 1e3 for pick in (np.min, np.max))
-    told = f"cycloid stage, 50 … 100 %\n{_from_to(low, high)} N m/′"
+    told = f"cycloid stage, 50 … 100 %\n{_from_to(low, high)} N·m/′"
     # Below the chord, on the side to which the curve leaves room.
     axes.annotate(
-        told, xy=(0.5 * (first + last), ends.mean()), xycoords="data", xytext=(0.98, 0.30), textcoords="axes fraction",
+        told, xy=(ends.mean(), 0.5 * (first + last)), xycoords="data", xytext=(0.98, 0.30), textcoords="axes fraction",
         fontsize=8.0, color=COLOURS[2], ha="right", va="top",
         arrowprops={"arrowstyle": "-", "color": COLOURS[2], "linewidth": 0.6, "shrinkB": 2.0},
     )  # fmt: skip
 
 
-def draw_spectrum(spectrum: Spectrum, title: str, path: Path) -> Path:
-    """Draw the amplitudes of the orders, the largest by name; return the file."""
+def draw_spectrum(spectrum: Spectrum, title: str, path: Path, plane: Plane | None = None) -> Path:
+    """Draw the amplitudes of the orders, the largest by name, on axes that several share or its own; return the file."""
+    plane = order_axes([spectrum]) if plane is None else plane
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(7.2, 4.4))
         axes = figure.subplots()
@@ -118,7 +135,7 @@ def draw_spectrum(spectrum: Spectrum, title: str, path: Path) -> Path:
         axes.vlines(values, 0.0, heights, color=COLOURS[1], linewidth=1.6)
         largest = np.argsort(-heights)[:ORDERS_NAMED]
         seen = heights >= LEAST_AMPLITUDE * heights.max()
-        ends = 1.05 * float(values[seen].max()), 1.12 * float(heights.max()) + 1e-9
+        ends = plane.x.high, plane.y.high
         free = _without_overlap(values / ends[0], heights / ends[1])
         for row, number in enumerate(largest):
             order = spectrum.orders[number]
@@ -129,8 +146,9 @@ def draw_spectrum(spectrum: Spectrum, title: str, path: Path) -> Path:
                 0.42, 0.96 - 0.055 * row, f"{order.value:>8.4f}  {heights[number]:.3f}″  {order.name}",
                 transform=axes.transAxes, fontsize=7.5, family="monospace",
             )  # fmt: skip
-        axes.set_xlim(0.0, ends[0])
-        axes.set_ylim(0.0, ends[1])
+        axes.set_xlim(plane.x.low, plane.x.high)
+        axes.set_xticks(plane.x.ticks)
+        set_axis(axes, plane.y)
         axes.set_xlabel("order per turn of the crank")
         axes.set_ylabel("amplitude [″]")
         axes.set_title(f"{shortened_name(title, 48)}; unexplained {spectrum.residual * ARCSEC:.2g}″ rms")
@@ -149,15 +167,21 @@ def _without_overlap(x: FloatArray, y: FloatArray) -> NDArray[np.bool_]:
 
 
 def draw_pressure(
-    crank_angle: FloatArray, pressure: FloatArray, safety: PressureSafety, title: str, path: Path, discs: int = 1
+    crank_angle: FloatArray,
+    pressure: FloatArray,
+    safety: PressureSafety,
+    title: str,
+    path: Path,
+    discs: int = 1,
+    axis: Axis | None = None,
 ) -> Path:
-    """Draw the largest flank pressure over the crank angle with the limit; return the file."""
+    """Draw the largest flank pressure over its turn of the crank with the limit, on an axis that several share or its own."""
     disc, number = divmod(safety.pin, pressure.shape[1] // discs)
     pin = f"pin {number}" if discs == 1 else f"disc {disc}, pin {number}"
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(7.2, 3.6))
         axes = figure.subplots()
-        degrees = np.degrees(crank_angle)
+        start, degrees = float(np.degrees(crank_angle[0])), np.degrees(crank_angle - crank_angle[0])
         for column in range(pressure.shape[1]):
             axes.plot(degrees, pressure[:, column], color="#b8cfe0", linewidth=0.7)
         axes.plot(degrees, pressure.max(axis=1), color=COLOURS[1])
@@ -165,12 +189,10 @@ def draw_pressure(
         if bounded:
             axes.axhline(safety.limit, color=COLOURS[2], linewidth=1.0, linestyle=DASHED)
         axes.plot(degrees[safety.position], safety.largest, "o", color=COLOURS[0], markersize=4.0)
-        axes.set_xlim(degrees[0], degrees[-1])
-        if 300.0 < degrees[-1] - degrees[0] < 360.0:
-            axes.set_xlim(degrees[0], degrees[0] + 360.0)
-            axes.set_xticks(degrees[0] + np.arange(0.0, 361.0, 60.0))
-        axes.set_ylim(0.0, 1.12 * (max(safety.limit, safety.largest) if bounded else safety.largest))
-        formula(axes.set_xlabel(CRANK))
+        axes.set_xlim(0.0, degrees[-1])
+        mark_a_turn(axes, degrees)
+        set_axis(axes, pressure_axis([safety]) if axis is None else axis)
+        formula(axes.set_xlabel(CRANK if start == 0.0 else f"crank angle {CRANK_ANGLE} − {start:g}° [°]"))
         axes.set_ylabel("flank pressure at mid-width [MPa]")
         told = (
             f"safety {safety.safety:.3f} against {safety.limit:g} MPa"

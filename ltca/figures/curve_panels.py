@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
-import matplotlib as mpl
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
 from ltca.arrays import FloatArray
 from ltca.figures.house_style import COLOURS, INK, OTHERS, formula, shortened_name
+from ltca.figures.shared_axes import Axis, axis_of
 
 DASHES: tuple[Any, ...] = ("-", (0, (4, 2)), (0, (1, 1.5)), (0, (6, 1.5, 1, 1.5)), (0, (8, 3)))
 """Lines of disc after disc."""
@@ -27,8 +27,8 @@ UNNAMED_CASE = "nominal"
 """Name of the case of a drive without cases: it tells nothing."""
 LETTERS = {1: 84, 2: 42}
 """Letters above a panel of the width of the figure, and of half of it."""
-MARGIN = 0.06
-"""Of the range of all curves, above and below them."""
+ROOM = 0.03
+"""Part of an axis beyond its last ticks: lines on them are drawn whole."""
 
 
 class Line(NamedTuple):
@@ -91,14 +91,14 @@ def draw_panels(
     x_label: str,
     y_label: str,
     *,
-    limits: tuple[float, float] | None = None,
+    axis: Axis | None = None,
     lines: Sequence[Line] | None = None,
     title: str = "",
 ) -> Any:
     """Draw each curve in a panel with its name above, all others grey behind it, to the same scales; return the axes.
 
     `x` has shape (positions,) in any order, `curves` (curves, positions). Labels have units, formulas between dollar signs.
-    `limits` of y are by default from zero where nothing is negative, otherwise with room.
+    The `axis` of y is by default from zero where nothing is negative.
     """
     order = np.argsort(x, kind="stable")
     lines = plain_lines(len(curves)) if lines is None else lines
@@ -117,17 +117,20 @@ def draw_panels(
         name_panel(axes, names[number], across)
     axes = panels[0]
     axes.margins(x=0.0)
-    if limits is None:
-        least, most = float(np.nanmin(curves)), float(np.nanmax(curves))
-        room = MARGIN * max(most - least, 1e-9 * abs(most), 1e-12)
-        limits = (0.0 if least >= 0.0 else least - room, most + room)
-    axes.set_ylim(*limits)
-    axes.yaxis.set_major_locator(mpl.ticker.MaxNLocator(5 if len(panels) == 1 else 3))
+    set_axis(axes, axis_of(curves, zero=bool(np.nanmin(curves) >= 0.0)) if axis is None else axis)
     mark_a_turn(axes, x[order])
     label_all(figure, panels, x_label, y_label)
     if title:
         figure.suptitle(title)
     return panels
+
+
+def set_axis(axes: Any, axis: Axis) -> None:
+    """Give the axis of y its range and its ticks."""
+    room = ROOM * (axis.high - axis.low)
+    axes.set_ylim(axis.low if axis.low == 0.0 else axis.low - room, axis.high + room)
+    axes.set_yticks(axis.ticks)
+    axes.ticklabel_format(axis="y", useOffset=False, style="plain")
 
 
 def name_panel(axes: Any, name: str, across: int = 1) -> None:

@@ -30,6 +30,8 @@ FITS = 0.72
 """Height of a number by the radius of the pin it stands in."""
 SMALLEST, LARGEST = 5.0, 8.0
 """Sizes of numbers, points; beside a pin where they would not fit into it."""
+APART = 26.0
+"""Points between wheel pins with a number and a force: of closer ones every second has them, or every fifth."""
 
 
 def _circles(axes: Any, centres: Any, radii: Any, colour: str, zorder: int) -> None:
@@ -203,6 +205,12 @@ def _room_for_numbers(reach: float, radius: float) -> float | None:
     return min(points, LARGEST) if points >= SMALLEST else None
 
 
+def _pins_named(shown: _Position, reach: float) -> int:
+    """Which wheel pins have their number and their force written: every one, every second, every fifth and so on."""
+    apart = float(np.abs(shown.pins).max()) * np.pi / reach * INCHES * 72.0 / shown.pins.size
+    return next((every for every in (1, 2, 5, 10, 20) if every * apart >= APART), 50)
+
+
 def _draw_numbers(axes: Any, shown: _Position, labels: FreeLabels) -> None:
     """The number of each pin, roller and shaft pin: in it, or beside it on the side away from the disc."""
     reach = float(axes.get_xlim()[1])
@@ -212,7 +220,7 @@ def _draw_numbers(axes: Any, shown: _Position, labels: FreeLabels) -> None:
         (shown.rollers, shown.place.roller_radii, None),
         (shown.touched_shaft_pins, shown.place.shaft_pin_radii, None),
     )
-    each = shown.rollers.size // shown.cranks.size
+    each, every = shown.rollers.size // shown.cranks.size, _pins_named(shown, reach)
     for centres, radii, beside in kinds:
         if not centres.size:
             continue
@@ -220,6 +228,8 @@ def _draw_numbers(axes: Any, shown: _Position, labels: FreeLabels) -> None:
         if size is None and beside is None:
             continue
         for number, (centre, radius) in enumerate(zip(centres, np.broadcast_to(radii, centres.shape), strict=True)):
+            if centres is shown.pins and number % every:
+                continue
             place = centre
             if size is None and beside is not None:
                 place = centre + beside[number] * (radius + 0.02 * reach)
@@ -235,17 +245,23 @@ def _draw_loads(figure: Figure, axes: Any, shown: _Position, largest: float) -> 
     """Draw normals and forces; numbers first, for their places are fixed, then each force where there is room."""
     longest = 0.2 * float(shown.place.mean_eccentricity[0]) * shown.place.reduction_ratio + 12.0
     labels, arrows, normals = FreeLabels(figure, axes), [], []
+    every = _pins_named(shown, float(axes.get_xlim()[1]))
     for centres, load, radii, towards in shown.loads:
-        for centre, force, radius, direction in zip(centres, load, radii, towards, strict=True):
+        named = np.ones(load.size, dtype=bool)
+        if centres is shown.touched_pins and every > 1:
+            named = (np.arange(load.size) % every == 0) | (load == load.max())
+            for pin in shown.pins:  # between close pins a force would stand on them
+                labels.keep_circle(pin, float(np.max(radii)))
+        for centre, force, radius, direction, told in zip(centres, load, radii, towards, named, strict=True):
             contact = centre + radius * direction
             normals.append([contact - 0.3 * radius * direction, contact + 0.6 * radius * direction])
             if force > 1e-3 * largest:
-                arrows.append((contact, contact + direction * longest * force / largest, float(force)))
+                arrows.append((contact, contact + direction * longest * force / largest, float(force), bool(told)))
     ends = np.array(normals)
     segments: Any = np.stack([ends.real, ends.imag], axis=-1)
     axes.add_collection(LineCollection(segments, colors=NORMAL, linewidths=0.8, zorder=6))
     _draw_numbers(axes, shown, labels)
-    for contact, tip, _ in arrows:
+    for contact, tip, *_ in arrows:
         axes.annotate(
             "",
             xy=(tip.real, tip.imag),
@@ -255,5 +271,6 @@ def _draw_loads(figure: Figure, axes: Any, shown: _Position, largest: float) -> 
         )
         labels.keep_line(contact, tip)
     halo = [patheffects.withStroke(linewidth=2.0, foreground="white", alpha=0.85)]
-    for contact, tip, force in sorted(arrows, key=lambda arrow: -arrow[2]):
-        labels.place(f"{force:.0f} N", tip, tip - contact, fontsize=7.0, color=LOAD, zorder=8, path_effects=halo)
+    for contact, tip, force, told in sorted(arrows, key=lambda arrow: -arrow[2]):
+        if told:
+            labels.place(f"{force:.0f} N", tip, tip - contact, fontsize=7.0, color=LOAD, zorder=8, path_effects=halo)

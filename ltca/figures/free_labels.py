@@ -43,6 +43,12 @@ class FreeLabels:
         """Keep labels off a text."""
         self._boxes = np.vstack([self._boxes, text.get_window_extent(self._renderer).extents])
 
+    def keep_circle(self, centre: complex, radius: float) -> None:
+        """Keep labels off a circle, in data coordinates."""
+        corners = np.array([[centre.real - radius, centre.imag - radius], [centre.real + radius, centre.imag + radius]])
+        box = np.asarray(self._axes.transData.transform(corners), dtype=float).ravel()
+        self._boxes = np.vstack([self._boxes, box])
+
     def keep_line(self, start: complex, end: complex) -> None:
         """Make labels avoid a line, in data coordinates."""
         points = np.array([[start.real, start.imag], [end.real, end.imag]])

@@ -5,10 +5,10 @@ Several discs have a curve each: dashed from the second on, of several cases in 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import matplotlib as mpl
 import numpy as np
@@ -29,10 +29,15 @@ from ltca.figures.curve_panels import (
     mark_a_turn,
     name_panel,
     one_by_one,
+    set_axis,
 )
 from ltca.figures.house_style import CRANK, INK, MARK, OTHERS, STYLE, formula, save_figure
 from ltca.figures.mesh_range import elements_shown, loaded_window
+from ltca.figures.shared_axes import Axis, deviation, run_axes, run_values, torque_shares
 
+Axes: TypeAlias = Mapping[str, Axis]
+"""By the names of `ltca.figures.shared_axes.run_values`."""
+Draw: TypeAlias = Callable[[Figure, xr.Dataset, Axes], None]
 MESHES_SHOWN = 20
 """Of more meshes in a turn the steps of the numbers of loaded contacts would be hatching: fewer are shown."""
 
@@ -64,19 +69,18 @@ def _torque_words(data: xr.Dataset, name: str) -> str:
     return f", {least if least == most else f'{least} … {most}'} N·m"
 
 
-def _transmission_error(figure: Figure, data: xr.Dataset) -> None:
+def _transmission_error(figure: Figure, data: xr.Dataset, axes_of: Axes) -> None:
     names, lines, x = case_names(data), lines_of(data), degrees(data)
     rows = len(names)
     figure.set_figheight(max(3.6, 1.0 + 1.1 * rows))
     grid = figure.subplots(rows, 2, sharex=True, sharey="col", squeeze=False)
     order = np.argsort(x, kind="stable")
     told = (
-        (f"light torque{_torque_words(data, 'light_torque')}", "transmission_error_light"),
-        (f"full torque{_torque_words(data, 'torque')}", "transmission_error"),
+        (f"light torque{_torque_words(data, 'light_torque')}", "transmission_error_light", axes_of["light/te"]),
+        (f"full torque{_torque_words(data, 'torque')}", "transmission_error", axes_of["full/te"]),
     )
-    for column, (words, name) in enumerate(told):
-        values = data[name].values * ARCSEC
-        values = (values - values.mean(axis=1, keepdims=True))[:, order]
+    for column, (words, name, axis) in enumerate(told):
+        values = deviation(data[name].values * ARCSEC)[:, order]
         for row in range(rows):
             axes = grid[row, column]
             marker = "o" if x.size < MARKED_POSITIONS else None
@@ -87,8 +91,8 @@ def _transmission_error(figure: Figure, data: xr.Dataset) -> None:
             for other in np.delete(values, row, axis=0):
                 axes.plot(x[order], other, color=OTHERS, linewidth=0.9, zorder=2.0)
             name_panel(axes, names[row], 2)
-        grid[0, column].margins(x=0.0, y=0.08)
-        grid[0, column].yaxis.set_major_locator(mpl.ticker.MaxNLocator(4))
+        grid[0, column].margins(x=0.0)
+        set_axis(grid[0, column], axis)
         grid[0, column].set_title(words + "\n", loc="center")
         formula(grid[-1, column].set_xlabel(CRANK))
     mark_a_turn(grid[0, 0], x[order])
@@ -97,10 +101,10 @@ def _transmission_error(figure: Figure, data: xr.Dataset) -> None:
     figure.suptitle(with_paper_number(f"Transmission error at the {member}", 23, data))
 
 
-def _over_its_mesh(load: str, name: str, label: str, words: str, number: int) -> Callable[[Figure, xr.Dataset], None]:
+def _over_its_mesh(load: str, name: str, label: str, words: str, number: int, axis: str) -> Draw:
     """One pin over the range in which it is loaded, by the load that tells the range."""
 
-    def draw(figure: Figure, data: xr.Dataset) -> None:
+    def draw(figure: Figure, data: xr.Dataset, axes_of: Axes) -> None:
         x = degrees(data)
         discs = np.atleast_1d(data["disc"].values) if "of_case" in data.coords else np.zeros(data.sizes["case"], int)
         shown = elements_shown(x, data[load].values, discs)
@@ -110,7 +114,7 @@ def _over_its_mesh(load: str, name: str, label: str, words: str, number: int) ->
         pins = f"s {', '.join(map(str, shown.tolist()))} of the discs" if different else f" {shown[0]}"
         panels = draw_panels(
             figure, x, values, case_names(data), CRANK, label, lines=lines_of(data),
-            title=with_paper_number(words.format(pins), number, data),
+            title=with_paper_number(words.format(pins), number, data), axis=axes_of[axis],
         )  # fmt: skip
         window = loaded_window(x, loads)
         if window is not None:
@@ -120,8 +124,8 @@ def _over_its_mesh(load: str, name: str, label: str, words: str, number: int) ->
     return draw
 
 
-def _number_loaded(name: str, words: str, number: int) -> Callable[[Figure, xr.Dataset], None]:
-    def draw(figure: Figure, data: xr.Dataset) -> None:
+def _number_loaded(name: str, words: str, number: int) -> Draw:
+    def draw(figure: Figure, data: xr.Dataset, _: Axes) -> None:
         names, x, counts, lines = case_names(data), degrees(data), _loaded(data, name), lines_of(data)
         order = np.argsort(x, kind="stable")
         # Whole numbers of six cases would lie on each other: one narrow axes each.
@@ -151,41 +155,33 @@ def _number_loaded(name: str, words: str, number: int) -> Callable[[Figure, xr.D
     return draw
 
 
-def _bearing(figure: Figure, data: xr.Dataset) -> None:
+def _bearing(figure: Figure, data: xr.Dataset, axes_of: Axes) -> None:
     total = np.hypot(data["bearing_radial"].values, data["bearing_tangential"].values)
-    _from_anywhere(
-        figure, data, total, "total bearing load [N]", with_paper_number("Bearing load of the crank", 28, data)
-    )
+    title = with_paper_number("Bearing load of the crank", 28, data)
+    _over_the_turn(figure, data, total, "total bearing load [N]", title, axes_of["total"])
 
 
-def _from_anywhere(figure: Figure, data: xr.Dataset, values: FloatArray, label: str, title: str) -> None:
-    """Draw values whose scale need not start at zero."""
-    room = 0.08 * max(np.ptp(values), 1e-6)
-    limits = (float(values.min() - room), float(values.max() + room))
+def _over_the_turn(figure: Figure, data: xr.Dataset, values: FloatArray, label: str, title: str, axis: Axis) -> Any:
     names, lines = case_names(data), lines_of(data)
-    draw_panels(figure, degrees(data), values, names, CRANK, label, limits=limits, lines=lines, title=title)
+    return draw_panels(figure, degrees(data), values, names, CRANK, label, axis=axis, lines=lines, title=title)
 
 
-def _bearing_component(name: str, label: str, words: str, number: int) -> Callable[[Figure, xr.Dataset], None]:
-    def draw(figure: Figure, data: xr.Dataset) -> None:
-        _from_anywhere(figure, data, data[name].values, label, with_paper_number(words, number, data))
+def _bearing_component(name: str, label: str, words: str, number: int) -> Draw:
+    def draw(figure: Figure, data: xr.Dataset, axes_of: Axes) -> None:
+        title, axis = with_paper_number(words, number, data), axes_of[name.removeprefix("bearing_")]
+        _over_the_turn(figure, data, data[name].values, label, title, axis)
 
     return draw
 
 
-def _torque_share(figure: Figure, data: xr.Dataset) -> None:
+def _torque_share(figure: Figure, data: xr.Dataset, axes_of: Axes) -> None:
     share, equal = data["torque_share"].values, 1.0 / (1 + int(data["disc"].values.max()))
-    room = max(0.02, 1.1 * float(np.max(np.abs(share - equal))))
-    panels = draw_panels(
-        figure, degrees(data), share, case_names(data), CRANK, "part of the torque", limits=(equal - room, equal + room),
-        lines=lines_of(data),
-        title=f"Part of the torque that each disc carries (largest {share.max():.3f}, equal parts {equal:.3f})",
-    )  # fmt: skip
-    for axes in panels:
+    title = f"Part of the torque that each disc carries (largest {share.max():.3f}, equal parts {equal:.3f})"
+    for axes in _over_the_turn(figure, data, share, "part of the torque", title, axes_of["share"]):
         axes.axhline(equal, color=MARK, linewidth=0.6)
 
 
-def _roller_distribution(figure: Figure, data: xr.Dataset) -> None:
+def _roller_distribution(figure: Figure, data: xr.Dataset, axes_of: Axes) -> None:
     """Load of all rollers at all positions over their place against the eccentricity, which stands in the middle."""
     rollers = data.sizes["roller"]
     angle = data["crank_angle"].values
@@ -194,7 +190,9 @@ def _roller_distribution(figure: Figure, data: xr.Dataset) -> None:
     place = np.degrees(np.mod(place + np.pi, 2.0 * np.pi)) - HALF_TURN
     title = with_paper_number("Load distribution over the rollers", 34, data)
     if "of_case" in data.coords and np.ptp(data["crank"].values) > 0:
-        draw_rollers_of_each_crank(figure, data, place, f"{title}, all discs: mean and range")
+        draw_rollers_of_each_crank(
+            figure, data, place, f"{title}, all discs: mean and range", axes_of["full/outer/load"]
+        )
         return
     edges = np.linspace(-HALF_TURN, HALF_TURN, 121)
     centres = 0.5 * (edges[1:] + edges[:-1])
@@ -210,16 +208,26 @@ def _roller_distribution(figure: Figure, data: xr.Dataset) -> None:
         x, sums = centres[met], [np.bincount(bins.ravel(), case.ravel(), minlength=centres.size) for case in load]
         curves = np.stack([total[met] / count[met] for total in sums])
     label = "angle of the roller from the eccentricity [°]"
-    panels = draw_panels(figure, x, curves, names, label, "load on the bore [N]", lines=lines_of(data), title=title)
+    panels = draw_panels(
+        figure, x, curves, names, label, "load on the bore [N]", axis=axes_of["full/outer/load"], lines=lines_of(data),
+        title=title,
+    )  # fmt: skip
     mark_a_half_turn(panels[0])
 
 
-FIGURES: dict[str, Callable[[Figure, xr.Dataset], None]] = {
+FIGURES: dict[str, Draw] = {
     "fig23_transmission_error": _transmission_error,
-    "fig24_pin_load": _over_its_mesh("pin_load", "pin_load", "load [N]", "Load of wheel pin{} over a mesh", 24),
+    "fig24_pin_load": _over_its_mesh(
+        "pin_load", "pin_load", "load [N]", "Load of wheel pin{} over a mesh", 24, "full/pin/load"
+    ),
     "fig25_loaded_pins": _number_loaded("pin_load", "Number of loaded wheel pins", 25),
     "fig26_pin_pressure": _over_its_mesh(
-        "pin_load", "pin_pressure_mid", "pressure at mid-width [MPa]", "Largest flank pressure at wheel pin{}", 26
+        "pin_load",
+        "pin_pressure_mid",
+        "pressure at mid-width [MPa]",
+        "Largest flank pressure at wheel pin{}",
+        26,
+        "full/pin/pressure",
     ),
     "fig28_bearing_load": _bearing,
     "fig29_tangential_bearing_load": _bearing_component(
@@ -229,7 +237,9 @@ FIGURES: dict[str, Callable[[Figure, xr.Dataset], None]] = {
         "bearing_radial", "radial bearing load [N]", "Radial bearing load", 30
     ),
     "fig34_roller_load": _roller_distribution,
-    "fig35_pin_shaft_load": _over_its_mesh("pin_shaft_load", "pin_shaft_load", "load [N]", "Load of shaft pin{}", 35),
+    "fig35_pin_shaft_load": _over_its_mesh(
+        "pin_shaft_load", "pin_shaft_load", "load [N]", "Load of shaft pin{}", 35, "full/hole/load"
+    ),
     "fig36_loaded_shaft_pins": _number_loaded("pin_shaft_load", "Number of loaded shaft pins", 36),
     "torque_share": _torque_share,
     "cranks": draw_cranks,
@@ -263,9 +273,10 @@ def figure_names(discs: int, holes: int, cranks: int = 1) -> list[str]:
 
 def draw_figure(name: str, dataset: xr.Dataset) -> Figure:
     """Return one figure of a run, a key of `FIGURES`; of several discs each has a curve."""
+    axes_of = run_axes(run_values(dataset), dataset.sizes["disc"])
     dataset = _answered(dataset)
     if name in OF_SEVERAL_DISCS:
-        dataset = dataset.assign(torque_share=dataset["disc_torque"] / dataset["wheel_moment"])
+        dataset = dataset.assign(torque_share=torque_shares(dataset))
     shown = one_by_one(dataset, dataset.sizes["crank"] if name in (*OF_THE_CRANKS, *OF_SEVERAL_CRANKS) else 1)
     drawn = int(shown["of_case"].max()) + 1 if "of_case" in shown.coords else shown.sizes["case"]
     if name in OF_THE_DRIVE:
@@ -275,7 +286,7 @@ def draw_figure(name: str, dataset: xr.Dataset) -> Figure:
         shown = dataset.isel(case=slice(drawn))
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(7.2, 3.9))
-        FIGURES[name](figure, shown)
+        FIGURES[name](figure, shown, axes_of)
         if drawn < dataset.sizes["case"]:
             layout: Any = figure.get_layout_engine()
             layout.set(rect=(0.0, 0.025, 1.0, 0.975))

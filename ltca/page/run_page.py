@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from math import degrees
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from ltca.analysis.engines import Engine, describe_engine
 from ltca.analysis.friction.losses import KINDS
 from ltca.analysis.life.bearing_lives import BearingLives
@@ -17,6 +19,7 @@ from ltca.drive.members.judgement import Check
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
+from ltca.figures.shared_axes import contact_values, deviation, run_axes, run_values
 from ltca.page.compared import Compared, matched
 from ltca.page.packing import pack
 from ltca.page.run_arrays import has_friction, run_arrays, shown_positions
@@ -93,6 +96,7 @@ def run_page(run: Run) -> str:
         "cranks": dataset.sizes["crank"],
         "discs": dataset.sizes["disc"],
         "losses": LOSSES,
+        "axes": _axes(run),
         "compared": _compared(run),
     }
     return page_text(
@@ -143,6 +147,18 @@ def _arrays(run: Run, drives: Mapping[str, Drive]) -> dict[str, FloatArray]:
             arrays[f"{place}/orders"] = lines[:most]
     beside = {} if run.compared is None else run.compared.arrays
     return arrays | {f"b/{name}": values for name, values in beside.items()}
+
+
+def _axes(run: Run) -> dict[str, list[float]]:
+    """Ends and steps of the axes of curves, as the figures of the run have them; wider where a second run asks for it."""
+    values = run_values(run.dataset) | ({} if run.light is None else contact_values(run.light, "light"))
+    for name, each in ({} if run.compared is None else run.compared.arrays).items():
+        key = name.partition("/")[2]  # behind the number of the case
+        of = ("full/te", "light/te") if name == "measured/te" else (key,) if key in values else ()
+        for axis in of:
+            added = deviation(each) if axis.endswith("te") else each
+            values[axis] = np.concatenate([values[axis].ravel(), added.ravel()])
+    return {name: list(axis) for name, axis in run_axes(values, run.dataset.sizes["disc"]).items()}
 
 
 def _case(dataset: xr.Dataset, place: int, drive: Drive) -> dict[str, Any]:

@@ -113,17 +113,13 @@ def input_tables(drives: Mapping[str, Drive]) -> list[Table]:
             common.append([word(path), _input(values[0], path), word(_unit(path))])
         else:
             differing.append([word(path), word(_unit(path)), *(_input(value, path) for value in values)])
-    heads = ["field", "unit", *drives]
-    tables = [Table(name="inputs", caption="", columns=["field", "value", "unit"], rows=common, words=2)]
-    if differing:
-        differ = Table(
-            name="inputs_by_case", caption="What differs between cases", columns=heads, rows=differing, words=1
-        )
-        tables = [
-            differ,
-            Table(name="inputs", caption="What all cases have", columns=tables[0].columns, rows=common, words=2),
-        ]
-    return tables
+    told = "fields that all cases share" if differing else "fields"
+    columns = ["field", "value", "unit"]
+    tables = [Table(name="inputs", caption=told, columns=columns, rows=common, words=2, folded=True)]
+    if not differing:
+        return tables
+    heads, caption = ["field", "unit", *drives], "What differs between cases"
+    return [Table(name="inputs_by_case", caption=caption, columns=heads, rows=differing, words=1), *tables]
 
 
 def _not_there(drive: Drive) -> tuple[str, ...]:
@@ -187,5 +183,17 @@ def derived_tables(written: Mapping[str, Drive], drives: Mapping[str, Drive]) ->
     cases = list(each.values())
     if all(case == cases[0] for case in cases):
         return [Table(name="derived", caption="", columns=["", "value"], rows=texts(cases[0].items()), words=1)]
-    rows = [[word(title), *(word(minus(case.get(title, NOTHING))) for case in cases)] for title in titles]
-    return [Table(name="derived", caption="", columns=["", *each], rows=rows, words=len(cases))]
+    same = [title for title in titles if len({case.get(title, NOTHING) for case in cases}) == 1]
+    rows = [
+        [word(title), *(word(minus(case.get(title, NOTHING))) for case in cases)]
+        for title in titles
+        if title not in same
+    ]
+    differing = Table(
+        name="derived_by_case", caption="What differs between cases", columns=["", *each], rows=rows, words=len(cases)
+    )
+    common = texts((title, cases[0].get(title, NOTHING)) for title in same)
+    return [
+        differing,
+        Table(name="derived", caption="What all cases have", columns=["", "value"], rows=common, words=1),
+    ]

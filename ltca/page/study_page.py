@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ltca.arrays import FloatArray
+from ltca.figures.shared_axes import Axis
 from ltca.output.provenance import code_hash, code_version
 from ltca.page.packing import pack
 from ltca.page.tables import Table, texts
@@ -34,6 +35,10 @@ class Curves:
         ``line``, ``stems`` or ``points``.
     degrees : bool
         Whether the axis is an angle in degrees.
+    along, up : Axis or None
+        Range and ticks of both axes where they are those of a figure; by default those of the lines.
+    dashed : collection of str
+        Lines that are dashed, in the colour of the one before.
     """
 
     title: str
@@ -43,14 +48,35 @@ class Curves:
     lines: Mapping[str, FloatArray]
     kind: str = "line"
     degrees: bool = False
+    along: Axis | None = None
+    up: Axis | None = None
+    dashed: Collection[str] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Picture:
+    """A picture of one or several panels.
+
+    Attributes
+    ----------
+    name, title : str
+        Of its kind, and what it shows.
+    panels : sequence of (str, str)
+        What each shows, and the panel as SVG, whose texts are escaped and whose colours are classes of ``page.css``.
+    """
+
+    name: str
+    title: str
+    panels: Sequence[tuple[str, str]]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Section:
-    """Part of a page: a heading, then sentences, curves and tables in this order."""
+    """Part of a page: a heading, then sentences, pictures, curves and tables in this order."""
 
     heading: str
     notes: Sequence[str] = ()
+    pictures: Sequence[Picture] = ()
     curves: Sequence[Curves] = ()
     tables: Sequence[Table] = ()
 
@@ -97,8 +123,14 @@ def curves_content(sections: Sequence[Section]) -> tuple[dict[str, FloatArray], 
             arrays[f"{first}/x"] = np.asarray(curves.x, dtype=float)
             for place, values in enumerate(curves.lines.values()):
                 arrays[f"{first}/{place}"] = np.asarray(values, dtype=float)
-            told = {"title": curves.title, "unit": curves.unit, "axis": curves.axis, "names": list(curves.lines)}
-            plots.append(told | {"kind": curves.kind, "degrees": curves.degrees})
+            told: dict[str, Any] = {
+                "title": curves.title,
+                "unit": curves.unit,
+                "axis": curves.axis,
+                "names": list(curves.lines),
+            }
+            told |= {"kind": curves.kind, "degrees": curves.degrees, "along": curves.along, "up": curves.up}
+            plots.append(told | {"dashed": [name in curves.dashed for name in curves.lines]})
     return arrays, plots
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import isfinite
 
 from ltca.drive.members.verdict_words import CLOSE
@@ -52,6 +52,8 @@ class Table:
         How many columns after the first are words, which stand on the left; numbers stand on the right.
     last_words : int
         How many of the last columns are.
+    folded : bool
+        Whether a line with the number of rows and the caption has to be clicked to see it.
     """
 
     name: str
@@ -60,6 +62,12 @@ class Table:
     rows: Sequence[Sequence[Cell]]
     words: int = field(default=0)
     last_words: int = field(default=0)
+    folded: bool = field(default=False)
+
+
+def folded(tables: Sequence[Table]) -> list[Table]:
+    """Return tables of which the first stands open and the others are folded."""
+    return [replace(table, folded=number > 0) for number, table in enumerate(tables)]
 
 
 def minus(text: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from base64 import b64encode
 from collections.abc import Mapping, Sequence
 from hashlib import sha256
@@ -14,6 +15,8 @@ from ltca.output.files import whole_file
 
 SCRIPTS = ("svg", "tables")
 """Scripts of every page, in the order they are joined."""
+BREAK = re.compile(r"(?<=[a-z0-9])[._](?=[a-z0-9])")
+"""Where the name of a field may go on in the next line."""
 
 
 def page_text(
@@ -42,6 +45,7 @@ def page_text(
         undefined=jinja2.StrictUndefined,
     )  # fmt: skip
     environment.filters["signs"] = _with_signs
+    environment.filters["breaks"] = _with_breaks
     own = resources.files("ltca.page")
     folders = [own / "scripts", own / "templates", *([resources.files(package) / "templates"] if package else [])]
 
@@ -72,6 +76,13 @@ def _with_signs(text: str) -> Any:
     from markupsafe import Markup, escape
 
     return Markup(str(escape(text)).replace("φ_C", "φ<sub>C</sub>"))
+
+
+def _with_breaks(text: str) -> Any:
+    """The text, of which names of fields may be broken behind dots and underscores."""
+    from markupsafe import Markup, escape
+
+    return Markup(BREAK.sub(r"\g<0><wbr>", str(escape(text))))
 
 
 def write_page(path: Path, text: str) -> Path:

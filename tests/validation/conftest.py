@@ -71,7 +71,7 @@ def make_study(paper_cases):
                 residual=0.0,
                 unknowns=1000,
                 seconds=1.0,
-                pictures=(),
+                pictures=None,
             )
             for angle, answer in zip(ANGLES, answers, strict=True)
         ]
@@ -120,7 +120,7 @@ def crank_study(crank_drive):
         (answer,) = answers_of(analyse(crank_drive, np.array(angles)))
         full = FullPosition(
             case="nominal", crank_angle=angles[0], answer=answer, stress=NO_STRESS, residual=0.0, unknowns=1000,
-            seconds=1.0, pictures=(),
+            seconds=1.0, pictures=None,
         )  # fmt: skip
         coefficients = replace(without_coupling(crank_drive), pin=1e-7)
         compared = compare_case(crank_drive, [full], coefficients)

@@ -43,7 +43,7 @@ def positions(drive, no_stress):
     return [
         FullPosition(
             case=disc_case("CS-3", disc, 2), crank_angle=angle, answer=answers_of(own)[row], stress=no_stress,
-            residual=0.0, unknowns=1000, seconds=1.0, pictures=(), disc=disc,
+            residual=0.0, unknowns=1000, seconds=1.0, pictures=None, disc=disc,
         )
         for row, angle in enumerate(ANGLES)
         for disc, own in enumerate(analysis.discs)

@@ -10,7 +10,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -32,6 +32,7 @@ from ltca.geometry.placement import Placement
 from ltca.output.files import write_json
 from ltca.output.provenance import code_hash, code_version
 from ltca.output.regular_files import read_regular
+from ltca.page.study_page import Picture
 from ltca.quantities import QUANTITIES
 from validation.compare.comparison import KindAnswer, PositionAnswer
 from validation.compare.disc_stresses import DiscStressAnswer, answer_of_content, stress_content
@@ -39,7 +40,8 @@ from validation.compare.disc_stresses import DiscStressAnswer, answer_of_content
 FORMAT = 4
 LARGEST_KEPT = 200_000_000
 """Bytes of one kept position."""
-PICTURES = ("von_mises", "deformed", "contacts")
+PICTURES = "pictures.json"
+"""Pictures of a disc for the page, kept beside those for print."""
 PICTURE_SIDE = 1200
 
 
@@ -65,8 +67,8 @@ class FullPosition:
         Of the solution, all discs.
     seconds : float
         Wall time when it was solved, all discs: for the account of costs, never for the report.
-    pictures : tuple of Path
-        von Mises, contacts, deformed; empty when they were not asked for.
+    pictures : Path or None
+        Kept pictures (`kept_pictures`); None when they were not asked for.
     """
 
     case: str
@@ -76,7 +78,7 @@ class FullPosition:
     residual: float
     unknowns: int
     seconds: float
-    pictures: tuple[Path, ...]
+    pictures: Path | None
     disc: int = 0
 
 
@@ -125,9 +127,9 @@ def _solve_kept(
     singles = single_discs(drive)
     count = len(singles)
     prefixes = [f"disc_{disc}_" if count > 1 else "" for disc in range(count)]
-    images = [tuple(path.with_suffix("") / f"{prefix}{name}.png" for name in PICTURES) for prefix in prefixes]
+    images = [path.with_suffix("") / f"{prefix}{PICTURES}" for prefix in prefixes]
     content = _read(path, key)
-    if content is None or (pictures and not all(image.exists() for own in images for image in own)):
+    if content is None or (pictures and not all(image.exists() for image in images)):
         # Stresses along the walls are compared.
         with_walls = replace(options, fine_walls=True)
         solution = solve_reducer(drive, crank_angle, with_walls, rounds=rounds, progress=progress)
@@ -152,7 +154,7 @@ def _solve_kept(
             residual=float(summary["equilibrium_residual_N"]),
             unknowns=int(summary["dof"]),
             seconds=float(summary["seconds"]),
-            pictures=images[disc] if pictures else (),
+            pictures=images[disc] if pictures else None,
             disc=disc,
         )
         for disc, single in enumerate(singles)
@@ -208,7 +210,13 @@ def _checksum(answer: object) -> str:
 def _draw(solution: FullSolution, title: str, folder: Path, prefix: str) -> None:
     fields = recover_fields(solution)
     folder.mkdir(parents=True, exist_ok=True)
-    draw_solution(solution, fields, title, folder, side=PICTURE_SIDE, prefix=prefix)
+    drawn = draw_solution(solution, fields, title, folder, side=PICTURE_SIDE, prefix=prefix)
+    write_json(folder / f"{prefix}{PICTURES}", {"pictures": [asdict(picture) for picture in drawn.pictures]})
+
+
+def kept_pictures(path: Path) -> list[Picture]:
+    """Return the pictures of a disc that were kept."""
+    return [Picture(**each) for each in json.loads(read_regular(path, LARGEST_KEPT))["pictures"]]
 
 
 def answer_of_summary(summary: dict[str, Any], single: Drive, disc: int) -> PositionAnswer:

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import base64
-import io
 from math import degrees
 from pathlib import Path
 from typing import Any
 
 from ltca.drive.single_discs import single_discs
 from ltca.page.scene import drive_scene
+from ltca.page.study_page import Picture
 from ltca.page.tables import minus
 from ltca.page.writing import page_text, script_data, write_page
-from validation.compare.finite_element_positions import disc_case
+from validation.compare.finite_element_positions import disc_case, kept_pictures
 from validation.compare.model_positions import FULL, MODELS
 from validation.levels.flexible_disc import TITLES, judge_half_space, turn_content
 from validation.report.headline import headline
@@ -21,12 +20,6 @@ from validation.report.verdict import verdict_lines
 from validation.rows import LEVELS, Row
 from validation.study import Study
 
-PICTURE_WIDTHS = {"von_mises": 1200, "deformed": 1200, "contacts": 2000}
-PICTURE_TITLES = {
-    "von_mises": "von Mises stress at the loaded pose",
-    "contacts": "The most loaded contact of each kind: mesh, stress, pressure",
-    "deformed": "Elastic displacement, magnified",
-}
 SHARED = (
     (
         "Profile",
@@ -191,40 +184,12 @@ def _difference(value: float, unit: str, sign: str = "") -> str:
     return minus(f"±{text}" if sign and value else text)
 
 
-def _pictures(study: Study) -> list[dict[str, str]]:
+def _pictures(study: Study) -> list[tuple[str, Picture]]:
+    """Pictures of every position that has them, with case and angle."""
     return [
-        {
-            "case": item.full.case,
-            "angle": _angle(item.full.crank_angle),
-            "name": picture_name(path),
-            "title": PICTURE_TITLES[picture_name(path)],
-            "source": _embedded(path),
-        }
+        (f"{item.full.case}, {_angle(item.full.crank_angle)}: ", picture)
         for items in study.compared.values()
         for item in items
-        for path in item.full.pictures
+        if item.full.pictures is not None
+        for picture in kept_pictures(item.full.pictures)
     ]
-
-
-def picture_name(path: Path) -> str:
-    """Return the picture in a file; with several discs the file name begins with the disc.
-
-    Examples
-    --------
-    >>> picture_name(Path("kept/disc_1_von_mises.png"))
-    'von_mises'
-    """
-    return next(name for name in PICTURE_TITLES if path.stem.endswith(name))
-
-
-def _embedded(path: Path) -> str:
-    """Return a picture as a data URL, scaled down for the page."""
-    from PIL import Image
-
-    with Image.open(path) as opened:
-        image = opened.convert("RGB")
-    width = min(PICTURE_WIDTHS[picture_name(path)], image.width)
-    image = image.resize((width, round(image.height * width / image.width)), Image.Resampling.LANCZOS)
-    stream = io.BytesIO()
-    image.save(stream, "WEBP", quality=82, method=4)
-    return "data:image/webp;base64," + base64.b64encode(stream.getvalue()).decode("ascii")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 
 from ltca.analysis.drive_curves import (
@@ -22,7 +23,13 @@ from ltca.analysis.life.life_text import life_lines
 from ltca.drive.parts import Drive
 from ltca.output.files import write_json
 from ltca.output.progress import progress
-from ltca.page.studies.curves import life_section, orders_section, pressure_section, torque_section
+from ltca.page.studies.curves import (
+    TurnOfPressure,
+    life_section,
+    orders_section,
+    pressure_section,
+    torque_section,
+)
 from ltca.page.study_page import Section, StudyPage, write_study_page
 from ltca.reading.drive_file import DriveFile
 
@@ -44,8 +51,7 @@ def solve_and_write(
     out: Path,
 ) -> int:
     """Solve every case, write curves.json, page and figures, print the results; return the exit status."""
-    contents, figures = {}, []
-    sections: list[Section] = []
+    contents, every = {}, dict[str, DriveCurves]()
     turns_of = {name: arguments.turns or drive.pin_wheel.number_of_pins for name, drive in cases.items()}
     total = sum(turns * positions_per_turn(cases[name]) for name, turns in turns_of.items())
     with progress("positions", total) as advance:
@@ -59,19 +65,15 @@ def solve_and_write(
             found = solve_curves(drive, turns_of[name], own, engine, lambda size, case=name: advance(case, size))  # type: ignore[misc]
             contents[name] = {"drive": title, **engine.options, **found.content}
             print("\n".join(curve_lines(found, title)))
-            if not arguments.no_page:
-                sections += _sections(found, f"{name}: " if len(cases) > 1 else "")
-            if arguments.figures:
-                ending = f"_{name}" if len(cases) > 1 else ""
-                figures += _draw(
-                    found, title, drive.disc.number_of_discs, out / "figures", f"{ending}.{arguments.figures}"
-                )
-    if figures:
+            every[name] = found
+    if arguments.figures:
+        figures = _draw(every, file.name, out / "figures", arguments.figures)
         print(f"figures: {out / 'figures'} ({len(figures)} as {arguments.figures.upper()})")
     (first, *others) = contents.values()
     write_json(out / "curves.json", {"drive": file.name, "cases": contents} if others else first)
     files = [out / "curves.json"]
-    if sections:
+    if not arguments.no_page:
+        sections = _sections(every)
         loads = dict.fromkeys(drive.load_words() for drive in cases.values())
         words = half_space_words(engine, next(iter(cases.values())))
         told = "; ".join(filter(None, (f"curves at {', '.join(loads)}, {describe_engine(engine)}", words)))
@@ -81,24 +83,47 @@ def solve_and_write(
     return 0
 
 
-def _sections(found: DriveCurves, of: str) -> list[Section]:
-    """What the page shows of a case; `of` names it where there are several."""
-    over = f"over {found.turns} turns, {found.positions} positions"
+def _sections(every: Mapping[str, DriveCurves]) -> list[Section]:
+    """What the page shows of all cases."""
+    lives = {name: found.lives for name, found in every.items()}
+    turns = {name: TurnOfPressure(found.crank_angle, found.pressure, found.safety) for name, found in every.items()}
+    lines = {
+        name: life_lines(found.lives, found.drive, life_speed(found.drive, found.settings))
+        for name, found in every.items()
+    }
     return [
-        torque_section(found.curve, of),
-        orders_section(found.spectrum, over, of),
-        life_section(life_lines(found.lives, found.drive, life_speed(found.drive, found.settings)), of),
-        pressure_section(found.crank_angle, found.pressure, found.safety, of),
-    ]
-
-
-def _draw(found: DriveCurves, title: str, discs: int, folder: Path, ending: str) -> list[Path]:
-    from ltca.figures import curve_figures as figures
-
-    return [
-        figures.draw_torque_curve(found.curve, title, folder / f"torque_curve{ending}"),
-        figures.draw_spectrum(found.spectrum, title, folder / f"transmission_error_orders{ending}"),
-        figures.draw_pressure(
-            found.crank_angle, found.pressure, found.safety, title, folder / f"flank_pressure{ending}", discs
+        torque_section({name: found.curve for name, found in every.items()}),
+        orders_section(
+            {name: found.spectrum for name, found in every.items()},
+            [f"over {found.turns} turns, {found.positions} positions" for found in every.values()],
         ),
+        life_section(lives, lines),
+        pressure_section(turns),
     ]
+
+
+def _draw(every: Mapping[str, DriveCurves], name: str, folder: Path, kind: str) -> list[Path]:
+    from ltca.figures import curve_figures as figures
+    from ltca.figures.shared_axes import order_axes, pressure_axis, torque_axes
+
+    torques = torque_axes(found.curve for found in every.values())
+    orders = order_axes(found.spectrum for found in every.values())
+    pressures = pressure_axis(found.safety for found in every.values())
+    files = []
+    for case, found in every.items():
+        title, ending = f"{name} {case}", f"_{case}.{kind}" if len(every) > 1 else f".{kind}"
+        discs = found.drive.disc.number_of_discs
+        files += [
+            figures.draw_torque_curve(found.curve, title, folder / f"torque_curve{ending}", torques),
+            figures.draw_spectrum(found.spectrum, title, folder / f"transmission_error_orders{ending}", orders),
+            figures.draw_pressure(
+                found.crank_angle,
+                found.pressure,
+                found.safety,
+                title,
+                folder / f"flank_pressure{ending}",
+                discs,
+                pressures,
+            ),
+        ]
+    return files

@@ -27,10 +27,18 @@ class Drawing {
     this.disc = node("path", { d: outline + openings, "fill-rule": "evenodd", class: "disc", "stroke-width": thin }, world);
     this.races = now.cranks.map(() => node("circle", { class: "race", r: scene.race, "stroke-width": thin }, world));
     const perCrank = now.rollers.length / now.cranks.length; // numbered in every bearing anew
-    this.parts = ["pins", "rollers", "shafts"].map(kind => now[kind].map((c, i) => ({
-      ring: node("circle", { class: `part ${kind}`, r: c[2], "stroke-width": thin }, world),
-      text: node("text", { class: "number", dy: "0.35em", "font-size": Math.min(1.1 * c[2], 15 * thin), transform: "scale(1,-1)" }, world, String(kind === "rollers" ? i % perCrank : i)),
-    })));
+    // Numbers of parts stand in them; of small ones outside, of as many as have room; of small rollers nowhere.
+    const size = thin * Math.min(22, Math.max(14, 7200 / (this.svg.clientWidth || 560))); // of those outside, nine pixels on a phone
+    this.parts = ["pins", "rollers", "shafts"].map(kind => {
+      const small = now[kind].some(c => 1.1 * c[2] < 9 * thin), beside = small && kind === "pins";
+      const apart = beside ? 2 * Math.PI * Math.hypot(...now.pins[0].slice(0, 2)) / now.pins.length : Infinity;
+      const every = small && !beside ? Infinity : [1, 2, 5, 10, 20, 50].find(each => each * apart >= 2.4 * size) || 100;
+      return now[kind].map((c, i) => ({
+        ring: node("circle", { class: `part ${kind}`, r: c[2], "stroke-width": thin }, world),
+        text: i % every === 0 && every < Infinity ? node("text", { class: "number", dy: "0.35em", "font-size": beside ? size : Math.min(1.1 * c[2], 15 * thin), transform: "scale(1,-1)" }, world, String(kind === "rollers" ? i % perCrank : i)) : null,
+        away: beside ? c[2] + size : 0,
+      }));
+    });
     this.arms = now.cranks.map((crank, i) => ({
       arm: node("path", { class: "arm", "stroke-width": 2 * thin }, world),
       axis: node("circle", { class: "axis", r: 3 * thin }, world),
@@ -44,8 +52,9 @@ class Drawing {
     if (scene !== this.scene) this.build(scene, now);
     this.disc.setAttribute("transform", `translate(${now.disc[0]},${now.disc[1]}) rotate(${now.disc[2] * 180 / Math.PI})`);
     ["pins", "rollers", "shafts"].forEach((kind, k) => now[kind].forEach(([x, y], i) => {
-      place(this.parts[k][i].ring, { cx: x, cy: y });
-      place(this.parts[k][i].text, { x: x, y: -y });
+      const part = this.parts[k][i], out = 1 + part.away / (Math.hypot(x, y) || 1);
+      place(part.ring, { cx: x, cy: y });
+      if (part.text) place(part.text, { x: x * out, y: -y * out });
     }));
     now.cranks.forEach(([axis, up, x, y], i) => {
       place(this.races[i], { cx: x, cy: y });

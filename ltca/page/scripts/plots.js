@@ -7,14 +7,28 @@ function ticks(low, high, count) {
   return { found: found, digits: Math.max(0, -Math.floor(Math.log10(step) + 1e-9) + (step / power === 2.5 ? 1 : 0)) };
 }
 function degreeTicks(low, high, room) {
-  const step = [0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 30, 45, 60, 90, 180, 360, 720, 1440].find(each => (high - low) / each <= room / 48) || 3600;
+  const whole = high - low > 300 && high - low <= 360 ? 60 : 0; // of a turn, as in the figures
+  const step = [0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 30, 60, 90, 120, 180, 360, 720, 1440].find(each => each >= whole && (high - low) / each <= room / 40) || 3600;
   const found = [];
   for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-6; i++) found.push(i * step);
   return { found: found, digits: step < 1 ? 1 : 0 };
 }
 
+// Ticks of an axis that comes with its range and step, from its first end on.
+function stepTicks(axis) {
+  const [low, high, step] = axis, count = Math.round((high - low) / step), first = Math.round(low / step);
+  const digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9)), part = step * 10 ** digits;
+  return { found: Array.from({ length: count + 1 }, (_, i) => (first + i) * step), digits: digits + (Math.abs(part - Math.round(part)) > 1e-6 ? 1 : 0) };
+}
+
+function ends(lines) {
+  let low = Infinity, high = -Infinity;
+  for (const values of lines) for (const value of values) if (known(value)) { low = Math.min(low, value); high = Math.max(high, value); }
+  return [low, high];
+}
+
 class Plot {
-  // spec: {id, title, unit, x, xTitle, degrees, zero, stems, pick(index), digits}
+  // spec: {id, title, unit, x, xTitle, degrees, zero, stems, pick(index), digits, axis, along}; axes are [low, high, step]
   constructor(parent, spec) {
     this.spec = spec;
     this.series = [];
@@ -58,7 +72,7 @@ class Plot {
     return best;
   }
 
-  // series: {name, values, x, colour, faint, dashed, thin}
+  // series: {name, values, x, colour, faint, dashed, thin}; of many lines drawn as one: {many, key}
   set(title, series) {
     this.title.textContent = title + (this.spec.unit ? `, ${this.spec.unit}` : "");
     this.button.setAttribute("aria-label", `Figure ${title} as SVG`);
@@ -66,35 +80,46 @@ class Plot {
     this.draw();
   }
 
+  again() {
+    this.width = 0;
+    this.draw();
+  }
+
   draw() {
-    const spec = this.spec, width = (this.width = Math.max(260, Math.round(this.figure.clientWidth || 520))), height = spec.height || 190;
+    // To ask for the width lays the page out: once, and when it changes.
+    const spec = this.spec, width = this.width || (this.width = Math.max(260, Math.round(this.figure.clientWidth || 520))), height = spec.height || 190;
     const left = (this.left = 54), right = 18, top = 10, bottom = 34, svg = this.svg;
     svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
     svg.replaceChildren();
     let low = Infinity, high = -Infinity, first = Infinity, last = -Infinity;
     for (const line of this.series) {
-      for (const value of line.values) if (known(value)) { low = Math.min(low, value); high = Math.max(high, value); }
+      const [least, most] = line.many ? this.extremes(line) : ends([line.values]);
+      low = Math.min(low, least);
+      high = Math.max(high, most);
       for (const x of line.x || spec.x) { first = Math.min(first, x); last = Math.max(last, x); }
     }
     if (low > high) { low = 0; high = 1; }
     if (spec.zero || low === high) { low = Math.min(0, low); high = Math.max(0, high); }
     if (low === high) high = low + 1;
-    const room = 0.05 * (high - low);
-    if (!(spec.zero && low === 0)) low -= room;
-    if (!(spec.zero && high === 0)) high += room;
-    if (spec.stems) { first -= 0.5; last += 0.5; }
+    const told = [low, high], axis = spec.axis || null;
+    if (axis) [low, high] = axis;
+    const room = (axis ? 0.03 : 0.05) * (high - low), fromZero = spec.zero || axis;
+    if (!(fromZero && low === 0)) low -= room;
+    if (!(fromZero && high === 0)) high += room;
+    if (spec.along) [first, last] = spec.along;
+    else if (spec.stems) { first -= 0.5; last += 0.5; }
     if (spec.degrees && first >= 0 && last > 350 && last < 360) last = 360; // a whole turn
     [this.low, this.high] = this.range || [first, last];
     if (this.low === this.high) { this.low -= 1; this.high += 1; }
     const X = (this.X = value => left + (value - this.low) / (this.high - this.low) * (width - left - right));
     const Y = (this.Y = value => height - bottom - (value - low) / (high - low) * (height - top - bottom));
     const text = (x, y, words, anchor) => node("text", { class: "axis-text", x: x, y: y, "text-anchor": anchor }, svg, words);
-    const up = ticks(low, high, 4);
+    const up = axis ? stepTicks(axis) : ticks(low, high, 4);
     for (const value of up.found) {
       node("line", { class: "grid", x1: left, x2: width - right, y1: Y(value), y2: Y(value) }, svg);
       text(left - 6, Y(value) + 4, figure(value, up.digits), "end");
     }
-    const along = spec.degrees ? degreeTicks(this.low, this.high, width - left) : ticks(this.low, this.high, (width - left) / 56);
+    const along = spec.degrees ? degreeTicks(this.low, this.high, width - left) : spec.along && !this.range && (width - left) / stepTicks(spec.along).found.length > 34 ? stepTicks(spec.along) : ticks(this.low, this.high, (width - left) / 56);
     for (const value of along.found) {
       node("line", { class: "grid", x1: X(value), x2: X(value), y1: height - bottom, y2: height - bottom + 4 }, svg);
       text(X(value), height - bottom + 16, figure(value, along.digits) + (spec.degrees ? "°" : ""), "middle");
@@ -108,12 +133,29 @@ class Plot {
         line.values.forEach((value, i) => { if (known(value)) node("line", { class: "stem", "stroke-width": step, x1: X(spec.x[i]), x2: X(spec.x[i]), y1: Y(0), y2: Y(value) }, group); });
       } else if (spec.points) {
         line.values.forEach((value, i) => { if (known(value)) node("circle", { class: "mark", r: 1.9, cx: X(spec.x[i]), cy: Y(value) }, group); });
-      } else node("path", { class: `curve${line.faint || line.thin ? " thin" : ""}${line.dashed ? " dashed" : ""}`, d: this.path(line) }, group);
+      } else if (line.many) frame.replaceChild(this.together(line, [width, this.low, this.high, low, high].join()), group);
+      else node("path", { class: `curve${line.faint || line.thin ? " thin" : ""}${line.dashed ? " dashed" : ""}`, d: this.path(line) }, group);
     }
-    this.svg.setAttribute("aria-label", `${this.title.textContent}, from ${figure(low + room)} to ${figure(high - room)}`);
+    this.svg.setAttribute("aria-label", `${this.title.textContent}, from ${figure(told[0])} to ${figure(told[1])}`);
     this.line = spec.pick ? node("line", { class: "cursor", y1: top, y2: height - bottom }, frame) : null;
     this.marks = spec.pick ? this.series.map(line => (line.faint || line.x ? null : node("circle", { class: `mark ${line.colour}`, r: 3.2 }, frame))) : [];
     this.tell(this.index);
+  }
+
+  extremes(line) {
+    if (!this.ends || this.ends.key !== line.key) this.ends = { key: line.key, found: ends(line.many) };
+    return this.ends.found;
+  }
+
+  // Many lines in one element, kept as long as lines and scales are the same.
+  together(line, scales) {
+    const key = `${line.key},${scales}`;
+    if (!this.kept || this.kept.key !== key) {
+      const group = node("g", { class: line.colour });
+      node("path", { class: "curve thin", d: line.many.map(values => this.path({ values: values })).join("") }, group);
+      this.kept = { key: key, group: group };
+    }
+    return this.kept.group;
   }
 
   path(line) {

@@ -1,9 +1,21 @@
 // Controls, curves and what they move.
-const view = { kase: 0, disc: 0, torque: "full", index: 0, chosen: null, second: 0 };
+const view = { kase: 0, disc: 0, torque: "full", index: 0, chosen: null, picked: false, second: 0 };
 const plots = {};
 let drawing = null, playing = 0, degrees = null;
 
+// The wheel pin with the largest load is shown, until a contact is chosen.
+function follow() {
+  if (view.picked) return;
+  const prefix = `${view.kase}/${view.torque}/pin/load`, count = shapeOf(prefix)[1], load = i => row(prefix, view.disc, i)[view.index];
+  let largest = 0;
+  for (let i = 1; i < count; i++) if (load(i) > load(largest)) largest = i;
+  if (view.chosen && view.chosen.kind === "pin" && view.chosen.number === largest) return;
+  view.chosen = { kind: "pin", number: largest };
+  drawContactCurves();
+}
+
 function draw() {
+  follow();
   const now = placesAt(view), scale = scaleOf(view), beside = content.compared && content.compared.cases.length && view.torque === "full";
   for (const contact of now.contacts) {
     const second = beside ? besideAt(view, contact) : null;
@@ -23,9 +35,18 @@ function draw() {
 }
 
 function choose(contact) {
-  view.chosen = { kind: contact.kind, number: contact.number };
-  drawCurves();
+  const again = view.picked && view.chosen.kind === contact.kind && view.chosen.number === contact.number;
+  view.picked = !again;
+  view.chosen = again ? null : { kind: contact.kind, number: contact.number };
+  if (!again) drawContactCurves();
   draw();
+}
+
+function drawContactCurves() {
+  contactCurves("load", "Load", "N");
+  contactCurves("pressure", "Pressure", "MPa");
+  el("follow").textContent = view.picked ? "Follow the largest load" : "Follows the largest load";
+  el("follow").setAttribute("aria-pressed", String(!view.picked));
 }
 
 function setUp() {
@@ -47,13 +68,17 @@ function setUp() {
 
 function curve(id, where, title, unit, options, series) {
   if (!plots[id]) plots[id] = new Plot(el(where), { id: id, unit: unit, x: degrees, xTitle: "crank angle", degrees: true, pick: go, ...options });
+  plots[id].spec.axis = options.axis;
+  if (options.axis) plots[id].spec.digits = Math.max(0, Math.ceil(2 - Math.log10(options.axis[2])));
   plots[id].set(title, series);
 }
 
 function contactCurves(quantity, title, unit) {
   const { kind, number } = view.chosen, name = `${view.kase}/${view.torque}/${kind}/${quantity}`, series = [];
   const count = shapeOf(name)[1];
-  for (let i = 0; i < count; i++) if (i !== number) series.push({ values: row(name, view.disc, i), colour: "c-faint", faint: true, name: i === (number ? 0 : 1) ? `the other ${KINDS[kind]}s` : "" });
+  // All of them are one line: it stands while the chosen one changes.
+  const every = Array.from({ length: count }, (_, i) => row(name, view.disc, i));
+  if (count > 1) series.push({ many: every, key: `${name}/${view.disc}`, values: every[0], colour: "c-faint", faint: true, name: `the other ${KINDS[kind]}s` });
   series.push({ values: row(name, view.disc, number), colour: `k-${kind}`, name: contactName(kind, number) });
   const second = `b/${view.second}/full/${kind}/${quantity}`;
   if (view.torque === "full" && has(second)) {
@@ -61,7 +86,7 @@ function contactCurves(quantity, title, unit) {
     if (view.disc < discs && number < others) series.push({ values: besideCurve(row(second, view.disc, number)), colour: "c-second", dashed: true, name: content.compared.name });
   }
   const of = content.discs > 1 ? `, disc ${view.disc}` : "";
-  curve(quantity, "beside", `${title} at ${contactName(kind, number)}${of}`, unit, { zero: true, digits: quantity === "load" ? 0 : 0 }, series);
+  curve(quantity, "beside", `${title} at ${contactName(kind, number)}${of}`, unit, { zero: true, axis: content.axes[`${view.torque}/${kind}/${quantity}`] }, series);
 }
 
 // A curve of the second run at the positions of the first.
@@ -72,23 +97,25 @@ function besideCurve(values) {
 }
 
 function drawCurves() {
-  if (!view.chosen) {
-    const loads = placesAt(view).contacts.filter(contact => contact.kind === "pin").sort((a, b) => b.load - a.load);
-    view.chosen = { kind: "pin", number: loads.length ? loads[0].number : 0 };
-  }
+  follow();
   const { kase, disc, torque } = view, beside = content.compared;
-  contactCurves("load", "Load", "N");
-  contactCurves("pressure", "Pressure", "MPa");
-  const errors = [{ values: row(`${kase}/${torque}/te`), colour: "c1", name: beside ? "this run" : "" }];
-  if (beside && beside.cases.length) errors.push({ values: besideCurve(row(`b/${view.second}/${torque}/te`)), colour: "c-second", dashed: true, name: beside.name });
-  if (has("b/measured/te")) errors.push(measured(errors[0].values));
-  curve("te", "curves", `Transmission error at ${torqueName(view, torque)}`, "arc seconds", { digits: 2 }, errors);
-  const bearing = [], cranks = shapeOf(`${kase}/radial`)[1];
-  for (const [name, words] of [["tangential", "tangential"], ["radial", "radial"]]) for (let crank = 0; crank < cranks; crank++)
-    bearing.push({ values: row(`${kase}/${name}`, disc, crank), colour: `c${crank % 3 + 1}`, dashed: name === "radial", name: words + (cranks > 1 ? `, crank ${crank}` : "") });
-  curve("bearing", "curves", `Bearing force on the disc${content.discs > 1 ? ` ${disc}` : ""}, torque of the run`, "N", { zero: true, digits: 0 }, bearing);
-  if (has(`${kase}/share`)) curve("share", "curves", "Part of the torque by disc", "", { digits: 4 }, Array.from({ length: content.discs }, (_, i) => ({ values: row(`${kase}/share`, i), colour: `c${i % 6 + 1}`, name: `disc ${i}` })));
-  if (has(`${kase}/crank`)) curve("crank", "curves", "Torque of each crank", "N·m", { digits: 2 }, Array.from({ length: content.cranks }, (_, i) => ({ values: row(`${kase}/crank`, i), colour: `c${i % 6 + 1}`, name: `crank ${i}` })));
+  drawContactCurves();
+  const own = row(`${kase}/${torque}/te`);
+  const errors = [{ values: deviation(own), colour: "c1", name: `${beside ? "this run, from" : "from"} its mean of ${figure(mean(own), 2)}″:` }];
+  if (beside && beside.cases.length) {
+    const other = row(`b/${view.second}/${torque}/te`);
+    errors.push({ values: besideCurve(deviation(other)), colour: "c-second", dashed: true, name: `${beside.name}, from its mean of ${figure(mean(other), 2)}″:` });
+  }
+  if (has("b/measured/te")) errors.push(measured());
+  curve("te", "curves", `Transmission error at ${torqueName(view, torque)}, deviation from the mean`, "arc seconds", { axis: content.axes[`${torque}/te`] }, errors);
+  const cranks = shapeOf(`${kase}/radial`)[1], of = (name, crank) => row(`${kase}/${name}`, disc, crank);
+  const total = crank => of("radial", crank).map((value, i) => Math.hypot(value, of("tangential", crank)[i]));
+  for (const [name, words, values] of [["total", "Bearing load", total], ["tangential", "Tangential bearing load", crank => of("tangential", crank)], ["radial", "Radial bearing load", crank => of("radial", crank)]]) {
+    const series = Array.from({ length: cranks }, (_, crank) => ({ values: values(crank), colour: `c${crank % 6 + 1}`, name: cranks > 1 ? `crank ${crank}` : "on the disc" }));
+    curve(name, "curves", `${words}${content.discs > 1 ? `, disc ${disc}` : ""}, torque of the run`, "N", { axis: content.axes[name] }, series);
+  }
+  if (has(`${kase}/share`)) curve("share", "curves", "Part of the torque by disc", "", { axis: content.axes.share }, Array.from({ length: content.discs }, (_, i) => ({ values: row(`${kase}/share`, i), colour: `c${i % 6 + 1}`, name: `disc ${i}` })));
+  if (has(`${kase}/crank`)) curve("crank", "curves", "Torque of each crank", "N·m", { axis: content.axes.crank }, Array.from({ length: content.cranks }, (_, i) => ({ values: row(`${kase}/crank`, i), colour: `c${i % 6 + 1}`, name: `crank ${i}` })));
   if (has(`${kase}/efficiency`)) {
     curve("efficiency", "curves", "Efficiency", "", { digits: 4 }, [{ values: row(`${kase}/efficiency`), colour: "c3", name: "" }]);
     const kinds = Object.keys(content.losses).filter(kind => has(`${kase}/loss/${kind}`));
@@ -102,10 +129,10 @@ function drawCurves() {
   }
 }
 
-function measured(own) {
-  const mean = values => values.reduce((sum, value) => sum + value, 0) / values.length;
-  const values = row("b/measured/te"), shift = mean(own.filter(known)) - mean(values);
-  return { values: values.map(value => value + shift), x: Float32Array.from(row("b/measured/angle"), angle => angle * 180 / Math.PI), colour: "c2", thin: true, name: "measured, at the mean of this run" };
+const mean = values => { const found = values.filter(known); return found.reduce((sum, value) => sum + value, 0) / found.length; };
+const deviation = values => { const middle = mean(values); return values.map(value => value - middle); };
+function measured() {
+  return { values: deviation(row("b/measured/te")), x: Float32Array.from(row("b/measured/angle"), angle => angle * 180 / Math.PI), colour: "c2", thin: true, name: "measured, from its mean" };
 }
 
 function go(index) {
@@ -133,6 +160,7 @@ function play(on) {
 function listen() {
   el("angle").addEventListener("input", event => { play(false); go(Number(event.target.value)); });
   el("play").addEventListener("click", () => play(!playing));
+  el("follow").addEventListener("click", () => { if (view.picked) choose(view.chosen); });
   el("contact-details").addEventListener("toggle", () => draw());
   for (const button of document.querySelectorAll("[data-svg]")) button.addEventListener("click", () => saveSvg(el(button.dataset.svg), `drive_${content.names[view.kase]}_${figure(degrees[view.index], 1)}deg`));
   document.addEventListener("keydown", event => {
@@ -142,8 +170,11 @@ function listen() {
     if (step && (inStage || event.key.startsWith("Arrow"))) { play(false); go(view.index + step); event.preventDefault(); }
     if (event.key === " " && inStage) { play(!playing); event.preventDefault(); }
   });
+  const recolour = () => { fillLegend(view); draw(); };
+  matchMedia(DARK).addEventListener("change", recolour);
+  for (const name of ["beforeprint", "afterprint"]) addEventListener(name, () => { printing = name === "beforeprint"; recolour(); });
   let width = innerWidth;
-  const again = () => { for (const name in plots) plots[name].draw(); };
+  const again = () => { for (const name in plots) plots[name].again(); };
   addEventListener("resize", () => { if (innerWidth !== width) { width = innerWidth; again(); } });
 }
 

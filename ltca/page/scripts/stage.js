@@ -83,8 +83,8 @@ function fillLegend(view) {
   html("span", { class: "item" }, legend, `longest arrow ${figure(scale.load)} N`);
   if (scale.pressure > 0) {
     const each = html("span", { class: "item" }, legend, "pressure 0");
-    const bar = html("span", { class: "scale", role: "img", "aria-label": "from light to dark" }, each);
-    bar.style.background = `linear-gradient(90deg, ${STEPS.join(",")})`;
+    const bar = html("span", { class: "scale", role: "img", "aria-label": "from the least to the largest" }, each);
+    bar.style.background = `linear-gradient(90deg, ${steps().join(",")})`;
     each.append(`${figure(scale.pressure)} MPa`);
   }
 }

@@ -8,6 +8,6 @@
   }
   const drawn = drawSections();
   let width = innerWidth;
-  addEventListener("resize", () => { if (innerWidth !== width) { width = innerWidth; drawn.forEach(plot => plot.draw()); } });
+  addEventListener("resize", () => { if (innerWidth !== width) { width = innerWidth; drawn.forEach(plot => plot.again()); } });
   document.documentElement.dataset.ready = "yes";
 })();

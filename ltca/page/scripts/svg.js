@@ -29,12 +29,15 @@ function figure(value, digits) {
   return minus(/^-0(\.0*)?$/.test(text) ? text.slice(1) : text);
 }
 
-// Cividis turned round, even to every eye: the darker, the more.
-const STEPS = ["#fee838", "#e1cc55", "#c3b369", "#a59c74", "#8a8678", "#707173", "#575d6d", "#3b496c", "#123570", "#00224e"];
+// Cividis, even to every eye: the further from the ground of the page, the more. On paper it is as on a light page.
+const CIVIDIS = ["#fee838", "#e1cc55", "#c3b369", "#a59c74", "#8a8678", "#707173", "#575d6d", "#3b496c", "#123570", "#00224e"];
+const DARK = "(prefers-color-scheme: dark)";
+let printing = false;
+const steps = () => (matchMedia(DARK).matches && !printing ? [...CIVIDIS].reverse() : CIVIDIS);
 function shade(part) {
-  const place = Math.max(0, Math.min(1, part)) * (STEPS.length - 1), low = Math.min(STEPS.length - 2, Math.floor(place));
+  const all = steps(), place = Math.max(0, Math.min(1, part)) * (all.length - 1), low = Math.min(all.length - 2, Math.floor(place));
   const mix = [1, 3, 5].map(at => {
-    const [a, b] = [STEPS[low], STEPS[low + 1]].map(colour => parseInt(colour.slice(at, at + 2), 16));
+    const [a, b] = [all[low], all[low + 1]].map(colour => parseInt(colour.slice(at, at + 2), 16));
     return Math.round(a + (b - a) * (place - low));
   });
   return `rgb(${mix.join(",")})`;

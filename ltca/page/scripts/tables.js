@@ -22,9 +22,43 @@ async function copyTable(table) {
   }
   say("table copied");
 }
+const LONG = 24, SHOWN = 10;
+// Rows of a long table after the first ones, shown by a button; what fails is never among them.
+function foldRows(table, tools) {
+  const rows = [...table.tBodies].flatMap(body => [...body.rows]);
+  if (rows.length <= LONG || table.closest("details")) return;
+  const folded = rows.slice(SHOWN).filter(row => !row.querySelector(".fail"));
+  const button = html("button", { type: "button", class: "tool unfold", "aria-expanded": "false" }, null, "");
+  const show = all => {
+    folded.forEach(row => row.classList.toggle("folded", !all));
+    button.textContent = all ? "Fewer rows" : `All ${rows.length} rows`;
+    button.setAttribute("aria-expanded", String(all));
+  };
+  button.addEventListener("click", () => show(button.getAttribute("aria-expanded") === "false"));
+  tools.prepend(button);
+  show(false);
+}
+// Columns beyond the edge of the screen: it fades, and a word says so.
+function tellOfColumns(wide, tools) {
+  const sign = html("span", { class: "sign screen", "aria-hidden": "true" }, null, "more columns →");
+  tools.prepend(sign);
+  const look = () => {
+    const beyond = wide.scrollWidth - wide.clientWidth;
+    wide.classList.toggle("more", beyond - wide.scrollLeft > 2);
+    wide.classList.toggle("scrolls", beyond > 2);
+    sign.hidden = !(beyond > 2);
+    sign.textContent = beyond - wide.scrollLeft > 2 ? "more columns →" : "← more columns";
+  };
+  wide.addEventListener("scroll", look, { passive: true });
+  const watch = new ResizeObserver(look);
+  watch.observe(wide);
+  watch.observe(wide.firstElementChild);
+}
 for (const box of document.querySelectorAll(".tablebox")) {
   const table = box.querySelector("table"), tools = html("div", { class: "tools" }, box);
   const what = table.dataset.name.replace(/_/g, " ");
   html("button", { type: "button", class: "tool", "aria-label": `Copy table ${what}` }, tools, "Copy").addEventListener("click", () => copyTable(table));
   html("button", { type: "button", class: "tool", "aria-label": `Table ${what} as CSV` }, tools, "CSV").addEventListener("click", () => save(`${fileName(table.dataset.name)}.csv`, csvText(table), "text/csv;charset=utf-8"));
+  foldRows(table, tools);
+  tellOfColumns(box.querySelector(".wide"), tools);
 }

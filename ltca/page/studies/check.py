@@ -8,7 +8,7 @@ from typing import Any
 from ltca.analysis.verdict.advice import Driver
 from ltca.drive.members.verdict_words import urgency
 from ltca.page.study_page import Section, StudyPage
-from ltca.page.tables import Table, minus, number, word
+from ltca.page.tables import Table, folded, minus, number, word
 from ltca.page.verdict_tables import Checks, verdict_of, verdict_tables
 
 Drivers = Mapping[str, Mapping[str, Sequence[Driver]]]
@@ -23,9 +23,7 @@ def check_page(
     `told` says what was judged; `made` has options of the engine and positions.
     """
     sentence, state = verdict_of(checks)
-    tables = verdict_tables(checks)
-    told_notes = [f"{case}: {note}" if len(notes) > 1 else note for case, each in notes.items() for note in each]
-    sections = [Section(heading="Verdict", tables=tables, notes=list(dict.fromkeys(told_notes)))]
+    sections = [Section(heading="Verdict", tables=folded(verdict_tables(checks)), notes=_notes(notes))]
     rows = [
         [
             word(case), word(check.title), word(driver.input), number(driver.elasticity, "{:+.2f}"),
@@ -44,3 +42,14 @@ def check_page(
         )
         sections.append(Section(heading="What drives each value", notes=[note], tables=[table]))
     return StudyPage(name=name, told=told, sentence=sentence, state=state, sections=sections, made=made, text=text)
+
+
+def _notes(notes: Mapping[str, Sequence[str]]) -> list[str]:
+    """Every note once, with the cases that have it unless all have."""
+    owners: dict[str, list[str]] = {}
+    for case, each in notes.items():
+        for note in each:
+            owners.setdefault(note, []).append(case)
+    return [
+        note if len(own) == len(notes) else f"{', '.join(dict.fromkeys(own))}: {note}" for note, own in owners.items()
+    ]

@@ -1,92 +1,177 @@
-"""Page of ``cyclo curves``: torque curve, orders of the transmission error, life, flank pressure."""
+"""Page of ``cyclo curves``: torque curve, orders of the transmission error, life, flank pressure; all cases together."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
+from ltca.analysis.life.bearing_lives import BearingLives
 from ltca.analysis.pressure_safety import PressureSafety
 from ltca.analysis.torque_curve import TorqueCurve
 from ltca.analysis.transmission_error_orders import Spectrum
 from ltca.arrays import FloatArray
 from ltca.drive.units.quantities import ARCMIN, ARCSEC
+from ltca.figures.shared_axes import order_axes, pressure_axis, torque_axes
+from ltca.page.run_sections import lives_of_cases
 from ltca.page.study_page import Curves, Section
-from ltca.page.tables import Table, minus, number, texts, word
+from ltca.page.tables import NOTHING, Cell, Table, minus, number, word
 from ltca.quantities import SCALARS
 
 ORDERS_SHOWN = 15
+FALLING = "falling"
+"""Behind the name of a case: the curve with friction on its way back."""
 
 
-def torque_section(curve: TorqueCurve, of: str) -> Section:
-    """Return wind-up over torque, and what is read from it; `of` names case and colon, or is empty."""
+def torque_section(curves: Mapping[str, TorqueCurve]) -> Section:
+    """Return wind-up over torque of all cases in one plot, and what is read from it."""
     # Curves at single crank angles lie on each other; the table has how far they differ.
-    many = f"mean of {curve.crank_angle.size} crank angles" if curve.crank_angle.size > 1 else ""
-    lines = {many: np.mean(curve.output_angle, axis=0) * ARCMIN}
+    lines, dashed = dict[str, tuple[FloatArray, FloatArray]](), list[str]()
+    for case, curve in curves.items():
+        name = _of(case, curves)
+        if curve.loop is None:
+            lines[name] = curve.torque, curve.output_angle
+        else:
+            dashed.append(f"{name}, {FALLING}".removeprefix(", "))
+            lines[name or "rising"] = curve.loop.torque, curve.loop.rising
+            lines[dashed[-1]] = curve.loop.torque, curve.loop.falling
+    plane = torque_axes(curves.values())
+    x = np.unique(np.concatenate([torque for torque, _ in lines.values()]))
     plot = Curves(
-        title="Wind-up of the output",
-        unit="arc minutes",
-        axis="torque at the output, N·m",
-        x=curve.torque / 1e3,
-        lines=lines,
-    )
-    rows = [
-        (SCALARS["backlash_output"].verdict_title, _range(curve.backlash * ARCMIN) + "′"),
-        (
-            f"lost motion at ±{100.0 * curve.lost_motion_part:g} % of the torque",
-            _range(curve.lost_motion * ARCMIN) + "′",
-        ),
-        (
-            "torsional stiffness of the cycloid stage, 50 … 100 % of the torque",
-            _range(curve.stiffness / ARCMIN / 1e3) + " N·m/′",
-        ),
-    ]
+        title="Angle of the output", unit="arc minutes", axis="torque at the output, N·m", x=x / 1e3,
+        lines={name: _over(x, torque, np.mean(angle, axis=0) * ARCMIN) for name, (torque, angle) in lines.items()},
+        along=plane.x, up=plane.y, dashed=dashed,
+    )  # fmt: skip
+    each = [_torque_rows(curve) for curve in curves.values()]
+    titles = list(dict.fromkeys(title for rows in each for title in rows))
+    rows = [[word(title), *(word(one.get(title, NOTHING)) for one in each)] for title in titles]
+    heads = ["over the crank angles"] if len(curves) == 1 else list(curves)
+    table = Table(name="torque_curve", caption="", columns=["", *heads], rows=rows)
+    angles = {curve.crank_angle.size for curve in curves.values()}
+    told = f"Means of {' or '.join(map(str, sorted(angles)))} crank angles; the table has the range over them."
+    return Section(heading="Torque curve", notes=[told], curves=[plot], tables=[table])
+
+
+def _of(case: str, cases: Mapping[str, object]) -> str:
+    """The name of a case, which a single one does without."""
+    return case if len(cases) > 1 else ""
+
+
+def _over(x: FloatArray, torque: FloatArray, angle: FloatArray) -> FloatArray:
+    """A line through its own points, at those of all lines; nothing beyond its ends."""
+    order = np.argsort(torque, kind="stable")
+    return np.asarray(np.interp(x, torque[order], angle[order], np.nan, np.nan))
+
+
+def _torque_rows(curve: TorqueCurve) -> dict[str, str]:
+    rows = {
+        f"{SCALARS['backlash_output'].verdict_title}, ′": curve.backlash * ARCMIN,
+        f"lost motion at ±{100.0 * curve.lost_motion_part:g} % of the torque, ′": curve.lost_motion * ARCMIN,
+        "torsional stiffness of the cycloid stage, 50 … 100 % of the torque, N·m/′": curve.stiffness / ARCMIN / 1e3,
+    }
     if curve.loop is not None:
-        rows.append(("width of the loop of friction there", _range(curve.loop.width * ARCMIN) + "′"))
-        rows.append(("energy lost in a loop at the torque", _range(curve.loop.energy / 1e3) + " J"))
-    table = Table(name="torque_curve", caption="", columns=["", "over the crank angles"], rows=texts(rows))
-    return Section(heading=f"{of}Torque curve", curves=[plot], tables=[table])
+        rows["width of the loop of friction there, ′"] = curve.loop.width * ARCMIN
+        rows["energy lost in a loop at the torque, J"] = curve.loop.energy / 1e3
+    return {title: _range(values) for title, values in rows.items()}
 
 
-def orders_section(spectrum: Spectrum, over: str, of: str) -> Section:
-    """Return the orders of the transmission error, the largest in a table."""
-    values = np.array([order.value for order in spectrum.orders])
+def orders_section(spectra: Mapping[str, Spectrum], over: Sequence[str]) -> Section:
+    """Return the orders of the transmission error, a plot for each case, and the largest in a table; `over` says what of."""
+    plane = order_axes(spectra.values())
+    plots = [
+        Curves(
+            title=f"{case}: orders of the transmission error".removeprefix(": "), unit="arc seconds",
+            axis="order, per turn of the crank", x=np.array([order.value for order in spectrum.orders]),
+            lines={"": spectrum.amplitude * ARCSEC}, kind="stems", along=plane.x, up=plane.y,
+        )
+        for case, spectrum in ((_of(case, spectra), spectrum) for case, spectrum in spectra.items())
+    ]  # fmt: skip
+    amplitudes = [
+        {
+            (order.value, order.name): float(size)
+            for order, size in zip(spectrum.orders, spectrum.amplitude, strict=True)
+        }
+        for spectrum in spectra.values()
+    ]
+    every = list(dict.fromkeys(key for each in amplitudes for key in each))
+    largest = sorted(every, key=lambda key: -max(each.get(key, 0.0) for each in amplitudes))[:ORDERS_SHOWN]
+    rows = [
+        [word(minus(name)), number(value), *(_arc_seconds(each.get((value, name))) for each in amplitudes)]
+        for value, name in largest
+    ]
+    rest = [_arc_seconds(spectrum.residual) for spectrum in spectra.values()]
+    rows.append([word("unexplained, root mean square"), word(""), *rest])
+    heads = ["amplitude"] if len(spectra) == 1 else list(spectra)
+    table = Table(name="orders", caption="", columns=["origin", "order", *heads], rows=rows)
+    return Section(
+        heading="Transmission error",
+        notes=[f"Orders {one}." for one in dict.fromkeys(over)],
+        curves=plots,
+        tables=[table],
+    )
+
+
+def _arc_seconds(value: float | None) -> Cell:
+    return number(None if value is None else value * ARCSEC, "{:.4f}", "arcsec")
+
+
+def life_section(lives: Mapping[str, BearingLives], lines: Mapping[str, Sequence[str]]) -> Section:
+    """Return the section on the life of the crank bearings: lives side by side, and by case what is told of each in lines."""
+    heading = "Life of the crank bearings"
+    if len(lives) == 1:
+        return Section(heading=heading, notes=[minus(line.strip()) for each in lines.values() for line in each])
+    told = [[word(case), word(minus("; ".join(line.strip() for line in each)))] for case, each in lines.items()]
+    words = Table(
+        name="life_in_words", caption="ratings in words", columns=["case", "rating"], rows=told, words=1, folded=True
+    )
+    return Section(heading=heading, tables=[*lives_of_cases(lives).tables, words])
+
+
+class TurnOfPressure(NamedTuple):
+    """The turn that holds the largest flank pressure of a case.
+
+    Attributes
+    ----------
+    crank_angle : array, shape (positions,)
+        rad.
+    pressure : array, shape (positions, pins)
+        At mid-width, MPa.
+    safety : PressureSafety
+        Of all turns.
+    """
+
+    crank_angle: FloatArray
+    pressure: FloatArray
+    safety: PressureSafety
+
+
+def pressure_section(turns: Mapping[str, TurnOfPressure]) -> Section:
+    """Return the largest flank pressure at each position of the turn that holds the largest of all, cases in one plot."""
+    found = [turn.safety for turn in turns.values()]
+    angles = [np.degrees(turn.crank_angle - turn.crank_angle[0]) for turn in turns.values()]
+    x = np.unique(np.concatenate(angles))
+    lines = {
+        _of(case, turns) or "largest of all pins": _over(x, angle, turn.pressure.max(axis=1))
+        for angle, (case, turn) in zip(angles, turns.items(), strict=True)
+    }
+    limits = sorted({safety.limit for safety in found if np.isfinite(safety.limit)})
+    for limit in limits:
+        lines["limit" if len(limits) == 1 else f"limit {limit:g} MPa"] = np.full(x.size, limit)
     plot = Curves(
-        title="Orders of the transmission error, amplitudes", unit="arc seconds", axis="order, per turn of the crank",
-        x=values, lines={"": spectrum.amplitude * ARCSEC}, kind="stems",
+        title="Largest flank pressure at mid-width", unit="MPa", axis="crank angle in its turn", x=x, lines=lines,
+        degrees=True, up=pressure_axis(found),
     )  # fmt: skip
     rows = [
         [
-            word(minus(spectrum.orders[place].name)),
-            number(float(values[place])),
-            number(float(spectrum.amplitude[place]) * ARCSEC, "{:.4f}", "arcsec"),
+            word(case), number(safety.largest, "{:.1f}"),
+            number(safety.limit if np.isfinite(safety.limit) else None, "{:g}"), number(safety.safety, "{:.3f}"),
         ]
-        for place in np.argsort(-spectrum.amplitude, kind="stable")[:ORDERS_SHOWN]
-    ]
-    rows.append(
-        [word("unexplained, root mean square"), word(""), number(spectrum.residual * ARCSEC, "{:.4f}", "arcsec")]
-    )
-    table = Table(name="orders", caption="", columns=["origin", "order", "amplitude"], rows=rows)
-    return Section(heading=f"{of}Transmission error", notes=[f"Orders {over}."], curves=[plot], tables=[table])
-
-
-def life_section(lines: Sequence[str], of: str) -> Section:
-    """Return the section on the life of the crank bearings."""
-    return Section(heading=f"{of}Life of the crank bearings", notes=[minus(line.strip()) for line in lines])
-
-
-def pressure_section(angle: FloatArray, pressure: FloatArray, safety: PressureSafety, of: str) -> Section:
-    """Return the largest flank pressure at each position of the turn that holds the largest of all."""
-    lines = {"largest of all pins": pressure.max(axis=1)}
-    told = f"Largest {safety.largest:.1f} MPa, without a limit."
-    if np.isfinite(safety.limit):
-        lines["limit"] = np.full(angle.size, safety.limit)
-        told = f"Largest {safety.largest:.1f} MPa, safety {safety.safety:.3f} against {safety.limit:g} MPa."
-    plot = Curves(
-        title="Flank pressure at mid-width", unit="MPa", axis="crank angle in its turn",
-        x=np.degrees(angle - angle[0]), lines=lines, degrees=True,
-    )  # fmt: skip
-    return Section(heading=f"{of}Flank pressure", notes=[told], curves=[plot])
+        for case, safety in zip(turns, found, strict=True)
+    ]  # fmt: skip
+    columns = ["case", "largest, MPa", "limit, MPa", "safety"]
+    table = Table(name="flank_pressure", caption="", columns=columns, rows=rows)
+    return Section(heading="Flank pressure", curves=[plot], tables=[table])
 
 
 def _range(values: FloatArray) -> str:

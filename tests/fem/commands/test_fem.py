@@ -140,6 +140,10 @@ def test_pictures(tmp_path):
     assert run("paper", "--case", "CS-1", "--angle", "0.5", "--size", "6", "--out", str(tmp_path)) == 0
     for name in ("von_mises.png", "contacts.png", "deformed.png"):
         assert (tmp_path / name).stat().st_size > 20_000
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    # The drive twice, and the most loaded contact of the flank, of the holes and of the rollers
+    assert page.count('<svg class="stress"') == page.count("data:image/webp;base64,") == 5
+    assert len(page) < 2_500_000
 
 
 def test_pictures_without_gl(monkeypatch, tmp_path):

@@ -137,6 +137,29 @@ def test_words_of_the_picture_of_the_drive_stand_apart(two):
 
 
 @pytest.mark.slow
+def test_words_of_a_hundred_pins_stand_apart():
+    """Forces stood on pins and on each other: of pins this close every second has its number and its force."""
+    pins = {
+        "pin_wheel.number_of_pins": 100, "disc.number_of_teeth": 99, "pin_wheel.pin_circle_radius": 110.0,
+        "pin_wheel.pin_radius": 2.0, "crank.eccentricity": 0.75,
+    }  # fmt: skip
+    drive = with_fields(shipped("robot-joint"), pins)
+    figure = drive_figure(drive, analyse(drive, np.array([0.5])), 0)
+    assert_words_stand_apart(figure)
+    axes = figure.axes[0]
+    told = [text.get_text() for text in axes.texts]
+    assert {str(number) for number in range(20, 100, 2)} <= set(told)  # of pins alone: rollers are fourteen
+    assert not {str(number) for number in range(21, 100, 2)} & set(told)
+    forces = np.array([box for told, box in words(figure) if told.endswith(" N")])
+    assert len(forces) > 30
+    for axes in figure.axes:
+        pins = next(one for one in axes.collections if len(one.get_paths()) == 100)
+        middles = axes.transData.transform([path.get_extents().get_points().mean(axis=0) for path in pins.get_paths()])
+        inside = np.all((forces[:, None, :2] < middles) & (middles < forces[:, None, 2:]), axis=2)
+        assert not inside.any()
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "kind", [kind if kind == "paper" else pytest.param(kind, marks=pytest.mark.nightly) for kind in KINDS]
 )

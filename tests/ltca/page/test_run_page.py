@@ -153,9 +153,10 @@ def test_failures_come_first(paper_run):
 
 
 def test_inputs_are_echoed_with_units_and_degrees(page):
-    assert re.search(r">crank.eccentricity</th><td[^>]*>4</td><td[^>]*>mm<", page)
+    plain = page.replace("<wbr>", "")  # where a name may go on in the next line
+    assert re.search(r">crank.eccentricity</th><td[^>]*>4</td><td[^>]*>mm<", plain)
     assert "What differs between cases" in page
-    assert re.search(r">clearance.bearing</th><td[^>]*>mm</td><td[^>]*>0</td>", page)
+    assert re.search(r">clearance.bearing</th><td[^>]*>mm</td><td[^>]*>0</td>", plain)
 
 
 def test_one_minus_sign(page):

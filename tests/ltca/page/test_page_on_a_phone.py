@@ -1,0 +1,92 @@
+"""Pages on a narrow screen: no column is lost without a sign, inputs are folded, the curve follows the largest load."""
+
+from __future__ import annotations
+
+import pytest
+
+from ltca.page.run_page import run_page
+from ltca.reading.changes import with_fields
+from ltca.reading.drive_file import DriveFile, parse_drive, shipped_drive
+
+pytestmark = [pytest.mark.referee, pytest.mark.slow]
+
+LOOK = """<script>
+addEventListener("load", () => {
+  const wait = () => {
+    if (!document.documentElement.dataset.ready) { setTimeout(wait, 20); return; }
+    seen.inputs = document.querySelector("[data-name=inputs]").closest("details").open;
+    document.querySelectorAll("details").forEach(each => { each.open = true; });
+    setTimeout(look, 300); // signs come with the layout
+  };
+  const look = () => {
+    const boxes = [...document.querySelectorAll(".tablebox")].filter(box => box.offsetWidth);
+    seen.tables = boxes.map(box => {
+      const wide = box.querySelector(".wide"), sign = box.querySelector(".sign");
+      const beyond = wide.scrollWidth - wide.clientWidth, name = box.querySelector("table").dataset.name;
+      return [name, beyond, wide.classList.contains("more"), sign.hidden ? "" : sign.textContent];
+    });
+    const wide = boxes[0].querySelector(".wide");
+    wide.scrollLeft = wide.scrollWidth;
+    wide.dispatchEvent(new Event("scroll"));
+    seen.atTheEnd = [wide.classList.contains("more"), boxes[0].querySelector(".sign").textContent];
+    const numbers = [...document.querySelectorAll("#picture .number")].map(text => text.getBoundingClientRect());
+    seen.numbers = numbers.length;
+    seen.collisions = 0;
+    numbers.forEach((a, i) => numbers.slice(i + 1).forEach(b => {
+      if (a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom) seen.collisions++;
+    }));
+    const slider = document.getElementById("angle");
+    const told = () => document.querySelector("[data-plot=load] figcaption").textContent;
+    const turn = k => { slider.value = k; slider.dispatchEvent(new Event("input", {bubbles: true})); return told(); };
+    seen.follows = Array.from({length: Number(slider.max) + 1}, (_, k) => turn(k));
+    const contacts = [...document.querySelectorAll("#picture .contact")];
+    contacts[contacts.length - 1].dispatchEvent(new MouseEvent("click", {clientX: 20, clientY: 20}));
+    seen.picked = [told(), turn(0), turn(1)];
+    document.getElementById("follow").click();
+    seen.again = turn(2);
+    const light = getComputedStyle(document.querySelector(".spot")).fill;
+    seen.palette = [shade(0), shade(1), matchMedia(DARK).matches, light];
+    leave();
+  };
+  wait();
+});
+</script>"""
+
+
+def hundred():
+    """A robot joint's drive with a hundred pins."""
+    drive = next(iter(parse_drive(shipped_drive("robot-joint")).cases.values()))
+    fields = {
+        "pin_wheel.number_of_pins": 100, "disc.number_of_teeth": 99, "pin_wheel.pin_circle_radius": 110.0,
+        "pin_wheel.pin_radius": 2.0, "crank.eccentricity": 0.75,
+    }  # fmt: skip
+    drive = with_fields(drive, fields)
+    return DriveFile(
+        name="hundred", source="", cases={"nominal": drive}, tolerances={}, limits={"nominal": {}}, text=""
+    )
+
+
+@pytest.mark.parametrize("kind", ["paper", "hundred"])
+def test_a_phone_misses_nothing(kind, paper_run, run_of, chromium, tmp_path):
+    run, dataset = paper_run if kind == "paper" else run_of(hundred(), positions=5)
+    seen, console, _ = chromium(run_page(run), LOOK, tmp_path, "500,900")  # chromium's narrowest window
+    assert seen["errors"] == []
+    assert console == []
+    for name, beyond, more, sign in seen["tables"]:
+        assert more == (beyond > 2), name
+        assert sign == ("more columns →" if beyond > 2 else ""), name
+    if kind == "paper":
+        assert seen["tables"][0][1] > 2
+        assert seen["atTheEnd"] == [False, "← more columns"]
+    assert not seen["inputs"]
+    # Numbers of the hundred pins were on each other, a few pixels high
+    assert seen["numbers"] > 20
+    assert seen["collisions"] == 0
+    load = dataset["pin_load"].isel(case=0, disc=0).transpose("position", "pin").values
+    for told, loads in zip(seen["follows"], load, strict=True):
+        assert f"wheel pin {loads.argmax()}" in told
+    assert len(set(seen["picked"])) == 1
+    assert f"wheel pin {load[2].argmax()}" in seen["again"]
+    least, most, dark, _ = seen["palette"]
+    yellow, navy = "rgb(254,232,56)", "rgb(0,34,78)"
+    assert (least, most) == ((navy, yellow) if dark else (yellow, navy))
