@@ -32,6 +32,10 @@ SIZES = {
     "holes": "shaft pins",
     "hole_circle": "circle of shaft pins or cranks, mm",
     "hole_pin": "shaft-pin radius, mm",
+    "equidistant_offset": "equidistant offset, mm",
+    "shifting_offset": "shifting offset, mm",
+    "bearing_clearance": "clearance of the crank bearing, mm",
+    "pin_hole_clearance": "clearance of the holes, mm",
 }
 """Sizes as they are told."""
 REACHED = (
