@@ -132,8 +132,8 @@ def _print(found: Found, rows: list[list[str]], out: Path) -> None:
     )
     if not found.designs:
         print(
-            "nothing fits. What stands in the way, each with all others held, and at most so much (a longer search may "
-            "find less):"
+            "nothing fits. What stands in the way, least change first, each with all others held, and at most so much "
+            "(a longer search may find less):"
         )
         for one in found.relaxations:
             print(f"  {one.words}")

@@ -356,6 +356,31 @@ def _outcome(archive: _Archive, start: FloatArray, aims: int) -> Optimum:
     )
 
 
+MOST_OF_FRONT = 24
+"""Designs of a Pareto front that are told one by one."""
+
+
+def designs_of_front(optimum: Optimum) -> list[int]:
+    """Return candidates of a Pareto front, by the first aim: all, or evenly many along it, its compromise among them."""
+    points = optimum.values[optimum.front, :2]
+    spread = np.maximum(np.ptp(points, axis=0), 1e-300)
+    along = np.concatenate([[0.0], np.cumsum(np.hypot(*(np.diff(points, axis=0) / spread).T))])
+    places = np.linspace(0.0, along[-1], min(MOST_OF_FRONT, along.size))
+    nearest = {int(np.argmin(np.abs(along - place))) for place in places}
+    chosen = {int(optimum.front[number]) for number in nearest} | {optimum.best}
+    return [int(candidate) for candidate in optimum.front if int(candidate) in chosen]
+
+
+def front_span(optimum: Optimum) -> tuple[float, float, float, float]:
+    """Return least and most of both aims that show a front and the drive as it is: far candidates would squeeze them into a corner."""
+    points = np.concatenate([optimum.values[optimum.front, :2], [optimum.start[:2]]])
+    found: list[float] = []
+    for low, high in zip(points.min(axis=0), points.max(axis=0), strict=True):
+        room = max(high - low, 1e-9 * abs(high))
+        found += [float(low - 0.15 * room), float(high + 0.6 * room)]
+    return found[0], found[1], found[2], found[3]
+
+
 def broken_limits(problem: Problem, values: Mapping[str, float]) -> tuple[Bound, ...]:
     """Return the limits that quantities break by more than rounding, 1e-6 of the limit."""
     return tuple(

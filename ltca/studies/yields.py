@@ -57,7 +57,7 @@ class Judged:
     @property
     def title(self) -> str:
         """What is limited, in words."""
-        return SCALARS[self.quantity].heading
+        return SCALARS[self.quantity].title
 
     @property
     def bound(self) -> str:

@@ -35,8 +35,9 @@ SAFETY = 0.02
 """By which part demands are kept in the search: a fine solution finds larger peaks than a coarse one."""
 TIGHTENED = ("equidistant_offset", "bearing_clearance", "pin_hole_clearance")
 """Clearances whose least is a demand: what needs less of them is asked of the shop, and may stand in the way."""
-ENVELOPE_WEIGHT = {"outer_diameter": 2.0}
-"""Weight of the logarithm of a factor in what a relaxation changes: with the diameter the volume grows by its square."""
+CHANGE_WEIGHT = {"outer_diameter": 2.0, **dict.fromkeys(TIGHTENED, 0.5)}
+"""Weight of the logarithm of a factor in what a relaxation changes, 1 for all others: with the diameter the volume grows by its
+square; a finer clearance is finer work on one joint, and nothing that was asked of the drive."""
 OF_MATERIALS = (
     "pin_pressure_mid", "pin_shaft_pressure_mid", "roller_pressure_mid_outer", "roller_pressure_mid_inner", "disc_shear",
     "shaft_pin_bending_stress", "shaft_pin_bending_amplitude", "shaft_pin_shear_stress", "contact_strain",
@@ -106,8 +107,8 @@ class Demand:
         return np.asarray(ratio if self.sense == "min" else -ratio)
 
     def change(self, reached: float) -> float:
-        """Return by how much the demand would have to change for a value: ln of the factor, of a diameter twice that."""
-        return max(0.0, -float(self.margin(reached))) * ENVELOPE_WEIGHT.get(self.quantity, 1.0)
+        """Return by how much the demand would have to change for a value: ln of the factor by `CHANGE_WEIGHT`."""
+        return max(0.0, -float(self.margin(reached))) * CHANGE_WEIGHT.get(self.quantity, 1.0)
 
     def words(self, value: float | None = None) -> str:
         """Return the limit with sign and unit, or a value in its place."""

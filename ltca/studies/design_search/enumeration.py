@@ -50,6 +50,8 @@ CLOSED_FORM_TOLERANCE = 0.4
 """Violation of a demand by closed forms (ln) up to which a candidate is kept: their error is of that size."""
 PENALTY, RELAXED_PENALTY = 2.0, 10.0
 """Weight of violations against size, and against the relaxation; lives go with high powers of loads."""
+SPARE_WEIGHT = 0.1
+"""Weight of the least margin of what is held against the relaxation: it tells candidates apart that give way alike."""
 BATCH_ROWS = 100_000
 """Rows that are evaluated together, to bound memory."""
 
@@ -140,6 +142,9 @@ def _scores(
     given = np.where(free, np.maximum(-each, 0.0), 0.0).max(axis=1)
     aim = given if relaxed else size_of(reached, requirements.asked.smallest)
     penalty = RELAXED_PENALTY if relaxed else PENALTY
+    if relaxed:  # of those that give way alike, the one with most to spare elsewhere
+        spare = np.where(free, np.inf, each).min(axis=1, initial=np.inf)
+        aim = aim - SPARE_WEIGHT * np.clip(spare, 0.0, CLOSED_FORM_TOLERANCE)
     return aim + penalty * breaks, breaks, np.asarray(fits & np.isfinite(breaks))
 
 

@@ -177,7 +177,7 @@ def _parts(names: tuple[str, ...]) -> tuple[float, ...]:
 
 def _given_way(requirements: Requirements, names: tuple[str, ...], part: float) -> dict[str, float]:
     """Torque and clearances of which there is a part only, by name."""
-    at = {"torque": part * requirements.asked.torque}
+    at = {"torque": part * requirements.asked.torque} if "torque" in names else {}
     tightest = requirements.asked.shop.tightest
     return at | {name: part * tightest[name] for name in TIGHTENED if f"shop.{name}" in names}
 

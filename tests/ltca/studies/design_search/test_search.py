@@ -125,12 +125,12 @@ CLEARANCES = ("shop.equidistant_offset", "shop.bearing_clearance", "shop.pin_hol
 
 
 def test_the_obstacle_is_the_one_that_gives_with_least_change(monkeypatch):
-    """A diameter of 313.8 mm for 180 was named where 10 µm less offset was enough: by its square, a factor of 3 against 2."""
+    """A diameter of 313.8 mm for 180 was named where 10 µm less offset was enough: by its square, a factor of 3, against the root of 2."""
     enough = {frozenset({"outer_diameter"}): math.log(313.8 / 180.0), frozenset(CLEARANCES[:1]): math.log(2.0)}
     found, _ = searched(monkeypatch, enough)
     assert [one.name for one in found.relaxations[:2]] == ["shop.equidistant_offset", "outer_diameter"]
     assert found.relaxations[0].words == "shop.equidistant_offset ≥ 0.02 mm: 0.01 mm would do"
-    assert found.relaxations[0].change == pytest.approx(math.log(2.0), rel=1e-12)
+    assert found.relaxations[0].change == pytest.approx(0.5 * math.log(2.0), rel=1e-12)
     # Two per cent of diameter are less than half the clearance.
     found, _ = searched(monkeypatch, enough | {frozenset({"outer_diameter"}): math.log(1.02)})
     assert found.relaxations[0].name == "outer_diameter"
