@@ -39,9 +39,11 @@ def _front(optimum: Optimum, title: str) -> Figure:
     axes.plot(*points[~fine].T, ".", color=OTHERS, markersize=3.0, label="beyond a limit")
     axes.plot(*points[fine].T, ".", color=COLOURS[6], markersize=4.0, label="within the limits")
     axes.plot(*points[optimum.front].T, "o-", color=COLOURS[1], markersize=4.0, label="Pareto front")
-    axes.plot(*optimum.start[:2], "s", color=COLOURS[0], label="the drive as it is")
-    axes.plot(*points[optimum.best], "D", color=COLOURS[2], label="compromise")
     left, right, low, high = front_span(optimum)
+    near = left <= optimum.start[0] <= right and low <= optimum.start[1] <= high
+    told = "the drive as it is" + ("" if near else ", beyond the axes")
+    axes.plot(*optimum.start[:2], "s", color=COLOURS[0], label=told)
+    axes.plot(*points[optimum.best], "D", color=COLOURS[2], label="compromise")
     axes.set_xlim(left, right)
     axes.set_ylim(low, high)
     axes.set_xlabel(SCALARS[optimum.problem.aims[0]].heading)

@@ -371,13 +371,20 @@ def designs_of_front(optimum: Optimum) -> list[int]:
     return [int(candidate) for candidate in optimum.front if int(candidate) in chosen]
 
 
+START_SEEN = 3.0
+"""Distance of the drive as it is from a front, by its span, up to which axes go as far as the drive."""
+
+
 def front_span(optimum: Optimum) -> tuple[float, float, float, float]:
-    """Return least and most of both aims that show a front and the drive as it is: far candidates would squeeze them into a corner."""
-    points = np.concatenate([optimum.values[optimum.front, :2], [optimum.start[:2]]])
-    found: list[float] = []
-    for low, high in zip(points.min(axis=0), points.max(axis=0), strict=True):
-        room = max(high - low, 1e-9 * abs(high))
-        found += [float(low - 0.15 * room), float(high + 0.6 * room)]
+    """Return least and most of both aims that show a front, and the drive as it is where that is near."""
+    points, found = optimum.values[optimum.front, :2], []
+    for aim, start in zip(points.T, optimum.start[:2], strict=True):
+        low, high = float(aim.min()), float(aim.max())
+        room = max(high - low, 1e-2 * abs(high))
+        if low - START_SEEN * room <= start <= high + START_SEEN * room:
+            low, high = min(low, float(start)), max(high, float(start))
+        room = max(high - low, room)
+        found += [low - 0.15 * room, high + 0.6 * room]
     return found[0], found[1], found[2], found[3]
 
 

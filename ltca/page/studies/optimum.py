@@ -86,15 +86,17 @@ def _front(optimum: Optimum) -> tuple[list[Curves], list[str]]:
     front[optimum.front] = True
     best = np.arange(x.size) == optimum.best
     along, up = np.append(x[seen], optimum.start[0]), np.append(y[seen], optimum.start[1])
+    near = left <= optimum.start[0] <= right and low <= optimum.start[1] <= high
+    named = "the drive as it is" + ("" if near else ", beyond the axes")
     kinds = {
         "candidates within the limits": np.append(~front[seen], False),
         "Pareto front": np.append((front & ~best)[seen], False),
         "compromise": np.append(best[seen], False),
-        "the drive as it is": np.append(np.zeros(int(seen.sum()), dtype=bool), True),
+        named: np.append(np.zeros(int(seen.sum()), dtype=bool), True),
     }
     titles = [SCALARS[aim].heading for aim in aims]
     lines = {name: np.where(of, up, np.nan) for name, of in kinds.items()}
-    large = ("Pareto front", "compromise", "the drive as it is")
+    large = ("Pareto front", "compromise", named)
     plot = Curves(
         title=f"{titles[1]} over {titles[0]}",
         unit="",
@@ -106,7 +108,5 @@ def _front(optimum: Optimum) -> tuple[list[Curves], list[str]]:
         large=large,
     )
     beyond = int(good.sum() - seen.sum())
-    told = (
-        f"{beyond} candidates within the limits lie beyond the axes, which end where front and drive as it is are seen."
-    )
+    told = f"{beyond} candidates within the limits lie beyond the axes, which show the front."
     return [plot], [told] if beyond else []

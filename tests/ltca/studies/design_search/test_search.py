@@ -125,7 +125,7 @@ CLEARANCES = ("shop.equidistant_offset", "shop.bearing_clearance", "shop.pin_hol
 
 
 def test_the_obstacle_is_the_one_that_gives_with_least_change(monkeypatch):
-    """A diameter of 313.8 mm for 180 was named where 10 µm less offset was enough: by its square, a factor of 3, against the root of 2."""
+    """A diameter of 313.8 mm for 180 was named where 10 µm less offset did: by its square, a factor of 3, against √2."""
     enough = {frozenset({"outer_diameter"}): math.log(313.8 / 180.0), frozenset(CLEARANCES[:1]): math.log(2.0)}
     found, _ = searched(monkeypatch, enough)
     assert [one.name for one in found.relaxations[:2]] == ["shop.equidistant_offset", "outer_diameter"]
