@@ -159,7 +159,8 @@ def curves_content(sections: Sequence[Section]) -> tuple[dict[str, FloatArray], 
             arrays[f"{first}/x"] = np.asarray(curves.x, dtype=float)
             for place, values in enumerate(curves.lines.values()):
                 arrays[f"{first}/{place}"] = np.asarray(values, dtype=float)
-            told = {"title": curves.title, "unit": curves.unit, "axis": curves.axis, "names": list(curves.lines)}
+            told: dict[str, Any] = {"title": curves.title, "unit": curves.unit, "axis": curves.axis}
+            told["names"] = list(curves.lines)
             told |= {"kind": curves.kind, "degrees": curves.degrees, "large": list(curves.large)}
             if curves.marks:
                 told["marks"] = [asdict(mark) for mark in curves.marks]

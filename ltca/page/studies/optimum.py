@@ -39,7 +39,9 @@ def optimum_page(
         Table(name="variables", caption="What was varied", columns=varied, rows=variables, words=1),
         Table(name="quantities", caption="What it reaches", columns=heads, rows=quantities),
     ]
-    curves, notes, designs = [], [], []
+    curves: list[Curves] = []
+    notes: list[str] = []
+    designs: list[Section] = []
     if len(optimum.problem.aims) == 2:
         curves, notes = _front(optimum)
         designs = [Section(heading="Designs of the front", notes=[OPENED], tables=[_designs(optimum, front)])]

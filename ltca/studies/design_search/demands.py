@@ -122,14 +122,19 @@ def shown(value: float, unit: str) -> str:
 
     Examples
     --------
-    >>> shown(412_000.0, "N mm")
-    '412 N·m'
+    >>> shown(412_000.0, "N mm"), shown(69921.4, "h")
+    ('412 N·m', '69920 h')
     """
     if unit == "N mm":
-        return f"{value / 1000.0:.4g} N·m"
+        return f"{_figures(value / 1000.0)} N·m"
     if unit == "N mm/rad":
-        return f"{value / 1000.0 / ARCMIN:.4g} N·m/arcmin"
-    return f"{value:.4g} {label(unit)}".rstrip() if unit != "1" else f"{value:.4g}"
+        return f"{_figures(value / 1000.0 / ARCMIN)} N·m/arcmin"
+    return f"{_figures(value)} {label(unit)}".rstrip() if unit != "1" else _figures(value)
+
+
+def _figures(value: float) -> str:
+    """Four digits, large numbers in full."""
+    return f"{value:.4g}" if abs(value) < 1e4 else f"{float(f'{value:.4g}'):.0f}"
 
 
 def written_limits(requirements: Requirements) -> Limits:

@@ -13,7 +13,7 @@ from ltca.studies.design_search.demands import Demand, shown, written_limits
 from ltca.studies.design_search.refinement import Refined, Task, relaxed_limits
 from ltca.studies.design_search.requirements import Requirements
 from ltca.studies.design_search.search import Found, Relaxation, factor_words
-from ltca.studies.design_search.sizes import drive_of
+from ltca.studies.design_search.sizes import LEAST_DISTANCE, distance, drive_of
 from ltca.studies.design_search.solution import CHECK_POSITIONS
 
 SIZES = {
@@ -106,6 +106,7 @@ def relaxation_content(relaxation: Relaxation, file: str | None) -> dict[str, An
             }
             for one in relaxation.demands
         ],
+        "change": None if relaxation.refined is None else relaxation.change,
         "words": relaxation.words,
         "factor": factor_words(relaxation),
         "file": file,
@@ -129,6 +130,11 @@ def comparison(found: Found, designs: list[tuple[str, Refined]]) -> list[list[st
     for name, title in SIZES.items():
         if any(one.row[name] for _, one in designs):
             rows.append([title, "", *(f"{one.row[name]:.6g}" for _, one in designs)])
+    if len(designs) > 1:
+        others = [[other.row for _, other in designs if other is not one] for _, one in designs]
+        nearest = [min(distance(one.row, row) for row in rest) for (_, one), rest in zip(designs, others, strict=True)]
+        asked_distance = f"≥ {LEAST_DISTANCE:g}" if found.designs else "–"
+        rows.append(["distance to the nearest other design", asked_distance, *(f"{each:.2f}" for each in nearest)])
     return rows
 
 

@@ -254,7 +254,7 @@ def parse_requirements(
     table.setdefault("name", name)
     problems: list[str] = []
     shop = table.get("shop")
-    own = tuple(shop) if isinstance(shop, Mapping) else ()
+    keys = tuple(shop) if isinstance(shop, Mapping) else ()
     limits = parse_limits(table.pop("limits", {}), problems)
     material_table = table.pop("materials", {})
     materials = _materials(material_table, problems)
@@ -268,7 +268,7 @@ def parse_requirements(
             own = [detail for detail in first_mistakes(error) if _table_of(detail["loc"]) == place]
             problems += describe_mistakes(own, (), known)
     if asked is not None and materials is not None:
-        problems += _contradictions(asked, materials, limits, own)
+        problems += _contradictions(asked, materials, limits, keys)
     if problems or asked is None or stock is None or materials is None:
         raise DriveError(problems, source)
     return Requirements(

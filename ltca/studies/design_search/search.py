@@ -165,7 +165,7 @@ def relax(requirements: Requirements, demands: tuple[Demand, ...], names: tuple[
 def least_broken(requirements: Requirements, demands: tuple[Demand, ...], names: tuple[str, ...]) -> float:
     """Return the least violation of all other requirements by closed forms (ln); infinite where no candidate is left."""
     at = _given_way(requirements, names, _parts(names)[-1])
-    return float(np.min(enumerate_candidates(requirements, demands, names, 1, **at).broken, initial=np.inf))
+    return float(np.min(enumerate_candidates(requirements, demands, names, 1, None, **at).broken, initial=np.inf))
 
 
 def _parts(names: tuple[str, ...]) -> tuple[float, ...]:
