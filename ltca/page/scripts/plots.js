@@ -142,7 +142,9 @@ class Plot {
   mark(point) {
     const seen = point && known(point[1]);
     this.spot.setAttribute("visibility", seen ? "visible" : "hidden");
-    if (seen) place(this.spot, { cx: this.X(point[0]), cy: this.Y(point[1]) });
+    if (!seen) return;
+    this.spot.setAttribute("cx", this.X(point[0]));
+    this.spot.setAttribute("cy", this.Y(point[1]));
   }
 
   // Points by number in the order of a path, which breaks where there is no number.

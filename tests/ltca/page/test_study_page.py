@@ -114,8 +114,7 @@ def test_a_tolerance_study_shows_yields_histograms_limits_and_ranks_of_chance():
     ]
 
 
-def test_a_sweep_has_every_sample_over_every_factor():
-    table = """
+SWEEP = """
 drive = "paper"
 positions = 1
 quantities = ["max_pin_load"]
@@ -125,9 +124,18 @@ kind = "grid"
 clearance.bearing = [0.0, 0.01, 0.02]
 "load.direction" = ["ccw", "cw"]
 """
-    study = parse_sweep(tomllib.loads(table), "paper")
+
+
+@pytest.fixture(scope="module")
+def swept():
+    study = parse_sweep(tomllib.loads(SWEEP), "paper")
     values = {"max_pin_load": np.arange(6.0)}
-    content, numbers = opened(study_page(samples_page(study, summary_of(study, values), values)))
+    return values, study_page(samples_page(study, summary_of(study, values), values))
+
+
+def test_a_sweep_has_every_sample_over_every_factor(swept):
+    values, text = swept
+    content, numbers = opened(text)
     assert content["responses"]["quantities"] == ["largest load of a wheel pin [N]"]
     assert [one["title"] for one in content["responses"]["factors"]] == ["clearance.bearing [mm]", "load.direction"]
     assert content["responses"]["factors"][1]["levels"] == ["ccw", "cw"]
@@ -135,6 +143,38 @@ clearance.bearing = [0.0, 0.01, 0.02]
     assert np.allclose(numbers["responses/factor/0"], [0.0, 0.0, 0.01, 0.01, 0.02, 0.02])
     # Lines join samples alike in the other factor: 0, 2, 4 and 1, 3, 5.
     assert np.array_equal(numbers["responses/path/0"], [0.0, 2.0, 4.0, np.nan, 1.0, 3.0, 5.0], equal_nan=True)
+
+
+POINTED = """<script>
+addEventListener("load", () => {
+  const wait = () => {
+    if (!document.documentElement.dataset.ready) { setTimeout(wait, 20); return; }
+    const select = document.querySelector("[data-responses] select"), svg = document.querySelector("[data-responses] .plot svg");
+    select.value = 1;
+    select.dispatchEvent(new Event("change"));
+    const [, x, y] = svg.querySelector(".dots").getAttribute("d").match(/M([0-9.]+),([0-9.]+)/);
+    const box = svg.getBoundingClientRect(), scale = box.width / svg.viewBox.baseVal.width;
+    svg.dispatchEvent(new PointerEvent("pointermove", {clientX: box.left + x * scale, clientY: box.top + y * scale}));
+    const spot = svg.querySelector(".spot");
+    seen.told = document.querySelector("[data-responses] .told").textContent;
+    const near = (name, value) => Math.abs(spot.getAttribute(name) - value) < 0.1;
+    seen.spot = [spot.getAttribute("visibility"), near("cx", x), near("cy", y)];
+    seen.overflow = document.documentElement.scrollWidth - document.documentElement.clientWidth;
+    leave();
+  };
+  wait();
+});
+</script>"""
+
+
+@pytest.mark.referee
+@pytest.mark.slow
+def test_the_sample_under_the_pointer_is_told_and_marked(swept, chromium, tmp_path):
+    seen, console, asked = chromium(swept[1], POINTED, tmp_path, "500,900")
+    assert (seen["errors"], console, asked) == ([], [], set())
+    assert seen["told"] == "sample 0: clearance.bearing [mm] 0, load.direction ccw"
+    assert seen["spot"] == ["visible", True, True]
+    assert seen["overflow"] <= 0
 
 
 def test_a_front_is_seen_and_its_designs_open():
