@@ -6,6 +6,7 @@ import csv
 import io
 from typing import Any
 
+from ltca.analysis.engines import describe_engine
 from ltca.drive.members.limits import Limits
 from ltca.drive.parts import Drive
 from ltca.reading.writing import drive_text
@@ -14,7 +15,7 @@ from ltca.studies.design_search.refinement import Refined, Task, relaxed_limits
 from ltca.studies.design_search.requirements import Requirements
 from ltca.studies.design_search.search import Found, Relaxation, factor_words
 from ltca.studies.design_search.sizes import LEAST_DISTANCE, distance, drive_of
-from ltca.studies.design_search.solution import CHECK_POSITIONS
+from ltca.studies.design_search.solution import CHECK_POSITIONS, engine_for
 
 SIZES = {
     "discs": "number of discs",
@@ -55,7 +56,8 @@ def design_text(refined: Refined, found: Found, name: str) -> str:
     """Return a design as the text of a drive file with its limits; `cyclo check` passes it."""
     values, positions = refined.solution.values, refined.solution.positions
     at = "" if positions == CHECK_POSITIONS else f" --positions {positions}"
-    lines = [f"# Written by cyclo design; `cyclo check{at}` passes it. Reached, by a fine solution on half-spaces:"]
+    engine = describe_engine(engine_for(fine=True))
+    lines = [f"# Written by cyclo design; `cyclo check{at}` passes it. Reached, by a fine solution, {engine}:"]
     for demand in found.demands:
         if demand.kind in ("requirement", "limit") and demand.quantity in values:
             given = ", which gives way" if demand.name in refined.relaxed else ""
