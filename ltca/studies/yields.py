@@ -7,7 +7,7 @@ Clopper and Pearson (Biometrika 26, 1934), whose ends are quantiles of beta dist
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -186,16 +186,17 @@ def independent_samples(design: Design) -> NDArray[np.bool_]:
     return chosen
 
 
+def left_out(judged: tuple[Judged, ...], quantities: Collection[str], not_judged: Mapping[str, str]) -> dict[str, str]:
+    """Return limits that samples with some quantities are not judged by, with the reason."""
+    unasked = {one.limit.key: f"{one.quantity} was not asked for" for one in judged if one.quantity not in quantities}
+    return dict(not_judged) | unasked
+
+
 def find_yield(
     judged: tuple[Judged, ...], values: Mapping[str, FloatArray], design: Design, not_judged: Mapping[str, str]
 ) -> Yield | None:
     """Return the yield of samples by their `values`, shape (samples,), by quantity; None without a limit on any of these."""
     known = [one for one in judged if one.quantity in values]
-    left = dict(not_judged) | {
-        one.limit.key: f"{one.quantity} was not asked for (--quantities)"
-        for one in judged
-        if one.quantity not in values
-    }
     if not known:
         return None
     chosen = independent_samples(design)
@@ -204,5 +205,5 @@ def find_yield(
     return Yield(
         each=tuple((one, interval(int(kept.sum()), count)) for one, kept in zip(known, keeps, strict=True)),
         together=interval(int(np.all(keeps, axis=0).sum()), count),
-        not_judged=left,
+        not_judged=left_out(judged, values, not_judged),
     )

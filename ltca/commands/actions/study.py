@@ -25,7 +25,7 @@ from ltca.studies.run_study import StudySummary, run_study, sample_file, write_s
 from ltca.studies.sensitivity import is_chance
 from ltca.studies.study import Study
 from ltca.studies.study_results import read_quantity
-from ltca.studies.yields import CONFIDENCE, METHOD, Yield
+from ltca.studies.yields import CONFIDENCE, METHOD, Yield, left_out
 
 COPIES = 3
 """Of all numbers of a study there are for a while batches, dataset and table."""
@@ -130,6 +130,8 @@ def _print(study: Study, folder: StudyFolder, found: StudySummary, compliance: s
         print(f"worst by {SCALARS[leading].title}: cyclo run {words}")
     if found.judged is not None:
         _print_yield(found.judged)
+    for key, reason in left_out(study.judged, study.quantities, study.not_judged).items():
+        print(f"  limit {key} is not judged: {reason}")
     print(f"results: {folder.results}, {folder.table}, {folder.path / 'summary.json'}")
 
 
@@ -141,8 +143,6 @@ def _print_yield(found: Yield) -> None:
         print(f"  {f'{one.title} {one.bound}':<62}{yield_words(kept)}")
     if len(found.each) > 1:
         print(f"  {'all limits together':<62}{yield_words(found.together)}")
-    for key, reason in found.not_judged.items():
-        print(f"  {key} is not judged: {reason}")
 
 
 def _print_failures(study: Study, folder: StudyFolder, found: StudySummary) -> None:

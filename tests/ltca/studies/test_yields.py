@@ -57,7 +57,7 @@ def test_samples_are_counted_by_each_limit_and_by_all_together(paper):
     found = find_yield(limits, {"max_pin_load": load, "mean_efficiency": efficiency}, design, {})
     assert [kept.kept for _, kept in found.each] == [8, 7]
     assert (found.together.kept, found.together.samples) == (7, 10)
-    assert found.not_judged == {"max_power_loss": "power_loss was not asked for (--quantities)"}
+    assert found.not_judged == {"max_power_loss": "power_loss was not asked for"}
     assert find_yield(limits[2:], {"max_pin_load": load}, design, {}) is None
 
 
