@@ -22,6 +22,8 @@ from ltca.quantities import LIMITED, SCALARS, unit_sign
 from ltca.studies.designs import Design, ToleranceDesign
 from ltca.studies.quantities import OF_RACES, STAGES, missing_quantities
 
+ANGLES = ("°", "′", "″")
+"""Signs that stand right behind their number."""
 CONFIDENCE = 0.95
 METHOD = "Clopper–Pearson"
 RANGES = {
@@ -63,8 +65,9 @@ class Judged:
     def bound(self) -> str:
         """Sign, value and unit."""
         unit = unit_sign(SCALARS[self.quantity].unit)
+        space = "" if unit in ANGLES else " "
         return (
-            f"{'≤' if self.limit.sense == 'max' else '≥'} {self.limit.value:.6g} {'' if unit == '1' else unit}".rstrip()
+            f"{'≤' if self.limit.sense == 'max' else '≥'} {self.limit.value:.6g}{'' if unit == '1' else space + unit}"
         )
 
     def keeps(self, values: FloatArray) -> NDArray[np.bool_]:
@@ -153,6 +156,11 @@ def limits_of(drive: Drive, limits: Limits) -> tuple[tuple[Judged, ...], dict[st
             left[limit.key] = f"the drive has no {missing[named]}"
         else:
             found.append(Judged(quantity=named, limit=limit))
+    # A joint is judged once: of a race of plastic between rollers of steel the harder limit counts.
+    hardest: dict[tuple[str, str], Judged] = {}
+    for one in sorted(found, key=lambda one: one.limit.value * (1.0 if one.limit.sense == "max" else -1.0)):
+        hardest.setdefault((one.quantity, one.limit.sense), one)
+    found = list(hardest.values())
     outer, inner = ([one for one in found if one.quantity == name] for name in OF_RACES)
     if [one.limit.value for one in outer] == [one.limit.value for one in inner]:
         found = [one for one in found if one.quantity not in OF_RACES]

@@ -96,6 +96,10 @@ def test_races_of_different_strength_are_judged_apart(paper):
     assert bounds["max_roller_pressure_mid_outer"] == 73.0
     assert bounds["max_roller_pressure_mid_inner"] == drive.materials.inner_race.allowable_pressure
     assert "max_roller_pressure_mid" not in bounds
+    # Beside 4000 MPa of all rollers in the file, 73 MPa is the one limit of the bore.
+    found, _ = limits_of(drive, parse_limits({"max_roller_pressure_mid": 4000.0}, []))
+    races = [(one.quantity, one.limit.value) for one in found if "roller" in one.quantity]
+    assert races == [("max_roller_pressure_mid_outer", 73.0), ("max_roller_pressure_mid_inner", 4000.0)]
     study = tolerance_study(replace(paper, cases={"CS-6": drive}, limits={"CS-6": {}}), samples=5, positions=1)
     assert {"max_roller_pressure_mid_outer", "max_roller_pressure_mid_inner"} <= set(study.quantities)
 
