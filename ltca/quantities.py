@@ -625,6 +625,13 @@ _DECLARED = (
     _asked("cage_room", "mm", "room for the cage between rollers"),
     _asked("race", "mm", "wall of the eccentric about its shaft"),
     _asked("roller_room", "mm", "thickness of the disc beyond the length of its rollers"),
+    _asked("bearing_proportion", "mm", "pitch radius of the crank bearing beyond the least for its rollers"),
+    _asked("pin_size", "mm", "radius of the wheel pins beyond the least on their circle"),
+    _asked("pin_slenderness", "mm", "length to which wheel pins come, beyond that of the stack"),
+    _asked("flank_clearance", "mm", "least gap of the flank by its offsets"),
+    _asked("equidistant_offset", "mm", "equidistant offset of the flank"),
+    _asked("bearing_clearance", "mm", "clearance of the crank bearing"),
+    _asked("pin_hole_clearance", "mm", "clearance of the holes"),
 )  # fmt: skip
 
 QUANTITIES = {quantity.name: quantity for quantity in _DECLARED}

@@ -81,6 +81,7 @@ def _write(found: Found, best: int, out: Path) -> None:
         design_text,
         relaxation_content,
     )
+    from ltca.studies.design_search.sizes import LEAST_DISTANCE
 
     asked = found.requirements.asked
     shown: list[tuple[str, Refined]] = []
@@ -113,6 +114,7 @@ def _write(found: Found, best: int, out: Path) -> None:
             "verdict": "fits" if found.designs else "nothing fits",
             "combinations": found.combinations,
             "solved": found.solved,
+            "least_distance": LEAST_DISTANCE,
             "designs": [content for content in contents if content["file"].startswith("design-")],
             "in_the_way": relaxations,
             "relaxed_designs": [content for content in contents if content["file"].startswith("relaxed-")],
@@ -132,8 +134,8 @@ def _print(found: Found, rows: list[list[str]], out: Path) -> None:
     )
     if not found.designs:
         print(
-            "nothing fits. What stands in the way, each with all others held, and at most so much (a longer search may "
-            "find less):"
+            "nothing fits. What stands in the way, least change first, each with all others held, and at most so much "
+            "(a longer search may find less):"
         )
         for one in found.relaxations:
             print(f"  {one.words}")

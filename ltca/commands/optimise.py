@@ -77,13 +77,13 @@ def execute(arguments: argparse.Namespace) -> int:
     name, case = file.name, next(iter(file.select(None if arguments.case is None else [arguments.case])))
     out = arguments.out or default_folder(name, "optimise")
     require_folder(out)
-    from ltca.commands.actions.optimise import problem_of, search_and_write
+    from ltca.commands.actions.optimise import FRONT, problem_of, search_and_write
 
     engine = compliance_of(arguments, file.cases.values())
     tell_unit_mistakes([file.cases[case]])
     problem = problem_of(file.cases[case], arguments)
     figures = figure_files(arguments.figures, "pareto" if len(problem.aims) == 2 else "search")
     page = [] if arguments.no_page else ["report.html"]
-    writes = ["optimum.toml", "optimum.json", "candidates.parquet", *page, *figures]
+    writes = ["optimum.toml", "optimum.json", "candidates.parquet", f"{FRONT}-[0-9]*.toml", *page, *figures]
     with claimed_folder(out, "optimise", writes=writes):
         return search_and_write(problem, name, case, engine, arguments, out)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 from textwrap import fill
-from typing import Any
 
 import matplotlib as mpl
 import numpy as np
@@ -14,7 +13,7 @@ from ltca.drive.fields import whose
 from ltca.figures.field_scale import field_scale
 from ltca.figures.house_style import COLOURS, DASHED, OTHERS, STYLE, save_figure
 from ltca.quantities import SCALARS
-from ltca.studies.optimiser import Optimum, describe_bound
+from ltca.studies.optimiser import Optimum, describe_bound, front_span
 
 
 def write_optimum_figure(optimum: Optimum, positions: int, folder: Path, kind: str = "svg") -> Path:
@@ -40,14 +39,13 @@ def _front(optimum: Optimum, title: str) -> Figure:
     axes.plot(*points[~fine].T, ".", color=OTHERS, markersize=3.0, label="beyond a limit")
     axes.plot(*points[fine].T, ".", color=COLOURS[6], markersize=4.0, label="within the limits")
     axes.plot(*points[optimum.front].T, "o-", color=COLOURS[1], markersize=4.0, label="Pareto front")
-    axes.plot(*optimum.start[:2], "s", color=COLOURS[0], label="the drive as it is")
+    left, right, low, high = front_span(optimum)
+    near = left <= optimum.start[0] <= right and low <= optimum.start[1] <= high
+    told = "the drive as it is" + ("" if near else ", beyond the axes")
+    axes.plot(*optimum.start[:2], "s", color=COLOURS[0], label=told)
     axes.plot(*points[optimum.best], "D", color=COLOURS[2], label="compromise")
-    # Far candidates would squeeze the front into a corner.
-    shown_points = np.concatenate([points[optimum.front], [optimum.start[:2]]])
-    setters: tuple[Any, Any] = (axes.set_xlim, axes.set_ylim)
-    for low, high, bound in zip(shown_points.min(axis=0), shown_points.max(axis=0), setters, strict=True):
-        room = max(high - low, 1e-9 * abs(high))
-        bound(low - 0.15 * room, high + 0.6 * room)
+    axes.set_xlim(left, right)
+    axes.set_ylim(low, high)
     axes.set_xlabel(SCALARS[optimum.problem.aims[0]].heading)
     axes.set_ylabel(SCALARS[optimum.problem.aims[1]].heading)
     axes.legend(frameon=False, fontsize=8.0)

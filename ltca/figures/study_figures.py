@@ -18,7 +18,7 @@ from ltca.figures.house_style import COLOURS, DASHED, INK, OTHERS, STYLE, save_f
 from ltca.quantities import SCALARS
 from ltca.studies.designs import SweepDesign
 from ltca.studies.execution.storage import StudyFolder
-from ltca.studies.sensitivity import factor_groups
+from ltca.studies.sensitivity import is_chance
 from ltca.studies.study import Study
 from ltca.studies.study_results import read_quantity
 
@@ -26,9 +26,6 @@ FIELDS_SHOWN = 8
 """Fields in a ranking; the rest has no share worth a bar."""
 TITLE_LETTERS = 44
 """Letters of a line above a panel."""
-CHANCE_MEAN, CHANCE_SPREAD = 0.484, 1.170
-"""Mean and deviation of max(z² − 1, 0) of a normal z: what an element without influence adds to its share of a regression,
-by the variance of its coefficient."""
 
 
 def write_study_figures(
@@ -57,8 +54,7 @@ def study_figures(
         else:
             yield "distributions", _distributions(study, values, nominal)
         if ranking["quantities"]:
-            samples = {name: int(np.isfinite(values[name]).sum()) for name in study.quantities}
-            yield "sensitivity", _ranking(study, ranking, samples)
+            yield "sensitivity", _ranking(study, ranking)
 
 
 def _head(study: Study, rest: str) -> str:
@@ -178,18 +174,7 @@ def _response(axis: Any, design: SweepDesign, numbers: Any, column: int, x: Any,
         axis.plot(x, values, ".", color=COLOURS[1], markersize=3.0 if design.samples < 500 else 1.0)
 
 
-def chance_of(study: Study, explained: float, samples: int) -> dict[str, float]:
-    """Return the share up to which a field of a regression may have no influence at all, by its path.
-
-    A coefficient without influence has the variance (1 − R²)/freedom; a field adds up as many as it has elements. The share is
-    mean and two deviations of what chance alone gives, from R² adjusted for its freedom and the number of answered samples.
-    """
-    one = (1.0 - min(explained, 1.0)) / max(samples - 1, 1)
-    sizes = {name: len(range(*columns.indices(columns.stop))) for name, columns in factor_groups(study)}
-    return {name: one * (CHANCE_MEAN * size + 2.0 * CHANCE_SPREAD * np.sqrt(size)) for name, size in sizes.items()}
-
-
-def _ranking(study: Study, ranking: Mapping[str, Any], samples: Mapping[str, int]) -> Figure:
+def _ranking(study: Study, ranking: Mapping[str, Any]) -> Figure:
     names = [name for name in study.quantities if name in ranking["quantities"]]
     bars = min(FIELDS_SHOWN, max(len(ranking["quantities"][name]["shares"]) for name in names))
     figure, axes = _panels(len(names), 0.95 + 0.17 * bars, 4.9, 2 if len(names) < 7 else 3)
@@ -197,8 +182,7 @@ def _ranking(study: Study, ranking: Mapping[str, Any], samples: Mapping[str, int
     for axis, name in zip(axes, names, strict=False):
         entry = ranking["quantities"][name]
         shares = dict(list(entry["shares"].items())[:FIELDS_SHOWN])
-        chance = chance_of(study, entry["explained"], samples[name]) if by_regression else {}
-        colours = [OTHERS if share <= chance.get(path, 0.0) else COLOURS[1] for path, share in shares.items()]
+        colours = [OTHERS if is_chance(entry, path) else COLOURS[1] for path in shares]
         places = np.arange(len(shares))
         axis.barh(places, [100.0 * share for share in shares.values()], color=colours, height=0.7)
         axis.set_yticks(places, [shortened_name(study.field_words(path), 40) for path in shares], fontsize=7.0)

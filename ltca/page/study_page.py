@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -32,13 +32,19 @@ class Curves:
     lines : mapping of str to array, shape (points,)
         By name; of a single one the name may be empty.
     kind : str
-        ``line``, ``stems`` or ``points``.
+        ``line``, ``stems``, ``points``, or ``bars`` about evenly spaced places.
     degrees : bool
         Whether the axis is an angle in degrees.
     along, up : Axis or None
         Range and ticks of both axes where they are those of a figure; by default those of the lines.
     dashed : collection of str
         Lines that are dashed, in the colour of the one before.
+    marks : sequence of Mark
+        Upright lines at places of the axis.
+    span : tuple of float
+        Least and most along the axis, least and most of the values: what is drawn; empty for everything.
+    large : sequence of str
+        Lines whose points are drawn larger.
     """
 
     title: str
@@ -51,6 +57,9 @@ class Curves:
     along: Axis | None = None
     up: Axis | None = None
     dashed: Collection[str] = ()
+    marks: Sequence[Mark] = ()
+    span: tuple[float, ...] = ()
+    large: Sequence[str] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -71,14 +80,67 @@ class Picture:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Responses:
+    """Quantities of samples, each over one factor that the reader chooses.
+
+    Attributes
+    ----------
+    samples : array, shape (samples,)
+        Their numbers.
+    factors : sequence of Factor
+        What was varied.
+    quantities : mapping of str to array, shape (samples,)
+        By title with unit.
+    """
+
+    samples: FloatArray
+    factors: Sequence[Factor]
+    quantities: Mapping[str, FloatArray]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Factor:
+    """One factor of `Responses`.
+
+    Attributes
+    ----------
+    title : str
+        With unit.
+    values : array, shape (samples,)
+        Numbers, or numbers of `levels`.
+    levels : sequence of str
+        Texts in place of numbers; empty for numbers.
+    path : array, shape (places,)
+        Places of samples in the order in which lines join them, not a number between lines; empty without lines.
+    """
+
+    title: str
+    values: FloatArray
+    levels: Sequence[str] = ()
+    path: FloatArray
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Mark:
+    """An upright line: its name, where it stands, whether it is in sight of what is drawn, colour and dashes."""
+
+    name: str
+    value: float
+    shown: bool = True
+    colour: str = "c2"
+    dashed: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Section:
-    """Part of a page: a heading, then sentences, pictures, curves and tables in this order."""
+    """Part of a page: a heading, then sentences, pictures, curves, responses of samples (of one section), tables."""
 
     heading: str
     notes: Sequence[str] = ()
     pictures: Sequence[Picture] = ()
     curves: Sequence[Curves] = ()
     tables: Sequence[Table] = ()
+    responses: Responses | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -130,14 +192,34 @@ def curves_content(sections: Sequence[Section]) -> tuple[dict[str, FloatArray], 
                 "names": list(curves.lines),
             }
             told |= {"kind": curves.kind, "degrees": curves.degrees, "along": curves.along, "up": curves.up}
-            plots.append(told | {"dashed": [name in curves.dashed for name in curves.lines]})
+            told |= {"dashed": [name in curves.dashed for name in curves.lines], "large": list(curves.large)}
+            if curves.marks:
+                told["marks"] = [asdict(mark) for mark in curves.marks]
+            if curves.span:
+                told["range"] = list(curves.span)
+            plots.append(told)
     return arrays, plots
+
+
+def responses_content(sections: Sequence[Section]) -> tuple[dict[str, FloatArray], dict[str, Any]]:
+    """Return the numbers of the responses of sections by name, and what the script ``responses.js`` is told of them."""
+    for responses in (section.responses for section in sections if section.responses is not None):
+        arrays = {"responses/sample": responses.samples}
+        for number, factor in enumerate(responses.factors):
+            arrays |= {f"responses/factor/{number}": factor.values, f"responses/path/{number}": factor.path}
+        arrays |= {
+            f"responses/quantity/{number}": values for number, values in enumerate(responses.quantities.values())
+        }
+        factors = [{"title": one.title, "levels": list(one.levels) or None} for one in responses.factors]
+        return arrays, {"factors": factors, "quantities": list(responses.quantities)}
+    return {}, {}
 
 
 def study_page(page: StudyPage) -> str:
     """Return the page of a command; the same content gives the same page."""
     arrays, plots = curves_content(page.sections)
-    places, numbers = pack(arrays)
+    sampled, responses = responses_content(page.sections)
+    places, numbers = pack(arrays | sampled)
     made = [("version of cyclo", code_version()), ("hash of its code", code_hash("ltca"))]
     made += [(name.replace("_", " "), str(value)) for name, value in page.made.items()]
     return page_text(
@@ -146,8 +228,9 @@ def study_page(page: StudyPage) -> str:
             "title": f"{page.name}: {page.told}",
             "page": page,
             "made": Table(name="computed_by", caption="", columns=["", "value"], rows=texts(made), words=1),
-            "data": script_data({"places": places, "plots": plots}),
+            "data": script_data({"places": places, "plots": plots, "responses": responses}),
             "numbers": numbers,
         },
-        scripts=("plots", "motion", "sections", "study"),
+        scripts=("plots", "motion", "sections", "responses", "study"),
+        styles=("study",),
     )

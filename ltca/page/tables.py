@@ -25,13 +25,16 @@ class Cell:
     note : str
         What stands below, smaller.
     state : str
-        ``pass`` or ``fail`` of a verdict; empty otherwise.
+        ``pass`` or ``fail`` of a verdict, ``chance`` of what may be nothing; empty otherwise.
+    link : str
+        File beside the page that the cell opens; empty without.
     """
 
     text: str
     value: str
     note: str = ""
     state: str = ""
+    link: str = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

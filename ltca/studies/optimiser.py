@@ -359,6 +359,38 @@ def _outcome(archive: _Archive, start: FloatArray, aims: int) -> Optimum:
     )
 
 
+MOST_OF_FRONT = 24
+"""Designs of a Pareto front that are told one by one."""
+
+
+def designs_of_front(optimum: Optimum) -> list[int]:
+    """Return candidates of a Pareto front, by the first aim: all, or evenly many along it, its compromise among them."""
+    points = optimum.values[optimum.front, :2]
+    spread = np.maximum(np.ptp(points, axis=0), 1e-300)
+    along = np.concatenate([[0.0], np.cumsum(np.hypot(*(np.diff(points, axis=0) / spread).T))])
+    places = np.linspace(0.0, along[-1], min(MOST_OF_FRONT, along.size))
+    nearest = {int(np.argmin(np.abs(along - place))) for place in places}
+    chosen = {int(optimum.front[number]) for number in nearest} | {optimum.best}
+    return [int(candidate) for candidate in optimum.front if int(candidate) in chosen]
+
+
+START_SEEN = 3.0
+"""Distance of the drive as it is from a front, by its span, up to which axes go as far as the drive."""
+
+
+def front_span(optimum: Optimum) -> tuple[float, float, float, float]:
+    """Return least and most of both aims that show a front, and the drive as it is where that is near."""
+    points, found = optimum.values[optimum.front, :2], []
+    for aim, start in zip(points.T, optimum.start[:2], strict=True):
+        low, high = float(aim.min()), float(aim.max())
+        room = max(high - low, 1e-2 * abs(high))
+        if low - START_SEEN * room <= start <= high + START_SEEN * room:
+            low, high = min(low, float(start)), max(high, float(start))
+        room = max(high - low, room)
+        found += [low - 0.15 * room, high + 0.6 * room]
+    return found[0], found[1], found[2], found[3]
+
+
 def broken_limits(problem: Problem, values: Mapping[str, float]) -> tuple[Bound, ...]:
     """Return the limits that quantities break by more than rounding, 1e-6 of the limit."""
     return tuple(

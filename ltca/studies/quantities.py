@@ -132,6 +132,8 @@ EVALUATORS: dict[Stage, dict[str, Evaluate]] = {
         "max_roller_pressure_mid": lambda b: np.maximum(
             b.by_sample(b.pressures.outer.mid).max(axis=1), b.by_sample(b.pressures.inner.mid).max(axis=1)
         ),
+        "max_roller_pressure_mid_outer": lambda b: b.by_sample(b.pressures.outer.mid).max(axis=1),
+        "max_roller_pressure_mid_inner": lambda b: b.by_sample(b.pressures.inner.mid).max(axis=1),
         "max_pin_shaft_load": lambda b: b.by_sample(b.full.response.hole_load).max(axis=1),
         "max_pin_shaft_pressure_mid": lambda b: b.by_sample(b.pressures.holes.mid).max(axis=1),
         "mean_bearing_load": lambda b: np.hypot(*b.bearing).mean(axis=(1, 2)),
@@ -161,8 +163,10 @@ EVALUATORS: dict[Stage, dict[str, Evaluate]] = {
 
 STAGES: dict[str, Stage] = {name: stage for stage, evaluators in EVALUATORS.items() for name in evaluators}
 """Every scalar of a study, by name in `ltca.quantities.SCALARS`, and what has to be solved for it."""
-DEFAULT_QUANTITIES = tuple(EVALUATORS["full"])
-"""What the solution at the torque of the drive gives; the others cost another solution and come when named."""
+OF_RACES = ("max_roller_pressure_mid_outer", "max_roller_pressure_mid_inner")
+"""Pressures of single races, which come when named or limited: `max_roller_pressure_mid` is the larger."""
+DEFAULT_QUANTITIES = tuple(name for name in EVALUATORS["full"] if name not in OF_RACES)
+"""What the solution at the torque of the drive gives; those of other stages cost another solution and come when named."""
 
 
 OF_THE_PIN_SHAFT = ("max_pin_shaft_load", "max_pin_shaft_pressure_mid", "mean_loaded_pin_shaft_pins")
@@ -171,16 +175,22 @@ OF_FRICTION = ("mean_efficiency", "mean_input_torque", "power_loss")
 """What a drive without friction has not; the last needs a speed as well."""
 
 
-def quantities_for(drive: Drive, names: tuple[str, ...] | None) -> tuple[str, ...]:
-    """Return the quantities of a study of a drive: names of `STAGES`, by default and for ``all`` those that it has.
-
-    Raises `DriveError` when a name is not one of them, or the drive does not have it.
-    """
+def missing_quantities(drive: Drive) -> dict[str, str]:
+    """Return the quantities that a drive has not, with what it would need for them."""
     missing = dict.fromkeys(OF_THE_PIN_SHAFT, "pin shaft (pin_shaft)") if drive.pin_shaft is None else {}
     if drive.friction is None:
         missing |= dict.fromkeys(OF_FRICTION, "friction ([friction])")
     elif drive.load.speed is None:
         missing |= {"power_loss": "speed (load.speed)"}
+    return missing
+
+
+def quantities_for(drive: Drive, names: tuple[str, ...] | None) -> tuple[str, ...]:
+    """Return the quantities of a study of a drive: names of `STAGES`, by default and for ``all`` those that it has.
+
+    Raises `DriveError` when a name is not one of them, or the drive does not have it.
+    """
+    missing = missing_quantities(drive)
     if names is not None:
         names = check_quantities(names)
     if names is None or names == tuple(STAGES):

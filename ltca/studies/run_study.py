@@ -19,6 +19,7 @@ from ltca.studies.sensitivity import rank
 from ltca.studies.shapes import find_beforehand
 from ltca.studies.study import Study
 from ltca.studies.study_results import PERCENTILES, QuantitySummary, read_failures, read_quantity, summarise_quantity
+from ltca.studies.yields import Yield, find_yield
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -33,6 +34,8 @@ class StudySummary:
         Quantities of the first case without deviations; empty when it cannot be solved.
     ranking : dict
         Of `ltca.studies.sensitivity.rank`.
+    judged : Yield or None
+        Parts of the samples that keep the limits; None without limits, and of sweeps, whose samples are no chance.
     failures : tuple of (int, str)
         Failed samples and why.
     solved_positions : int
@@ -44,6 +47,7 @@ class StudySummary:
     quantities: dict[str, QuantitySummary]
     nominal: dict[str, float]
     ranking: dict[str, Any]
+    judged: Yield | None
     failures: tuple[tuple[int, str], ...]
     solved_positions: int
     seconds: float
@@ -82,15 +86,16 @@ def run_study(
         advance(len(result.messages), solved / (time.perf_counter() - began))
     seconds = time.perf_counter() - began
     failures = read_failures(folder.results) if not left and folder.results.exists() else folder.finish(study)
-    quantities = {}
-    for name in study.quantities:
-        summary = summarise_quantity(read_quantity(folder.results, name))
+    quantities, values = {}, {name: read_quantity(folder.results, name) for name in study.quantities}
+    for name, each in values.items():
+        summary = summarise_quantity(each)
         if summary is not None:
             quantities[name] = summary
     found = StudySummary(
         quantities=quantities,
         nominal=_nominal(study),
         ranking=rank(folder.results, study),
+        judged=find_yield(study.judged, values, study.design, study.not_judged),
         failures=tuple(failures),
         solved_positions=solved,
         seconds=seconds,
@@ -121,6 +126,7 @@ def _write_summary(study: Study, folder: StudyFolder, found: StudySummary) -> No
             "nominal": found.nominal,
             "quantities": {name: asdict(summary) for name, summary in found.quantities.items()},
             "sensitivity": found.ranking,
+            **({} if found.judged is None else {"yield": found.judged.content()}),
             **({"eccentrics": owners} if (owners := study.eccentrics()) else {}),
         },
     )

@@ -8,7 +8,7 @@ the variance that vanishes with a factor known, S_T the part left with all other
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -19,6 +19,10 @@ from ltca.arrays import FloatArray
 from ltca.studies.designs import FEWEST_BLOCKS, ToleranceDesign
 from ltca.studies.study import Study
 from ltca.studies.study_results import read_chunks, read_quantity
+
+CHANCE_MEAN, CHANCE_SPREAD = 0.484, 1.170
+"""Mean and deviation of max(z² − 1, 0) of a normal z: what an element without influence adds to its share of a regression,
+by the variance of its coefficient."""
 
 Chunks = Callable[[], Iterator[tuple[FloatArray, FloatArray]]]
 
@@ -35,11 +39,14 @@ class Regression:
         SRC² less what chance alone gives on so many samples, not below zero.
     explained : array, shape (quantities,)
         R², adjusted for the number of factors.
+    samples : int
+        Samples behind them.
     """
 
     coefficients: FloatArray
     shares: FloatArray
     explained: FloatArray
+    samples: int
 
 
 def regress(chunks: Chunks) -> Regression | None:
@@ -74,6 +81,7 @@ def regress(chunks: Chunks) -> Regression | None:
         coefficients=coefficients,
         shares=np.maximum(coefficients**2 - chance, 0.0),
         explained=1.0 - (1.0 - explained) * (count - 1) / freedom,
+        samples=count,
     )
 
 
@@ -143,10 +151,27 @@ def factor_groups(study: Study) -> tuple[tuple[str, slice], ...]:
     return tuple((name, slice(column, column + 1)) for column, name in enumerate(study.design.names))
 
 
+def chance_of(study: Study, explained: float, samples: int) -> dict[str, float]:
+    """Return the share up to which a field of a regression may have no influence at all, by its path.
+
+    A coefficient without influence has the variance (1 − R²)/freedom; a field adds up as many as it has elements. The share is
+    mean and two deviations of what chance alone gives, from R² adjusted for its freedom and the number of answered samples.
+    """
+    one = (1.0 - min(explained, 1.0)) / max(samples - 1, 1)
+    sizes = {name: len(range(*columns.indices(columns.stop))) for name, columns in factor_groups(study)}
+    return {name: one * (CHANCE_MEAN * size + 2.0 * CHANCE_SPREAD * np.sqrt(size)) for name, size in sizes.items()}
+
+
+def is_chance(entry: Mapping[str, Any], path: str) -> bool:
+    """Tell whether a field's share in an entry of `rank` is no larger than chance alone may give, where that is known."""
+    return "chance" in entry and entry["shares"][path] <= entry["chance"][path]
+
+
 def rank(path: Path, study: Study) -> dict[str, Any]:
     """Return the sensitivity ranking of a study from its ``results.nc``.
 
-    That is the ``method`` and, for each quantity, ``explained`` and the ``shares`` of the fields, largest first.
+    That is the ``method`` and, for each quantity, ``explained`` and the ``shares`` of the fields, largest first; of a regression
+    also ``chance``, the share up to which a field may have no influence at all.
     """
     names = [name for name, _ in factor_groups(study)]
     sobol = sobol_of(path, study)
@@ -170,6 +195,7 @@ def rank(path: Path, study: Study) -> dict[str, Any]:
             quantity: {
                 "explained": float(regression.explained[column]),
                 "shares": _sorted(names, shares[:, column]),
+                "chance": chance_of(study, float(regression.explained[column]), regression.samples),
             }
             for column, quantity in enumerate(study.quantities)
         },

@@ -22,6 +22,7 @@ from ltca.reading.changes import with_fields
 from ltca.studies.batch_analysis import BatchSettings, Nominal, analyse_samples, solve_nominal
 from ltca.studies.designs import Design, ToleranceDesign
 from ltca.studies.shapes import coefficients_identity, shapes_of
+from ltca.studies.yields import Judged
 
 BATCH_POSITIONS = 2048
 """Positions solved together: arrays of a batch stay in the cache, and a fifth of a second of work hides what a task
@@ -54,6 +55,10 @@ class Study:
         What was asked for, as text: the study file or the options of the command.
     drive_file : str
         Text of the drive file; empty for the first case written as one.
+    judged : tuple of Judged
+        Limits that samples are judged by; no part of the fingerprint, as they change no result.
+    not_judged : dict of str to str
+        Other limits of the drive file, with the reason.
     batch_positions : int
         Positions solved together; 0 for what suits the engine.
     """
@@ -67,6 +72,8 @@ class Study:
     engine: Engine = field(default_factory=HalfSpace)
     definition: str = ""
     drive_file: str = ""
+    judged: tuple[Judged, ...] = ()
+    not_judged: dict[str, str] = field(default_factory=dict)
     batch_positions: int = 0
 
     def __post_init__(self) -> None:

@@ -9,8 +9,9 @@ from ltca.drive.tolerances import Factors
 from ltca.errors import DriveError
 from ltca.reading.drive_file import DriveFile
 from ltca.studies.designs import FEWEST_BLOCKS, ToleranceDesign
-from ltca.studies.quantities import quantities_for
+from ltca.studies.quantities import check_quantities, quantities_for
 from ltca.studies.study import Study
+from ltca.studies.yields import limits_of
 
 
 def tolerance_study(
@@ -37,7 +38,7 @@ def tolerance_study(
     sequence : {"random", "sobol", "saltelli"}
         See `ltca.studies.designs.ToleranceDesign`.
     quantities : tuple of str, optional
-        What is kept; by default as `ltca.studies.quantities.quantities_for` says.
+        What is kept; by default as `ltca.studies.quantities.quantities_for` says, and what has a limit.
     engine : Engine, optional
         How bodies yield; half-spaces by default.
 
@@ -53,6 +54,9 @@ def tolerance_study(
     name = case or next(iter(file.cases))
     drive = file.select([name])[name]
     kept = quantities_for(drive, quantities)
+    judged, not_judged = limits_of(drive, file.limits.get(name, {}))
+    if quantities is None:  # what has a limit is judged, whatever its solution costs
+        kept = check_quantities((*kept, *dict.fromkeys(one.quantity for one in judged if one.quantity not in kept)))
     try:
         factors = Factors.of_tolerances(drive, file.tolerances)
     except DriveError as error:
@@ -78,4 +82,6 @@ def tolerance_study(
         engine=engine_of(file.cases.values()) if engine is None else engine,
         definition=json.dumps({"study": "tolerances", **asked, "quantities": kept}, ensure_ascii=False),
         drive_file=file.text,
+        judged=judged,
+        not_judged=not_judged,
     )

@@ -30,6 +30,7 @@ from ltca.studies.optimiser import (
     batch_analysis,
     broken_limits,
     describe_bound,
+    designs_of_front,
     most_candidates,
     optimise,
     parse_bound,
@@ -39,6 +40,9 @@ from ltca.studies.optimiser import (
 from ltca.studies.quantities import STAGES, with_what_varies
 from ltca.studies.shapes import find_beforehand, shapes_of
 from ltca.studies.study_results import field_column, quantity_column
+
+FRONT = "front"
+"""Beginning of the names of drive files of a Pareto front."""
 
 
 def search_and_write(
@@ -59,13 +63,16 @@ def search_and_write(
     with whole_file(out / "optimum.toml") as part:
         part.write_text(drive_text(best), encoding="utf-8")
     _write_candidates(optimum, out / "candidates.parquet")
+    front = _write_front(optimum, out)
     outcome = _outcome(optimum, fine, engine, arguments.positions)
     write_json(out / "optimum.json", outcome)
     if not arguments.no_page:
         told = f"least {' and '.join(problem.aims)} of {case}, {problem.drive.load_words()}, {describe_engine(engine)}"
-        write_study_page(optimum_page(name, told, optimum, outcome, drive_text(best)), out)
+        write_study_page(optimum_page(name, told, optimum, outcome, front, drive_text(best)), out)
     print(f"{name} {case}, {problem.drive.load_words()}, {describe_engine(engine)}")
     _print(optimum, fine, arguments.positions)
+    if front:
+        print(f"designs of the front: {out / next(iter(front))} … {next(reversed(front))}")
     print("results: " + ", ".join(str(out / name) for name in ("optimum.toml", "optimum.json", "candidates.parquet")))
     if arguments.figures:
         from ltca.figures.optimum_figures import write_optimum_figure
@@ -113,6 +120,17 @@ def _tell_beforehand(problem: Problem, engine: Engine, arguments: argparse.Names
             f"derived, {told_seconds(sum(expected_seconds(shapes_of([problem.drive]).values())))} each, and kept"
         )
     find_beforehand(engine, shapes_of([problem.drive]), tell)
+
+
+def _write_front(optimum: Optimum, out: Path) -> dict[str, int]:
+    """Write designs of a Pareto front as drive files; return their candidates by file, in the order of the first aim."""
+    if len(optimum.problem.aims) < 2:
+        return {}
+    written = {f"{FRONT}-{number}.toml": candidate for number, candidate in enumerate(designs_of_front(optimum), 1)}
+    for file, candidate in written.items():
+        with whole_file(out / file) as part:
+            part.write_text(drive_text(optimum.drive(candidate)), encoding="utf-8")
+    return written
 
 
 def _write_candidates(optimum: Optimum, path: Path) -> None:

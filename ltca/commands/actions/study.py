@@ -16,14 +16,17 @@ from ltca.output.processes import Terminated
 from ltca.output.progress import progress
 from ltca.output.resources import require_room
 from ltca.output.run_folder import BATCHES, claimed_folder, figure_files
-from ltca.page.studies.samples import samples_page
+from ltca.page.studies.samples import samples_page, yield_words
 from ltca.page.study_page import write_study_page
 from ltca.quantities import SCALARS
 from ltca.reading.arguments import tell_unit_mistakes
 from ltca.studies.execution.storage import StudyFolder
 from ltca.studies.execution.workers import Workers
 from ltca.studies.run_study import StudySummary, run_study, sample_file, write_sample
+from ltca.studies.sensitivity import is_chance
 from ltca.studies.study import Study
+from ltca.studies.study_results import read_quantity
+from ltca.studies.yields import CONFIDENCE, METHOD, Yield, left_out
 
 COPIES = 3
 """Of all numbers of a study there are for a while batches, dataset and table."""
@@ -78,7 +81,8 @@ def _solve_and_write(study: Study, folder: StudyFolder, workers: Workers, argume
         )
     _print(study, folder, found, _compliance_words(study, arguments.coefficients))
     if not arguments.no_page:
-        print(f"page: {write_study_page(samples_page(study, found), folder.path)}")
+        values = {name: read_quantity(folder.results, name) for name in study.quantities}
+        print(f"page: {write_study_page(samples_page(study, found, values), folder.path)}")
     if found.quantities and arguments.figures:
         from ltca.figures.study_figures import write_study_figures
 
@@ -111,9 +115,12 @@ def _print(study: Study, folder: StudyFolder, found: StudySummary, compliance: s
     print(f"sensitivity: {found.ranking['method']}")
     for name, entry in list(found.ranking["quantities"].items())[:3]:
         first = [
-            f"{study.field_words(path)} {100.0 * share:.0f} %" for path, share in list(entry["shares"].items())[:3]
+            f"{study.field_words(path)} {100.0 * share:.0f} %"
+            for path, share in list(entry["shares"].items())[:3]
+            if not is_chance(entry, path)
         ]
-        print(f"  {SCALARS[name].title}: {', '.join(first)} (first order together: {100.0 * entry['explained']:.0f} %)")
+        told = ", ".join(first) or "nothing beyond chance"
+        print(f"  {SCALARS[name].title}: {told} (first order together: {100.0 * entry['explained']:.0f} %)")
     linear = [entry["explained"] for entry in found.ranking["quantities"].values()]
     if "regression" in found.ranking["method"] and linear and min(linear) < 0.5:
         print("  regression misses what is curved or mutual; 'cyclo tolerance --design saltelli' ranks that too")
@@ -124,7 +131,21 @@ def _print(study: Study, folder: StudyFolder, found: StudySummary, compliance: s
         worst = summary.smallest_sample if SCALARS[leading].more_is_better else summary.largest_sample
         words = f"{write_sample(study, folder, worst)}{compliance}"
         print(f"worst by {SCALARS[leading].title}: cyclo run {words}")
+    if found.judged is not None:
+        _print_yield(found.judged)
+    for key, reason in left_out(study.judged, study.quantities, study.not_judged).items():
+        print(f"  limit {key} is not judged: {reason}")
     print(f"results: {folder.results}, {folder.table}, {folder.path / 'summary.json'}")
+
+
+def _print_yield(found: Yield) -> None:
+    """Print which part of the samples keeps each limit, and all of them."""
+    samples = f"{found.together.samples} samples, {100.0 * CONFIDENCE:g} % intervals of {METHOD}"
+    print(f"yield, {samples}:")
+    for one, kept in found.each:
+        print(f"  {f'{one.title} {one.bound}':<62}{yield_words(kept)}")
+    if len(found.each) > 1:
+        print(f"  {'all limits together':<62}{yield_words(found.together)}")
 
 
 def _print_failures(study: Study, folder: StudyFolder, found: StudySummary) -> None:

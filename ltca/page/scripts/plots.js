@@ -27,8 +27,11 @@ function ends(lines) {
   return [low, high];
 }
 
+const shortened = (text, most) => (text.length > most ? text.slice(0, most - 1) + "…" : text);
+
 class Plot {
-  // spec: {id, title, unit, x, xTitle, degrees, zero, stems, pick(index), digits, axis, along}; axes are [low, high, step]
+  // spec: {id, title, unit, x, xTitle, degrees, zero, stems, bars, points, joined, levels, marks, range, pick(index), digits, axis, along}; axes are
+  // [low, high, step], a range is [first, last, low, high]
   constructor(parent, spec) {
     this.spec = spec;
     this.series = [];
@@ -104,10 +107,15 @@ class Plot {
     const told = [low, high], axis = spec.axis || null;
     if (axis) [low, high] = axis;
     const room = (axis ? 0.03 : 0.05) * (high - low), fromZero = spec.zero || axis;
-    if (!(fromZero && low === 0)) low -= room;
-    if (!(fromZero && high === 0)) high += room;
+    if (!(fromZero && low === 0) && !spec.range) low -= room;
+    if (!(fromZero && high === 0) && !spec.range) high += room;
     if (spec.along) [first, last] = spec.along;
     else if (spec.stems) { first -= 0.5; last += 0.5; }
+    const half = spec.bars && spec.x.length > 1 ? 0.5 * (spec.x[1] - spec.x[0]) : 0;
+    if (spec.bars) { first -= half; last += half; }
+    for (const mark of spec.marks || []) if (mark.shown) { first = Math.min(first, mark.value); last = Math.max(last, mark.value); }
+    if (spec.levels || spec.marks || (spec.points && !spec.range && !spec.along)) { const side = 0.04 * (last - first) || 0.5; first -= side; last += side; }
+    if (spec.range) [first, last, low, high] = spec.range;
     if (spec.degrees && first >= 0 && last > 350 && last < 360) last = 360; // a whole turn
     [this.low, this.high] = this.range || [first, last];
     if (this.low === this.high) { this.low -= 1; this.high += 1; }
@@ -119,10 +127,12 @@ class Plot {
       node("line", { class: "grid", x1: left, x2: width - right, y1: Y(value), y2: Y(value) }, svg);
       text(left - 6, Y(value) + 4, figure(value, up.digits), "end");
     }
-    const along = spec.degrees ? degreeTicks(this.low, this.high, width - left) : spec.along && !this.range && (width - left) / stepTicks(spec.along).found.length > 34 ? stepTicks(spec.along) : ticks(this.low, this.high, (width - left) / 56);
+    const steps = spec.along && !this.range && (width - left) / stepTicks(spec.along).found.length > 34;
+    const along = spec.levels ? { found: spec.levels.map((name, i) => i) } : spec.degrees ? degreeTicks(this.low, this.high, width - left) : steps ? stepTicks(spec.along) : ticks(this.low, this.high, (width - left) / 56);
     for (const value of along.found) {
       node("line", { class: "grid", x1: X(value), x2: X(value), y1: height - bottom, y2: height - bottom + 4 }, svg);
-      text(X(value), height - bottom + 16, figure(value, along.digits) + (spec.degrees ? "°" : ""), "middle");
+      const word = spec.levels ? shortened(spec.levels[value], Math.max(3, Math.floor((width - left) / (7 * spec.levels.length)))) : figure(value, along.digits) + (spec.degrees ? "°" : "");
+      text(X(value), height - bottom + 16, word, "middle");
     }
     text(width - right, height - 4, spec.xTitle, "end");
     const frame = node("svg", { x: left, y: 0, width: width - left - right, height: height, viewBox: `${left} 0 ${width - left - right} ${height}` }, svg);
@@ -131,11 +141,25 @@ class Plot {
       if (spec.stems) {
         const step = Math.max(1.5, Math.min(6, (X(1) - X(0)) * 0.22));
         line.values.forEach((value, i) => { if (known(value)) node("line", { class: "stem", "stroke-width": step, x1: X(spec.x[i]), x2: X(spec.x[i]), y1: Y(0), y2: Y(value) }, group); });
+      } else if (spec.bars) {
+        line.values.forEach((value, i) => { if (value > 0) node("rect", { class: "bar", x: X(spec.x[i] - half), width: Math.max(0.5, X(spec.x[i] + half) - X(spec.x[i] - half) - 0.6), y: Y(value), height: Y(0) - Y(value) }, group); });
       } else if (spec.points) {
-        line.values.forEach((value, i) => { if (known(value)) node("circle", { class: "mark", r: 1.9, cx: X(spec.x[i]), cy: Y(value) }, group); });
+        if (spec.joined) node("path", { class: "curve thin", d: this.joined(line, spec.joined) }, group);
+        // One path of dots: thousands of circles would make a page slow.
+        let dots = "";
+        line.values.forEach((value, i) => {
+          const inside = !spec.range || (spec.x[i] >= this.low && spec.x[i] <= this.high && value >= low && value <= high);
+          if (known(value) && inside) dots += `M${X(spec.x[i]).toFixed(1)},${Y(value).toFixed(1)}h0`;
+        });
+        node("path", { class: "dots", "stroke-width": line.large ? 8 : spec.x.length > 1000 ? 2.4 : 4, d: dots }, group);
       } else if (line.many) frame.replaceChild(this.together(line, [width, this.low, this.high, low, high].join()), group);
       else node("path", { class: `curve${line.faint || line.thin ? " thin" : ""}${line.dashed ? " dashed" : ""}`, d: this.path(line) }, group);
     }
+    for (const mark of spec.marks || []) if (mark.shown) {
+      const group = node("g", { class: mark.colour }, frame);
+      node("line", { class: `curve${mark.dashed ? " dashed" : ""}`, x1: X(mark.value), x2: X(mark.value), y1: top, y2: height - bottom }, group);
+    }
+    this.spot = node("circle", { class: "spot", r: 5, visibility: "hidden" }, frame);
     this.svg.setAttribute("aria-label", `${this.title.textContent}, from ${figure(told[0])} to ${figure(told[1])}`);
     this.line = spec.pick ? node("line", { class: "cursor", y1: top, y2: height - bottom }, frame) : null;
     this.marks = spec.pick ? this.series.map(line => (line.faint || line.x ? null : node("circle", { class: `mark ${line.colour}`, r: 3.2 }, frame))) : [];
@@ -156,6 +180,26 @@ class Plot {
       this.kept = { key: key, group: group };
     }
     return this.kept.group;
+  }
+
+  // Rings a point, [x, y], or none for null.
+  mark(point) {
+    const seen = point && known(point[1]);
+    this.spot.setAttribute("visibility", seen ? "visible" : "hidden");
+    if (!seen) return;
+    this.spot.setAttribute("cx", this.X(point[0]));
+    this.spot.setAttribute("cy", this.Y(point[1]));
+  }
+
+  // Points by number in the order of a path, which breaks where there is no number.
+  joined(line, order) {
+    let text = "", pen = false;
+    for (const i of order) {
+      if (!known(i) || !known(line.values[i])) { pen = false; continue; }
+      text += `${pen ? "L" : "M"}${this.X(this.spec.x[i]).toFixed(1)},${this.Y(line.values[i]).toFixed(1)}`;
+      pen = true;
+    }
+    return text;
   }
 
   path(line) {
@@ -186,7 +230,7 @@ class Plot {
         if (known(value)) place(mark, { cx: at, cy: this.Y(value) });
       });
     }
-    const named = this.series.filter(line => line.name);
+    const named = [...this.series.filter(line => line.name), ...(spec.marks || [])];
     if (this.keys.children.length !== named.length) this.keys.replaceChildren(...named.map(() => {
       const key = html("span", {});
       html("span", {}, key);
@@ -198,7 +242,7 @@ class Plot {
       const [mark, words, value] = this.keys.children[i].children;
       mark.className = `key ${line.colour}${line.dashed ? " dash" : ""}`;
       words.textContent = line.name + " ";
-      value.textContent = spec.pick && !line.faint && !line.x ? `${figure(line.values[index], spec.digits)}${spec.unit === "arc seconds" ? "″" : spec.unit ? " " + spec.unit : ""}` : "";
+      value.textContent = spec.pick && line.values && !line.faint && !line.x ? `${figure(line.values[index], spec.digits)}${spec.unit === "arc seconds" ? "″" : spec.unit ? " " + spec.unit : ""}` : "";
     });
   }
 }

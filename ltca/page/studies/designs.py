@@ -17,6 +17,7 @@ from ltca.page.writing import page_text, write_page
 from ltca.studies.design_search.designs import named_design
 from ltca.studies.design_search.refinement import Refined
 from ltca.studies.design_search.search import Found
+from ltca.studies.design_search.sizes import LEAST_DISTANCE
 
 POINTS = 24
 """Of the outline of a lobe."""
@@ -39,6 +40,7 @@ def write_design_page(found: Found, shown: Sequence[tuple[str, Refined]], rows: 
         "requirements": requirements.text,
         "combinations": found.combinations,
         "solved": found.solved,
+        "least_distance": f"{LEAST_DISTANCE:g}",
     }
     return write_page(path, page_text("design.html", content, styles=("design",)))
 

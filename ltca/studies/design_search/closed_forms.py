@@ -18,7 +18,7 @@ from ltca.analysis.torque_curve import LOST_MOTION
 from ltca.arrays import FloatArray
 from ltca.drive.parts import contact_modulus
 from ltca.drive.units.quantities import ARCMIN
-from ltca.studies.design_search.requirements import Requirements
+from ltca.studies.design_search.requirements import CLEARANCES, Requirements
 from ltca.studies.design_search.sizes import Sizes, stack_length
 
 PIN_PHASES = 4
@@ -31,6 +31,12 @@ MAX_NEWTON_STEPS = 8
 """Of the wind-up: its equation is convex and piecewise linear, so from the far side Newton's steps converge monotonically."""
 TURN_POSITIONS = 12
 """Positions of a turn over which the loads of several cranks are averaged."""
+ROLLER_BY_PITCH = 0.3
+"""Largest diameter of a roller by the pitch circle of its bearing: there the factors of ISO 281, table 7, end."""
+PIN_SPACING = 4.5
+"""Largest distance of neighbouring wheel pins by their diameter: published drives have 1 to 4.05."""
+PIN_ASPECT = 10.0
+"""Largest length of a wheel pin by its diameter, as dowel pins come (ISO 8734)."""
 TINY = 1e-9
 """Keeps denominators and roots from zero."""
 
@@ -79,8 +85,8 @@ def shape_values(sizes: Sizes, setting: Setting) -> dict[str, FloatArray]:
     asked, shop = setting.requirements.asked, setting.requirements.asked.shop
     found = flank_shape(sizes, setting)
     inner = sizes.bore - 2.0 * sizes.roller_radius
-    bore = sizes.bore + 0.5 * shop.bearing_clearance
-    root = sizes.pin_circle + shop.shifting_offset - sizes.eccentricity - sizes.pin_radius - shop.equidistant_offset
+    bore = sizes.bore + 0.5 * sizes.bearing_clearance
+    root = sizes.pin_circle + sizes.shifting_offset - sizes.eccentricity - sizes.pin_radius - sizes.equidistant_offset
     speed_up = asked.ratio / (sizes.stage * asked.number_of_cranks if asked.kind == "rv" else 1.0)
     shaft = 0.5 * (16.0 * sizes.torque / speed_up / (np.pi * shop.crankshaft_shear)) ** (1.0 / 3.0)
     pitch = inner + sizes.roller_radius
@@ -88,16 +94,18 @@ def shape_values(sizes: Sizes, setting: Setting) -> dict[str, FloatArray]:
     found |= {
         "torque": sizes.torque,
         "roller_gap": 2.0 * chord,
-        "cage_room": 2.0 * chord - 2.0 * shop.cage_gap * sizes.roller_radius,
+        "cage_room": 2.0 * chord - shop.roller_gap(2.0 * sizes.roller_radius),
         "race": inner - sizes.eccentricity - shaft,
         "roller_room": sizes.thickness - sizes.roller_length,
+        "bearing_proportion": pitch - sizes.roller_radius / ROLLER_BY_PITCH,
     }
+    found |= {name: getattr(sizes, name) for name in CLEARANCES}
     if asked.kind == "rv":
         circle = sizes.hole_circle
         between = 2.0 * (circle * np.sin(np.pi / asked.number_of_cranks) - bore)
         found["wall"] = np.minimum(np.minimum(root - circle - bore, between), circle - bore)
         return found
-    hole = sizes.hole_pin + sizes.eccentricity + shop.pin_hole_clearance
+    hole = sizes.hole_pin + sizes.eccentricity + sizes.pin_hole_clearance
     walls = (
         root - sizes.hole_circle - hole,
         sizes.hole_circle - hole - bore,
@@ -109,15 +117,23 @@ def shape_values(sizes: Sizes, setting: Setting) -> dict[str, FloatArray]:
 def flank_shape(sizes: Sizes, setting: Setting) -> dict[str, FloatArray]:
     """Return those of `shape_values` that depend on the flank and its pins alone."""
     shop = setting.requirements.asked.shop
-    generating = sizes.pin_radius + shop.equidistant_offset
+    generating = sizes.pin_radius + sizes.equidistant_offset
+    K1 = sizes.eccentricity * sizes.pins / sizes.pin_circle
+    # Of the offset flank the gap is Δr_P − ΔR_C cos of an angle whose cosine goes from √(1 − K1²) to 1.
+    taken = sizes.shifting_offset * np.where(sizes.shifting_offset > 0.0, 1.0, np.sqrt(np.maximum(1.0 - K1**2, 0.0)))
+    spacing = sizes.pin_circle * np.sin(np.pi / sizes.pins)
+    stack = stack_length(sizes, shop.disc_gap)
     convex, hollow = _locus(sizes, np.cos(np.linspace(0.0, np.pi, CURVATURE_POINTS)))
     return {
         "outer_diameter": 2.0 * (sizes.pin_circle + sizes.pin_radius + shop.housing_wall),
-        "length": stack_length(sizes, shop.disc_gap) + shop.flanges,
+        "length": stack + shop.flanges,
         "undercut_margin": 1.0 / np.maximum(convex, TINY) - generating,
         # A hollow of the path of the centres is rounder by the pin on the flank, so the pin always fits by the offset.
-        "pin_hollow_margin": 1.0 / np.maximum(-hollow, TINY) + shop.equidistant_offset,
-        "pin_gap": 2.0 * (sizes.pin_circle * np.sin(np.pi / sizes.pins) - sizes.pin_radius),
+        "pin_hollow_margin": 1.0 / np.maximum(-hollow, TINY) + sizes.equidistant_offset,
+        "pin_gap": 2.0 * (spacing - sizes.pin_radius),
+        "pin_size": sizes.pin_radius - spacing / PIN_SPACING,
+        "pin_slenderness": 2.0 * PIN_ASPECT * sizes.pin_radius - stack,
+        "flank_clearance": sizes.equidistant_offset - taken,
     }
 
 
@@ -136,7 +152,7 @@ def _locus_curvature(sizes: Sizes, cosine: FloatArray) -> FloatArray:
 
 def flank_values(sizes: Sizes, setting: Setting) -> dict[str, FloatArray]:
     """Return values of the flank for one number of pins: pressure, load, forces on the disc, stiffness, play, losses."""
-    asked, shop = setting.requirements.asked, setting.requirements.asked.shop
+    asked = setting.requirements.asked
     pins = int(sizes.pins[0])
     angle = 2.0 * np.pi * (np.arange(pins)[:, None] + np.arange(PIN_PHASES) / PIN_PHASES) / pins
     sine, cosine = np.sin(angle).ravel(), np.cos(angle).ravel()
@@ -145,10 +161,10 @@ def flank_values(sizes: Sizes, setting: Setting) -> dict[str, FloatArray]:
     R, reach = sizes.pin_circle[:, None], (sizes.eccentricity * sizes.pins)[:, None]
     distance = np.sqrt(np.maximum(R**2 + reach**2 - 2.0 * R * reach * cosine, TINY))
     lever = reach * R * sine / distance
-    gap = shop.equidistant_offset - shop.shifting_offset * (R - reach * cosine) / distance
+    gap = sizes.equidistant_offset[:, None] - sizes.shifting_offset[:, None] * (R - reach * cosine) / distance
     stiffness = (np.pi * setting.flank * sizes.thickness / LINE_CONTACT_FACTOR)[:, None]
     torque = wheel_torque(sizes, setting) / sizes.discs
-    generating = (sizes.pin_radius + shop.equidistant_offset)[:, None]
+    generating = (sizes.pin_radius + sizes.equidistant_offset)[:, None]
     locus = _locus_curvature(sizes, cosine)
     curvature = locus / np.where(np.abs(1.0 - locus * generating) < TINY, TINY, 1.0 - locus * generating)
     relative = np.maximum(1.0 / sizes.pin_radius[:, None] + curvature, TINY)
@@ -243,7 +259,7 @@ def inner_values(sizes: Sizes, setting: Setting, flank: dict[str, FloatArray]) -
         turning_compliance = (1.0 - 1.0 / sizes.pins) ** 2 / (0.25 * sizes.holes * spring * sizes.hole_circle**2)
     roller = 4.0 * most / sizes.rollers
     inner = sizes.bore - 2.0 * sizes.roller_radius
-    bore = sizes.bore + 0.5 * shop.bearing_clearance
+    bore = sizes.bore + 0.5 * sizes.bearing_clearance
     line = roller / (np.pi * sizes.roller_length)
     found["bearing_load"], found["roller_load"] = most, roller
     found["roller_pressure_mid_outer"] = np.sqrt(line * setting.outer * (1.0 / sizes.roller_radius - 1.0 / bore))
@@ -276,12 +292,11 @@ def clearance_play(sizes: Sizes, setting: Setting) -> FloatArray:
     A disc that moves by the radial clearance turns the wheel by the lever e z_P; one that turns in its holes turns the wheel with
     it. Bores of several cranks bound both ways of moving together, so the shorter lever counts.
     """
-    asked, shop = setting.requirements.asked, setting.requirements.asked.shop
     reach = sizes.eccentricity * sizes.pins
-    if asked.kind == "rv":
-        return np.asarray(shop.bearing_clearance / np.minimum(reach, sizes.hole_circle))
-    turning = 2.0 * shop.pin_hole_clearance * (1.0 - 1.0 / sizes.pins) / sizes.hole_circle
-    return np.asarray(shop.bearing_clearance / reach + turning)
+    if setting.requirements.asked.kind == "rv":
+        return np.asarray(sizes.bearing_clearance / np.minimum(reach, sizes.hole_circle))
+    turning = 2.0 * sizes.pin_hole_clearance * (1.0 - 1.0 / sizes.pins) / sizes.hole_circle
+    return np.asarray(sizes.bearing_clearance / reach + turning)
 
 
 def lives_by_loads(sizes: Sizes, setting: Setting, most: FloatArray, mean: FloatArray) -> dict[str, FloatArray]:

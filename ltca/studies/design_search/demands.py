@@ -26,18 +26,26 @@ from ltca.quantities import LIMITED, SCALARS, Scalar
 from ltca.studies.design_search.requirements import Requirements
 from ltca.studies.design_search.sizes import Sizes, drive_table
 
-Kind = Literal["requirement", "limit", "material", "shape"]
+Kind = Literal["requirement", "limit", "material", "shape", "clearance"]
 
 ROLLERS = "ISO 76:2006, roller bearings at their static load rating"
 ROLLER_PRESSURE = 4000.0
 """What hardened rollers and races bear without a lasting mark, MPa."""
 SAFETY = 0.02
 """By which part demands are kept in the search: a fine solution finds larger peaks than a coarse one."""
+TIGHTENED = ("equidistant_offset", "bearing_clearance", "pin_hole_clearance")
+"""Clearances whose least is a demand: what needs less of them is asked of the shop, and may stand in the way."""
+CHANGE_WEIGHT = {"outer_diameter": 2.0, **dict.fromkeys(TIGHTENED, 0.5)}
+"""Weight of the logarithm of a factor in what a relaxation changes, 1 for all others: with the diameter the volume grows by its
+square; a finer clearance is finer work on one joint, and nothing that was asked of the drive."""
 OF_MATERIALS = (
     "pin_pressure_mid", "pin_shaft_pressure_mid", "roller_pressure_mid_outer", "roller_pressure_mid_inner",
     "shaft_pin_bending_stress", "shaft_pin_bending_amplitude", "shaft_pin_shear_stress", "half_width_ratio",
 )  # fmt: skip
-OF_SHAPE = ("undercut_margin", "pin_hollow_margin", "pin_gap", "wall", "cage_room", "race", "roller_room")
+OF_SHAPE = (
+    "undercut_margin", "pin_hollow_margin", "pin_gap", "pin_size", "pin_slenderness", "wall", "cage_room",
+    "bearing_proportion", "race", "roller_room", "flank_clearance",
+)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -97,6 +105,10 @@ class Demand:
         ratio = np.log(np.maximum(value, 1e-12) / self.value)
         return np.asarray(ratio if self.sense == "min" else -ratio)
 
+    def change(self, reached: float) -> float:
+        """Return by how much the demand would have to change for a value: ln of the factor by `CHANGE_WEIGHT`."""
+        return max(0.0, -float(self.margin(reached))) * CHANGE_WEIGHT.get(self.quantity, 1.0)
+
     def words(self, value: float | None = None) -> str:
         """Return the limit with sign and unit, or a value in its place."""
         if value is not None:
@@ -109,14 +121,19 @@ def shown(value: float, unit: str) -> str:
 
     Examples
     --------
-    >>> shown(412_000.0, "N mm")
-    '412 N·m'
+    >>> shown(412_000.0, "N mm"), shown(69921.4, "h")
+    ('412 N·m', '69920 h')
     """
     if unit == "N mm":
-        return f"{value / 1000.0:.4g} N·m"
+        return f"{_figures(value / 1000.0)} N·m"
     if unit == "N mm/rad":
-        return f"{value / 1000.0 / ARCMIN:.4g} N·m/arcmin"
-    return f"{value:.4g} {label(unit)}".rstrip() if unit != "1" else f"{value:.4g}"
+        return f"{_figures(value / 1000.0 / ARCMIN)} N·m/arcmin"
+    return f"{_figures(value)} {label(unit)}".rstrip() if unit != "1" else _figures(value)
+
+
+def _figures(value: float) -> str:
+    """Four digits, large numbers in full."""
+    return f"{value:.4g}" if abs(value) < 1e4 else f"{float(f'{value:.4g}'):.0f}"
 
 
 def written_limits(requirements: Requirements) -> Limits:
@@ -180,9 +197,21 @@ def find_demands(requirements: Requirements) -> tuple[Demand, ...]:
                 "material",
                 check.limit.source,
             )
+    for name in TIGHTENED:
+        if name != "pin_hole_clearance" or asked.kind == "discs":
+            add(f"shop.{name}", name, "min", shop.range_of(name)[0], "clearance", f"shop.{name}")
     least = {"pin_gap": shop.least_pin_gap, "wall": shop.least_wall, "race": shop.least_race}
+    # A flank that is asked to press stays as it was asked.
+    least["flank_clearance"] = min(0.0, shop.range_of("equidistant_offset")[0] - shop.range_of("shifting_offset")[1])
     for name in OF_SHAPE:
-        add(name, name, "min", least.get(name, 0.0), "shape", f"shop.least_{name}" if name in least else "geometry")
+        add(
+            name,
+            name,
+            "min",
+            least.get(name, 0.0),
+            "shape",
+            f"shop.least_{name}" if hasattr(shop, f"least_{name}") else "geometry",
+        )
     return tuple(found.values())
 
 
@@ -196,8 +225,8 @@ def _is_of(quantity: str, requirements: Requirements) -> bool:
 def prototype(requirements: Requirements) -> Drive:
     """Return a drive of arbitrary sizes, for values that depend on materials alone."""
     row = dict.fromkeys(Sizes.__dataclass_fields__, 1.0) | {
-        "pins": 20.0, "discs": float(requirements.asked.discs[0]), "rollers": 10.0, "holes": 8.0, "bore": 9.0,
-        "torque": requirements.asked.torque,
+        "pins": 20.0, "discs": float(requirements.asked.numbers_of_discs[0]), "rollers": 10.0, "holes": 8.0, "bore": 9.0,
+        "torque": requirements.asked.torque, **requirements.asked.shop.tightest,
     }  # fmt: skip
     return TypeAdapter(Drive).validate_python(drive_table(row, requirements, "prototype"))
 

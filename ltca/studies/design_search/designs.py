@@ -6,6 +6,7 @@ import csv
 import io
 from typing import Any
 
+from ltca.analysis.engines import describe_engine
 from ltca.drive.members.limits import Limits
 from ltca.drive.parts import Drive
 from ltca.reading.writing import drive_text
@@ -13,8 +14,8 @@ from ltca.studies.design_search.demands import Demand, shown, written_limits
 from ltca.studies.design_search.refinement import Refined, Task, relaxed_limits
 from ltca.studies.design_search.requirements import Requirements
 from ltca.studies.design_search.search import Found, Relaxation, factor_words
-from ltca.studies.design_search.sizes import drive_of
-from ltca.studies.design_search.solution import CHECK_POSITIONS
+from ltca.studies.design_search.sizes import LEAST_DISTANCE, distance, drive_of
+from ltca.studies.design_search.solution import CHECK_POSITIONS, engine_for
 
 SIZES = {
     "discs": "number of discs",
@@ -32,6 +33,10 @@ SIZES = {
     "holes": "shaft pins",
     "hole_circle": "circle of shaft pins or cranks, mm",
     "hole_pin": "shaft-pin radius, mm",
+    "equidistant_offset": "equidistant offset, mm",
+    "shifting_offset": "shifting offset, mm",
+    "bearing_clearance": "clearance of the crank bearing, mm",
+    "pin_hole_clearance": "clearance of the holes, mm",
 }
 """Sizes as they are told."""
 REACHED = (
@@ -51,7 +56,8 @@ def design_text(refined: Refined, found: Found, name: str) -> str:
     """Return a design as the text of a drive file with its limits; `cyclo check` passes it."""
     values, positions = refined.solution.values, refined.solution.positions
     at = "" if positions == CHECK_POSITIONS else f" --positions {positions}"
-    lines = [f"# Written by cyclo design; `cyclo check{at}` passes it. Reached, by a fine solution on half-spaces:"]
+    engine = describe_engine(engine_for(fine=True))
+    lines = [f"# Written by cyclo design; `cyclo check{at}` passes it. Reached, by a fine solution, {engine}:"]
     for demand in found.demands:
         if demand.kind in ("requirement", "limit") and demand.quantity in values:
             given = ", which gives way" if demand.name in refined.relaxed else ""
@@ -102,6 +108,7 @@ def relaxation_content(relaxation: Relaxation, file: str | None) -> dict[str, An
             }
             for one in relaxation.demands
         ],
+        "change": None if relaxation.refined is None else relaxation.change,
         "words": relaxation.words,
         "factor": factor_words(relaxation),
         "file": file,
@@ -125,6 +132,11 @@ def comparison(found: Found, designs: list[tuple[str, Refined]]) -> list[list[st
     for name, title in SIZES.items():
         if any(one.row[name] for _, one in designs):
             rows.append([title, "", *(f"{one.row[name]:.6g}" for _, one in designs)])
+    if len(designs) > 1:
+        others = [[other.row for _, other in designs if other is not one] for _, one in designs]
+        nearest = [min(distance(one.row, row) for row in rest) for (_, one), rest in zip(designs, others, strict=True)]
+        asked_distance = f"≥ {LEAST_DISTANCE:g}" if found.designs else "–"
+        rows.append(["distance to the nearest other design", asked_distance, *(f"{each:.2f}" for each in nearest)])
     return rows
 
 

@@ -20,7 +20,7 @@ from ltca.studies.design_search.closed_forms import (
 )
 from ltca.studies.design_search.demands import Demand, margins
 from ltca.studies.design_search.requirements import Requirements
-from ltca.studies.design_search.sizes import Sizes, joined
+from ltca.studies.design_search.sizes import LEAST_DISTANCE, Sizes, distance, joined
 
 PIN_CIRCLE_RATIOS = 1.0 / np.geomspace(1.0, 2.2, 7)
 """Radii of the pin circle that are tried, as parts of the largest; refinement goes between them."""
@@ -50,6 +50,8 @@ CLOSED_FORM_TOLERANCE = 0.4
 """Violation of a demand by closed forms (ln) up to which a candidate is kept: their error is of that size."""
 PENALTY, RELAXED_PENALTY = 2.0, 10.0
 """Weight of violations against size, and against the relaxation; lives go with high powers of loads."""
+SPARE_WEIGHT = 0.1
+"""Weight of the least margin of what is held against the relaxation: it tells candidates apart that give way alike."""
 BATCH_ROWS = 100_000
 """Rows that are evaluated together, to bound memory."""
 
@@ -61,7 +63,7 @@ class Enumeration:
     Attributes
     ----------
     sizes : Sizes
-        The best candidates, of different eccentricities, pins or numbers of discs, best first.
+        The best candidates, at least `LEAST_DISTANCE` from each other, best first.
     broken : array, shape (candidates,)
         Sum of what they break by closed forms (ln).
     combinations : int
@@ -78,20 +80,20 @@ def enumerate_candidates(
     demands: Sequence[Demand],
     relaxed: Collection[str] = (),
     most: int = 6,
-    torque: float | None = None,
     shifts: Mapping[str, float] | None = None,
+    **at: float,
 ) -> Enumeration:
     """Return up to `most` of the best candidates by closed forms.
 
-    Demands in `relaxed` may be broken; `torque` on the output, N·mm, replaces that of the requirements; `shifts` are by name how
-    far margins of solved drives lay above those of closed forms.
+    Demands in `relaxed` may be broken; `shifts` are by name how far margins of solved drives lay above those of closed forms;
+    `at` replaces the ``torque`` on the output, N·mm, and clearances, mm, of which candidates have the least otherwise.
     """
     setting = Setting.of(requirements)
     found: list[Sizes] = []
     scores: list[FloatArray] = []
     broken: list[FloatArray] = []
     combinations = 0
-    for flank, values, looked in _flanks(requirements, setting, demands, relaxed, torque or requirements.asked.torque):
+    for flank, values, looked in _flanks(requirements, setting, demands, relaxed, at):
         combinations += looked
         for sizes, known in _inner(flank, values, requirements):
             combinations += sizes.count
@@ -111,14 +113,12 @@ def enumerate_candidates(
         return Enumeration(sizes=None, broken=np.zeros(0), combinations=combinations)
     together, score, breaks = joined(found), np.concatenate(scores), np.concatenate(broken)
     chosen: list[int] = []
-    seen: set[tuple[float, ...]] = set()
+    rows: list[dict[str, float]] = []
     for place in np.argsort(score, kind="stable"):
-        key = tuple(
-            float(getattr(together, name)[place]) for name in ("discs", "eccentricity", "pin_radius", "roller_radius")
-        )
-        near = sum(one[:2] == key[:2] for one in seen)
-        if key not in seen and near < 3:
-            seen.add(key)
+        row = together.take([place]).row()
+        near = sum((one["discs"], one["eccentricity"]) == (row["discs"], row["eccentricity"]) for one in rows)
+        if near < 3 and all(distance(row, other) >= LEAST_DISTANCE for other in rows):
+            rows.append(row)
             chosen.append(int(place))
         if len(chosen) == most:
             break
@@ -142,6 +142,9 @@ def _scores(
     given = np.where(free, np.maximum(-each, 0.0), 0.0).max(axis=1)
     aim = given if relaxed else size_of(reached, requirements.asked.smallest)
     penalty = RELAXED_PENALTY if relaxed else PENALTY
+    if relaxed:  # of those that give way alike, the one with most to spare elsewhere
+        spare = np.where(free, np.inf, each).min(axis=1, initial=np.inf)
+        aim = aim - SPARE_WEIGHT * np.clip(spare, 0.0, CLOSED_FORM_TOLERANCE)
     return aim + penalty * breaks, breaks, np.asarray(fits & np.isfinite(breaks))
 
 
@@ -178,14 +181,21 @@ def teeth(requirements: Requirements) -> list[tuple[int, float, int, int]]:
 
 
 def _flanks(
-    requirements: Requirements, setting: Setting, demands: Sequence[Demand], relaxed: Collection[str], torque: float
+    requirements: Requirements,
+    setting: Setting,
+    demands: Sequence[Demand],
+    relaxed: Collection[str],
+    at: Mapping[str, float],
 ) -> Iterator[tuple[Sizes, dict[str, FloatArray], int]]:
     """Flanks with their pins that are kept by closed forms, by number of discs and pins."""
     asked, shop, stock = requirements.asked, requirements.asked.shop, requirements.stock
     wider = MAX_ROOM_FACTOR if "outer_diameter" in relaxed else 1.0
     longer = MAX_ROOM_FACTOR if "length" in relaxed else 1.0
     circles = np.geomspace(0.9, wider, 10) if wider > 1.0 else PIN_CIRCLE_RATIOS
-    for discs in asked.discs:
+    given = {"torque": asked.torque, **shop.tightest, **at}
+    if asked.kind == "rv":
+        given["pin_hole_clearance"] = 0.0
+    for discs in asked.numbers_of_discs:
         room = (longer * asked.length - shop.flanges - (discs - 1) * shop.disc_gap) / discs
         if room <= 0.0:
             continue
@@ -202,7 +212,8 @@ def _flanks(
             sizes = Sizes(
                 discs=discs * ones, pins=pins * ones, stage=stage * ones, sun=sun * ones, planet=planet * ones,
                 eccentricity=e, pin_circle=circle, pin_radius=pin, thickness=t, bore=ones, roller_radius=ones,
-                roller_length=ones, rollers=ones, holes=ones, hole_circle=ones, hole_pin=ones, torque=torque * ones,
+                roller_length=ones, rollers=ones, holes=ones, hole_circle=ones, hole_pin=ones,
+                **{name: value * ones for name, value in given.items()},
             )  # fmt: skip
             looked = sizes.count
             shortening = e * pins / np.maximum(circle, 1e-9)
@@ -265,28 +276,31 @@ def _inner(
         rows = np.arange(first, min(first + piece, flank.count))
         own, other = (grid.ravel() for grid in np.meshgrid(rows, np.arange(roller.size), indexing="ij"))
         e, thickness, r = flank.eccentricity[own], flank.thickness[own], roller[other]
-        root = flank.pin_circle[own] + shop.shifting_offset - e - flank.pin_radius[own] - shop.equidistant_offset
+        root = (flank.pin_circle + flank.shifting_offset - flank.pin_radius - flank.equidistant_offset)[own] - e
+        clearance = flank.bearing_clearance[own]
         length = np.zeros(own.size)
         for diameter, long in stock.rollers:
             length = np.where((2.0 * r == diameter) & (long <= thickness), np.maximum(length, long), length)
         count = np.zeros(own.size)
         if several:
             half = sin(pi / asked.number_of_cranks)
-            edge = root - 0.5 * shop.bearing_clearance - shop.least_wall
-            bore = part[other] * (half * edge - 0.5 * (shop.least_wall + shop.bearing_clearance)) / (1.0 + half)
+            edge = root - 0.5 * clearance - shop.least_wall
+            bore = part[other] * (half * edge - 0.5 * (shop.least_wall + clearance)) / (1.0 + half)
             circle = edge - bore
             fits = length > 0.0
         else:
-            hole = pin[other] + e + shop.pin_hole_clearance
+            hole = pin[other] + e + flank.pin_hole_clearance[own]
             circle = root - shop.least_wall - hole
-            bore = part[other] * (circle - hole - shop.least_wall - 0.5 * shop.bearing_clearance)
+            bore = part[other] * (circle - hole - shop.least_wall - 0.5 * clearance)
             for more in HOLES:
                 beside = 2.0 * (circle * sin(pi / more) - hole) >= shop.least_wall
                 count = np.where(beside, float(more), count)
             fits = (length > 0.0) & (count > 0.0)
         fits &= (bore - 2.0 * r - e > shop.least_race) & (circle > 0.0)
         with np.errstate(invalid="ignore", divide="ignore"):
-            number = np.floor(np.pi / np.arcsin(np.clip(r * (1.0 + shop.cage_gap) / (bore - r), 0.0, 1.0)) + 1e-9)
+            number = np.floor(
+                np.pi / np.arcsin(np.clip((r + 0.5 * shop.roller_gap(2.0 * r)) / (bore - r), 0.0, 1.0)) + 1e-9
+            )
         fits &= number >= LEAST_ROLLERS
         if not fits.any():
             continue

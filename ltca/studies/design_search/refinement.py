@@ -9,7 +9,7 @@ counts in the end.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import asin, floor, pi
+from math import asin, ceil, exp, floor, log, pi
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +21,7 @@ from ltca.errors import CycloError
 from ltca.studies.design_search.closed_forms import Setting, closed_forms
 from ltca.studies.design_search.demands import SAFETY, Demand, margins, written_limits
 from ltca.studies.design_search.enumeration import size_of
-from ltca.studies.design_search.requirements import Requirements
+from ltca.studies.design_search.requirements import CLEARANCES, FINEST_CLEARANCE, Requirements
 from ltca.studies.design_search.sizes import CONTINUOUS, Sizes, drive_of
 from ltca.studies.design_search.solution import Solution, solve_coarsely, solve_finely
 
@@ -43,6 +43,12 @@ VIOLATION_WEIGHT = 30.0
 """Weight of violations against the objective."""
 DECIMALS = 3
 """Decimals of sizes in mm, as on a drawing."""
+LOOSENESS = 3e-3
+"""What a clearance at its most is worth against the size (ln of a length): of drives of one size the looser is easier made."""
+CLEARANCE_SCALE = 2.5
+"""Coordinate of a clearance: mm by so many times its most, so that `MAX_SIZE_STEP` is half of that."""
+TIGHTEST_PART = 0.1
+"""Part of its least to which a clearance that gives way goes at most."""
 ROOM_TOLERANCE = 1e-2
 """Excess of sizes over their room that counts as rounding, mm."""
 
@@ -132,7 +138,7 @@ def refine(task: Task) -> Refined:
         elif broken > max(LEAST_PROGRESS * worse, SMALL_VIOLATION) and best is None:
             break
         moved = _improve(row, each, task)
-        if max(abs(np.log(moved[name] / row[name])) for name in _varied(task)) < LEAST_SIZE_STEP:
+        if max(abs(_place(name, moved, task) - _place(name, row, task)) for name in _varied(task)) < LEAST_SIZE_STEP:
             break
         row = moved
     if best is None:
@@ -175,12 +181,47 @@ def relaxed_limits(limits: Limits, task: Task) -> Limits:
 def most_rollers(row: dict[str, float], task: Task) -> int:
     """Return how many rollers go beside each other in the bearing of a candidate."""
     radius = row["roller_radius"]
-    part = radius * (1.0 + task.requirements.asked.shop.cage_gap) / (row["bore"] - radius)
+    gap = float(task.requirements.asked.shop.roller_gap(2.0 * radius))
+    part = (radius + 0.5 * gap) / (row["bore"] - radius)
     return max(3, floor(pi / asin(part) + 1e-9)) if part < 1.0 else 3
 
 
 def _varied(task: Task) -> tuple[str, ...]:
-    return (*CONTINUOUS, "torque") if "torque" in task.relaxed else CONTINUOUS
+    torque = ("torque",) if "torque" in task.relaxed else ()
+    return (*CONTINUOUS, *torque, *(name for name in CLEARANCES if _clearance_range(name, task)))
+
+
+def _clearance_range(name: str, task: Task) -> tuple[float, float] | None:
+    """Ends between which a clearance is varied, mm; None where it is held."""
+    low, high = task.requirements.asked.shop.range_of(name)
+    if name == "pin_hole_clearance" and task.requirements.asked.kind == "rv":
+        return None
+    if f"shop.{name}" in task.relaxed:
+        return max(FINEST_CLEARANCE, TIGHTEST_PART * low), high
+    return (low, high) if low < high else None
+
+
+def _place(name: str, row: dict[str, float], task: Task) -> float:
+    """Coordinate of a size: its logarithm, of a clearance a part of its most."""
+    return row[name] / _unit(name, task) if name in CLEARANCES else log(row[name])
+
+
+def _size_at(name: str, place: float, task: Task) -> float:
+    return place * _unit(name, task) if name in CLEARANCES else exp(place)
+
+
+def _unit(name: str, task: Task) -> float:
+    return CLEARANCE_SCALE * max(map(abs, task.requirements.asked.shop.range_of(name)))
+
+
+def _tightness(row: dict[str, float], task: Task) -> float:
+    """How far clearances are from their most, in the measure of sizes; a shift of the flank is neither tight nor loose."""
+    found = 0.0
+    for name in CLEARANCES:
+        low, high = task.requirements.asked.shop.range_of(name)
+        if name != "shifting_offset" and low < high:
+            found += LOOSENESS * (high - row[name]) / (high - low)
+    return found
 
 
 def _actual(solution: Solution, task: Task) -> FloatArray:
@@ -206,9 +247,8 @@ def _given(each: FloatArray, task: Task) -> float:
 def _aim(solution: Solution, each: FloatArray, task: Task) -> float:
     if task.relaxed:
         return _given(each, task)
-    return float(
-        size_of({name: np.array(value) for name, value in solution.values.items()}, task.requirements.asked.smallest)
-    )
+    values = {name: np.array(value) for name, value in solution.values.items()}
+    return float(size_of(values, task.requirements.asked.smallest)) + _tightness(solution.values, task)
 
 
 def _rounded(row: dict[str, float], task: Task) -> dict[str, float]:
@@ -227,12 +267,19 @@ def _rounded(row: dict[str, float], task: Task) -> dict[str, float]:
         )
     if 0.0 < row["roller_length"] - found["thickness"] < ROOM_TOLERANCE:
         found["thickness"] = row["roller_length"]
+    for name in CLEARANCES:
+        if (ends := _clearance_range(name, task)) is not None:
+            steps = row[name] * 10.0**DECIMALS
+            # To the looser side.
+            whole = floor(steps + 1e-6) if name == "shifting_offset" else ceil(steps - 1e-6)
+            found[name] = min(max(round(whole / 10.0**DECIMALS, DECIMALS), ends[0]), ends[1])
     found["torque"] = row["torque"] if row["torque"] == asked.torque else float(f"{row['torque']:.5g}")
     return found
 
 
 def _between(first: dict[str, float], second: dict[str, float]) -> dict[str, float]:
-    return {name: (first[name] * second[name]) ** 0.5 if name in CONTINUOUS else first[name] for name in first}
+    found = {name: (first[name] * second[name]) ** 0.5 if name in CONTINUOUS else first[name] for name in first}
+    return found | {name: 0.5 * (first[name] + second[name]) for name in CLEARANCES}
 
 
 def _improve(row: dict[str, float], actual: FloatArray, task: Task) -> dict[str, float]:
@@ -241,14 +288,18 @@ def _improve(row: dict[str, float], actual: FloatArray, task: Task) -> dict[str,
 
     setting, names, held = Setting.of(task.requirements), _varied(task), _held(task)
     row = {**row, "rollers": float(most_rollers(row, task))}
-    start = np.array([np.log(row[name]) for name in names])
+    start = np.array([_place(name, row, task) for name in names])
+
+    def sizes_at(place: FloatArray) -> dict[str, float]:
+        return {name: _size_at(name, float(one), task) for name, one in zip(names, place, strict=True)}
 
     def forms(places: FloatArray) -> tuple[FloatArray, FloatArray]:
-        rows = [row | dict(zip(names, np.exp(place), strict=True)) for place in places]
+        rows = [row | sizes_at(place) for place in places]
         values = closed_forms(Sizes.of_rows(rows), setting)
         each = margins(task.demands, values)
         # What no closed form tells stays as it is.
-        return np.where(np.isnan(each), 0.0, each), size_of(values, task.requirements.asked.smallest)
+        size = size_of(values, task.requirements.asked.smallest) + np.array([_tightness(one, task) for one in rows])
+        return np.where(np.isnan(each), 0.0, each), size
 
     here = forms(start[None])[0][0]
     shape = np.array([one.kind == "shape" for one in task.demands])
@@ -256,8 +307,8 @@ def _improve(row: dict[str, float], actual: FloatArray, task: Task) -> dict[str,
     shift = np.where(shape | np.isnan(actual), 0.0, actual - here)
     scale = np.array([one.scale for one in task.demands])
     target = np.where(shape, 2.0 * 10.0**-DECIMALS / scale, SAFETY)
-    room = np.array([one.quantity in ("outer_diameter", "length", "torque") for one in task.demands])
-    target[room | np.array([one.quantity == "roller_room" for one in task.demands])] = 0.0
+    exact = ("outer_diameter", "length", "torque", "roller_room", "flank_clearance", *CLEARANCES)
+    target[[one.quantity in exact for one in task.demands]] = 0.0
     count = len(names)
     cache: dict[bytes, tuple[FloatArray, FloatArray, float, FloatArray]] = {}
 
@@ -303,6 +354,10 @@ def _improve(row: dict[str, float], actual: FloatArray, task: Task) -> dict[str,
             start[at] - 2.0 * MAX_SIZE_STEP,
             min(start[at] + MAX_SIZE_STEP, float(np.log(task.requirements.asked.torque))),
         )
+    for at, name in enumerate(names):
+        if name in CLEARANCES and (ends := _clearance_range(name, task)) is not None:
+            low, high = (end / _unit(name, task) for end in ends)
+            bounds[at] = min(max(low, bounds[at][0]), high), max(min(high, bounds[at][1]), low)
     found = minimize(
         objective,
         np.concatenate([start, [given, broken]]),
@@ -315,7 +370,7 @@ def _improve(row: dict[str, float], actual: FloatArray, task: Task) -> dict[str,
     place = np.clip(found.x[:count], [low for low, _ in bounds[:count]], [high for _, high in bounds[:count]])
     if not np.all(np.isfinite(place)):
         place = start
-    return row | {name: float(value) for name, value in zip(names, np.exp(place), strict=True)}
+    return row | sizes_at(place)
 
 
 def _told(row: dict[str, float], solution: Solution, task: Task, solved: int, *, fits: bool) -> Refined:

@@ -7,17 +7,19 @@ from dataclasses import field
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
+import numpy as np
 from pydantic import BeforeValidator, Field, TypeAdapter, ValidationError
 from pydantic.dataclasses import dataclass
+from pydantic_core import PydanticCustomError
 
-from ltca.drive.deviations import STRICT, NonNegativeLength, PositiveLength, SignedLength
+from ltca.drive.deviations import STRICT, NonNegativeLength, PositiveLength
 from ltca.drive.materials import PARTS, STEEL, Materials
 from ltca.drive.members.limits import Limits, parse_limits
 from ltca.drive.members.named_materials import with_named_materials
 from ltca.drive.members.operation import Friction, Lubricant, Temperature
 from ltca.drive.mistakes import describe_mistakes
 from ltca.drive.names import Name
-from ltca.drive.units.quantities import COUNT, check_count, quantity
+from ltca.drive.units.quantities import COUNT, QuantityCheck, check_count, quantity
 from ltca.errors import DriveError, did_you_mean, shortened
 from ltca.reading.toml_text import parse_toml, read_text
 from ltca.studies.design_search.stock import Stock, build_stock, first_mistakes, stock_table
@@ -25,6 +27,10 @@ from ltca.studies.design_search.stock import Stock, build_stock, first_mistakes,
 NO_FILE = "no such file; docs/how-to/design.md says what a requirement file holds, examples/requirements has ten"
 STOCK = ("eccentricities", "wheel_pins", "shaft_pins", "rollers")
 MOST_DISCS = 3
+CLEARANCES = ("equidistant_offset", "shifting_offset", "bearing_clearance", "pin_hole_clearance")
+"""Lengths of `Shop` that are held as numbers and searched as ranges."""
+FINEST_CLEARANCE = 1e-3
+"""Step to which sizes are rounded, below which no range of clearances starts, mm."""
 
 
 def _counts(value: Any) -> Any:
@@ -36,16 +42,43 @@ Counts = Annotated[
 ]
 
 
+def _range_of(check: QuantityCheck) -> BeforeValidator:
+    """Validator of a length that is one number, held, or a range of two."""
+
+    def read(value: Any) -> tuple[float, float]:
+        if not isinstance(value, list | tuple):
+            held = check(value)
+            return held, held
+        if len(value) != 2:
+            raise PydanticCustomError("range", "must be a length in mm, or a range of two, [least, most]")
+        low, high = check(value[0]), check(value[1])
+        if not low < high:
+            raise PydanticCustomError("range", "must be a range, [least, most] in mm with least less than most")
+        return low, high
+
+    return BeforeValidator(read)
+
+
+def _lengths(least: float | None = None) -> QuantityCheck:
+    return QuantityCheck(
+        unit="mm", bounds=(("greater than", None), ("at least", least), ("less than", None), ("at most", None))
+    )
+
+
+SignedRange = Annotated[tuple[float, float], _range_of(_lengths())]
+NonNegativeRange = Annotated[tuple[float, float], _range_of(_lengths(0.0))]
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
 class Shop:
     """Manufacturing limits and rules of assembly.
 
     Attributes
     ----------
-    equidistant_offset, shifting_offset : float
-        Of the flank: the clearance that the shop needs there, mm.
-    bearing_clearance, pin_hole_clearance : float
-        As in a drive file, mm.
+    equidistant_offset, shifting_offset : (float, float)
+        Of the flank, least and most that the shop makes, mm; equal where one number is given, which is held.
+    bearing_clearance, pin_hole_clearance : (float, float)
+        As in a drive file, least and most, mm.
     least_wall : float
         Between holes, bores and roots, mm.
     least_pin_gap : float
@@ -57,7 +90,9 @@ class Shop:
     flanges : float
         What comes to the discs in length, both sides together, mm.
     cage_gap : float
-        Between neighbouring rollers, as a part of their diameter.
+        Between neighbouring rollers, as a part of their diameter; 0 without a cage.
+    least_cage_bar : float
+        Thickness of a bar of the cage between two rollers, mm.
     least_race : float
         Of the crank, between its shaft and the inner race of the eccentric on its thin side, mm.
     crankshaft_shear : float
@@ -68,20 +103,36 @@ class Shop:
         Radial, of each of the two bearings of a crankshaft, N/mm; rigid when left out.
     """
 
-    equidistant_offset: SignedLength = 0.02
-    shifting_offset: SignedLength = 0.0
-    bearing_clearance: NonNegativeLength = 0.005
-    pin_hole_clearance: NonNegativeLength = 0.005
+    equidistant_offset: SignedRange = (0.01, 0.02)
+    shifting_offset: SignedRange = (0.0, 0.0)
+    bearing_clearance: NonNegativeRange = (0.002, 0.005)
+    pin_hole_clearance: NonNegativeRange = (0.002, 0.005)
     least_wall: PositiveLength = 2.0
     least_pin_gap: PositiveLength = 0.5
     housing_wall: NonNegativeLength = 4.0
     disc_gap: NonNegativeLength = 1.0
     flanges: NonNegativeLength = 0.0
     cage_gap: Annotated[float, quantity("dimensionless", ge=0.0, le=2.0)] = 0.2
+    least_cage_bar: NonNegativeLength = 0.4
     least_race: PositiveLength = 1.5
     crankshaft_shear: Annotated[float, quantity("MPa", gt=0.0)] = 40.0
     shaft_pin_stiffness: Annotated[float, quantity("N/mm", gt=0.0)] | None = None
     crank_support_stiffness: Annotated[float, quantity("N/mm", gt=0.0)] | None = None
+
+    def range_of(self, clearance: str) -> tuple[float, float]:
+        """Return least and most of one of `CLEARANCES`, mm."""
+        low, high = getattr(self, clearance)
+        return float(low), float(high)
+
+    @property
+    def tightest(self) -> dict[str, float]:
+        """Clearances from which candidates start, mm: the least of each, of the shift of the flank the middle."""
+        found = {name: self.range_of(name)[0] for name in CLEARANCES}
+        return found | {"shifting_offset": 0.5 * sum(self.range_of("shifting_offset"))}
+
+    def roller_gap(self, diameter: Any) -> Any:
+        """Return the gap that a cage needs between neighbouring rollers of a diameter, both in mm; 0 without a cage."""
+        return np.maximum(self.cage_gap * diameter, self.least_cage_bar if self.cage_gap else 0.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
@@ -94,8 +145,8 @@ class Asked:
         Of the drives that are written.
     kind : {"discs", "rv"}
         One crank in the centre and a pin shaft, or several cranks behind a spur stage.
-    discs : tuple of int
-        Numbers of discs to choose from, 1 to 3.
+    discs : tuple of int or None
+        Numbers of discs to choose from, 1 to 3; where left out `numbers_of_discs`.
     cranks : int or None
         Of an RV reducer; three when left out. None of others.
     held : {"pin-shaft", "pin-wheel"}
@@ -128,7 +179,7 @@ class Asked:
 
     name: Name = "design"
     kind: Literal["discs", "rv"] = "discs"
-    discs: Counts = (1, 2)
+    discs: Counts | None = None
     cranks: Annotated[int, Field(ge=2, le=6), COUNT] | None = None
     held: Literal["pin-shaft", "pin-wheel"] = "pin-wheel"
     ratio: Annotated[float, quantity("dimensionless", ge=3.0, le=1000.0)]
@@ -147,6 +198,11 @@ class Asked:
     friction: Friction | None = None
     temperature: Temperature | None = None
     lubricant: Lubricant | None = None
+
+    @property
+    def numbers_of_discs(self) -> tuple[int, ...]:
+        """Numbers of discs to choose from; one or two where nothing is asked, of an RV reducer two."""
+        return self.discs or ((2,) if self.kind == "rv" else (1, 2))
 
     @property
     def number_of_cranks(self) -> int:
@@ -197,6 +253,8 @@ def parse_requirements(
     table = parse_toml(text, source)
     table.setdefault("name", name)
     problems: list[str] = []
+    shop = table.get("shop")
+    keys = tuple(shop) if isinstance(shop, Mapping) else ()
     limits = parse_limits(table.pop("limits", {}), problems)
     material_table = table.pop("materials", {})
     materials = _materials(material_table, problems)
@@ -210,7 +268,7 @@ def parse_requirements(
             own = [detail for detail in first_mistakes(error) if _table_of(detail["loc"]) == place]
             problems += describe_mistakes(own, (), known)
     if asked is not None and materials is not None:
-        problems += _contradictions(asked, materials, limits)
+        problems += _contradictions(asked, materials, limits, keys)
     if problems or asked is None or stock is None or materials is None:
         raise DriveError(problems, source)
     return Requirements(
@@ -275,7 +333,8 @@ def _stock(table: dict[str, Any], folder: Path, problems: list[str]) -> Stock | 
         return None
 
 
-def _contradictions(asked: Asked, materials: Materials, limits: Limits) -> list[str]:
+def _contradictions(asked: Asked, materials: Materials, limits: Limits, shop: tuple[str, ...]) -> list[str]:
+    """What does not go together; `shop` has the keys that are given there."""
     found = []
     if asked.efficiency is not None and asked.friction is None:
         found.append(
@@ -298,8 +357,16 @@ def _contradictions(asked: Asked, materials: Materials, limits: Limits) -> list[
         )
     if asked.kind == "rv" and asked.shop.shaft_pin_stiffness is not None:
         found.append('shop.shaft_pin_stiffness: must be left out with kind = "rv", which has no shaft pins')
-    if asked.kind == "rv" and 1 in asked.discs:
+    if asked.kind == "rv" and "pin_hole_clearance" in shop:
+        found.append('shop.pin_hole_clearance: must be left out with kind = "rv", which has no holes for shaft pins')
+    if asked.kind == "rv" and 1 in asked.numbers_of_discs:
         found.append('discs: must be 2 or 3 with kind = "rv"; one disc leaves its cranks unbalanced')
+    for name in CLEARANCES:
+        low, high = asked.shop.range_of(name)
+        if name != "shifting_offset" and low < high and low < FINEST_CLEARANCE:
+            found.append(
+                f"shop.{name} = [{low:g}, {high:g}]: must start at {FINEST_CLEARANCE:g} mm, to which sizes are rounded, or more"
+            )
     wanted_lives = [key for key in limits if "bearing_life" in key or "static_safety" in key]
     for part in ("inner_race", "roller", "disc"):
         modulus = getattr(materials, part).youngs_modulus

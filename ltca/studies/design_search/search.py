@@ -14,11 +14,11 @@ from math import ceil, exp, floor, log10
 
 import numpy as np
 
-from ltca.studies.design_search.demands import Demand, find_demands
+from ltca.studies.design_search.demands import TIGHTENED, Demand, find_demands
 from ltca.studies.design_search.enumeration import MAX_ROOM_FACTOR, Enumeration, enumerate_candidates, size_of
 from ltca.studies.design_search.refinement import Refined, Task, finish, refine
 from ltca.studies.design_search.requirements import Requirements
-from ltca.studies.design_search.sizes import Sizes
+from ltca.studies.design_search.sizes import LEAST_DISTANCE, distance
 
 CANDIDATES = 6
 """Candidates that are refined."""
@@ -31,6 +31,8 @@ CANDIDATE_TOLERANCE = 0.1
 """Candidate tolerance on logarithmic margins of closed forms."""
 MAX_PAIRS = 6
 """Pairs of requirements that are refined, those first that closed forms violate least."""
+CLEARANCE_PARTS = 0.7, 0.5, 0.3, 0.1
+"""Parts of the least clearance that are tried where it gives way."""
 DIGITS = 4
 """Significant digits of values that would do."""
 
@@ -61,6 +63,13 @@ class Relaxation:
         """Names of the requirements, joined."""
         return "-and-".join(one.name for one in self.demands)
 
+    @property
+    def change(self) -> float:
+        """Largest `Demand.change` of its requirements; infinite where no design was found."""
+        if self.refined is None:
+            return float("inf")
+        return max(one.change(self.refined.solution.values[one.quantity]) for one in self.demands)
+
     def would_do(self, demand: Demand) -> float | None:
         """Return the value of a requirement that would do, rounded to the side that does."""
         if self.refined is None:
@@ -70,7 +79,9 @@ class Relaxation:
     @property
     def words(self) -> str:
         """The same as a sentence."""
-        asked = " and ".join(f"{one.name.replace('_', ' ')} {one.words()}" for one in self.demands)
+        asked = " and ".join(
+            f"{one.name if '.' in one.name else one.name.replace('_', ' ')} {one.words()}" for one in self.demands
+        )
         if self.refined is None:
             alone = "alone" if len(self.demands) == 1 else "together"
             room = any(one.name in ("outer_diameter", "length") for one in self.demands)
@@ -94,7 +105,7 @@ class Found:
     tried : tuple of Refined
         Candidates that were refined and do not.
     relaxations : tuple of Relaxation
-        Where nothing fits: what would do first, by how little.
+        Where nothing fits: what would do first, by the least change.
     combinations, solved : int
         Combinations evaluated by closed forms; loaded drives that were solved.
     """
@@ -130,10 +141,10 @@ def relax(requirements: Requirements, demands: tuple[Demand, ...], names: tuple[
     shifts: dict[str, float] = {}
     giving = tuple(one for one in demands if one.name in names)
     for _ in range(MAX_ENUMERATIONS):
-        # Less torque changes what fits into a drive: start from the largest part of it for which there is a candidate.
-        for part in TORQUE_PARTS if "torque" in names else (1.0,):
-            torque = part * requirements.asked.torque
-            found = enumerate_candidates(requirements, demands, names, RELAXED_CANDIDATES, torque, shifts)
+        # Less torque or clearance changes what fits: start from the largest part of it for which there is a candidate.
+        for part in _parts(names):
+            at = _given_way(requirements, names, part)
+            found = enumerate_candidates(requirements, demands, names, RELAXED_CANDIDATES, shifts, **at)
             combinations += found.combinations
             if found.broken.size and found.broken.min() < CANDIDATE_TOLERANCE:
                 break
@@ -153,8 +164,22 @@ def relax(requirements: Requirements, demands: tuple[Demand, ...], names: tuple[
 
 def least_broken(requirements: Requirements, demands: tuple[Demand, ...], names: tuple[str, ...]) -> float:
     """Return the least violation of all other requirements by closed forms (ln); infinite where no candidate is left."""
-    torque = requirements.asked.torque * (TORQUE_PARTS[-1] if "torque" in names else 1.0)
-    return float(np.min(enumerate_candidates(requirements, demands, names, 1, torque).broken, initial=np.inf))
+    at = _given_way(requirements, names, _parts(names)[-1])
+    return float(np.min(enumerate_candidates(requirements, demands, names, 1, None, **at).broken, initial=np.inf))
+
+
+def _parts(names: tuple[str, ...]) -> tuple[float, ...]:
+    """Parts of the torque or the clearances among names of demands that are tried."""
+    if "torque" in names:
+        return TORQUE_PARTS
+    return CLEARANCE_PARTS if any(f"shop.{name}" in names for name in TIGHTENED) else (1.0,)
+
+
+def _given_way(requirements: Requirements, names: tuple[str, ...], part: float) -> dict[str, float]:
+    """Torque and clearances of which there is a part only, by name."""
+    at = {"torque": part * requirements.asked.torque} if "torque" in names else {}
+    tightest = requirements.asked.shop.tightest
+    return at | {name: part * tightest[name] for name in TIGHTENED if f"shop.{name}" in names}
 
 
 def find_designs(
@@ -254,21 +279,25 @@ def _stand_in_the_way(
     told: Callable[[str], None],
 ) -> list[Relaxation]:
     asked = [one for one in demands if one.kind in ("requirement", "limit")]
-    single = _relax_all(requirements, demands, [(one.name,) for one in asked], executor, told)
+    clearances = clearances_in_the_way(demands)
+    alone = [(one.name,) for one in (*asked, *clearances)]
+    together = [tuple(one.name for one in clearances)] if len(clearances) > 1 else []
+    single = _relax_all(requirements, demands, [*alone, *together], executor, told)
     if any(one.refined is not None for one in single):
-        return sorted(single, key=_least)
+        return sorted(single, key=lambda one: one.change)
     # All pairs by closed forms, the likeliest by loaded drives; of equal ones those that candidates violated come first.
     broken = {name for one in tried for name in one.broken}
     room = ("outer_diameter", "length", "torque")
     order = sorted(asked, key=lambda one: (one.name not in broken, one.name not in room))
     names: list[tuple[str, ...]] = [(first.name, second.name) for first, second in pairs_of(order, 2)]
+    names += [(one.name, clearances[0].name) for one in order if clearances]
     told(f"pairs that stand in the way: {len(names)}")
     chances = [
         future.result() for future in [executor.submit(least_broken, requirements, demands, own) for own in names]
     ]
     likely = sorted(range(len(names)), key=lambda place: chances[place])[:MAX_PAIRS]
     pairs = [names[place] for place in likely if np.isfinite(chances[place])]
-    return sorted(_relax_all(requirements, demands, pairs, executor, told), key=_least) + single
+    return sorted(_relax_all(requirements, demands, pairs, executor, told), key=lambda one: one.change) + single
 
 
 def _relax_all(
@@ -289,8 +318,14 @@ def _relax_all(
     return [done[number] for number in sorted(done)]
 
 
-def _least(relaxation: Relaxation) -> float:
-    return float("inf") if relaxation.refined is None else relaxation.refined.given
+def clearances_in_the_way(demands: tuple[Demand, ...]) -> list[Demand]:
+    """Return demands on clearances that may stand in the way: that of the flank shares loads, of play all have their part."""
+    play = any(one.quantity in ("backlash_output", "lost_motion") and one.sense == "max" for one in demands)
+    return [
+        one
+        for one in demands
+        if one.kind == "clearance" and one.value > 0.0 and (play or one.quantity == "equidistant_offset")
+    ]
 
 
 def factor_words(relaxation: Relaxation) -> str:
@@ -301,13 +336,9 @@ def factor_words(relaxation: Relaxation) -> str:
 
 
 def _once(designs: list[Refined]) -> list[Refined]:
-    """Designs that differ by more than rounding."""
+    """Designs that are at least `LEAST_DISTANCE` from all before them."""
     found: list[Refined] = []
     for one in designs:
-        if all(_differs(one.row, other.row) for other in found):
+        if all(distance(one.row, other.row) >= LEAST_DISTANCE for other in found):
             found.append(one)
     return found
-
-
-def _differs(first: dict[str, float], second: dict[str, float]) -> bool:
-    return any(abs(first[name] - second[name]) > 0.02 * abs(second[name]) for name in Sizes.__dataclass_fields__)

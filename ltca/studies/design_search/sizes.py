@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
+from math import log, sqrt
 from typing import Any
 
 import numpy as np
@@ -16,7 +18,16 @@ from ltca.studies.design_search.requirements import Requirements
 LIGHT = 0.03
 """Light torque as a part of the whole."""
 CONTINUOUS = ("pin_circle", "thickness", "bore", "hole_circle")
-"""What refinement varies; the rest is counted, or comes in stock sizes."""
+"""Sizes that refinement varies, beside clearances that have a range; the rest is counted, or comes in stock sizes."""
+
+
+OF_DISTANCE = (
+    "discs", "pins", "eccentricity", "pin_circle", "pin_radius", "thickness", "bore", "roller_radius", "roller_length", "holes",
+    "hole_circle", "hole_pin",
+)  # fmt: skip
+"""Sizes by which two designs are told apart."""
+LEAST_DISTANCE = 0.2
+"""Least `distance` between two of the designs that are told: one size that differs by a fifth, or several by less."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,6 +48,10 @@ class Sizes:
         r_o, r_BR and the length of the rollers.
     hole_circle, hole_pin : array
         R_PS, or of RV reducers the circle of the cranks; r_PS.
+    equidistant_offset, shifting_offset : array
+        Δr_P and ΔR_C of the flank.
+    bearing_clearance, pin_hole_clearance : array
+        As in a drive file; the latter without effect in RV reducers.
     torque : array
         On the output, N·mm: that asked for, or less where it stands in the way.
     """
@@ -57,6 +72,10 @@ class Sizes:
     holes: FloatArray
     hole_circle: FloatArray
     hole_pin: FloatArray
+    equidistant_offset: FloatArray
+    shifting_offset: FloatArray
+    bearing_clearance: FloatArray
+    pin_hole_clearance: FloatArray
     torque: FloatArray
 
     @property
@@ -76,6 +95,19 @@ class Sizes:
     def of_rows(cls, rows: list[dict[str, float]]) -> Sizes:
         """Return candidates of their numbers by name."""
         return cls(**{item.name: np.array([row[item.name] for row in rows], dtype=float) for item in fields(cls)})
+
+
+def distance(first: Mapping[str, float], second: Mapping[str, float]) -> float:
+    """Return how far two candidates are from each other: the root of the sum of squares of ln of the ratios of their sizes.
+
+    Examples
+    --------
+    >>> one = dict.fromkeys(OF_DISTANCE, 2.0)
+    >>> round(distance(one, one | {"bore": 2.4, "pin_radius": 2.2}), 3)
+    0.206
+    """
+    both = [(first[name], second[name]) for name in OF_DISTANCE if first[name] > 0.0 and second[name] > 0.0]
+    return sqrt(sum(log(one / other) ** 2 for one, other in both))
 
 
 def joined(parts: list[Sizes]) -> Sizes:
@@ -121,8 +153,8 @@ def drive_table(row: dict[str, float], requirements: Requirements, name: str) ->
             "number_of_teeth": int(row["pins"]) - 1,
             "thickness": row["thickness"],
             "number_of_discs": discs,
-            "equidistant_offset": shop.equidistant_offset,
-            "shifting_offset": shop.shifting_offset,
+            "equidistant_offset": row["equidistant_offset"],
+            "shifting_offset": row["shifting_offset"],
         },
         "crank_bearing": {
             "inner_race_radius": inner,
@@ -132,7 +164,7 @@ def drive_table(row: dict[str, float], requirements: Requirements, name: str) ->
             "roller_length": row["roller_length"],
         },
         "load": {"torque": row["torque"], "light_torque": LIGHT * row["torque"], "speed": asked.speed * turned},
-        "clearance": {"bearing": shop.bearing_clearance},
+        "clearance": {"bearing": row["bearing_clearance"]},
         "materials": materials,
     }
     if discs > 1:
@@ -148,7 +180,7 @@ def drive_table(row: dict[str, float], requirements: Requirements, name: str) ->
                 "stiffness": (shop.crank_support_stiffness,) * 2,
             }
     else:
-        table["clearance"]["pin_hole"] = shop.pin_hole_clearance
+        table["clearance"]["pin_hole"] = row["pin_hole_clearance"]
         table["pin_shaft"] = {
             "number_of_pins": int(row["holes"]),
             "pin_circle_radius": row["hole_circle"],

@@ -8,6 +8,7 @@ from math import gcd
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.analysis.engines import Engine, HalfSpace
 from ltca.analysis.extremes import RESOLVED
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse
 from ltca.analysis.summary import summarise
@@ -22,7 +23,7 @@ from ltca.errors import CycloError
 from ltca.geometry.placement import position_angles
 from ltca.studies.design_search.closed_forms import Setting, lives_by_loads, shape_values
 from ltca.studies.design_search.demands import OF_SHAPE, Demand
-from ltca.studies.design_search.requirements import Requirements
+from ltca.studies.design_search.requirements import CLEARANCES, Requirements
 from ltca.studies.design_search.sizes import Sizes, drive_of
 
 COARSE_POSITIONS = 24
@@ -34,6 +35,11 @@ OFFSET = 1e-3
 CURVE_ANGLES = np.array([0.0, 0.1])
 """Crank angles at which stiffness and lost motion are read, rad."""
 CURVE_POINTS = 4
+
+
+def engine_for(*, fine: bool) -> Engine:
+    """Return the engine of candidates, coarse while sizes move or fine at the end: the one place of that choice."""
+    return HalfSpace()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -77,7 +83,7 @@ def solve_coarsely(
     try:
         drive = drive_of(row, requirements)
         positions = COARSE_POSITIONS if drive.disc.number_of_discs == 1 else COARSE_POSITIONS // 2
-        analysis = analyse(drive, position_angles(positions) + OFFSET)
+        analysis = analyse(drive, position_angles(positions) + OFFSET, engine=engine_for(fine=False))
         by_forces = _lives_by_forces(row, analysis, requirements)
         asked = [one for one in demands if one.quantity in LIVES]
         # ISO 281 with the mean force falls short of the slices by a factor of two or so: what it finds enough is.
@@ -89,7 +95,7 @@ def solve_coarsely(
                 life_factor = found.get(TURNS, by_forces[TURNS]) / by_forces[TURNS]
             factors = {TURNS: life_factor or 1.0, HOURS: life_factor or 1.0}
             found = {name: value * factors.get(name, 1.0) for name, value in by_forces.items()} | found
-        found |= own_values(row, drive, requirements, demands, CURVE_ANGLES[:1])
+        found |= own_values(row, drive, requirements, demands, CURVE_ANGLES[:1], fine=False)
         return Solution(values=found, life_factor=life_factor)
     except CycloError as error:
         return Solution(values={}, message=" ".join(str(error).split()))
@@ -110,15 +116,17 @@ def own_values(
     requirements: Requirements,
     demands: tuple[Demand, ...],
     angles: NDArray[np.float64] = CURVE_ANGLES,
+    *,
+    fine: bool = True,
 ) -> dict[str, float]:
     """Return values that `cyclo check` has not: room, torque, margins of the shape as far as demanded, stiffness, lost motion.
 
     Stiffness and lost motion need a torque curve, at `angles` in rad, which is solved where they are demanded.
     """
     shape = shape_values(Sizes.of_rows([row]), Setting.of(requirements))
-    found = {name: float(shape[name][0]) for name in (*OF_SHAPE, "outer_diameter", "length", "torque")}
+    found = {name: float(shape[name][0]) for name in (*OF_SHAPE, *CLEARANCES, "outer_diameter", "length", "torque")}
     if any(one.quantity in ("stiffness", "lost_motion") for one in demands):
-        curve = torque_curve(warm_drive(drive), angles, points=CURVE_POINTS)
+        curve = torque_curve(warm_drive(drive), angles, points=CURVE_POINTS, engine=engine_for(fine=fine))
         found["stiffness"] = float(curve.stiffness.min())
         found["lost_motion"] = float(curve.lost_motion.max()) * ARCMIN
     return found
@@ -145,7 +153,7 @@ def solve_finely(
     """
     positions = check_positions(drive)
     try:
-        analysis = analyse(drive, position_angles(positions))
+        analysis = analyse(drive, position_angles(positions), engine=engine_for(fine=True))
         checks = judge_analysis(analysis, summarise(analysis), limits, lives=lives)
         found = {check.value.quantity: check.value.value for check in checks if check.value.value is not None}
         found |= own_values(row, drive, requirements, demands)

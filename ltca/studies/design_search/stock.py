@@ -16,6 +16,10 @@ from ltca.reading.toml_text import parse_toml, read_text
 
 Lengths = Annotated[tuple[PositiveLength, ...], Field(min_length=1)]
 TYPICAL = "stock_sizes.toml"
+ROLLER_ASPECTS = 0.8, 2.5
+"""Least and largest length of a cylindrical roller by its diameter: shorter ones tilt in their cage, longer ones are needles."""
+NEEDLE_DIAMETER, NEEDLE_ASPECT = 6.0, 10.0
+"""Largest diameter of needles, mm, and their largest length by it (DIN 5402-3)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
@@ -55,10 +59,21 @@ def build_stock(table: dict[str, Any], source: str = "shop") -> Stock:
     0.65
     """
     try:
-        return TypeAdapter(Stock).validate_python(table)
+        found = TypeAdapter(Stock).validate_python(table)
     except ValidationError as error:
         known = tuple(Stock.__dataclass_fields__)
         raise DriveError(describe_mistakes(first_mistakes(error), (source,), known)) from error
+    problems = []
+    for number, (diameter, length) in enumerate(found.rollers):
+        most = NEEDLE_ASPECT if diameter <= NEEDLE_DIAMETER else ROLLER_ASPECTS[1]
+        if not ROLLER_ASPECTS[0] <= length / diameter <= most:
+            problems.append(
+                f"{source}.rollers.{number} = [{diameter:g}, {length:g}]: length by diameter must be from "
+                f"{ROLLER_ASPECTS[0]:g} to {most:g} for a roller of {diameter:g} mm"
+            )
+    if problems:
+        raise DriveError(problems)
+    return found
 
 
 def first_mistakes(error: ValidationError) -> list[Any]:

@@ -57,7 +57,7 @@ def test_what_stands_in_the_way_is_told_and_would_do(tmp_path, capsys):
     told = json.loads((out / "design.json").read_text())
     assert told["designs"] == []
     way = {one["requirements"][0]["name"]: one for one in told["in_the_way"]}
-    assert {"outer_diameter", "length", "torque"} == set(way)
+    assert {"outer_diameter", "length", "torque", "shop.equidistant_offset"} == set(way)
     (diameter,) = way["outer_diameter"]["requirements"]
     assert diameter["would_do"] > diameter["asked"] == 95.0
     # Torques grow with the cube of the size at equal stress, and a disc that grows in diameter alone gains its square.

@@ -28,11 +28,12 @@ from ltca.figures.house_style import STYLE
 from ltca.figures.optimum_figures import _front, _search, _title
 from ltca.figures.pressure_figures import draw_contact_zone, draw_roller_pressure, draw_sections
 from ltca.figures.run_figures import draw_figure, figure_names
-from ltca.figures.study_figures import chance_of, study_figures
+from ltca.figures.study_figures import study_figures
 from ltca.geometry.placement import position_angles
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
 from ltca.studies.optimiser import Optimum, Problem, Variable, parse_bound
+from ltca.studies.sensitivity import chance_of
 from ltca.studies.sweep_file import parse_sweep
 from ltca.studies.tolerance_study import tolerance_study
 

@@ -45,8 +45,10 @@ shaft_pin_stiffness = 1.0e6
 ROW = {
     "discs": 1.0, "pins": 14.0, "stage": 1.0, "sun": 0.0, "planet": 0.0, "eccentricity": 4.0, "pin_circle": 88.0,
     "pin_radius": 6.5, "thickness": 11.8, "bore": 29.5, "roller_radius": 5.0, "roller_length": 11.8, "rollers": 11.0,
-    "holes": 8.0, "hole_circle": 56.0, "hole_pin": 10.075, "torque": 377_300.0,
+    "holes": 8.0, "hole_circle": 56.0, "hole_pin": 10.075, "torque": 377_300.0, "equidistant_offset": 0.15,
+    "shifting_offset": 0.09, "bearing_clearance": 0.0, "pin_hole_clearance": 0.0,
 }  # fmt: skip
+WITHOUT_OFFSETS = {"equidistant_offset": 0.0, "shifting_offset": 0.0}
 
 
 def forms(text=PAPER + STEEL, **changed):
@@ -106,8 +108,9 @@ def test_loads_without_clearance_are_those_of_krol(e, pin, R, force):
     Linear contacts give the same in the mean over the pitch, as Σ sin²φ/d² = z_P/(4 R²) says for many pins; of the four
     places in a pitch none need be the largest lever, which takes off less than 2 %.
     """
-    text = PAPER.replace("ratio = 14", "ratio = 16").replace("0.15", "0.0").replace("0.09", "0.0")
-    told = forms(text + STEEL, eccentricity=e, pin_circle=R, pin_radius=pin, pins=16.0, torque=23_250.0 * 16.0 / 15.0)
+    text = PAPER.replace("ratio = 14", "ratio = 16")
+    own = {"eccentricity": e, "pin_circle": R, "pin_radius": pin, "pins": 16.0, "torque": 23_250.0 * 16.0 / 15.0}
+    told = forms(text + STEEL, **own, **WITHOUT_OFFSETS)
     assert told["pin_load"] == pytest.approx(force, rel=0.02)
 
 
@@ -134,9 +137,9 @@ def test_pins_without_clearance_rub_off_what_the_pitch_point_says(pin):
     F = 4 M l/(z_P (e z_P)²) with the lever l = e z_P R sin φ/d (Σ sin²φ/d² = z_P/(4 R²)), d² = R² + (e z_P)² − 2 R e z_P cos φ:
     ∫ l (d − r) dφ over half a turn is 2 e z_P (R − r); there are z_P/(2 π) pins to a radian.
     """
-    text = PAPER.replace("0.15", "0.0").replace("0.09", "0.0") + "[friction]\npin = 0.05\n" + STEEL
+    text = PAPER + "[friction]\npin = 0.05\n" + STEEL
     setting = Setting.of(parse_requirements(text))
-    told = float(flank_values(Sizes.of_rows([ROW | {"pin_radius": pin}]), setting)["flank_loss"][0])
+    told = float(flank_values(Sizes.of_rows([ROW | WITHOUT_OFFSETS | {"pin_radius": pin}]), setting)["flank_loss"][0])
     # sums over 56 places: the kinks of sin at both ends leave (2π/56)²/12, 0.1 %
     assert told == pytest.approx(4.0 * 0.05 * 377_300.0 * (88.0 - pin) / (np.pi * 4.0 * 14.0**2), rel=2e-3)
 
@@ -258,3 +261,37 @@ def test_a_soft_bore_is_demanded_by_its_own_limit():
     assert demands["roller_pressure_mid_inner"] == 4000.0
     assert demands["pin_pressure_mid"] == pytest.approx(1.67 * 44.0)  # first yield, which no limit of a file replaces
     assert not {"disc_shear", "contact_strain"} & set(demands)
+
+
+def test_what_is_enumerated_can_be_made():
+    """Cage, rollers by the pitch circle (ISO 281 ends at 0.3), pins by their circle and length, walls: of every candidate."""
+    requirements = parse_requirements(PAPER.replace("discs = 1", "discs = [1, 2]").replace("12.0", "24.0") + STEEL)
+    found = enumerate_candidates(requirements, find_demands(requirements), most=20).sizes
+    pitch = 2.0 * (found.bore - found.roller_radius)
+    assert (2.0 * found.roller_radius / pitch).max() <= 0.3 + 1e-9
+    bars = pitch * np.sin(np.pi / found.rollers) - 2.0 * found.roller_radius
+    assert bars.min() >= 0.4 - 1e-9  # mm, `least_cage_bar`
+    spacing = found.pin_circle * np.sin(np.pi / found.pins) / found.pin_radius
+    assert 1.0 < spacing.min() <= spacing.max() <= 4.5 + 1e-9
+    assert (stack_length(found, 1.0) / (2.0 * found.pin_radius)).max() <= 10.0 + 1e-9
+
+
+def test_a_clearance_with_a_range_is_made_as_loose_as_costs_nothing():
+    """Nothing asks for less play in holes and bearing: on closed forms they come to their most, the flank where loads want it."""
+    from ltca.studies.design_search.refinement import Task, _actual, _improve
+    from ltca.studies.design_search.solution import Solution
+
+    text = PAPER.replace("bearing_clearance = 0.0", "bearing_clearance = [0.002, 0.005]")
+    requirements = parse_requirements(
+        text.replace("pin_hole_clearance = 0.0", "pin_hole_clearance = [0.01, 0.02]") + STEEL
+    )
+    row = ROW | {"bearing_clearance": 0.002, "pin_hole_clearance": 0.01}
+    task = Task(requirements=requirements, demands=find_demands(requirements), row=row)
+    values = closed_forms(Sizes.of_rows([row]), Setting.of(requirements))
+    moved = row
+    for _ in range(2):  # a step is half of the most
+        solution = Solution(values={name: float(value[0]) for name, value in values.items()})
+        moved = _improve(moved, _actual(solution, task), task)
+        values = closed_forms(Sizes.of_rows([moved]), Setting.of(requirements))
+    assert (moved["bearing_clearance"], moved["pin_hole_clearance"]) == pytest.approx((0.005, 0.02), rel=1e-3)
+    assert moved["equidistant_offset"] == 0.15  # held

@@ -38,6 +38,11 @@ def test_texts_carry_units():
         ("length = -3.0", "length = -3.0: must be greater than 0 mm"),
         ("ratio = 39.5", "ratio = 39.5: must be a whole number"),
         ('kind = "rw"', "kind = 'rw': must be 'discs' or 'rv'"),
+        ("[shop]\nequidistant_offset = [0.02, 0.01]", "shop.equidistant_offset = [0.02, 0.01]: must be a range"),
+        ("[shop]\nbearing_clearance = [0.0, 0.01]", "shop.bearing_clearance = [0, 0.01]: must start at 0.001 mm"),
+        ("[shop]\nbearing_clearance = -0.01", "shop.bearing_clearance = -0.01: must be at least 0 mm"),
+        ("[shop]\nrollers = [[8.0, 30.0]]", "shop.rollers.0 = [8, 30]: length by diameter must be from 0.8 to 2.5"),
+        ("[shop]\nrollers = [[4.0, 50.0]]", "shop.rollers.0 = [4, 50]: length by diameter must be from 0.8 to 10"),
         ("discs = 4", "discs.0 = 4: must be less than or equal to 3"),
         ("outer_diametre = 3.0", "outer_diametre: is not a field of such a table; did you mean `outer_diameter`?"),
         ("efficiency = 0.9", "efficiency = 0.9: nothing rubs; give [friction] its coefficients"),
@@ -84,3 +89,21 @@ def test_what_has_no_effect_or_leaves_no_room_is_refused(text, told):
     with pytest.raises(DriveError) as error:
         parse_requirements(text)
     assert told in str(error.value)
+
+
+def test_an_rv_reducer_has_two_discs_where_nothing_is_said():
+    """`kind = "rv"` alone was refused for the one disc that `discs` has by default."""
+    asked = parse_requirements(SOUND + 'kind = "rv"\n').asked
+    assert asked.numbers_of_discs == (2,)
+    assert parse_requirements(SOUND).asked.numbers_of_discs == (1, 2)
+    with pytest.raises(DriveError, match=r"shop\.pin_hole_clearance: must be left out"):
+        parse_requirements(SOUND + 'kind = "rv"\n[shop]\npin_hole_clearance = 0.01\n')
+
+
+def test_a_number_is_held_and_a_range_is_searched():
+    shop = parse_requirements(
+        SOUND + '[shop]\nequidistant_offset = ["8 µm", 0.03]\nbearing_clearance = "5 µm"\n'
+    ).asked.shop
+    assert shop.range_of("equidistant_offset") == pytest.approx((0.008, 0.03), rel=1e-12)
+    assert shop.range_of("bearing_clearance") == (0.005, 0.005)
+    assert shop.tightest["equidistant_offset"] == pytest.approx(0.008, rel=1e-12)
