@@ -13,7 +13,7 @@ from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.results import labelled_results
 from ltca.output.labelled import LabelledDataset
 from ltca.output.netcdf import write_netcdf
-from ltca.reading.drive_file import load_drive
+from ltca.reading.drive_file import parse_drive, shipped_drive
 
 ODD = xr.Dataset(
     {
@@ -73,7 +73,7 @@ def test_every_kind_of_variable(packed, tmp_path):
 @pytest.mark.parametrize("name", ["paper", "rv"])
 def test_results_of_a_run(name, tmp_path):
     """One crank and holes; several discs and cranks and no holes, a dimension of no size."""
-    drive = next(iter(load_drive(name).cases.values()))
+    drive = next(iter(parse_drive(shipped_drive(name)).cases.values()))
     labelled = labelled_results(name, {"a": analyse(drive, np.array([0.3, 1.0]))})
     check_written(labelled.to_xarray(), tmp_path)
     write_netcdf(labelled, tmp_path / "labelled.nc")
