@@ -15,7 +15,7 @@ from ltca.analysis.life.equivalent_load import covers_whole_turns
 from ltca.analysis.light_torque import at_light_torque
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse_cases
 from ltca.analysis.results import labelled_results
-from ltca.analysis.summary import refined_value, summarise
+from ltca.analysis.summary import refined_value, summarise_cases
 from ltca.analysis.summary_rows import rows_of, with_residual_part
 from ltca.analysis.verdict.proportions import odd_proportions
 from ltca.analysis.verdict.values import judge_analysis
@@ -85,7 +85,7 @@ def solve_and_write(task: RunTask, out: Path) -> int:
         shown, also = _analyse(cases, task.pressure_angles, torque, engine, "pressure fields")
         if also:  # a field of a position without an answer is no field
             raise next(iter(also.values()))
-    summaries = {name: summarise(analysis) for name, analysis in analyses.items()}
+    summaries = summarise_cases(analyses)
     dataset = labelled_results(file.name, analyses, file.text)
     with whole_file(out / "results.nc") as part:
         write_netcdf(dataset, part)
