@@ -37,6 +37,10 @@ class LabelledArray:
     values: NDArray[Any]
     attrs: dict[str, Any] = field(default_factory=dict)
 
+    def __float__(self) -> float:
+        """The one number there is."""
+        return float(self.values)
+
     def transpose(self, *dims: str) -> LabelledArray:
         """Return the same with its axes in another order."""
         return replace(self, dims=dims, values=self.values.transpose([self.dims.index(name) for name in dims]))

@@ -33,6 +33,16 @@ LARGEST_FILTER = 6
 # Deflate packs no more than 1032 to one; what is declared beyond that is not in the file.
 LARGEST_PACKING = 1100
 SMALL = 1 << 20
+NO_VARIABLE = b"This is a netCDF dimension but not a netCDF variable."
+HIDDEN = frozenset((
+    "CLASS", "NAME", "REFERENCE_LIST", "DIMENSION_LIST", "_Netcdf4Dimid", "_Netcdf4Coordinates", "_NCProperties",
+))  # fmt: skip
+"""Attributes by which netCDF lies in HDF5."""
+CONVENTIONS = frozenset((
+    "scale_factor", "add_offset", "missing_value", "_Unsigned", "dtype", "_Encoding", "_ChunkSizes", "bounds", "grid_mapping",
+    "ancillary_variables", "formula_terms", "cell_measures",
+))  # fmt: skip
+"""Attributes by which values mean something else than what is stored, or name other variables."""
 DAMAGE = (
     OSError, ValueError, KeyError, RuntimeError, TypeError, AttributeError, OverflowError, MemoryError, IndexError,
 )  # fmt: skip
@@ -68,15 +78,72 @@ def require_sound_netcdf(path: Path, what: str, *, whole: bool) -> None:
         raise DamagedFileError(f"{path}: cannot be read as {what}: {'; '.join(problems[:3])}")
 
 
-def read_netcdf(path: Path, what: str) -> xr.Dataset:
+def read_netcdf(path: Path, what: str) -> LabelledDataset:
     """Return a netCDF file of any origin, read into memory, after `require_sound_netcdf`, whose errors it raises."""
-    import xarray as xr
-
     require_sound_netcdf(path, what, whole=True)
     try:
-        return xr.load_dataset(path, engine="h5netcdf", decode_times=False, decode_timedelta=False)
+        with opened_hdf5(path) as file:
+            found = _plain(file)
+        if found is not None:
+            return found
+        import xarray as xr
+
+        return LabelledDataset.of(xr.load_dataset(path, engine="h5netcdf", decode_times=False, decode_timedelta=False))
     except DAMAGE as error:
         raise _unreadable(path, what, error) from error
+
+
+def _plain(file: h5py.File) -> LabelledDataset | None:
+    """The content of a file as `write_netcdf` writes it, without xarray, whose import takes half a second.
+
+    None of a file with anything that needs conventions: packed or masked values, texts of fixed length, groups, dimensions
+    without scales. Those are xarray's.
+    """
+    import h5py
+
+    variables, related, scales = dict[str, LabelledArray](), set[str](), list[str]()
+    attrs = _plain_attributes(file, ())
+    if attrs is None:
+        return None
+    related |= {*str(attrs.pop("coordinates", "")).split()}
+    for name, item in file.items():
+        if not isinstance(item, h5py.Dataset):
+            return None
+        if bytes(item.attrs.get("NAME", b"")).startswith(NO_VARIABLE):
+            continue
+        is_scale = item.attrs.get("CLASS") == b"DIMENSION_SCALE"
+        own = [[name]] if is_scale else [[scale.name[1:] for scale in axis.values()] for axis in item.dims]
+        told = _plain_attributes(item, ("_FillValue",))
+        text = h5py.check_string_dtype(item.dtype) is not None
+        fill = item.attrs.get("_FillValue")
+        masked = fill is not None and not (item.dtype.kind == "f" and np.all(np.isnan(fill)))
+        plain = all(len(names) == 1 for names in own) and len(own) == item.ndim and (text or item.dtype.kind in "iuf")
+        if told is None or masked or not plain or {*told} & CONVENTIONS or (text and item.dtype.kind != "O"):
+            return None
+        related |= {*str(told.pop("coordinates", "")).split()}
+        scales += [name] if is_scale else []
+        values = np.asarray(item.asstr()[...] if text else item[...])
+        # As xarray has them: of the machine's byte order, texts as texts.
+        values = values.astype(str) if text else values.astype(values.dtype.newbyteorder("="), copy=False)
+        variables[name] = LabelledArray(tuple(names[0] for names in own), values, told)
+    return LabelledDataset(variables, tuple(name for name in variables if name in related or name in scales), attrs)
+
+
+def _plain_attributes(item: Any, without: Collection[str]) -> dict[str, Any] | None:
+    """Attributes as h5netcdf gives them, one value alone; None where one needs decoding."""
+    found = dict[str, Any]()
+    for name, value in item.attrs.items():
+        if name in HIDDEN or name in without:
+            continue
+        if isinstance(value, bytes) or np.asarray(value).dtype.kind in "SV":
+            return None
+        if isinstance(value, np.ndarray):
+            if value.size == 1:
+                value = value.reshape(-1)[0]
+            elif value.dtype.kind == "O":
+                value = value.tolist()
+        found[name] = value
+    return found
 
 
 def require_known_schema(path: Path, attributes: Mapping[str, Any]) -> None:
@@ -248,7 +315,7 @@ def _write(file: h5py.File, dataset: LabelledDataset, packed: Collection[str]) -
     for name, size in dataset.sizes.items():
         if name not in dataset or dataset[name].dims != (name,):
             scales[name] = file.create_dataset(name, (size,), ">f4", track_order=True, **_growing((size,)))
-            scales[name].make_scale(f"This is a netCDF dimension but not a netCDF variable.{size:10d}")
+            scales[name].make_scale(NO_VARIABLE + f"{size:10d}".encode("ascii"))
             scales[name].attrs["_Netcdf4Dimid"] = np.int32(numbers[name])
     written = {name: _written(file, name, each, packed) for name, each in dataset.variables.items()}
     for name in [name for name in numbers if name not in scales]:

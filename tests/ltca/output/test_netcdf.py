@@ -12,7 +12,7 @@ from xarray.backends import H5NetCDFStore
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.results import labelled_results
 from ltca.output.labelled import LabelledDataset
-from ltca.output.netcdf import write_netcdf
+from ltca.output.netcdf import read_netcdf, write_netcdf
 from ltca.reading.drive_file import parse_drive, shipped_drive
 
 ODD = xr.Dataset(
@@ -63,6 +63,11 @@ def check_written(dataset, tmp_path, packed=()):
     assert content(tmp_path / "ours.nc") == content(tmp_path / "theirs.nc")
     ours, theirs = (xr.load_dataset(tmp_path / f"{name}.nc", engine="h5netcdf") for name in ("ours", "theirs"))
     xr.testing.assert_identical(ours, theirs)
+    read = read_netcdf(tmp_path / "ours.nc", "results").to_xarray()
+    xr.testing.assert_identical(read, theirs)
+    assert {name: each.dtype for name, each in read.variables.items()} == {
+        name: each.dtype for name, each in theirs.variables.items()
+    }
 
 
 @pytest.mark.parametrize("packed", [(), ("more", "single")])
@@ -79,6 +84,18 @@ def test_results_of_a_run(name, tmp_path):
     write_netcdf(labelled, tmp_path / "labelled.nc")
     assert (tmp_path / "labelled.nc").read_bytes() == (tmp_path / "ours.nc").read_bytes()
     xr.testing.assert_identical(LabelledDataset.of(labelled.to_xarray()).to_xarray(), labelled.to_xarray())
+
+
+@pytest.mark.parametrize(
+    "encoding",
+    [{"scale_factor": 0.1, "dtype": "i2", "_FillValue": -1}, {"_FillValue": -1.0}, {"dtype": ">f4"}],
+    ids=["packed", "masked", "byte order"],
+)
+def test_values_that_conventions_change_are_read_as_xarray_does(encoding, tmp_path):
+    path = tmp_path / "a.nc"
+    dataset = xr.Dataset({"a": ("x", [1.0, np.nan, 3.0]), "b": ("x", [1, 2, 3])})
+    dataset.to_netcdf(path, engine="h5netcdf", encoding={"a": encoding})
+    xr.testing.assert_identical(read_netcdf(path, "results").to_xarray(), xr.load_dataset(path, engine="h5netcdf"))
 
 
 @pytest.mark.parametrize(
