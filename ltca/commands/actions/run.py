@@ -28,7 +28,7 @@ from ltca.errors import ConvergenceError, CycloError
 from ltca.output.files import whole_file, write_json
 from ltca.output.labelled import LabelledDataset
 from ltca.output.netcdf import write_netcdf
-from ltca.output.progress import progress
+from ltca.output.progress import progress, steps
 from ltca.page.compared import Compared
 from ltca.reading.drive_file import DriveFile
 
@@ -85,10 +85,13 @@ def solve_and_write(task: RunTask, out: Path) -> int:
         shown, also = _analyse(cases, task.pressure_angles, torque, engine, "pressure fields")
         if also:  # a field of a position without an answer is no field
             raise next(iter(also.values()))
-    summaries = summarise_cases(analyses)
-    dataset = labelled_results(file.name, analyses, file.text)
-    with whole_file(out / "results.nc") as part:
-        write_netcdf(dataset, part)
+    with steps() as show:
+        show("extremes between the positions")
+        summaries = summarise_cases(analyses)
+        show("results.nc")
+        dataset = labelled_results(file.name, analyses, file.text)
+        with whole_file(out / "results.nc") as part:
+            write_netcdf(dataset, part)
     write_json(out / "summary.json", {"drive": file.name, "cases": summaries})
     files, fields = ["results.nc", "summary.json"], None
     if shown:
@@ -112,7 +115,9 @@ def solve_and_write(task: RunTask, out: Path) -> int:
     print("\n".join(sampling))
     if task.page:
         told = [*sampling, *dict.fromkeys(f"warning: {one}" for each in proportions.values() for one in each)]
-        files.append(_write_page(task, analyses, dataset, summaries, checks, told, out))
+        with steps() as show:
+            show("page")
+            files.append(_write_page(task, analyses, dataset, summaries, checks, told, out))
     print("results: " + ", ".join(str(out / name) for name in files))
     for name, failure in failures.items():
         left = 2 * angles.size
