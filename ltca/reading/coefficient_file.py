@@ -7,6 +7,7 @@ is allocated, and nothing is executed.
 from __future__ import annotations
 
 import hashlib
+from dataclasses import replace
 from numbers import Integral, Real
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -22,6 +23,8 @@ from ltca.reading.coefficient_schema import NEEDED, require_schema
 
 if TYPE_CHECKING:
     import xarray as xr
+
+    from ltca.output.labelled import Labelled, LabelledDataset
 
 CHECKSUM = "checksum"
 PACKED = ("disc_approach", "disc_stress")
@@ -53,7 +56,7 @@ def _kept_bits(values: NDArray[np.floating]) -> NDArray[np.float32]:
     return np.asarray(np.rint(values / unit) * unit, dtype=np.float32)
 
 
-def read_coefficients(path: Path, *, lawful: bool = True) -> xr.Dataset:
+def read_coefficients(path: Path, *, lawful: bool = True) -> LabelledDataset:
     """Read coefficients of the right schema into memory.
 
     DamagedFileError when there is no such file, it holds something else, its checksum differs, or, with `lawful`, when a
@@ -61,7 +64,10 @@ def read_coefficients(path: Path, *, lawful: bool = True) -> xr.Dataset:
     """
     dataset = read_netcdf(path, "a coefficient file")
     require_schema(dataset, str(path))
-    dataset = dataset.assign({name: dataset[name].astype(float) for name in PACKED if name in dataset})
+    wide = {
+        name: replace(dataset[name], values=dataset[name].values.astype(float)) for name in PACKED if name in dataset
+    }
+    dataset = replace(dataset, variables=dataset.variables | wide)
     stated, checksum = dataset.attrs.get(CHECKSUM), checksum_of(dataset)
     if stated is not None and str(stated) != checksum:
         raise DamagedFileError(
@@ -74,7 +80,7 @@ def read_coefficients(path: Path, *, lawful: bool = True) -> xr.Dataset:
     return dataset
 
 
-def require_laws(dataset: xr.Dataset, source: str) -> None:
+def require_laws(dataset: Labelled, source: str) -> None:
     """Refuse coefficients of the right schema that break a law, all that are broken named: DamagedFileError."""
     broken = [check for check in check_coefficients(dataset) if not check.passed and check.name not in STATED_QUALITY]
     if broken:
@@ -99,18 +105,18 @@ def _is_written_by_us(path: Path) -> bool:
         return False
 
 
-def checksum_of(dataset: xr.Dataset) -> str:
+def checksum_of(dataset: Labelled) -> str:
     """Return a hash (hex) of variables and attributes, independent of their storage; units and descriptions of variables
     are left out.
     """
     digest = hashlib.sha256()
     for name in sorted(map(str, dataset.variables)):
         variable = dataset.variables[name]
-        if variable.dtype.kind not in "iubf":  # labels, and whatever else somebody has put in
+        if variable.values.dtype.kind not in "iubf":  # labels, and whatever else somebody has put in
             digest.update(f"{name} {variable.dims} {variable.values.tolist()}".encode("utf-8", "backslashreplace"))
             continue
-        kind = "<f8" if variable.dtype.kind == "f" else "<i8"
-        digest.update(f"{name} {variable.dims} {variable.shape} {kind}".encode())
+        kind = "<f8" if variable.values.dtype.kind == "f" else "<i8"
+        digest.update(f"{name} {variable.dims} {variable.values.shape} {kind}".encode())
         digest.update(np.ascontiguousarray(variable.values, dtype=kind).tobytes())
     for name in sorted(map(str, dataset.attrs)):
         if name != CHECKSUM:

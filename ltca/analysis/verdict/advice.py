@@ -9,20 +9,21 @@ and teeth are the ratio, and no advice. Nor is a Young's modulus: another one is
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from math import ceil, exp, floor, isfinite, log
 from typing import Any
 
-from ltca.analysis.loaded_analysis import analyse
-from ltca.analysis.summary import summarise
+from ltca.analysis.loaded_analysis import analyse, analyse_cases
+from ltca.analysis.summary import summarise, summarise_cases
 from ltca.analysis.verdict.values import find_values
 from ltca.arrays import FloatArray
 from ltca.drive.fields import field_kinds, read_field
 from ltca.drive.members.judgement import Check, Value, judged_by
 from ltca.drive.parts import Drive
 from ltca.drive.units.table import label
-from ltca.errors import CycloError
+from ltca.errors import ConvergenceError, CycloError
 from ltca.reading.changes import with_fields
 
 RELATIVE_STEP = 0.01
@@ -111,16 +112,7 @@ def advise(
         return {}
     base = _values(drive, crank_angle, torque)
     found: dict[str, list[Driver]] = {quantity: [] for quantity in wanted}
-    for one in _inputs(drive, torque):
-        for step in one.steps:
-            by_torque = 1.0 + step if one.name == TORQUE else 1.0
-            try:
-                changed = _values(with_fields(drive, one.changed(1.0 + step)), crank_angle, by_torque * torque)
-            except CycloError:
-                continue
-            break
-        else:
-            continue
+    for one, step, changed in _changes(drive, crank_angle, torque):
         for quantity, check in wanted.items():
             before, after = _judged(base, check), _judged(changed, check)
             if not before or not after or before * after <= 0.0:
@@ -201,6 +193,50 @@ def _driver(drive: Drive, one: _Input, elasticity: float, check: Check, part: fl
     if one.beside:
         told += f" (with {', '.join(one.beside)})"
     return Driver(input=one.name, elasticity=elasticity, change=told, factor=factor)
+
+
+def _changes(drive: Drive, crank_angle: FloatArray, torque: float) -> Iterator[tuple[_Input, float, dict[str, Value]]]:
+    """Give each input with the first of its steps that makes a drive that balances, and the values there.
+
+    All inputs are tried at once, the next steps of those that are left after that.
+    """
+    inputs = {one.name: one for one in _inputs(drive, torque)}
+    answered: dict[str, tuple[float, dict[str, Value]]] = {}
+    for number in range(max((len(one.steps) for one in inputs.values()), default=0)):
+        left = {
+            name: one.steps[number] for name, one in inputs.items() if name not in answered and number < len(one.steps)
+        }
+        drives = dict[str, Drive]()
+        for name, step in left.items():
+            with suppress(CycloError):
+                drives[name] = with_fields(drive, inputs[name].changed(1.0 + step))
+        loaded = {name: drives.pop(name) for name in (TORQUE,) if name in drives}
+        tried = _values_of(drives, crank_angle, torque)
+        tried |= _values_of(loaded, crank_angle, (1.0 + left.get(TORQUE, 0.0)) * torque)
+        answered |= {name: (left[name], values) for name, values in tried.items()}
+    yield from ((one, *answered[name]) for name, one in inputs.items() if name in answered)
+
+
+def _values_of(drives: Mapping[str, Drive], crank_angle: FloatArray, torque: float) -> dict[str, dict[str, Value]]:
+    """Values of drives by name, solved together; without those that are refused or do not balance."""
+    if not drives:
+        return {}
+    try:
+        solved = dict(analyse_cases(drives, crank_angle, torque))
+        analyses = {name: found for name, found in solved.items() if not isinstance(found, ConvergenceError)}
+        summaries = summarise_cases(analyses)
+        return {
+            name: {value.quantity: value for value in find_values(found, summaries[name])}
+            for name, found in analyses.items()
+        }
+    except CycloError:  # of one of them, which the others do without
+        if len(drives) == 1:
+            return {}
+        return {
+            name: values
+            for own, one in drives.items()
+            for name, values in _values_of({own: one}, crank_angle, torque).items()
+        }
 
 
 def _values(drive: Drive, crank_angle: FloatArray, torque: float | None) -> dict[str, Value]:
