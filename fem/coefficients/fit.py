@@ -15,7 +15,7 @@ from ltca.reading.coefficient_laws import Check
 from ltca.reading.coefficient_schema import shape_differences, shape_of
 
 if TYPE_CHECKING:
-    import xarray as xr
+    from ltca.output.labelled import Labelled
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -26,7 +26,7 @@ class _Fit:
     normals: float
 
 
-def check_against_drive(dataset: xr.Dataset, drive: Drive, source: str) -> tuple[Check, ...]:
+def check_against_drive(dataset: Labelled, drive: Drive, source: str) -> tuple[Check, ...]:
     """Check that coefficients belong to the bodies of a drive: places and normals of the stations.
 
     CycloError, naming the file `source`, when the numbers that its bodies are made of are not the drive's, or the numbers of
@@ -57,7 +57,7 @@ def check_against_drive(dataset: xr.Dataset, drive: Drive, source: str) -> tuple
     )
 
 
-def _served_by(dataset: xr.Dataset, drive: Drive, source: str) -> Drive:
+def _served_by(dataset: Labelled, drive: Drive, source: str) -> Drive:
     """Return the nominal drive that a file was derived for, with its clearances or, where the file leaves them out, without."""
     theirs = shape_of(dataset)
     for keep in (True, False) if float(dataset.attrs["clearances_left_out"]) else (True,):
@@ -70,7 +70,7 @@ def _served_by(dataset: xr.Dataset, drive: Drive, source: str) -> Drive:
     raise CycloError(f"{source}: belongs to other bodies than those of {drive.name}: {differences}")
 
 
-def _fit(dataset: xr.Dataset, nominal: Drive) -> _Fit | None:
+def _fit(dataset: Labelled, nominal: Drive) -> _Fit | None:
     """Return how the stations fit a drive; None when it has other boundaries."""
     curves = DriveShapes.of_drive(nominal).disc.curves
     boundary = dataset["station_boundary"].values

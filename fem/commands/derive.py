@@ -19,9 +19,8 @@ from ltca.reading.arguments import (
 )
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from ltca.drive.parts import Drive
+    from ltca.output.labelled import Labelled
     from ltca.reading.coefficient_laws import Check
 
 SUMMARY: str = "derive the bodies' influence coefficients by finite elements, or check a file of them"
@@ -175,7 +174,7 @@ def _check_file(arguments: argparse.Namespace) -> int:
     return 0 if all(check.passed for check in checks) else 1
 
 
-def _check_against_discs(dataset: xr.Dataset, drive: Drive, source: str) -> tuple[Check, ...]:
+def _check_against_discs(dataset: Labelled, drive: Drive, source: str) -> tuple[Check, ...]:
     """Check a file against the disc of a drive that it belongs to; of several discs it must belong to one."""
     from fem.coefficients.fit import check_against_drive
 
@@ -193,7 +192,7 @@ def _check_against_discs(dataset: xr.Dataset, drive: Drive, source: str) -> tupl
     raise refusals[0]
 
 
-def _print_checks(dataset: xr.Dataset, checks: tuple[Check, ...]) -> None:
+def _print_checks(dataset: Labelled, checks: tuple[Check, ...]) -> None:
     """Print the laws with value, limit and verdict, then those that the file has no data for."""
     from ltca.reading.coefficient_laws import unstated_laws
 

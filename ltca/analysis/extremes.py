@@ -399,7 +399,7 @@ def _solve(
     else:
         rows = np.repeat(np.arange(len(analyses)), [full.size + light.size for full, light in places])
         model = stack_drives([analysis.model for analysis in analyses], 1).take(rows)
-        drives = [analyses[row].drive for row in rows]
+        drives = [analyses[row].drive for row in rows.tolist()]
     found, first = solve_at_output(model, drives, angle, torque, start), 0
     for analysis, pair, own in zip(analyses, stages, places, strict=True):
         for stage, at in zip(pair, own, strict=True):

@@ -18,7 +18,7 @@ from ltca.reading.coefficient_file import read_coefficients, write_coefficients
 from validation.compare.model_positions import DiscCoefficients
 
 if TYPE_CHECKING:
-    import xarray as xr
+    from ltca.output.labelled import Labelled
 
 
 def nominal_coefficients_of(
@@ -37,13 +37,13 @@ def nominal_coefficients_of(
 
 def disc_coefficients_of(
     drive: Drive, case: str, folder: Path, **options: Any
-) -> tuple[dict[str, xr.Dataset], DiscCoefficients]:
+) -> tuple[dict[str, Labelled], DiscCoefficients]:
     """Return the coefficients of all discs of a case, derived once for each distinct shape; options as for `coefficients_of`.
 
     The datasets are keyed by the case, of several shapes by case and first disc.
     """
     singles = single_discs(drive)
-    shapes: dict[str, tuple[str, xr.Dataset]] = {}
+    shapes: dict[str, tuple[str, Labelled]] = {}
     found = []
     for number, single in enumerate(singles):
         dataset, coefficients = coefficients_of(single, case, folder, **options)
@@ -65,7 +65,7 @@ def coefficients_of(
     plane: PlaneState = "strain",
     size: float = 1.0,
     progress: Callable[[str], None] | None = None,
-) -> tuple[xr.Dataset, InfluenceCoefficients]:
+) -> tuple[Labelled, InfluenceCoefficients]:
     """Return the coefficients of a drive of one disc, from its kept file if that fits: content, and as the LTCA reads it."""
     # The code that derived them is in the name: what older code kept is never compared.
     path = folder / f"{drive.shape_fingerprint()}_{plane}_{size:g}_{code_hash('fem', 'ltca')}.nc"

@@ -9,12 +9,12 @@ from ltca.reading.coefficient_laws import Check, check_coefficients
 from validation.rows import Row
 
 if TYPE_CHECKING:
-    import xarray as xr
+    from ltca.output.labelled import Labelled
 
 HALVED_LIMIT = 3e-3
 
 
-def check_file(dataset: xr.Dataset, case: str, plane: str) -> list[Row]:
+def check_file(dataset: Labelled, case: str, plane: str) -> list[Row]:
     """Return the checks of one set of derived coefficients as rows, labelled with case and plane state."""
     return [_row(check, case, f"coefficients, plane {plane}") for check in check_coefficients(dataset)]
 
@@ -43,7 +43,7 @@ def _row(check: Check, case: str, model: str) -> Row:
     )
 
 
-def halved_mesh_row(finer: xr.Dataset, case: str) -> Row:
+def halved_mesh_row(finer: Labelled, case: str) -> Row:
     """Return the row on the change by a mesh of half the size, from coefficients derived on it.
 
     Their convergence estimate compares with twice the element size, the default one.
