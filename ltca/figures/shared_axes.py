@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from ltca.analysis.pressure_safety import PressureSafety
     from ltca.analysis.torque_curve import TorqueCurve
     from ltca.analysis.transmission_error_orders import Spectrum
+    from ltca.output.labelled import Labelled, LabelledArray
 
 STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
 """Between ticks, times a power of ten."""
@@ -91,12 +92,12 @@ def deviation(error: FloatArray) -> FloatArray:
     return np.asarray(error - np.nanmean(error, axis=-1, keepdims=True))
 
 
-def contact_values(dataset: xr.Dataset, torque: str) -> dict[str, FloatArray]:
+def contact_values(dataset: Labelled, torque: str) -> dict[str, FloatArray]:
     """Return loads and pressures of contacts by the name of their axis, as ``full/pin/load``."""
-    return {f"{torque}/{key}": dataset[name].values for key, name in CONTACTS.items() if dataset[name].size}
+    return {f"{torque}/{key}": dataset[name].values for key, name in CONTACTS.items() if dataset[name].values.size}
 
 
-def run_values(dataset: xr.Dataset) -> dict[str, FloatArray]:
+def run_values(dataset: Labelled) -> dict[str, FloatArray]:
     """Return what a run is drawn from, by the name of its axis: contacts, transmission errors, ″, bearing forces, N, shares."""
     radial, tangential = dataset["bearing_radial"].values, dataset["bearing_tangential"].values
     with np.errstate(invalid="ignore"):
@@ -108,13 +109,14 @@ def run_values(dataset: xr.Dataset) -> dict[str, FloatArray]:
             "total": np.hypot(radial, tangential),
         }
     if dataset.sizes["disc"] > 1:
-        values["share"] = torque_shares(dataset).values
+        whole = dataset["wheel_moment"].transpose("case", "position").values
+        values["share"] = dataset["disc_torque"].transpose("case", "disc", "position").values / whole[:, None]
     if dataset.sizes["crank"] > 1:
         values["crank"] = dataset["crank_torque"].values / 1e3
     return values
 
 
-def _deviations(error: xr.DataArray) -> FloatArray:
+def _deviations(error: LabelledArray | xr.DataArray) -> FloatArray:
     """Deviations of the cases that have an answer somewhere, arc seconds."""
     values = error.transpose("case", "position").values * ARCSEC
     return deviation(values[np.isfinite(values).any(axis=1)])

@@ -33,6 +33,8 @@ LARGEST_FILTER = 6
 # Deflate packs no more than 1032 to one; what is declared beyond that is not in the file.
 LARGEST_PACKING = 1100
 SMALL = 1 << 20
+# Bytes of alike place together: of numbers kept to few bits the last bytes are zero.
+DEFLATED = {"compression": "gzip", "compression_opts": 6, "shuffle": True}
 NO_VARIABLE = b"This is a netCDF dimension but not a netCDF variable."
 HIDDEN = frozenset((
     "CLASS", "NAME", "REFERENCE_LIST", "DIMENSION_LIST", "_Netcdf4Dimid", "_Netcdf4Coordinates", "_NCProperties",
@@ -346,7 +348,7 @@ def _written(file: h5py.File, name: str, variable: LabelledArray, packed: Collec
     if kind not in "biufUO":
         raise TypeError(f"{name}: netCDF has no values of type {values.dtype}")
     stored: Any = {"U": h5py.string_dtype(), "O": h5py.string_dtype(), "b": "i1"}.get(kind, values.dtype)
-    options: dict[str, Any] = {"compression": "gzip"} if name in packed and values.ndim else {}
+    options: dict[str, Any] = DEFLATED if name in packed and values.ndim else {}
     if kind == "f":
         options["fillvalue"] = np.array(np.nan, dtype=values.dtype)
     place = file.create_dataset(name, values.shape, stored, track_order=True, **options, **_growing(values.shape))

@@ -31,7 +31,6 @@ PACKED = ("disc_approach", "disc_stress")
 """Matrices that make up a file: stored to `KEPT_BITS`, in single precision, packed."""
 KEPT_BITS = 18
 """Bits to which `PACKED` matrices are kept below their largest entry: 4e-6 of it, where the mesh leaves some 4e-3."""
-PACKING = {"zlib": True, "complevel": 6, "shuffle": True}
 
 _LAWFUL: set[str] = set()
 """Checksums of contents that this process has checked already: a run reads its file more than once."""
@@ -45,7 +44,7 @@ def write_coefficients(dataset: xr.Dataset, path: Path) -> Path:
     packed = [name for name in PACKED if name in dataset]
     kept = dataset.assign({name: dataset[name].copy(data=_kept_bits(dataset[name].values)) for name in packed})
     with whole_file(path) as part:
-        write_netcdf(kept.assign_attrs({CHECKSUM: checksum_of(kept)}), part, dict.fromkeys(packed, PACKING))
+        write_netcdf(kept.assign_attrs({CHECKSUM: checksum_of(kept)}), part, packed)
     return path
 
 
