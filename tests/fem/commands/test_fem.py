@@ -27,7 +27,6 @@ def run(*words):
 def folder(tmp_path_factory):
     out = tmp_path_factory.mktemp("fem")
     words = ("paper", "--case", "CS-3", "--angle", "0.5", "--size", "6", "--out", str(out), "--export", "calculix")
-    words += ("--no-pictures",)
     assert run(*words) == 0
     return out
 
@@ -132,12 +131,13 @@ def test_fields_and_deck_are_there(folder):
         zz, 0.3 * (disc.point_data["stress_xx_MPa"] + disc.point_data["stress_yy_MPa"]), atol=1e-9 * np.abs(zz).max()
     )
     assert not [path for path in folder.iterdir() if path.name.startswith(".")]
+    assert not list(folder.glob("*.png"))  # pictures wait for --pictures
     assert (folder / "calculix.inp").read_text(encoding="ascii").count("*CONTACT PAIR") >= 10
 
 
 @pytest.mark.slow
 def test_pictures(tmp_path):
-    assert run("paper", "--case", "CS-1", "--angle", "0.5", "--size", "6", "--out", str(tmp_path)) == 0
+    assert run("paper", "--case", "CS-1", "--angle", "0.5", "--size", "6", "--out", str(tmp_path), "--pictures") == 0
     for name in ("von_mises.png", "contacts.png", "deformed.png"):
         assert (tmp_path / name).stat().st_size > 20_000
 
