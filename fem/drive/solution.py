@@ -38,11 +38,12 @@ from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import names_unit_mistakes
 from ltca.errors import ConvergenceError, DriveError
 
-# The coarse stage looks for loads only: 8/3.5 elements for each half-width, zones for contacts that are open by as
+# The coarse stage looks for loads only: two elements for each half-width, zones for contacts that are open by as
 # much as bodies approach each other, sized for at least a quarter of the largest load.
-COARSE_SIZE = 3.5
-# Elements of the coarse stage grow twice as fast away from the contacts: half as many, loads still good to 0.5 %.
-COARSE_GROWTH = 0.6
+COARSE_SIZE = 4.0
+# Elements of the coarse stage grow faster away from the contacts: fewer of them, loads still good to 1.5 %, half-widths
+# to half of that.
+COARSE_GROWTH = 0.75
 COARSE_SHARE = 0.25
 COARSE_MARGIN = 1.0
 # Open contacts within this part of the largest approach stay candidates of the fine stage.
