@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 from numpy.typing import ArrayLike
 
 from ltca.analysis import loaded_analysis
@@ -25,6 +24,7 @@ from ltca.geometry.placement import position_angles
 from ltca.quantities import SCALARS, unit_sign
 
 if TYPE_CHECKING:
+    import xarray as xr
     from matplotlib.figure import Figure
 
 MOST_POSITIONS = 1_000_000

@@ -8,6 +8,7 @@ roller is resolved, and then searched about its highest samples.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import ceil, gcd
 
@@ -15,7 +16,7 @@ import numpy as np
 
 from ltca.analysis.contact_arrays import array_of, contact_arrays
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse
-from ltca.arrays import FloatArray
+from ltca.arrays import FloatArray, stack_drives, take_positions
 from ltca.compliance.response import ContactPressures
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
@@ -168,17 +169,35 @@ def refine_extremes(analysis: LoadedAnalysis) -> Extremes:
     to it. On grids, a hundred times as dear, the places of the extremes are those found on tables, and only they are
     solved.
     """
-    drive, given = analysis.drive, analysis.full.crank_angle
-    if not is_full_turn(given):
+    (found,) = refine_together([analysis])
+    return found
+
+
+def refine_together(analyses: Sequence[LoadedAnalysis]) -> list[Extremes]:
+    """Return the same of several analyses; where there are more than one, of engines that take batches (`stack_drives`).
+
+    Raises what `refine_extremes` does where it is due for any of them.
+    """
+    if not all(is_full_turn(analysis.full.crank_angle) for analysis in analyses):
         raise ValueError("extremes are refined over full turns, 2πk/N with more than one position")
-    if analysis.engine.options["contacts"] == "grids":
-        near, near_light = _searched(analyse(drive, given, analysis.torque))
-        full, light = _stages(analysis)
-        places, light_places = near.search.places(), near_light.search.places()
-        start = np.concatenate([near.start(places), near_light.start(light_places)])
-        _solve(analysis, full, light, places, light_places, start)
-    else:
-        full, light = _searched(analysis)
+    if analyses[0].engine.options["contacts"] == "grids":
+        return [_extremes(analysis, *_on_grids(analysis)) for analysis in analyses]
+    searched = zip(analyses, _searched(analyses), strict=True)
+    return [_extremes(analysis, full, light) for analysis, (full, light) in searched]
+
+
+def _on_grids(analysis: LoadedAnalysis) -> tuple[_Stage, _Stage]:
+    """The stages of an analysis on grids, with the extremes of tables solved on them."""
+    ((near, near_light),) = _searched([analyse(analysis.drive, analysis.full.crank_angle, analysis.torque)])
+    stages = _stages(analysis)
+    places = near.search.places(), near_light.search.places()
+    start = np.concatenate([near.start(places[0]), near_light.start(places[1])])
+    _solve([analysis], [stages], [places], start)
+    return stages
+
+
+def _extremes(analysis: LoadedAnalysis, full: _Stage, light: _Stage) -> Extremes:
+    given = analysis.full.crank_angle
     found, found_light = full.search.largest(), light.search.largest()
     values = dict.fromkeys(REFINED, np.nan) | {name: value for name, value in found.items() if name in REFINED}
     for name, torque in (("ptp_transmission_error", found), ("ptp_transmission_error_light", found_light)):
@@ -204,17 +223,27 @@ def _stages(analysis: LoadedAnalysis) -> tuple[_Stage, _Stage]:
     )
 
 
-def _searched(analysis: LoadedAnalysis) -> tuple[_Stage, _Stage]:
-    """Fill the turn up and search it, both torques together."""
-    full, light = _stages(analysis)
-    places = light_places = scan_angles(analysis.full.crank_angle.size, passages_per_turn(analysis.drive))
+def _searched(analyses: Sequence[LoadedAnalysis]) -> list[tuple[_Stage, _Stage]]:
+    """Fill the turn of each analysis up and search it, both torques and all analyses together."""
+    stages = [_stages(analysis) for analysis in analyses]
+    scans = [scan_angles(each.full.crank_angle.size, passages_per_turn(each.drive)) for each in analyses]
+    going, places = list(range(len(analyses))), [(scan, scan) for scan in scans]
     for _ in range(MAX_REFINEMENTS + 1):
-        start = np.concatenate([full.start(places), light.start(light_places)])
-        _solve(analysis, full, light, places, light_places, start)
-        places, light_places = full.search.promising(), light.search.promising()
-        if places.size + light_places.size == 0:
+        asked = [(stages[number], places[number]) for number in going]
+        start = np.concatenate([stage.start(at) for pair, own in asked for stage, at in zip(pair, own, strict=True)])
+        _solve(
+            [analyses[number] for number in going],
+            [stages[number] for number in going],
+            [places[number] for number in going],
+            start,
+        )
+        for number in going:
+            full, light = stages[number]
+            places[number] = full.search.promising(), light.search.promising()
+        going = [number for number in going if places[number][0].size + places[number][1].size]
+        if not going:
             break
-    return full, light
+    return stages
 
 
 def passages_per_turn(drive: Drive) -> int:
@@ -356,25 +385,33 @@ class _Stage:
 
 
 def _solve(
-    analysis: LoadedAnalysis,
-    full: _Stage,
-    light: _Stage,
-    angles: FloatArray,
-    light_angles: FloatArray,
+    analyses: Sequence[LoadedAnalysis],
+    stages: Sequence[tuple[_Stage, _Stage]],
+    places: Sequence[tuple[FloatArray, FloatArray]],
     start: FloatArray,
 ) -> None:
-    """Balance new positions of both torques in one batch and give them to their stages."""
-    joined = np.concatenate([angles, light_angles])
-    torque = np.repeat([full.torque, light.torque], [angles.size, light_angles.size])
-    found = solve_at_output(analysis.model, [analysis.drive], joined, torque, start)
-    if angles.size:
-        signals = _full_signals(analysis, found, analysis.model.pressures(found.response))
-        loaded = slice(angles.size)
-        full.add(angles, found.pose[loaded], {name: values[loaded] for name, values in signals.items()})
-    if light_angles.size:
-        behind = slice(angles.size, None)
-        signals = _wheel_signals(analysis, found)
-        light.add(light_angles, found.pose[behind], {name: values[behind] for name, values in signals.items()})
+    """Balance new positions of both torques of each analysis in one batch and give them to their stages."""
+    angle = np.concatenate([at for own in places for at in own])
+    counts = [at.size for own in places for at in own]
+    torque = np.repeat([stage.torque for pair in stages for stage in pair], counts)
+    if len(analyses) == 1:
+        model, drives = analyses[0].model, [analyses[0].drive]
+    else:
+        rows = np.repeat(np.arange(len(analyses)), [full.size + light.size for full, light in places])
+        model = stack_drives([analysis.model for analysis in analyses], 1).take(rows)
+        drives = [analyses[row].drive for row in rows]
+    found, first = solve_at_output(model, drives, angle, torque, start), 0
+    for analysis, pair, own in zip(analyses, stages, places, strict=True):
+        for stage, at in zip(pair, own, strict=True):
+            if not at.size:
+                continue
+            part = take_positions(found, np.arange(first, first + at.size))
+            first += at.size
+            if stage is pair[0]:
+                signals = _full_signals(analysis, part, analysis.model.pressures(part.response))
+            else:
+                signals = _wheel_signals(analysis, part)
+            stage.add(at, part.pose, signals)
 
 
 def _wheel_signals(analysis: LoadedAnalysis, found: Equilibrium) -> dict[str, FloatArray]:

@@ -8,10 +8,9 @@ the frame of the wheel, holes in that of the disc, shaft pins in the fixed frame
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from ltca.analysis.contact_arrays import contact_arrays
 from ltca.analysis.friction.variables import friction_values
@@ -26,9 +25,13 @@ from ltca.errors import DriveError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, disc_displacement
 from ltca.geometry.placement import place_coordinates
 from ltca.laws.backed import shaft_pin_seat, wheel_pin_seat
+from ltca.output.labelled import LabelledDataset
 from ltca.output.provenance import code_hash, code_version
 from ltca.quantities import DIMENSIONS, QUANTITIES, SCHEMA_VERSION
 from ltca.reading.writing import drive_text
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 def case_arrays(analysis: LoadedAnalysis) -> dict[str, Any]:
@@ -194,6 +197,13 @@ def build_dataset(drive_name: str, analyses: Mapping[str, LoadedAnalysis], drive
     xarray.Dataset
         Dimensions case, disc, crank, position, pin, roller, hole; units and descriptions in the attributes.
     """
+    return labelled_results(drive_name, analyses, drive_file).to_xarray()
+
+
+def labelled_results(
+    drive_name: str, analyses: Mapping[str, LoadedAnalysis], drive_file: str | None = None
+) -> LabelledDataset:
+    """Return the same as `build_dataset` without xarray, for files and pages."""
     per_case = [case_arrays(analysis) for analysis in analyses.values()]
     named = {name: value for values in per_case for name, value in values.items()}
     first = next(iter(analyses.values()))
@@ -206,7 +216,7 @@ def build_dataset(drive_name: str, analyses: Mapping[str, LoadedAnalysis], drive
             [values[name] if name in values else np.full_like(named[name], np.nan) for values in per_case]
         )
         variables[name] = quantity.labelled(stacked)
-    dataset = xr.Dataset(
+    dataset = LabelledDataset.build(
         variables,
         coords=coordinates(analyses),
         attrs={

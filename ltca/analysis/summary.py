@@ -2,24 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from ltca.analysis.contact_arrays import array_of
-from ltca.analysis.extremes import Sampling, is_full_turn, refine_extremes, sampling
+from ltca.analysis.extremes import Sampling, is_full_turn, refine_together, sampling
 from ltca.analysis.friction.losses import KINDS
-from ltca.analysis.loaded_analysis import LoadedAnalysis
+from ltca.analysis.loaded_analysis import MAX_BATCH_POSITIONS, LoadedAnalysis
 from ltca.analysis.results import case_arrays
-from ltca.arrays import FloatArray
-from ltca.drive.parts import Drive
+from ltca.arrays import FloatArray, batch_layout, stack_drives, take_rows
 from ltca.drive.units.quantities import ARCMIN, ARCSEC
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.first_contact import backlash, interference
-from ltca.geometry.pairs import ContactGeometry
-from ltca.geometry.play import play_over_a_turn
+from ltca.geometry.play import plays_over_a_turn
 from ltca.quantities import REFINED, SCALARS, scalar_named
 
 LOADED_FRACTION = 1e-3
@@ -40,6 +38,8 @@ OF_RANGES = (
 """What needs more than one position."""
 OF_LOADS = ("pin_shaft_loaded_range", "mean_loaded_pins", "mean_loaded_rollers", "mean_loaded_pin_shaft_pins")
 """Counts of loaded contacts."""
+Values = Mapping[str, float]
+"""Scalars by name."""
 FREE_PLAY = ("backlash_output", "min_backlash_output", "preloaded_part_of_turn")
 """Free play of the output: largest and least over a turn, and the part of it where parts overlap in every pose."""
 
@@ -58,7 +58,47 @@ def summarise(analysis: LoadedAnalysis) -> dict[str, float | None]:
         The keys of ``summary.json``, their units in their names; None where the engine or the positions cannot say a
         value, as positions that are no full turn say nothing of it.
     """
-    geometry, arrays = analysis.model.geometries, case_arrays(analysis)
+    (found,) = summarise_cases({"": analysis}).values()
+    return found
+
+
+def summarise_cases(analyses: Mapping[str, LoadedAnalysis]) -> dict[str, dict[str, float | None]]:
+    """Return the scalars of several cases by name, as `summarise` does; what is solved for them is solved together."""
+    each = list(analyses.values())
+    unloaded = _together(_unloaded, each, [batch_layout(analysis.model.geometries) for analysis in each])
+    plays = _together(_plays, each, [batch_layout(analysis.model.geometries) for analysis in each])
+    refined = _together(_refined, each, [_refined_with(analysis) for analysis in each])
+    known = zip(each, unloaded, plays, refined, strict=True)
+    return {name: _summary(*of) for name, of in zip(analyses, known, strict=True)}
+
+
+def _together(
+    function: Callable[[Sequence[LoadedAnalysis]], Sequence[Values]],
+    analyses: Sequence[LoadedAnalysis],
+    layouts: Sequence[Hashable],
+) -> list[Values]:
+    """What a function finds of each analysis: of those of one layout and as many positions together, or one by one."""
+    groups: dict[Hashable, list[int]] = {}
+    for number, (analysis, layout) in enumerate(zip(analyses, layouts, strict=True)):
+        alone = number if layout is None else None
+        groups.setdefault((layout, alone, analysis.full.crank_angle.tobytes()), []).append(number)
+    found: dict[int, Values] = {}
+    for members in groups.values():
+        many = max(1, MAX_BATCH_POSITIONS // analyses[members[0]].full.crank_angle.size)
+        for part in (members[first : first + many] for first in range(0, len(members), many)):
+            try:
+                answers = function([analyses[number] for number in part])
+            except ConvergenceError:  # one of them has no answer
+                if len(part) == 1:
+                    raise
+                answers = [function([analyses[number]])[0] for number in part]
+            found |= zip(part, answers, strict=True)
+    return [found[number] for number in range(len(analyses))]
+
+
+def _summary(analysis: LoadedAnalysis, unloaded: Values, plays: Values, refined: Values) -> dict[str, float | None]:
+    """The scalars of one case from what was solved for it."""
+    arrays = case_arrays(analysis)
     full, contacts = analysis.full, analysis.full.response
     angle = full.crank_angle
     pins, rollers, holes = (
@@ -66,12 +106,11 @@ def summarise(analysis: LoadedAnalysis) -> dict[str, float | None]:
         for load in (contacts.pin_load, contacts.rollers.outer_load, contacts.hole_load)
     )
     pressures = analysis.pressures
-    play = np.mean(backlash(geometry, angle, WHEEL_ANGLE))
     values = {
-        "backlash_disc": min(np.mean(backlash([disc], angle, DISC_ROTATION)) for disc in geometry) * ARCMIN,
-        "backlash_wheel": play * ARCMIN,
-        **_free_play(geometry, analysis.drive),
-        "interference": max(np.max(interference(disc, angle)) for disc in geometry),
+        "backlash_disc": unloaded["backlash_disc"],
+        "backlash_wheel": unloaded["backlash_wheel"],
+        **plays,
+        "interference": unloaded["interference"],
         "pin_end_cell": pressures.pins.end_cell,
         "roller_end_cell": pressures.outer.end_cell,
         "pin_shaft_end_cell": pressures.holes.end_cell,
@@ -83,7 +122,8 @@ def summarise(analysis: LoadedAnalysis) -> dict[str, float | None]:
         **scalars_of_positions(analysis, arrays),
     }
     values |= {f"compliance_share_{part}": np.mean(share) for part, share in analysis.compliance_shares.items()}
-    values |= _refined(analysis, values) | _sampling(sampling(analysis.drive, angle))
+    values |= {f"refined_{name}": refined.get(name, np.nan) for name in values if name in REFINED}
+    values |= _sampling(sampling(analysis.drive, angle))
     if not np.all(analysis.balanced):  # a position without an answer is no contact that is open
         values |= dict.fromkeys(OF_LOADS, np.nan)
     if angle.size == 1:  # one angle says nothing of ranges
@@ -125,14 +165,38 @@ def scalar_key(name: str) -> str:
     return name.removesuffix(bare) + scalar_named(bare).key
 
 
-def _free_play(discs: Sequence[ContactGeometry], drive: Drive) -> dict[str, float]:
+def _unloaded(analyses: Sequence[LoadedAnalysis]) -> list[dict[str, float]]:
+    """Backlash and interference of flank and pins alone, the discs in their nominal places."""
+    angle = analyses[0].full.crank_angle
+    rows, angles = np.repeat(np.arange(len(analyses)), angle.size), np.tile(angle, len(analyses))
+    geometries = zip(*(analysis.model.geometries for analysis in analyses), strict=True)
+    discs = [take_rows(stack_drives(own, 1), rows) for own in geometries]
+
+    def of_cases(values: FloatArray) -> FloatArray:
+        return values.reshape(len(analyses), angle.size)
+
+    wheel = of_cases(backlash(discs, angles, WHEEL_ANGLE)).mean(axis=1) * ARCMIN
+    own = np.min([of_cases(backlash([disc], angles, DISC_ROTATION)).mean(axis=1) for disc in discs], axis=0) * ARCMIN
+    overlap = np.max([of_cases(interference(disc, angles)).max(axis=1) for disc in discs], axis=0)
+    names = ("backlash_wheel", "backlash_disc", "interference")
+    return [dict(zip(names, each, strict=True)) for each in np.stack([wheel, own, overlap], axis=1).tolist()]
+
+
+def _plays(analyses: Sequence[LoadedAnalysis]) -> list[dict[str, float]]:
     """Free play of the output with every clearance over a turn: the largest, which is what is judged, and the least."""
     try:
-        found = play_over_a_turn(discs)
-    except ConvergenceError:  # nothing stops the wheel, or no pose was found: there is no play to tell
-        return dict.fromkeys(FREE_PLAY, np.nan)
-    scale = abs(drive.output_per_wheel_angle) * ARCMIN
-    return dict(zip(FREE_PLAY, (scale * found.largest, scale * found.least, found.preloaded), strict=True))
+        found = plays_over_a_turn([analysis.model.geometries for analysis in analyses])
+    except ConvergenceError:
+        if len(analyses) > 1:
+            raise
+        return [
+            dict.fromkeys(FREE_PLAY, np.nan)
+        ]  # nothing stops the wheel, or no pose was found: there is no play to tell
+    scales = [abs(analysis.drive.output_per_wheel_angle) * ARCMIN for analysis in analyses]
+    return [
+        dict(zip(FREE_PLAY, (scale * play.largest, scale * play.least, play.preloaded), strict=True))
+        for scale, play in zip(scales, found, strict=True)
+    ]
 
 
 SUMS: dict[str, Callable[[FloatArray], Any]] = {
@@ -194,13 +258,26 @@ def refined_value(summary: Mapping[str, float | None], key: str) -> float | None
     return summary.get(key) if refined is None else refined
 
 
-def _refined(analysis: LoadedAnalysis, values: Iterable[str]) -> dict[str, float]:
-    whole = analysis.is_complete and is_full_turn(analysis.full.crank_angle)
+def _refined_with(analysis: LoadedAnalysis) -> Hashable:
+    """What analyses must agree in whose extremes are refined together; None for those that are refined alone, or not at all."""
+    together = analysis.engine.batches and analysis.engine.options["contacts"] != "grids" and _is_whole(analysis)
+    return batch_layout(analysis.model) if together else None
+
+
+def _is_whole(analysis: LoadedAnalysis) -> bool:
+    return analysis.is_complete and is_full_turn(analysis.full.crank_angle)
+
+
+def _refined(analyses: Sequence[LoadedAnalysis]) -> list[dict[str, float]]:
+    """Extremes over the whole turn; none where the positions are no whole turn, or one between them has no answer."""
+    if not _is_whole(analyses[0]):
+        return [{}]
     try:
-        found = refine_extremes(analysis) if whole else None
-    except ConvergenceError:  # one between the positions has no answer; those of the positions stand
-        found = None
-    return {f"refined_{name}": np.nan if found is None else found.values[name] for name in values if name in REFINED}
+        return [extremes.values for extremes in refine_together(analyses)]
+    except ConvergenceError:  # those of the positions stand
+        if len(analyses) > 1:
+            raise
+        return [{}]
 
 
 def _sampling(found: Sampling) -> dict[str, float]:

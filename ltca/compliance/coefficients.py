@@ -34,7 +34,7 @@ from ltca.reading.coefficient_file import read_coefficients
 from ltca.reading.coefficient_schema import shape_differences, shape_of
 
 if TYPE_CHECKING:
-    import xarray as xr
+    from ltca.output.labelled import Labelled
 
 
 PLACE_TOLERANCE = 1e-3
@@ -288,7 +288,7 @@ def load_coefficients(path: Path, drive: Drive) -> InfluenceCoefficients:
     return replace(found, stress=stress, code_hash=str(data.attrs.get("code_hash", "")))
 
 
-def _require_same_bodies(path: Path, data: xr.Dataset, drive: Drive) -> bool:
+def _require_same_bodies(path: Path, data: Labelled, drive: Drive) -> bool:
     """Return whether the file serves the drive although it leaves the clearances out, which it must say itself."""
     own, theirs, attributes = drive.body_shape(), shape_of(data), data.attrs
     if theirs == own:
@@ -311,7 +311,7 @@ def _require_same_bodies(path: Path, data: xr.Dataset, drive: Drive) -> bool:
     )
 
 
-def _require_places(path: Path, data: xr.Dataset, drive: Drive) -> None:
+def _require_places(path: Path, data: Labelled, drive: Drive) -> None:
     """Refuse stations that do not lie on the walls of the disc: coefficients between them are of their places."""
     flank = FlankProfile.of_drive(drive)
     holes = Placement.of_drive(drive)
@@ -331,7 +331,7 @@ def _require_places(path: Path, data: xr.Dataset, drive: Drive) -> None:
             )
 
 
-def _coefficients_of_dataset(data: xr.Dataset, drive: Drive, *, shared: bool) -> InfluenceCoefficients:
+def _coefficients_of_dataset(data: Labelled, drive: Drive, *, shared: bool) -> InfluenceCoefficients:
     """Take the half-plane's logarithm off every entry of a file."""
     plane, thickness, parts = str(data.attrs["plane"]), float(data.attrs["thickness"]), drive.materials
     boundary = data["station_boundary"].values.astype(int)

@@ -17,7 +17,7 @@ from ltca.arrays import FloatArray
 from ltca.geometry.boundary_stations import Boundary, boundaries_of, turned_boundaries
 
 if TYPE_CHECKING:
-    import xarray as xr
+    from ltca.output.labelled import Labelled
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -74,7 +74,7 @@ class WallContacts:
     load: FloatArray
 
 
-def read_stress_coefficients(data: xr.Dataset, loaded: tuple[Boundary, ...]) -> StressCoefficients:
+def read_stress_coefficients(data: Labelled, loaded: tuple[Boundary, ...]) -> StressCoefficients:
     """Return the stress coefficients of a file, `NO_STRESSES` where it has none.
 
     Parameters

@@ -20,7 +20,7 @@ Angle = Annotated[float, quantity("rad")]
 Number = Annotated[int, Field(ge=0, le=100), COUNT]
 Errors = tuple[SignedLength, ...]
 
-STRICT = ConfigDict(extra="forbid", strict=False)
+STRICT = ConfigDict(extra="forbid", strict=False, defer_build=True)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)

@@ -122,8 +122,9 @@ def interference(geometry: ContactGeometry, crank_angle: FloatArray) -> FloatArr
     return np.where(pressed > TOUCHING * _size(geometry), pressed, 0.0)
 
 
-def _size(geometry: ContactGeometry) -> float:
-    return float(np.max(np.abs(geometry.placement.wheel_pin_centres)))
+def _size(geometry: ContactGeometry) -> FloatArray:
+    """Radius of the outermost pin, mm; of a batch one for each position."""
+    return np.asarray(np.max(np.abs(geometry.placement.wheel_pin_centres), axis=-1))
 
 
 def _quarter_pitch(geometry: ContactGeometry) -> float:

@@ -23,7 +23,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.arrays import BoolArray, FloatArray, take_positions, take_rows
+from ltca.arrays import BoolArray, FloatArray, stack_drives, take_positions, take_rows
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_ROTATION, RIGID, WHEEL_ANGLE
 from ltca.geometry.pair_motion import KnownPins
@@ -130,22 +130,38 @@ def play_over_a_turn(discs: Sequence[ContactGeometry]) -> TurnPlay:
     Flank, holes and rollers have different periods: equally spaced positions would see few phases of some of them. So they lie
     at multiples of the golden section, with more of them about the largest and the least until these are within some 0.2 %.
     """
-    angle = 2.0 * np.pi * np.mod(GOLDEN * np.arange(POSITIONS), 1.0)
-    found = free_play(discs, angle)
-    play, preloaded, spread = found.play, float(found.preloaded.mean()), 2.0 * np.pi / POSITIONS
+    (found,) = plays_over_a_turn([discs])
+    return found
+
+
+def plays_over_a_turn(drives: Sequence[Sequence[ContactGeometry]]) -> list[TurnPlay]:
+    """Return the same of several drives, each with its discs, of one `ltca.arrays.batch_layout`: as one batch."""
+    stacked = [stack_drives(discs, 1) for discs in zip(*drives, strict=True)]
+
+    def plays(angle: FloatArray) -> tuple[FloatArray, BoolArray]:
+        """Play and preload at angles of each drive, shape (drives, angles)."""
+        rows = np.repeat(np.arange(len(drives)), angle.shape[1])
+        found = free_play([take_rows(disc, rows) for disc in stacked], angle.ravel())
+        return found.play.reshape(angle.shape), found.preloaded.reshape(angle.shape)
+
+    angle = np.tile(2.0 * np.pi * np.mod(GOLDEN * np.arange(POSITIONS), 1.0), (len(drives), 1))
+    (play, preloaded), spread = plays(angle), 2.0 * np.pi / POSITIONS
     for _ in range(REFINEMENTS):
-        order = np.argsort(play, kind="stable")
-        near = np.concatenate([order[:1], order[-LARGEST_REFINED:]])
-        between = (angle[near][:, None] + spread * REFINED_PLACES).ravel()
-        angle, play = np.append(angle, between), np.append(play, free_play(discs, between).play)
+        order = np.argsort(play, axis=1, kind="stable")
+        near = np.concatenate([order[:, :1], order[:, -LARGEST_REFINED:]], axis=1)
+        places = np.take_along_axis(angle, near, axis=1)[..., None] + spread * REFINED_PLACES
+        between = places.reshape(len(drives), -1)
+        angle, play = np.append(angle, between, axis=1), np.append(play, plays(between)[0], axis=1)
         spread *= 0.3
-    most = int(np.argmax(play))
-    return TurnPlay(
-        largest=float(play[most]),
-        least=float(play.min()),
-        crank_angle=float(angle[most] % (2.0 * np.pi)),
-        preloaded=preloaded,
-    )
+    return [
+        TurnPlay(
+            largest=float(own.max()),
+            least=float(own.min()),
+            crank_angle=float(at[np.argmax(own)] % (2.0 * np.pi)),
+            preloaded=float(pressed.mean()),
+        )
+        for own, at, pressed in zip(play, angle, preloaded, strict=True)
+    ]
 
 
 def free_play(discs: Sequence[ContactGeometry], crank_angle: FloatArray, *, overlap: FloatArray | float = 0.0) -> Play:
@@ -175,12 +191,12 @@ def free_play(discs: Sequence[ContactGeometry], crank_angle: FloatArray, *, over
         pressed = np.flatnonzero(np.any(left.reshape(2, -1) > CLOSED, axis=0))
         if pressed.size:
             turned[:, pressed] = _beside_preload(
-                disc, angle[pressed], room[pressed], pose.reshape(2, -1, RIGID)[:, pressed]
+                take_rows(disc, pressed), angle[pressed], room[pressed], pose.reshape(2, -1, RIGID)[:, pressed]
             )
             preloaded[pressed] = True
         forward, backward = np.minimum(forward, turned[0]), np.maximum(backward, turned[1])
     # Discs may each be free without any angle common to all.
-    preloaded |= (backward - forward) * max(_reach(disc) for disc in discs) > LEAST_GAIN
+    preloaded |= (backward - forward) * np.maximum.reduce([_reach(disc) for disc in discs]) > LEAST_GAIN
     shut = forward < backward
     middle = 0.5 * (forward + backward)
     return Play(forward=np.where(shut, middle, forward), backward=np.where(shut, middle, backward), preloaded=preloaded)
@@ -240,9 +256,9 @@ def rigid_poses(geometry: ContactGeometry, crank_angle: FloatArray, sense: int) 
     return pose
 
 
-def _reach(geometry: ContactGeometry) -> float:
-    """Lever of the rotations, e z_P, mm."""
-    return float(geometry.placement.eccentricity.max()) * geometry.placement.reduction_ratio
+def _reach(geometry: ContactGeometry) -> FloatArray:
+    """Lever of the rotations, e z_P, mm; of a batch one for each position."""
+    return np.asarray(geometry.placement.eccentricity.max(axis=-1) * geometry.placement.reduction_ratio)
 
 
 class _Programme:
@@ -252,8 +268,11 @@ class _Programme:
         place = geometry.placement
         self.geometry, self.angle = geometry, angle
         self.room = RELIEF + (np.zeros((angle.size, 1)) if room is None else room[:, None])
-        self.lever = np.array([1.0, 1.0, _reach(geometry), _reach(geometry)])
-        self.bound = MAX_STEP * min(float(place.wheel_pin_radii.min()), float(place.eccentricity.min()))
+        # What scales and bounds a position is its own drive's: no answer depends on the others in the batch.
+        self.lever = np.ones((angle.size, RIGID))
+        self.lever[:, [DISC_ROTATION, WHEEL_ANGLE]] = np.reshape(_reach(geometry), (-1, 1))
+        smallest = np.minimum(place.wheel_pin_radii.min(axis=-1), place.eccentricity.min(axis=-1))
+        self.bound = np.broadcast_to(MAX_STEP * smallest, angle.shape)
         self.pitch = np.pi / place.reduction_ratio
         motion = geometry.flank(angle, np.zeros((angle.size, RIGID)))
         self.known, self.parameter = KnownPins.of(motion), motion.parameter
@@ -271,19 +290,19 @@ class _Programme:
         turned = pose[:, WHEEL_ANGLE, None] - pose[:, DISC_ROTATION, None]
         flank = geometry.flank(angle, pose, self.parameter[rows] + turned, known=take_positions(self.known, rows))
         gap = np.concatenate([rays.bore_play - length, -holes.approach, -flank.approach], axis=1)
-        slope = np.concatenate([moved.real, -holes.gradient, -flank.gradient], axis=1) / self.lever
+        slope = np.concatenate([moved.real, -holes.gradient, -flank.gradient], axis=1) / self.lever[rows, None]
         return gap + self.room[rows], slope, gap.shape[1] - flank.approach.shape[1]
 
     def farthest(self, sense: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the poses of the farthest wheel angles in these senses, and the overlap of parts there, mm."""
         size = self.angle.size
-        pose, left, bound = np.zeros((size, RIGID)), np.zeros(size), np.full(size, self.bound)
+        pose, left, bound = np.zeros((size, RIGID)), np.zeros(size), self.bound.copy()
         going = np.arange(size)
         tangents, pairs = np.zeros((size, 0, RIGID + 1)), np.zeros((size, 0), dtype=np.intp)
         start: Rows | None = None
         history: list[float] = []
         for turn in range(MAX_PROGRAMMES):
-            place = pose[going] * self.lever
+            place = pose[going] * self.lever[going]
             gap, slope, arcs = self.gaps(going, pose[going])
             overlap = np.maximum(-gap.min(axis=1), 0.0)
             # −slope · d ≤ gap + t; tangents of earlier poses are relative to the origin.
@@ -322,7 +341,7 @@ class _Programme:
             old = active >= gap.shape[1]
             start = np.where(old, np.where(active - drop < gap.shape[1], -1, active - drop), active)[stay]
             going, step = going[stay], step[stay]
-            pose[going] += step / self.lever
+            pose[going] += step / self.lever[going]
             if np.max(np.abs(pose[:, WHEEL_ANGLE])) > self.pitch:
                 worst = int(np.argmax(np.abs(pose[:, WHEEL_ANGLE])))
                 raise ConvergenceError(

@@ -14,6 +14,8 @@ from ltca.drive.units.quantities import ARCSEC
 if TYPE_CHECKING:
     import xarray as xr
 
+    from ltca.output.labelled import Labelled, LabelledArray
+
 MOST_VALUES = 1_500_000
 """Numbers on a page, some two megabytes: of runs with more, every second position is shown, or every third."""
 CONTACTS = {
@@ -25,7 +27,7 @@ CONTACTS = {
 """Load, pressure and half-width in ``results.nc``, by kind of contact."""
 
 
-def shown_positions(dataset: xr.Dataset) -> NDArray[np.intp]:
+def shown_positions(dataset: Labelled) -> NDArray[np.intp]:
     """Return which positions of a run a page shows: all of them, or evenly chosen ones of many."""
     sizes = dataset.sizes
     each = 2 * (4 * sizes["pin"] + 6 * sizes["crank"] * sizes["roller"]) + 2 * 3 * sizes["hole"] + 30
@@ -33,13 +35,13 @@ def shown_positions(dataset: xr.Dataset) -> NDArray[np.intp]:
     return np.arange(0, sizes["position"], ceil(values / MOST_VALUES))
 
 
-def run_arrays(dataset: xr.Dataset, light: xr.Dataset | None, rows: NDArray[np.intp]) -> dict[str, FloatArray]:
+def run_arrays(dataset: Labelled, light: Labelled | None, rows: NDArray[np.intp]) -> dict[str, FloatArray]:
     """Return the arrays of a page of a run, positions last.
 
     ``angle``, rad; by number of the case, torque and name, as ``0/full/pin/load``: loads in N, pressures at mid-width in MPa,
     half-widths in mm of shape (discs, contacts, positions), the parameter of each contact on the flank, rad; ``radial`` and
     ``tangential`` of each disc, mm, its ``rotation``, rad, the ``wheel`` angle, rad, and the transmission error ``te`` in
-    arc seconds; further curves of the whole drive (`_curves`). The dataset is that of `ltca.analysis.results.build_dataset`, or
+    arc seconds; further curves of the whole drive (`_curves`). The dataset is `ltca.analysis.results.labelled_results`, or
     ``results.nc`` read back, `light` the same at the light torque: without it that torque has its transmission error alone.
     `rows` are the positions that are shown (`shown_positions`).
     """
@@ -55,7 +57,7 @@ def run_arrays(dataset: xr.Dataset, light: xr.Dataset | None, rows: NDArray[np.i
     return {name: np.ascontiguousarray(values[..., rows]) for name, values in arrays.items()}
 
 
-def contact_arrays(case: xr.Dataset) -> dict[str, FloatArray]:
+def contact_arrays(case: Labelled) -> dict[str, FloatArray]:
     """Return load, pressure and half-width of a case by kind, as ``pin/load``, of shape (discs, contacts, positions)."""
     return {
         f"{kind}/{quantity}": by_contact(case[name])
@@ -64,7 +66,7 @@ def contact_arrays(case: xr.Dataset) -> dict[str, FloatArray]:
     }
 
 
-def by_contact(values: xr.DataArray) -> FloatArray:
+def by_contact(values: LabelledArray | xr.DataArray) -> FloatArray:
     """Return values of contacts with shape (discs, contacts, positions); rollers come crank after crank."""
     (last,) = (name for name in ("pin", "roller", "hole") if name in values.dims)
     order = [name for name in ("disc", "crank", last, "position") if name in values.dims]
@@ -72,7 +74,7 @@ def by_contact(values: xr.DataArray) -> FloatArray:
     return found.reshape(found.shape[0], int(np.prod(found.shape[1:-1])), found.shape[-1])
 
 
-def _state(case: xr.Dataset) -> dict[str, FloatArray]:
+def _state(case: Labelled) -> dict[str, FloatArray]:
     """Contacts and poses of a case at one torque."""
     return contact_arrays(case) | {
         "pin/parameter": by_contact(case["pin_contact_parameter"]),
@@ -84,14 +86,14 @@ def _state(case: xr.Dataset) -> dict[str, FloatArray]:
     }
 
 
-def bearing_curves(case: xr.Dataset) -> dict[str, FloatArray]:
+def bearing_curves(case: Labelled) -> dict[str, FloatArray]:
     """Return the bearing forces of a case, N, shape (discs, cranks, positions)."""
     return {
         name: case[f"bearing_{name}"].transpose("disc", "crank", "position").values for name in ("radial", "tangential")
     }
 
 
-def _curves(case: xr.Dataset) -> dict[str, FloatArray]:
+def _curves(case: Labelled) -> dict[str, FloatArray]:
     """Curves of the whole drive at the torque of the run: bearing forces by disc and crank, N, torques, N·m, losses."""
     curves = bearing_curves(case)
     if case.sizes["disc"] > 1:
@@ -107,6 +109,6 @@ def _curves(case: xr.Dataset) -> dict[str, FloatArray]:
     return curves
 
 
-def has_friction(case: xr.Dataset) -> bool:
+def has_friction(case: Labelled) -> bool:
     """Tell whether a case has friction: beside cases that have it, others have values that are not a number."""
     return "efficiency" in case and bool(np.isfinite(case["efficiency"].values).any())

@@ -29,7 +29,7 @@ from ltca.page.writing import page_text, script_data
 from ltca.quantities import SCALARS
 
 if TYPE_CHECKING:
-    import xarray as xr
+    from ltca.output.labelled import Labelled
 
 PAGE = "report.html"
 SCRIPTS = ("drawing", "plots", "motion", "stage", "run")
@@ -42,8 +42,8 @@ class Run:
 
     Attributes
     ----------
-    dataset : xarray.Dataset
-        Results of the run (`ltca.analysis.results.build_dataset`, or ``results.nc`` read back).
+    dataset : LabelledDataset or xarray.Dataset
+        Results of the run (`ltca.analysis.results.labelled_results`, or ``results.nc`` read back).
     drives : mapping of str to Drive
         As they were given, by case.
     engine : Engine
@@ -56,20 +56,20 @@ class Run:
         Of the crank bearings by case, or why there are none.
     sampling : sequence of str
         What the values stand for, and warnings.
-    light : xarray.Dataset or None
+    light : LabelledDataset, xarray.Dataset or None
         The same results at the light torque (`ltca.analysis.light_torque`); without them the drive moves at its torque alone.
     compared : Compared or None
         What stands beside it.
     """
 
-    dataset: xr.Dataset
+    dataset: Labelled
     drives: Mapping[str, Drive]
     engine: Engine
     summaries: Mapping[str, Mapping[str, float | None]]
     checks: Mapping[str, Sequence[Check]]
     lives: Mapping[str, BearingLives | str]
     sampling: Sequence[str]
-    light: xr.Dataset | None = None
+    light: Labelled | None = None
     compared: Compared | None = None
 
 
@@ -129,9 +129,9 @@ def run_page(run: Run) -> str:
     )
 
 
-def _torque(dataset: xr.Dataset, place: int) -> float:
+def _torque(dataset: Labelled, place: int) -> float:
     """Output torque of a case, N·mm."""
-    return float(dataset["torque"][place])
+    return float(dataset["torque"].values[place])
 
 
 def _arrays(run: Run, drives: Mapping[str, Drive]) -> dict[str, FloatArray]:
@@ -145,7 +145,7 @@ def _arrays(run: Run, drives: Mapping[str, Drive]) -> dict[str, FloatArray]:
     return arrays | {f"b/{name}": values for name, values in beside.items()}
 
 
-def _case(dataset: xr.Dataset, place: int, drive: Drive) -> dict[str, Any]:
+def _case(dataset: Labelled, place: int, drive: Drive) -> dict[str, Any]:
     return {
         "scenes": [moving_scene(single) for single in single_discs(drive)],
         "torque": _torque(dataset, place) / 1000.0,

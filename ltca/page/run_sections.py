@@ -19,19 +19,19 @@ from ltca.page.tables import Cell, Table, minus, number, word
 from ltca.quantities import SCALARS
 
 if TYPE_CHECKING:
-    import xarray as xr
+    from ltca.output.labelled import Labelled
 
 PLAY = SCALARS["backlash_output"]
 
 
-def wind_up(dataset: xr.Dataset, summaries: Mapping[str, Mapping[str, float | None]]) -> Section:
+def wind_up(dataset: Labelled, summaries: Mapping[str, Mapping[str, float | None]]) -> Section:
     """Return the wind-up of every case between the two torques of the run."""
     rows, equal = list[list[Cell]](), list[str]()
     for place, name in enumerate(summaries):
         case = dataset.isel(case=place)
         wound = np.abs(case["transmission_error"].values - case["transmission_error_light"].values)
         wound = wound[(case["status"].values == 0) & (case["status_light"].values == 0)]
-        torque, light = float(case["torque"]), float(case["light_torque"])
+        torque, light = float(case["torque"].values), float(case["light_torque"].values)
         if not (wound.size and np.all(wound > 0.0)):
             equal.append(name)
             continue

@@ -22,7 +22,7 @@ from ltca.page.tables import NOTHING, Cell, Table, minus, number, texts, word
 from ltca.quantities import Scalar
 
 if TYPE_CHECKING:
-    import xarray as xr
+    from ltca.output.labelled import Labelled
 
 Summaries = Mapping[str, Mapping[str, float | None]]
 
@@ -65,16 +65,16 @@ def _group(row: Scalar) -> str:
     return "rest" if "residual" in row.name or row.name.startswith("compliance_share") else "loads"
 
 
-def turn_orders(case: xr.Dataset) -> FloatArray | None:
+def turn_orders(case: Labelled) -> FloatArray | None:
     """Return the amplitudes of whole orders over one turn, from 1, arc seconds; None where positions are no turn."""
     angle = case["crank_angle"].values
-    if not is_full_turn(angle) or np.any(case["status"]) or np.any(case["status_light"]):
+    if not is_full_turn(angle) or np.any(case["status"].values) or np.any(case["status_light"].values):
         return None
     lines = np.fft.rfft(case["transmission_error"].values) * (2.0 / angle.size) * ARCSEC
     return np.asarray(np.abs(lines[1 : (angle.size + 1) // 2]))
 
 
-def orders_table(dataset: xr.Dataset, drives: Mapping[str, Drive]) -> Table | None:
+def orders_table(dataset: Labelled, drives: Mapping[str, Drive]) -> Table | None:
     """Return the largest whole orders of the transmission error, cases side by side; None where there are none."""
     each = {name: turn_orders(dataset.isel(case=place)) for place, name in enumerate(drives)}
     found = {name: lines for name, lines in each.items() if lines is not None and lines.size}

@@ -22,6 +22,8 @@ from ltca.reading.coefficient_schema import NEEDED, require_schema
 if TYPE_CHECKING:
     import xarray as xr
 
+    from ltca.output.labelled import Labelled, LabelledDataset
+
 CHECKSUM = "checksum"
 
 _LAWFUL: set[str] = set()
@@ -38,7 +40,7 @@ def write_coefficients(dataset: xr.Dataset, path: Path) -> Path:
     return path
 
 
-def read_coefficients(path: Path, *, lawful: bool = True) -> xr.Dataset:
+def read_coefficients(path: Path, *, lawful: bool = True) -> LabelledDataset:
     """Read coefficients of the right schema into memory.
 
     DamagedFileError when there is no such file, it holds something else, its checksum differs, or, with `lawful`, when a
@@ -80,18 +82,18 @@ def _is_written_by_us(path: Path) -> bool:
         return False
 
 
-def checksum_of(dataset: xr.Dataset) -> str:
+def checksum_of(dataset: Labelled) -> str:
     """Return a hash (hex) of variables and attributes, independent of their storage; units and descriptions of variables
     are left out.
     """
     digest = hashlib.sha256()
     for name in sorted(map(str, dataset.variables)):
         variable = dataset.variables[name]
-        if variable.dtype.kind not in "iubf":  # labels, and whatever else somebody has put in
+        if variable.values.dtype.kind not in "iubf":  # labels, and whatever else somebody has put in
             digest.update(f"{name} {variable.dims} {variable.values.tolist()}".encode("utf-8", "backslashreplace"))
             continue
-        kind = "<f8" if variable.dtype.kind == "f" else "<i8"
-        digest.update(f"{name} {variable.dims} {variable.shape} {kind}".encode())
+        kind = "<f8" if variable.values.dtype.kind == "f" else "<i8"
+        digest.update(f"{name} {variable.dims} {variable.values.shape} {kind}".encode())
         digest.update(np.ascontiguousarray(variable.values, dtype=kind).tobytes())
     for name in sorted(map(str, dataset.attrs)):
         if name != CHECKSUM:

@@ -14,7 +14,7 @@ from ltca.reading.coefficient_schema import shape_of
 from ltca.reading.station_walls import missed_between_stations, wall_bending
 
 if TYPE_CHECKING:
-    import xarray as xr
+    from ltca.output.labelled import Labelled
 
 
 RECIPROCITY = "reciprocity of displacements solved for"
@@ -106,21 +106,21 @@ def project_rigid_motions(approach: FloatArray, resultants: FloatArray) -> Float
     return np.asarray(left - (left @ basis) @ basis.T)
 
 
-def near_field_unit(dataset: xr.Dataset, body: str) -> float:
+def near_field_unit(dataset: Labelled, body: str) -> float:
     """Return 2(1 − ν²)/(πEt) of a body (without ν in plane stress), mm/N: the unit of the near field."""
     nu = float(dataset.attrs[f"{body}_poisson_ratio"]) if dataset.attrs["plane"] == "strain" else 0.0
     modulus, thickness = float(dataset.attrs[f"{body}_youngs_modulus"]), float(dataset.attrs["thickness"])
     return 2.0 * (1.0 - nu**2) / (np.pi * modulus * thickness)
 
 
-def station_resultants(dataset: xr.Dataset) -> FloatArray:
+def station_resultants(dataset: Labelled) -> FloatArray:
     """Return force in x, y (N) and moment about the disc centre (N·mm) of a newton at each station, shape (3, stations)."""
     point = dataset["station_x"].values + 1j * dataset["station_y"].values
     inward = -(dataset["station_normal_x"].values + 1j * dataset["station_normal_y"].values)
     return np.stack([inward.real, inward.imag, (point.conjugate() * inward).imag])
 
 
-def check_coefficients(dataset: xr.Dataset) -> tuple[Check, ...]:
+def check_coefficients(dataset: Labelled) -> tuple[Check, ...]:
     """Check coefficients of the right schema: reciprocity, definiteness, rigid bodies, closed forms, convergence.
 
     Those of `unstated_laws` are left out.
@@ -137,7 +137,7 @@ def check_coefficients(dataset: xr.Dataset) -> tuple[Check, ...]:
     )
 
 
-def unstated_laws(dataset: xr.Dataset) -> dict[str, str]:
+def unstated_laws(dataset: Labelled) -> dict[str, str]:
     """Return the laws that cannot be checked for lack of data in a file, with the missing names.
 
     A file of another code may leave out its derivation and the data that serve checking alone.
@@ -149,11 +149,11 @@ def unstated_laws(dataset: xr.Dataset) -> dict[str, str]:
     }
 
 
-def _holds(dataset: xr.Dataset, name: str) -> bool:
+def _holds(dataset: Labelled, name: str) -> bool:
     return name in dataset.variables or name in dataset.attrs
 
 
-def _stated(dataset: xr.Dataset, law: str, highest: float, reason: str) -> Iterator[Check]:
+def _stated(dataset: Labelled, law: str, highest: float, reason: str) -> Iterator[Check]:
     """The figure that a file states about itself for a law, if it does."""
     (name,) = STATED_BY[law]
     if name in dataset.attrs:
@@ -161,7 +161,7 @@ def _stated(dataset: xr.Dataset, law: str, highest: float, reason: str) -> Itera
         yield Check(name=law, value=value, lowest=0.0, highest=highest, reason=reason)
 
 
-def _check_reciprocity(dataset: xr.Dataset) -> Iterator[Check]:
+def _check_reciprocity(dataset: Labelled) -> Iterator[Check]:
     disc, roller = dataset["disc_approach"].values, dataset["roller_approach"].values
     stored = max(float(np.max(np.abs(matrix - matrix.T)) / np.max(np.abs(matrix))) for matrix in (disc, roller))
     reason = "Maxwell–Betti; a solve of this size leaves 1e-12"
@@ -169,7 +169,7 @@ def _check_reciprocity(dataset: xr.Dataset) -> Iterator[Check]:
     yield from _stated(dataset, RECIPROCITY, 1e-8, reason)
 
 
-def _check_definiteness(dataset: xr.Dataset) -> Iterator[Check]:
+def _check_definiteness(dataset: Labelled) -> Iterator[Check]:
     disc = project_rigid_motions(dataset["disc_approach"].values, station_resultants(dataset))
     smallest = float(np.linalg.eigvalsh(0.5 * (disc + disc.T))[3]) / near_field_unit(dataset, "disc")
     roller = float(np.linalg.eigvalsh(dataset["roller_approach"].values)[0])
@@ -184,7 +184,7 @@ def _check_definiteness(dataset: xr.Dataset) -> Iterator[Check]:
     yield Check(name="smallest eigenvalue, pin, roller, race", value=others, lowest=0.1, highest=np.inf, reason=reason)
 
 
-def _check_rigid_bodies(dataset: xr.Dataset) -> Iterator[Check]:
+def _check_rigid_bodies(dataset: Labelled) -> Iterator[Check]:
     reason = "a rigid motion moves no station relative to the bores; balanced loads know no datum: round-off"
     yield from _stated(dataset, RIGID_MOTIONS, 1e-10, reason)
     if _holds(dataset, "disc_resultant"):
@@ -199,7 +199,7 @@ def _check_rigid_bodies(dataset: xr.Dataset) -> Iterator[Check]:
         )
 
 
-def _check_near_field(dataset: xr.Dataset) -> Iterator[Check]:
+def _check_near_field(dataset: Labelled) -> Iterator[Check]:
     reason = (
         "half-plane: the approach falls by 2(1 − ν²)/(πEt) for each ln b; curvature adds the square of a tenth, some per cent "
         "of ln 2 at worst, a thin wall what it bends between both widths"
@@ -226,7 +226,7 @@ def _check_near_field(dataset: xr.Dataset) -> Iterator[Check]:
         yield Check(name=NEAR_FIELD_ROUND, value=value, lowest=lowest, highest=highest, reason=reason)
 
 
-def _check_neighbours(dataset: xr.Dataset) -> Iterator[Check]:
+def _check_neighbours(dataset: Labelled) -> Iterator[Check]:
     """Between a patch and its neighbour the approach falls like the logarithm; a pin yields about like a cylinder.
 
     Files with wider patches are checked by them, which is sharper: bending between neighbours cancels there.
@@ -266,7 +266,7 @@ def _fall(distance: FloatArray | float, half_width: FloatArray) -> FloatArray:
     return np.asarray(np.log(distance) - np.log(0.5 * half_width) + 0.25)
 
 
-def _check_closed_forms(dataset: xr.Dataset) -> Iterator[Check]:
+def _check_closed_forms(dataset: Labelled) -> Iterator[Check]:
     roller, widths = dataset["roller_approach"].values, dataset["roller_half_width"].values
     radius = float(dataset.attrs["roller_radius"])
     closed = np.array([compressed_cylinder(radius, float(width)) for width in widths])
@@ -293,7 +293,7 @@ def _check_closed_forms(dataset: xr.Dataset) -> Iterator[Check]:
             )
 
 
-def _off_held_ring(dataset: xr.Dataset, body: str, inner: float, outer: float) -> float:
+def _off_held_ring(dataset: Labelled, body: str, inner: float, outer: float) -> float:
     """Largest difference of a round body's approaches from the closed form, relative to the largest; NaN where there is no
     ring.
     """
@@ -308,7 +308,7 @@ def _off_held_ring(dataset: xr.Dataset, body: str, inner: float, outer: float) -
     return float(np.max(np.abs(own - closed)) / np.max(np.abs(closed)))
 
 
-def _check_convergence(dataset: xr.Dataset) -> Iterator[Check]:
+def _check_convergence(dataset: Labelled) -> Iterator[Check]:
     reason = (
         "of the largest entry without rigid motions; halving the size divides it by 5 (measured; by 4 or more with "
         "quadratic elements), so a mesh of half the size changes it by less than 0.3 %"
@@ -316,7 +316,7 @@ def _check_convergence(dataset: xr.Dataset) -> Iterator[Check]:
     yield from _stated(dataset, CONVERGENCE, 1.2e-2, reason)
 
 
-def even_pressure(dataset: xr.Dataset) -> FloatArray:
+def even_pressure(dataset: Labelled) -> FloatArray:
     """Return the load of each station under a pressure of 1 MPa on all walls of the disc, N, shape (stations,)."""
     boundary = dataset["station_boundary"].values
     points = dataset["station_x"].values + 1j * dataset["station_y"].values
@@ -338,7 +338,7 @@ def _slope(values: ComplexArray, at: FloatArray | None = None) -> ComplexArray:
     return np.asarray(np.exp(1j * np.outer(places, order)) @ series)
 
 
-def _opening_of_walls(dataset: xr.Dataset) -> float:
+def _opening_of_walls(dataset: Labelled) -> float:
     """Largest gap of a wall that is closed again by its strain and displacement, relative to the change of its length.
 
     Along a wall with unit tangent t and normal m the strain is ε = u_t′ + u_m t·m′; over the closed wall u_t returns to its
@@ -369,7 +369,7 @@ def _opening_of_walls(dataset: xr.Dataset) -> float:
     return max(found)
 
 
-def _check_stresses(dataset: xr.Dataset) -> Iterator[Check]:
+def _check_stresses(dataset: Labelled) -> Iterator[Check]:
     """A file may leave the stresses out: there is nothing to check then."""
     if "disc_stress" not in dataset:
         return

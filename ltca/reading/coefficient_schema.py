@@ -16,7 +16,7 @@ from ltca.drive.parts import Materials
 from ltca.errors import DamagedFileError
 
 if TYPE_CHECKING:
-    import xarray as xr
+    from ltca.output.labelled import Labelled
 
 # Dimensions of the variables that are used; a scalar has none.
 NEEDED: dict[str, tuple[str, ...]] = {
@@ -77,7 +77,7 @@ REPEATED_TOLERANCE = 1e-9
 UNIFORM = 1e-6
 
 
-def require_schema(dataset: xr.Dataset, source: str) -> None:
+def require_schema(dataset: Labelled, source: str) -> None:
     """Refuse a dataset that is not a set of influence coefficients: DamagedFileError with everything that is missing or
     malformed.
 
@@ -90,7 +90,7 @@ def require_schema(dataset: xr.Dataset, source: str) -> None:
         )
 
 
-def _missing(dataset: xr.Dataset) -> Iterator[str]:
+def _missing(dataset: Labelled) -> Iterator[str]:
     variables = [name for name in NEEDED if name not in dataset.variables]
     for group in OPTIONAL:
         if any(name in dataset.variables for name in group):
@@ -106,7 +106,7 @@ def _missing(dataset: xr.Dataset) -> Iterator[str]:
         yield f"it lacks the attributes {', '.join(attributes)}"
 
 
-def _misshapen(dataset: xr.Dataset) -> Iterator[str]:
+def _misshapen(dataset: Labelled) -> Iterator[str]:
     for group in (NEEDED, *OPTIONAL):
         for name, dimensions in group.items():
             if name not in dataset.variables:
@@ -114,7 +114,7 @@ def _misshapen(dataset: xr.Dataset) -> Iterator[str]:
             variable = dataset[name]
             if variable.dims != dimensions:
                 yield f"{name} has the dimensions ({', '.join(map(str, variable.dims))}): must be ({', '.join(dimensions)})"
-            elif variable.dtype.kind not in "iuf":
+            elif variable.values.dtype.kind not in "iuf":
                 yield f"{name} holds no numbers"
             elif not np.all(np.isfinite(variable.values)):
                 yield f"{name} holds values that are no finite numbers"
@@ -131,7 +131,7 @@ def _misshapen(dataset: xr.Dataset) -> Iterator[str]:
         yield f"roller_end has length {dataset.sizes['roller_end']}: must be 2 (inner, outer)"
 
 
-def _in_order(dataset: xr.Dataset, name: str) -> bool:
+def _in_order(dataset: Labelled, name: str) -> bool:
     """Tell whether the labels along a dimension are in the order in which entries are used."""
     labels = dataset[name].values
     if labels.dtype.kind in "iuf":
@@ -142,7 +142,7 @@ def _in_order(dataset: xr.Dataset, name: str) -> bool:
     return said == LABELS[name]
 
 
-def _implausible(dataset: xr.Dataset) -> Iterator[str]:
+def _implausible(dataset: Labelled) -> Iterator[str]:
     plane = dataset.attrs["plane"]
     if plane not in ("strain", "stress"):
         yield f"plane = {plane}: must be strain or stress"
@@ -171,7 +171,7 @@ def elastic_constants(materials: Materials) -> dict[str, float]:
     }
 
 
-def shape_of(dataset: xr.Dataset) -> dict[str, float]:
+def shape_of(dataset: Labelled) -> dict[str, float]:
     """Return the numbers that determine the bodies of a file; none when the attribute `shape` cannot be read."""
     try:
         return {str(name): float(value) for name, value in json.loads(str(dataset.attrs["shape"])).items()}
@@ -197,7 +197,7 @@ def shape_differences(theirs: dict[str, float], own: dict[str, float]) -> dict[s
     return {name: (told(theirs, name), told(own, name)) for name in names}
 
 
-def _contradictions(dataset: xr.Dataset) -> Iterator[str]:
+def _contradictions(dataset: Labelled) -> Iterator[str]:
     shape = shape_of(dataset)
     if not shape:
         yield "shape must be a JSON object of numbers (Drive.body_shape)"
@@ -210,7 +210,7 @@ def _contradictions(dataset: xr.Dataset) -> Iterator[str]:
             yield f"{name} = {own:g}: must be {shape[path]:g} as in shape"
 
 
-def _misplaced(dataset: xr.Dataset) -> Iterator[str]:
+def _misplaced(dataset: Labelled) -> Iterator[str]:
     boundary = dataset["station_boundary"].values
     numbers = np.unique(boundary)
     if np.any(np.diff(boundary) < 0) or not np.array_equal(numbers, np.arange(len(numbers))) or len(numbers) < 3:

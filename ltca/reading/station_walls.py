@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ltca.arrays import ComplexArray, FloatArray
 
 if TYPE_CHECKING:
-    import xarray as xr
+    from ltca.output.labelled import Labelled
 
 
 LARGEST_DISTANCE = 2.0 * float(np.pi) / float(np.log(3.0))
@@ -21,7 +21,7 @@ PER_STATION = 12
 """Points of a wall per station: a twelfth of their spacing apart they give the thickness of a thin wall to some per cent."""
 
 
-def wall_bending(dataset: xr.Dataset, stations: NDArray[np.integer]) -> FloatArray:
+def wall_bending(dataset: Labelled, stations: NDArray[np.integer]) -> FloatArray:
     r"""Return how much more the approach of stations may fall between patch and wider patch because their wall bends.
 
     A wall of thickness h and length L on simple supports has the moment :math:`FL/4` under a force F in its middle, and the

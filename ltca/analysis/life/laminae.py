@@ -22,7 +22,6 @@ from functools import lru_cache
 from typing import Protocol
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
 from ltca.arrays import FloatArray
 from ltca.contact.length_profile import Relief
@@ -125,7 +124,7 @@ class SolvedLaminae:
             return np.ones((load.size, self.weights.size))
         loads, rows = self._solved(largest)
         at = np.log(np.clip(load, loads[0], loads[-1]))
-        found = PchipInterpolator(np.log(loads), rows, axis=0)(at)
+        found = monotone_cubic(np.log(loads), rows, at)
         return np.asarray(found / (found @ self.weights)[:, None])
 
     def _solved(self, largest: float) -> tuple[FloatArray, FloatArray]:
@@ -156,6 +155,57 @@ class SolvedLaminae:
             load, row = solve_laminae(None, 1.0, 1.0, approach)
             unit *= self.length * self._height
         return unit * load, row
+
+
+def monotone_cubic(place: FloatArray, values: FloatArray, at: FloatArray) -> FloatArray:
+    """Interpolate by cubics that are monotone where the values are (Fritsch and Butland 1984), as scipy's ``PchipInterpolator``.
+
+    That takes 0.3 s to import, for this sum alone.
+
+    Parameters
+    ----------
+    place : array, shape (n,)
+        Ascending, at least two.
+    values : array, shape (n, columns)
+        There.
+    at : array, shape (m,)
+        From the first place to the last.
+
+    Returns
+    -------
+    array, shape (m, columns)
+
+    Examples
+    --------
+    >>> monotone_cubic(np.arange(3.0), np.array([[0.0], [1.0], [1.0]]), np.array([0.5, 1.5])).ravel().tolist()
+    [0.6875, 1.0]
+    """
+    width = np.diff(place)[:, None]
+    secant = np.diff(values, axis=0) / width
+    slope = np.empty_like(values)
+    if place.size == 2:
+        slope[:] = secant
+    else:
+        before, behind = secant[:-1], secant[1:]
+        first, second = 2.0 * width[1:] + width[:-1], width[1:] + 2.0 * width[:-1]
+        monotone = np.sign(before) * np.sign(behind) > 0.0
+        mean = first / np.where(monotone, before, 1.0) + second / np.where(monotone, behind, 1.0)
+        slope[1:-1] = np.where(monotone, (first + second) / np.where(monotone, mean, 1.0), 0.0)
+        slope[0] = _end_slope(width[0], width[1], secant[0], secant[1])
+        slope[-1] = _end_slope(width[-1], width[-2], secant[-1], secant[-2])
+    rung = np.clip(np.searchsorted(place, at, side="right") - 1, 0, place.size - 2)
+    along, span = (at - place[rung])[:, None], width[rung]
+    curvature = (slope[rung] + slope[rung + 1] - 2.0 * secant[rung]) / span
+    bend = (secant[rung] - slope[rung]) / span - curvature
+    return np.asarray(values[rung] + along * (slope[rung] + along * (bend + along * curvature / span)))
+
+
+def _end_slope(near: FloatArray, far: FloatArray, first: FloatArray, second: FloatArray) -> FloatArray:
+    """Slope at an end by three points, kept monotone."""
+    found = ((2.0 * near + far) * first - near * second) / (near + far)
+    found = np.where(np.sign(found) == np.sign(first), found, 0.0)
+    steep = (np.sign(first) != np.sign(second)) & (np.abs(found) > 3.0 * np.abs(first))
+    return np.asarray(np.where(steep, 3.0 * first, found))
 
 
 @lru_cache(maxsize=512)

@@ -6,9 +6,7 @@ import sys
 from collections.abc import Mapping
 from pathlib import Path
 from shutil import get_terminal_size
-from typing import NamedTuple
-
-from xarray import Dataset
+from typing import TYPE_CHECKING, NamedTuple
 
 from ltca.analysis.engines import Engine, describe_engine
 from ltca.analysis.extremes import is_full_turn, sampling_warning
@@ -16,9 +14,8 @@ from ltca.analysis.life.bearing_lives import BearingLives, bearing_lives
 from ltca.analysis.life.equivalent_load import covers_whole_turns
 from ltca.analysis.light_torque import at_light_torque
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse_cases
-from ltca.analysis.pressure_fields import build_pressure_dataset
-from ltca.analysis.results import build_dataset
-from ltca.analysis.summary import refined_value, summarise
+from ltca.analysis.results import labelled_results
+from ltca.analysis.summary import refined_value, summarise_cases
 from ltca.analysis.summary_rows import rows_of, with_residual_part
 from ltca.analysis.verdict.proportions import odd_proportions
 from ltca.analysis.verdict.values import judge_analysis
@@ -29,10 +26,14 @@ from ltca.drive.members.verdict_words import verdict_line
 from ltca.drive.parts import Drive
 from ltca.errors import ConvergenceError, CycloError
 from ltca.output.files import whole_file, write_json
+from ltca.output.labelled import LabelledDataset
 from ltca.output.netcdf import write_netcdf
 from ltca.output.progress import progress
 from ltca.page.compared import Compared
 from ltca.reading.drive_file import DriveFile
+
+if TYPE_CHECKING:
+    from xarray import Dataset
 
 Analyses = dict[str, LoadedAnalysis]
 Summaries = dict[str, dict[str, float | None]]
@@ -84,15 +85,17 @@ def solve_and_write(task: RunTask, out: Path) -> int:
         shown, also = _analyse(cases, task.pressure_angles, torque, engine, "pressure fields")
         if also:  # a field of a position without an answer is no field
             raise next(iter(also.values()))
-    summaries = {name: summarise(analysis) for name, analysis in analyses.items()}
-    dataset = build_dataset(file.name, analyses, file.text)
+    summaries = summarise_cases(analyses)
+    dataset = labelled_results(file.name, analyses, file.text)
     with whole_file(out / "results.nc") as part:
         write_netcdf(dataset, part)
     write_json(out / "summary.json", {"drive": file.name, "cases": summaries})
     files, fields = ["results.nc", "summary.json"], None
     if shown:
+        from ltca.analysis.pressure_fields import build_pressure_dataset
+
         fields = build_pressure_dataset(file.name, shown, drive_file=file.text)
-        packed = {name: {"zlib": True} for name in fields if str(name).endswith(("_pressure", "_outer", "_inner"))}
+        packed = [str(name) for name in fields if str(name).endswith(("_pressure", "_outer", "_inner"))]
         with whole_file(out / "pressure.nc") as part:
             write_netcdf(fields, part, packed)
         files.append("pressure.nc")
@@ -123,7 +126,7 @@ def solve_and_write(task: RunTask, out: Path) -> int:
 
 
 def _write_page(
-    task: RunTask, analyses: Analyses, dataset: Dataset, summaries: Summaries, checks: dict[str, list[Check]],
+    task: RunTask, analyses: Analyses, dataset: LabelledDataset, summaries: Summaries, checks: dict[str, list[Check]],
     sampling: list[str], out: Path,
 ) -> str:  # fmt: skip
     """Write the page of the run; return its name."""
@@ -139,7 +142,7 @@ def _write_page(
         checks=checks,
         lives={name: _lives(analysis) for name, analysis in analyses.items()},
         sampling=sampling,
-        light=build_dataset(task.file.name, light, task.file.text),
+        light=labelled_results(task.file.name, light, task.file.text),
         compared=task.compared,
     )
     write_page(out / PAGE, run_page(run))
@@ -201,19 +204,20 @@ def _verdicts(checks: dict[str, list[Check]], proportions: dict[str, list[str]])
     return "\n".join([*told, "every check, what drives it and would mend it: cyclo check"])
 
 
-def _draw(dataset: Dataset, fields: Dataset | None, cases: dict[str, Drive], folder: Path, kind: str) -> None:
+def _draw(dataset: LabelledDataset, fields: Dataset | None, cases: dict[str, Drive], folder: Path, kind: str) -> None:
     from ltca.figures.pressure_figures import write_pressure_figures
     from ltca.figures.run_figures import figure_names, write_figures
 
+    drawn = dataset.to_xarray()
     names = figure_names(dataset.sizes["disc"], dataset.sizes["hole"], dataset.sizes["crank"])
     with progress("figures", len(names)) as advance:
-        for path in write_figures(dataset, folder, kind):
+        for path in write_figures(drawn, folder, kind):
             advance(path.name)
     print(f"figures: {folder} ({len(names)} as {kind.upper()})")
     if fields is None:
         return
     with progress("pressure figures", 3 + len(cases)) as advance:
-        for path in write_pressure_figures(dataset, fields, next(iter(cases.values())), folder, kind):
+        for path in write_pressure_figures(drawn, fields, next(iter(cases.values())), folder, kind):
             advance(path.name)
 
 

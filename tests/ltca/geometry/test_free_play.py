@@ -11,6 +11,7 @@ import pytest
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.summary import summarise
 from ltca.analysis.verdict.values import judge_analysis
+from ltca.arrays import stack_drives
 from ltca.drive.deviations import OneDisc, Runout
 from ltca.drive.members.limits import Limit
 from ltca.drive.members.temperatures import warm_drive
@@ -20,7 +21,7 @@ from ltca.drive.units.quantities import ARCMIN
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.first_contact import backlash
 from ltca.geometry.pairs import ContactGeometry
-from ltca.geometry.play import free_play, play_over_a_turn
+from ltca.geometry.play import free_play, play_over_a_turn, plays_over_a_turn
 from ltca.reading.drive_file import load_drive
 from ltca.testing.practical_drives import compare, compare_with_load, light_limit, practical_drive
 
@@ -103,6 +104,27 @@ def test_rollers_that_press_leave_the_flank_as_free_as_it_was(vary):
     assert found.preloaded.all()
     assert not free.preloaded.any()
     np.testing.assert_allclose(found.play, free.play, rtol=0.0, atol=1e-5 / ARCMIN)
+
+
+def test_preloaded_drives_of_a_batch_keep_their_own_parts(vary):
+    """The free drive comes first: the pressed one was given its bores and rollers, and other ways of the flank."""
+    free = vary(disc={"shifting_offset": 0.0})
+    pressed = vary(crank_bearing={"roller_errors": {"diameter": [0.002] * 11}}, clearance={"bearing": 0.0})
+    drives = [discs_of(free), discs_of(pressed)]
+    alone = [free_play(discs, ANGLES) for discs in drives]
+    together = free_play([stack_drives([discs[0] for discs in drives], ANGLES.size)], np.tile(ANGLES, 2))
+    np.testing.assert_array_equal(together.preloaded, np.concatenate([one.preloaded for one in alone]))
+    # Every position takes the same steps; nearest points of the flank are found to round-off.
+    np.testing.assert_allclose(together.play, np.concatenate([one.play for one in alone]), rtol=0.0, atol=1e-12)
+
+
+def test_turns_together_are_those_alone(paper_cases):
+    """Sizes differ, and each drive keeps the steps of its own: programmes end where they do alone, to round-off."""
+    drives = [discs_of(paper_cases[case]) for case in ("CS-1", "CS-3", "CS-6")]
+    for found, discs in zip(plays_over_a_turn(drives), drives, strict=True):
+        alone = play_over_a_turn(discs)
+        assert (found.largest, found.least) == pytest.approx((alone.largest, alone.least), rel=1e-9)
+        assert found.preloaded == alone.preloaded
 
 
 def test_flanks_that_press_leave_no_play(vary):

@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.interpolate import PchipInterpolator
 
-from ltca.analysis.life.laminae import APPROACH_RATIO, LAMINAE, SolvedLaminae, solve_laminae
+from ltca.analysis.life.laminae import APPROACH_RATIO, LAMINAE, SolvedLaminae, monotone_cubic, solve_laminae
 from ltca.contact.hertz import solve_point_contact
 from ltca.contact.length_profile import generator_profile
 from ltca.drive.parts import LengthProfile
@@ -118,3 +118,18 @@ def test_between_solved_loads_nothing_is_lost():
         # a slice where the contact ends is an edge in the load, and little of the damage
         np.testing.assert_allclose(found, row, atol=0.02)
         assert factor(of, load) == pytest.approx(float(row**4.5 @ of.weights) ** (1.0 / 4.5), rel=1e-3)
+
+
+@pytest.mark.parametrize("count", [2, 3, 4, 9])
+def test_interpolation_is_that_of_scipy(count):
+    """Falling, rising and level values, evenly and unevenly spaced; both are some ten operations, so round-off is 1e-15."""
+    rng = np.random.default_rng(count)
+    place = np.sort(rng.random(count)) + 0.01 * np.arange(count)
+    at = np.append(rng.uniform(place[0], place[-1], 50), place)
+    for values in (
+        rng.random((count, 16)),
+        np.round(3.0 * rng.random((count, 16))),
+        np.sort(rng.random((count, 16)), axis=0),
+    ):
+        theirs = PchipInterpolator(place, values, axis=0)(at)
+        np.testing.assert_allclose(monotone_cubic(place, values, at), theirs, rtol=0.0, atol=1e-13)
