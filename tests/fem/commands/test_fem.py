@@ -10,6 +10,7 @@ import xarray as xr
 from fem.commands import fem as command
 from fem.reducer.solution_files import ARRAYS
 from ltca.errors import CycloError
+from ltca.output.labelled import LabelledDataset
 from ltca.quantities import QUANTITIES
 
 SCALARS = (
@@ -110,9 +111,8 @@ def test_a_run_cut_short_leaves_no_index_over_two_solutions(folder, tmp_path, mo
     def fail(field, path):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(solution_files, "build_dataset", lambda solution, case: xr.Dataset())
+    monkeypatch.setattr(solution_files, "label_solution", lambda *words: LabelledDataset({}, (), {}))
     monkeypatch.setattr(solution_files, "recover_disc_stress", lambda solution: None)
-    monkeypatch.setattr(solution_files, "stress_variables", lambda stresses: {})
     monkeypatch.setattr(solution_files, "write_field", fail)
     field = type("Field", (), {"body": type("Body", (), {"name": "disc"})})
     with pytest.raises(OSError, match="No space left"):
