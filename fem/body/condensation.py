@@ -17,7 +17,7 @@ its rigid motion removed, which does not depend on the choice of those unknowns.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import scipy.sparse as sp
@@ -46,6 +46,8 @@ class CondensedBody:
         Nodal forces of each unit load, N.
     resultants : array, shape (3, m)
         Force in x, in y (N) and moment (N·mm) about the centre of each unit load.
+
+    The one thing that changes is a memory of the last displacement, which several results of one solution ask for.
     """
 
     compliance: FloatArray
@@ -56,6 +58,7 @@ class CondensedBody:
     _modes: FloatArray | None
     _area: FloatArray | None
     _trailing: FloatArray
+    _last: dict[bytes, FloatArray] = field(default_factory=dict, repr=False, compare=False)
 
     @property
     def entries(self) -> int:
@@ -66,10 +69,19 @@ class CondensedBody:
         """Return the nodal displacement under amounts of the unit loads, mm.
 
         That of a free body is relative to its area-mean rigid motion. Amounts have the shape (m,), or (m, k) for k load
-        cases; the displacement (unknowns,) or (unknowns, k).
+        cases; the displacement (unknowns,) or (unknowns, k), read-only.
         """
         amounts = np.asarray(amounts, dtype=float)
-        columns = amounts[:, None] if amounts.ndim == 1 else amounts
+        if amounts.ndim == 1:
+            asked = amounts.tobytes()
+            if asked not in self._last:
+                self._last.clear()
+                self._last[asked] = self._displacements(amounts[:, None])[:, 0]
+                self._last[asked].flags.writeable = False
+            return self._last[asked]
+        return self._displacements(amounts)
+
+    def _displacements(self, columns: FloatArray) -> FloatArray:
         force = self.loads @ columns
         full = columns
         if self._modes is not None and self._area is not None:
@@ -83,7 +95,7 @@ class CondensedBody:
         result[self._kept] = found
         if self._modes is not None and self._area is not None:
             result -= self._modes @ _balance(self._modes, self._area, self._area.T @ result)
-        return result[:, 0] if amounts.ndim == 1 else result
+        return result
 
 
 def _balance(modes: FloatArray, area: FloatArray, resultant: FloatArray) -> FloatArray:

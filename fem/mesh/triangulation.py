@@ -8,13 +8,12 @@ point of the exact curve to round-off, and meshing needs no spline.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from types import ModuleType
 
 import numpy as np
 
 from fem.errors import MeshError
-from fem.mesh.body_mesh import BodyMesh, triangle_mesh
+from fem.mesh.body_mesh import BodyMesh, move_nodes, triangle_mesh
 from fem.mesh.boundary_division import DividedCurve, divide_curve, serve_curvature
 from fem.mesh.element_size import DEFAULT_GROWTH, Refinement, SizeField
 from fem.mesh.gmsh_session import gmsh_model
@@ -143,7 +142,7 @@ def _mesh_shape(
             middles = line.curve.points(line.middles)
             nodes = mesh.nvertices + mesh.boundaries[line.curve.name]
             doflocs[0, nodes], doflocs[1, nodes] = middles.real, middles.imag
-        mesh = replace(mesh, doflocs=doflocs)
+        mesh = move_nodes(mesh, doflocs)
     body = BodyMesh(name=shape.name, mesh=mesh)
     body.require_complete_boundaries()
     require_quality(body)
