@@ -7,6 +7,7 @@ counter-clockwise with a parameter of period 2π and knows on which side the bod
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -140,14 +141,18 @@ class FlankCurve:
     def parameter_of(self, point: ComplexArray) -> FloatArray:
         """Return θ in [0, 2π) of the nearest point of the flank; for points within a pin radius of it."""
         points = np.asarray(point, dtype=complex).ravel()
-        # The table only has to start Newton's method on the right tooth and side.
-        table = np.linspace(0.0, 2.0 * np.pi, self.samples, endpoint=False)
-        samples = self.profile.flank(table)
-        _, nearest = cKDTree(np.column_stack([samples.real, samples.imag])).query(
-            np.column_stack([points.real, points.imag])
-        )
+        table, tree = _flank_samples(self)
+        _, nearest = tree.query(np.column_stack([points.real, points.imag]))
         theta = self.profile.nearest_parameter(points, table[nearest])
         return np.asarray(np.mod(theta, 2.0 * np.pi).reshape(np.shape(point)))
+
+
+@functools.lru_cache(maxsize=16)
+def _flank_samples(flank: FlankCurve) -> tuple[FloatArray, cKDTree]:
+    """Return parameters and places that start Newton's method on the right tooth and side; every zone asks for them."""
+    table = np.linspace(0.0, 2.0 * np.pi, flank.samples, endpoint=False)
+    samples = flank.profile.flank(table)
+    return table, cKDTree(np.column_stack([samples.real, samples.imag]))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

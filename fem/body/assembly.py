@@ -76,18 +76,16 @@ def sum_by_nodes(body: BodyMesh, elements: IntArray, blocks: FloatArray) -> sp.c
     Blocks have the shape (nodes (i), nodes (j), 2 (a), 2 (b), elements): component a of the force on node i for a unit of
     component b at node j, in the order of `elements`.
     """
-    nodes = body.element_nodes.T[:, elements]
-    count = body.node_count
-    keys = (nodes[None, :, :] * count + nodes[:, None, :]).ravel()  # by column, then by row
-    order = np.argsort(keys)
-    ordered = keys[order]
-    first = np.flatnonzero(np.r_[True, ordered[1:] != ordered[:-1]])
-    columns, rows = np.divmod(ordered[first], count)
-    starts = np.concatenate([[0], np.cumsum(np.bincount(columns, minlength=count))])
+    nodes, count = body.element_nodes.T[:, elements].astype(np.int32), body.node_count
+    shape = (len(nodes), *nodes.shape)
+    places = np.broadcast_to(nodes[:, None], shape).ravel(), np.broadcast_to(nodes[None], shape).ravel()
+    summed = [
+        [sp.coo_matrix((blocks[:, :, a, b].ravel(), places), shape=(count, count)).tocsc() for b in range(2)]
+        for a in range(2)
+    ]
     # Blocks by columns are those of the transpose by rows.
-    summed = np.empty((len(first), 2, 2))
-    for a in range(2):
-        for b in range(2):
-            summed[:, b, a] = np.add.reduceat(blocks[:, :, a, b].ravel()[order], first)
-    transposed = sp.bsr_matrix((summed, rows, starts), shape=(2 * count, 2 * count)).tocsr()
+    pattern, values = summed[0][0], np.empty((summed[0][0].nnz, 2, 2))
+    for a, b in np.ndindex(2, 2):
+        values[:, b, a] = summed[a][b].data
+    transposed = sp.bsr_matrix((values, pattern.indices, pattern.indptr), shape=(2 * count, 2 * count)).tocsr()
     return sp.csc_matrix(transposed.T)

@@ -17,7 +17,7 @@ its rigid motion removed, which does not depend on the choice of those unknowns.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import scipy.sparse as sp
@@ -46,6 +46,8 @@ class CondensedBody:
         Nodal forces of each unit load, N.
     resultants : array, shape (3, m)
         Force in x, in y (N) and moment (N·mm) about the centre of each unit load.
+
+    The one thing that changes is a memory of the last displacement, which several results of one solution ask for.
     """
 
     compliance: FloatArray
@@ -56,6 +58,7 @@ class CondensedBody:
     _modes: FloatArray | None
     _area: FloatArray | None
     _trailing: FloatArray
+    _last: dict[bytes, FloatArray] = field(default_factory=dict, repr=False, compare=False)
 
     @property
     def entries(self) -> int:
@@ -66,10 +69,19 @@ class CondensedBody:
         """Return the nodal displacement under amounts of the unit loads, mm.
 
         That of a free body is relative to its area-mean rigid motion. Amounts have the shape (m,), or (m, k) for k load
-        cases; the displacement (unknowns,) or (unknowns, k).
+        cases; the displacement (unknowns,) or (unknowns, k), read-only.
         """
         amounts = np.asarray(amounts, dtype=float)
-        columns = amounts[:, None] if amounts.ndim == 1 else amounts
+        if amounts.ndim == 1:
+            asked = amounts.tobytes()
+            if asked not in self._last:
+                self._last.clear()
+                self._last[asked] = self._displacements(amounts[:, None])[:, 0]
+                self._last[asked].flags.writeable = False
+            return self._last[asked]
+        return self._displacements(amounts)
+
+    def _displacements(self, columns: FloatArray) -> FloatArray:
         force = self.loads @ columns
         full = columns
         if self._modes is not None and self._area is not None:
@@ -83,7 +95,7 @@ class CondensedBody:
         result[self._kept] = found
         if self._modes is not None and self._area is not None:
             result -= self._modes @ _balance(self._modes, self._area, self._area.T @ result)
-        return result[:, 0] if amounts.ndim == 1 else result
+        return result
 
 
 def _balance(modes: FloatArray, area: FloatArray, resultant: FloatArray) -> FloatArray:
@@ -93,42 +105,44 @@ def _balance(modes: FloatArray, area: FloatArray, resultant: FloatArray) -> Floa
 def order_nodes(body: BodyMesh) -> IntArray:
     """Return an elimination order of the nodes that keeps the factor sparse.
 
-    Nested dissection by METIS where the extra ``fast`` is installed and copes with the mesh. Else minimum degree of the
-    graph of the vertices, which SuperLU finds while it factorises a scalar matrix of that graph, each mid-side node just
-    before the first of its edge's ends: a quarter of the nodes to order, and a tenth less fill than minimum degree of all
-    nodes.
+    Only the vertices are ordered, a quarter of the nodes; each mid-side node stands just before the first of its edge's ends,
+    which fills less than an order of all nodes. Vertices by nested dissection (METIS) where the extra ``fast`` is installed
+    and copes with the mesh, else by minimum degree, which SuperLU finds while it factorises a scalar matrix of their graph.
     """
-    try:
-        return _nested_dissection(body)
-    except (ImportError, RuntimeError):
-        # METIS not there, or out of its depth (its C++ exceptions arrive as RuntimeError: "unknown exception").
-        return _minimum_degree(body)
-
-
-def _nested_dissection(body: BodyMesh) -> IntArray:
-    import pymetis
-
-    graph = _graph(body.element_nodes.T, body.node_count)
-    graph.setdiag(0.0)
-    graph.eliminate_zeros()
-    order, _ = pymetis.nested_dissection(pymetis.CSRAdjacency(graph.indptr, graph.indices))
-    return np.asarray(order, dtype=np.int64)
-
-
-def _minimum_degree(body: BodyMesh) -> IntArray:
     mesh = body.mesh
     graph = _graph(mesh.t, mesh.nvertices)
-    graph.data[:] = -1.0
-    graph.setdiag(PROXY_DIAGONAL)
-    factor = spla.splu(graph, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=SYMMETRIC)
-    place = factor.perm_c.astype(np.float64)
+    try:
+        place = _nested_dissection(graph)
+    except (ImportError, RuntimeError):
+        # METIS not there, or out of its depth (its C++ exceptions arrive as RuntimeError: "unknown exception").
+        place = _minimum_degree(graph)
     if body.order == 2:
         place = np.concatenate([place, place[mesh.facets].min(axis=0) - 0.5])
     return np.argsort(place, kind="stable").astype(np.int64)
 
 
+def _nested_dissection(graph: sp.csc_matrix) -> FloatArray:
+    """Return the place of each vertex in a nested dissection of their graph."""
+    import pymetis
+
+    graph = graph.copy()
+    graph.setdiag(0.0)
+    graph.eliminate_zeros()
+    _, place = pymetis.nested_dissection(pymetis.CSRAdjacency(graph.indptr, graph.indices))
+    return np.asarray(place, dtype=np.float64)
+
+
+def _minimum_degree(graph: sp.csc_matrix) -> FloatArray:
+    """Return the place of each vertex in a minimum-degree order of their graph."""
+    graph = graph.copy()
+    graph.data[:] = -1.0
+    graph.setdiag(PROXY_DIAGONAL)
+    factor = spla.splu(graph, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=SYMMETRIC)
+    return np.asarray(factor.perm_c, dtype=np.float64)
+
+
 def _graph(corners: IntArray, count: int) -> sp.csc_matrix:
-    """Return which nodes share an element."""
+    """Return which vertices share an element."""
     corners = corners.astype(np.int32)
     rows = np.repeat(corners, len(corners), axis=0).ravel()
     columns = np.tile(corners, (len(corners), 1)).ravel()

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 SUMMARY: str = "solve the whole drive by finite elements at one crank angle"
 EXAMPLES = (
     ("cyclo fem paper --case CS-1 --angle 0.5", "one position by finite elements alone"),
+    ("cyclo fem paper --case CS-1 --angle 0.5 --pictures", "with pictures of stress and deformation"),
     ("cyclo fem paper --case CS-1 --angle 0.5 --referee calculix", "solved by CalculiX as well"),
 )
 
@@ -44,7 +45,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="mesh the disc's walls for the stress along them: within 1 %% of the largest instead of 3.4 %%",
     )
     add_out_argument(parser, "fem")
-    parser.add_argument("--no-pictures", action="store_true", help="leave the pictures out")
+    drawn = parser.add_mutually_exclusive_group()
+    drawn.add_argument(
+        "--pictures",
+        "--figures",
+        action="store_true",
+        help="draw von_mises.png, contacts.png and deformed.png, which takes as long as the solution",
+    )
+    drawn.add_argument("--no-pictures", "--no-figures", action="store_true", help="draw no pictures, the default")
     add_page_argument(parser)
     parser.add_argument(
         "--export", choices=("calculix",), help="write a complete input deck of the same problem for another code"
@@ -55,7 +63,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(arguments: argparse.Namespace) -> int:
-    """Solve the drive; write ``fem.nc``, ``summary.json``, ``.vtu`` of each body and pictures, those by disc.
+    """Solve the drive; write ``fem.nc``, ``summary.json``, ``.vtu`` of each body and, where asked for, pictures of each disc.
 
     Returns
     -------
@@ -76,7 +84,7 @@ def execute(arguments: argparse.Namespace) -> int:
     discs = drive.disc.number_of_discs
     writes = ["fem.nc", "fem.vtm", "summary.json", *body_files("vtu", discs)]
     writes += [] if arguments.no_page else ["report.html"]
-    own = [] if arguments.no_pictures else ["von_mises.png", "contacts.png", "deformed.png"]
+    own = ["von_mises.png", "contacts.png", "deformed.png"] if arguments.pictures else []
     own += ["calculix.inp"] if arguments.export or referee else []
     own += ["calculix.dat"] if referee else []
     writes += [f"{disc_prefix(disc, discs)}{file}" for disc in range(discs) for file in own]
@@ -130,7 +138,7 @@ def _solve_and_write(
             share = solution.torque_share[number]
             print(f"disc {number}, {disc.state.wheel_moment / 1e3:.6g} N·m on the wheel, {100.0 * share:.2f} % of it")
         _print_contacts(disc)
-        if not arguments.no_pictures:
+        if arguments.pictures:
             from fem.pictures.solution_pictures import draw_solution
 
             headline = title if count == 1 else f"{title}, disc {number}"

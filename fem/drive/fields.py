@@ -13,7 +13,7 @@ from fem.drive.contact_kinds import PairKind
 from fem.drive.full_solution import FullSolution
 from fem.drive.model import DriveModel
 from fem.drive.pose import PoseSolution
-from fem.mesh.body_mesh import BodyMesh
+from fem.mesh.body_mesh import BodyMesh, move_nodes
 from fem.mesh.placed_body import PlacedBody
 from ltca.arrays import ComplexArray, FloatArray
 
@@ -59,7 +59,7 @@ class BodyField:
     def placed_mesh(self) -> BodyMesh:
         """The mesh at that place."""
         nodes = self.places
-        return BodyMesh(name=self.body.name, mesh=replace(self.body.mesh, doflocs=np.vstack([nodes.real, nodes.imag])))
+        return BodyMesh(name=self.body.name, mesh=move_nodes(self.body.mesh, np.vstack([nodes.real, nodes.imag])))
 
     @property
     def placed(self) -> PlacedBody:

@@ -17,14 +17,17 @@ from fem.shapes import CircleShape, DiscShape, DriveShapes, Shape
 from ltca.arrays import ComplexArray, FloatArray
 
 ELEMENTS_PER_HALF_WIDTH = 8.0
-# The pressure ends at one half-width; the rest is for contacts that lie a little beside the place expected.
-ZONE_HALF_WIDTHS = 1.5
+# The pressure ends at one half-width; the rest is for contacts that lie a little beside the place expected
+# (`fem.drive.grading.SHIFT_TOLERANCE`).
+ZONE_HALF_WIDTHS = 1.35
 # Fine walls: elements along bore and holes for the narrowest wall of the disc, and of a root's radius of curvature. On the
 # paper's disc the nodal stress along all walls is then within 0.8 % of the largest of that on finer meshes, and off by up
 # to 3.4 % without them, for a tenth more unknowns.
 WALL_ELEMENTS, ROOT_ELEMENTS = 6.0, 8.0
 # Pins (or rollers) whose half-widths lie within this ratio share one mesh, turned.
 CLASS_RATIO = np.sqrt(2.0)
+# Ratios of the half-widths at the two ends of a roller are rounded down to this part, which costs 2 % of the edge at most.
+RATIO_STEPS = 64.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -151,7 +154,7 @@ def _spots(points: ComplexArray, half_width: FloatArray, size: float) -> list[Re
 
 
 def disc_refinements(contacts: ExpectedContacts, size: float = 1.0) -> tuple[Refinement, ...]:
-    """Return the refinements of the disc: elements of `size` times b/8 within 1.5 b of each contact."""
+    """Return the refinements of the disc: elements of `size` times b/8 within 1.35 b of each contact."""
     return (
         *_spots(contacts.flank_points, contacts.pins.half_width, size),
         *_spots(contacts.bore_points, contacts.rollers_outer.half_width, size),
@@ -187,6 +190,11 @@ def _class_of(half_width: float) -> float:
     return float(CLASS_RATIO ** np.floor(np.log(half_width) / np.log(CLASS_RATIO)))
 
 
+def _ratio_below(width: float, first: float) -> float:
+    """Return the ratio of a half-width to the first of its body, rounded down so that equal bodies have equal ratios."""
+    return float(np.floor(RATIO_STEPS * width / first + 1e-9) / RATIO_STEPS) if first > 0.0 else 0.0
+
+
 def coarse_edge(shape: Shape, size: float) -> float:
     """Return the element edge far from all contacts, mm.
 
@@ -201,11 +209,13 @@ def _plan_circles(
     """Return name, grading and turn of each pin or roller; a roller's contacts lie opposite each other."""
     plan = []
     for index, shape in enumerate(shapes):
-        classes = [_class_of(float(group.half_width[index])) for group in groups]
-        # Elements for the lower end of a class, a zone for its upper end.
+        widths = [float(group.half_width[index]) for group in groups]
+        # Elements for the lower end of a class, a zone for its upper end. Both ends of a roller carry one load: the second
+        # follows the class of the first, or the classes of both would make twice as many meshes.
+        first = _class_of(widths[0])
         ends = tuple(
             RoundEnd(edge=options.size * width / ELEMENTS_PER_HALF_WIDTH, half_width=float(CLASS_RATIO * width))
-            for width in classes
+            for width in (first * _ratio_below(width, widths[0]) for width in widths)
         )
         grading = RoundGrading(
             radius=shape.radius,

@@ -38,15 +38,17 @@ from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import names_unit_mistakes
 from ltca.errors import ConvergenceError, DriveError
 
-# The coarse stage looks for loads only: 8/3.5 elements for each half-width, zones for contacts that are open by as
+# The coarse stage looks for loads only: two elements for each half-width, zones for contacts that are open by as
 # much as bodies approach each other, sized for at least a quarter of the largest load.
-COARSE_SIZE = 3.5
-# Elements of the coarse stage grow twice as fast away from the contacts: half as many, loads still good to 0.5 %.
-COARSE_GROWTH = 0.6
+COARSE_SIZE = 4.0
+# Elements of the coarse stage grow faster away from the contacts: fewer of them, loads still good to 1.5 %, half-widths
+# to half of that.
+COARSE_GROWTH = 0.75
 COARSE_SHARE = 0.25
 COARSE_MARGIN = 1.0
-# Open contacts within this part of the largest approach stay candidates of the fine stage.
-FINE_MARGIN = 0.15
+# Open contacts within this part of the largest approach stay candidates of the fine stage: three times what the gaps of the
+# coarse stage are off by.
+FINE_MARGIN = 0.05
 MAX_GRADINGS = 5
 # Meshes are graded a little finer than asked, so that loads that still change by some per cent do not matter.
 SIZE_RESERVE = 0.96
@@ -99,7 +101,7 @@ class _Task:
         place = (pose.disc_displacement, pose.disc_rotation, pose.wheel_angle)
         loads = (results.pin_load, results.roller_load, results.pin_shaft_load)
         # A contact that closes although the rigid bodies leave it open is caught by the wider margin next time.
-        margin, deformed = FINE_MARGIN * 2.0 ** (grading - 1), deformed_contacts(model, solution)
+        margin, deformed = FINE_MARGIN * 3.0 ** (grading - 1), deformed_contacts(model, solution)
         contacts = self.grade(place, loads, margin=margin, share=FINE_SHARE, deformed=deformed)
         self.say("meshes")
         meshes = self.mesh(contacts, replace(self.options, size=self.options.size * SIZE_RESERVE), rounds)

@@ -123,8 +123,21 @@ class BodyMesh:
         rotation = np.array([[cosine, -sine], [sine, cosine]])
         return BodyMesh(
             name=self.name if name is None else name,
-            mesh=replace(self.mesh, doflocs=np.ascontiguousarray(rotation @ self.mesh.doflocs)),
+            mesh=move_nodes(self.mesh, np.ascontiguousarray(rotation @ self.mesh.doflocs)),
         )
+
+
+def move_nodes(mesh: MeshTri1, places: FloatArray) -> MeshTri1:
+    """Return a mesh with its nodes at other places, shape (2, nodes), mm."""
+    return _share_connectivity(replace(mesh, doflocs=places), mesh)
+
+
+def _share_connectivity(mesh: MeshTri1, known: MeshTri1) -> MeshTri1:
+    """Give a mesh the facets that another one with the same triangles has found: scikit-fem sorts all edges for them."""
+    for name in ("_facets", "_t2f", "_f2t"):
+        if name in vars(known):
+            setattr(mesh, name, getattr(known, name))
+    return mesh
 
 
 def triangle_mesh(
@@ -140,10 +153,11 @@ def triangle_mesh(
     linear = MeshTri1(vertices, triangles, sort_t=False, validate=False)
     boundaries = {name: facets_of_edges(linear, edges, name) for name, edges in boundary_edges.items()}
     if order == 1:
-        return linear.with_boundaries(boundaries)
+        return _share_connectivity(linear.with_boundaries(boundaries), linear)
     middles = 0.5 * (linear.p[:, linear.facets[0]] + linear.p[:, linear.facets[1]])
     doflocs = np.hstack([linear.p, middles])
-    return MeshTri2(doflocs, linear.t, sort_t=False, validate=False).with_boundaries(boundaries)
+    curved = MeshTri2(doflocs, linear.t, sort_t=False, validate=False).with_boundaries(boundaries)
+    return _share_connectivity(curved, linear)
 
 
 def facets_of_edges(mesh: MeshTri1, edges: IntArray, name: str) -> IntArray:

@@ -6,13 +6,18 @@ second-order meshes, which the reader of scikit-fem loses. A file appears under 
 
 from __future__ import annotations
 
+import base64
 import struct
+import sys
 import warnings
+import zlib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+from xml.sax.saxutils import quoteattr
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fem.errors import MeshError
 from fem.mesh.body_mesh import BodyMesh, triangle_mesh
@@ -25,6 +30,10 @@ if TYPE_CHECKING:
 
 
 BODY_TAG = 1
+VTK_TRIANGLES = {3: 5, 6: 22}
+"""Cell types of VTK by number of nodes."""
+# The fastest compression: coordinates and stresses pack a tenth better with the default one, in four times the time.
+VTU_LEVEL, VTU_BLOCK = 1, 1 << 20
 # meshio reports broken files by whatever its parser stumbles over.
 _PARSER_ERRORS = (
     ValueError,
@@ -87,18 +96,48 @@ def write_vtu(body: BodyMesh, path: str | Path, point_data: Mapping[str, FloatAr
 
     Fields have the shape (nodes,) or (nodes, components); MeshError when one does not fit the nodes.
     """
-    import meshio
-
     fields = {key: np.asarray(values) for key, values in (point_data or {}).items()}
     for key, values in fields.items():
         if len(values) != body.node_count:
             raise MeshError(f"field {key!r} has {len(values)} values, but {body.name} has {body.node_count} nodes")
-    cell = "triangle" if body.order == 1 else "triangle6"
-    content = meshio.Mesh(_points(body), [(cell, body.element_nodes)], point_data=fields)
+    cells = body.element_nodes
+    count, corners = cells.shape
+    parts = {
+        "Points": {"Points": _points(body)},
+        "Cells": {
+            "connectivity": cells.ravel(),
+            "offsets": corners * np.arange(1, count + 1, dtype=np.int64),
+            "types": np.full(count, VTK_TRIANGLES[corners], dtype=np.uint8),
+        },
+        "PointData": fields,
+    }
     path = Path(path)
-    with whole_file(path) as part:
-        meshio.vtu.write(part, content, binary=True)
+    with whole_file(path) as part, part.open("w", encoding="ascii") as stream:
+        stream.write(
+            '<?xml version="1.0"?>\n<VTKFile type="UnstructuredGrid" version="1.0" '
+            f'byte_order="{"LittleEndian" if sys.byteorder == "little" else "BigEndian"}" header_type="UInt64" '
+            'compressor="vtkZLibDataCompressor">\n<UnstructuredGrid>\n'
+            f'<Piece NumberOfPoints="{body.node_count}" NumberOfCells="{count}">\n'
+        )
+        for name, arrays in parts.items():
+            stream.write(f"<{name}>\n")
+            stream.writelines(_data_array(key, values) for key, values in arrays.items())
+            stream.write(f"</{name}>\n")
+        stream.write("</Piece>\n</UnstructuredGrid>\n</VTKFile>\n")
     return path
+
+
+def _data_array(name: str, values: NDArray[Any]) -> str:
+    """Return an array as an element of ``.vtu``: compressed blocks as base64 behind their number and sizes."""
+    kind = {"f": "Float", "i": "Int", "u": "UInt"}[values.dtype.kind] + str(8 * values.dtype.itemsize)
+    content = np.ascontiguousarray(values).tobytes()
+    blocks = [content[start : start + VTU_BLOCK] for start in range(0, len(content), VTU_BLOCK)]
+    packed = [zlib.compress(block, VTU_LEVEL) for block in blocks]
+    sizes = [len(blocks), VTU_BLOCK, len(blocks[-1]) if blocks else 0, *map(len, packed)]
+    header = np.array(sizes, dtype=np.uint64).tobytes()
+    components = f' NumberOfComponents="{values.shape[1]}"' if values.ndim == 2 else ""
+    text = (base64.b64encode(header) + base64.b64encode(b"".join(packed))).decode("ascii")
+    return f'<DataArray type="{kind}" Name={quoteattr(name)}{components} format="binary">\n{text}\n</DataArray>\n'
 
 
 def read_msh(path: str | Path, *, required_boundaries: Sequence[str] = ()) -> BodyMesh:

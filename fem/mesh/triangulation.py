@@ -7,14 +7,14 @@ point of the exact curve to round-off, and meshing needs no spline.
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Sequence
-from dataclasses import replace
 from types import ModuleType
 
 import numpy as np
 
 from fem.errors import MeshError
-from fem.mesh.body_mesh import BodyMesh, triangle_mesh
+from fem.mesh.body_mesh import BodyMesh, move_nodes, triangle_mesh
 from fem.mesh.boundary_division import DividedCurve, divide_curve, serve_curvature
 from fem.mesh.element_size import DEFAULT_GROWTH, Refinement, SizeField
 from fem.mesh.gmsh_session import gmsh_model
@@ -42,7 +42,7 @@ def estimate_unknowns(
     order: int = 2,
 ) -> int:
     """Return the number of unknowns to expect of a mesh, without making it (see `SizeField`)."""
-    field = _size_field(shape, refinements, coarse_size, growth)
+    field = _size_field(shape, tuple(refinements), coarse_size, growth)
     return int(UNKNOWNS_PER_TRIANGLE[order] * field.estimate_triangles(shape.area))
 
 
@@ -114,9 +114,13 @@ def mesh_ring(
     return _mesh_shape(shape, refinements, coarse_size, growth, order)
 
 
-def _size_field(shape: Shape, refinements: Sequence[Refinement], coarse_size: float | None, growth: float) -> SizeField:
+# A drive asks for the field of each body to estimate its memory, alone and in all, and to mesh it.
+@functools.lru_cache(maxsize=256)
+def _size_field(
+    shape: Shape, refinements: tuple[Refinement, ...], coarse_size: float | None, growth: float
+) -> SizeField:
     coarse = default_coarse_size(shape) if coarse_size is None else coarse_size
-    field = SizeField(balls=tuple(refinements), coarse_size=coarse, growth=growth)
+    field = SizeField(balls=refinements, coarse_size=coarse, growth=growth)
     return serve_curvature(shape.curves, field)
 
 
@@ -125,7 +129,7 @@ def _mesh_shape(
 ) -> BodyMesh:
     if order not in (1, 2):
         raise MeshError(f"element order {order} of the mesh of {shape.name}: must be 1 or 2")
-    field = _size_field(shape, refinements, coarse_size, growth)
+    field = _size_field(shape, tuple(refinements), coarse_size, growth)
     unknowns = int(UNKNOWNS_PER_TRIANGLE[order] * field.estimate_triangles(shape.area))
     require_memory(unknowns, mesh_memory(unknowns), f"the mesh of {shape.name}")
     divided = [divide_curve(curve, field) for curve in shape.curves]
@@ -143,7 +147,7 @@ def _mesh_shape(
             middles = line.curve.points(line.middles)
             nodes = mesh.nvertices + mesh.boundaries[line.curve.name]
             doflocs[0, nodes], doflocs[1, nodes] = middles.real, middles.imag
-        mesh = replace(mesh, doflocs=doflocs)
+        mesh = move_nodes(mesh, doflocs)
     body = BodyMesh(name=shape.name, mesh=mesh)
     body.require_complete_boundaries()
     require_quality(body)

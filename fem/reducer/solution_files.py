@@ -15,7 +15,7 @@ import numpy as np
 
 from fem.contact.pressure_measures import vertex_means
 from fem.drive.contact_kinds import CONTACT_KINDS
-from fem.drive.disc_stress import recover_disc_stress, stress_variables, summarise_stress
+from fem.drive.disc_stress import DiscStress, recover_disc_stress, stress_variables, summarise_stress
 from fem.drive.fields import BodyField, bore_motion
 from fem.drive.full_solution import FullSolution
 from fem.mesh.mesh_file import body_stem, write_vtu
@@ -28,6 +28,7 @@ from ltca.drive.members.verdict_words import check_content
 from ltca.errors import CycloError
 from ltca.geometry.placement import place_coordinates
 from ltca.output.files import whole_file, write_json
+from ltca.output.labelled import LabelledDataset
 from ltca.output.netcdf import write_netcdf
 from ltca.output.provenance import code_hash, code_version
 from ltca.quantities import QUANTITIES, SCHEMA_VERSION
@@ -91,8 +92,11 @@ def _motion(shift: complex, rotation: float) -> dict[str, float]:
 
 def build_dataset(solution: ReducerSolution, case: str) -> xr.Dataset:
     """Return the solution as a labelled dataset, with the pressure of every loaded contact."""
-    import xarray as xr
+    return label_solution(solution, case).to_xarray()
 
+
+def label_solution(solution: ReducerSolution, case: str, stresses: Sequence[DiscStress] = ()) -> LabelledDataset:
+    """Return what `build_dataset` holds without xarray, whose import takes half a second, and the stress in each disc."""
     discs, options = solution.discs, solution.discs[0].options
     sizes = {"case": 1, "disc": len(discs), "crank": solution.drive.crank.number, "position": 1}
     data: dict[str, Any] = {}
@@ -148,7 +152,9 @@ def build_dataset(solution: ReducerSolution, case: str) -> xr.Dataset:
         "size": options.size,
         "unknowns": solution.unknowns,
     }
-    return xr.Dataset(data, coords=coordinates, attrs=attributes)
+    if stresses:
+        data |= stress_variables(stresses)
+    return LabelledDataset.build(data, coordinates, attributes)
 
 
 def _pressure_profiles(discs: tuple[FullSolution, ...]) -> dict[str, Any]:
@@ -191,7 +197,7 @@ def write_solution(
         raise CycloError(f"{index}: cannot be written: {error.strerror or error}") from error
     stresses = [recover_disc_stress(disc) for disc in solution.discs]
     with whole_file(folder / "fem.nc") as part:
-        write_netcdf(build_dataset(solution, case).assign(stress_variables(stresses)), part)
+        write_netcdf(label_solution(solution, case, stresses), part)
     bodies = [
         write_field(field, folder / f"{body_stem(field.body.name, disc, len(solution.discs))}.vtu")
         for disc, own in enumerate(fields)

@@ -106,3 +106,18 @@ def test_resultants_are_forces_and_moments(ring):
     fx, fy = column[0::2], column[1::2]
     expected = [fx.sum(), fy.sum(), ((x - 2.0) * fy - (y + 1.0) * fx).sum()]
     np.testing.assert_allclose(condensed.resultants[:, -1], expected, atol=1e-12)
+
+
+def test_a_displacement_asked_for_again_is_that_of_its_own_loads(ring):
+    """The last one is remembered: other amounts in between, and a caller that writes into it, must not change it."""
+    body, stiffness, loads = ring
+    condensed = condense_body(body, stiffness, loads, fixed=unknowns_of_boundary(body, "inner"))
+    first, second = np.eye(loads.shape[1])[:2]
+    found = condensed.displacement(first).copy()
+    assert condensed.displacement(first) is condensed.displacement(first)
+    with pytest.raises(ValueError, match="read-only"):
+        condensed.displacement(first)[0] = 1.0
+    # Linear in the amounts; several load cases at once are solved without the memory.
+    columns = condensed.displacement(np.column_stack([first, second]))
+    np.testing.assert_allclose(condensed.displacement(second), columns[:, 1], atol=1e-12 * np.abs(columns).max())
+    np.testing.assert_array_equal(condensed.displacement(first), found)

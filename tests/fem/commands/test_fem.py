@@ -10,6 +10,7 @@ import xarray as xr
 from fem.commands import fem as command
 from fem.reducer.solution_files import ARRAYS
 from ltca.errors import CycloError
+from ltca.output.labelled import LabelledDataset
 from ltca.quantities import QUANTITIES
 
 SCALARS = (
@@ -27,7 +28,6 @@ def run(*words):
 def folder(tmp_path_factory):
     out = tmp_path_factory.mktemp("fem")
     words = ("paper", "--case", "CS-3", "--angle", "0.5", "--size", "6", "--out", str(out), "--export", "calculix")
-    words += ("--no-pictures",)
     assert run(*words) == 0
     return out
 
@@ -111,9 +111,8 @@ def test_a_run_cut_short_leaves_no_index_over_two_solutions(folder, tmp_path, mo
     def fail(field, path):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(solution_files, "build_dataset", lambda solution, case: xr.Dataset())
+    monkeypatch.setattr(solution_files, "label_solution", lambda *words: LabelledDataset({}, (), {}))
     monkeypatch.setattr(solution_files, "recover_disc_stress", lambda solution: None)
-    monkeypatch.setattr(solution_files, "stress_variables", lambda stresses: {})
     monkeypatch.setattr(solution_files, "write_field", fail)
     field = type("Field", (), {"body": type("Body", (), {"name": "disc"})})
     with pytest.raises(OSError, match="No space left"):
@@ -132,12 +131,13 @@ def test_fields_and_deck_are_there(folder):
         zz, 0.3 * (disc.point_data["stress_xx_MPa"] + disc.point_data["stress_yy_MPa"]), atol=1e-9 * np.abs(zz).max()
     )
     assert not [path for path in folder.iterdir() if path.name.startswith(".")]
+    assert not list(folder.glob("*.png"))  # pictures wait for --pictures
     assert (folder / "calculix.inp").read_text(encoding="ascii").count("*CONTACT PAIR") >= 10
 
 
 @pytest.mark.slow
 def test_pictures(tmp_path):
-    assert run("paper", "--case", "CS-1", "--angle", "0.5", "--size", "6", "--out", str(tmp_path)) == 0
+    assert run("paper", "--case", "CS-1", "--angle", "0.5", "--size", "6", "--out", str(tmp_path), "--pictures") == 0
     for name in ("von_mises.png", "contacts.png", "deformed.png"):
         assert (tmp_path / name).stat().st_size > 20_000
     page = (tmp_path / "report.html").read_text(encoding="utf-8")

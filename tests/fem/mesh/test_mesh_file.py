@@ -187,3 +187,13 @@ def test_missing_system_library_names_the_packages(monkeypatch: pytest.MonkeyPat
     assert "libGLU.so.1" in message
     assert "libglu1-mesa libgl1 libxft2 libxcursor1 libxinerama1 libgomp1 libegl1" in message
     assert ".ci/system-libraries" in message
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_a_moved_mesh_has_the_facets_that_scikit_fem_would_find(order: int) -> None:
+    body = pin(order)
+    turned = body.turned(0.3)
+    fresh = type(body.mesh)(turned.mesh.doflocs, turned.mesh.t, sort_t=False, validate=False)
+    for name in ("facets", "t2f", "f2t"):
+        np.testing.assert_array_equal(getattr(turned.mesh, name), getattr(fresh, name), err_msg=name)
+    np.testing.assert_array_equal(turned.boundary_nodes("core")[:, 1] >= 0, True)

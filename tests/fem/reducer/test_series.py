@@ -85,7 +85,7 @@ def test_a_coarse_mesh_too_flat_for_fast_growth_is_made_with_slow_growth():
 
     task = SimpleNamespace(options=SolutionOptions(), mesh=mesh, condense=lambda *words: "model")
     assert stages._Task.condense_coarse(task, None, ()) == "model"
-    assert tried == [(3.5, 0.6), (3.5, 0.3)]
+    assert tried == [(4.0, stages.COARSE_GROWTH), (4.0, 0.3)]
 
 
 def test_the_oldest_pins_and_rollers_are_dropped_first():
