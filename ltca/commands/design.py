@@ -12,6 +12,7 @@ from ltca.errors import FaultError
 from ltca.reading.arguments import add_out_argument, count_argument, default_folder, path_argument
 
 if TYPE_CHECKING:
+    from ltca.drive.parts import Compliance
     from ltca.studies.design_search.refinement import Refined
     from ltca.studies.design_search.search import Found
 
@@ -39,6 +40,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
         default=BEST,
         help=f"designs to write; default {BEST}",
     )
+    parser.add_argument(
+        "--quick",
+        action="store_true",
+        help="designs on half-spaces as candidates are, not on hybrid, whose coefficients take some 20 s for each drive that is "
+        "tried",
+    )
     add_worker_arguments(parser)
     add_out_argument(parser, "design")
 
@@ -60,10 +67,11 @@ def execute(arguments: argparse.Namespace) -> int:
 
     writes = ["design.json", "designs.csv", "report.html", "design-[0-9]*.toml", "relaxed-*.toml"]
     with claimed_folder(out, "design", writes=writes):
+        compliance: Compliance = "half-space" if arguments.quick else "hybrid"
         workers = Workers(processes=arguments.workers, scheduler=arguments.scheduler)
         try:
             with steps("design") as told, workers.executor() as (executor, _):
-                found = find_designs(requirements, executor, told, arguments.best)
+                found = find_designs(requirements, executor, told, arguments.best, compliance=compliance)
         except BrokenProcessPool as error:
             raise FaultError("workers died (killed, or out of memory); start the search again") from error
         _write(found, arguments.best, out)

@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import csv
 import io
+from dataclasses import replace
 from typing import Any
 
-from ltca.analysis.engines import describe_engine
+from ltca.analysis.engines import describe_engine, engine_named
 from ltca.drive.members.limits import Limits
-from ltca.drive.parts import Drive
+from ltca.drive.parts import Analysis, Drive
 from ltca.reading.writing import drive_text
 from ltca.studies.design_search.demands import Demand, shown, written_limits
 from ltca.studies.design_search.refinement import Refined, Task, relaxed_limits
 from ltca.studies.design_search.requirements import Requirements
 from ltca.studies.design_search.search import Found, Relaxation, factor_words
 from ltca.studies.design_search.sizes import LEAST_DISTANCE, distance, drive_of
-from ltca.studies.design_search.solution import CHECK_POSITIONS, engine_for
+from ltca.studies.design_search.solution import CHECK_POSITIONS
 
 SIZES = {
     "discs": "number of discs",
@@ -48,15 +49,16 @@ REACHED = (
 
 
 def named_design(refined: Refined, requirements: Requirements, name: str) -> Drive:
-    """Return the drive of a design."""
-    return drive_of(refined.row, requirements, name)
+    """Return the drive of a design, which is analysed as it was solved."""
+    drive = drive_of(refined.row, requirements, name)
+    return replace(drive, analysis=Analysis(compliance=refined.solution.compliance))
 
 
 def design_text(refined: Refined, found: Found, name: str) -> str:
     """Return a design as the text of a drive file with its limits; `cyclo check` passes it."""
     values, positions = refined.solution.values, refined.solution.positions
     at = "" if positions == CHECK_POSITIONS else f" --positions {positions}"
-    engine = describe_engine(engine_for(fine=True))
+    engine = describe_engine(engine_named(refined.solution.compliance))
     lines = [f"# Written by cyclo design; `cyclo check{at}` passes it. Reached, by a fine solution, {engine}:"]
     for demand in found.demands:
         if demand.kind in ("requirement", "limit") and demand.quantity in values:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from ltca.analysis.verdict.values import LIVES
 from ltca.arrays import FloatArray
 from ltca.drive.members.limits import Limits
+from ltca.drive.parts import Compliance
 from ltca.errors import CycloError
 from ltca.studies.design_search.closed_forms import Setting, closed_forms
 from ltca.studies.design_search.demands import SAFETY, Demand, margins, written_limits
@@ -27,8 +28,8 @@ from ltca.studies.design_search.solution import Solution, solve_coarsely, solve_
 
 MAX_COARSE_SOLUTIONS = 6
 """Solutions of a candidate over few positions."""
-MAX_FINE_SOLUTIONS = 2
-"""Solutions over those of a check."""
+MAX_FINE_SOLUTIONS: dict[Compliance, int] = {"half-space": 2, "hybrid": 4}
+"""Solutions over those of a check: sizes come from half-spaces, which may be far from what bodies do."""
 MAX_SIZE_STEP = 0.2
 """Largest change of a size between two solutions (ln)."""
 DIFFERENCE = 1e-5
@@ -67,12 +68,15 @@ class Task:
         Where to start.
     relaxed : tuple of str
         Names of demands of which as little as possible is given; size counts where there are none.
+    compliance : {"half-space", "hybrid"}
+        How bodies yield in fine solutions; coarse ones are on half-spaces.
     """
 
     requirements: Requirements
     demands: tuple[Demand, ...]
     row: dict[str, float]
     relaxed: tuple[str, ...] = ()
+    compliance: Compliance = "half-space"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -152,7 +156,7 @@ def finish(task: Task, solved: int = 0) -> Refined:
     row, solution = dict(task.row), Solution(values={})
     # A life that gives way has no limit in the file any more, and has to be known all the same.
     lives = not task.relaxed or any(one.quantity in LIVES for one in task.demands)
-    for _ in range(MAX_FINE_SOLUTIONS):
+    for _ in range(MAX_FINE_SOLUTIONS[task.compliance]):
         try:
             drive = drive_of(row, task.requirements)
         except CycloError as error:
@@ -160,7 +164,7 @@ def finish(task: Task, solved: int = 0) -> Refined:
             break
         limits = relaxed_limits(written_limits(task.requirements), task)
         solution, solved = (
-            solve_finely(row, drive, limits, task.requirements, task.demands, lives=lives),
+            solve_finely(row, drive, limits, task.requirements, task.demands, lives=lives, compliance=task.compliance),
             solved + 1,
         )
         if not solution.values:

@@ -14,6 +14,7 @@ from math import ceil, exp, floor, log10
 
 import numpy as np
 
+from ltca.drive.parts import Compliance
 from ltca.studies.design_search.demands import TIGHTENED, Demand, find_demands
 from ltca.studies.design_search.enumeration import MAX_ROOM_FACTOR, Enumeration, enumerate_candidates, size_of
 from ltca.studies.design_search.refinement import Refined, Task, finish, refine
@@ -187,10 +188,13 @@ def find_designs(
     executor: Executor,
     told: Callable[[str], None] = lambda step: None,
     best: int = 3,
+    *,
+    compliance: Compliance = "hybrid",
 ) -> Found:
     """Return up to `best` designs that fit, or the relaxations that would make one fit.
 
-    The executor refines candidates; `told` is called with a line for each step of the search.
+    The executor refines candidates; `told` is called with a line for each step of the search. Candidates and relaxations are
+    solved on half-spaces, designs in the end with the `compliance` asked for.
     """
     demands = find_demands(requirements)
     told("combinations")
@@ -209,9 +213,10 @@ def find_designs(
     designs: list[Refined] = []
     missed = [one for one in refined if not one.fits]
     while coarse and len(designs) < best:
-        told(f"designs solved finely: {len(designs)} of {min(best, len(designs) + len(coarse))}")
+        bodies = f" on {compliance}, whose coefficients are derived" if compliance != "half-space" else ""
+        told(f"designs solved finely{bodies}: {len(designs)} of {min(best, len(designs) + len(coarse))}")
         now, coarse = coarse[: best - len(designs)], coarse[best - len(designs) :]
-        tasks = [Task(requirements=requirements, demands=demands, row=one.row) for one in now]
+        tasks = [Task(requirements=requirements, demands=demands, row=one.row, compliance=compliance) for one in now]
         done = [future.result() for future in [executor.submit(finish, task) for task in tasks]]
         solved += sum(one.solved for one in done)
         designs += [one for one in done if one.fits]
@@ -223,7 +228,8 @@ def find_designs(
         solved += sum(one.refined.solved for one in relaxations if one.refined is not None)
         # A relaxation of nothing fits as it is, if a solution with every limit in place confirms it.
         whole = [one.refined for one in relaxations if one.refined is not None and one.refined.given <= 0.0]
-        fine = [finish(Task(requirements=requirements, demands=demands, row=one.row)) for one in whole]
+        tasks = [Task(requirements=requirements, demands=demands, row=one.row, compliance=compliance) for one in whole]
+        fine = [finish(task) for task in tasks]
         designs = [one for one in fine if one.fits]
     designs.sort(key=lambda one: _size(one, smallest))
     return Found(

@@ -8,7 +8,7 @@ from math import gcd
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.analysis.engines import Engine, HalfSpace
+from ltca.analysis.engines import Engine, HalfSpace, engine_named
 from ltca.analysis.extremes import RESOLVED
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse
 from ltca.analysis.summary import summarise
@@ -17,7 +17,7 @@ from ltca.analysis.verdict.values import LIVES, find_values, judge_analysis
 from ltca.drive.members.judgement import Check
 from ltca.drive.members.limits import Limits
 from ltca.drive.members.temperatures import warm_drive
-from ltca.drive.parts import Drive
+from ltca.drive.parts import Compliance, Drive
 from ltca.drive.units.quantities import ARCMIN
 from ltca.errors import CycloError
 from ltca.geometry.placement import position_angles
@@ -25,6 +25,7 @@ from ltca.studies.design_search.closed_forms import Setting, lives_by_loads, sha
 from ltca.studies.design_search.demands import OF_SHAPE, Demand
 from ltca.studies.design_search.requirements import CLEARANCES, Requirements
 from ltca.studies.design_search.sizes import Sizes, drive_of
+from ltca.studies.shapes import with_kept_coefficients
 
 COARSE_POSITIONS = 24
 TURNS, HOURS = "bearing_life_million_turns", "bearing_life_hours"
@@ -35,11 +36,6 @@ OFFSET = 1e-3
 CURVE_ANGLES = np.array([0.0, 0.1])
 """Crank angles at which stiffness and lost motion are read, rad."""
 CURVE_POINTS = 4
-
-
-def engine_for(*, fine: bool) -> Engine:
-    """Return the engine of candidates, coarse while sizes move or fine at the end: the one place of that choice."""
-    return HalfSpace()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -54,6 +50,8 @@ class Solution:
         Of `cyclo check`, for fine solutions alone.
     positions : int
         Of a turn.
+    compliance : {"half-space", "hybrid"}
+        How bodies yield.
     message : str
         Why it cannot be solved.
     life_factor : float or None
@@ -63,6 +61,7 @@ class Solution:
     values: dict[str, float]
     checks: tuple[Check, ...] = ()
     positions: int = COARSE_POSITIONS
+    compliance: Compliance = "half-space"
     message: str = ""
     life_factor: float | None = None
 
@@ -83,7 +82,7 @@ def solve_coarsely(
     try:
         drive = drive_of(row, requirements)
         positions = COARSE_POSITIONS if drive.disc.number_of_discs == 1 else COARSE_POSITIONS // 2
-        analysis = analyse(drive, position_angles(positions) + OFFSET, engine=engine_for(fine=False))
+        analysis = analyse(drive, position_angles(positions) + OFFSET, engine=HalfSpace())
         by_forces = _lives_by_forces(row, analysis, requirements)
         asked = [one for one in demands if one.quantity in LIVES]
         # ISO 281 with the mean force falls short of the slices by a factor of two or so: what it finds enough is.
@@ -95,7 +94,7 @@ def solve_coarsely(
                 life_factor = found.get(TURNS, by_forces[TURNS]) / by_forces[TURNS]
             factors = {TURNS: life_factor or 1.0, HOURS: life_factor or 1.0}
             found = {name: value * factors.get(name, 1.0) for name, value in by_forces.items()} | found
-        found |= own_values(row, drive, requirements, demands, CURVE_ANGLES[:1], fine=False)
+        found |= own_values(row, drive, requirements, demands, CURVE_ANGLES[:1])
         return Solution(values=found, life_factor=life_factor)
     except CycloError as error:
         return Solution(values={}, message=" ".join(str(error).split()))
@@ -116,8 +115,7 @@ def own_values(
     requirements: Requirements,
     demands: tuple[Demand, ...],
     angles: NDArray[np.float64] = CURVE_ANGLES,
-    *,
-    fine: bool = True,
+    engine: Engine | None = None,
 ) -> dict[str, float]:
     """Return values that `cyclo check` has not: room, torque, margins of the shape as far as demanded, stiffness, lost motion.
 
@@ -126,7 +124,7 @@ def own_values(
     shape = shape_values(Sizes.of_rows([row]), Setting.of(requirements))
     found = {name: float(shape[name][0]) for name in (*OF_SHAPE, *CLEARANCES, "outer_diameter", "length", "torque")}
     if any(one.quantity in ("stiffness", "lost_motion") for one in demands):
-        curve = torque_curve(warm_drive(drive), angles, points=CURVE_POINTS, engine=engine_for(fine=fine))
+        curve = torque_curve(warm_drive(drive), angles, points=CURVE_POINTS, engine=engine)
         found["stiffness"] = float(curve.stiffness.min())
         found["lost_motion"] = float(curve.lost_motion.max()) * ARCMIN
     return found
@@ -146,17 +144,19 @@ def solve_finely(
     demands: tuple[Demand, ...],
     *,
     lives: bool = True,
+    compliance: Compliance = "half-space",
 ) -> Solution:
-    """Return the values of a drive, with the checks of `cyclo check`.
+    """Return the values of a drive, with the checks of `cyclo check`; coefficients of its shape are derived where there are none.
 
     `row` and `drive` are the same candidate; `lives` tells whether lives are wanted where no limit asks for them.
     """
     positions = check_positions(drive)
     try:
-        analysis = analyse(drive, position_angles(positions), engine=engine_for(fine=True))
+        engine = with_kept_coefficients(engine_named(compliance), drive)
+        analysis = analyse(drive, position_angles(positions), engine=engine)
         checks = judge_analysis(analysis, summarise(analysis), limits, lives=lives)
         found = {check.value.quantity: check.value.value for check in checks if check.value.value is not None}
-        found |= own_values(row, drive, requirements, demands)
-        return Solution(values=found, checks=tuple(checks), positions=positions)
+        found |= own_values(row, drive, requirements, demands, engine=engine)
+        return Solution(values=found, checks=tuple(checks), positions=positions, compliance=compliance)
     except CycloError as error:
-        return Solution(values={}, positions=positions, message=" ".join(str(error).split()))
+        return Solution(values={}, positions=positions, compliance=compliance, message=" ".join(str(error).split()))
