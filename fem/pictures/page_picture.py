@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 from fem.pictures.scene import Panel, bar_ticks, colour_norm, window_ticks
 from ltca.figures.house_style import COLOUR_MAP
 
-SIDE, SIDE_OF_SEVERAL = 900, 640
+SIDE, SIDE_OF_SEVERAL = 800, 640
 """Pixels of the field on a page, alone and beside others."""
-QUALITY = 75
-"""Of its WebP."""
+QUALITY, QUALITY_OF_EDGES = 75, 60
+"""Of its WebP, and of what is clear in it: six positions have two megabytes."""
 WIDTH, HEIGHT = 640, 580
 """Of a panel with its axes and scale, units of its SVG."""
 LEFT, TOP, FIELD = 64, 8, 500
@@ -52,7 +52,7 @@ def _webp(image: NDArray[np.uint8], side: int) -> str:
     if picture.width > side:
         picture = picture.resize((side, side), Image.Resampling.LANCZOS)
     stream = io.BytesIO()
-    picture.save(stream, "WEBP", quality=QUALITY, method=4)
+    picture.save(stream, "WEBP", quality=QUALITY, alpha_quality=QUALITY_OF_EDGES, method=4)
     return "data:image/webp;base64," + base64.b64encode(stream.getvalue()).decode("ascii")
 
 
