@@ -109,20 +109,7 @@ class DriveCheck:
                 f"    not {driver.input}: what mends this fails {', '.join(driver.breaks)}"
                 for driver in [driver for driver in each if driver.breaks][:MAX_INPUTS]
             ]
-        return "".join(f"{line}\n" for line in [*lines, *self._at_once()])
-
-    def _at_once(self) -> list[str]:
-        """Changes of one input that mend all failed checks together: of each input that mends every one, the largest change."""
-        failed = [self.drivers.get(check.value.quantity, ()) for check in self.failed if not is_of_sampling(check)]
-        if len(failed) < 2:
-            return []
-        each = [{driver.input: driver for driver in one if driver.factor is not None} for one in failed]
-        common = [name for name in each[0] if all(name in one for one in each)]
-        farthest = [
-            max((one[name] for one in each), key=lambda driver: abs(log(driver.factor or 1.0))) for name in common
-        ]
-        told = "; ".join(f"{driver.input}: {driver.change}" for driver in farthest)
-        return [f"  all of them at once: {told}"] if told else []
+        return "".join(f"{line}\n" for line in [*lines, *_at_once(self.failed, self.drivers)])
 
 
 def check_drive(
@@ -176,6 +163,18 @@ def check_drive(
     # Between those of a turn, so that nothing is refined.
     angles = position_angles(min(positions, ADVICE_POSITIONS)) + OFFSET
     return found(checks, advise(drive, checks, angles, whole, part), told)
+
+
+def _at_once(failed: Sequence[Check], drivers: Mapping[str, Sequence[Driver]]) -> list[str]:
+    """Changes of one input that mend all failed checks together: of each input that mends every one, the largest change."""
+    helping = [drivers.get(check.value.quantity, ()) for check in failed if not is_of_sampling(check)]
+    if len(helping) < 2:
+        return []
+    each = [{driver.input: driver for driver in one if driver.factor is not None} for one in helping]
+    common = [name for name in each[0] if all(name in one for one in each)]
+    farthest = [max((one[name] for one in each), key=lambda driver: abs(log(driver.factor or 1.0))) for name in common]
+    told = "; ".join(f"{driver.input}: {driver.change}" for driver in farthest)
+    return [f"  all of them at once: {told}"] if told else []
 
 
 def _seized(drive: Drive, limits: Mapping[str, Limit]) -> list[Check]:

@@ -14,10 +14,10 @@ from ltca.analysis.half_width_guard import displacement_warning
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.summary import summarise
 from ltca.analysis.verdict.advice import Driver, _all_sizes, _without_contradictions, advise
+from ltca.analysis.verdict.drive_check import _at_once
 from ltca.analysis.verdict.geometry import pin_hollow_margin, roller_gap, undercut_margin, walls
 from ltca.analysis.verdict.pin_stress import pin_stress, worst_cycle
 from ltca.analysis.verdict.values import find_values, judge_analysis
-from ltca.commands.actions.check import _at_once
 from ltca.commands.program import main
 from ltca.drive.members.judgement import Check, Value, judge
 from ltca.drive.members.limits import Limit, parse_limits

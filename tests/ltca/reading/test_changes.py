@@ -91,7 +91,7 @@ def test_warmth_is_that_of_the_changed_drive():
         ({"case": "other"}, "case: is not a field"),
         ({"load.torque": 1e5, "load": {"torque": 2e5}}, "load.torque: is given twice"),
         ({"materials.disc": "unobtainium"}, "materials.disc = 'unobtainium': is no named material"),
-        ({"pin_shaft.beam.diameter": 10}, "there is no pin_shaft.beam in this drive; to add it, give pin_shaft.beam.span, "),
+        ({"pin_shaft.beam.diameter": 10}, "there is no pin_shaft.beam in this drive; to add it, give pin_shaft.beam.tip, too"),
         ({"pin_shaft.beam.span": 30, "pin_shaft.beam.tip": "free", "pin_shaft.stiffness": 1e5},
          "pin_shaft.stiffness = 100000 N/mm: must be left out beside pin_shaft.beam"),
         ({3: 5}, "must be values by the names of their fields"),
