@@ -17,6 +17,8 @@ from ltca.reading.station_walls import LARGEST_DISTANCE, missed_between_stations
 # working flanks, of which 0.02 is the rounding of the meshes. Uniform stations need 32 for each lobe for 0.12 and 0.01.
 FLANK_PER_LOBE = 16
 FLANK_CLUSTERING = 0.6
+# With fewer the strain of a lobe is not followed at all.
+FEWEST_PER_LOBE = 8
 # In holes 32 leave 0.02, 16 leave 0.2.
 BORE = 48
 PER_HOLE = 24
@@ -58,7 +60,7 @@ class DiscStations:
 
     @classmethod
     def of_disc(cls, shape: DiscShape, scale: float = 1.0) -> DiscStations:
-        """Return the stations of a disc: `scale` times 16 for each lobe, 48 on each bore and 24 on each hole.
+        """Return the stations of a disc: `scale` times 16 for each lobe (at least 8), 48 on each bore and 24 on each hole.
 
         MeshError when the scale is out of bounds.
         """
@@ -68,7 +70,10 @@ class DiscStations:
             )
         width = patch_half_width(shape)
         lobes = round(shape.flank.profile.reduction_ratio) - 1
-        numbers = [round(FLANK_PER_LOBE * scale) * lobes, *[round(BORE * scale)] * len(shape.bores)]
+        numbers = [
+            max(FEWEST_PER_LOBE, round(FLANK_PER_LOBE * scale)) * lobes,
+            *[round(BORE * scale)] * len(shape.bores),
+        ]
         numbers += [round(PER_HOLE * scale)] * len(shape.holes)
         parameters = []
         for index, (curve, number) in enumerate(zip(shape.curves, numbers, strict=True)):

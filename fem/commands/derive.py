@@ -42,7 +42,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         type=quantity_argument("--stations", "dimensionless", ge=1e-2, le=1e2),
         default=1.0,
         metavar="N",
-        help="number of stations as a multiple of the default (32 for each lobe, 48 on each bore, 24 on each hole); default 1",
+        help="number of stations as a multiple of the default (16 for each lobe and at least 8, 48 on each bore, 24 on "
+        "each hole); default 1",
     )
     add_size_argument(parser, "element edge as a multiple of the default")
     parser.add_argument(

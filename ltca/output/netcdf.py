@@ -348,7 +348,7 @@ def _written(file: h5py.File, name: str, variable: LabelledArray, packed: Collec
     if kind not in "biufUO":
         raise TypeError(f"{name}: netCDF has no values of type {values.dtype}")
     stored: Any = {"U": h5py.string_dtype(), "O": h5py.string_dtype(), "b": "i1"}.get(kind, values.dtype)
-    options: dict[str, Any] = DEFLATED if name in packed and values.ndim else {}
+    options: dict[str, Any] = dict(DEFLATED) if name in packed and values.ndim else {}
     if kind == "f":
         options["fillvalue"] = np.array(np.nan, dtype=values.dtype)
     place = file.create_dataset(name, values.shape, stored, track_order=True, **options, **_growing(values.shape))

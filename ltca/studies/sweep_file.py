@@ -75,10 +75,10 @@ class _Reader:
             raise DriveError(self.problems, self.source)
 
 
-def load_sweep(path: Path, engine: EngineChoice = engine_of) -> Study:
+def load_sweep(path: Path, engine: Engine | EngineChoice | None = None) -> Study:
     """Read a sweep from ``study.toml``; `DriveError` names all mistakes of file, drive, design and factors together.
 
-    `engine` chooses the engine for the cases of its drive.
+    `engine` is one, or chooses it for the cases of the drive; by default as the drive says.
     """
     text = read_text(path, "no such file; docs/how-to/studies.md says what a study file holds")
     table = parse_toml(text, str(path), MOST_VALUES, MOST_VALUES)
@@ -91,7 +91,9 @@ def load_sweep(path: Path, engine: EngineChoice = engine_of) -> Study:
     return replace(study, definition=text)
 
 
-def parse_sweep(table: Mapping[str, Any], drive: str, source: str = "study", engine: EngineChoice = engine_of) -> Study:
+def parse_sweep(
+    table: Mapping[str, Any], drive: str, source: str = "study", engine: Engine | EngineChoice | None = None
+) -> Study:
     """Validate the table of a sweep file; see `load_sweep`."""
     reader = _Reader(source=source, problems=[])
     reader.problems += [
@@ -145,10 +147,17 @@ def parse_sweep(table: Mapping[str, Any], drive: str, source: str = "study", eng
         positions=positions,
         quantities=names,
         near_nominal=False,
-        engine=engine(file.cases.values()),
+        engine=_chosen(engine, file.cases.values()),
         definition=json.dumps(table, ensure_ascii=False, default=str),
         drive_file=file.text,
     )
+
+
+def _chosen(engine: Engine | EngineChoice | None, drives: Iterable[Drive]) -> Engine:
+    """Return the engine of a study, which may be chosen by the drives."""
+    if engine is None:
+        return engine_of(drives)
+    return engine(drives) if callable(engine) else engine
 
 
 def _is_whole(path: str) -> bool:

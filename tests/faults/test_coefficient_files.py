@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 
+import h5py
 import numpy as np
 import pytest
 
@@ -79,13 +80,14 @@ def test_damaged_bytes_are_refused(damage, drive, sound, tmp_path):
 def test_any_bit_of_a_number_is_seen(drive, sound, tmp_path):
     """By the checksum: one bit somewhere in the matrix of the disc breaks no law."""
     content, rng = sound.read_bytes(), np.random.default_rng(5)
-    matrix = closed_form(drive)["disc_approach"].values.astype("<f8").tobytes()
-    first = content.index(matrix[:64])
+    with h5py.File(sound) as file:
+        matrix = file["disc_approach"].id
+        first, size = matrix.get_chunk_info(0).byte_offset, matrix.get_chunk_info(0).size
     path = tmp_path / "damaged.nc"
     for _ in range(10):
-        place = first + int(rng.integers(len(matrix)))
+        place = first + int(rng.integers(size))
         path.write_bytes(content[:place] + bytes([content[place] ^ (1 << int(rng.integers(8)))]) + content[place + 1 :])
-        with pytest.raises(DamagedFileError, match=r"checksum|no finite numbers"):
+        with pytest.raises(DamagedFileError, match=r"checksum|no finite numbers|cannot be read"):
             load_coefficients(path, drive)
 
 
@@ -97,14 +99,12 @@ def scaled(name, factor):
 
 
 def linked(file):
-    import h5py
 
     del file["pin_approach"]
     file["pin_approach"] = h5py.ExternalLink("other.nc", "/pin_approach")
 
 
 def soft(file):
-    import h5py
 
     del file["pin_approach"]
     file["pin_approach"] = h5py.SoftLink("/pin_half_width")
@@ -203,7 +203,6 @@ def test_half_widths_and_labels_are_checked(change, told, drive, tmp_path):
 @pytest.mark.parametrize("name", CONTENTS)
 def test_wrong_contents_are_refused(name, drive, sound, tmp_path):
     """A matrix ten times too large gave −26 %, plane = "banana" +2.9 %, both with exit status 0."""
-    import h5py
 
     change, message = CONTENTS[name]
     path = tmp_path / "wrong.nc"
@@ -268,7 +267,7 @@ def test_caches_are_keyed_by_the_code(drive, derived, monkeypatch):
 
 @pytest.mark.slow
 def test_the_checksum_is_of_the_content_not_of_its_storage(drive, sound, tmp_path):
-    dataset = closed_form(drive)
+    dataset = read_coefficients(sound).to_xarray()
     packed = tmp_path / "packed.nc"
     dataset.assign_attrs({CHECKSUM: checksum_of(dataset)}).to_netcdf(
         packed, engine="h5netcdf", encoding={"disc_approach": {"zlib": True}}

@@ -30,8 +30,7 @@ from ltca.testing.field_changes import change_of, leaf_fields, sensible_change
 STEEL = Material(youngs_modulus=206_000.0, poisson_ratio=0.3)
 THICKNESS = 11.8
 UNIT = 2.0 * (1.0 - 0.3**2) / (np.pi * 206_000.0 * THICKNESS)
-# Coarser than the default, 0.15 % of the largest entry off, to be quick.
-SIZE = 1.5
+SIZE = 1.0
 
 
 def own_near_field(half_width):
@@ -129,7 +128,7 @@ def direct(disc_shape, stations):
     """Another mesh, fine at some stations only: body, their patches, and a solver with three unknowns held."""
     width = stations.half_width[0]
     spots = [Refinement(point.real, point.imag, 0.25 * width, 2.0 * width) for point in stations.points[LOADED]]
-    body = mesh_disc(disc_shape, spots, coarse_size=1.7, growth=0.25)
+    body = mesh_disc(disc_shape, spots, coarse_size=0.9, growth=0.25)
     patches = [
         patch_loads(body, disc_shape.curves[stations.boundary[index]], stations.parameter[[index]], width)
         for index in LOADED
@@ -186,7 +185,7 @@ def test_wall_stress_against_recovered_stress(direct, disc_shape, stations, disc
     )
     clear = np.min(np.abs(measured.points[:, None] - stations.points[LOADED]), axis=1) > 4.0 * stations.half_width[0]
     assert np.count_nonzero(clear) > 0.9 * measured.count
-    # Nodal stresses of elements of 1.7 mm in roots of 8 mm: 1.4 % of the largest stress, 0.3 % in the mean (measured).
+    # Nodal stresses beside a load, of both meshes, at four half-widths from it: 2 % of the largest stress (measured).
     assert np.max(np.abs(found - expected)[clear]) < 3e-2 * np.max(np.abs(expected[clear]))
     assert np.sqrt(np.mean((found - expected)[clear] ** 2)) < 6e-3 * np.max(np.abs(expected[clear]))
 

@@ -68,7 +68,7 @@ def derived(request):
         drive = with_fields(drive, HOLES)
     shape = DiscShape.of_drive(nominal_shape(single_discs(drive)[0]))
     stations = DiscStations.of_disc(shape, 0.25)
-    return Derived(shape, stations, derive_disc(shape, stations, STEEL, thickness=THICKNESS, size=1.5))
+    return Derived(shape, stations, derive_disc(shape, stations, STEEL, thickness=THICKNESS))
 
 
 def test_stations_stand_on_flank_bores_and_holes(derived):
@@ -129,7 +129,7 @@ def direct(derived):
     stations, shape, loaded = derived.stations, derived.shape, loaded_stations(derived)
     width = stations.half_width[0]
     spots = [Refinement(point.real, point.imag, 0.25 * width, 2.0 * width) for point in stations.points[loaded]]
-    body = mesh_disc(shape, spots, coarse_size=1.2, growth=0.3)
+    body = mesh_disc(shape, spots, coarse_size=0.9, growth=0.3)
     patches = sp.hstack(
         [patch_loads(body, shape.curves[stations.boundary[i]], stations.parameter[[i]], width) for i in loaded]
     ).toarray()

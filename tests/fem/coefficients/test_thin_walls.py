@@ -51,7 +51,7 @@ def test_coefficients_just_derived_are_not_rejected(wall, stations, told, tmp_pa
     assert all(checks[law].passed for law in (EVEN_PRESSURE, WALLS_CLOSE))
     if not told:
         # As far as the law still speaks, stresses that are wrong by a factor are told.
-        wrong = read.assign(disc_stress=read["disc_stress"] * 10.0)
+        wrong = read.to_xarray().assign(disc_stress=read.to_xarray()["disc_stress"] * 10.0)
         assert not {check.name: check for check in check_coefficients(wrong)}[WALLS_CLOSE].passed
 
 

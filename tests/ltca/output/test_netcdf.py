@@ -58,7 +58,9 @@ def content(path):
 
 def check_written(dataset, tmp_path, packed=()):
     with h5netcdf.File(tmp_path / "theirs.nc", "w") as file:
-        dataset.dump_to_store(H5NetCDFStore(file), encoding={name: {"zlib": True, "complevel": 6, "shuffle": True} for name in packed})
+        dataset.dump_to_store(
+            H5NetCDFStore(file), encoding={name: {"zlib": True, "complevel": 6, "shuffle": True} for name in packed}
+        )
     write_netcdf(dataset, tmp_path / "ours.nc", packed)
     assert content(tmp_path / "ours.nc") == content(tmp_path / "theirs.nc")
     ours, theirs = (xr.load_dataset(tmp_path / f"{name}.nc", engine="h5netcdf") for name in ("ours", "theirs"))
