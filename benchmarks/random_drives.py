@@ -52,7 +52,7 @@ def try_friction_drive(seed: int) -> tuple[str, str, int]:
             kind = "convergence error" if error.history else "error without history"
             return kind, f"driven by its {driven_by}: {error}", 0
         found = find_imbalance(own, moving, balanced, torque=drive.load.torque)
-        lost = losses(moving, own, balanced, drive.load.torque)
+        lost = losses(moving, [own], balanced, drive.load.torque)
         if not np.all(np.isfinite(lost.efficiency)) or np.any(lost.total < 0.0):
             found.append(f"efficiency {lost.efficiency}, losses {lost.total} N·mm")
         if driven_by == "output" and np.any(lost.at_input >= 0.0):

@@ -334,7 +334,8 @@ def analyse(
 def derivatives(result: AnalysisResult, fields: Iterable[str]) -> xr.Dataset:
     """Return how what an analysis answers follows fields of its drive: ∂(loads, poses, angles, …)/∂field at every position.
 
-    By the full Jacobian of the balance (`ltca.analysis.derivatives`): nothing is balanced again.
+    By the full Jacobian of the balance (`ltca.analysis.derivatives`): nothing is balanced again but where contacts open or close
+    on the way.
 
     Parameters
     ----------
@@ -356,7 +357,7 @@ def derivatives(result: AnalysisResult, fields: Iterable[str]) -> xr.Dataset:
     DriveError
         For what is no real field of this drive and, under ``fe`` and ``hybrid``, for one that reshapes a body.
     ConvergenceError
-        When positions have no answer, or derivatives do not settle.
+        When positions have no answer, or drives beside this one have none.
 
     Examples
     --------

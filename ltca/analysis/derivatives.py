@@ -11,8 +11,11 @@ The tangent used by Newton's method neglects that radii of curvature and influen
 error 1e-5). It therefore serves as a preconditioner only: the directional derivative of the residual along the current dz/dp is
 reduced to zero by iteration, so the result is that of the full Jacobian. Directional derivatives are fourth-order differences
 beside the balanced position, with steps of a thousandth of the approaches. Their error is some 1e-8 of the change at a held
-pose: 1e-7 of most derivatives, 1e-6 where the balance takes back all but a hundredth of that change. At a position where a
-contact is about to open, the derivative is one-sided, and the differences return a value in between.
+pose: 1e-7 of most derivatives, 1e-6 where the balance takes back all but a hundredth of that change. Positions at which a step
+opens or closes a contact, or changes its load by more than a tenth, are differentiated again with steps of a tenth and of a
+hundredth, at which round-off makes up to 1e-7 and 1e-6 more. Where the iteration does not settle, since contacts open or close on
+its way, the drives beside are balanced themselves: 1e-6, and 1e-5 under loads of some N. Where a contact is about to open all the
+same, the derivative is one-sided, and the differences return a value in between.
 """
 
 from __future__ import annotations
@@ -35,7 +38,7 @@ from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.balance import Equilibrium, lever_arms
-from ltca.equilibrium.output_torque import input_moment
+from ltca.equilibrium.output_torque import input_moment, solve_at_output
 from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
@@ -47,6 +50,11 @@ CHANGE = 1e-3
 power."""
 FIRST_STEP = 1e-7
 """First step of a field relative to its value, or in its unit where the value is zero."""
+STEP_PARTS = (1.0, 0.1, 0.01)
+"""Parts of the step that are tried, one after the other, at positions whose contacts do not keep to `LARGEST_LOAD_CHANGE`."""
+LARGEST_LOAD_CHANGE = 0.1
+"""Change of a contact's load over one step, relative to the load, up to which fourth-order differences have an error of 1e-6:
+loads go with some δ^1.1, whose fifth derivative makes 0.017 of the fourth power of the change."""
 MAX_CORRECTIONS = 12
 SLOPE_TOLERANCE = 1e-9
 """Relative derivative of the residual at which the iteration stops."""
@@ -56,6 +64,10 @@ ROUND_OFF = 1e-10
 """Change of the residual over one step, relative to the load, that counts as round-off of the inner unknowns."""
 FLOATING = 1e-13
 """Stiffness, relative to the largest, below which a disc counts as unloaded; its pose stays as it is."""
+NO_LOAD = 1e-9
+"""Load of a contact, relative to that of the drive, up to which it counts as open: what balance leaves to it."""
+SOFT = 1e-3
+"""Stiffness of a coordinate, relative to the largest, below which its step does not grow: about a disc that floats are gaps."""
 CENTRAL = (np.array([-2.0, -1.0, 1.0, 2.0]), np.array([1.0, -8.0, 8.0, -1.0]) / 12.0)
 FORWARD = (np.array([0.0, 1.0, 2.0, 3.0, 4.0]), np.array([-25.0, 48.0, -36.0, 16.0, -3.0]) / 12.0)
 """Steps and weights of differences of fourth order; forward ones (or backward) where a field is at its bound."""
@@ -88,6 +100,9 @@ class _Position:
         self.lever = np.broadcast_to(lever_arms(base.model), found.pose.shape)
         self.load = float(np.abs(found.wheel_moment / self.lever[:, WHEEL_ANGLE]).max())
         self.start = Start.after(found.response)
+        stiffness = self._stiffness
+        self.floating = stiffness <= FLOATING * stiffness.max()
+        """Coordinates that nothing holds, shape (positions, coordinates)."""
         self.inverse = self._inverse(self._tangent(base))
 
     def residual(self, node: _Node, pose: FloatArray, moment: FloatArray) -> FloatArray:
@@ -98,6 +113,13 @@ class _Position:
         left = self._closure(node, found)
         return np.concatenate((force / self.lever, (left / self.lever[:, WHEEL_ANGLE])[:, None]), axis=1)
 
+    def change(self, base: _Node, beside: _Node) -> float:
+        """Change of the residual at the held pose by the load, from one drive to another."""
+        pose, moment = self.found.pose, self.found.wheel_moment
+        return (
+            float(np.max(np.abs(self.residual(beside, pose, moment) - self.residual(base, pose, moment)))) / self.load
+        )
+
     def at(self, node: _Node, direction: FloatArray, part: float) -> Equilibrium:
         """What stands a step along a direction from balance."""
         pose, moment = self._moved(direction, part)
@@ -107,12 +129,27 @@ class _Position:
         """The residual a step along a direction from balance."""
         return self.residual(node, *self._moved(direction, part))
 
+    def load_change(self, beside: Equilibrium) -> FloatArray:
+        """Largest change of a contact's load relative to it, shape (positions,); infinite where one opens or closes."""
+        changes = []
+        for load, other in zip(_loads(self.found), _loads(beside), strict=True):
+            closed = load > NO_LOAD * self.load
+            kept = closed == (other > NO_LOAD * self.load)
+            change = np.where(closed, np.abs(other - load), 0.0) / np.where(closed, load, 1.0)
+            changes.append(np.where(kept, change, np.inf).max(axis=1, initial=0.0))
+        return np.asarray(np.max(changes, axis=0))
+
     def _moved(self, direction: FloatArray, part: float) -> tuple[FloatArray, FloatArray]:
         return self.found.pose + part * direction[:, :-1], self.found.wheel_moment + part * direction[:, -1]
 
     def _at(self, node: _Node, pose: FloatArray, moment: FloatArray) -> Equilibrium:
         response = node.model.respond(self.found.crank_angle, pose, self.start)
         return replace(self.found, pose=pose, wheel_moment=moment, response=response)
+
+    @property
+    def _stiffness(self) -> FloatArray:
+        """Of each coordinate, moments and rotations by their levers, N/mm, shape (positions, coordinates)."""
+        return np.asarray(np.abs(np.einsum("bii->bi", self.found.response.tangent)) / self.lever**2)
 
     def _closure(self, node: _Node, found: Equilibrium) -> FloatArray:
         """What is left of the moments about the axis where the wheel is held; what the load makes its moment where not."""
@@ -132,9 +169,10 @@ class _Position:
         matrix[:, WHEEL_ANGLE, size] = -1.0 / lever[:, WHEEL_ANGLE]
         matrix[:, size, size] = 1.0 / lever[:, WHEEL_ANGLE]
         if self.held:
-            stiffness = np.abs(np.einsum("bii->bi", self.found.response.tangent)).max(axis=0)
+            stiffness = self._stiffness
+            stiffness = np.maximum(stiffness.max(axis=0), SOFT * stiffness.max())  # a disc that floats has none
             for column in range(size):
-                step = CHANGE * self.load * lever[0, column] / max(float(stiffness[column]), 1e-300)
+                step = CHANGE * self.load / float(stiffness[column]) / lever[0, column]
                 ends = []
                 for sense in (-1.0, 1.0):
                     pose = self.found.pose.copy()
@@ -149,6 +187,24 @@ class _Position:
         moment = stiffness * self.lever[:, WHEEL_ANGLE]
         scale = np.concatenate((1.0 / self.lever, moment[:, None]), axis=1)
         return np.asarray(scale[:, :, None] * np.linalg.pinv(matrix * scale[:, None, :], rcond=FLOATING))
+
+    def beside(self, nodes: Sequence[_Node], weights: FloatArray, step: float) -> tuple[FloatArray, list[Equilibrium]]:
+        """Return how the pose follows, shape (positions, coordinates), and what stands at each of the drives beside.
+
+        A disc that floats stays as it is. Where contacts open or close on the way, as those of a disc that is taken along by what
+        it touches, the tangent is not that of the step, and the drives beside are balanced.
+        """
+        try:
+            direction = self.follow(nodes, weights, step)
+        except ConvergenceError:
+            found = [self._balanced(node) for node in nodes]
+            slope = np.tensordot(weights, np.stack([each.pose - self.found.pose for each in found]), 1) / step
+            return np.where(self.floating, 0.0, slope), found
+        return direction[:, :-1], [self.at(node, direction, node.step) for node in nodes]
+
+    def _balanced(self, node: _Node) -> Equilibrium:
+        torque, angle = self.torque(node.drive), self.found.crank_angle
+        return solve_at_output(node.model, [node.drive], angle, torque, self.found.pose, self.start)
 
     def follow(self, nodes: Sequence[_Node], weights: FloatArray, step: float) -> FloatArray:
         """Return dz/dp, shape (positions, unknowns)."""
@@ -166,6 +222,12 @@ class _Position:
                 "derivatives do not settle; slopes of the residual that are left, N by the field's unit", history
             )
         return direction
+
+
+def _loads(found: Equilibrium) -> tuple[FloatArray, ...]:
+    """Loads of all contacts, kind by kind, shape (positions, pairs)."""
+    response = found.response
+    return response.pin_load, response.hole_load, response.rollers.outer_load, response.rollers.inner_load
 
 
 def derivatives(analysis: LoadedAnalysis, fields: Iterable[str]) -> xr.Dataset:
@@ -257,17 +319,40 @@ class _Field:
             raise DriveError([f"{path}: reshapes a body, whose influence coefficients are those of the body as it is"])
 
     def slopes(self) -> dict[str, Any]:
-        """Slopes of pose, arrays and scalars, by name."""
+        """Slopes of pose, arrays and scalars, by name; every position has those of the longest step that its contacts keep to.
+
+        Scalars, which are of all positions, have those of the shortest.
+        """
+        found, left = dict[str, Any](), np.ones(self.balanced.analysis.full.crank_angle.shape, dtype=bool)
+        for part in STEP_PARTS:
+            fresh, change = self._slopes(part)
+            for name, values in fresh.items():
+                dimensions = DIMENSIONS[QUANTITIES[name].of][1:] if name in QUANTITIES else ("position",)
+                if name in found and np.ndim(values) and "position" in dimensions:
+                    rows = left.reshape(-1, *[1] * (np.ndim(values) - 1 - dimensions.index("position")))
+                    found[name] = np.where(rows, values, found[name])
+                else:
+                    found[name] = values
+            left &= ~(change <= LARGEST_LOAD_CHANGE)
+            if not left.any():
+                break
+        return found
+
+    def _slopes(self, part: float) -> tuple[dict[str, Any], FloatArray]:
+        """Slopes by a part of the step, and the largest change of a contact's load over it, shape (positions,)."""
         states = self.balanced.states
-        nodes, weights, step = self._nodes()
+        nodes, weights, step = self._nodes(part)
         sides = [nodes, nodes, [_reversed(node) for node in nodes] if len(states) > 2 else nodes]
-        directions = [state.follow(side, weights, step) for state, side in zip(states, sides, strict=False)]
-        found: dict[str, Any] = {"pose": directions[0][:, :-1]}
+        poses, found_beside = zip(
+            *(state.beside(side, weights, step) for state, side in zip(states, sides, strict=False)), strict=True
+        )
+        found: dict[str, Any] = {"pose": poses[0]}
+        change = np.zeros(poses[0].shape[:1])
         for number, (node, weight) in enumerate(zip(nodes, (weights / step).tolist(), strict=True)):
-            beside = [
-                state.at(side[number], direction, node.step)
-                for state, side, direction in zip(states, sides, directions, strict=False)
-            ]
+            beside = [each[number] for each in found_beside]
+            steps = max(abs(node.step) / step, 1.0)
+            for state, other in zip(states, beside, strict=False):
+                change = np.maximum(change, state.load_change(other) / steps)
             torque = self.balanced.torque(node.drive)
             analysis = analysis_of(node.drive, torque, self.balanced.engine, node.model, *beside)
             arrays = case_arrays(analysis)
@@ -275,7 +360,7 @@ class _Field:
             for name, values in (arrays | scalars).items():
                 if np.asarray(values).dtype.kind == "f":
                     found[name] = found.get(name, 0.0) + weight * np.asarray(values)
-        return found
+        return found, change
 
     def _reshapes(self) -> bool:
         """Whether the field is one of the shape of a body."""
@@ -299,13 +384,15 @@ class _Field:
     def _node(self, drive: Drive, step: float) -> _Node:
         return _Node(drive=drive, model=self.balanced.engine.prepare(drive).model, step=step)
 
-    def _nodes(self) -> tuple[list[_Node], FloatArray, float]:
-        """The drives beside, the weights of their differences, and the step."""
-        state, base, step = self.balanced.states[0], self.balanced.base, self._first_step
+    def _nodes(self, part: float) -> tuple[list[_Node], FloatArray, float]:
+        """The drives beside by a part of the step, the weights of their differences, and that part."""
+        base, step = self.balanced.base, self._first_step
         beside = self._node(self._drives((step,))[0], step)
-        still = np.zeros(state.inverse.shape[:2])
-        change = float(np.max(np.abs(state.along(beside, still, 0.0) - state.along(base, still, 0.0)))) / state.load
-        step *= float(np.clip(CHANGE / change, 1e-3, 1e4)) if change > 0.0 else 1.0
+        changes = (state.change(base, beside) for state in self.balanced.states)
+        change = next(
+            (change for change in changes if change > 0.0), 0.0
+        )  # fields of the light torque change one alone
+        step *= part * float(np.clip(CHANGE / change, 1e-3, 1e4)) if change > 0.0 else part
         for (places, weights), sense in ((CENTRAL, 1.0), (FORWARD, 1.0), (FORWARD, -1.0)):
             steps = (sense * step * places).tolist()
             try:

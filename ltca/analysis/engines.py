@@ -123,7 +123,7 @@ class _FromTables:
     def balance(self, crank_angle: FloatArray, torque: float, start: FloatArray | None = None) -> Equilibrium:
         near = solve_at_output(self.tables, [self.drive], crank_angle, torque, start)
         # Grids wider than the bodies are curved have no separation: refused before they are laid.
-        check_half_widths(self.drive, near.response, self.tables.pressures(near.response), torque)
+        check_half_widths([self.drive], near.response, self.tables.pressures(near.response), torque)
         return solve_at_output(self.model, [self.drive], crank_angle, torque, near.pose, Start.after(near.response))
 
 

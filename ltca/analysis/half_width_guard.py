@@ -12,7 +12,7 @@ roll, directions change by a tenth of a radian; from there on it is told.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -48,34 +48,36 @@ PIN, OUTER, INNER = "wheel pin", "roller on the bore", "roller on the inner race
 
 
 def check_half_widths(
-    drive: Drive, contacts: Response, pressures: ContactPressures, torque: float | None = None
+    drives: Sequence[Drive], contacts: Response, pressures: ContactPressures, torque: float | None = None
 ) -> None:
     """Refuse contacts wider than half-spaces stand for.
 
     Parameters
     ----------
-    drive : Drive
-        For the radii.
+    drives : sequence of Drive
+        For the radii: the drives of the batch, often one; all have the same number of positions, drive by drive.
     contacts, pressures : Response, ContactPressures
         Of the solved positions.
     torque : float, optional
-        Output torque, N·mm, for the message; none for a batch whose drives have torques of their own.
+        Output torque, N·mm, for the message; that of the drive by default.
 
     Raises
     ------
     DriveError
         One sentence for each kind of contact that is too wide, naming the widest.
     """
-    pin_radius, roller = drive.pin_wheel.pin_radius, drive.crank_bearing.roller_radius
+    each = pressures.pins.half_width.shape[0] // len(drives)
+    pin_radius = np.repeat([drive.pin_wheel.pin_radius for drive in drives], each)[:, None]
+    roller = np.repeat([drive.crank_bearing.roller_radius for drive in drives], each)[:, None]
     # 1/ρ = 1/r_pin + κ: the radius of a convex flank is a bound as well as the pin's; a concave one is wider than its pin.
     curvature = 1.0 / contacts.flank.effective_radius - 1.0 / pin_radius
     flank_radius = 1.0 / np.maximum(curvature, 1e-9)
-    found: list[tuple[str, FloatArray, FloatArray | float]] = [
+    found: list[tuple[str, FloatArray, FloatArray]] = [
         (PIN, pressures.pins.half_width, np.minimum(flank_radius, pin_radius)),
         (OUTER, pressures.outer.half_width, roller),
         (INNER, pressures.inner.half_width, roller),
     ]
-    discs = drive.disc.number_of_discs
+    discs = drives[0].disc.number_of_discs  # that of all
     problems = []
     for name, half_width, radius in found:
         ratio = half_width / (HALF_WIDTH_BOUND * radius)
@@ -83,8 +85,10 @@ def check_half_widths(
             worst = np.unravel_index(int(np.argmax(ratio)), ratio.shape)
             bound = float(half_width[worst] / ratio[worst])
             disc, pair = divmod(int(worst[1]), ratio.shape[1] // discs)
+            drive = drives[int(worst[0]) // each]
             place = part_words(drive, name, pair, ratio.shape[1] // discs, disc)
-            named = _cause(single_discs(drive)[disc], contacts, name, worst, torque)
+            own = drive.load.torque if torque is None else torque
+            named = _cause(single_discs(drive)[disc], contacts, name, worst, own)
             problems.append(
                 f"{named} cannot be carried: contact half-width {half_width[worst]:.4g} mm of {place}, must "
                 f"be at most {bound:.4g} mm ({HALF_WIDTH_BOUND:g} of the smallest radius in contact)"
@@ -93,7 +97,7 @@ def check_half_widths(
         raise DriveError(problems)
 
 
-def _cause(drive: Drive, contacts: Response, name: str, worst: tuple[np.intp, ...], torque: float | None) -> str:
+def _cause(drive: Drive, contacts: Response, name: str, worst: tuple[np.intp, ...], torque: float) -> str:
     """Field that presses a contact so wide: the fit where most of the approach was there before the load."""
     overlaps = drawn_interference(drive)
     if name == PIN:
@@ -108,7 +112,7 @@ def _cause(drive: Drive, contacts: Response, name: str, worst: tuple[np.intp, ..
         )
         if overlap > 0.5 * approach[worst]:
             return f"{field} = {value:g} mm: an overlap of {overlap:.4g} mm as drawn"
-    return "load.torque" if torque is None else f"load.torque = {torque:g} N·mm"
+    return f"load.torque = {torque:g} N·mm"
 
 
 def wide_holes_warning(drive: Drive, pressures: ContactPressures) -> str | None:

@@ -152,7 +152,7 @@ class LoadedAnalysis:
     @property
     def losses(self) -> Losses | None:
         """What friction costs; None without."""
-        return None if self.back is None else losses(self.model, self.drive, self.full, self.torque)
+        return None if self.back is None else losses(self.model, [self.drive], self.full, self.torque)
 
     @property
     def losses_back(self) -> Losses | None:
@@ -160,7 +160,7 @@ class LoadedAnalysis:
         friction = self.model.friction
         if self.back is None or friction is None:
             return None
-        return losses(replace(self.model, friction=friction.reversed()), self.drive, self.back, self.torque)
+        return losses(replace(self.model, friction=friction.reversed()), [self.drive], self.back, self.torque)
 
     @property
     def moves_back(self) -> NDArray[np.bool_]:
@@ -418,7 +418,7 @@ def _analysed(
     full = balance_what_can_be(at_torque, angle.size) if known is None else all_balanced(known[0])
     pressures = prepared.model.pressures(full.found.response)
     try:
-        check_half_widths(case.drive, full.found.response, pressures, case.torque)
+        check_half_widths([case.drive], full.found.response, pressures, case.torque)
     except DriveError as error:
         seized = None if case.written is None else seizing_words(case.written)
         if seized is None:

@@ -87,16 +87,17 @@ def lever_arms(model: Reducer) -> FloatArray:
     array, shape (coordinates,) or (positions, coordinates)
         One row for all positions where they are of one drive.
     """
-    coordinates, wheel = model.coordinates, np.ones(1)
-    eccentricities = [geometry.placement.mean_eccentricity for geometry in model.geometries]
-    arms = np.ones((*np.broadcast_shapes(*(e.shape[:-1] for e in eccentricities)), coordinates.size))
-    for place, geometry, e in zip(coordinates.rotations, model.geometries, eccentricities, strict=False):
-        wheel = e * geometry.placement.reduction_ratio
-        arms[..., place] = (wheel - e)[..., 0]
-    arms[..., WHEEL_ANGLE] = wheel[..., 0]
+    coordinates, geometries = model.coordinates, model.geometries
+    eccentricities = [geometry.placement.mean_eccentricity[..., 0] for geometry in geometries]
+    ring = np.ones(())
     if coordinates.ring:
-        places = model.geometries[0].placement.shaft_pin_centres
-        arms[..., coordinates.ring_place.stop - 1] = np.abs(places).mean(axis=-1)
+        ring = np.abs(geometries[0].placement.shaft_pin_centres).mean(axis=-1)
+    arms = np.ones((*np.broadcast_shapes(ring.shape, *(e.shape for e in eccentricities)), coordinates.size))
+    for place, geometry, e in zip(coordinates.rotations, geometries, eccentricities, strict=False):
+        wheel = e * geometry.placement.reduction_ratio
+        arms[..., place], arms[..., WHEEL_ANGLE] = wheel - e, wheel
+    if coordinates.ring:
+        arms[..., coordinates.ring_place.stop - 1] = ring
     return arms
 
 

@@ -213,7 +213,9 @@ class Reducer:
 def reach_beyond(model: Reducer, other: Reducer) -> FloatArray:
     """Return how much deeper pins may be than those of another drive at the same places, mm, shape (…, pins of all discs)."""
     pairs = zip(model.geometries, other.geometries, strict=True)
-    return np.concatenate([mine.reach_beyond(theirs) for mine, theirs in pairs], axis=-1)
+    # Discs that scatter have rows by position, others one for all.
+    each = np.broadcast_arrays(*(mine.reach_beyond(theirs) for mine, theirs in pairs))
+    return np.concatenate(each, axis=-1)
 
 
 def complete(model: Reducer, crank_angle: FloatArray, pose: FloatArray, response: Response) -> Response:

@@ -21,7 +21,7 @@ from ltca.errors import CycloError, DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.first_contact import backlash
 from ltca.geometry.play import free_play
-from ltca.studies.quantities import STAGES, SampleBatch, evaluate
+from ltca.studies.quantities import STAGES, SampleBatch, evaluate, require_quantities
 from ltca.studies.shapes import with_kept_coefficients
 
 
@@ -41,6 +41,19 @@ class Nominal:
     light: Equilibrium
     model: Reducer
 
+    def suits(self, model: Reducer) -> bool:
+        """Tell whether a model has the same coordinates and as many parts: otherwise its samples start from first contact."""
+        return _shape(self.model) == _shape(model)
+
+
+def _shape(model: Reducer) -> Hashable:
+    """What poses and inner unknowns of a model are of."""
+    places = [geometry.placement for geometry in model.geometries]
+    counts = [
+        (each.wheel_pin_radii.shape[-1], each.hole_radii.shape[-1], each.roller_radii.shape[-1]) for each in places
+    ]
+    return model.coordinates, tuple(counts)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BatchSettings:
@@ -55,7 +68,7 @@ class BatchSettings:
     engine : Engine
         How bodies yield; one that takes no batches is asked for one drive at a time.
     nominal : Nominal or None
-        Starting poses; by default every sample starts from first contact.
+        Starting poses of the samples that it suits; by default every sample starts from first contact.
 
     Raises
     ------
@@ -157,12 +170,13 @@ def analyse_samples(drives: Sequence[Drive], settings: BatchSettings) -> SampleR
     models: dict[int, Reducer] = {}
     layouts: dict[int, Hashable] = {}
     for number, drive in enumerate(drives):
-        if settings.engine.batches:
-            try:
+        try:
+            require_quantities(drive, settings.quantities)
+            if settings.engine.batches:
                 models[number] = settings.engine.model(drive, in_batch=True)
-            except CycloError as error:
-                messages[number] = str(explain_failure(error, drive))
-                continue
+        except CycloError as error:
+            messages[number] = str(explain_failure(error, drive))
+            continue
         key = batch_layout(models[number], layouts) if settings.engine.batches else number
         groups.setdefault(key, []).append(number)
     for members in groups.values():
@@ -217,10 +231,12 @@ def solve_batch(
     drives = [warm_drive(drive) for drive in drives]
     stages = {STAGES[name] for name in settings.quantities}
     solved = _Batch(drives, settings, models)
+    if nominal is not None and not nominal.suits(solved.model):
+        nominal = None
     known = None if nominal is None else nominal.model
     full = solved.balance([drive.load.torque for drive in drives], None if nominal is None else nominal.full, known)
     pressures = solved.model.pressures(full.response)
-    check_half_widths(drives[0], full.response, pressures)
+    check_half_widths(drives, full.response, pressures)
     light, play = None, None
     if "light" in stages:
         near = full if nominal is None else nominal.light

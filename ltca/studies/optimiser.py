@@ -311,14 +311,14 @@ def most_candidates(problem: Problem, generations: int) -> int:
     return (1 if len(problem.aims) == 1 else WEIGHTS) * members * (maxiter + 1) + simplex
 
 
-def varies_shape(problem: Problem) -> bool:
-    """Tell whether candidates differ in shape or material, so that each has influence coefficients of its own."""
+def varies_shape(problem: Problem, engine: Engine) -> bool:
+    """Tell whether candidates differ so much in shape or material that an engine has coefficients for each."""
     ends = [
         with_fields(problem.drive, {variable.path: value}, check=False)
         for variable in problem.variables
         for value in (variable.low, variable.high)
     ]
-    return len(shapes_of([problem.drive, *ends])) > 1
+    return len(shapes_of([problem.drive, *ends], engine)) > len(shapes_of([problem.drive], engine))
 
 
 def _simplex(place: FloatArray) -> FloatArray:

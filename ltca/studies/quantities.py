@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias
 
@@ -69,10 +69,10 @@ class SampleBatch:
         return push.real.reshape(shape), push.imag.reshape(shape)
 
     def losses(self) -> Losses:
-        """What friction costs, of all rows; the speed of the cranks is that of the first sample (`power_loss`)."""
+        """What friction costs, of all rows."""
         each = self.full.crank_angle.size // self.samples
         torque = np.repeat([drive.load.torque for drive in self.drives], each)
-        return losses(self.model, self.drives[0], self.full, torque)
+        return losses(self.model, self.drives, self.full, torque)
 
     def efficiency(self) -> FloatArray:
         """1 − mean loss/mean input of each sample."""
@@ -81,8 +81,8 @@ class SampleBatch:
 
     def power_loss(self) -> FloatArray:
         """Mean power of all losses of each sample, W; not a number without speed."""
-        speed = np.array([np.nan if drive.crank_speed is None else drive.crank_speed for drive in self.drives])
-        return np.asarray(self.by_sample(self.losses().total).mean(axis=1) * speed * 1e-3)
+        found = self.losses()
+        return np.asarray(self.by_sample(found.watts(found.total)).mean(axis=1))
 
     def _at_output(self, pose: FloatArray) -> FloatArray:
         """Deviation of the output, arcsec."""
@@ -175,6 +175,44 @@ OF_FRICTION = ("mean_efficiency", "mean_input_torque", "power_loss")
 """What a drive without friction has not; the last needs a speed as well."""
 
 
+def quantities_for(drive: Drive, names: tuple[str, ...] | None) -> tuple[str, ...]:
+    """Return the quantities of a study of a drive: names of `STAGES`, by default and for ``all`` those that it has.
+
+    Raises `DriveError` when a name is not one of them, or the drive does not have it.
+    """
+    if names is not None:
+        names = check_quantities(names)
+    if names is None or names == tuple(STAGES):
+        missing = missing_quantities(drive)
+        return tuple(name for name in (names or DEFAULT_QUANTITIES) if name not in missing)
+    require_quantities(drive, names)
+    return names
+
+
+def quantities_for_all(cases: Mapping[str, Drive], names: tuple[str, ...] | None) -> tuple[str, ...]:
+    """Return the quantities of a study of several cases: names of `STAGES`, by default and for ``all`` those that all have.
+
+    Raises `DriveError` when a name is not one of them, or a case, which is named, does not have it.
+    """
+    found: list[tuple[str, ...]] = []
+    problems: list[str] = []
+    for case, drive in cases.items():
+        try:
+            found.append(quantities_for(drive, names))
+        except DriveError as error:
+            problems += [f"{problem}: case {case}" for problem in error.problems]
+    if problems:
+        raise DriveError(problems)
+    return tuple(name for name in found[0] if all(name in others for others in found))
+
+
+def require_quantities(drive: Drive, names: Iterable[str]) -> None:
+    """Raise `DriveError` where a drive does not have one of the quantities."""
+    missing = missing_quantities(drive)
+    if absent := [name for name in names if name in missing]:
+        raise DriveError([f"{name}: {drive.name} has no {missing[name]}" for name in absent])
+
+
 def missing_quantities(drive: Drive) -> dict[str, str]:
     """Return the quantities that a drive has not, with what it would need for them."""
     missing = dict.fromkeys(OF_THE_PIN_SHAFT, "pin shaft (pin_shaft)") if drive.pin_shaft is None else {}
@@ -183,22 +221,6 @@ def missing_quantities(drive: Drive) -> dict[str, str]:
     elif drive.load.speed is None:
         missing |= {"power_loss": "speed (load.speed)"}
     return missing
-
-
-def quantities_for(drive: Drive, names: tuple[str, ...] | None) -> tuple[str, ...]:
-    """Return the quantities of a study of a drive: names of `STAGES`, by default and for ``all`` those that it has.
-
-    Raises `DriveError` when a name is not one of them, or the drive does not have it.
-    """
-    missing = missing_quantities(drive)
-    if names is not None:
-        names = check_quantities(names)
-    if names is None or names == tuple(STAGES):
-        return tuple(name for name in (names or DEFAULT_QUANTITIES) if name not in missing)
-    absent = [name for name in names if name in missing]
-    if absent:
-        raise DriveError([f"{name}: {drive.name} has no {missing[name]}" for name in absent])
-    return names
 
 
 def evaluate(name: str, batch: SampleBatch) -> FloatArray:

@@ -5,7 +5,7 @@
     drive = "paper"                  # or another shipped drive, or a drive file, relative to this file
     case = "CS-3"                    # default the first
     positions = 90                   # crank angles 2πk/N; default 28
-    quantities = ["ptp_transmission_error", "max_pin_pressure_mid"]   # default all at the torque of the drive
+    quantities = ["ptp_transmission_error", "max_pin_pressure_mid"]   # default all at the torque that every case has
 
     [design]
     kind = "grid"                    # grid, list, latin-hypercube, sobol
@@ -43,7 +43,7 @@ from ltca.reading.changes import BEARING, with_fields
 from ltca.reading.drive_file import listed, load_drive
 from ltca.reading.toml_text import parse_toml, read_text
 from ltca.studies.designs import SweepDesign, SweepFactor
-from ltca.studies.quantities import DEFAULT_QUANTITIES, check_quantities, quantities_for, with_what_varies
+from ltca.studies.quantities import DEFAULT_QUANTITIES, check_quantities, quantities_for_all, with_what_varies
 from ltca.studies.study import Study
 
 KINDS = ("grid", "list", "latin-hypercube", "sobol")
@@ -129,19 +129,20 @@ def parse_sweep(
     except DriveError as error:
         raise DriveError([f"{problem} (of {drive})" for problem in error.problems], source) from error
     base = with_what_varies(next(iter(selected.values())), factors_table)
+    factors = tuple(_factors(factors_table, base, file.cases, reader))
+    several = {name: with_what_varies(drive, factors_table) for name, drive in file.cases.items()}
+    swept = {str(name): several[str(name)] for factor in factors if factor.path == "case" for name in factor.levels}
+    studied = swept or {next(iter(selected)): base}
     try:
-        names = quantities_for(base, names if "quantities" in table else None)
+        names = quantities_for_all(studied, names if "quantities" in table else None)
     except DriveError as error:
         reader.problems += [f"quantities: {problem}" for problem in error.problems]
-    factors = tuple(_factors(factors_table, base, file.cases, reader))
     design = _design(table.get("design", {}), factors, reader)
     reader.check()
     assert design is not None
-    varied = "case" in design.names
-    several = {name: with_what_varies(drive, factors_table) for name, drive in file.cases.items()}
-    cases = tuple((several if varied else {next(iter(selected)): base}).items())
+    cases = tuple((several if swept else studied).items())
     return Study(
-        name=file.name if varied else f"{file.name} {cases[0][0]}",
+        name=file.name if swept else f"{file.name} {cases[0][0]}",
         cases=cases,
         design=design,
         positions=positions,

@@ -133,7 +133,7 @@ def test_energy_in_less_energy_out_is_what_is_lost(name):
     """In the mean over a turn, which is no period of rollers and cage: sampled means hold to 2e-4 (issue)."""
     drive = of_kind(name)
     model, angle = HalfSpace().prepare(drive).model, position_angles(97)
-    found = losses(model, drive, solve_at_output(model, [drive], angle, drive.load.torque), drive.load.torque)
+    found = losses(model, [drive], solve_at_output(model, [drive], angle, drive.load.torque), drive.load.torque)
     left = np.mean(found.at_input + found.at_output - found.total)
     assert abs(left) < 2e-4 * np.mean(np.abs(found.at_output))
     assert 0.7 < found.mean_efficiency < 0.95
@@ -193,7 +193,7 @@ def test_loss_at_the_pins_is_that_about_the_pitch_point(paper):
     # In the mean over a turn the torque rises by the loss; half the difference of both motions is odd in μ. Samples of a
     # turn that is no period of the rollers tell means to 2e-4 of the torque, of its rise to as much; poses wander within it.
     assert np.mean(crank[0] - crank[1]) / 2.0 == pytest.approx(np.mean(lost), rel=1e-3)
-    told = losses(model, drive, found, torque)
+    told = losses(model, [drive], found, torque)
     np.testing.assert_allclose(told.by_kind["pin"], lost, rtol=2e-3)  # the normal passes the pitch point by the pose
     np.testing.assert_array_equal(told.by_kind["pin"], told.total)
 
@@ -342,7 +342,7 @@ def test_sleeves_on_shaft_pins_roll_in_the_holes(paper):
     seat = ShaftPinSeat(kind="sleeve", pin_radius=0.5 * shaft.pin_radius - 0.01, bore_radius=0.5 * shaft.pin_radius)
     drive = replace(paper, pin_shaft=replace(shaft, seat=seat), friction=Friction(hole=0.1, seat=0.1))
     found = analyse(drive, ANGLES).losses
-    assert found.holes.rolls
+    assert found.holes.rolls.all()
     assert not np.any(found.by_kind["hole"])
     # the holes go around the pins at e: at the wall of a rolling sleeve half of it is slip in the bore, by r_i/R
     loaded = found.holes.force > 0.0

@@ -38,7 +38,7 @@ def confirm(seed, reverse=False, told=True):
     assert find_imbalance(drive, model, found, torque=torque) == [], seed
     if not told:
         return
-    lost, (rubbed, moment) = losses(model, drive, found, torque), independent(drive, model, found)
+    lost, (rubbed, moment) = losses(model, [drive], found, torque), independent(drive, model, found)
     assert np.isfinite(lost.efficiency).all()
     turns, part, oil = (
         1.0 / drive.crank_turns_per_input,

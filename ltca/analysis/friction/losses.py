@@ -7,11 +7,14 @@ a radian of the crank it is a moment, which needs no speed. The efficiency is 1 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ltca.arrays import FloatArray
+from ltca.arrays import BoolArray, FloatArray
 from ltca.compliance.response import bearing_pushes
 from ltca.drive.parts import Drive, PinShaft, PinWheel
 from ltca.equilibrium.balance import Equilibrium
@@ -38,7 +41,7 @@ class JointSlip:
         Of the free pin or sleeve in its seat, mm/rad; zero where it does not turn, or is fixed.
     energy : array, shape (discs, positions, pairs)
         Lost by radian of the crank, N·mm.
-    rolls : bool
+    rolls : array of bool, shape (positions,)
         Whether pins slip in their seats rather than on the disc.
     """
 
@@ -46,7 +49,7 @@ class JointSlip:
     slip: FloatArray
     seat_slip: FloatArray
     energy: FloatArray
-    rolls: bool
+    rolls: BoolArray
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,9 +67,9 @@ class Losses:
         in the carrier the sum of theirs.
     at_input, at_output : array, shape (positions,)
         Energy put in at input and output by radian of the crank, N·mm; what comes out there is negative.
-    driven_by_input : bool
+    driven_by_input : array of bool, shape (positions,)
         Which of them drives.
-    crank_speed : float
+    crank_speed : array, shape (positions,)
         Of the cranks against the pin shaft, rad/s; not a number without `ltca.drive.parts.Load.speed`.
     """
 
@@ -76,8 +79,8 @@ class Losses:
     input_torque: FloatArray
     at_input: FloatArray
     at_output: FloatArray
-    driven_by_input: bool
-    crank_speed: float
+    driven_by_input: BoolArray
+    crank_speed: FloatArray
 
     @property
     def total(self) -> FloatArray:
@@ -87,7 +90,7 @@ class Losses:
     @property
     def driving(self) -> FloatArray:
         """Energy put in by the side that drives, by radian of the crank, N·mm, shape (positions,)."""
-        return self.at_input if self.driven_by_input else self.at_output
+        return np.where(self.driven_by_input, self.at_input, self.at_output)
 
     @property
     def efficiency(self) -> FloatArray:
@@ -99,20 +102,27 @@ class Losses:
         """1 − mean loss/mean input."""
         return float(1.0 - np.mean(self.total) / np.mean(self.driving))
 
+    def per_second(self, per_radian: FloatArray) -> FloatArray:
+        """Return what happens in a second from what happens in a radian of the crank; not a number without speed.
+
+        Positions are the only axis, or the second of three.
+        """
+        return np.asarray(per_radian * (self.crank_speed if per_radian.ndim == 1 else self.crank_speed[:, None]))
+
     def watts(self, per_radian: FloatArray) -> FloatArray:
         """Return power, W, from energy by radian of the crank, N·mm; not a number without speed."""
-        return np.asarray(per_radian * self.crank_speed * 1e-3)
+        return np.asarray(self.per_second(per_radian) * 1e-3)
 
 
-def losses(model: Reducer, drive: Drive, found: Equilibrium, torque: float | FloatArray) -> Losses:
+def losses(model: Reducer, drives: Sequence[Drive], found: Equilibrium, torque: float | FloatArray) -> Losses:
     """Return what friction costs.
 
     Parameters
     ----------
     model : Reducer
         What balanced, with the friction of a drive that turns.
-    drive : Drive
-        The drive, or one of a batch of drives that agree in what friction and installation are.
+    drives : sequence of Drive
+        The drives of the batch, often one; all have the same number of positions, drive by drive.
     found : Equilibrium
         Balanced positions.
     torque : float or array, shape (positions,)
@@ -123,57 +133,71 @@ def losses(model: Reducer, drive: Drive, found: Equilibrium, torque: float | Flo
     ValueError
         When nothing rubs in the model.
     """
-    friction, coefficients = model.friction, drive.friction
-    if friction is None or not friction.turns or coefficients is None:
+    friction, coefficients = model.friction, [drive.friction for drive in drives if drive.friction is not None]
+    if friction is None or not friction.turns or len(coefficients) < len(drives):
         raise ValueError("losses are those of a drive with friction that turns")
     angle, parts = found.crank_angle, found.response.parts
+    each = angle.size // len(drives)
+
+    def by_position(values: Sequence[Any]) -> NDArray[Any]:
+        return np.repeat(values, each)
+
     force = np.abs(np.stack([part.friction for part in parts if part.friction is not None]))
     slips = [
         Slip.of_disc(disc.geometry, angle, found.pose[:, model.coordinates.columns(number)], part).by_crank
         for number, (disc, part) in enumerate(zip(model.discs, parts, strict=True))
     ]
     slip, pins = np.abs(np.stack(slips)), parts[0].pin_load.shape[1]
-    wheel = _joint(force[..., :pins], slip[..., :pins], drive.pin_wheel, coefficients.pin, coefficients.seat)
-    shaft = _joint(force[..., pins:], slip[..., pins:], drive.pin_shaft, coefficients.hole, coefficients.seat)
-    pushes = [bearing_pushes(part.rollers, drive.crank.number) for part in parts]
+    pairs = list(zip(drives, coefficients, strict=True))
+    on_wheel = [_seat(drive.pin_wheel, rubs.pin, rubs.seat) for drive, rubs in pairs]
+    on_shaft = [_seat(drive.pin_shaft, rubs.hole, rubs.seat) for drive, rubs in pairs]
+    wheel = _joint(force[..., :pins], slip[..., :pins], *map(by_position, zip(*on_wheel, strict=True)))
+    shaft = _joint(force[..., pins:], slip[..., pins:], *map(by_position, zip(*on_shaft, strict=True)))
+    pushes = [bearing_pushes(part.rollers, model.discs[0].geometry.placement.cranks) for part in parts]
     rolled = friction.rolling * np.abs(np.stack(pushes)).sum(axis=(0, 2))
     at_cranks = np.abs(friction.of_cranks(pushes)).sum(axis=1) - rolled
-    at_wheel = np.abs(friction.of_wheel(parts, drive.reduction_ratio) / drive.reduction_ratio)
-    input_turns = 1.0 / drive.crank_turns_per_input
+    ratio = drives[0].reduction_ratio  # that of all: their parts are as many
+    at_wheel = np.abs(friction.of_wheel(parts, ratio) / ratio)
+    input_turns = by_position([1.0 / drive.crank_turns_per_input for drive in drives])
+    no_load = by_position([rubs.no_load_torque for rubs in coefficients])
     lost: dict[str, FloatArray] = dict.fromkeys(KINDS, np.zeros(angle.shape))
     for joint, name in ((wheel, "pin"), (shaft, "hole")):
-        where = "seat" if joint.rolls else name
-        lost[where] = lost[where] + joint.energy.sum(axis=(0, 2))
+        energy = joint.energy.sum(axis=(0, 2))
+        lost[name] = np.where(joint.rolls, 0.0, energy)
+        lost["seat"] = lost["seat"] + np.where(joint.rolls, energy, 0.0)
     lost["roller"], lost["support_bearing"] = rolled, at_wheel + at_cranks
-    lost["no_load"] = np.full(angle.shape, coefficients.no_load_torque * abs(input_turns))
+    lost["no_load"] = no_load * np.abs(input_turns)
     # Cranks that are turned in the carrier are the input, seen from there.
-    part = drive.input_per_crank_moment or 1.0
+    part = by_position([drive.input_per_crank_moment or 1.0 for drive in drives])
     moments = part * crank_moments(model, angle, found.pose, found.response).sum(axis=1)
-    moments += friction.motion * np.sign(input_turns) * coefficients.no_load_torque
-    at_output = np.broadcast_to(torque / np.abs(drive.reduction_ratio), angle.shape)
-    driven_by_input = friction.motion == drive.driving_sign
-    speed = drive.crank_speed
+    moments += friction.motion * np.sign(input_turns) * no_load
+    at_output = np.broadcast_to(torque / np.abs(ratio), angle.shape)
+    driven_by_input = by_position([friction.motion == drive.driving_sign for drive in drives])
     return Losses(
         pins=wheel,
         holes=shaft,
         by_kind=lost,
         input_torque=moments,
         at_input=friction.motion * input_turns * moments,
-        at_output=-at_output if driven_by_input else at_output,
+        at_output=np.where(driven_by_input, -at_output, at_output),
         driven_by_input=driven_by_input,
-        crank_speed=np.nan if speed is None else speed,
+        crank_speed=by_position([np.nan if (speed := drive.crank_speed) is None else speed for drive in drives]),
     )
 
 
-def _joint(
-    force: FloatArray, slip: FloatArray, part: PinWheel | PinShaft | None, contact: float, seat: float
-) -> JointSlip:
-    rolls = part is not None and part.seat.kind != "fixed" and rubbing(contact, seat, part) < contact
-    nowhere = np.zeros_like(slip)
+def _seat(part: PinWheel | PinShaft | None, contact: float, seat: float) -> tuple[bool, float]:
+    """Tell whether pins slip in their seats rather than on the disc, and how far (`seat_travel`)."""
+    if part is None or part.seat.kind == "fixed":
+        return False, 0.0
+    return rubbing(contact, seat, part) < contact, seat_travel(part)
+
+
+def _joint(force: FloatArray, slip: FloatArray, rolls: BoolArray, travel: FloatArray) -> JointSlip:
+    rolling = rolls[:, None]
     return JointSlip(
         force=force,
-        slip=nowhere if rolls else slip,
-        seat_slip=seat_travel(part) * slip if part is not None and rolls else nowhere,
+        slip=np.where(rolling, 0.0, slip),
+        seat_slip=np.where(rolling, travel[:, None] * slip, 0.0),
         energy=force * slip,
         rolls=rolls,
     )

@@ -34,7 +34,7 @@ def friction_values(analysis: LoadedAnalysis, pressures: Mapping[str, FloatArray
 def _of_joint(
     pins: str, seat: str, joint: JointSlip, found: Losses, pressures: Mapping[str, FloatArray]
 ) -> dict[str, FloatArray]:
-    speed = joint.slip * found.crank_speed
+    speed = found.per_second(joint.slip)
     values = {
         f"{pins}_friction_force": joint.force,
         f"{pins}_slip": joint.slip,
@@ -43,7 +43,7 @@ def _of_joint(
         f"{pins}_pv": pressures[f"{pins}_pressure_mid"] * speed * 1e-3,
     }
     if f"{seat}_pressure_max" in pressures:
-        seat_speed = joint.seat_slip * found.crank_speed
+        seat_speed = found.per_second(joint.seat_slip)
         values |= {
             f"{seat}_slip": joint.seat_slip,
             f"{seat}_slip_speed": seat_speed,

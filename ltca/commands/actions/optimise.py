@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ltca.analysis.engines import Engine, describe_engine
+from ltca.analysis.engines import SHARED_BODY, Engine, HalfSpace, describe_engine
 from ltca.analysis.extremes import sampling_warning
 from ltca.commands.actions.study import tell
 from ltca.compliance.coefficient_files import expected_seconds, told_seconds
@@ -49,11 +49,11 @@ def search_and_write(
     problem: Problem, name: str, case: str, engine: Engine, arguments: argparse.Namespace, out: Path
 ) -> int:
     """Search, solve starting drive and optimum finely, write, draw and print the results; return the exit status."""
-    _tell_beforehand(problem, engine, arguments)
+    search = _prepared(problem, engine, arguments)
     with progress("candidates", most_candidates(problem, arguments.generations), at_most=True) as bar:
         optimum = optimise(
             problem,
-            batch_analysis(problem, arguments.positions, engine),
+            batch_analysis(problem, arguments.positions, search),
             seed=arguments.seed,
             generations=arguments.generations,
             told=lambda candidates: bar("solved", candidates),
@@ -64,7 +64,7 @@ def search_and_write(
         part.write_text(drive_text(best), encoding="utf-8")
     _write_candidates(optimum, out / "candidates.parquet")
     front = _write_front(optimum, out)
-    outcome = _outcome(optimum, fine, engine, arguments.positions)
+    outcome = _outcome(optimum, fine, engine, arguments.positions) | {"candidates_compliance": search.compliance}
     write_json(out / "optimum.json", outcome)
     if not arguments.no_page:
         told = f"least {' and '.join(problem.aims)} of {case}, {problem.drive.load_words()}, {describe_engine(engine)}"
@@ -102,12 +102,16 @@ def problem_of(drive: Drive, arguments: argparse.Namespace) -> Problem:
     )
 
 
-def _tell_beforehand(problem: Problem, engine: Engine, arguments: argparse.Namespace) -> None:
-    """Warn of few positions, and say what has to be derived; derive it for the drive as it is."""
+def _prepared(problem: Problem, engine: Engine, arguments: argparse.Namespace) -> Engine:
+    """Warn of few positions, say what has to be derived and derive it for the drive as it is; return the engine of candidates.
+
+    Where candidates reshape the bodies and nobody named the engine, they are solved on half-spaces.
+    """
+    search = engine.lending([problem.drive])
     warning = sampling_warning(problem.drive, position_angles(arguments.positions), refined=False)
     if warning is not None:
         tell(f"warning: {warning}")
-    if not engine.batches and varies_shape(problem):
+    if not engine.batches and varies_shape(problem, search):
         if arguments.coefficients is not None:
             raise DriveError(
                 [
@@ -115,11 +119,19 @@ def _tell_beforehand(problem: Problem, engine: Engine, arguments: argparse.Names
                     f"{' '.join(arguments.vary)} changes it; leave it out, so that each candidate gets its own"
                 ]
             )
-        tell(
-            f"every candidate is a shape of its own: up to {most_candidates(problem, arguments.generations)} of them are "
-            f"derived, {told_seconds(sum(expected_seconds(shapes_of([problem.drive]).values())))} each, and kept"
-        )
+        each = told_seconds(sum(expected_seconds(shapes_of([problem.drive]).values())))
+        if arguments.engine_is_named:
+            most = most_candidates(problem, arguments.generations)
+            tell(f"every candidate is a shape of its own: up to {most} of them are derived, {each} each, and kept")
+        else:
+            search = HalfSpace()
+            tell(
+                f"candidates reshape the bodies by more than {SHARED_BODY:.1%}: they are solved on half-spaces, the drive as it "
+                f"is and the optimum on {engine.compliance} ({each} each); --compliance {engine.compliance} derives the "
+                "coefficients of every candidate"
+            )
     find_beforehand(engine, shapes_of([problem.drive]), tell)
+    return search
 
 
 def _write_front(optimum: Optimum, out: Path) -> dict[str, int]:

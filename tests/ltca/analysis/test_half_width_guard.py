@@ -32,7 +32,7 @@ def check(drive, radius, pin=(0.0, 0.0), outer=0.0, inner=0.0):
         inner=SimpleNamespace(half_width=np.array([[inner, 0.0]])),
     )
     contacts = SimpleNamespace(flank=SimpleNamespace(effective_radius=np.array([radius])))
-    check_half_widths(drive, contacts, pressures, 377_300.0)
+    check_half_widths([drive], contacts, pressures, 377_300.0)
 
 
 def test_the_smaller_radius_bounds_the_half_width(paper_cases):

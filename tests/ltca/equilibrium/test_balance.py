@@ -7,6 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from ltca.analysis.engines import HalfSpace
+from ltca.arrays import stack_drives
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.equilibrium.balance import lever_arms, solve_equilibrium
 from ltca.equilibrium.reducer import Reducer
@@ -14,6 +16,8 @@ from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import WHEEL_ANGLE, Coordinates
 from ltca.geometry.first_contact import unloaded_transmission_error
 from ltca.laws.spring import SpringLaw
+from ltca.reading.changes import with_fields
+from ltca.reading.drive_file import parse_drive, shipped_drive
 from ltca.testing.balance_check import find_imbalance
 from ltca.testing.random_drives import COORDINATES, random_drive
 
@@ -38,6 +42,19 @@ def test_residual_is_that_of_the_response_and_small(models, paper_cases):
 
 def test_lever_arms(models):
     np.testing.assert_allclose(lever_arms(models["CS-1"]), [1.0, 1.0, 52.0, 56.0])
+
+
+def test_lever_arms_of_rings_in_a_batch():
+    """Rings on circles of several radii, eccentricities alike: the rows of the first did not fit, and a study ended."""
+    base = next(iter(parse_drive(shipped_drive("sleeved"), "sleeved").cases.values()))
+    drives = [with_fields(base, {"pin_shaft.pin_circle_radius": radius}) for radius in (44.0, 44.01)]
+    models = [HalfSpace().model(drive, in_batch=True) for drive in drives]
+    arms = lever_arms(stack_drives(models, 2))
+    assert models[0].coordinates.ring
+    np.testing.assert_array_equal(arms, np.repeat([lever_arms(model) for model in models], 2, axis=0))
+    np.testing.assert_allclose(
+        arms[:, models[0].coordinates.ring_place.stop - 1], [44.0, 44.0, 44.01, 44.01], rtol=1e-12
+    )
 
 
 @pytest.mark.parametrize("case", ["CS-1", "CS-6"])
