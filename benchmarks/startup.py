@@ -28,7 +28,9 @@ NEEDED_BY_RUN = (
     "import ltca.commands.program, ltca.commands.run, ltca.reading.drive_file, ltca.commands.actions.run, h5py"
 )
 POSITIONS = """
+import sys
 import time
+sys.path[0] = ""  # not beside this script, where a benchmark is called fem
 from fem.drive.solution import solve_drive
 from fem.options import SolutionOptions
 from ltca.reading.drive_file import load_drive

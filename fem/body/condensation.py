@@ -37,6 +37,8 @@ PROXY_DIAGONAL = 200.0
 class CondensedBody:
     """A body reduced to its unit loads: compliance between them and nodal displacements under them.
 
+    The one thing that changes is a memory of the last displacement, which several results of one solution ask for.
+
     Attributes
     ----------
     compliance : array, shape (m, m)
@@ -46,8 +48,6 @@ class CondensedBody:
         Nodal forces of each unit load, N.
     resultants : array, shape (3, m)
         Force in x, in y (N) and moment (N·mm) about the centre of each unit load.
-
-    The one thing that changes is a memory of the last displacement, which several results of one solution ask for.
     """
 
     compliance: FloatArray

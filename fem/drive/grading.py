@@ -25,7 +25,7 @@ FINE_SHARE = 0.05
 # Elements may be this much larger than asked for before the meshes are graded anew.
 EDGE_TOLERANCE = 1.1
 # A soft disc turns and bends under its flank: the pressure then lies beside the place where the rigid bodies meet. Up to
-# this part of a half-width the fine elements, which reach a third of a half-width further than the contact, serve it.
+# this part of a half-width the fine elements, which reach half a half-width further than the contact, serve it.
 SHIFT_TOLERANCE = 0.25
 
 

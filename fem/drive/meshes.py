@@ -19,7 +19,7 @@ from ltca.arrays import ComplexArray, FloatArray
 ELEMENTS_PER_HALF_WIDTH = 8.0
 # The pressure ends at one half-width; the rest is for contacts that lie a little beside the place expected
 # (`fem.drive.grading.SHIFT_TOLERANCE`).
-ZONE_HALF_WIDTHS = 1.35
+ZONE_HALF_WIDTHS = 1.5
 # Fine walls: elements along bore and holes for the narrowest wall of the disc, and of a root's radius of curvature. On the
 # paper's disc the nodal stress along all walls is then within 0.8 % of the largest of that on finer meshes, and off by up
 # to 3.4 % without them, for a tenth more unknowns.
@@ -154,7 +154,7 @@ def _spots(points: ComplexArray, half_width: FloatArray, size: float) -> list[Re
 
 
 def disc_refinements(contacts: ExpectedContacts, size: float = 1.0) -> tuple[Refinement, ...]:
-    """Return the refinements of the disc: elements of `size` times b/8 within 1.35 b of each contact."""
+    """Return the refinements of the disc: elements of `size` times b/8 within 1.5 b of each contact."""
     return (
         *_spots(contacts.flank_points, contacts.pins.half_width, size),
         *_spots(contacts.bore_points, contacts.rollers_outer.half_width, size),

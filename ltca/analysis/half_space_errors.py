@@ -32,7 +32,9 @@ def likeness(drive: Drive) -> dict[str, float]:
     """Return what makes drives alike: cranks, loose pins, ratio, slenderness and stiffness of the disc."""
     return {
         "several_cranks": float(drive.crank.number > 1),
-        "loose_pins": float(not drive.pins_are_fixed),
+        "loose_pins": float(
+            any(part is not None and part.seat.kind != "fixed" for part in (drive.pin_wheel, drive.pin_shaft))
+        ),
         "teeth": float(drive.disc.number_of_teeth),
         "slenderness": drive.disc.thickness / drive.pin_wheel.pin_circle_radius,
         "youngs_modulus": drive.materials.disc.youngs_modulus,

@@ -34,7 +34,7 @@ from ltca.reading.coefficient_file import require_laws, write_coefficients
 GROUP = "cyclo.derivations"
 DERIVATION = "finite-elements"
 SHIPPED = Path(__file__).parents[1] / "drives" / "coefficients"
-"""Files of shipped drives (``python -m fem.coefficients.shipped``)."""
+"""Files of shipped drives (``python benchmarks/shipped_coefficients.py``)."""
 INSTEAD = "CYCLO_TEMPORARY_CACHE"
 """Variable that names a cache that cannot be written and, on a line of its own, the folder of this run instead of it."""
 LEAST_CACHE_ROOM = 1 << 20

@@ -71,12 +71,12 @@ def _named(results: Any, names: Sequence[str] | None) -> dict[str, AnalysisResul
             raise DriveError(["names: must be left out, a mapping has the names of the results"])
         names, results = list(results), results.values()
     if isinstance(results, AnalysisResult) or not isinstance(results, Iterable):
-        raise DriveError([f"results: must be several results of ltca.analyse, not one {type(results).__name__}"])
+        raise DriveError([f"results: must be several results of analyse, not one {type(results).__name__}"])
     each = list(results)
     if not each:
-        raise DriveError(["results: is empty; must be one result of ltca.analyse at least"])
+        raise DriveError(["results: is empty; must be one result of analyse at least"])
     problems = [
-        f"results: entry {number} is a {type(one).__name__}, must be a result of ltca.analyse"
+        f"results: entry {number} is a {type(one).__name__}, must be a result of analyse"
         for number, one in enumerate(each)
         if not isinstance(one, AnalysisResult)
     ]

@@ -102,7 +102,7 @@ def turn_to_contact(
         part = take_rows(geometry, unsure)
         bottom, pressed = _least_interference(part, angle[unsure], coordinate)
         rotation, touching, stopped = _farthest_free(part, angle[unsure], coordinate, sense, bottom)
-        free = pressed <= TOUCHING * _size(geometry)
+        free = pressed <= TOUCHING * _size(part)
         rotation = np.where(free, rotation, bottom)
         # If pins overlap at every rotation, Newton's method above has followed the steepest of them away.
         better = stopped | ~free

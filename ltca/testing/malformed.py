@@ -113,7 +113,7 @@ def _misspelt(draw: random.Random) -> Malformed:
 
 
 def _left_out(draw: random.Random) -> Malformed:
-    tables = re.findall(r"^\[(?!materials|clearance|limits)\w+\]$", BASE, re.MULTILINE)
+    tables = re.findall(r"^\[(?!materials|clearance|limits|analysis)\w+\]$", BASE, re.MULTILINE)
     table = draw.choice(tables)
     start = BASE.index(table)
     end = BASE.find("\n[", start)

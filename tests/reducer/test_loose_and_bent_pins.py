@@ -412,7 +412,7 @@ def test_extremes_between_positions_without_an_answer_cost_no_run(joint, monkeyp
     def fails(_):
         raise ConvergenceError("between", [1.0])
 
-    monkeypatch.setattr(summary_module, "refine_extremes", fails)
+    monkeypatch.setattr(summary_module, "refine_together", fails)
     values = summarise(analyse(joint, position_angles(2)))
     assert values["refined_max_pin_load_N"] is None
     assert values["max_pin_load_N"] > 0.0

@@ -42,7 +42,17 @@ def test_a_study_says_whose_the_eccentric_is(tmp_path, capsys):
     head = RV.partition("[tolerances]")[0]
     path = tmp_path / "drive.toml"
     path.write_text(f"{head}[tolerances]\ncrank.of.4.eccentricity_error = {SCATTER}\n", encoding="utf-8")
-    arguments = ["tolerance", str(path), "--samples", "4", "--positions", "3", "--out", str(tmp_path / "out")]
+    arguments = [
+        "tolerance",
+        str(path),
+        "--quick",
+        "--samples",
+        "4",
+        "--positions",
+        "3",
+        "--out",
+        str(tmp_path / "out"),
+    ]
     assert main([*arguments, "--no-figures", "--quantities", "max_pin_load"]) == 0
     assert "crank.of.4.eccentricity_error (disc 1, crank 1) " in capsys.readouterr().out
     summary = json.loads((tmp_path / "out" / "summary.json").read_text(encoding="utf-8"))

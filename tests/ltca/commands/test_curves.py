@@ -91,21 +91,21 @@ def test_torque_curve_is_drawn_as_it_is_kept(told):
     wound, torque = np.array(kept["wheel_angle_rad"]) * ARCMIN, np.array(kept["torque_N_mm"]) / 1000.0
     for axis in (whole, close):
         # The mean in the range of all crank angles: four equal curves hid each other.
-        np.testing.assert_allclose(axis.get_lines()[0].get_xdata(), wound.mean(axis=0), rtol=1e-12)
-        np.testing.assert_allclose(axis.get_lines()[0].get_ydata(), torque, rtol=1e-12)
-        ends = axis.collections[0].get_paths()[0].vertices[:, 0]
+        np.testing.assert_allclose(axis.get_lines()[0].get_ydata(), wound.mean(axis=0), rtol=1e-12)
+        np.testing.assert_allclose(axis.get_lines()[0].get_xdata(), torque, rtol=1e-12)
+        ends = axis.collections[0].get_paths()[0].vertices[:, 1]
         assert (ends.min(), ends.max()) == pytest.approx((wound.min(), wound.max()))
     (label,) = [text.get_text() for text in whole.get_legend().get_texts()]
     assert all(f"{np.degrees(angle):.3g}°" in label for angle in kept["crank_angle_rad"])
     # the chord whose slope is the stiffness, with its value
     stiff = np.array(kept["stiffness_N_mm_per_rad"]) / ARCMIN / 1e3
     (told,) = [text.get_text() for text in whole.texts if "cycloid stage" in text.get_text()]
-    assert f"{stiff.min():.4g} … {stiff.max():.4g} N m/′" in told
+    assert f"{stiff.min():.4g} … {stiff.max():.4g} N·m/′" in told
     (chord,) = [line for line in whole.get_lines() if line.get_linewidth() == 4.0]
-    slope = np.ptp(chord.get_ydata()) / np.ptp(chord.get_xdata())
+    slope = np.ptp(chord.get_xdata()) / np.ptp(chord.get_ydata())
     assert stiff[:, 1].min() < slope < stiff[:, 1].max()
     # ±3 % of the rated torque, dashed
-    dashed = sorted(float(line.get_ydata()[0]) for line in close.get_lines()[-2:])
+    dashed = sorted(float(line.get_xdata()[0]) for line in close.get_lines()[-2:])
     assert dashed == pytest.approx([-0.03 * 377.3, 0.03 * 377.3])
 
 

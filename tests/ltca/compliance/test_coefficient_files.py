@@ -238,9 +238,6 @@ def test_run_of_cases_of_different_bodies(derived, tmp_path, capsys):
     for key in ("max_pin_pressure_max_MPa", "max_roller_pressure_max_MPa", "pin_end_cell_mm", "roller_end_cell_mm"):
         assert case[key] is None
     assert case["max_pin_pressure_mid_MPa"] > 500.0
-    anywhere = [line for line in told.out.splitlines() if " anywhere " in line]
-    assert len(anywhere) == 6  # pins, rollers and shaft pins of two runs
-    assert all(line.split()[-1] == "–" for line in anywhere)
 
 
 @pytest.mark.slow

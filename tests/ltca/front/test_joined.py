@@ -89,7 +89,7 @@ def test_results_that_do_not_fit_are_refused_by_name(results):
         ([second, fewer], None, "case CS-1: is at 2 crank angles, must be at the 3 of case CS-3"),
         ([second, elsewhere], None, "case CS-1: crank_angle 1 is 0.8 rad, must be 0.7 rad as in case CS-3"),
         ([], None, "results: is empty"),
-        (first, None, "results: must be several results of ltca.analyse, not one AnalysisResult"),
+        (first, None, "results: must be several results of analyse, not one AnalysisResult"),
         (5, None, "not one int"),
         ([first.dataset], None, "results: entry 0 is a Dataset"),
         (results, ["a"], "names: has 1 names, must have one for each of 2 results"),

@@ -73,8 +73,8 @@ def dataset_loads(dataset, case, disc, position):
     found = {f"wheel pin {i}": value for i, value in enumerate(one["pin_load"].values)}
     found |= {f"shaft pin {i}": value for i, value in enumerate(one["pin_shaft_load"].values)}
     for crank in range(cranks):
-        of = f" of crank {crank}" if cranks > 1 else ""
-        found |= {f"roller {i}{of}": value for i, value in enumerate(one["roller_load"].isel(crank=crank).values)}
+        of = f"crank {crank}, " if cranks > 1 else ""
+        found |= {f"{of}roller {i}": value for i, value in enumerate(one["roller_load"].isel(crank=crank).values)}
     return {name: value for name, value in found.items() if value > 0.0}
 
 

@@ -244,7 +244,7 @@ def test_a_life_that_gives_way_is_known_all_the_same(monkeypatch):
     from ltca.studies.design_search import refinement
     from ltca.studies.design_search.refinement import Task, finish
 
-    monkeypatch.setattr(refinement, "MAX_FINE_SOLUTIONS", 1)
+    monkeypatch.setattr(refinement, "MAX_FINE_SOLUTIONS", {"half-space": 1})
     requirements = parse_requirements(PAPER.replace("[shop]", "life = 1.0e9\n[shop]") + STEEL)
     demands = find_demands(requirements)
     found = finish(Task(requirements=requirements, demands=demands, row=ROW | {"pin_circle": 88.4}, relaxed=("life",)))

@@ -1,8 +1,8 @@
 """Influence coefficients that come with the package: derive those of the shipped drives and compare, or write them anew.
 
-``python -m fem.coefficients.shipped`` derives every shape of `robot-joint`, `rv` and `sleeved` (some minutes) and prints by how
-much a new derivation differs from the shipped file, of the largest entry; exit status 1 beyond 1e-3. ``--write`` replaces the
-files, ``--only NAME`` takes one drive.
+``python benchmarks/shipped_coefficients.py`` derives every shape of the shipped drives but the paper's (some minutes) and prints
+by how much a new derivation differs from the shipped file, of the largest entry; exit status 1 beyond 1e-3. ``--write`` replaces
+the files, ``--only NAME`` takes one drive.
 """
 
 from __future__ import annotations
@@ -10,8 +10,11 @@ from __future__ import annotations
 import argparse
 import sys
 import time
+from pathlib import Path
 
 import numpy as np
+
+sys.path[0] = str(Path(__file__).resolve().parents[1])  # the package fem, not the benchmark of that name
 
 from fem.coefficients.dataset import derive_coefficients
 from ltca.compliance.coefficient_files import SHIPPED, file_name
