@@ -236,6 +236,7 @@ def test_a_damaged_file_is_refused_beside_a_sound_one(drive, sound, tmp_path):
         find_coefficients(drive, [tmp_path / "damaged.nc", sound])
 
 
+@pytest.mark.slow
 def test_an_unwritable_cache_is_told_before_the_derivation(drive, derived, tmp_path, monkeypatch, capsys):
     """It derived for 48 s and then failed. What it has is used; what is derived is used and not kept."""
     (tmp_path / "file").touch()

@@ -70,6 +70,7 @@ def test_cases_together_are_those_alone(cases):
         assert_same(found[name], analyse(drive, ANGLES))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("cases", "names"),
     [

@@ -133,7 +133,8 @@ def test_beside_a_lightly_loaded_pin(paper_cases):
     np.testing.assert_allclose(found, slope, rtol=0.0, atol=1.5e-9 * np.sum(loads) / step)
 
 
-@pytest.mark.parametrize(("angle", "disc"), [pytest.param(1.6, 0, marks=pytest.mark.slow), (5.0, 1)])
+@pytest.mark.slow
+@pytest.mark.parametrize(("angle", "disc"), [(1.6, 0), (5.0, 1)])
 def test_a_disc_that_floats_under_the_light_torque(paper_cases, angle, disc):
     """A step by no stiffness ended in "a load is not a number"; the disc stays, or is taken along by what it touches."""
     drive = with_fields(

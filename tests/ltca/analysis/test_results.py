@@ -48,6 +48,7 @@ def test_position_is_an_integer_index_and_crank_angle_the_request(dataset):
     assert all(np.all(np.isfinite(dataset[name])) for name in dataset)
 
 
+@pytest.mark.slow
 def test_netcdf_gives_back_what_was_written(dataset, tmp_path):
     import xarray as xr
 

@@ -115,6 +115,7 @@ def test_figures_and_none_contradict_each_other(tmp_path, capsys):
     assert "not allowed with argument" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_torque_with_a_unit_is_that_torque(tmp_path):
     for name, torque in (("a", "188.65 N m"), ("b", "188650")):
         arguments = [

@@ -26,6 +26,7 @@ def sleeved(changes):
     return with_fields(drive, changes)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("discs", [2, 3])
 def test_a_drive_with_lengths_left_out_is_that_with_them(discs):
     """Three discs of 10 mm, 2 mm apart: planes −12, 0, 12 mm; the pins reach 2 mm beyond the faces at ±17 mm, span 38 mm.

@@ -78,6 +78,7 @@ def test_positions_are_found_by_their_crank_angle(results):
     assert results[0].dataset["position"].values.tolist() == [0, 1, 2]
 
 
+@pytest.mark.slow
 def test_results_that_do_not_fit_are_refused_by_name(results):
     first, second = results
     rv = ltca.analyse(load_drive("rv").cases["nominal"], crank_angle=ANGLES)

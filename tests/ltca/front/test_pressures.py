@@ -26,6 +26,7 @@ def result(request):
     return ltca.analyse(next(iter(load_drive(request.param).cases.values())), crank_angle=ANGLES)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("contact", LOADS)
 def test_it_is_the_contact_that_carries_most(result, contact):
     """Fields of loose and bent wheel pins carried five times their load: seat and beam had been pressed into the contact."""
@@ -80,6 +81,7 @@ def test_hybrid_bodies_have_it_too():
         plane.pressure()
 
 
+@pytest.mark.slow
 def test_a_contact_is_chosen():
     result = ltca.analyse(load_drive("robot-joint").cases["nominal"], crank_angle=["20 deg", 1.1])
     field = result.pressure("roller_outer", 2, crank_angle="20 deg", disc=1, cells=6)

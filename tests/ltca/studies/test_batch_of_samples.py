@@ -220,7 +220,7 @@ def test_cases_with_and_without_pin_shaft_share_what_both_have(tmp_path):
     path = tmp_path / "rv.toml"
     path.write_text(shipped_drive("rv") + SHAFTS, encoding="utf-8")
     table = tomllib.loads('positions = 1\nfactors.case = ["with", "without"]')
-    study = parse_sweep(table, str(path))
+    study = parse_sweep(table, str(path), engine=HalfSpace())
     assert not set(OF_THE_PIN_SHAFT) & set(study.quantities)
     assert np.isfinite(run_batch(study, 0).values).all()
     with pytest.raises(DriveError, match=r"max_pin_shaft_load: .* no pin shaft .*: case without"):

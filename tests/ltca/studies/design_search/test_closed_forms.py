@@ -263,6 +263,7 @@ def test_a_soft_bore_is_demanded_by_its_own_limit():
     assert not {"disc_shear", "contact_strain"} & set(demands)
 
 
+@pytest.mark.slow
 def test_what_is_enumerated_can_be_made():
     """Cage, rollers by the pitch circle (ISO 281 ends at 0.3), pins by their circle and length, walls: of every candidate."""
     requirements = parse_requirements(PAPER.replace("discs = 1", "discs = [1, 2]").replace("12.0", "24.0") + STEEL)
