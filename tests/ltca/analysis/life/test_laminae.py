@@ -7,7 +7,15 @@ import pytest
 from scipy.integrate import quad
 from scipy.interpolate import PchipInterpolator
 
-from ltca.analysis.life.laminae import APPROACH_RATIO, LAMINAE, SolvedLaminae, monotone_cubic, solve_laminae
+from ltca.analysis.life.laminae import (
+    APPROACH_RATIO,
+    LAMINAE,
+    RUNGS,
+    SolvedLaminae,
+    monotone_cubic,
+    solve_laminae,
+    straight_rollers,
+)
 from ltca.contact.hertz import solve_point_contact
 from ltca.contact.length_profile import generator_profile
 from ltca.drive.parts import LengthProfile
@@ -133,3 +141,19 @@ def test_interpolation_is_that_of_scipy(count):
     ):
         theirs = PchipInterpolator(place, values, axis=0)(at)
         np.testing.assert_allclose(monotone_cubic(place, values, at), theirs, rtol=0.0, atol=1e-13)
+
+
+@pytest.mark.parametrize("number", [RUNGS[0], -27, RUNGS[-1]])
+def test_straight_rollers_of_the_package_are_those_solved(number):
+    """Other processors find other last digits, as of tests/ltca/laws/test_shipped_tables.py."""
+    load, row = straight_rollers()[number]
+    solved, found = solve_laminae(None, 1.0, 1.0, APPROACH_RATIO**number)
+    assert load == pytest.approx(solved, rel=1e-9)
+    np.testing.assert_allclose(row, found, rtol=1e-8)
+
+
+def test_a_rung_beyond_those_shipped_is_solved():
+    beyond = RUNGS[-1] + 1
+    of = SolvedLaminae(profile=None, length=1.0, effective_radius=1.0, contact_modulus=1.0)
+    assert beyond not in straight_rollers()
+    np.testing.assert_array_equal(of._at(beyond)[1], solve_laminae(None, 1.0, 1.0, APPROACH_RATIO**beyond)[1])
