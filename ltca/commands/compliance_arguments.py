@@ -49,6 +49,9 @@ def check_compliance(arguments: argparse.Namespace) -> None:
     """Check the arguments as far as that goes before drives are read and engines imported, which takes a second."""
     if arguments.quick and arguments.compliance not in (None, "half-space"):
         raise DriveError([f"--quick: is half-spaces, not --compliance {arguments.compliance}; leave one of them out"])
+    if arguments.quick and (arguments.coefficients or arguments.no_hole_near_field):
+        option = "--coefficients" if arguments.coefficients else "--no-hole-near-field"
+        raise DriveError([f"{option}: has no effect with --quick, which is half-spaces; leave one of them out"])
     compliance = "half-space" if arguments.quick else arguments.compliance
     if compliance is not None:
         refuse_idle_options(compliance, **_options(arguments))

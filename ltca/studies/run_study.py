@@ -74,7 +74,7 @@ def run_study(
     if not study.engine.batches:
         told(
             f"samples whose bodies differ from those of the drive by at most {SHARED_BODY:.1%} in every number take its "
-            "influence coefficients (single loads within some 0.3 %)"
+            "influence coefficients (single loads within some 0.4 %, stresses 0.7 %)"
         )
         find_beforehand(study.engine, study.shapes(left), told)
     waiting = sum(last - first for first, last in map(study.samples_of, left))

@@ -191,6 +191,11 @@ def _factors(table: Mapping[str, Any], drive: Drive, cases: Mapping[str, Drive],
             else:
                 found.append(SweepFactor(path=path, levels=tuple(names)))
             continue
+        if path.partition(".")[0] == "analysis":
+            reader.problems.append(
+                f"factors.{path}: cannot vary, all samples of a study are analysed alike (--compliance)"
+            )
+            continue
         if refused := bought_size(drive.crank_bearing, path):
             reader.problems.append(f"factors.{refused}")
             continue

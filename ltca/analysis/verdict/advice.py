@@ -20,6 +20,7 @@ from ltca.analysis.summary import summarise, summarise_cases
 from ltca.analysis.verdict.values import find_values
 from ltca.arrays import FloatArray
 from ltca.drive.fields import field_kinds, read_field
+from ltca.drive.members.bearings import NAMED_SIZES, bought_size
 from ltca.drive.members.judgement import Check, Value, judged_by
 from ltca.drive.parts import Drive
 from ltca.drive.units.table import label
@@ -313,7 +314,10 @@ def _inputs(drive: Drive, torque: float) -> list[_Input]:
         *(field(f"friction.{name}") for name in ("pin", "seat", "hole", "roller", "support_bearing", "no_load_torque")),
     ]
     turned = _Input(name=TORQUE, start=torque, unit="N*mm", changed=lambda factor: {TORQUE: factor * torque})
-    return [_all_sizes(drive), turned, *(one for one in chosen if one is not None)]
+    # A bought bearing is another one, not one of another size: its clearance is a class.
+    bought = bought_size(drive.crank_bearing, "crank_bearing.roller_radius") is not None
+    held = {"clearance.bearing", *(f"crank_bearing.{size}" for size in NAMED_SIZES)} if bought else set()
+    return [_all_sizes(drive), turned, *(one for one in chosen if one is not None and one.name not in held)]
 
 
 def _all_sizes(drive: Drive) -> _Input:

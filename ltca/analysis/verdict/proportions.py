@@ -84,7 +84,7 @@ def _odd(drive: Drive) -> Iterator[str]:
 def _beside(value: float, published: list[float]) -> tuple[str, str, str] | None:
     """The value, the span and what it were with a radius halved, where it is below the span."""
     low, high = min(published), max(published)
-    if value >= (1.0 - SPAN_MARGIN) * low:
+    if value >= (1.0 - SPAN_MARGIN) * low or 2.0 * value > (1.0 + SPAN_MARGIN) * high:  # half of it were odd as well
         return None
     return f"{value:.3g}", f"{low:.3g} … {high:.3g}", f"{2.0 * value:.3g}"
 

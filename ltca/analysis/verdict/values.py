@@ -129,11 +129,27 @@ def _of_loads(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) -> 
     yield Value(quantity="ptp_transmission_error", value=refined_value(summary, LIMITED["ptp_transmission_error"].key))
     bearing = np.hypot(analysis.bearing_radial, analysis.bearing_tangential).reshape(angle.size, -1)
     arrays = contact_arrays(analysis.full.response, analysis.pressures) | {"bearing_load": bearing}
+    races = race_pressures(analysis, summary)
     for quantity in OF_LOADS:
         several = "crank" if analysis.drive.crank.number > 1 else ""
         each, name = arrays[quantity], PARTS.get(QUANTITIES[quantity].of, several)
         if each.shape[1]:
-            yield largest_value(analysis, quantity, each, name, refined_value(summary, LIMITED[quantity].key))
+            refined = races[quantity] if quantity in races else refined_value(summary, LIMITED[quantity].key)
+            yield largest_value(analysis, quantity, each, name, refined)
+
+
+def race_pressures(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) -> dict[str, float | None]:
+    """Return the largest pressures in bores and on inner races, MPa: of the larger one a summary has that between positions."""
+    sampled = {
+        "roller_pressure_mid_outer": analysis.pressures.outer.mid,
+        "roller_pressure_mid_inner": analysis.pressures.inner.mid,
+    }
+    known = {name: pressure[np.isfinite(pressure)] for name, pressure in sampled.items()}
+    found = {name: float(np.max(pressure)) for name, pressure in known.items() if pressure.size}
+    if found:
+        larger = max(found, key=lambda name: found[name])
+        found[larger] = max(found[larger], refined_value(summary, LIMITED["roller_pressure_mid"].key) or 0.0)
+    return {name: found.get(name) for name in sampled}
 
 
 def _of_pins(analysis: LoadedAnalysis) -> Iterator[Value]:

@@ -14,6 +14,7 @@ from ltca.analysis.life.bearing_lives import BearingLives
 from ltca.analysis.life.life_text import life_summary
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.analysis.summary import refined_value
+from ltca.analysis.verdict.values import race_pressures
 from ltca.drive.units.quantities import ARCMIN
 from ltca.quantities import scalar_named
 
@@ -121,14 +122,8 @@ def _rows(title: str, name: str, summaries: Summaries, *, known: bool = False) -
 
 
 def _of_races(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) -> dict[str, float | None]:
-    """The largest pressure in the bore and on the inner race, of which a summary has the larger one, also between positions."""
-    sampled = {BORE: analysis.pressures.outer.mid, RACE: analysis.pressures.inner.mid}
-    known = {name: pressure[np.isfinite(pressure)] for name, pressure in sampled.items()}
-    found = {name: float(np.max(pressure)) for name, pressure in known.items() if pressure.size}
-    if found:
-        larger = max(found, key=lambda name: found[name])
-        found[larger] = max(found[larger], refined_value(summary, scalar_named("max_roller_pressure_mid").key) or 0.0)
-    return {scalar_named(name).key: found.get(name) for name in sampled}
+    """The pressures on both races by the keys of the rows."""
+    return {scalar_named(f"max_{name}").key: value for name, value in race_pressures(analysis, summary).items()}
 
 
 def _life(title: str, name: str, digits: str, lives: Lives) -> list[tuple[str, list[str]]]:

@@ -21,6 +21,7 @@ from ltca.drive.parts import Duty
 from ltca.errors import DriveError
 from ltca.geometry.coordinates import DISC_PLACE
 from ltca.geometry.interference import drawn_plays
+from ltca.geometry.placement import position_angles
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
 from ltca.reading.writing import drive_text
@@ -301,3 +302,27 @@ def test_an_entry_that_bodies_cannot_carry_fails():
     assert found["carried_torque"].verdict == "fail"
     assert found["carried_torque"].value.value == pytest.approx(1.0 / 400.0)
     assert found["pin_pressure_mid"].verdict in ("pass", "fail")
+
+
+def test_a_race_is_judged_between_the_positions_too():
+    """A race of 1496 MPa at twelve positions passed at 1500 MPa beside a table with 1534 MPa, found between them."""
+    analysis = analyse(PAPER, position_angles(6))
+    summary = summarise(analysis)
+    checks = {check.value.quantity: check.value.value for check in judge_analysis(analysis, summary, {})}
+    assert checks["roller_pressure_mid_inner"] == summary["refined_max_roller_pressure_mid_MPa"]
+    assert checks["roller_pressure_mid_inner"] > summary["max_roller_pressure_mid_MPa"]
+    assert checks["roller_pressure_mid_outer"] < checks["roller_pressure_mid_inner"]
+
+
+def test_no_size_of_a_bought_bearing_is_advised():
+    """The reader refuses another roller beside the name of a bearing, and its clearance is a class."""
+    bought = with_fields(PAPER, {"crank_bearing.dynamic_load_rating": 3e4, "crank_bearing.static_load_rating": 4e4})
+    free, held = ({one.name for one in _inputs(drive, 1.0)} for drive in (PAPER, bought))
+    assert "crank_bearing.roller_radius" in free
+    assert not [name for name in held if name.startswith(("crank_bearing.", "clearance.bearing"))]
+
+
+def test_a_radius_that_were_as_odd_halved_is_no_diameter():
+    """e z_P/R_C of 0.448, 0.896 with half the radius: published drives have 0.565 to 0.778."""
+    drive = with_fields(PAPER, {"crank.eccentricity": 0.448 * 88.0 / 14.0}, check=False)
+    assert not [told for told in odd_proportions(drive) if "diameter" in told and "pin_circle_radius" in told]

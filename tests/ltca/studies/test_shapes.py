@@ -87,7 +87,7 @@ def test_a_sweep_derives_each_shape_once_and_beforehand(derived, tmp_path):
     assert [drive.disc.thickness for drive in alone] == [11.8, 12.0]
     (lent, _), *told = told
     assert "at most 0.2 % in every number take its influence coefficients" in lent.replace("%", " %").replace("  ", " ")
-    assert told == [("2 shapes have no influence coefficients yet: derived first, some 20 s each", 0)]
+    assert told == [("2 shapes have no influence coefficients yet: derived first, some 20 s each, some 40 s in all", 0)]
     run_study(half, StudyFolder(path=tmp_path / "half"), Workers())
     with (
         xr.open_dataset(folder.results, engine="h5netcdf") as found,
@@ -274,3 +274,11 @@ def test_search_on_another_engine(paper, derived, capsys):
     hybrid, plain = (analyse_samples(drives, one).values for one in settings)
     np.testing.assert_allclose(hybrid, plain, rtol=1e-7)
     assert len(derived) == 2
+
+
+def test_the_engine_is_no_factor():
+    """Samples with another engine in their drive file were all solved on one."""
+    with pytest.raises(
+        DriveError, match=r"factors.analysis.compliance: cannot vary, all samples of a study are analysed alike"
+    ):
+        parse_sweep(tomllib.loads('factors."analysis.compliance" = ["half-space", "hybrid"]'), "paper")
