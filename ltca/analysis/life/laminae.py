@@ -222,7 +222,7 @@ def straight_rollers() -> dict[int, tuple[float, FloatArray]]:
 
 
 def write_straight_rollers() -> None:
-    """Write the contacts of straight rollers into the package: ``python -m ltca.analysis.life.laminae``."""
+    """Write the contacts of straight rollers into the package anew; tests/ltca/analysis/life/test_laminae.py compares."""
     solved = {number: solve_laminae(None, 1.0, 1.0, APPROACH_RATIO**number) for number in RUNGS}
     content = {str(number): (load, row.tolist()) for number, (load, row) in solved.items()}
     STRAIGHT.write_text(json.dumps(content, indent=0) + "\n", encoding="utf-8")
@@ -275,7 +275,3 @@ def solve_laminae(
 def _relief(profile: Relief, along: FloatArray) -> FloatArray:
     """Relief at Gauss points; they lie inside the ends, where a logarithmic one is finite."""
     return profile.relief(along)
-
-
-if __name__ == "__main__":
-    write_straight_rollers()
