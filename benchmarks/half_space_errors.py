@@ -22,9 +22,9 @@ from ltca.analysis.summary import summarise
 from ltca.analysis.torque_curve import torque_curve
 from ltca.drive.parts import Drive
 from ltca.geometry.placement import position_angles
-from ltca.reading.drive_file import parse_drive, shipped_drive
+from ltca.reading.arguments import SHIPPED_DRIVES
+from ltca.reading.drive_file import load_drive
 
-SHIPPED = ("paper", "robot-joint", "rv", "sleeved")
 POSITIONS, CURVE_POSITIONS, CURVE_POINTS = 360, 6, 12
 
 
@@ -53,8 +53,8 @@ def main() -> None:
     arguments = parser.parse_args()
     lines = ["# Half-space by hybrid, first case of each shipped drive: python benchmarks/half_space_errors.py --write"]
     known = measured() if MEASURED.exists() else {}
-    for name in SHIPPED:
-        drive = next(iter(parse_drive(shipped_drive(name), name).cases.values()))
+    for name in SHIPPED_DRIVES:
+        drive = next(iter(load_drive(name).cases.values()))
         first, second = decisive(drive, HalfSpace()), decisive(drive, Hybrid().with_coefficients(drive))
         found = {key: value / second[key] for key, value in first.items() if second[key]}
         for key, value in found.items():

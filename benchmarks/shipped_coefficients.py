@@ -20,18 +20,19 @@ from fem.coefficients.dataset import derive_coefficients
 from ltca.compliance.coefficient_files import SHIPPED, file_name
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
+from ltca.reading.arguments import SHIPPED_DRIVES
 from ltca.reading.coefficient_file import read_coefficients, write_coefficients
 from ltca.reading.coefficient_laws import check_coefficients, project_rigid_motions, station_resultants
-from ltca.reading.drive_file import parse_drive, shipped_drive
+from ltca.reading.drive_file import load_drive
 
-DRIVES = ("robot-joint", "rv", "sleeved")
+DRIVES = tuple(name for name in SHIPPED_DRIVES if name != "paper")
 AGREEMENT = 1e-3
 """Largest difference of a new derivation, of the largest entry: a fifth of what the mesh leaves (`convergence_estimate`)."""
 
 
 def shapes_of(name: str) -> dict[str, Drive]:
     """Return the drive of one disc of each distinct shape of a shipped drive, by the name of its file."""
-    (drive,) = parse_drive(shipped_drive(name), name).cases.values()
+    (drive,) = load_drive(name).cases.values()
     return {file_name(single): single for single in reversed(single_discs(drive))}
 
 
