@@ -32,11 +32,11 @@ MAX_NEWTON_STEPS = 8
 TURN_POSITIONS = 12
 """Positions of a turn over which the loads of several cranks are averaged."""
 ROLLER_BY_PITCH = 0.3
-"""Largest diameter of a roller by the pitch circle of its bearing: there the factors of ISO 281, table 7, end."""
+"""Largest diameter of a roller by the pitch circle of its bearing: as far as ratings are compared with tabulated factors."""
 PIN_SPACING = 4.5
 """Largest distance of neighbouring wheel pins by their diameter: published drives have 1 to 4.05."""
 PIN_ASPECT = 10.0
-"""Largest length of a wheel pin by its diameter, as dowel pins come (ISO 8734)."""
+"""Largest length of a wheel pin by its diameter, typical of dowel pins."""
 TINY = 1e-9
 """Keeps denominators and roots from zero."""
 
