@@ -111,6 +111,7 @@ def execute(arguments: argparse.Namespace) -> int:
     require_folder(out)
     import numpy as np
 
+    from ltca.analysis.engines import lending_between
     from ltca.analysis.memory_need import require_room_for
     from ltca.analysis.results import check_common_shape
     from ltca.commands.actions.run import RunTask, solve_and_write
@@ -127,7 +128,7 @@ def execute(arguments: argparse.Namespace) -> int:
     task = RunTask(
         file=file,
         cases=cases,
-        engine=compliance_of(arguments, cases.values()),
+        engine=lending_between(file.cases.values(), compliance_of(arguments, cases.values())),
         torque=arguments.torque,
         angles=angles,
         pressure_angles=None if arguments.pressure is None else np.array(arguments.pressure or [0.0]),
@@ -137,7 +138,7 @@ def execute(arguments: argparse.Namespace) -> int:
     )
     require_room_for(cases.values(), angles.size, out, f"--positions {angles.size}")
     with claimed_folder(out, "run", writes=_files(arguments, cases)):
-        find_coefficients_of(cases, arguments)
+        find_coefficients_of(cases, task.engine, arguments)
         return solve_and_write(task, out)
 
 
