@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from ltca.analysis.verdict.values import LIVES
 from ltca.arrays import FloatArray
+from ltca.compliance.coefficient_files import expected_seconds
 from ltca.drive.members.limits import Limits
 from ltca.drive.parts import Compliance
 from ltca.errors import CycloError
@@ -25,11 +26,14 @@ from ltca.studies.design_search.enumeration import size_of
 from ltca.studies.design_search.requirements import CLEARANCES, FINEST_CLEARANCE, Requirements
 from ltca.studies.design_search.sizes import CONTINUOUS, Sizes, drive_of
 from ltca.studies.design_search.solution import Solution, solve_coarsely, solve_finely
+from ltca.studies.shapes import shapes_of
 
 MAX_COARSE_SOLUTIONS = 6
 """Solutions of a candidate over few positions."""
 MAX_FINE_SOLUTIONS: dict[Compliance, int] = {"half-space": 2, "hybrid": 4}
 """Solutions over those of a check: sizes come from half-spaces, which may be far from what bodies do."""
+LEAST_FINE_SOLUTIONS, DEAR_DERIVATIONS = 2, 100.0
+"""Fine solutions that are made at least, and the time of derivations (s) from which no more are: of 99 teeth one takes 90 s."""
 MAX_SIZE_STEP = 0.2
 """Largest change of a size between two solutions (ln)."""
 DIFFERENCE = 1e-5
@@ -113,13 +117,16 @@ class Refined:
     shifts: dict[str, float]
 
 
-def refine(task: Task) -> Refined:
-    """Return a candidate with its best continuous sizes, solved coarsely: `finish` says whether it fits."""
+def refine(task: Task, most: int = MAX_COARSE_SOLUTIONS) -> Refined:
+    """Return a candidate with its best continuous sizes, solved coarsely: `finish` says whether it fits.
+
+    The drive is solved `most` times or `MAX_COARSE_SOLUTIONS`, whichever is less.
+    """
     row, best, last, solved = dict(task.row), None, None, 0
     life: float | None = None
     broken = np.inf
     row["rollers"] = float(max(most_rollers(row, task), row["rollers"]))
-    for _ in range(MAX_COARSE_SOLUTIONS):
+    for _ in range(min(most, MAX_COARSE_SOLUTIONS)):
         row = _rounded(row, task)
         solution, solved = solve_coarsely(row, task.requirements, task.demands, life), solved + 1
         life = solution.life_factor or life
@@ -154,15 +161,21 @@ def refine(task: Task) -> Refined:
 def finish(task: Task, solved: int = 0) -> Refined:
     """Return a refined candidate solved finely; where that finds larger values, sizes step back by as much."""
     row, solution = dict(task.row), Solution(values={})
+    last = row
     # A life that gives way has no limit in the file any more, and has to be known all the same.
     lives = not task.relaxed or any(one.quantity in LIVES for one in task.demands)
-    for _ in range(MAX_FINE_SOLUTIONS[task.compliance]):
+    spent = 0.0
+    for number in range(MAX_FINE_SOLUTIONS[task.compliance]):
+        if number >= LEAST_FINE_SOLUTIONS and spent >= DEAR_DERIVATIONS:
+            break
         try:
             drive = drive_of(row, task.requirements)
+            if task.compliance != "half-space":
+                spent += sum(expected_seconds(shapes_of([drive]).values()))
         except CycloError as error:
             solution = Solution(values={}, message=" ".join(str(error).split()))
             break
-        limits = relaxed_limits(written_limits(task.requirements), task)
+        last, limits = row, relaxed_limits(written_limits(task.requirements), task)
         solution, solved = (
             solve_finely(row, drive, limits, task.requirements, task.demands, lives=lives, compliance=task.compliance),
             solved + 1,
@@ -173,7 +186,7 @@ def finish(task: Task, solved: int = 0) -> Refined:
         if solution.passes and _keeps(each, task):
             return _told(row, solution, task, solved, fits=True)
         row = _rounded(_improve(row, each, task), task)
-    return _told(row, solution, task, solved, fits=False)
+    return _told(last, solution, task, solved, fits=False)
 
 
 def relaxed_limits(limits: Limits, task: Task) -> Limits:
@@ -306,13 +319,14 @@ def _improve(row: dict[str, float], actual: FloatArray, task: Task) -> dict[str,
         return np.where(np.isnan(each), 0.0, each), size
 
     here = forms(start[None])[0][0]
-    shape = np.array([one.kind == "shape" for one in task.demands])
+    # How discs share is told by solutions alone, and no step of sizes is taken for it.
+    shape = np.array([one.kind in ("shape", "share") for one in task.demands])
     # A count of rollers that grew is not what was solved: shape is exact, and told anew.
     shift = np.where(shape | np.isnan(actual), 0.0, actual - here)
     scale = np.array([one.scale for one in task.demands])
     target = np.where(shape, 2.0 * 10.0**-DECIMALS / scale, SAFETY)
     exact = ("outer_diameter", "length", "torque", "roller_room", "flank_clearance", *CLEARANCES)
-    target[[one.quantity in exact for one in task.demands]] = 0.0
+    target[[one.quantity in exact or one.kind == "share" for one in task.demands]] = 0.0
     count = len(names)
     cache: dict[bytes, tuple[FloatArray, FloatArray, float, FloatArray]] = {}
 
@@ -386,7 +400,9 @@ def _told(row: dict[str, float], solution: Solution, task: Task, solved: int, *,
     }
     closed = margins(task.demands, closed_forms(Sizes.of_rows([row]), Setting.of(task.requirements)))[0]
     moved = zip(task.demands, each - closed, strict=True)
-    shifts = {one.name: float(shift) for one, shift in moved if one.kind != "shape" and np.isfinite(shift)}
+    shifts = {
+        one.name: float(shift) for one, shift in moved if one.kind not in ("shape", "share") and np.isfinite(shift)
+    }
     return Refined(
         row=row, solution=solution, fits=fits, given=_given(each, task), broken=broken, relaxed=task.relaxed,
         solved=solved,

@@ -97,9 +97,16 @@ def solve_coarsely(
             factors = {TURNS: life_factor or 1.0, HOURS: life_factor or 1.0}
             found = {name: value * factors.get(name, 1.0) for name, value in by_forces.items()} | found
         found |= own_values(row, drive, requirements, demands, CURVE_ANGLES[:1], coarse=True)
+        found["disc_share"] = least_disc_share(analysis)
         return Solution(values=found, life_factor=life_factor)
     except CycloError as error:
         return Solution(values={}, message=" ".join(str(error).split()))
+
+
+def least_disc_share(analysis: LoadedAnalysis) -> float:
+    """Return what the least loaded disc carries of the torque, mean over the positions, by an even share; 1 of one disc."""
+    share = analysis.torque_share
+    return float(share.shape[1] * share.mean(axis=0).min())
 
 
 def _lives_by_forces(row: dict[str, float], analysis: LoadedAnalysis, requirements: Requirements) -> dict[str, float]:
@@ -169,6 +176,7 @@ def solve_finely(
         checks = judge_analysis(analysis, summarise(analysis), limits, lives=lives)
         found = {check.value.quantity: check.value.value for check in checks if check.value.value is not None}
         found |= own_values(row, drive, requirements, demands, engine=engine)
+        found["disc_share"] = least_disc_share(analysis)
         return Solution(values=found, checks=tuple(checks), positions=positions, compliance=compliance)
     except CycloError as error:
         return Solution(values={}, positions=positions, compliance=compliance, message=" ".join(str(error).split()))
