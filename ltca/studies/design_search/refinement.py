@@ -319,14 +319,13 @@ def _improve(row: dict[str, float], actual: FloatArray, task: Task) -> dict[str,
         return np.where(np.isnan(each), 0.0, each), size
 
     here = forms(start[None])[0][0]
-    # How discs share is told by solutions alone, and no step of sizes is taken for it.
-    shape = np.array([one.kind in ("shape", "share") for one in task.demands])
+    shape = np.array([one.kind == "shape" for one in task.demands])
     # A count of rollers that grew is not what was solved: shape is exact, and told anew.
     shift = np.where(shape | np.isnan(actual), 0.0, actual - here)
     scale = np.array([one.scale for one in task.demands])
     target = np.where(shape, 2.0 * 10.0**-DECIMALS / scale, SAFETY)
     exact = ("outer_diameter", "length", "torque", "roller_room", "flank_clearance", *CLEARANCES)
-    target[[one.quantity in exact or one.kind == "share" for one in task.demands]] = 0.0
+    target[[one.quantity in exact for one in task.demands]] = 0.0
     count = len(names)
     cache: dict[bytes, tuple[FloatArray, FloatArray, float, FloatArray]] = {}
 
@@ -400,9 +399,7 @@ def _told(row: dict[str, float], solution: Solution, task: Task, solved: int, *,
     }
     closed = margins(task.demands, closed_forms(Sizes.of_rows([row]), Setting.of(task.requirements)))[0]
     moved = zip(task.demands, each - closed, strict=True)
-    shifts = {
-        one.name: float(shift) for one, shift in moved if one.kind not in ("shape", "share") and np.isfinite(shift)
-    }
+    shifts = {one.name: float(shift) for one, shift in moved if one.kind != "shape" and np.isfinite(shift)}
     return Refined(
         row=row, solution=solution, fits=fits, given=_given(each, task), broken=broken, relaxed=task.relaxed,
         solved=solved,
