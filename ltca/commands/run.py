@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from typing import TYPE_CHECKING
 
 from ltca.commands.compliance_arguments import (
@@ -114,6 +115,7 @@ def execute(arguments: argparse.Namespace) -> int:
     from ltca.analysis.engines import lending_between
     from ltca.analysis.memory_need import require_room_for
     from ltca.analysis.results import check_common_shape
+    from ltca.analysis.time_need import time_words
     from ltca.commands.actions.run import RunTask, solve_and_write
     from ltca.geometry.placement import position_angles
     from ltca.page.compared import read_compared
@@ -138,6 +140,8 @@ def execute(arguments: argparse.Namespace) -> int:
     )
     require_room_for(cases.values(), angles.size, out, f"--positions {angles.size}")
     with claimed_folder(out, "run", writes=_files(arguments, cases)):
+        if words := time_words(cases.values(), angles.size, task.engine):
+            print(words, file=sys.stderr)
         find_coefficients_of(cases, task.engine, arguments)
         return solve_and_write(task, out)
 

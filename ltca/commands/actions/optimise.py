@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import time
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,7 @@ import numpy as np
 
 from ltca.analysis.engines import SHARED_BODY, Engine, HalfSpace, describe_engine
 from ltca.analysis.extremes import sampling_warning
+from ltca.analysis.time_need import TOLD_FROM
 from ltca.commands.actions.study import tell
 from ltca.compliance.coefficient_files import expected_seconds, told_seconds
 from ltca.drive.fields import read_field, whose, with_whose
@@ -50,13 +52,23 @@ def search_and_write(
 ) -> int:
     """Search, solve starting drive and optimum finely, write, draw and print the results; return the exit status."""
     search = _prepared(problem, engine, arguments)
-    with progress("candidates", most_candidates(problem, arguments.generations), at_most=True) as bar:
+    most, began, solved = most_candidates(problem, arguments.generations), time.monotonic(), 0
+
+    with progress("candidates", most, at_most=True) as bar:
+
+        def advance(candidates: int) -> None:
+            nonlocal solved
+            solved += candidates
+            bar("solved", candidates)
+            if solved == candidates and (rest := (most - solved) * (time.monotonic() - began) / solved) > TOLD_FROM:
+                tell(f"the other candidates take at most {told_seconds(rest)}, by the first {solved}")
+
         optimum = optimise(
             problem,
             batch_analysis(problem, arguments.positions, search),
             seed=arguments.seed,
             generations=arguments.generations,
-            told=lambda candidates: bar("solved", candidates),
+            told=advance,
         )
     best = optimum.drive(optimum.best)
     fine = [solve_finely(drive, problem.quantities, engine) for drive in (problem.drive, best)]
