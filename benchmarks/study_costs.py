@@ -43,7 +43,10 @@ REQUIREMENTS = (ROOT / "examples" / "requirements" / "possible-robot-joint.toml"
 def measured(words: list[str]) -> tuple[float, float, float, int]:
     """Processor time (s), peak memory (MB), longest silence (s of processor time) and exit status of a command."""
     process = subprocess.Popen(
-        [sys.executable, "-m", "ltca.commands.program", *words], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, bufsize=0
+        [sys.executable, "-m", "ltca.commands.program", *words],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        bufsize=0,
     )
     stat, tick = Path(f"/proc/{process.pid}/stat"), os.sysconf("SC_CLK_TCK")
     seen = [0.0]

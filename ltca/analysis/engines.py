@@ -311,7 +311,13 @@ class CoupledEngine:
         return replace(self, coefficients=found[0] if len(found) == 1 else found)
 
     def lent_to(self, singles: Sequence[Drive]) -> Self:
-        """Return the engine with its coefficients serving drives of one disc that have nearly their bodies."""
+        """Return the engine with its coefficients serving drives of one disc that have nearly their bodies.
+
+        Raises `DriveError` for what plane strain cannot say, of those that are served as of those that lend.
+        """
+        if NEAR_FIELDS[self.compliance] == "plane-strain":
+            for each in singles:
+                require(each, "fe")
         found = tuple(own.lent_to(each) for own, each in zip(self._of_discs, singles, strict=True))
         return replace(self, coefficients=found[0] if len(found) == 1 else found)
 
@@ -384,8 +390,9 @@ def lending_between(cases: Iterable[Drive], engine: Engine) -> Engine:
     Files of coefficients that are given serve each its own case.
     """
     several = list(cases)
-    given = getattr(engine, "coefficients", None) is not None or getattr(engine, "lenders", ())
-    return engine if len(several) < 2 or given else engine.lending(several)
+    if len(several) < 2 or not isinstance(engine, CoupledEngine) or engine.lenders or engine.coefficients is not None:
+        return engine
+    return engine.lending(several)
 
 
 def lent_words(engine: Engine, drive: Drive) -> str:

@@ -93,6 +93,7 @@ def find_coefficients_of(cases: Mapping[str, Drive], engine: Engine, arguments: 
 
     Of an engine that lends coefficients those of the lenders are derived.
     """
+    from ltca.analysis.engines import CoupledEngine
     from ltca.compliance.coefficient_files import find_case_coefficients
     from ltca.compliance.near_field import NEAR_FIELDS
     from ltca.drive.members.temperatures import warm_drive
@@ -100,7 +101,7 @@ def find_coefficients_of(cases: Mapping[str, Drive], engine: Engine, arguments: 
 
     if arguments.compliance in NEAR_FIELDS:
         warm = {name: warm_drive(drive) for name, drive in cases.items()}  # coefficients are those of the warm bodies
-        if getattr(engine, "lenders", ()):
+        if isinstance(engine, CoupledEngine) and engine.lenders:
             found = [body for one in warm.values() for body in engine.bodies_of(single_discs(one))]
             bodies = {body.shape_fingerprint(): body for body in found}.values()
             cases_of = [body.case for body in bodies]

@@ -10,6 +10,7 @@ from ltca.commands.program import main
 from ltca.compliance import coefficient_files
 from ltca.compliance.coefficients import without_coupling
 from ltca.drive.single_discs import single_discs
+from ltca.errors import DriveError
 from ltca.reading.drive_file import parse_drive, shipped_drive
 
 CASES = """
@@ -89,3 +90,15 @@ def test_a_case_alone_and_files_that_are_given_keep_their_own(text, tmp_path):
     (looser,) = single_discs(file.cases["looser"])
     (body,) = lending.bodies_of([looser])
     assert body.case == "drawn"
+
+
+def test_what_plane_strain_cannot_say_is_refused_of_a_case_that_borrows(text, derived):
+    """Only the drive whose coefficients are lent would have been looked at."""
+    crowned = "pin_wheel = { pin_profile = { crown_drop = 0.002 } }"
+    file = parse_drive(
+        text.replace("clearance = { bearing = 0.02 }", f"clearance = {{ bearing = 0.02 }}\n{crowned}", 1)
+    )
+    engine = engines.lending_between(file.cases.values(), engines.PlaneStrain())
+    engine.with_coefficients(file.cases["drawn"])
+    with pytest.raises(DriveError, match="pin_profile"):
+        engine.with_coefficients(file.cases["looser"])
