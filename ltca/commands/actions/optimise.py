@@ -89,8 +89,8 @@ def search_and_write(
     if arguments.figures:
         from ltca.figures.optimum_figures import write_optimum_figure
 
-        solved = f"{arguments.positions} positions, {describe_engine(search)}"
-        print(f"figure: {write_optimum_figure(optimum, solved, out, arguments.figures)}")
+        told_how = f"{arguments.positions} positions, {describe_engine(search)}"
+        print(f"figure: {write_optimum_figure(optimum, told_how, out, arguments.figures)}")
     return 0
 
 
