@@ -277,7 +277,8 @@ def analyse(
     compliance : {"half-space", "fe", "hybrid"} or engine, optional
         How the bodies yield; an engine (`ltca.HalfSpace`, `ltca.PlaneStrain`, `ltca.Hybrid`) brings its options. Left out,
         ``drive.analysis.compliance`` says it: ``hybrid`` unless the drive file has another; a `method` or `contacts` is of
-        half-spaces.
+        half-spaces. Of cases whose bodies hardly differ ``ltca.Hybrid().lending(file.cases.values())`` takes the coefficients
+        of the first, as ``cyclo run`` does, in the place of deriving those of each.
     method : {"tables", "direct", "paper"}, optional
         How the half-space is solved.
     contacts : {"tables", "grids"}, optional

@@ -621,6 +621,7 @@ _DECLARED = (
     _asked("length", "mm", "length"),
     _asked("stiffness", "N mm/rad", "torsional stiffness of the cycloid stage"),
     _asked("lost_motion", "arcmin", "lost motion"),
+    _asked("disc_share", "1", "torque of the least loaded disc by an even share"),
     _asked("pin_gap", "mm", "gap between wheel pins"),
     _asked("cage_room", "mm", "room for the cage between rollers"),
     _asked("race", "mm", "wall of the eccentric about its shaft"),

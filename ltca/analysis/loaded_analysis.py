@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.analysis.engines import Engine, HalfSpace, PreparedEngine
+from ltca.analysis.engines import Engine, HalfSpace, PreparedEngine, lent_words
 from ltca.analysis.friction.losses import Losses, losses
 from ltca.analysis.half_space_errors import half_space_words
 from ltca.analysis.half_width_guard import (
@@ -201,8 +201,8 @@ class LoadedAnalysis:
 
     @property
     def engine_words(self) -> str:
-        """What to know of the engine: why half-spaces, and how far off they are; empty for another."""
-        return half_space_words(self.engine, self.drive)
+        """What to know of the engine: why half-spaces, and how far off they are, or whose coefficients it uses; else empty."""
+        return half_space_words(self.engine, self.drive) or lent_words(self.engine, self.drive)
 
     @property
     def torque_share(self) -> FloatArray:

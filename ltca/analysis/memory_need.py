@@ -24,10 +24,10 @@ KEPT_PER_POSITION = 1e3
 
 def positions_together(drive: Drive) -> int:
     """Return how many positions of a drive are solved at once where an analysis is solved part by part."""
-    return max(1, int(MEMORY_PER_PART / (MEMORY_PER_PAIR * _pairs(drive))))
+    return max(1, int(MEMORY_PER_PART / (MEMORY_PER_PAIR * pairs_of(drive))))
 
 
-def _pairs(drive: Drive) -> int:
+def pairs_of(drive: Drive) -> int:
     """Pairs of contacts of all discs."""
     return drive.disc.number_of_discs * (
         drive.pin_wheel.number_of_pins
@@ -78,7 +78,7 @@ def require_room_for(drives: Iterable[Drive], positions: int, folder: Path, opti
     PlaceError
         With the numbers.
     """
-    pairs = sum(map(_pairs, drives))
+    pairs = sum(map(pairs_of, drives))
     require_room(
         DISC_PER_PAIR * pairs * positions, memory=MEMORY_PER_PAIR * pairs * positions, folder=folder, option=option
     )

@@ -66,12 +66,13 @@ def execute(arguments: argparse.Namespace) -> int:
     from ltca.analysis.memory_need import require_room_for
 
     require_room_for(cases.values(), arguments.positions, out, f"--positions {arguments.positions}")
+    from ltca.analysis.engines import lending_between
     from ltca.commands.actions.check import judge_and_write
 
-    engine = compliance_of(arguments, cases.values())
+    engine = lending_between(file.cases.values(), compliance_of(arguments, cases.values()))
     writes = ["check.json", *([] if arguments.no_page else ["report.html"])]
     with claimed_folder(out, "check", writes=writes):
-        find_coefficients_of(cases, arguments)
+        find_coefficients_of(cases, engine, arguments)
         failed = judge_and_write(file, cases, engine, arguments, out)
     print("results: " + ", ".join(str(out / name) for name in writes))
     return FAILED if failed else 0

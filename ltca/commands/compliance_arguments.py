@@ -88,12 +88,25 @@ def _options(arguments: argparse.Namespace) -> dict[str, Any]:
     }
 
 
-def find_coefficients_of(cases: Mapping[str, Drive], arguments: argparse.Namespace) -> None:
-    """Check the files given against all cases, or derive all that is missing together: the engine finds each again."""
+def find_coefficients_of(cases: Mapping[str, Drive], engine: Engine, arguments: argparse.Namespace) -> None:
+    """Check the files given against all cases, or derive all that is missing together: the engine finds each again.
+
+    Of an engine that lends coefficients those of the lenders are derived.
+    """
+    from ltca.analysis.engines import CoupledEngine
     from ltca.compliance.coefficient_files import find_case_coefficients
     from ltca.compliance.near_field import NEAR_FIELDS
     from ltca.drive.members.temperatures import warm_drive
+    from ltca.drive.single_discs import single_discs
 
     if arguments.compliance in NEAR_FIELDS:
         warm = {name: warm_drive(drive) for name, drive in cases.items()}  # coefficients are those of the warm bodies
+        if isinstance(engine, CoupledEngine) and engine.lenders:
+            found = [body for one in warm.values() for body in engine.bodies_of(single_discs(one))]
+            bodies = {body.shape_fingerprint(): body for body in found}.values()
+            cases_of = [body.case for body in bodies]
+            warm = {
+                body.case if cases_of.count(body.case) == 1 else f"{body.case}, body {number}": body
+                for number, body in enumerate(bodies)
+            }
         find_case_coefficients(warm, arguments.coefficients or (), near_field=NEAR_FIELDS[arguments.compliance])

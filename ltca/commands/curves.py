@@ -92,11 +92,13 @@ def execute(arguments: argparse.Namespace) -> int:
     out = arguments.out or default_folder(file.name, "curves")
     require_folder(out)
     from ltca.analysis.drive_curves import CurveSettings, positions_per_turn, require_turns
+    from ltca.analysis.engines import lending_between
     from ltca.analysis.memory_need import require_room_for_parts
     from ltca.commands.actions.curves import solve_and_write, tell_of_turns
 
     asked = (arguments.pressure_limit, arguments.load_rating, arguments.speed, arguments.lost_motion)
-    settings, engine = CurveSettings(*asked), compliance_of(arguments, cases.values())
+    settings = CurveSettings(*asked)
+    engine = lending_between(file.cases.values(), compliance_of(arguments, cases.values()))
     for drive in cases.values():
         if drive.duty and settings.speed is not None:
             raise DriveError(["--speed: has no effect with [[duty]], whose entries have their own"])
@@ -111,5 +113,5 @@ def execute(arguments: argparse.Namespace) -> int:
     figures = figure_files(arguments.figures, *(name + ending for name in FIGURES for ending in endings))
     writes = ["curves.json", *([] if arguments.no_page else ["report.html"])]
     with claimed_folder(out, "curves", writes=[*writes, *figures]):
-        find_coefficients_of(cases, arguments)
+        find_coefficients_of(cases, engine, arguments)
         return solve_and_write(file, cases, settings, engine, arguments, out)

@@ -135,11 +135,15 @@ def _write(found: Found, best: int, out: Path) -> None:
 
 
 def _print(found: Found, rows: list[list[str]], out: Path) -> None:
+    from ltca.studies.design_search.designs import refused_words
+
     asked = found.requirements.asked
     print(
         f"{asked.name}, 1:{asked.ratio:g}, {asked.torque / 1000.0:g} N·m at {asked.speed:g} rpm: {found.combinations} "
         f"combinations by closed forms, {found.solved} loaded drives"
     )
+    if refused := refused_words(found):
+        print(refused)
     if not found.designs:
         print(
             "nothing fits. What stands in the way, least change first, each with all others held, and at most so much "

@@ -73,7 +73,8 @@ def execute(arguments: argparse.Namespace) -> int:
 
     check_compliance(arguments)
     file = load_drive(arguments.drive)
-    arguments.engine_is_named = arguments.compliance is not None
+    arguments.compliance_is_given = arguments.compliance is not None
+    arguments.engine_is_named = arguments.compliance is not None or file.names_compliance
     settle_compliance(arguments, file.cases.values())
     name, case = file.name, next(iter(file.select(None if arguments.case is None else [arguments.case])))
     out = arguments.out or default_folder(name, "optimise")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from typing import TYPE_CHECKING
 
 from ltca.commands.compliance_arguments import (
@@ -111,8 +112,10 @@ def execute(arguments: argparse.Namespace) -> int:
     require_folder(out)
     import numpy as np
 
+    from ltca.analysis.engines import lending_between
     from ltca.analysis.memory_need import require_room_for
     from ltca.analysis.results import check_common_shape
+    from ltca.analysis.time_need import time_words
     from ltca.commands.actions.run import RunTask, solve_and_write
     from ltca.geometry.placement import position_angles
     from ltca.page.compared import read_compared
@@ -127,7 +130,7 @@ def execute(arguments: argparse.Namespace) -> int:
     task = RunTask(
         file=file,
         cases=cases,
-        engine=compliance_of(arguments, cases.values()),
+        engine=lending_between(file.cases.values(), compliance_of(arguments, cases.values())),
         torque=arguments.torque,
         angles=angles,
         pressure_angles=None if arguments.pressure is None else np.array(arguments.pressure or [0.0]),
@@ -137,7 +140,9 @@ def execute(arguments: argparse.Namespace) -> int:
     )
     require_room_for(cases.values(), angles.size, out, f"--positions {angles.size}")
     with claimed_folder(out, "run", writes=_files(arguments, cases)):
-        find_coefficients_of(cases, arguments)
+        if words := time_words(cases.values(), angles.size, task.engine):
+            print(words, file=sys.stderr)
+        find_coefficients_of(cases, task.engine, arguments)
         return solve_and_write(task, out)
 
 

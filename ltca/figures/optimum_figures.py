@@ -16,18 +16,18 @@ from ltca.quantities import SCALARS
 from ltca.studies.optimiser import Optimum, describe_bound, front_span
 
 
-def write_optimum_figure(optimum: Optimum, positions: int, folder: Path, kind: str = "svg") -> Path:
-    """Write the figure of candidates solved at a number of positions, as ``svg``, ``png`` or ``pdf``, and return the file."""
+def write_optimum_figure(optimum: Optimum, solved: str, folder: Path, kind: str = "svg") -> Path:
+    """Write the figure of candidates, as ``svg``, ``png`` or ``pdf``, and return the file; `solved` tells how they were."""
     two = len(optimum.problem.aims) == 2
     with mpl.rc_context(STYLE):
-        title = _title(optimum, positions)
+        title = _title(optimum, solved)
         figure, name = (_front(optimum, title), "pareto") if two else (_search(optimum, title), "search")
     return save_figure(figure, folder / "figures" / f"{name}.{kind}")
 
 
-def _title(optimum: Optimum, positions: int) -> str:
+def _title(optimum: Optimum, solved: str) -> str:
     limits = ", ".join(describe_bound(limit) for limit in optimum.problem.limits)
-    told = f"{len(optimum.variables)} candidates × {positions} positions" + (f", subject to {limits}" if limits else "")
+    told = f"{len(optimum.variables)} candidates × {solved}" + (f", subject to {limits}" if limits else "")
     return fill(told, 76)
 
 

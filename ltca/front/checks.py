@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from ltca.analysis.engines import Engine
+from ltca.analysis.engines import Engine, lending_between
 from ltca.analysis.verdict.drive_check import DriveCheck, check_drive
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.drive.members.limits import Limit, Limits, parse_limits
@@ -78,10 +78,11 @@ def check(
     judged, known = drive_and_limits(drive, case, limits)
     if not isinstance(advice, bool):
         raise DriveError([f"advice = {shortened(advice)}: must be true or false"])
+    engine = engine_given(judged, compliance, coefficients=coefficients, hole_near_field=hole_near_field)
     return check_drive(
         judged,
         known,
-        engine_given(judged, compliance, coefficients=coefficients, hole_near_field=hole_near_field),
+        lending_between(drive.cases.values(), engine) if isinstance(drive, DriveFile) else engine,
         positions=counted(positions, "positions", 2, MOST_POSITIONS),
         torque=torque_given(judged, torque),
         advice=advice,

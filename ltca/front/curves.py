@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from ltca.analysis.drive_curves import CurveSettings, DriveCurves, allowed_pressure, require_turns, solve_curves
-from ltca.analysis.engines import Engine
+from ltca.analysis.engines import Engine, lending_between
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Drive
@@ -98,6 +98,8 @@ def curves(
         lost_motion=parse_quantity(lost_motion, "dimensionless", "lost_motion", ge=0.001, le=0.5),
     )
     engine = engine_given(one, compliance, coefficients=coefficients, hole_near_field=hole_near_field)
+    if isinstance(drive, DriveFile):
+        engine = lending_between(drive.cases.values(), engine)
     return solve_curves(warm, rotations, settings, engine)
 
 

@@ -64,6 +64,11 @@ class DriveFile:
     limits: dict[str, Limits]
     text: str
 
+    @property
+    def names_compliance(self) -> bool:
+        """Whether the file itself says how bodies yield: what is written there is no default."""
+        return "compliance" in parse_toml(self.text, self.source).get("analysis", {})
+
     def select(self, names: list[str] | None) -> dict[str, Drive]:
         """Return some of the cases, all for None.
 

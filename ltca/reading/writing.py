@@ -5,11 +5,13 @@ from __future__ import annotations
 from dataclasses import fields, is_dataclass
 from typing import Any
 
-from ltca.drive.parts import Drive
+from ltca.drive.parts import Analysis, Drive
 
 
 def drive_text(drive: Drive) -> str:
     """Return a drive as the text of a drive file that reads back as the same drive, bit for bit.
+
+    An engine is written where it is not the default: what a file says of it counts as its author's own wish.
 
     Examples
     --------
@@ -25,6 +27,8 @@ def drive_text(drive: Drive) -> str:
 
 def _write_table(part: Any, path: str, lines: list[str]) -> None:
     inner = []
+    if part == Analysis():
+        return
     if path:
         lines.append(f"\n[{path}]")
     for item in fields(part):

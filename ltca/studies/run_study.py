@@ -8,6 +8,8 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from ltca.analysis.engines import SHARED_BODY
+from ltca.analysis.time_need import TOLD_FROM
+from ltca.compliance.coefficient_files import told_seconds
 from ltca.errors import CycloError
 from ltca.output.files import whole_file, write_json
 from ltca.quantities import SCALARS
@@ -79,10 +81,17 @@ def run_study(
         find_beforehand(study.engine, study.shapes(left), told)
     waiting = sum(last - first for first, last in map(study.samples_of, left))
     advance(study.design.samples - waiting, 0.0)
-    began, solved = time.perf_counter(), 0
+    began, solved, timed = time.perf_counter(), 0, False
     for result in solve_batches(study, left, workers):
         folder.store(study, result)
         solved += len(result.messages) * study.positions
+        waiting -= len(result.messages)
+        if (
+            not timed
+            and (rest := waiting * (time.perf_counter() - began) / len(result.messages) / workers.processes) > TOLD_FROM
+        ):
+            told(f"the other {waiting} samples take {told_seconds(rest)}, by the first {len(result.messages)}")
+        timed = True
         advance(len(result.messages), solved / (time.perf_counter() - began))
     seconds = time.perf_counter() - began
     failures = read_failures(folder.results) if not left and folder.results.exists() else folder.finish(study)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import time
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,7 @@ import numpy as np
 
 from ltca.analysis.engines import SHARED_BODY, Engine, HalfSpace, describe_engine
 from ltca.analysis.extremes import sampling_warning
+from ltca.analysis.time_need import TOLD_FROM
 from ltca.commands.actions.study import tell
 from ltca.compliance.coefficient_files import expected_seconds, told_seconds
 from ltca.drive.fields import read_field, whose, with_whose
@@ -50,19 +52,29 @@ def search_and_write(
 ) -> int:
     """Search, solve starting drive and optimum finely, write, draw and print the results; return the exit status."""
     search = _prepared(problem, engine, arguments)
-    with progress("candidates", most_candidates(problem, arguments.generations), at_most=True) as bar:
+    most, began, solved = most_candidates(problem, arguments.generations), time.monotonic(), 0
+
+    with progress("candidates", most, at_most=True) as bar:
+
+        def advance(candidates: int) -> None:
+            nonlocal solved
+            solved += candidates
+            bar("solved", candidates)
+            if solved == candidates and (rest := (most - solved) * (time.monotonic() - began) / solved) > TOLD_FROM:
+                tell(f"the other candidates take at most {told_seconds(rest)}, by the first {solved}")
+
         optimum = optimise(
             problem,
             batch_analysis(problem, arguments.positions, search),
             seed=arguments.seed,
             generations=arguments.generations,
-            told=lambda candidates: bar("solved", candidates),
+            told=advance,
         )
     best = optimum.drive(optimum.best)
     fine = [solve_finely(drive, problem.quantities, engine) for drive in (problem.drive, best)]
     with whole_file(out / "optimum.toml") as part:
         part.write_text(drive_text(best), encoding="utf-8")
-    _write_candidates(optimum, out / "candidates.parquet")
+    _write_candidates(optimum, search, arguments.positions, out / "candidates.parquet")
     front = _write_front(optimum, out)
     outcome = _outcome(optimum, fine, engine, arguments.positions) | {"candidates_compliance": search.compliance}
     write_json(out / "optimum.json", outcome)
@@ -70,14 +82,15 @@ def search_and_write(
         told = f"least {' and '.join(problem.aims)} of {case}, {problem.drive.load_words()}, {describe_engine(engine)}"
         write_study_page(optimum_page(name, told, optimum, outcome, front, drive_text(best)), out)
     print(f"{name} {case}, {problem.drive.load_words()}, {describe_engine(engine)}")
-    _print(optimum, fine, arguments.positions)
+    _print(optimum, fine, engine, search, arguments.positions)
     if front:
         print(f"designs of the front: {out / next(iter(front))} … {next(reversed(front))}")
     print("results: " + ", ".join(str(out / name) for name in ("optimum.toml", "optimum.json", "candidates.parquet")))
     if arguments.figures:
         from ltca.figures.optimum_figures import write_optimum_figure
 
-        print(f"figure: {write_optimum_figure(optimum, arguments.positions, out, arguments.figures)}")
+        told_how = f"{arguments.positions} positions, {describe_engine(search)}"
+        print(f"figure: {write_optimum_figure(optimum, told_how, out, arguments.figures)}")
     return 0
 
 
@@ -105,7 +118,8 @@ def problem_of(drive: Drive, arguments: argparse.Namespace) -> Problem:
 def _prepared(problem: Problem, engine: Engine, arguments: argparse.Namespace) -> Engine:
     """Warn of few positions, say what has to be derived and derive it for the drive as it is; return the engine of candidates.
 
-    Where candidates reshape the bodies and nobody named the engine, they are solved on half-spaces.
+    Where candidates reshape the bodies and nobody named the engine, on the command line or in the drive file, they are solved on
+    half-spaces.
     """
     search = engine.lending([problem.drive])
     warning = sampling_warning(problem.drive, position_angles(arguments.positions), refined=False)
@@ -119,10 +133,15 @@ def _prepared(problem: Problem, engine: Engine, arguments: argparse.Namespace) -
                     f"{' '.join(arguments.vary)} changes it; leave it out, so that each candidate gets its own"
                 ]
             )
-        each = told_seconds(sum(expected_seconds(shapes_of([problem.drive]).values())))
+        seconds = sum(expected_seconds(shapes_of([problem.drive]).values()))
+        each = told_seconds(seconds)
         if arguments.engine_is_named:
             most = most_candidates(problem, arguments.generations)
-            tell(f"every candidate is a shape of its own: up to {most} of them are derived, {each} each, and kept")
+            named = "--compliance" if arguments.compliance_is_given else "[analysis] of the drive file"
+            tell(
+                f"every candidate is a shape of its own, and {named} names {engine.compliance}: up to {most} of them are "
+                f"derived, {each} each, {told_seconds(most * seconds)} in all, and kept; --quick solves all on half-spaces"
+            )
         else:
             search = HalfSpace()
             tell(
@@ -145,7 +164,7 @@ def _write_front(optimum: Optimum, out: Path) -> dict[str, int]:
     return written
 
 
-def _write_candidates(optimum: Optimum, path: Path) -> None:
+def _write_candidates(optimum: Optimum, search: Engine, positions: int, path: Path) -> None:
     import pyarrow as pa
     from pyarrow import parquet
 
@@ -168,7 +187,12 @@ def _write_candidates(optimum: Optimum, path: Path) -> None:
                 for name, (_, text) in flags.items()
             ),
         ],
-        metadata={"version": code_version(), "code_hash": code_hash("ltca")},
+        metadata={
+            "version": code_version(),
+            "code_hash": code_hash("ltca"),
+            **search.options,
+            "positions": str(positions),
+        },
     )
     columns = [*optimum.variables.T, *optimum.values.T, *(values for values, _ in flags.values())]
     with whole_file(path) as part:
@@ -212,12 +236,13 @@ def _outcome(optimum: Optimum, fine: list[FineSolution], engine: Engine, positio
     }
 
 
-def _print(optimum: Optimum, fine: list[FineSolution], positions: int) -> None:
+def _print(optimum: Optimum, fine: list[FineSolution], engine: Engine, search: Engine, positions: int) -> None:
     problem, nominal, found = optimum.problem, *fine
     print(
         f"{len(optimum.variables)} candidates × {positions} positions in {optimum.generations} batches, "
-        f"{optimum.feasible.sum()} within the limits"
+        f"{describe_engine(search)}, {optimum.feasible.sum()} within the limits"
     )
+    print(f"{'':<48}{describe_engine(engine):>24}{describe_engine(search):>24}")
     print(f"{'':<48}{f'{found.positions} positions, refined':>24}{f'{positions} positions':>24}")
     print(f"{'':<48}{'as it is':>12}{'found':>12}{'as it is':>12}{'found':>12}")
     for variable, value in zip(problem.variables, optimum.variables[optimum.best], strict=True):

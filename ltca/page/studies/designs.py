@@ -14,7 +14,7 @@ from ltca.drive.single_discs import single_discs
 from ltca.geometry.flank import FlankProfile
 from ltca.page.tables import Table, minus, word
 from ltca.page.writing import page_text, write_page
-from ltca.studies.design_search.designs import named_design
+from ltca.studies.design_search.designs import named_design, refused_words
 from ltca.studies.design_search.refinement import Refined
 from ltca.studies.design_search.search import Found
 from ltca.studies.design_search.sizes import LEAST_DISTANCE
@@ -40,6 +40,7 @@ def write_design_page(found: Found, shown: Sequence[tuple[str, Refined]], rows: 
         "requirements": requirements.text,
         "combinations": found.combinations,
         "solved": found.solved,
+        "refused": refused_words(found),
         "least_distance": f"{LEAST_DISTANCE:g}",
     }
     return write_page(path, page_text("design.html", content, styles=("design",)))

@@ -13,7 +13,7 @@ from ltca.quantities import SCALARS, unit_sign
 from ltca.studies.optimiser import Optimum, front_span
 from ltca.studies.study_results import field_column
 
-OPENED = "Each is a drive file beside this page, for every command; values are those of the search, at its positions."
+OPENED = "Each is a drive file beside this page, for every command; values are those of the search, {}."
 
 
 def optimum_page(
@@ -33,7 +33,9 @@ def optimum_page(
         for key, each in outcome["quantities"].items()
     ]
     fine, coarse = outcome["positions"], outcome["positions_of_candidates"]
-    heads = ["", f"as it is, {fine} positions", f"found, {fine} positions", f"as it is, {coarse}", f"found, {coarse}"]
+    search = f"{outcome['candidates_compliance']}, {coarse} positions"
+    finely = f"{outcome['compliance']}, {fine} positions"
+    heads = ["", f"as it is, {finely}", f"found, {finely}", f"as it is, {search}", f"found, {search}"]
     varied = ["field", "unit", "from", "to", "as it is", "found"]
     tables = [
         Table(name="variables", caption="What was varied", columns=varied, rows=variables, words=1),
@@ -44,7 +46,9 @@ def optimum_page(
     designs: list[Section] = []
     if len(optimum.problem.aims) == 2:
         curves, notes = _front(optimum)
-        designs = [Section(heading="Designs of the front", notes=[OPENED], tables=[_designs(optimum, front)])]
+        designs = [
+            Section(heading="Designs of the front", notes=[OPENED.format(search)], tables=[_designs(optimum, front)])
+        ]
     broken = outcome["broken_limits"]
     sentence = (
         f"Beyond {', '.join(broken)} when solved finely." if broken else "All limits are kept when solved finely."
@@ -54,10 +58,10 @@ def optimum_page(
     state = "fail" if broken else "pass" if outcome["limits"] else ""
     made = {key: str(outcome[key]) for key in ("compliance", "method", "contacts", "candidates") if key in outcome}
     section = Section(heading="As it is and as found", tables=tables)
-    within = f"{outcome['candidates']} candidates at {coarse} positions each, {int(optimum.feasible.sum())} within the limits."
-    search = Section(heading="The search", curves=curves, notes=[within, *notes])
+    within = f"{outcome['candidates']} candidates on {search} each, {int(optimum.feasible.sum())} within the limits."
+    looked = Section(heading="The search", curves=curves, notes=[within, *notes])
     return StudyPage(
-        name=name, told=told, sentence=sentence, state=state, sections=[section, *designs, search], made=made, text=text
+        name=name, told=told, sentence=sentence, state=state, sections=[section, *designs, looked], made=made, text=text
     )
 
 

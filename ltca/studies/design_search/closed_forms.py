@@ -32,11 +32,13 @@ MAX_NEWTON_STEPS = 8
 TURN_POSITIONS = 12
 """Positions of a turn over which the loads of several cranks are averaged."""
 ROLLER_BY_PITCH = 0.3
-"""Largest diameter of a roller by the pitch circle of its bearing: there the factors of ISO 281, table 7, end."""
+"""Largest diameter of a roller by the pitch circle of its bearing: as far as ratings are compared with tabulated factors."""
 PIN_SPACING = 4.5
 """Largest distance of neighbouring wheel pins by their diameter: published drives have 1 to 4.05."""
 PIN_ASPECT = 10.0
-"""Largest length of a wheel pin by its diameter, as dowel pins come (ISO 8734)."""
+"""Largest length of a wheel pin by its diameter, typical of dowel pins."""
+LEAST_TOLD_SHARE = 0.02
+"""Share of a disc below which closed forms tell none apart."""
 TINY = 1e-9
 """Keeps denominators and roots from zero."""
 
@@ -257,6 +259,7 @@ def inner_values(sizes: Sizes, setting: Setting, flank: dict[str, FloatArray]) -
         else:
             spring = np.full(sizes.count, shop.shaft_pin_stiffness)
         turning_compliance = (1.0 - 1.0 / sizes.pins) ** 2 / (0.25 * sizes.holes * spring * sizes.hole_circle**2)
+    found["disc_share"] = np.ones(sizes.count)
     roller = 4.0 * most / sizes.rollers
     inner = sizes.bore - 2.0 * sizes.roller_radius
     bore = sizes.bore + 0.5 * sizes.bearing_clearance
@@ -266,7 +269,12 @@ def inner_values(sizes: Sizes, setting: Setting, flank: dict[str, FloatArray]) -
     found["roller_pressure_mid_inner"] = np.sqrt(line * setting.inner * (1.0 / sizes.roller_radius + 1.0 / inner))
     found |= lives_by_loads(sizes, setting, most, mean)
     seat = bearings * np.pi * setting.outer * sizes.roller_length / LINE_CONTACT_FACTOR * sizes.rollers / 8.0
-    compliance = 1.0 / flank["wheel_stiffness"] + 1.0 / (seat * reach**2) + turning_compliance
+    alone = 1.0 / flank["wheel_stiffness"] + 1.0 / (seat * reach**2)
+    compliance = alone + turning_compliance
+    if not several and shop.shaft_pin_stiffness is None:
+        turned = (1.0 - 1.0 / sizes.pins) ** 2 / (0.25 * sizes.holes * sizes.hole_circle**2)
+        contact = np.pi * setting.hole * sizes.thickness / LINE_CONTACT_FACTOR
+        found["disc_share"] = disc_shares(sizes, setting, alone + turned / contact, turned)
     leverage = wheel_torque(sizes, setting) / sizes.torque
     found["stiffness"] = sizes.discs / (compliance * leverage**2)
     found["backlash_output"] = (flank["play"] + clearance_play(sizes, setting)) * leverage * ARCMIN
@@ -284,6 +292,31 @@ def inner_values(sizes: Sizes, setting: Setting, flank: dict[str, FloatArray]) -
     # b = 2 p ρ/E* with ρ below the pin's radius: what half-spaces allow is a part of that radius.
     found["half_width_ratio"] = 2.0 * flank["pin_pressure_mid"] / setting.flank
     return found
+
+
+def disc_shares(sizes: Sizes, setting: Setting, alone: FloatArray, turned: FloatArray) -> FloatArray:
+    """Return the torque of the least loaded disc by an even share, of discs on shaft pins whose tips a free ring ties.
+
+    `alone` is the compliance of one disc by itself in rotation of the wheel, rad/(N·mm), `turned` that of pins by the
+    displacement of one under a unit force. The ring turns on, so a pin is clamped in the flange and guided at its tip: discs near
+    the ring yield more.
+    """
+    shop = setting.requirements.asked.shop
+    share = np.ones(sizes.count)
+    for several in np.unique(sizes.discs[sizes.discs > 1.0]):
+        rows, count = np.flatnonzero(sizes.discs == several), int(several)
+        pitch = sizes.thickness[rows] + shop.disc_gap
+        span = stack_length(sizes, shop.disc_gap)[rows] + 2.0 * shop.disc_gap
+        place = 0.5 * span[:, None] + pitch[:, None] * (np.arange(count) - 0.5 * (count - 1))
+        first, second = place[:, :, None], place[:, None, :]
+        near, far = np.minimum(first, second), np.maximum(first, second)
+        bent = near**2 * (3.0 * far - near) / 6.0 - first**2 * second**2 / (4.0 * span[:, None, None])
+        rigidity = setting.pin_modulus * np.pi * (2.0 * sizes.hole_pin[rows]) ** 4 / 64.0
+        matrix = bent * (turned[rows] / rigidity)[:, None, None] + alone[rows][:, None, None] * np.eye(count)
+        torque = np.linalg.solve(matrix, np.ones((rows.size, count, 1)))[:, :, 0]
+        # One that the others leave nothing comes out below zero.
+        share[rows] = np.maximum(count * torque.min(axis=1) / torque.sum(axis=1), LEAST_TOLD_SHARE)
+    return share
 
 
 def clearance_play(sizes: Sizes, setting: Setting) -> FloatArray:

@@ -26,13 +26,15 @@ from ltca.quantities import LIMITED, SCALARS, Scalar
 from ltca.studies.design_search.requirements import Requirements
 from ltca.studies.design_search.sizes import Sizes, drive_table
 
-Kind = Literal["requirement", "limit", "material", "shape", "clearance"]
+Kind = Literal["requirement", "limit", "material", "shape", "clearance", "share"]
 
 ROLLERS = "ISO 76:2006, roller bearings at their static load rating"
 ROLLER_PRESSURE = 4000.0
 """What hardened rollers and races bear without a lasting mark, MPa."""
 SAFETY = 0.02
 """By which part demands are kept in the search: a fine solution finds larger peaks than a coarse one."""
+LEAST_DISC_SHARE = 0.5
+"""Part of an even share of the torque that each of several discs carries at least, as the mean over a turn."""
 TIGHTENED = ("equidistant_offset", "bearing_clearance", "pin_hole_clearance")
 """Clearances whose least is a demand: what needs less of them is asked of the shop, and may stand in the way."""
 CHANGE_WEIGHT = {"outer_diameter": 2.0, **dict.fromkeys(TIGHTENED, 0.5)}
@@ -200,6 +202,8 @@ def find_demands(requirements: Requirements) -> tuple[Demand, ...]:
     for name in TIGHTENED:
         if name != "pin_hole_clearance" or asked.kind == "discs":
             add(f"shop.{name}", name, "min", shop.range_of(name)[0], "clearance", f"shop.{name}")
+    if max(asked.numbers_of_discs) > 1:
+        add("disc_share", "disc_share", "min", LEAST_DISC_SHARE, "share", "a disc that carries little is of no use")
     least = {"pin_gap": shop.least_pin_gap, "wall": shop.least_wall, "race": shop.least_race}
     # A flank that is asked to press stays as it was asked.
     least["flank_clearance"] = min(0.0, shop.range_of("equidistant_offset")[0] - shop.range_of("shifting_offset")[1])

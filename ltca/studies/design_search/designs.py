@@ -11,7 +11,7 @@ from ltca.analysis.engines import describe_engine, engine_named
 from ltca.drive.members.limits import Limits
 from ltca.drive.parts import Analysis, Drive
 from ltca.reading.writing import drive_text
-from ltca.studies.design_search.demands import Demand, shown, written_limits
+from ltca.studies.design_search.demands import LEAST_DISC_SHARE, Demand, shown, written_limits
 from ltca.studies.design_search.refinement import Refined, Task, relaxed_limits
 from ltca.studies.design_search.requirements import Requirements
 from ltca.studies.design_search.search import Found, Relaxation, factor_words
@@ -42,7 +42,7 @@ SIZES = {
 """Sizes as they are told."""
 REACHED = (
     "outer_diameter", "length", "torque", "bearing_life_hours", "bearing_life_million_turns", "static_safety_S0", "stiffness",
-    "backlash_output", "lost_motion", "mean_efficiency", "pin_pressure_mid", "pin_shaft_pressure_mid",
+    "disc_share", "backlash_output", "lost_motion", "mean_efficiency", "pin_pressure_mid", "pin_shaft_pressure_mid",
     "roller_pressure_mid_outer", "roller_pressure_mid_inner", "ptp_transmission_error",
 )  # fmt: skip
 """What is told of each design, where it is known."""
@@ -73,6 +73,23 @@ def design_text(refined: Refined, found: Found, name: str) -> str:
     return "\n".join(lines) + "\n\n" + drive_text(named_design(refined, requirements, name)) + limits_text(limits)
 
 
+def solved_on(refined: Refined) -> str:
+    """Return the engine and the positions behind the values of a design."""
+    return f"{refined.solution.compliance}, {refined.solution.positions} positions"
+
+
+def refused_words(found: Found) -> str:
+    """Return how many candidates were refused since one of their discs carries little; empty where there are none."""
+    refused = [one for one in found.tried if "disc_share" in one.broken]
+    if not refused:
+        return ""
+    least = min(one.solution.values["disc_share"] for one in refused)
+    return (
+        f"{len(refused)} of {len(found.tried) + len(found.designs)} candidates refused: a disc carries {least:.2g} of an even "
+        f"share of the torque, less than {LEAST_DISC_SHARE:g}"
+    )
+
+
 def limits_text(limits: Limits) -> str:
     """Return limits as the table of a drive file."""
     lines = ["", "[limits]"]
@@ -94,6 +111,7 @@ def design_content(refined: Refined, found: Found, file: str) -> dict[str, Any]:
             if one.kind != "shape" and one.quantity in refined.solution.values
         },
         "positions": refined.solution.positions,
+        "compliance": refined.solution.compliance,
     }
 
 
@@ -122,9 +140,12 @@ def comparison(found: Found, designs: list[tuple[str, Refined]]) -> list[list[st
     """Return the table that compares designs: heading, asked, then a column each."""
     asked: dict[str, Demand] = {one.quantity: one for one in found.demands if one.kind != "shape"}
     rows = [["", "asked", *(name for name, _ in designs)]]
+    if designs:
+        rows.append(["solved on", "", *(solved_on(one) for _, one in designs)])
     for quantity in REACHED:
         values = [one.solution.values.get(quantity) for _, one in designs]
-        if all(value is None for value in values):
+        alone = quantity == "disc_share" and all(one.row["discs"] == 1.0 for _, one in designs)
+        if alone or all(value is None for value in values):
             continue
         demand = asked.get(quantity) or Demand(
             name=quantity, quantity=quantity, sense="max", value=0.0, kind="limit", source=""

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from ltca.analysis.verdict.values import LIVES
 from ltca.arrays import FloatArray
+from ltca.compliance.coefficient_files import expected_seconds
 from ltca.drive.members.limits import Limits
 from ltca.drive.parts import Compliance
 from ltca.errors import CycloError
@@ -25,11 +26,14 @@ from ltca.studies.design_search.enumeration import size_of
 from ltca.studies.design_search.requirements import CLEARANCES, FINEST_CLEARANCE, Requirements
 from ltca.studies.design_search.sizes import CONTINUOUS, Sizes, drive_of
 from ltca.studies.design_search.solution import Solution, solve_coarsely, solve_finely
+from ltca.studies.shapes import shapes_of
 
 MAX_COARSE_SOLUTIONS = 6
 """Solutions of a candidate over few positions."""
 MAX_FINE_SOLUTIONS: dict[Compliance, int] = {"half-space": 2, "hybrid": 4}
 """Solutions over those of a check: sizes come from half-spaces, which may be far from what bodies do."""
+LEAST_FINE_SOLUTIONS, DEAR_DERIVATIONS = 2, 100.0
+"""Fine solutions that are made at least, and the time of derivations (s) from which no more are: of 99 teeth one takes 90 s."""
 MAX_SIZE_STEP = 0.2
 """Largest change of a size between two solutions (ln)."""
 DIFFERENCE = 1e-5
@@ -113,13 +117,16 @@ class Refined:
     shifts: dict[str, float]
 
 
-def refine(task: Task) -> Refined:
-    """Return a candidate with its best continuous sizes, solved coarsely: `finish` says whether it fits."""
+def refine(task: Task, most: int = MAX_COARSE_SOLUTIONS) -> Refined:
+    """Return a candidate with its best continuous sizes, solved coarsely: `finish` says whether it fits.
+
+    The drive is solved `most` times or `MAX_COARSE_SOLUTIONS`, whichever is less.
+    """
     row, best, last, solved = dict(task.row), None, None, 0
     life: float | None = None
     broken = np.inf
     row["rollers"] = float(max(most_rollers(row, task), row["rollers"]))
-    for _ in range(MAX_COARSE_SOLUTIONS):
+    for _ in range(min(most, MAX_COARSE_SOLUTIONS)):
         row = _rounded(row, task)
         solution, solved = solve_coarsely(row, task.requirements, task.demands, life), solved + 1
         life = solution.life_factor or life
@@ -154,15 +161,21 @@ def refine(task: Task) -> Refined:
 def finish(task: Task, solved: int = 0) -> Refined:
     """Return a refined candidate solved finely; where that finds larger values, sizes step back by as much."""
     row, solution = dict(task.row), Solution(values={})
+    last = row
     # A life that gives way has no limit in the file any more, and has to be known all the same.
     lives = not task.relaxed or any(one.quantity in LIVES for one in task.demands)
-    for _ in range(MAX_FINE_SOLUTIONS[task.compliance]):
+    spent = 0.0
+    for number in range(MAX_FINE_SOLUTIONS[task.compliance]):
+        if number >= LEAST_FINE_SOLUTIONS and spent >= DEAR_DERIVATIONS:
+            break
         try:
             drive = drive_of(row, task.requirements)
+            if task.compliance != "half-space":
+                spent += sum(expected_seconds(shapes_of([drive]).values()))
         except CycloError as error:
             solution = Solution(values={}, message=" ".join(str(error).split()))
             break
-        limits = relaxed_limits(written_limits(task.requirements), task)
+        last, limits = row, relaxed_limits(written_limits(task.requirements), task)
         solution, solved = (
             solve_finely(row, drive, limits, task.requirements, task.demands, lives=lives, compliance=task.compliance),
             solved + 1,
@@ -173,7 +186,7 @@ def finish(task: Task, solved: int = 0) -> Refined:
         if solution.passes and _keeps(each, task):
             return _told(row, solution, task, solved, fits=True)
         row = _rounded(_improve(row, each, task), task)
-    return _told(row, solution, task, solved, fits=False)
+    return _told(last, solution, task, solved, fits=False)
 
 
 def relaxed_limits(limits: Limits, task: Task) -> Limits:

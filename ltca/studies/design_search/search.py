@@ -8,18 +8,20 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import Executor, as_completed
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations as pairs_of
 from math import ceil, exp, floor, log10
 
 import numpy as np
 
+from ltca.compliance.coefficient_files import expected_seconds, has_coefficients, told_seconds
 from ltca.drive.parts import Compliance
 from ltca.studies.design_search.demands import TIGHTENED, Demand, find_demands
 from ltca.studies.design_search.enumeration import MAX_ROOM_FACTOR, Enumeration, enumerate_candidates, size_of
 from ltca.studies.design_search.refinement import Refined, Task, finish, refine
 from ltca.studies.design_search.requirements import Requirements
-from ltca.studies.design_search.sizes import LEAST_DISTANCE, distance
+from ltca.studies.design_search.sizes import LEAST_DISTANCE, distance, drive_of
+from ltca.studies.shapes import shapes_of
 
 CANDIDATES = 6
 """Candidates that are refined."""
@@ -30,8 +32,12 @@ MAX_ENUMERATIONS = 2
 """The second is with closed forms shifted by the margins of solved drives, where the first leads to no design."""
 CANDIDATE_TOLERANCE = 0.1
 """Candidate tolerance on logarithmic margins of closed forms."""
+MAX_RELAXED_SOLUTIONS = 8
+"""Coarse solutions of all candidates of one relaxation: what bounds the time of a search in vain."""
 MAX_PAIRS = 6
 """Pairs of requirements that are refined, those first that closed forms violate least."""
+FUTILE_DERIVATION = 120.0
+"""Expected time of derivations without any design that fits after which no further candidate is solved finely, s."""
 CLEARANCE_PARTS = 0.7, 0.5, 0.3, 0.1
 """Parts of the least clearance that are tried where it gives way."""
 DIGITS = 4
@@ -52,12 +58,15 @@ class Relaxation:
         Combinations of sizes that were enumerated.
     broken : float or None
         Least sum of violations of the others by closed forms (ln); None without candidates.
+    solved : int
+        Loaded drives that were solved.
     """
 
     demands: tuple[Demand, ...]
     refined: Refined | None
     combinations: int
     broken: float | None
+    solved: int = 0
 
     @property
     def name(self) -> str:
@@ -138,7 +147,7 @@ def rounded_safely(value: float, sense: str) -> float:
 
 def relax(requirements: Requirements, demands: tuple[Demand, ...], names: tuple[str, ...]) -> Relaxation:
     """Return the smallest relaxation of the named demands that makes the design feasible, all others held."""
-    combinations, best = 0, None
+    combinations, solved, coarse, best = 0, 0, 0, None
     shifts: dict[str, float] = {}
     giving = tuple(one for one in demands if one.name in names)
     for _ in range(MAX_ENUMERATIONS):
@@ -150,17 +159,22 @@ def relax(requirements: Requirements, demands: tuple[Demand, ...], names: tuple[
             if found.broken.size and found.broken.min() < CANDIDATE_TOLERANCE:
                 break
         tasks = [Task(requirements=requirements, demands=demands, row=row, relaxed=names) for row in _rows(found)]
-        refined = [refine(task) for task in tasks]
+        refined = []
+        for task in tasks:
+            if coarse < MAX_RELAXED_SOLUTIONS:
+                refined.append(refine(task, MAX_RELAXED_SOLUTIONS - coarse))
+                coarse += refined[-1].solved
         for one in sorted((one for one in refined if one.fits), key=lambda one: one.given):
-            fine = finish(Task(requirements=requirements, demands=demands, row=one.row, relaxed=names), one.solved)
+            fine = finish(Task(requirements=requirements, demands=demands, row=one.row, relaxed=names))
+            solved += fine.solved
             if fine.fits:
                 best = fine
                 break
         shifts = mean_shifts(refined)
-        if best is not None or not shifts:
+        if best is not None or not shifts or coarse >= MAX_RELAXED_SOLUTIONS:
             break
     broken = float(found.broken.min()) if found.broken.size else None
-    return Relaxation(demands=giving, refined=best, combinations=combinations, broken=broken)
+    return Relaxation(demands=giving, refined=best, combinations=combinations, broken=broken, solved=coarse + solved)
 
 
 def least_broken(requirements: Requirements, demands: tuple[Demand, ...], names: tuple[str, ...]) -> float:
@@ -212,22 +226,30 @@ def find_designs(
     coarse = _once(sorted((one for one in refined if one.fits), key=lambda one: _size(one, smallest)))
     designs: list[Refined] = []
     missed = [one for one in refined if not one.fits]
-    while coarse and len(designs) < best:
-        bodies = f" on {compliance}, whose coefficients are derived" if compliance != "half-space" else ""
+    fits_on_half_spaces, spent = bool(coarse), 0.0
+    while coarse and len(designs) < best and (designs or spent < FUTILE_DERIVATION):
+        each = 0.0 if compliance == "half-space" else _derivation(requirements, coarse[0])
+        bodies = f" on {compliance}, whose coefficients take {told_seconds(each)} for each drive" if each else ""
         told(f"designs solved finely{bodies}: {len(designs)} of {min(best, len(designs) + len(coarse))}")
-        now, coarse = coarse[: best - len(designs)], coarse[best - len(designs) :]
+        # Coefficients are dear: one alone first, which tells whether half-spaces flattered.
+        count = 1 if each and not designs else best - len(designs)
+        now, coarse = coarse[:count], coarse[count:]
         tasks = [Task(requirements=requirements, demands=demands, row=one.row, compliance=compliance) for one in now]
         done = [future.result() for future in [executor.submit(finish, task) for task in tasks]]
         solved += sum(one.solved for one in done)
+        spent += each * sum(one.solved for one in done)
         designs += [one for one in done if one.fits]
         missed += [one for one in done if not one.fits]
     relaxations: list[Relaxation] = []
     if not designs:
-        relaxations = _stand_in_the_way(requirements, demands, missed, executor, told)
+        # Nothing stands in the way of half-spaces where they have a drive that fits: what finer bodies break does.
+        relaxations = _broken_by_bodies(demands, missed) if fits_on_half_spaces and compliance != "half-space" else []
+        relaxations = relaxations or _stand_in_the_way(requirements, demands, missed, executor, told)
         looked += sum(one.combinations for one in relaxations)
-        solved += sum(one.refined.solved for one in relaxations if one.refined is not None)
+        solved += sum(one.solved for one in relaxations)
         # A relaxation of nothing fits as it is, if a solution with every limit in place confirms it.
         whole = [one.refined for one in relaxations if one.refined is not None and one.refined.given <= 0.0]
+        whole = sorted(whole, key=lambda one: _size(one, smallest))[: 1 if compliance != "half-space" else len(whole)]
         tasks = [Task(requirements=requirements, demands=demands, row=one.row, compliance=compliance) for one in whole]
         fine = [finish(task) for task in tasks]
         designs = [one for one in fine if one.fits]
@@ -241,6 +263,27 @@ def find_designs(
         combinations=looked,
         solved=solved,
     )
+
+
+def _derivation(requirements: Requirements, refined: Refined) -> float:
+    """About how long the coefficients of a candidate take, s."""
+    bodies = shapes_of([drive_of(refined.row, requirements)]).values()
+    return sum(expected_seconds([body for body in bodies if not has_coefficients(body)]))
+
+
+def _broken_by_bodies(demands: tuple[Demand, ...], missed: list[Refined]) -> list[Relaxation]:
+    """Return what drives that fit on half-spaces break on finer bodies, the least change first: its values would do."""
+    found: dict[tuple[str, ...], Relaxation] = {}
+    for one in missed:
+        giving = tuple(demand for demand in demands if demand.name in one.broken and demand.kind != "share")
+        if not one.solution.checks or not giving or len(giving) < len(one.broken):
+            continue
+        names = tuple(demand.name for demand in giving)
+        refined = replace(one, given=max(one.broken.values()), relaxed=names, fits=True)
+        relaxation = Relaxation(demands=giving, refined=refined, combinations=0, broken=0.0)
+        if names not in found or relaxation.change < found[names].change:
+            found[names] = relaxation
+    return sorted(found.values(), key=lambda one: one.change)
 
 
 def _rows(found: Enumeration) -> list[dict[str, float]]:
@@ -315,7 +358,7 @@ def _relax_all(
 ) -> list[Relaxation]:
     futures = {}
     for number, own in enumerate(names):
-        told(f"what stands in the way: {number + 1} of {len(names)}")
+        told(f"what stands in the way: {number + 1} of {len(names)}, {' and '.join(own)}")
         futures[executor.submit(relax, requirements, demands, own)] = number
     done: dict[int, Relaxation] = {}
     for future in as_completed(futures):

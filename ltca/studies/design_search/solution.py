@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import gcd
 
 import numpy as np
@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 
 from ltca.analysis.engines import Engine, HalfSpace, engine_named
 from ltca.analysis.extremes import RESOLVED
+from ltca.analysis.friction.hysteresis import hysteresis_loop
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse
 from ltca.analysis.summary import summarise
-from ltca.analysis.torque_curve import torque_curve
+from ltca.analysis.torque_curve import LOST_MOTION, torque_curve, torsional_stiffness
 from ltca.analysis.verdict.values import LIVES, find_values, judge_analysis
 from ltca.drive.members.judgement import Check
 from ltca.drive.members.limits import Limits
@@ -35,7 +36,8 @@ OFFSET = 1e-3
 """Offset of positions from those of a whole turn, between which extremes would be refined, rad."""
 CURVE_ANGLES = np.array([0.0, 0.1])
 """Crank angles at which stiffness and lost motion are read, rad."""
-CURVE_POINTS = 4
+CURVE_POINTS, LOOP_POINTS = 4, 16
+"""Torques of each direction of a curve, and of a loop with friction in fine solutions, as `cyclo curves` has them."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -94,10 +96,17 @@ def solve_coarsely(
                 life_factor = found.get(TURNS, by_forces[TURNS]) / by_forces[TURNS]
             factors = {TURNS: life_factor or 1.0, HOURS: life_factor or 1.0}
             found = {name: value * factors.get(name, 1.0) for name, value in by_forces.items()} | found
-        found |= own_values(row, drive, requirements, demands, CURVE_ANGLES[:1])
+        found |= own_values(row, drive, requirements, demands, CURVE_ANGLES[:1], coarse=True)
+        found["disc_share"] = least_disc_share(analysis)
         return Solution(values=found, life_factor=life_factor)
     except CycloError as error:
         return Solution(values={}, message=" ".join(str(error).split()))
+
+
+def least_disc_share(analysis: LoadedAnalysis) -> float:
+    """Return what the least loaded disc carries of the torque, mean over the positions, by an even share; 1 of one disc."""
+    share = analysis.torque_share
+    return float(share.shape[1] * share.mean(axis=0).min())
 
 
 def _lives_by_forces(row: dict[str, float], analysis: LoadedAnalysis, requirements: Requirements) -> dict[str, float]:
@@ -116,17 +125,27 @@ def own_values(
     demands: tuple[Demand, ...],
     angles: NDArray[np.float64] = CURVE_ANGLES,
     engine: Engine | None = None,
+    coarse: bool = False,
 ) -> dict[str, float]:
     """Return values that `cyclo check` has not: room, torque, margins of the shape as far as demanded, stiffness, lost motion.
 
-    Stiffness and lost motion need a torque curve, at `angles` in rad, which is solved where they are demanded.
+    Stiffness and lost motion are read from torque curves, at `angles` in rad, solved where they are demanded: few points
+    of what the bodies yield for the stiffness, a loop for lost motion with friction, some hundred times as long.
     """
     shape = shape_values(Sizes.of_rows([row]), Setting.of(requirements))
     found = {name: float(shape[name][0]) for name in (*OF_SHAPE, *CLEARANCES, "outer_diameter", "length", "torque")}
     if any(one.quantity in ("stiffness", "lost_motion") for one in demands):
-        curve = torque_curve(warm_drive(drive), angles, points=CURVE_POINTS, engine=engine)
-        found["stiffness"] = float(curve.stiffness.min())
-        found["lost_motion"] = float(curve.lost_motion.max()) * ARCMIN
+        warm = warm_drive(drive)
+        smooth = replace(warm, friction=None)
+        demanded = any(one.quantity == "lost_motion" for one in demands)
+        if not demanded and (coarse or drive.friction is not None):
+            return found | {"stiffness": float(torsional_stiffness(smooth, angles, engine=engine).min())}
+        curve = torque_curve(smooth, angles, points=CURVE_POINTS, engine=engine)
+        lost = curve.lost_motion
+        if drive.friction is not None:
+            points = CURVE_POINTS if coarse else LOOP_POINTS
+            lost = hysteresis_loop(warm, angles, lost_motion=LOST_MOTION, points=points, engine=engine).lost_motion
+        found |= {"stiffness": float(curve.stiffness.min()), "lost_motion": float(lost.max()) * ARCMIN}
     return found
 
 
@@ -157,6 +176,7 @@ def solve_finely(
         checks = judge_analysis(analysis, summarise(analysis), limits, lives=lives)
         found = {check.value.quantity: check.value.value for check in checks if check.value.value is not None}
         found |= own_values(row, drive, requirements, demands, engine=engine)
+        found["disc_share"] = least_disc_share(analysis)
         return Solution(values=found, checks=tuple(checks), positions=positions, compliance=compliance)
     except CycloError as error:
         return Solution(values={}, positions=positions, compliance=compliance, message=" ".join(str(error).split()))

@@ -19,7 +19,7 @@ TYPICAL = "stock_sizes.toml"
 ROLLER_ASPECTS = 0.8, 2.5
 """Least and largest length of a cylindrical roller by its diameter: shorter ones tilt in their cage, longer ones are needles."""
 NEEDLE_DIAMETER, NEEDLE_ASPECT = 6.0, 10.0
-"""Largest diameter of needles, mm, and their largest length by it (DIN 5402-3)."""
+"""Largest diameter of needles, mm, and their largest length by it: typical ones."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)

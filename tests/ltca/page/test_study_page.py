@@ -220,10 +220,14 @@ def test_a_front_is_seen_and_its_designs_open():
     quantity = dict.fromkeys(("as_it_is", "found", "as_it_is_in_search", "found_in_search"), 1.0)
     outcome = {
         "variables": {}, "quantities": dict.fromkeys(aims, quantity), "positions": 360, "positions_of_candidates": 28,
-        "broken_limits": [], "limits": [], "candidates": 5,
+        "broken_limits": [], "limits": [], "candidates": 5, "compliance": "hybrid", "candidates_compliance": "half-space",
     }  # fmt: skip
     text = study_page(optimum_page("paper", "told", optimum, outcome, {"front-1.toml": 0, "front-2.toml": 1}, ""))
     assert '<a href="front-2.toml">front-2.toml</a>' in text
+    # Columns of values by a coarser engine stood beside those of the finer one without a word.
+    assert "as it is, hybrid, 360 positions" in text
+    assert "found, half-space, 28 positions" in text
+    assert "those of the search, half-space, 28 positions" in text
     content, numbers = opened(text)
     assert content["plots"][0]["range"] == [left, right, low, high]
     assert "1 candidates within the limits lie beyond the axes" in text

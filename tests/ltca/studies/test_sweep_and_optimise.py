@@ -20,7 +20,8 @@ from ltca.figures.house_style import STYLE
 from ltca.figures.optimum_figures import _search
 from ltca.geometry.placement import position_angles
 from ltca.reading.changes import with_fields
-from ltca.reading.drive_file import load_drive
+from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
+from ltca.reading.writing import drive_text
 from ltca.studies import optimiser
 from ltca.studies.optimiser import (
     Bound,
@@ -272,6 +273,39 @@ def test_commands_write_their_files(tmp_path, capsys, monkeypatch):
     assert "warning: 6 positions see 6 phases of the mesh of 13 teeth" in capsys.readouterr().err
     best = load_drive(tmp_path / "o" / "optimum.toml").cases["nominal"]
     assert 0.12 <= best.disc.equidistant_offset <= 0.2
+
+
+def test_a_written_engine_is_honoured_by_a_search(tmp_path, capsys, monkeypatch):
+    """A written hybrid was taken for the default, whose candidates of other shapes are solved on half-spaces."""
+    searched = []
+
+    def stop(problem, positions, engine):
+        searched.append(engine.compliance)
+        raise CycloError("far enough")
+
+    monkeypatch.setattr("ltca.commands.actions.optimise.batch_analysis", stop)
+    monkeypatch.setattr("ltca.commands.actions.optimise.find_beforehand", lambda *given: None)
+    words = ["--vary", "disc.thickness=8:12", "--minimise", "max_pin_load", "--positions", 13]
+    text = shipped_drive("robot-joint")
+    written = "[analysis]\ncompliance = "
+    for number, (table, more, engine, told) in enumerate(
+        (
+            ("", [], "half-space", "they are solved on half-spaces, the drive as it is and the optimum on hybrid"),
+            (f'{written}"hybrid"\n', [], "hybrid", "[analysis] of the drive file names hybrid: up to"),
+            (f'{written}"hybrid"\n', ["--quick"], "half-space", ""),
+            (f'{written}"half-space"\n', ["--compliance", "hybrid"], "hybrid", "--compliance names hybrid: up to"),
+        )
+    ):
+        path = tmp_path / f"joint-{number}.toml"
+        path.write_text(text + "\n" + table, encoding="utf-8")
+        with pytest.raises(CycloError, match="far enough"):
+            run(optimise, path, *words, *more, "--out", tmp_path / f"out-{number}")
+        assert searched.pop() == engine
+        assert told in capsys.readouterr().err
+    # The default is not written: of a drive that a command wrote nobody chose it.
+    assert "[analysis]" not in drive_text(load_drive("robot-joint").cases["nominal"])
+    assert not load_drive("robot-joint").names_compliance
+    assert parse_drive(f'{text}\n{written}"hybrid"\n').names_compliance
 
 
 def test_wrong_options_are_refused(tmp_path):

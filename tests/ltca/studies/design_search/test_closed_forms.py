@@ -1,5 +1,7 @@
 """Closed forms against laws, printed cases, and the loaded drive."""
 
+import re
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -263,9 +265,19 @@ def test_a_soft_bore_is_demanded_by_its_own_limit():
     assert not {"disc_shear", "contact_strain"} & set(demands)
 
 
+def test_rules_of_what_can_be_made_are_attributed_to_no_standard():
+    """Bounds from memory were told as those of ISO 281, ISO 8734 and DIN 5402-3, which nobody had looked up."""
+    root = Path(__file__).parents[4]
+    rules = (root / "docs" / "how-to" / "design.md").read_text(encoding="utf-8").split("**What can be made.**")[1]
+    stock = (root / "ltca" / "studies" / "design_search" / "stock_sizes.toml").read_text(encoding="utf-8")
+    for text in (rules.split("**The best few differ.**")[0], stock):
+        assert "typical" in text.lower()
+        assert not re.search(r"\b(ISO|DIN)\b", text)
+
+
 @pytest.mark.slow
 def test_what_is_enumerated_can_be_made():
-    """Cage, rollers by the pitch circle (ISO 281 ends at 0.3), pins by their circle and length, walls: of every candidate."""
+    """Cage, rollers by the pitch circle, pins by their circle and length, walls: of every candidate."""
     requirements = parse_requirements(PAPER.replace("discs = 1", "discs = [1, 2]").replace("12.0", "24.0") + STEEL)
     found = enumerate_candidates(requirements, find_demands(requirements), most=20).sizes
     pitch = 2.0 * (found.bore - found.roller_radius)

@@ -2,7 +2,9 @@
 
 import math
 from concurrent.futures import Future
+from dataclasses import replace
 from itertools import combinations
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -147,6 +149,61 @@ def test_designs_that_are_told_differ_by_the_distance_that_is_stated():
     assert sizes.distance(near | {"holes": 0.0}, row | {"holes": 0.0}) == pytest.approx(
         sizes.distance(row, near), rel=1e-12
     )
+
+
+def test_a_search_in_vain_ends(monkeypatch):
+    """At 1:99 nobody had waited for its end: every relaxation solved up to 36 loaded drives, and those that fitted on half-spaces
+    alone had coefficients derived for each step of their sizes."""
+    requirements = parse_requirements(TWO_IN_THE_WAY + STEEL)
+    demands = find_demands(requirements)
+    solved = []
+
+    def refine(task, most=search.MAX_RELAXED_SOLUTIONS):
+        solved.append(min(most, 6))
+        return replace(made_up(task.row, 0.0, {}, False), solved=solved[-1], shifts={"length": 0.1})
+
+    row = {"discs": 1.0}
+    found = Enumeration(
+        sizes=SimpleNamespace(count=3, take=lambda place: SimpleNamespace(row=lambda: row)), broken=np.zeros(3),
+        combinations=10,
+    )  # fmt: skip
+    monkeypatch.setattr(search, "refine", refine)
+    monkeypatch.setattr(search, "enumerate_candidates", lambda *arguments, **keys: found)
+    assert search.relax(requirements, demands, ("length",)).solved == sum(solved) == search.MAX_RELAXED_SOLUTIONS
+
+
+def test_what_finer_bodies_break_is_the_obstacle(monkeypatch):
+    """Drives that fit on half-spaces had "a relaxation of nothing" told, derived again and again, until it was given up."""
+    requirements = parse_requirements(TWO_IN_THE_WAY + STEEL)
+    coarse = made_up({}, 0.0, {"outer_diameter": 100.0, "length": 15.0}, True)
+    values = {"outer_diameter": 100.0, "length": 15.0, "backlash_output": 0.25, "pin_pressure_mid": 1600.0}
+    finished = []
+
+    def finish(task, solved=0):
+        finished.append(task)
+        solution = Solution(values=values, checks=(None,), compliance=task.compliance)
+        broken = {"backlash": math.log(1.25)}
+        return replace(coarse, solution=solution, fits=False, broken=broken, solved=2)
+
+    sizes_found = SimpleNamespace(count=6, take=lambda place: SimpleNamespace(row=lambda: {"place": place}))
+    monkeypatch.setattr(search, "refine", lambda task, most=6: replace(coarse, row=task.row))
+    monkeypatch.setattr(search, "_once", list)
+    monkeypatch.setattr(search, "finish", finish)
+    monkeypatch.setattr(search, "_derivation", lambda requirements, refined: 90.0)
+    monkeypatch.setattr(
+        search, "enumerate_candidates",
+        lambda *arguments, **keys: Enumeration(sizes=sizes_found, broken=np.zeros(6), combinations=10),
+    )  # fmt: skip
+    monkeypatch.setattr(search, "_stand_in_the_way", lambda *given: pytest.fail("half-spaces have nothing in the way"))
+    found = find_designs(requirements, InTurn())
+    assert len(finished) == 1  # two derivations of 90 s without a design are enough
+    (obstacle,) = found.relaxations
+    assert (obstacle.name, obstacle.words) == ("backlash", "backlash ≤ 0.2 arcmin: 0.25 arcmin would do")
+    # Where derivations cost little, all candidates are tried.
+    monkeypatch.setattr(search, "_derivation", lambda requirements, refined: 1.0)
+    finished.clear()
+    assert not find_designs(requirements, InTurn()).designs
+    assert len(finished) == 6
 
 
 @pytest.mark.slow
