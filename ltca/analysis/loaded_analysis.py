@@ -192,9 +192,7 @@ class LoadedAnalysis:
         At up to `COMPLIANCE_SHARE_POSITIONS` of the positions, evenly chosen; not a number where one has no answer.
         """
         positions = self.full.crank_angle.size
-        rows = np.unique(
-            np.linspace(0, positions, min(positions, COMPLIANCE_SHARE_POSITIONS), endpoint=False).astype(int)
-        )
+        rows = np.linspace(0, positions, min(positions, COMPLIANCE_SHARE_POSITIONS), endpoint=False).astype(int)
         if not np.all(self.balanced[rows]):
             return dict.fromkeys(PARTS, np.full(rows.size, np.nan))
         return compliance_shares(self.model, take_positions(self.full, rows))
@@ -408,9 +406,7 @@ def _balanced_together(
                 model, drives, angles, torques, None if start is None else np.tile(start, (len(members), 1))
             )
             lights = (
-                states
-                if np.array_equal(light, torques)
-                else solve_at_output(model, drives, angles, light, states.pose)
+                states if np.array_equal(light, torques) else solve_at_output(model, drives, angles, light, states.pose)
             )
         except (ConvergenceError, DriveError):  # one by one they tell which and why
             continue

@@ -135,9 +135,7 @@ def play_over_a_turn(discs: Sequence[ContactGeometry]) -> TurnPlay:
     return found
 
 
-def plays_over_a_turn(
-    drives: Sequence[Sequence[ContactGeometry]], near: TurnPlay | None = None
-) -> list[TurnPlay]:
+def plays_over_a_turn(drives: Sequence[Sequence[ContactGeometry]], near: TurnPlay | None = None) -> list[TurnPlay]:
     """Return the same of several drives, each with its discs, of one `ltca.arrays.batch_layout`: as one batch.
 
     Drives that are nearly one of which the play is known (`near`) have their extremes where that one has, but for a part of the

@@ -236,9 +236,7 @@ class _Trials:
             each = (self.values({name: one}, alike=alike) for name, one in drives.items())
             return {name: values for found in each for name, values in found.items()}
 
-    def _values(
-        self, analyses: Mapping[str, LoadedAnalysis], play: TurnPlay | None
-    ) -> dict[str, dict[str, Value]]:
+    def _values(self, analyses: Mapping[str, LoadedAnalysis], play: TurnPlay | None) -> dict[str, dict[str, Value]]:
         summaries = summarise_cases(analyses, without_load=self.without_load, near=play)
         return {
             name: {value.quantity: value for value in find_values(one, summaries[name], lives=self.lives)}
