@@ -54,13 +54,15 @@ WEAKEST, STRONGER = 5e-5, 100.0
 """Strengths, and limits of pressures and stresses, by Young's modulus that no material has, even one given for its modulus alone.
 In GPa bearing steel has 7e-6 and plastics 2e-5, in Pa thousands."""
 SPRINGY = 1.0 / 2000.0
-"""Stiffness of a shaft pin, bearing or support by Young's modulus times thickness of the disc below which it is likely in newtons
-a micrometre: practical ones have from a fiftieth to five of it, a thousandth of the usual ones is below."""
+"""Stiffness of a shaft pin, bearing or support by Young's modulus times thickness of the disc below which it is likely in N/µm:
+practical ones have from a fiftieth to five of it, a thousandth of the usual ones is below."""
 SHORT, LONG = 0.01, 100.0
 """Ratios of a length to the one beside it that no drive has; metres read as mm are at 0.001 of a usual ratio."""
 FINEST, FINE = 3e-4, 5e-5
 """Offset or clearance below what machines hold: in mm, a third of a micrometre, and by the pin radius, for micro drives. A
 thousandth of it is a number of its own."""
+POOREST = 0.02
+"""Load rating by an estimate from the rollers' sizes below which it is likely in kN; makers differ by a factor of two."""
 FASTEST = 1.5e6
 """Speed by the mean diameter of the crank bearing, mm/min, that no roller bearing of a drive reaches: the fastest have 1e6."""
 SLOW_INPUT, SLOW_OUTPUT = 60.0, 5.0
@@ -234,7 +236,7 @@ def unit_warnings(drive: Drive, torque: float | None = None) -> list[str]:
     """
     # What a drive carries follows from its lengths.
     found = _impossible(drive) or [*_odd_lengths(drive)] or [*_odd_strengths(drive)]
-    return found or [*_odd_torques(drive, torque), *_odd_stiffnesses(drive), *_odd_speeds(drive)]
+    return found or [*_odd_torques(drive, torque), *_odd_stiffnesses(drive), *_odd_ratings(drive), *_odd_speeds(drive)]
 
 
 def limit_warnings(drive: Drive, limits: Iterable[Limit]) -> list[str]:
@@ -333,6 +335,22 @@ def _odd_stiffnesses(drive: Drive) -> Iterator[str]:
             )
 
 
+def _odd_ratings(drive: Drive) -> Iterator[str]:
+    """Load ratings in kN that were read as N, by sizes and number of the rollers: ISO 281 and 76 of steel in round numbers."""
+    part = drive.crank_bearing
+    number, length, diameter = part.number_of_rollers, drive.roller_length, 2.0 * part.roller_radius
+    about = {
+        "dynamic_load_rating": 80.0 * length**0.78 * number**0.75 * diameter**1.07,
+        "static_load_rating": 40.0 * length * number * diameter,
+    }
+    for name, estimate in about.items():
+        if (value := getattr(part, name)) is not None and value < POOREST * estimate:
+            yield (
+                f"crank_bearing.{name} = {value:g} N is {_fraction(value / estimate)} of what its rollers bear (some "
+                f'{_rounded(1e-3 * estimate)} kN); a plain number is N, did you mean "{value:g} kN"?'
+            )
+
+
 def _newton_metres(path: str, value: float) -> str:
     return f"{path} = {value:g} N·mm is {value / 1000.0:g} N·m"
 
@@ -417,7 +435,7 @@ def _odd_speeds(drive: Drive) -> Iterator[str]:
         turns = abs(drive.crank_turns_per_input) * value
         if turns * mean > FASTEST:
             yield (
-                f"{path} = {value:g} rpm turns the crank bearing, {mean:.3g} mm in mean diameter, at {turns * mean:.2g} mm/min: "
+                f"{path} = {value:g} rpm turns the crank bearing of {mean:.3g} mm mean diameter at {turns * mean:.2g} mm/min: "
                 f'faster than roller bearings run (some 1e6); a plain number is rpm, did you mean "{value:g} deg/s" '
                 f"({value / 6.0:g} rpm) or {value / 60.0:g} rpm?"
             )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ import pytest
 from ltca.analysis.loaded_analysis import analyse
 from ltca.commands.program import main
 from ltca.drive.fields import field_kinds, read_field
+from ltca.drive.members.bearings import named_bearings
 from ltca.drive.members.limits import parse_limits
 from ltca.drive.unit_mistakes import (
     explain_failure,
@@ -178,6 +180,11 @@ def test_what_no_drive_has_is_pointed_out_in_one_line(vary, changes, told):
         ("rv", {"pin_wheel.support_stiffness": 1000.0}, r'^pin_wheel.support_stiffness = 1000 N/mm .* "1000 N/µm"'),
         (
             "robot-joint",
+            {"crank_bearing.dynamic_load_rating": 13.1},
+            r'^crank_bearing.dynamic_load_rating = 13.1 N is 1/.* mean "13.1 kN"\?$',
+        ),
+        (
+            "robot-joint",
             {"load.speed": 90_000.0},
             r'^load.speed = 90000 rpm turns the crank bearing, .* "90000 deg/s" \(15000 rpm\) or 1500 rpm\?$',
         ),
@@ -193,6 +200,15 @@ def test_plain_numbers_in_another_unit_are_pointed_out(shipped, changes, told):
     (drive,) = parse_drive(shipped_drive(shipped), shipped).cases.values()
     (found,) = unit_warnings(with_fields(drive, changes))
     assert re.search(told, found)
+
+
+def test_ratings_of_makers_are_sound():
+    """Those of all named bearings lie within what is said of none: estimates are good to a factor of five."""
+    drive = next(iter(parse_drive(shipped_drive("paper")).cases.values()))
+    for name, entry in named_bearings().items():
+        bearing = replace(drive.crank_bearing, **entry.fields)
+        told = unit_warnings(replace(drive, crank_bearing=bearing))
+        assert [one for one in told if "rating" in one] == [], name
 
 
 def test_limits_in_gigapascals_are_pointed_out():
