@@ -121,7 +121,9 @@ class AnalysisResult:
         disc, crank : int, optional
             Which disc, and for rollers which crank.
         cells : int
-            Cells over the half-width and over half the length.
+            Cells over the half-width and over half the length. Those at the ends are at least a hundredth of the length: at
+            the edge of a straight roller or pin half-spaces have no largest pressure, and finer cells would only show more
+            of it. So the largest of the cells settles, on the attribute ``pressure_max_MPa``.
 
         Returns
         -------

@@ -186,7 +186,7 @@ def test_what_no_drive_has_is_pointed_out_in_one_line(vary, changes, told):
         (
             "robot-joint",
             {"load.speed": 90_000.0},
-            r'^load.speed = 90000 rpm turns the crank bearing, .* "90000 deg/s" \(15000 rpm\) or 1500 rpm\?$',
+            r'^load.speed = 90000 rpm turns the crank bearing of .* "90000 deg/s" \(15000 rpm\) or 1500 rpm\?$',
         ),
         (
             "robot-joint",
