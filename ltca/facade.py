@@ -22,7 +22,7 @@ from ltca.drive.parts import Drive
 from ltca.errors import ConvergenceError, DriveError
 from ltca.front.arguments import angles_given, counted, engine_given, require_drive, torque_given
 from ltca.geometry.placement import position_angles
-from ltca.quantities import SCALARS, unit_sign
+from ltca.quantities import SCALARS, printed, unit_sign
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -171,7 +171,8 @@ class AnalysisResult:
         for shown in (SCALARS[name] for name in _SHOWN):
             value = refined_value(self._summary, shown.key)
             if value is not None and not (positions == 1 and shown.name.startswith("ptp")):
-                rows.append(f"  {shown.title:<48}{value:{shown.digits}} {unit_sign(shown.unit)}")
+                told = printed(value, f"{{:{shown.digits}}}", shown.unit)
+                rows.append(f"  {shown.title:<48}{told} {unit_sign(shown.unit)}")
         shares = [
             value for key, value in self._summary.items() if key.startswith("max_torque_share") and value is not None
         ]
