@@ -34,8 +34,8 @@ axes[0].set(ylabel="along the profile [mm]", ylim=(-0.15, 0.15))
 figure.colorbar(drawn, ax=axes).set_label("pressure [MPa]")
 
 # %%
-# Along the width, on the middle of the strip. At an end without relief the pressure between elastic bodies is singular: what is
-# left out above is the mean over ever smaller cells.
+# Along the width, on the middle of the strip. At an end without relief the pressure between elastic bodies is singular: the last
+# cell is a hundredth of the length, and its mean is the largest pressure.
 
 figure, axes = plt.subplots(figsize=(7.0, 3.2))
 for name, patch in fields.items():

@@ -22,7 +22,7 @@ from ltca.drive.parts import Drive
 from ltca.errors import ConvergenceError, DriveError
 from ltca.front.arguments import angles_given, counted, engine_given, require_drive, torque_given
 from ltca.geometry.placement import position_angles
-from ltca.quantities import SCALARS, unit_sign
+from ltca.quantities import SCALARS, printed, unit_sign
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -121,7 +121,9 @@ class AnalysisResult:
         disc, crank : int, optional
             Which disc, and for rollers which crank.
         cells : int
-            Cells over the half-width and over half the length.
+            Cells over the half-width and over half the length. Those at the ends are at least a hundredth of the length: at
+            the edge of a straight roller or pin half-spaces have no largest pressure, and finer cells would only show more
+            of it. So the largest of the cells settles, on the attribute ``pressure_max_MPa``.
 
         Returns
         -------
@@ -169,7 +171,8 @@ class AnalysisResult:
         for shown in (SCALARS[name] for name in _SHOWN):
             value = refined_value(self._summary, shown.key)
             if value is not None and not (positions == 1 and shown.name.startswith("ptp")):
-                rows.append(f"  {shown.title:<48}{value:{shown.digits}} {unit_sign(shown.unit)}")
+                told = printed(value, f"{{:{shown.digits}}}", shown.unit)
+                rows.append(f"  {shown.title:<48}{told} {unit_sign(shown.unit)}")
         shares = [
             value for key, value in self._summary.items() if key.startswith("max_torque_share") and value is not None
         ]

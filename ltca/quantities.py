@@ -51,6 +51,9 @@ SUFFIXES = {"1": "", "N mm": "_Nmm", "MPa m/s": "_MPa_m_s"}
 SIGNS = {"1": "", "arcmin": "′", "arcsec": "″", "deg": "°", "N mm": "N·mm"}
 """Units as they are printed, where they are spelled otherwise."""
 
+RESOLUTION = {"arcmin": 1e-5, "arcsec": 1e-4, "mm": 1e-9}
+"""What a value of a unit means no more: a play is found to 1e-5′, an overlap below 1e-9 mm counts as none."""
+
 
 @dataclass(frozen=True, slots=True)
 class Scalar:
@@ -670,6 +673,27 @@ def scalar_named(name: str) -> Scalar:
     number = name.rpartition("_")[2]
     found = SCALARS[f"{name.removesuffix(number)}#"]
     return replace(found, name=name, title=found.title.replace("#", number))
+
+
+def printed(value: float, form: str, unit: str = "") -> str:
+    """Return a number as summaries, tables and verdicts print it: nothing is 0, without a sign.
+
+    Parameters
+    ----------
+    value : float
+        In the unit.
+    form : str
+        Format with braces.
+    unit : str
+        What is below its `RESOLUTION` is nothing.
+
+    Examples
+    --------
+    >>> printed(-1.16e-11, "{:.5g}", "arcmin"), printed(-0.3, "{:.0f}"), printed(-1.16e-11, "{:.3g}", "N")
+    ('0', '0', '-1.16e-11')
+    """
+    text = form.format(0.0 if abs(value) < RESOLUTION.get(unit, 0.0) else value)
+    return text if text.strip("+-0.") else text.lstrip("+-")
 
 
 def unit_sign(unit: str) -> str:

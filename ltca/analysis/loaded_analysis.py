@@ -192,9 +192,7 @@ class LoadedAnalysis:
         At up to `COMPLIANCE_SHARE_POSITIONS` of the positions, evenly chosen; not a number where one has no answer.
         """
         positions = self.full.crank_angle.size
-        rows = np.unique(
-            np.linspace(0, positions, min(positions, COMPLIANCE_SHARE_POSITIONS), endpoint=False).astype(int)
-        )
+        rows = np.linspace(0, positions, min(positions, COMPLIANCE_SHARE_POSITIONS), endpoint=False).astype(int)
         if not np.all(self.balanced[rows]):
             return dict.fromkeys(PARTS, np.full(rows.size, np.nan))
         return compliance_shares(self.model, take_positions(self.full, rows))
@@ -323,7 +321,11 @@ def analyse(
 
 
 def analyse_cases(
-    cases: Mapping[str, Drive], crank_angle: FloatArray, torque: float | None = None, engine: Engine | None = None
+    cases: Mapping[str, Drive],
+    crank_angle: FloatArray,
+    torque: float | None = None,
+    engine: Engine | None = None,
+    near: LoadedAnalysis | None = None,
 ) -> Iterator[tuple[str, LoadedAnalysis | ConvergenceError]]:
     """Analyse several drives as `analyse` does, those whose models agree in one batch.
 
@@ -333,6 +335,8 @@ def analyse_cases(
         Drives by name.
     crank_angle, torque, engine
         As for `analyse`.
+    near : LoadedAnalysis, optional
+        Of nearly these drives at these angles: the search starts from its poses.
 
     Yields
     ------
@@ -348,9 +352,9 @@ def analyse_cases(
     many = max(1, MAX_BATCH_POSITIONS // angle.size)
     for part in (names[first : first + many] for first in range(0, len(names), many)):
         prepared = [_prepared(cases[name], torque, engine) for name in part]
-        for name, case, known in zip(part, prepared, _balanced_together(prepared, angle), strict=True):
+        for name, case, known in zip(part, prepared, _balanced_together(prepared, angle, near), strict=True):
             try:
-                yield name, _analysed(cases[name], torque, case, angle, known)
+                yield name, _analysed(cases[name], torque, case, angle, known, near)
             except ConvergenceError as error:
                 yield name, error
 
@@ -374,7 +378,16 @@ def _prepared(drive: Drive, torque: float | None, engine: Engine | None) -> _Cas
     return _Case(drive=warm, written=written, torque=checked, engine=used, prepared=used.prepare(warm))
 
 
-def _balanced_together(cases: Sequence[_Case], angle: FloatArray) -> list[tuple[Equilibrium, Equilibrium] | None]:
+def _poses_near(near: LoadedAnalysis | None, model: Reducer) -> FloatArray | None:
+    """Poses of an analysis to start others from; None where the model has other coordinates, or one pose is not known."""
+    if near is None or not np.all(near.balanced) or near.full.pose.shape[1] != model.coordinates.size:
+        return None
+    return near.full.pose
+
+
+def _balanced_together(
+    cases: Sequence[_Case], angle: FloatArray, near: LoadedAnalysis | None = None
+) -> list[tuple[Equilibrium, Equilibrium] | None]:
     """Balance cases as rows of one batch at their torques and light torques; None for those to be balanced alone."""
     found: list[tuple[Equilibrium, Equilibrium] | None] = [None] * len(cases)
     groups: dict[Hashable, list[int]] = {}
@@ -387,9 +400,14 @@ def _balanced_together(cases: Sequence[_Case], angle: FloatArray) -> list[tuple[
         angles = np.tile(angle, len(members))
         torques = np.repeat([cases[number].torque for number in members], angle.size)
         light = np.repeat([drive.load.light_torque for drive in drives], angle.size)
+        start = _poses_near(near, model)
         try:
-            states = solve_at_output(model, drives, angles, torques)
-            lights = solve_at_output(model, drives, angles, light, states.pose)
+            states = solve_at_output(
+                model, drives, angles, torques, None if start is None else np.tile(start, (len(members), 1))
+            )
+            lights = (
+                states if np.array_equal(light, torques) else solve_at_output(model, drives, angles, light, states.pose)
+            )
         except (ConvergenceError, DriveError):  # one by one they tell which and why
             continue
         for place, number in enumerate(members):
@@ -405,8 +423,9 @@ def _analysed(
     case: _Case,
     angle: FloatArray,
     known: tuple[Equilibrium, Equilibrium] | None = None,
+    near: LoadedAnalysis | None = None,
 ) -> LoadedAnalysis:
-    """The analysis of a case, from its balanced positions where these are known."""
+    """The analysis of a case, from its balanced positions where these are known, or from poses near by."""
     prepared, light_torque = case.prepared, case.drive.load.light_torque
 
     def at_torque(rows: NDArray[np.intp], start: FloatArray | None) -> Equilibrium:
@@ -415,7 +434,8 @@ def _analysed(
     def at_light_torque(rows: NDArray[np.intp], start: FloatArray | None) -> Equilibrium:
         return prepared.balance(angle[rows], light_torque, start)
 
-    full = balance_what_can_be(at_torque, angle.size) if known is None else all_balanced(known[0])
+    begin = _poses_near(near, prepared.model)
+    full = balance_what_can_be(at_torque, angle.size, begin) if known is None else all_balanced(known[0])
     pressures = prepared.model.pressures(full.found.response)
     try:
         check_half_widths([case.drive], full.found.response, pressures, case.torque)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,7 @@ from ltca.drive.units.quantities import ARCMIN, ARCSEC
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.first_contact import backlash, interference
-from ltca.geometry.play import plays_over_a_turn
+from ltca.geometry.play import TurnPlay, plays_over_a_turn
 from ltca.quantities import REFINED, SCALARS, scalar_named
 
 LOADED_FRACTION = 1e-3
@@ -40,6 +41,8 @@ OF_LOADS = ("pin_shaft_loaded_range", "mean_loaded_pins", "mean_loaded_rollers",
 """Counts of loaded contacts."""
 Values = Mapping[str, float]
 """Scalars by name."""
+OF_FLANK = ("backlash_wheel", "backlash_disc", "interference")
+"""What flank and pins alone leave in the nominal places of the discs."""
 FREE_PLAY = ("backlash_output", "min_backlash_output", "preloaded_part_of_turn")
 """Free play of the output: largest and least over a turn, and the part of it where parts overlap in every pose."""
 
@@ -62,11 +65,27 @@ def summarise(analysis: LoadedAnalysis) -> dict[str, float | None]:
     return found
 
 
-def summarise_cases(analyses: Mapping[str, LoadedAnalysis]) -> dict[str, dict[str, float | None]]:
-    """Return the scalars of several cases by name, as `summarise` does; what is solved for them is solved together."""
+def summarise_cases(
+    analyses: Mapping[str, LoadedAnalysis], *, without_load: bool = True, near: TurnPlay | None = None
+) -> dict[str, dict[str, float | None]]:
+    """Return the scalars of several cases by name, as `summarise` does; what is solved for them is solved together.
+
+    Parameters
+    ----------
+    analyses : mapping of str to LoadedAnalysis
+        By name.
+    without_load : bool
+        Whether backlash, free play and overlap are wanted, which no load moves.
+    near : TurnPlay, optional
+        Free play of a drive that all of these nearly are (`ltca.geometry.play.plays_over_a_turn`).
+    """
     each = list(analyses.values())
-    unloaded = _together(_unloaded, each, [batch_layout(analysis.model.geometries) for analysis in each])
-    plays = _together(_plays, each, [batch_layout(analysis.model.geometries) for analysis in each])
+    unloaded: Sequence[Values] = [dict.fromkeys(OF_FLANK, np.nan)] * len(each)
+    plays: Sequence[Values] = [dict.fromkeys(FREE_PLAY, np.nan)] * len(each)
+    if without_load:
+        layouts = [batch_layout(analysis.model.geometries) for analysis in each]
+        unloaded = _together(_unloaded, each, layouts)
+        plays = _together(partial(_plays, near=near), each, layouts)
     refined = _together(_refined, each, [_refined_with(analysis) for analysis in each])
     known = zip(each, unloaded, plays, refined, strict=True)
     return {name: _summary(*of) for name, of in zip(analyses, known, strict=True)}
@@ -178,14 +197,13 @@ def _unloaded(analyses: Sequence[LoadedAnalysis]) -> list[dict[str, float]]:
     wheel = of_cases(backlash(discs, angles, WHEEL_ANGLE)).mean(axis=1) * ARCMIN
     own = np.min([of_cases(backlash([disc], angles, DISC_ROTATION)).mean(axis=1) for disc in discs], axis=0) * ARCMIN
     overlap = np.max([of_cases(interference(disc, angles)).max(axis=1) for disc in discs], axis=0)
-    names = ("backlash_wheel", "backlash_disc", "interference")
-    return [dict(zip(names, each, strict=True)) for each in np.stack([wheel, own, overlap], axis=1).tolist()]
+    return [dict(zip(OF_FLANK, each, strict=True)) for each in np.stack([wheel, own, overlap], axis=1).tolist()]
 
 
-def _plays(analyses: Sequence[LoadedAnalysis]) -> list[dict[str, float]]:
+def _plays(analyses: Sequence[LoadedAnalysis], near: TurnPlay | None = None) -> list[dict[str, float]]:
     """Free play of the output with every clearance over a turn: the largest, which is what is judged, and the least."""
     try:
-        found = plays_over_a_turn([analysis.model.geometries for analysis in analyses])
+        found = plays_over_a_turn([analysis.model.geometries for analysis in analyses], near)
     except ConvergenceError:
         if len(analyses) > 1:
             raise

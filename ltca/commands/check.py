@@ -60,7 +60,7 @@ def execute(arguments: argparse.Namespace) -> int:
     file = load_drive(arguments.drive)
     cases = file.select(arguments.case)
     settle_compliance(arguments, cases.values())
-    tell_unit_mistakes(cases.values(), arguments.torque)
+    tell_unit_mistakes(cases.values(), arguments.torque, (file.limits[name] for name in cases))
     out = arguments.out or default_folder(file.name, "check")
     require_folder(out)
     from ltca.analysis.memory_need import require_room_for

@@ -24,6 +24,7 @@ from ltca.reading.arguments import (
     default_folder,
     path_argument,
     quantity_argument,
+    tell_unit_mistakes,
     torque_argument,
 )
 
@@ -108,6 +109,7 @@ def execute(arguments: argparse.Namespace) -> int:
     file = load_drive(arguments.drive)
     cases = file.select(arguments.case)
     settle_compliance(arguments, cases.values())
+    tell_unit_mistakes(cases.values(), arguments.torque)
     out = arguments.out or default_folder(file.name, "run")
     require_folder(out)
     import numpy as np

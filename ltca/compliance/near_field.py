@@ -23,7 +23,7 @@ from ltca.contact.tracked_grid import ContactKinds
 from ltca.drive.engine_support import require
 from ltca.drive.hole_contact import hole_modulus
 from ltca.drive.parts import Drive, Material, contact_modulus
-from ltca.errors import DriveError
+from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.placement import Placement
 from ltca.laws.backed import HALF_SPACE_DATUM, back_wheel_pins
@@ -35,6 +35,8 @@ NearField = Literal["plane-strain", "half-space"]
 
 NEAR_FIELDS: dict[str, NearField] = {"fe": "plane-strain", "hybrid": "half-space"}
 """The near field of a compliance, by its name."""
+MAX_ITERATIONS = 30
+"""Of the search for the approach of a half-width: a handful is usual."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -285,14 +287,22 @@ def finite_length_approach(length: float, half_width: float) -> float:
     float
         Pressure-weighted mean over the patch pressed by a straight cylinder: its approach less the mean separation.
     """
-    from scipy.optimize import brentq  # 0.2 s to import, for hybrid models only
-
     law = LineContactLaw(length, 1.0)
-
-    def excess(logarithm: float) -> float:
-        return float(law.half_width(np.exp(logarithm), 1.0)) - half_width
-
-    # b²/(ρδ) lies between 0.1 (very long) and 2 (the undeformed overlap).
-    approach = float(np.exp(brentq(excess, np.log(0.4 * half_width**2), np.log(20.0 * half_width**2), xtol=1e-12)))
+    # Newton's method on ln δ = ln b² + ln m(ln(δ/L²)) at a radius of 1: m = ρδ/b² goes from 0.5 to 10 over all of the law, so
+    # slowly that the first guess is within its reach. (A bracketing solver of scipy takes longer to import than to search.)
+    logarithm = start = 2.0 * np.log(half_width)
+    for _ in range(MAX_ITERATIONS):
+        ratio, slope, _ = law.table.inverse_square_half_width.value_and_derivatives(
+            np.array([logarithm - 2.0 * np.log(length)])
+        )
+        step = (start + np.log(ratio[0]) - logarithm) / (1.0 - slope[0] / ratio[0])
+        logarithm += step
+        if abs(step) < 1e-12:
+            break
+    else:
+        raise ConvergenceError(
+            f"no approach of a straight cylinder of {length:g} mm has the half-width {half_width:g} mm"
+        )
+    approach = float(np.exp(logarithm))
     load = float(law.load_and_stiffness(approach, 1.0)[0])
     return (approach - half_width**2 / 8.0) / load

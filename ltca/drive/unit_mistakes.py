@@ -11,13 +11,15 @@ from __future__ import annotations
 
 import functools
 import inspect
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import fields
 from math import pi, sin, sqrt
 from typing import ParamSpec, TypeVar
 
+from ltca.drive.members.limits import Limit
 from ltca.drive.parts import Drive, Material, Materials, contact_modulus
 from ltca.errors import ConvergenceError, CycloError, DriveError
+from ltca.quantities import LIMITED
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -44,13 +46,25 @@ LIGHTEST = 1.0 / 5000.0
 STRENGTH = 0.0075, 0.03
 """Allowable flank pressure by Young's modulus of metals and of plastics without a given one: 1500 of 206000 MPa for bearing
 steel, 75 of 3000 MPa for PLA."""
+STRENGTHS = ("allowable_pressure", "yield_strength", "bending_fatigue_limit")
+"""Fields of a material that are pressures or stresses."""
 STRONGEST = 0.05
 """Largest allowable pressure by Young's modulus: of polyamide."""
+WEAKEST, STRONGER = 5e-5, 100.0
+"""Strengths, and limits of pressures and stresses, by Young's modulus that no material has, even one given for its modulus alone.
+In GPa bearing steel has 7e-6 and plastics 2e-5, in Pa thousands."""
+SPRINGY = 1.0 / 2000.0
+"""Stiffness of a shaft pin, bearing or support by Young's modulus times thickness of the disc below which it is likely in N/µm:
+practical ones have from a fiftieth to five of it, a thousandth of the usual ones is below."""
 SHORT, LONG = 0.01, 100.0
 """Ratios of a length to the one beside it that no drive has; metres read as mm are at 0.001 of a usual ratio."""
 FINEST, FINE = 3e-4, 5e-5
 """Offset or clearance below what machines hold: in mm, a third of a micrometre, and by the pin radius, for micro drives. A
 thousandth of it is a number of its own."""
+POOREST = 0.02
+"""Load rating by an estimate from the rollers' sizes below which it is likely in kN; makers differ by a factor of two."""
+FASTEST = 1.5e6
+"""Speed by the mean diameter of the crank bearing, mm/min, that no roller bearing of a drive reaches: the fastest have 1e6."""
 SLOW_INPUT, SLOW_OUTPUT = 60.0, 5.0
 """Speeds of input and output, rpm, below which a speed is likely in Hz: motors make 10 to 100 turns a second."""
 
@@ -221,7 +235,19 @@ def unit_warnings(drive: Drive, torque: float | None = None) -> list[str]:
     torque, N·mm; that of the load by default.
     """
     # What a drive carries follows from its lengths.
-    return _impossible(drive) or [*_odd_lengths(drive)] or [*_odd_torques(drive, torque), *_odd_speeds(drive)]
+    found = _impossible(drive) or [*_odd_lengths(drive)] or [*_odd_strengths(drive)]
+    return found or [*_odd_torques(drive, torque), *_odd_stiffnesses(drive), *_odd_ratings(drive), *_odd_speeds(drive)]
+
+
+def limit_warnings(drive: Drive, limits: Iterable[Limit]) -> list[str]:
+    """Return limits of pressures and stresses of a drive that were probably meant in another unit, one sentence each."""
+    moduli = [getattr(drive.materials, part).youngs_modulus for part in _parts(drive)]
+    told = (
+        _odd_strength(f"limits.{limit.key}", limit.value, min(moduli), max(moduli))
+        for limit in limits
+        if limit.sense == "max" and LIMITED[limit.quantity].unit == "MPa"
+    )
+    return [words for words in told if words]
 
 
 def carried_torque(drive: Drive) -> float:
@@ -259,6 +285,70 @@ def _odd_torques(drive: Drive, torque: float | None) -> Iterator[str]:
             f"{_newton_metres('load.light_torque', load.light_torque)}, {_fraction(load.light_torque / load.torque)} of "
             f'load.torque; did you mean "{load.light_torque:g} N m"?'
         )
+
+
+def _odd_strengths(drive: Drive) -> Iterator[str]:
+    """Strengths in GPa or Pa that were read as MPa, by the modulus of their own material: each value once, with its parts."""
+    found: dict[tuple[str, float, float], list[str]] = {}
+    for part in _parts(drive):
+        own = getattr(drive.materials, part)
+        for name in STRENGTHS:
+            if (value := getattr(own, name)) is not None:
+                found.setdefault((name, value, own.youngs_modulus), []).append(part)
+    for (name, value, modulus), parts in found.items():
+        if told := _odd_strength(f"materials.{', '.join(parts)}: {name}", value, modulus, modulus):
+            yield told
+
+
+def _odd_strength(path: str, value: float, softest: float, stiffest: float) -> str:
+    """What to say of a strength or a limit, MPa, between bodies of these moduli; empty where there is nothing to say."""
+    if value < WEAKEST * softest:
+        return (
+            f"{path} = {value:g} MPa is {_fraction(value / softest)} of Young's modulus ({softest:g} MPa), less than any "
+            f'material bears; a plain number is MPa, did you mean "{value:g} GPa" ({1000.0 * value:g} MPa)?'
+        )
+    if value > STRONGER * stiffest:
+        return (
+            f"{path} = {value:g} MPa is {_rounded(value / stiffest)} times Young's modulus ({stiffest:g} MPa); a plain number is "
+            f'MPa, did you mean "{value:g} Pa" ({1e-6 * value:g} MPa)?'
+        )
+    return ""
+
+
+def _odd_stiffnesses(drive: Drive) -> Iterator[str]:
+    """Stiffnesses in N/µm that were read as N/mm, by what the body of the disc or of the pin yields over its thickness."""
+    parts, shaft, support = drive.materials, drive.pin_shaft, drive.crank.support
+    softest = min(parts.disc.youngs_modulus, parts.wheel_pin.youngs_modulus, parts.shaft_pin.youngs_modulus)
+    body = softest * drive.disc.thickness
+    given: dict[str, float | None] = {
+        "pin_shaft.stiffness": None if shaft is None else shaft.stiffness,
+        "pin_wheel.support_stiffness": drive.pin_wheel.support_stiffness,
+    }
+    if support is not None:
+        given |= {f"crank.support.stiffness[{number}]": one for number, one in enumerate(support.stiffness)}
+    for path, value in given.items():
+        if value is not None and value < SPRINGY * body:
+            yield (
+                f"{path} = {value:g} N/mm is {_fraction(value / body)} of Young's modulus times thickness of the disc "
+                f'({body:.3g} N/mm): softer than any part of it; a plain number is N/mm, did you mean "{value:g} N/µm" '
+                f"({1000.0 * value:g} N/mm)?"
+            )
+
+
+def _odd_ratings(drive: Drive) -> Iterator[str]:
+    """Load ratings in kN that were read as N, by sizes and number of the rollers: ISO 281 and 76 of steel in round numbers."""
+    part = drive.crank_bearing
+    number, length, diameter = part.number_of_rollers, drive.roller_length, 2.0 * part.roller_radius
+    about = {
+        "dynamic_load_rating": 80.0 * length**0.78 * number**0.75 * diameter**1.07,
+        "static_load_rating": 40.0 * length * number * diameter,
+    }
+    for name, estimate in about.items():
+        if (value := getattr(part, name)) is not None and value < POOREST * estimate:
+            yield (
+                f"crank_bearing.{name} = {value:g} N is {_fraction(value / estimate)} of what its rollers bear (some "
+                f'{_rounded(1e-3 * estimate)} kN); a plain number is N, did you mean "{value:g} kN"?'
+            )
 
 
 def _newton_metres(path: str, value: float) -> str:
@@ -330,7 +420,7 @@ def _lengths_beside(drive: Drive) -> Iterator[tuple[str, float, float, str]]:
 
 
 def _odd_speeds(drive: Drive) -> Iterator[str]:
-    """A speed in Hz, or in rad/s, that was read as rpm; of a duty its fastest entry."""
+    """A speed in Hz or rad/s, or in deg/s, that was read as rpm; of a duty its fastest entry."""
     speeds = {} if drive.load.speed is None else {"load.speed": drive.load.speed}
     if drive.duty:
         fastest = max(range(len(drive.duty)), key=lambda entry: drive.duty[entry].speed)
@@ -340,6 +430,14 @@ def _odd_speeds(drive: Drive) -> Iterator[str]:
             yield (
                 f"{path} = {value:g} rpm at the input is less than a turn a second; did you mean "
                 f'"{value:g} Hz" ({60.0 * value:g} rpm) or "{value:g} rad/s" ({30.0 / pi * value:.3g} rpm)?'
+            )
+        mean = 2.0 * (drive.crank_bearing.inner_race_radius + drive.crank_bearing.roller_radius)
+        turns = abs(drive.crank_turns_per_input) * value
+        if turns * mean > FASTEST:
+            yield (
+                f"{path} = {value:g} rpm turns the crank bearing of {mean:.3g} mm mean diameter at {turns * mean:.2g} mm/min: "
+                f'faster than roller bearings run (some 1e6); a plain number is rpm, did you mean "{value:g} deg/s" '
+                f"({value / 6.0:g} rpm) or {value / 60.0:g} rpm?"
             )
 
 

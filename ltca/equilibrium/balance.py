@@ -192,7 +192,7 @@ def _solve_by_neighbours(
     if series == 1:
         first = leading_positions(model.discs[0].geometry, angle, moment)
     left = search.iterate(MAX_ITERATIONS, first, take_positions(inner, first))
-    rest = np.setdiff1d(np.arange(angle.size), first)
+    rest = np.setdiff1d(np.arange(angle.size), first, assume_unique=True)
     if rest.size == 0:
         return left
     begin = take_positions(inner, rest)
@@ -202,7 +202,7 @@ def _solve_by_neighbours(
         pose[rest] = pose_between(angle[known], pose[known], angle[rest], model.coordinates)
         ratio = model.discs[0].geometry.placement.reduction_ratio
         begin = start_between(angle[known], Start.after(contacts), angle[rest], ratio)
-    return np.union1d(left, search.iterate(MAX_ITERATIONS, rest, begin))
+    return np.sort(np.concatenate([left, search.iterate(MAX_ITERATIONS, rest, begin)]))
 
 
 def _solve_beside_leaders(search: Search, series: int) -> NDArray[np.intp]:
@@ -214,7 +214,7 @@ def _solve_beside_leaders(search: Search, series: int) -> NDArray[np.intp]:
         leaders = leading[0] + count * np.arange(series)
     pose[leaders] = _at_first_contact(model.take(leaders), angle[leaders], search.moment[leaders])
     left = search.iterate(MAX_ITERATIONS, leaders)
-    rest = np.setdiff1d(np.arange(angle.size), leaders)
+    rest = np.setdiff1d(np.arange(angle.size), leaders, assume_unique=True)
     if rest.size == 0:
         return left
     led = np.zeros(series, dtype=bool)
@@ -227,21 +227,23 @@ def _solve_beside_leaders(search: Search, series: int) -> NDArray[np.intp]:
         pose[beside] = pose_beside(angle[at], pose[at], angle[beside], model.coordinates)
         ratio = model.discs[0].geometry.placement.reduction_ratio
         begin = start_beside(angle[at], take_positions(Start.after(contacts), rows), angle[beside], ratio)
-        left = np.union1d(left, search.iterate(MAX_ITERATIONS, beside, begin))
+        left = np.concatenate([left, search.iterate(MAX_ITERATIONS, beside, begin)])
     alone = rest[~led[rest // count]]
     if alone.size:
         pose[alone] = _at_first_contact(model.take(alone), angle[alone], search.moment[alone])
-        left = np.union1d(left, search.iterate(MAX_ITERATIONS, alone))
-    return left
+        left = np.concatenate([left, search.iterate(MAX_ITERATIONS, alone)])
+    return np.sort(left)
 
 
 def _at_first_contact(model: Reducer, angle: FloatArray, moment: FloatArray) -> FloatArray:
     """Poses with the discs on the inner-race centres and the wheel turned until the first pin touches one of them."""
     pose = np.zeros((angle.size, model.coordinates.size))
     sense = np.where(moment < 0.0, -1, 1)
-    for value in np.unique(sense):
+    for value in (-1, 1):
         rows = sense == value
-        turned = [_take_up(take_rows(geometry, rows), angle[rows], int(value)) for geometry in model.geometries]
+        if not rows.any():
+            continue
+        turned = [_take_up(take_rows(geometry, rows), angle[rows], value) for geometry in model.geometries]
         pose[rows, WHEEL_ANGLE] = value * np.min(value * np.stack(turned), axis=0)
     return pose
 

@@ -161,7 +161,9 @@ class Search:
             bound[active] = bound[active].clip(1e-3 * first_bound, max(first_bound, 0.1 * self.smallest_pin))
             damping[active] *= np.where(fraction > 0.5, 0.1, np.where(fraction < 0.1, 10.0, 1.0))
             damping[active] = damping[active].clip(1e-12, 1e3)
-        return np.union1d(active, asked[self.slipped[asked]])
+        left = np.zeros(self.angle.size, dtype=bool)
+        left[active] = left[asked[self.slipped[asked]]] = True
+        return np.nonzero(left)[0]
 
     def reduce_residual(self, row: int) -> bool:
         """Balance a position with friction by the size of its residual alone; tell whether it does.

@@ -9,6 +9,8 @@ import xarray as xr
 
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.analysis.pressure_fields import CONTACTS, FIELD_CELLS, is_loaded, loads_of, pressure_field
+from ltca.arrays import FloatArray
+from ltca.contact.tracked_grid import END_STRETCH
 from ltca.errors import DriveError, did_you_mean, shortened
 from ltca.front.arguments import angles_given, counted
 
@@ -82,9 +84,10 @@ def contact_pressure(
         "crank_angle": ((), float(loaded.full.crank_angle[at]), {"units": "rad", "long_name": "crank angle φ_C, held"}),
         part_name: pair,
     }
-    x, y = field.x_edges, field.y_edges
+    x = field.x_edges
+    y, pressure = _with_whole_ends(field.y_edges, field.pressure)
     return xr.DataArray(
-        field.pressure,
+        pressure,
         dims=("x", "y"),
         coords={
             "x": ("x", 0.5 * (x[1:] + x[:-1]), {"units": "mm", "long_name": "along the profile"}),
@@ -105,6 +108,23 @@ def contact_pressure(
             "max_shear_depth_mm": field.max_shear_depth,
         },
     )
+
+
+def _with_whole_ends(edges: FloatArray, pressure: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Edges along the width and mean pressures with `END_STRETCH` of the length as the last cell at either end.
+
+    At the end of a straight generator the pressure of half-spaces has no bound: the means of ever finer cells grow without end.
+    """
+    stretch = END_STRETCH * float(edges[-1] - edges[0])
+    low, high = float(edges[0]) + stretch, float(edges[-1]) - stretch
+    if edges[1] - edges[0] >= stretch and edges[-1] - edges[-2] >= stretch:
+        return edges, pressure
+    inner = edges[(edges > low + 0.5 * stretch) & (edges < high - 0.5 * stretch)]  # no slivers beside them
+    whole = np.concatenate([edges[:1], [low], inner, [high], edges[-1:]])
+    sums = np.zeros((pressure.shape[0], edges.size))
+    np.cumsum(pressure * np.diff(edges), axis=1, out=sums[:, 1:])
+    carried = np.array([np.interp(whole, edges, row) for row in sums])  # ∫ p dy is piecewise linear
+    return whole, np.diff(carried, axis=1) / np.diff(whole)
 
 
 def _position(loaded: LoadedAnalysis, position: int | None, crank_angle: float | str | None) -> int | None:

@@ -18,7 +18,7 @@ parts leave, none where the overlapping ones hold the wheel. Displacements beyon
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -99,8 +99,8 @@ class TurnPlay:
     ----------
     largest, least : float
         rad.
-    crank_angle : float
-        φ_C of the largest, rad.
+    crank_angle, crank_angle_of_least : float
+        φ_C of the largest and of the least, rad.
     preloaded : float
         Fraction of the positions where parts overlap in every pose.
     """
@@ -108,6 +108,7 @@ class TurnPlay:
     largest: float
     least: float
     crank_angle: float
+    crank_angle_of_least: float
     preloaded: float
 
 
@@ -134,8 +135,12 @@ def play_over_a_turn(discs: Sequence[ContactGeometry]) -> TurnPlay:
     return found
 
 
-def plays_over_a_turn(drives: Sequence[Sequence[ContactGeometry]]) -> list[TurnPlay]:
-    """Return the same of several drives, each with its discs, of one `ltca.arrays.batch_layout`: as one batch."""
+def plays_over_a_turn(drives: Sequence[Sequence[ContactGeometry]], near: TurnPlay | None = None) -> list[TurnPlay]:
+    """Return the same of several drives, each with its discs, of one `ltca.arrays.batch_layout`: as one batch.
+
+    Drives that are nearly one of which the play is known (`near`) have their extremes where that one has, but for a part of the
+    second order: they are looked at there alone, and take its share of preloaded positions.
+    """
     stacked = [stack_drives(discs, 1) for discs in zip(*drives, strict=True)]
 
     def plays(angle: FloatArray) -> tuple[FloatArray, BoolArray]:
@@ -144,6 +149,10 @@ def plays_over_a_turn(drives: Sequence[Sequence[ContactGeometry]]) -> list[TurnP
         found = free_play([take_rows(disc, rows) for disc in stacked], angle.ravel())
         return found.play.reshape(angle.shape), found.preloaded.reshape(angle.shape)
 
+    if near is not None:
+        places = np.array([near.crank_angle, near.crank_angle_of_least])
+        found, _ = plays(np.tile(places, (len(drives), 1)))
+        return [replace(near, largest=float(own[0]), least=float(own[1])) for own in found]
     angle = np.tile(2.0 * np.pi * np.mod(GOLDEN * np.arange(POSITIONS), 1.0), (len(drives), 1))
     (play, preloaded), spread = plays(angle), 2.0 * np.pi / POSITIONS
     for _ in range(REFINEMENTS):
@@ -158,6 +167,7 @@ def plays_over_a_turn(drives: Sequence[Sequence[ContactGeometry]]) -> list[TurnP
             largest=float(own.max()),
             least=float(own.min()),
             crank_angle=float(at[np.argmax(own)] % (2.0 * np.pi)),
+            crank_angle_of_least=float(at[np.argmin(own)] % (2.0 * np.pi)),
             preloaded=float(pressed.mean()),
         )
         for own, at, pressed in zip(play, angle, preloaded, strict=True)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from math import isfinite
 
 from ltca.drive.members.verdict_words import CLOSE
-from ltca.quantities import unit_sign
+from ltca.quantities import printed, unit_sign
 
 NOTHING = "–"
 
@@ -99,7 +99,7 @@ def number(value: float | None, form: str = "{:.5g}", unit: str = "", *, note: s
     if value is None or not isfinite(value):
         return Cell(text=NOTHING, value="", note=note, state=state)
     sign = unit_sign(unit)
-    text = minus(form.format(value)) + (sign if sign in CLOSE else f" {sign}" if sign else "")
+    text = minus(printed(value, form, unit)) + (sign if sign in CLOSE else f" {sign}" if sign else "")
     return Cell(text=text, value=repr(float(value)), note=note, state=state)
 
 

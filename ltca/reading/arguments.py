@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 from ltca.errors import DriveError, shortened
 
 if TYPE_CHECKING:
+    from ltca.drive.members.limits import Limits
     from ltca.drive.parts import Drive
 
 SHIPPED_DRIVES = ("paper", "robot-joint", "rv", "sleeved")
@@ -243,12 +244,18 @@ def count_argument(option: str, least: int, most: int) -> Callable[[str], int]:
     return read
 
 
-def tell_unit_mistakes(drives: Iterable[Drive], torque: float | None = None) -> None:
+def tell_unit_mistakes(drives: Iterable[Drive], torque: float | None = None, limits: Iterable[Limits] = ()) -> None:
     """Print warnings to stderr about values of drives, as written, that were probably meant in another unit, each once.
 
-    `torque` is the output torque of the command, N·mm; that of the drives for None.
+    `torque` is the output torque of the command, N·mm; that of the drives for None. `limits` are those of each drive, where they
+    are judged.
     """
-    from ltca.drive.unit_mistakes import unit_warnings
+    from ltca.drive.unit_mistakes import limit_warnings, unit_warnings
 
-    for text in dict.fromkeys(warning for drive in drives for warning in unit_warnings(drive, torque)):
+    each = [*drives]
+    told = [warning for drive in each for warning in unit_warnings(drive, torque)]
+    told += [
+        warning for drive, own in zip(each, limits, strict=False) for warning in limit_warnings(drive, own.values())
+    ]
+    for text in dict.fromkeys(told):
         print(f"warning: {text}", file=sys.stderr)

@@ -17,6 +17,7 @@ from ltca.drive.members.bearings import (
     clearance_range,
     named_bearing,
     named_bearings,
+    spelled,
 )
 from ltca.drive.members.crank import Force
 from ltca.drive.mistakes import describe_mistakes
@@ -24,6 +25,15 @@ from ltca.errors import DriveError, shortened
 
 BEARING = "bearing"
 CLEARANCE_CLASS = "clearance_class"
+HINTS = {
+    "roller_radius": "half the difference of outer_race_diameter and inner_race_diameter is that of the rollers",
+    "roller_diameter": "half the difference of outer_race_diameter and inner_race_diameter is that of the rollers",
+    "clearance_class": "it stands beside the name, in [crank_bearing]",
+    "clearance": "it stands in [clearance], or as clearance_class beside the name",
+    "C": "did you mean `dynamic_load_rating`?",
+    "C0": "did you mean `static_load_rating`?",
+}
+"""What to say of keys that are no fields of a bearing, by their names."""
 _ADAPTER = TypeAdapter(NamedBearing)
 _LENGTH = TypeAdapter(PositiveLength)
 _FORCE = TypeAdapter(Force)
@@ -39,10 +49,13 @@ class BearingNames:
         Of ``[bearings."NAME"]``; they go before those shipped.
     stands_for : dict of str to str
         Name of the bearing by "field = value" of each field that came from it.
+    mistaken : frozenset of str
+        Names of entries of the drive file with mistakes, which are told: they are not unknown besides.
     """
 
     own: dict[str, NamedBearing]
     stands_for: dict[str, str]
+    mistaken: frozenset[str] = frozenset()
 
     @classmethod
     def of_table(cls, table: Any, problems: list[str]) -> BearingNames:
@@ -56,13 +69,14 @@ class BearingNames:
                 bearing = _ADAPTER.validate_python(entry)
             except ValidationError as error:
                 names = list(NamedBearing.__dataclass_fields__)
-                problems += describe_mistakes(error.errors(), ("bearings", name), names)
+                problems += [_hinted(each) for each in describe_mistakes(error.errors(), ("bearings", name), names)]
                 continue
             told = bearing.problems()
             problems += [f"bearings.{name}.{problem}" for problem in told]
             if not told:
                 found[name] = bearing
-        return cls(own=found, stands_for={})
+        mistaken = frozenset(spelled(name) for name in table if name not in found)
+        return cls(own=found, stands_for={}, mistaken=mistaken)
 
     def resolved(self, table: Mapping[str, Any], problems: list[str], common: Any = None) -> dict[str, Any]:
         """Return the plain tables of a drive, or of one case, with the fields of a named bearing in the place of its name.
@@ -79,9 +93,11 @@ class BearingNames:
         below = {key: value for key, value in part.items() if key not in (BEARING, CLEARANCE_CLASS)}
         # What is not named is no missing field besides: any bearing stands in, so that other mistakes are told too.
         unnamed = {**table, "crank_bearing": {**named_bearings()["RN205"].fields, **below}}
-        if not isinstance(name, str):
+        if not isinstance(name, str) or not name.strip():
             told = "must be the designation of a bearing" if name is not None else "must be given with clearance_class"
             problems.append(f"crank_bearing.bearing{'' if name is None else f' = {shortened(name)}'}: {told}")
+            return unnamed
+        if spelled(name) in self.mistaken:
             return unnamed
         try:
             bearing = named_bearing(name, self.own)
@@ -109,6 +125,13 @@ class BearingNames:
                 problem = re.sub(rf"{re.escape(text)}(?![0-9.e])( mm)?", rf'\g<0> (of bearing "{name}")', problem)
             found.append(problem)
         return found
+
+
+def _hinted(problem: str) -> str:
+    """A mistake of an entry, with what its key is elsewhere in the place of the field that looks most like it."""
+    path, found, _ = problem.partition(": is not a field")
+    hint = HINTS.get(path.rpartition(".")[2]) if found else None
+    return problem if hint is None else f"{path}: is not a field of such a table; {hint}"
 
 
 def _set_clearance(

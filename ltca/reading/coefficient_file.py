@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 from dataclasses import replace
+from functools import lru_cache
 from numbers import Integral, Real
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -61,6 +62,25 @@ def read_coefficients(path: Path, *, lawful: bool = True) -> LabelledDataset:
     DamagedFileError when there is no such file, it holds something else, its checksum differs, or, with `lawful`, when a
     law is broken (``cyclo derive --check`` prints which).
     """
+    dataset, checksum = _read(path, _stamp(path))
+    if lawful and checksum not in _LAWFUL:
+        require_laws(dataset, str(path))
+        _LAWFUL.add(checksum)
+    return dataset
+
+
+def _stamp(path: Path) -> tuple[int, ...]:
+    """What changes with a file's content; nothing where there is no file, which reading tells."""
+    try:
+        found = path.stat()
+    except OSError:
+        return ()
+    return found.st_dev, found.st_ino, found.st_size, found.st_mtime_ns, found.st_ctime_ns
+
+
+@lru_cache(maxsize=2)
+def _read(path: Path, stamp: tuple[int, ...]) -> tuple[LabelledDataset, str]:
+    """Content of a file and its checksum, read once for all discs and cases that share it."""
     dataset = read_netcdf(path, "a coefficient file")
     require_schema(dataset, str(path))
     wide = {
@@ -73,10 +93,7 @@ def read_coefficients(path: Path, *, lawful: bool = True) -> LabelledDataset:
             f"{path}: is damaged: its content does not have the checksum it states (who changed it on purpose removes the "
             f"attribute {CHECKSUM})"
         )
-    if lawful and checksum not in _LAWFUL:
-        require_laws(dataset, str(path))
-        _LAWFUL.add(checksum)
-    return dataset
+    return dataset, checksum
 
 
 def require_laws(dataset: Labelled, source: str) -> None:

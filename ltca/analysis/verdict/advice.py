@@ -9,15 +9,15 @@ and teeth are the ratio, and no advice. Nor is a Young's modulus: another one is
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from math import ceil, exp, floor, isfinite, log
 from typing import Any
 
-from ltca.analysis.loaded_analysis import analyse, analyse_cases
-from ltca.analysis.summary import summarise, summarise_cases
-from ltca.analysis.verdict.values import find_values
+from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse, analyse_cases
+from ltca.analysis.summary import OF_FLANK, summarise_cases
+from ltca.analysis.verdict.values import LIVES, find_values
 from ltca.arrays import FloatArray
 from ltca.drive.fields import field_kinds, read_field
 from ltca.drive.members.bearings import NAMED_SIZES, bought_size
@@ -25,6 +25,7 @@ from ltca.drive.members.judgement import Check, Value, judged_by
 from ltca.drive.parts import Drive
 from ltca.drive.units.table import label
 from ltca.errors import ConvergenceError, CycloError
+from ltca.geometry.play import TurnPlay, play_over_a_turn
 from ltca.reading.changes import with_fields
 
 RELATIVE_STEP = 0.01
@@ -111,9 +112,10 @@ def advise(
             wanted[check.value.quantity] = check
     if not wanted:
         return {}
-    base = _values(drive, crank_angle, torque)
+    trials = _Trials(drive, crank_angle, torque, wanted)
+    base = trials.base
     found: dict[str, list[Driver]] = {quantity: [] for quantity in wanted}
-    for one, step, changed in _changes(drive, crank_angle, torque):
+    for one, step, changed in _changes(drive, trials):
         for quantity, check in wanted.items():
             before, after = _judged(base, check), _judged(changed, check)
             if not before or not after or before * after <= 0.0:
@@ -196,12 +198,63 @@ def _driver(drive: Drive, one: _Input, elasticity: float, check: Check, part: fl
     return Driver(input=one.name, elasticity=elasticity, change=told, factor=factor)
 
 
-def _changes(drive: Drive, crank_angle: FloatArray, torque: float) -> Iterator[tuple[_Input, float, dict[str, Value]]]:
+class _Trials:
+    """Values of drives that are nearly one, under one torque: what their checks judge and nothing else.
+
+    Attributes
+    ----------
+    base : dict of str to Value
+        Values of the drive itself, by quantity.
+    """
+
+    def __init__(self, drive: Drive, crank_angle: FloatArray, torque: float, wanted: Container[str]) -> None:
+        """Solve the drive itself, whose poses and places of extremes the others start from."""
+        self.angle, self.torque = crank_angle, torque
+        self.lives = any(name in wanted for name in LIVES)
+        self.without_load = any(name in wanted for name in (*OF_FLANK, "backlash_output"))
+        self.near = analyse(_at_torque(drive, torque), crank_angle)
+        self.play: TurnPlay | None = None
+        if self.without_load:
+            with suppress(ConvergenceError):  # nothing stops the wheel
+                self.play = play_over_a_turn(self.near.model.geometries)
+        self.base = self._values({"": self.near}, self.play)[""]
+
+    def values(self, drives: Mapping[str, Drive], *, alike: bool = True) -> dict[str, dict[str, Value]]:
+        """Values of drives by name, solved together; without those that are refused or do not balance.
+
+        Those of other numbers of parts are not `alike`: their plays are largest elsewhere.
+        """
+        if not drives:
+            return {}
+        try:
+            solved = dict(analyse_cases(drives, self.angle, near=self.near))
+            analyses = {name: found for name, found in solved.items() if not isinstance(found, ConvergenceError)}
+            return self._values(analyses, self.play if alike else None)
+        except CycloError:  # of one of them, which the others do without
+            if len(drives) == 1:
+                return {}
+            each = (self.values({name: one}, alike=alike) for name, one in drives.items())
+            return {name: values for found in each for name, values in found.items()}
+
+    def _values(self, analyses: Mapping[str, LoadedAnalysis], play: TurnPlay | None) -> dict[str, dict[str, Value]]:
+        summaries = summarise_cases(analyses, without_load=self.without_load, near=play)
+        return {
+            name: {value.quantity: value for value in find_values(one, summaries[name], lives=self.lives)}
+            for name, one in analyses.items()
+        }
+
+
+def _at_torque(drive: Drive, torque: float) -> Drive:
+    """A drive at an output torque, N·mm, and at the same light torque: of a lighter one no limit asks."""
+    return replace(drive, load=replace(drive.load, torque=torque, light_torque=torque))
+
+
+def _changes(drive: Drive, trials: _Trials) -> Iterator[tuple[_Input, float, dict[str, Value]]]:
     """Give each input with the first of its steps that makes a drive that balances, and the values there.
 
     All inputs are tried at once, the next steps of those that are left after that.
     """
-    inputs = {one.name: one for one in _inputs(drive, torque)}
+    inputs = {one.name: one for one in _inputs(drive, trials.torque)}
     answered: dict[str, tuple[float, dict[str, Value]]] = {}
     for number in range(max((len(one.steps) for one in inputs.values()), default=0)):
         left = {
@@ -210,39 +263,12 @@ def _changes(drive: Drive, crank_angle: FloatArray, torque: float) -> Iterator[t
         drives = dict[str, Drive]()
         for name, step in left.items():
             with suppress(CycloError):
-                drives[name] = with_fields(drive, inputs[name].changed(1.0 + step))
-        loaded = {name: drives.pop(name) for name in (TORQUE,) if name in drives}
-        tried = _values_of(drives, crank_angle, torque)
-        tried |= _values_of(loaded, crank_angle, (1.0 + left.get(TORQUE, 0.0)) * torque)
+                changed = with_fields(drive, inputs[name].changed(1.0 + step))
+                drives[name] = _at_torque(changed, (1.0 + step if name == TORQUE else 1.0) * trials.torque)
+        counts = {name: drives.pop(name) for name in [*drives] if inputs[name].is_count}
+        tried = trials.values(drives) | trials.values(counts, alike=False)
         answered |= {name: (left[name], values) for name, values in tried.items()}
     yield from ((one, *answered[name]) for name, one in inputs.items() if name in answered)
-
-
-def _values_of(drives: Mapping[str, Drive], crank_angle: FloatArray, torque: float) -> dict[str, dict[str, Value]]:
-    """Values of drives by name, solved together; without those that are refused or do not balance."""
-    if not drives:
-        return {}
-    try:
-        solved = dict(analyse_cases(drives, crank_angle, torque))
-        analyses = {name: found for name, found in solved.items() if not isinstance(found, ConvergenceError)}
-        summaries = summarise_cases(analyses)
-        return {
-            name: {value.quantity: value for value in find_values(found, summaries[name])}
-            for name, found in analyses.items()
-        }
-    except CycloError:  # of one of them, which the others do without
-        if len(drives) == 1:
-            return {}
-        return {
-            name: values
-            for own, one in drives.items()
-            for name, values in _values_of({own: one}, crank_angle, torque).items()
-        }
-
-
-def _values(drive: Drive, crank_angle: FloatArray, torque: float | None) -> dict[str, Value]:
-    analysis = analyse(drive, crank_angle, torque)
-    return {value.quantity: value for value in find_values(analysis, summarise(analysis))}
 
 
 def _judged(values: Mapping[str, Value], check: Check) -> float | None:

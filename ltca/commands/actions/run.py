@@ -24,6 +24,7 @@ from ltca.drive.members.judgement import Check
 from ltca.drive.members.limits import Limits
 from ltca.drive.members.verdict_words import verdict_line
 from ltca.drive.parts import Drive
+from ltca.drive.unit_mistakes import unit_warnings
 from ltca.errors import ConvergenceError, CycloError
 from ltca.output.files import whole_file, write_json
 from ltca.output.labelled import LabelledDataset
@@ -245,6 +246,8 @@ def _sampling(analyses: Analyses, summaries: Summaries, angles: FloatArray) -> l
         for warning in (sampling_warning(analysis.drive, angles), *analysis.warnings)
         if warning is not None
     }
+    # Told before the work began.
+    warnings -= {warning for one in analyses.values() for warning in unit_warnings(one.as_written, one.torque)}
     for name, case in summaries.items():
         if whole and analyses[name].is_complete and case["refined_max_pin_load_N"] is None:
             warnings.add(f"extremes of case {name} are those of its positions: one between them has no answer")

@@ -16,7 +16,7 @@ from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.analysis.summary import refined_value
 from ltca.analysis.verdict.values import race_pressures
 from ltca.drive.units.quantities import ARCMIN
-from ltca.quantities import scalar_named
+from ltca.quantities import printed, scalar_named
 
 Summaries = Mapping[str, Mapping[str, float | None]]
 Lives = Mapping[str, BearingLives | str]
@@ -118,7 +118,7 @@ def _rows(title: str, name: str, summaries: Summaries, *, known: bool = False) -
         return []
     if (known or any(part in name for part in WHERE_KNOWN)) and all(value is None for value in values):
         return []
-    return [(title, [_number(value, scalar.digits) for value in values])]
+    return [(title, [_number(value, scalar.digits, scalar.unit) for value in values])]
 
 
 def _of_races(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) -> dict[str, float | None]:
@@ -140,8 +140,8 @@ def _least_stiffness(analysis: LoadedAnalysis) -> float | None:
     return float(abs(analysis.torque - analysis.drive.load.light_torque) / np.max(wound) / ARCMIN / 1e3)
 
 
-def _number(value: float | None, digits: str) -> str:
-    return "–" if value is None else f"{value:{digits}}"
+def _number(value: float | None, digits: str, unit: str = "") -> str:
+    return "–" if value is None else printed(value, f"{{:{digits}}}", unit)
 
 
 def lives_told(lives: Lives) -> list[str]:

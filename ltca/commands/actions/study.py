@@ -115,12 +115,12 @@ def _print(study: Study, folder: StudyFolder, found: StudySummary, compliance: s
     print(f"sensitivity: {found.ranking['method']}")
     for name, entry in list(found.ranking["quantities"].items())[:3]:
         first = [
-            f"{study.field_words(path)} {100.0 * share:.0f} %"
+            f"{study.field_words(path)} {100.0 * share:z.0f} %"
             for path, share in list(entry["shares"].items())[:3]
             if not is_chance(entry, path)
         ]
         told = ", ".join(first) or "nothing beyond chance"
-        print(f"  {SCALARS[name].title}: {told} (first order together: {100.0 * entry['explained']:.0f} %)")
+        print(f"  {SCALARS[name].title}: {told} (first order together: {100.0 * entry['explained']:z.0f} %)")
     linear = [entry["explained"] for entry in found.ranking["quantities"].values()]
     if "regression" in found.ranking["method"] and linear and min(linear) < 0.5:
         print("  regression misses what is curved or mutual; 'cyclo tolerance --design saltelli' ranks that too")

@@ -33,6 +33,18 @@ SLENDEREST = 10.0
 FLATTEST = 0.4
 """Smallest length by diameter of a roller that is guided without tilting."""
 HINT = "take a needle cage (K) or cylindrical rollers without outer ring (RN), whose outer race is the bore of the disc"
+MAKERS = r"^(SKF|INA|FAG|NSK|NTN|IKO|NBS|KOYO|NACHI|TIMKEN|SCHAEFFLER)[-./]?"
+"""What may stand before a designation."""
+SIZE = r"([0-9]{1,4}(?:\.[0-9]{1,3})?)"
+CAGE = rf"K{SIZE}[X/-]{SIZE}[X/-]{SIZE}[-./]?(?:TN9?|TVP?|P|H|XL|A|B)?"
+"""A needle cage: its sizes, and material or make of the cage, which change none."""
+RING = r"RN-?([0-9]{3,4})[-./]?(?:EC?)?[-./]?(?:TVP[2B]?|TN9?|T2?|PHA?|P|M[ABL1]?|J[1]?)?"
+"""Cylindrical rollers without outer ring: design E, as those that ship are, and the cage."""
+CLASS_IN_NAME = r"[-./]?(C[2-5]|CN)$"
+RACES_FIRST = 3.0
+"""Weight of the diameters of races beside the width where cages are compared: the bore of the disc is made to them."""
+FARTHEST = 60.0
+"""Hundredths of letters that may differ between names that are suggested."""
 WITH_OUTER_RING = {
     r"(HK|BK|HMK|HN|BN|SCE|DL|TA|TLA)\d": "a drawn cup needle bearing, whose cup would sit in the bore of the disc",
     r"(RNA|NA|RNAO|NAO|NK|NKS|NKI|NKIS|NKJ|NKJS|RNAF|NAF|PNA)\d": "a needle bearing with an outer ring of its own",
@@ -244,44 +256,68 @@ def named_bearing(name: str, own: Mapping[str, NamedBearing] | None = None) -> N
         When there is none, with the nearest names, or when it brings an outer ring.
     """
     known = {**named_bearings(), **(own or {})}
-    spelled = {_plain(each): entry for each, entry in known.items()}
-    plain = _plain(name)
-    if plain in spelled:
-        return spelled[plain]
+    entries = {spelled(each): entry for each, entry in known.items()}
+    plain = spelled(name)
+    if plain in entries:
+        return entries[plain]
+    bare = _bare(plain)
+    if bare in entries:
+        return entries[bare]
     for pattern, kind in WITH_OUTER_RING.items():
-        if re.match(pattern, plain):
+        if re.match(pattern, bare):
             raise DriveError([f"{shortened(name)}: is {kind}; {HINT}"])
-    near = ", ".join(_nearest_names(plain, known))
+    ends = re.search(CLASS_IN_NAME, bare)
+    if ends and (entry := entries.get(_bare(bare[: ends.start()]))):
+        meant = next(each for each, one in known.items() if one is entry)
+        raise DriveError(
+            [f'{shortened(name)}: holds a class of clearance; write bearing = "{meant}", clearance_class = "{ends[1]}"']
+        )
+    near = _nearest_names(bare, known)
+    told = f"the nearest are {', '.join(near)}" if near else HINT
     raise DriveError(
-        [
-            f'{shortened(name)}: is not known by name; the nearest are {near}; or give its numbers in [bearings."{name[:40]}"]'
-        ]
+        [f'{shortened(name)}: is not known by name; {told}; or give its numbers in [bearings."{name[:40]}"]']
     )
 
 
-def _nearest_names(plain: str, known: Mapping[str, NamedBearing], count: int = 3) -> list[str]:
-    """The known names nearest to one that is not: cages by their sizes, others by their letters."""
+def _nearest_names(bare: str, known: Mapping[str, NamedBearing], count: int = 3) -> list[str]:
+    """The known names nearest to one that is not: cages by their sizes, the races first, RN by their bores, others by their
+    letters; none where nothing is near.
+    """
     from difflib import SequenceMatcher
 
-    asked = re.fullmatch(r"K([0-9.]{1,6})X([0-9.]{1,6})X([0-9.]{1,6})", plain)
-    try:
-        sizes = [float(each) for each in asked.groups()] if asked else []
-    except ValueError:
-        sizes = []
+    cage, ring = re.fullmatch(CAGE, bare), re.match(r"RN[0-9]{1,2}?([0-9]{2})(?![0-9])", bare)
+    sizes = [float(each) for each in cage.groups()[:3]] if cage else []
 
     def distance(name: str) -> float:
         entry = known[name]
-        if not sizes:
-            return -SequenceMatcher(None, plain[:80], _plain(name)).ratio()
-        width = entry.roller_length if entry.width is None else entry.width
-        own = (entry.inner_race_diameter, entry.outer_race_diameter, width)
-        return sum(abs(one - other) for one, other in zip(own, sizes, strict=True))
+        if sizes:
+            width = entry.roller_length if entry.width is None else entry.width
+            own = (entry.inner_race_diameter, entry.outer_race_diameter, width)
+            apart = [abs(one - other) for one, other in zip(own, sizes, strict=True)]
+            return RACES_FIRST * (apart[0] + apart[1]) + apart[2]
+        if (
+            ring and entry.bore is not None
+        ):  # the last two digits of a designation are a fifth of the bore, from 20 mm on
+            return abs(5.0 * int(ring[1]) - entry.bore) - SequenceMatcher(None, bare[:80], spelled(name)).ratio()
+        return 100.0 * (1.0 - SequenceMatcher(None, bare[:80], spelled(name)).ratio())
 
-    return sorted(known, key=distance)[:count]
+    nearest = sorted(known, key=distance)[:count]
+    return nearest if sizes or (nearest and distance(nearest[0]) < FARTHEST) else []
 
 
-def _plain(name: str) -> str:
-    return re.sub(r"\s+", "", name).replace("×", "x").replace("X", "x").replace(",", ".").upper()
+def spelled(name: str) -> str:
+    """Return a designation without spaces, in capitals, with a point and X as signs of decimals and multiplication."""
+    return re.sub(r"\s+|_", "", name).upper().replace("×", "X").replace("*", "X").replace(",", ".")
+
+
+def _bare(plain: str) -> str:
+    """A designation without its maker and without what tells of the cage alone; the sizes of a needle cage as short as can be."""
+    bare = re.sub(MAKERS, "", plain)
+    if found := re.fullmatch(CAGE, bare):
+        return "K" + "X".join(f"{float(size):g}" for size in found.groups()[:3])
+    if found := re.fullmatch(RING, bare):
+        return f"RN{found[1]}"
+    return bare
 
 
 def clearance_range(bearing: NamedBearing, clearance_class: str) -> tuple[float, float] | None:

@@ -8,7 +8,7 @@ from typing import Any
 
 from ltca.drive.members.judgement import Check, Value
 from ltca.drive.parts import Drive
-from ltca.quantities import unit_sign
+from ltca.quantities import printed, unit_sign
 
 CLOSE = ("°", "′", "″")
 """Signs that stand right behind their number."""
@@ -63,7 +63,7 @@ def verdict_table(checks: Sequence[Check], *, limited: bool = False) -> str:
 def with_unit(number: float, value: Value, digits: int) -> str:
     """Return a number with the unit of a value; minutes and seconds of arc stand right behind it."""
     sign = unit_sign(value.unit)
-    return f"{number:.{digits}g}" + (sign if sign in CLOSE else f" {sign}" if sign else "")
+    return printed(number, f"{{:.{digits}g}}", value.unit) + (sign if sign in CLOSE else f" {sign}" if sign else "")
 
 
 def verdict_line(checks: Sequence[Check]) -> str:

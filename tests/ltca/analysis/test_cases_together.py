@@ -70,6 +70,14 @@ def test_cases_together_are_those_alone(cases):
         assert_same(found[name], analyse(drive, ANGLES))
 
 
+def test_cases_from_poses_of_a_drive_near_by_are_those_from_first_contact():
+    """Whatever the search starts from it ends at a residual of 1e-9 of the load; drives with other coordinates start anew."""
+    drives = {**cases_held_at_the_wheel(), "more pins": shipped("rv")}
+    near = analyse(with_fields(drives["a"], {"clearance.bearing": 0.0}), ANGLES)
+    for name, found in analyse_cases(drives, ANGLES, near=near):
+        assert_same(found, analyse(drives[name], ANGLES))
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("cases", "names"),

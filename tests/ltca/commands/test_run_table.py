@@ -13,7 +13,11 @@ from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.summary import summarise
 from ltca.commands.actions.run_table import lives_told, run_table
 from ltca.commands.program import main
+from ltca.drive.members.judgement import Value
+from ltca.drive.members.verdict_words import with_unit
 from ltca.geometry.placement import position_angles
+from ltca.page.tables import number
+from ltca.quantities import printed
 from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
 
 HEADINGS = (
@@ -126,3 +130,14 @@ def test_lives_that_are_not_rated_say_why(paper):
     assert lives_told({"one": "positions cover no whole turns", "two": "positions cover no whole turns"}) == [
         "no life of the crank bearings: positions cover no whole turns"
     ]
+
+
+def test_nothing_is_printed_as_nothing():
+    """A play without clearances was −1.16e-11′, a change −0 %; what a residual is stays."""
+    assert printed(-1.16e-11, "{:.5g}", "arcmin") == "0"
+    assert printed(-1e-12, "{:.4f}", "mm") == "0.0000"
+    assert printed(-0.2, "{:+.0f}", "%") == "0"
+    assert printed(3.2e-9, "{:.2g}", "N") == "3.2e-09"
+    play = Value(quantity="backlash_output", value=-1.16e-11)
+    assert with_unit(play.value, play, 5) == "0′"
+    assert number(-1.16e-11, "{:.2f}", "arcmin").text == "0.00′"

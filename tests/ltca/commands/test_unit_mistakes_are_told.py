@@ -26,3 +26,13 @@ def test_degrees_as_radians_are_pointed_out(command, tmp_path, capsys):
     main([command, str(path), *COMMANDS[command], "--out", str(tmp_path / "out")])
     out = capsys.readouterr()
     assert (out.err + out.out).count("phases") >= 1
+
+
+def test_run_tells_them_before_it_works_and_once(tmp_path, capsys):
+    """A stiffness in N/µm took half a minute of searching before a word was said of it."""
+    path = tmp_path / "drive.toml"
+    path.write_text(re.sub(r"# phases = .*", "phases = [0.0, 180.0]", shipped_drive("robot-joint")), encoding="utf-8")
+    assert main(["run", str(path), "--quick", "--positions", "2", "--no-page", "--out", str(tmp_path / "out")]) == 0
+    out = capsys.readouterr()
+    assert out.err.startswith("warning: disc.phases: 180 rad are")
+    assert "disc.phases" not in out.out

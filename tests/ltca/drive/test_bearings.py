@@ -221,3 +221,60 @@ def test_the_document_shows_the_data():
             f"{entry.dynamic_load_rating / 1e3:g} | {entry.static_load_rating / 1e3:g} | {entry.number_of_rollers} | "
         )
         assert row + f"{entry.roller_length:g} |" in text
+
+
+@pytest.mark.parametrize(
+    ("written", "meant"),
+    [
+        ("RN 206 ECP", "RN206"), ("RN206-E-TVP2", "RN206"), ("RN206E.TVP2", "RN206"), ("SKF RN206 ECM", "RN206"),
+        ("K 18 × 24 × 20", "K18x24x20"), ("k18*24*20", "K18x24x20"), ("K18-24-20", "K18x24x20"),
+        ("K18X24X20-TV", "K18x24x20"), ("INA K 18,0x24x20 TN", "K18x24x20"),
+    ],
+)  # fmt: skip
+def test_ways_of_writing_a_name_and_its_cage_do_not_matter(written, meant):
+    """A catalogue's own name, ``RN 206 ECP``, was not known."""
+    assert named_bearing(written) is named_bearings()[meant]
+
+
+@pytest.mark.parametrize(
+    ("written", "told"),
+    [
+        ("K18x24x13", r"the nearest are K18x24x20, "),  # the races first
+        ("RN1006", r"the nearest are RN206, RN306, "),  # a bore of 30 mm
+        ("RN206ECP/C3", r'holds a class of clearance; write bearing = "RN206", clearance_class = "C3"$'),
+        ("K18x24x20ZW", r"is not known by name; the nearest are K18x24x20, "),  # two rows
+        ("xyz", r"is not known by name; take a needle cage"),
+        ("SKF NU 206 ECP", r"is a cylindrical roller bearing with its own outer ring"),
+    ],
+)
+def test_names_that_are_none_lead_to_near_ones(written, told):
+    with pytest.raises(DriveError, match=told):
+        named_bearing(written)
+
+
+SOUND = "inner_race_diameter = 30.0\nouter_race_diameter = 40.0\nnumber_of_rollers = 17\nroller_length = 8.0\n"
+
+
+@pytest.mark.parametrize(
+    ("entry", "told"),
+    [
+        (SOUND.replace("inner_race_diameter = 30.0\n", ""), "inner_race_diameter: is missing"),
+        (SOUND + "C0 = 3\n", "C0: is not a field of such a table; did you mean `static_load_rating`?"),
+        (SOUND + "roller_diameter = 5.0\n", "roller_diameter: is not a field of such a table; half the difference of"),
+        (
+            SOUND + 'clearance_class = "C3"\n',
+            "clearance_class: is not a field of such a table; it stands beside the name",
+        ),
+        (SOUND + "bore = 35.0\n", "bore = 35 mm: must be less than inner_race_diameter = 30 mm"),
+        (SOUND.replace("17", "60"), "number_of_rollers = 60: must be at most 21"),
+    ],
+)
+def test_an_own_entry_with_a_mistake_is_not_unknown_besides(entry, told):
+    """It was, and the message asked to give the numbers in the very table that held them."""
+    text = re.sub(
+        r"(?ms)^\[crank_bearing\].*?(?=^\[)", '[crank_bearing]\nbearing = "MY 30"\n\n', shipped_drive("robot-joint")
+    )
+    with pytest.raises(DriveError) as caught:
+        parse_drive(f'{text}\n[bearings."MY 30"]\n{entry}', "own")
+    (problem,) = caught.value.problems
+    assert problem.startswith("bearings.MY 30." + told)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,7 +11,15 @@ import pytest
 from ltca.analysis.loaded_analysis import analyse
 from ltca.commands.program import main
 from ltca.drive.fields import field_kinds, read_field
-from ltca.drive.unit_mistakes import explain_failure, likely_unit_mistakes, stiffness_warning, unit_warnings
+from ltca.drive.members.bearings import named_bearings
+from ltca.drive.members.limits import parse_limits
+from ltca.drive.unit_mistakes import (
+    explain_failure,
+    likely_unit_mistakes,
+    limit_warnings,
+    stiffness_warning,
+    unit_warnings,
+)
 from ltca.errors import ConvergenceError, CycloError, DriveError
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import parse_drive, shipped_drive
@@ -152,6 +161,35 @@ def test_what_no_drive_has_is_pointed_out_in_one_line(vary, changes, told):
         ),
         (
             "robot-joint",
+            {"materials.disc.allowable_pressure": 1.5},
+            r'^materials.disc: allowable_pressure = 1.5 MPa .* mean "1.5 GPa" \(1500 MPa\)\?$',
+        ),
+        ("rv", {"materials.wheel_pin.yield_strength": 2.2}, r'^materials.wheel_pin: yield_strength .* mean "2.2 GPa"'),
+        (
+            "rv",
+            {"materials.disc.allowable_pressure": 1.5e9},
+            r'^materials.disc: allowable_pressure = 1.5e\+09 MPa is 7300 times .* mean "1.5e\+09 Pa" \(1500 MPa\)\?$',
+        ),
+        (
+            "robot-joint",
+            {"pin_shaft.stiffness": 400.0},
+            r'^pin_shaft.stiffness = 400 N/mm .* mean "400 N/µm" \(400000 N',
+        ),
+        ("robot-joint", {"pin_shaft.stiffness": 100.0}, r'^pin_shaft.stiffness = 100 N/mm .* mean "100 N/µm"'),
+        ("rv", {"crank.support.stiffness": (400.0, 4e5)}, r'^crank.support.stiffness\[0\] = 400 N/mm .* "400 N/µm"'),
+        ("rv", {"pin_wheel.support_stiffness": 1000.0}, r'^pin_wheel.support_stiffness = 1000 N/mm .* "1000 N/µm"'),
+        (
+            "robot-joint",
+            {"crank_bearing.dynamic_load_rating": 13.1},
+            r'^crank_bearing.dynamic_load_rating = 13.1 N is 1/.* mean "13.1 kN"\?$',
+        ),
+        (
+            "robot-joint",
+            {"load.speed": 90_000.0},
+            r'^load.speed = 90000 rpm turns the crank bearing of .* "90000 deg/s" \(15000 rpm\) or 1500 rpm\?$',
+        ),
+        (
+            "robot-joint",
             {"duty.0.torque": 400.0, "duty.0.speed": 1500.0, "duty.0.share": 1.0},
             r"^duty.0.torque = 400 N",
         ),
@@ -162,6 +200,37 @@ def test_plain_numbers_in_another_unit_are_pointed_out(shipped, changes, told):
     (drive,) = parse_drive(shipped_drive(shipped), shipped).cases.values()
     (found,) = unit_warnings(with_fields(drive, changes))
     assert re.search(told, found)
+
+
+def test_ratings_of_makers_are_sound():
+    """Those of all named bearings lie within what is said of none: estimates are good to a factor of five."""
+    drive = next(iter(parse_drive(shipped_drive("paper")).cases.values()))
+    for name, entry in named_bearings().items():
+        bearing = replace(drive.crank_bearing, **entry.fields)
+        told = unit_warnings(replace(drive, crank_bearing=bearing))
+        assert [one for one in told if "rating" in one] == [], name
+
+
+def test_limits_in_gigapascals_are_pointed_out():
+    """1.5 for 1.5 GPa failed every check; the limits of shipped drives and of soft ones are sound."""
+    for name in ("paper", "robot-joint", "rv", "sleeved"):
+        file = parse_drive(shipped_drive(name), name)
+        for case, drive in file.cases.items():
+            assert limit_warnings(drive, file.limits[case].values()) == []
+    limits = parse_limits(
+        {"max_pin_pressure_mid": 1.5, "max_bore_stress": 4e8, "min_wall": 1.5, "max_pin_load": 1.5}, []
+    )
+    pressure, stress = limit_warnings(drive, limits.values())
+    assert re.search(r'^limits.max_pin_pressure_mid = 1.5 MPa .* mean "1.5 GPa" \(1500 MPa\)\?$', pressure)
+    assert re.search(r'^limits.max_bore_stress = 4e\+08 MPa .* mean "4e\+08 Pa" \(400 MPa\)\?$', stress)
+    # TPU, 30 MPa, bears a twentieth of that.
+    soft = with_fields(drive, {"materials.disc.youngs_modulus": 30.0}, check=False)
+    assert limit_warnings(soft, limits.values())[:1] != [pressure]
+
+
+def test_a_strength_in_gigapascals_is_no_reason_of_a_failed_solution(vary):
+    """It changes no load."""
+    assert likely_unit_mistakes(vary(materials={"disc": {"allowable_pressure": 1.5}})) == []
 
 
 def test_a_torque_of_the_command_is_pointed_out(vary):
@@ -209,7 +278,9 @@ def test_a_hundredth_of_the_torque_is_no_mistake():
 def test_sound_drives_are_not_pointed_out():
     """Nor those of plastic, or hot: shipped ones, and practical ones of all sizes."""
     shipped = [
-        drive for name in ("paper", "rv", "sleeved") for drive in parse_drive(shipped_drive(name)).cases.values()
+        drive
+        for name in ("paper", "robot-joint", "rv", "sleeved")
+        for drive in parse_drive(shipped_drive(name)).cases.values()
     ]
     for drive in [*shipped, *(practical_drive(seed)[0] for seed in range(40))]:
         assert unit_warnings(drive) == []
