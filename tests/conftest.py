@@ -14,6 +14,7 @@ import subprocess
 import tomllib
 from collections.abc import Callable
 from functools import cache, partial
+from pathlib import Path
 from typing import Any
 
 for _variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
@@ -26,6 +27,7 @@ import pytest
 from ltca.drive.parts import Drive
 from ltca.errors import DriveError
 from ltca.laws import profiled_line_contact
+from ltca.output.provenance import code_hash
 from ltca.reading.drive_file import build_drive, load_drive, parse_drive, shipped_drive
 
 
@@ -177,6 +179,21 @@ _COARSE_TABLE = cache(partial(profiled_line_contact.profiled_table.__wrapped__, 
 def coarse_tables(monkeypatch: pytest.MonkeyPatch) -> None:
     """Tables of profiled contacts in tenths of a second: good to a per cent, and the same for all who ask."""
     monkeypatch.setattr(profiled_line_contact, "profiled_table", _COARSE_TABLE)
+
+
+@pytest.fixture
+def coarse_derivations(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Coefficients in seconds, on the coarsest meshes that pass their checks; in a cache of their own, where nobody else finds them."""
+    from fem.coefficients.dataset import derive_coefficients
+    from ltca.compliance import coefficient_files
+
+    def derive(drive: Drive, *, state: str, processes: int) -> Any:
+        return derive_coefficients(drive, stations=0.25, size=1.5, state=state, processes=processes)
+
+    code_hash("ltca", "fem")  # by the usual cache, where it is kept
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    monkeypatch.setattr(coefficient_files, "_derivation", lambda: derive)
+    monkeypatch.setattr(coefficient_files, "MAX_DERIVATIONS", 1)
 
 
 CHROMIUM = next(
