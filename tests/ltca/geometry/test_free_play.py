@@ -186,7 +186,7 @@ def test_loads_that_vanish_end_at_the_free_play(seed):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", [2, 3, 4, 9, 10, 14, 19, 20, 22, 23, 30, 33])
+@pytest.mark.parametrize("seed", [2, 10, 33])
 def test_loads_of_a_millionth_turn_practical_drives_as_far(seed):
     """1 % or 0.005′; where pins with next to no lever touch first the load goes on, as far as its overlaps allow.
 
