@@ -124,7 +124,10 @@ def scaled(table, length, stress):
     return result
 
 
-@pytest.mark.parametrize(("length", "stress"), [(1e-3, 1.0), (25.4, 1.0), (1.0, 1e-3), (0.04, 70.0)])
+@pytest.mark.parametrize(
+    ("length", "stress"),
+    [*(pytest.param(*one, marks=pytest.mark.slow) for one in [(1e-3, 1.0), (25.4, 1.0), (1.0, 1e-3)]), (0.04, 70.0)],
+)
 def test_unit_invariance(paper_table, length, stress):
     """A drive in metres, inches, GPa has the same loads in its units: no hidden length or force in the solver."""
     table = paper_table(clearance={"bearing": 0.03, "pin_hole": 0.02})

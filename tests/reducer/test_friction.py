@@ -99,7 +99,7 @@ def work_of_friction(model, drive, centre, rate):
         pytest.param("paper, backwards", marks=pytest.mark.slow),
         pytest.param("paper, on a soft main bearing", marks=pytest.mark.slow),
         "robot-joint",
-        "robot-joint, the other member held",
+        pytest.param("robot-joint, the other member held", marks=pytest.mark.slow),
         pytest.param("robot-joint, clockwise", marks=pytest.mark.slow),
         "paper, in slots",
         pytest.param("sleeved", marks=pytest.mark.slow),

@@ -117,6 +117,7 @@ def test_coupled_bodies(paper_cases, engine, tmp_path):
 SOFT_DISC = {"materials.disc.youngs_modulus": 3000.0, "materials.disc.poisson_ratio": 0.38, "load.torque": 50_000.0}
 
 
+@pytest.mark.slow
 def test_beside_a_lightly_loaded_pin(paper_cases):
     """Steps by the load of all contacts went over the opening of a pin with a thousandth of it: 1e-5 off here, 2 % elsewhere."""
     drive = with_fields(paper_cases["CS-3"], {**SOFT_DISC, "load.light_torque": 25_000.0})
@@ -215,6 +216,7 @@ def test_what_is_no_real_field_is_refused_by_name(paper_cases, path, told):
         ltca.derivatives(result, [path])
 
 
+@pytest.mark.slow
 def test_a_field_that_reshapes_a_body_is_refused_by_name(paper_cases, tmp_path):
     path = tmp_path / "bodies.nc"
     closed_form_coefficients(paper_cases["CS-1"], half_width=0.02, depth=300.0).to_netcdf(path, engine="h5netcdf")

@@ -100,7 +100,9 @@ def test_swapped_fields_are_both_named(part, smaller, larger):
     )
 
 
-@pytest.mark.parametrize("drive", ["paper", "rv", "robot-joint"])
+@pytest.mark.parametrize(
+    "drive", ["paper", *(pytest.param(name, marks=pytest.mark.slow) for name in ("rv", "robot-joint"))]
+)
 @pytest.mark.parametrize(
     "offset", [pytest.param(-100.0, marks=pytest.mark.slow), -60.0, pytest.param(-20.0, marks=pytest.mark.slow)]
 )

@@ -48,6 +48,7 @@ def same_losses(drives):
     np.testing.assert_allclose(solved(drives, OF_FRICTION), [losses_alone(drive) for drive in drives], rtol=1e-7)
 
 
+@pytest.mark.slow
 def test_seals_and_oil_take_what_they_take_in_each_sample():
     """Efficiency, input torque and power of a batch were those of its first sample's no-load torque."""
     base = with_fields(load_drive("paper").cases["CS-2"], RUBS)
@@ -72,6 +73,7 @@ def test_each_sample_is_driven_at_its_side_and_held_at_its_member():
     same_losses([with_fields(base, sample) for sample in samples])
 
 
+@pytest.mark.slow
 def test_each_sample_has_its_first_stage():
     base = with_fields(shipped("rv"), {**RUBS, "friction.hole": 0.0})
     same_losses([with_fields(base, {"installation.first_stage_ratio": value}) for value in (3.0, None)])
@@ -94,6 +96,7 @@ def test_pins_slip_in_the_seats_of_each_sample():
     assert not lost.pins.seat_slip[:, 1].any()
 
 
+@pytest.mark.slow
 def test_half_widths_are_bounded_by_the_radii_of_each_sample(vary):
     """The first sample's rollers bounded all: one with rollers as small as a pin's contact passed, or refused its neighbours."""
     plain = with_fields(vary(), {"materials.disc.youngs_modulus": 3000.0, "materials.disc.poisson_ratio": 0.38})
@@ -137,6 +140,7 @@ def test_a_ring_lies_on_the_circle_of_each_sample():
     np.testing.assert_allclose(solved(drives, ("max_pin_load",), angles=few)[:, 0], alone, rtol=1e-7)
 
 
+@pytest.mark.slow
 def test_samples_of_other_coordinates_start_from_first_contact():
     """A nominal solution without the wheel's displacement, or of other numbers of parts, was started from."""
     base, quantities = load_drive("paper").cases["CS-2"], ("max_pin_load",)
