@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import copy
+import gc
 import hashlib
 import html
 import json
@@ -29,6 +30,14 @@ from ltca.errors import DriveError
 from ltca.laws import profiled_line_contact
 from ltca.output.provenance import code_hash
 from ltca.reading.drive_file import build_drive, load_drive, parse_drive, shipped_drive
+
+gc.disable()  # while some hundred thousand objects come that stay
+
+
+def pytest_collection_finish() -> None:
+    """Look for garbage among what the tests make, not among modules and the tests themselves."""
+    gc.enable()
+    gc.freeze()
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
@@ -183,7 +192,7 @@ def coarse_tables(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture
 def coarse_derivations(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """Coefficients in seconds, on the coarsest meshes that pass their checks; in a cache of their own, where nobody else finds them."""
+    """Coefficients in seconds, on the coarsest meshes that pass their checks, in a cache that nobody else reads."""
     from fem.coefficients.dataset import derive_coefficients
     from ltca.compliance import coefficient_files
 

@@ -39,7 +39,7 @@ def places_of(gmsh, tag, count):
         ("paper", 0, 0.0),
         pytest.param("robot-joint", 1, 0.0, marks=pytest.mark.slow),
         pytest.param("rv", 0, 0.0, marks=pytest.mark.slow),
-        pytest.param("many", 0, 0.0, marks=pytest.mark.slow),
+        pytest.param("many", 0, 0.0, marks=pytest.mark.nightly),
         pytest.param("plastic", 0, 0.2, marks=pytest.mark.slow),
     ],
 )
