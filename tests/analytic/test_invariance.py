@@ -73,6 +73,7 @@ def test_turning_everything_by_a_hole_pitch(symmetric):
     assert np.max(np.abs(unmoved.full.response.hole_load - second.hole_load)) > 1.0
 
 
+@pytest.mark.slow
 def test_true_period_of_the_papers_drive(paper_cases):
     """98 turns of the crank: 39 turns of the cage (98·19.5/49) and 7 of the wheel."""
     angles = np.linspace(0.0, 6.0, 12)

@@ -149,6 +149,7 @@ def test_pictures(tmp_path, monkeypatch):
     assert len(page) < 2_500_000
 
 
+@pytest.mark.slow
 def test_pictures_without_gl(monkeypatch, tmp_path):
     """matplotlib draws the same scenes where pyvista must not be tried."""
     from fem.pictures.offscreen import rendering_problem

@@ -76,6 +76,7 @@ def test_the_loop_lies_between_the_turning_branches(paper, name):
     assert abs(rise - fall) > 0.8 * (high - low)[2]
 
 
+@pytest.mark.slow
 def test_small_cycles_stick(paper):
     """A small part of the torque back and forth ends in contacts that stick: one line, there and back, and no energy."""
     torque = paper.load.torque

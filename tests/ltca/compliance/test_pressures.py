@@ -87,6 +87,7 @@ def test_wide_holes_press_like_hertz(drive):
     assert np.max(faded[2:]) < np.min(faded[:2])
 
 
+@pytest.mark.slow
 def test_holes_of_plane_strain_press_rigid_pins(drive, closed_form):
     """Hertz to the last digit, with the modulus of the disc alone; the spring's pin is elastic again without that wall."""
     coefficients = closed_form(drive)

@@ -82,6 +82,7 @@ def test_circles_layers_and_units(kinds_of_drives, tmp_path):
         assert hole.dxf.radius == pytest.approx(radius + 0.1, abs=1e-12)
 
 
+@pytest.mark.slow
 def test_an_assembly_has_layers_for_each_disc(kinds_of_drives, tmp_path):
     (part,) = make_parts(kinds_of_drives["sleeved"], "nominal", "assembly")
     space = read_back(part, tmp_path / "part.dxf").modelspace()

@@ -118,6 +118,7 @@ def test_preloaded_drives_of_a_batch_keep_their_own_parts(vary):
     np.testing.assert_allclose(together.play, np.concatenate([one.play for one in alone]), rtol=0.0, atol=1e-12)
 
 
+@pytest.mark.slow
 def test_turns_together_are_those_alone(paper_cases):
     """Sizes differ, and each drive keeps the steps of its own: programmes end where they do alone, to round-off."""
     drives = [discs_of(paper_cases[case]) for case in ("CS-1", "CS-3", "CS-6")]

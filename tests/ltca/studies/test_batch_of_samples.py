@@ -59,6 +59,7 @@ def test_seals_and_oil_take_what_they_take_in_each_sample():
     np.testing.assert_allclose(np.diff(np.abs(torque)), [1480.0, 1500.0], rtol=1e-7)
 
 
+@pytest.mark.slow
 def test_each_sample_is_driven_at_its_side_and_held_at_its_member():
     """An efficiency of 1.33: the second sample's losses were those of a drive that is driven and held like the first."""
     base = with_fields(shipped("robot-joint"), RUBS)
@@ -198,6 +199,7 @@ def test_a_quantity_that_a_case_has_not_is_refused_by_name(tmp_path, capsys, qua
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 def test_cases_share_the_default_quantities_that_all_have(tmp_path):
     path = str(case_file(tmp_path))
     for cases, has in ((["rubs", "smooth"], False), (["smooth", "rubs"], False), (["rubs", "at rest"], True)):
