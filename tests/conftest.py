@@ -13,6 +13,7 @@ import re
 import shutil
 import subprocess
 import tomllib
+from collections import Counter
 from collections.abc import Callable
 from functools import cache, partial
 from pathlib import Path
@@ -34,6 +35,12 @@ from ltca.reading.drive_file import build_drive, load_drive, parse_drive, shippe
 gc.disable()  # while some hundred thousand objects come that stay
 
 
+def pytest_configure(config: pytest.Config) -> None:
+    """Let workers take files in the order of the collection, not by their number of tests: see `_longest_first`."""
+    if hasattr(config.option, "loadscopereorder"):
+        config.option.loadscopereorder = False
+
+
 def pytest_collection_finish() -> None:
     """Look for garbage among what the tests make, not among modules and the tests themselves."""
     gc.enable()
@@ -48,6 +55,17 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
             item.add_marker("slow")
             if not named:
                 item.add_marker(pytest.mark.skip(reason="nightly: python -m pytest -m nightly"))
+    if hasattr(config, "workerinput"):
+        _longest_first(items)
+
+
+def _longest_first(items: list[pytest.Item]) -> None:
+    """Put the files with the slowest tests first: a worker that begins one at the end leaves the others without work."""
+    seconds: Counter[str] = Counter()
+    known = tomllib.loads((Path(__file__).parent / "budget.toml").read_text(encoding="utf-8"))["slowest"]
+    for name, spent in known.items():
+        seconds[name.partition("::")[0]] += spent
+    items.sort(key=lambda item: -seconds[item.nodeid.partition("::")[0]])
 
 
 def _merge(below: dict[str, Any], over: dict[str, Any]) -> dict[str, Any]:
