@@ -253,11 +253,11 @@ def test_commands_write_their_files(tmp_path, capsys, monkeypatch):
     path.write_text(STUDY)
     assert run(sweep, path, "--figures", "png", "--out", tmp_path / "sweep") == 0
     assert (tmp_path / "sweep" / "figures" / "responses.png").stat().st_size > 10_000
-    words = ["paper", "--case", "CS-6", "--samples", 150, "--positions", 6, "--seed", 1]
+    words = ["paper", "--case", "CS-6", "--samples", 300, "--positions", 6, "--seed", 1]
     words += ["--quantities", "ptp_transmission_error", "max_pin_load"]
     assert run(tolerance, *words, "--out", tmp_path / "t", "--figures") == 0
     text = capsys.readouterr().out
-    assert "150 samples × 6 positions, half-space" in text
+    assert "300 samples × 6 positions, half-space" in text
     assert "cyclo run" in text
     assert (tmp_path / "t" / "figures" / "distributions.svg").exists()
     assert (tmp_path / "t" / "figures" / "sensitivity.svg").exists()
