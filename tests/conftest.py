@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import copy
+import gc
 import hashlib
 import html
 import json
@@ -12,8 +13,10 @@ import re
 import shutil
 import subprocess
 import tomllib
+from collections import Counter
 from collections.abc import Callable
 from functools import cache, partial
+from pathlib import Path
 from typing import Any
 
 for _variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
@@ -26,7 +29,22 @@ import pytest
 from ltca.drive.parts import Drive
 from ltca.errors import DriveError
 from ltca.laws import profiled_line_contact
+from ltca.output.provenance import code_hash
 from ltca.reading.drive_file import build_drive, load_drive, parse_drive, shipped_drive
+
+gc.disable()  # while some hundred thousand objects come that stay
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Let workers take files in the order of the collection, not by their number of tests: see `_longest_first`."""
+    if hasattr(config.option, "loadscopereorder"):
+        config.option.loadscopereorder = False
+
+
+def pytest_collection_finish() -> None:
+    """Look for garbage among what the tests make, not among modules and the tests themselves."""
+    gc.enable()
+    gc.freeze()
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
@@ -37,6 +55,17 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
             item.add_marker("slow")
             if not named:
                 item.add_marker(pytest.mark.skip(reason="nightly: python -m pytest -m nightly"))
+    if hasattr(config, "workerinput"):
+        _longest_first(items)
+
+
+def _longest_first(items: list[pytest.Item]) -> None:
+    """Put the files with the slowest tests first: a worker that begins one at the end leaves the others without work."""
+    seconds: Counter[str] = Counter()
+    known = tomllib.loads((Path(__file__).parent / "budget.toml").read_text(encoding="utf-8"))["slowest"]
+    for name, spent in known.items():
+        seconds[name.partition("::")[0]] += spent
+    items.sort(key=lambda item: -seconds[item.nodeid.partition("::")[0]])
 
 
 def _merge(below: dict[str, Any], over: dict[str, Any]) -> dict[str, Any]:
@@ -177,6 +206,21 @@ _COARSE_TABLE = cache(partial(profiled_line_contact.profiled_table.__wrapped__, 
 def coarse_tables(monkeypatch: pytest.MonkeyPatch) -> None:
     """Tables of profiled contacts in tenths of a second: good to a per cent, and the same for all who ask."""
     monkeypatch.setattr(profiled_line_contact, "profiled_table", _COARSE_TABLE)
+
+
+@pytest.fixture
+def coarse_derivations(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Coefficients in seconds, on the coarsest meshes that pass their checks, in a cache that nobody else reads."""
+    from fem.coefficients.dataset import derive_coefficients
+    from ltca.compliance import coefficient_files
+
+    def derive(drive: Drive, *, state: str, processes: int) -> Any:
+        return derive_coefficients(drive, stations=0.25, size=1.5, state=state, processes=processes)
+
+    code_hash("ltca", "fem")  # by the usual cache, where it is kept
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    monkeypatch.setattr(coefficient_files, "_derivation", lambda: derive)
+    monkeypatch.setattr(coefficient_files, "MAX_DERIVATIONS", 1)
 
 
 CHROMIUM = next(

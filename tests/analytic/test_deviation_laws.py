@@ -229,6 +229,7 @@ def test_torque_curve_tends_to_the_play_of_the_clearances(paper_cases, case):
     assert np.all(curve.lost_motion > branches)
 
 
+@pytest.mark.slow
 def test_torque_curve_is_monotone_and_mirrored(paper_cases):
     """A mirrored drive at the mirrored crank angle winds up the other way; φ_C = 0 is its own mirror."""
     drive = paper_cases["CS-6"]

@@ -36,7 +36,7 @@ def test_stored_energy_is_the_work_of_the_torque(paper_cases, case):
     assert energy[-1] > 0.0
 
 
-@pytest.mark.parametrize("case", ["CS-1", "CS-3", "CS-6"])
+@pytest.mark.parametrize("case", ["CS-6", *(pytest.param(case, marks=pytest.mark.slow) for case in ("CS-1", "CS-3"))])
 def test_crank_torque_is_the_slope_of_the_potential(paper_cases, case):
     """M dφ = dΠ: the crank turns inner race and cage; what it puts in goes to the load or is stored.
 
@@ -78,6 +78,7 @@ def test_mean_tangential_bearing_force(paper_cases):
         assert tangential.mean() == pytest.approx(377_300.0 / (14.0 * 4.0), rel=5e-4)
 
 
+@pytest.mark.slow
 def test_pin_shaft_loads_follow_the_displacement_of_the_disc(paper_cases):
     """k_PS max(0, δ_r − R_PS δ_φ sin(θ_k − φ_C) − clearance) to first order (reading notes)."""
     angles = np.linspace(0.0, 6.2, 50)

@@ -73,6 +73,7 @@ def test_turning_everything_by_a_hole_pitch(symmetric):
     assert np.max(np.abs(unmoved.full.response.hole_load - second.hole_load)) > 1.0
 
 
+@pytest.mark.slow
 def test_true_period_of_the_papers_drive(paper_cases):
     """98 turns of the crank: 39 turns of the cage (98·19.5/49) and 7 of the wheel."""
     angles = np.linspace(0.0, 6.0, 12)
@@ -124,7 +125,10 @@ def scaled(table, length, stress):
     return result
 
 
-@pytest.mark.parametrize(("length", "stress"), [(1e-3, 1.0), (25.4, 1.0), (1.0, 1e-3), (0.04, 70.0)])
+@pytest.mark.parametrize(
+    ("length", "stress"),
+    [*(pytest.param(*one, marks=pytest.mark.slow) for one in [(1e-3, 1.0), (25.4, 1.0), (1.0, 1e-3)]), (0.04, 70.0)],
+)
 def test_unit_invariance(paper_table, length, stress):
     """A drive in metres, inches, GPa has the same loads in its units: no hidden length or force in the solver."""
     table = paper_table(clearance={"bearing": 0.03, "pin_hole": 0.02})

@@ -13,7 +13,7 @@ from ltca.testing.elastic_cylinder import hertz_approach, press_cylinder, press_
 CELLS, REACH = 120, 0.36
 
 
-@pytest.mark.parametrize("half_width", [0.03, 0.06])
+@pytest.mark.parametrize("half_width", [0.03, pytest.param(0.06, marks=pytest.mark.slow)])
 def test_narrow_contacts_of_the_cylinder_are_hertz(half_width):
     """Johnson's closed form (Eq. 5.57) holds to (b/r)², here 0.4 of it at most; 10 and 20 cells to the half-width."""
     found = press_cylinder(hertz_approach(half_width), CELLS, REACH)

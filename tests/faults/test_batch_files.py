@@ -157,6 +157,7 @@ def test_batches_of_another_study_or_number_are_set_aside(study, other, solved, 
     assert interrupted.results.read_bytes() == reference
 
 
+@pytest.mark.slow
 def test_what_is_not_ours_in_the_folder_of_batches_stays(study, interrupted, reference):
     for name in ("notes.txt", "0.npz", "12.npz", "000000x0.npz"):
         (interrupted.path / "batches" / name).write_text("the user's")

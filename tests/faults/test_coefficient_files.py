@@ -15,6 +15,7 @@ from ltca.compliance.coefficients import load_coefficients
 from ltca.contact.round_bodies import held_ring_approach
 from ltca.errors import DamagedFileError
 from ltca.output.netcdf import write_netcdf
+from ltca.output.provenance import code_hash
 from ltca.reading.coefficient_file import CHECKSUM, checksum_of, read_coefficients, write_coefficients
 from ltca.reading.coefficient_laws import near_field_unit
 from ltca.testing.closed_form_bodies import closed_form_coefficients
@@ -44,6 +45,7 @@ def derived(monkeypatch, tmp_path):
         made.append(drive.name)
         return closed_form(drive)
 
+    code_hash("ltca", "fem")  # by the usual cache, where it is kept
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     monkeypatch.delenv(coefficient_files.INSTEAD, raising=False)
     monkeypatch.setattr(coefficient_files, "_derivation", lambda: derive)

@@ -90,15 +90,17 @@ def test_a_signal_while_an_object_is_removed_is_heard(number, kind):
             os.kill(os.getpid(), number)
             time.sleep(0.001)
 
+    went_on = []
+
     def work():
         with ended_by_signals():
             Dying()
-            time.sleep(5.0)
+            time.sleep(5.0)  # what is heard ends it at once
+            went_on.append(True)
 
-    began = time.monotonic()
     with pytest.raises(kind):
         work()
-    assert time.monotonic() - began < 3.0
+    assert not went_on
 
 
 @pytest.mark.slow

@@ -27,8 +27,8 @@ import itertools
 import numpy as np
 import pytest
 
-from ltca.analysis.loaded_analysis import analyse
-from ltca.analysis.summary import summarise
+from ltca.analysis.loaded_analysis import analyse_cases
+from ltca.analysis.summary import summarise_cases
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.placement import position_angles
 
@@ -37,12 +37,12 @@ CASES = ["CS-1", "CS-2", "CS-3", "CS-4", "CS-5", "CS-6"]
 
 @pytest.fixture(scope="module")
 def analyses(paper_cases):
-    return {name: analyse(drive, position_angles(360)) for name, drive in paper_cases.items()}
+    return dict(analyse_cases(paper_cases, position_angles(360)))
 
 
 @pytest.fixture(scope="module")
 def summary(analyses):
-    return {name: summarise(analysis) for name, analysis in analyses.items()}
+    return summarise_cases(analyses)
 
 
 def change(summary, key, case, reference):

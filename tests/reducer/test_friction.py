@@ -99,7 +99,7 @@ def work_of_friction(model, drive, centre, rate):
         pytest.param("paper, backwards", marks=pytest.mark.slow),
         pytest.param("paper, on a soft main bearing", marks=pytest.mark.slow),
         "robot-joint",
-        "robot-joint, the other member held",
+        pytest.param("robot-joint, the other member held", marks=pytest.mark.slow),
         pytest.param("robot-joint, clockwise", marks=pytest.mark.slow),
         "paper, in slots",
         pytest.param("sleeved", marks=pytest.mark.slow),
@@ -233,6 +233,7 @@ def test_a_free_pin_by_brute_force(flank, seat, inner, outer):
     assert rub == pytest.approx(expected, rel=2.0 * max(flank, seat) ** 2)
 
 
+@pytest.mark.slow
 def test_mirrored_drives_lose_the_same(paper):
     drive = replace(paper, friction=replace(EVERYTHING, seat=0.0), load=replace(paper.load, speed=1500.0))
     one, other = (
@@ -244,6 +245,7 @@ def test_mirrored_drives_lose_the_same(paper):
     np.testing.assert_allclose(other.losses_back.efficiency, one.losses_back.efficiency, rtol=1e-7)
 
 
+@pytest.mark.slow
 def test_driven_by_the_output_is_the_motion_reversed(paper):
     drive = replace(paper, friction=replace(EVERYTHING, seat=0.0), load=replace(paper.load, speed=1500.0))
     one, other = analyse(drive, ANGLES), analyse(with_fields(drive, {"load.driven_by": "output"}), ANGLES)

@@ -279,7 +279,7 @@ def test_kinds_typed_out_are_those_left_out(joint):
     np.testing.assert_array_equal(analyse(typed, ANGLES).full.pose, analyse(joint, ANGLES).full.pose)
 
 
-@pytest.mark.parametrize("name", [THREE, ALL])
+@pytest.mark.parametrize("name", [pytest.param(THREE.values[0], marks=pytest.mark.nightly), ALL])
 def test_reverse_is_the_mirror_image(joint, name):
     drive = kind(joint, name)
     reverse = with_fields(drive, {"load.direction": "cw", "disc.phases": tuple(-p for p in drive.disc.disc_phases)})
@@ -349,30 +349,30 @@ def test_results_of_seats_and_beams(joint):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("field", "values"),
-    [
-        ("pin_wheel.seat.radius", (2.503, 2.506)),
-        ("pin_wheel.beam.span", (29.0, 33.0)),
-        ("pin_wheel.beam.diameter", (4.9, 5.0)),
-        ("pin_shaft.seat.bore_radius", (4.02, 4.05)),
-        ("pin_shaft.beam.span", (30.0, 31.0)),
-        ("disc.planes", ((-6.0, 6.0), (-7.0, 7.0))),
-        ("materials.sleeve.youngs_modulus", (206e3, 110e3)),
-    ],
-)
-def test_samples_of_seats_and_beams_are_those_of_each_alone(joint, field, values):
+def test_samples_of_seats_and_beams_are_those_of_each_alone(joint):
     """Many drives at once have the law of each, not of the first: a study that scatters a seat or a beam."""
-    drives = [with_fields(kind(joint, "everything"), {field: value}) for value in values]
+    changes = {
+        "pin_wheel.seat.radius": 2.503,
+        "pin_wheel.beam.span": 33.0,
+        "pin_wheel.beam.diameter": 4.9,
+        "pin_shaft.seat.bore_radius": 4.05,
+        "pin_shaft.beam.span": 31.0,
+        "disc.planes": (-7.0, 7.0),
+        "materials.sleeve.youngs_modulus": 110e3,
+    }
+    base = with_fields(kind(joint, "everything"), {"disc.planes": (-6.0, 6.0)})
+    drives = [base, *(with_fields(base, {field: value}) for field, value in changes.items())]
     settings = BatchSettings(
         crank_angle=ANGLES[:2], quantities=("mean_transmission_error", "max_pin_load"), engine=HalfSpace(), nominal=None
     )
     together = analyse_samples(drives, settings)
     alone = np.concatenate([analyse_samples([drive], settings).values for drive in drives])
-    assert together.messages == ("", "")
+    assert set(together.messages) == {""}
     # Solved from other starts: 1e-9 of the load
     np.testing.assert_allclose(together.values, alone, rtol=1e-8)
-    assert np.ptp(alone[:, 0]) > 1e-3 * abs(alone[0, 0]) or field == "disc.planes"
+    for field, values in zip(changes, alone[1:], strict=True):
+        least = 1e-6 if field == "disc.planes" else 4e-4
+        assert abs(values[0] - alone[0, 0]) > least * abs(alone[0, 0]), field
 
 
 CASES = """

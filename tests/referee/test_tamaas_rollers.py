@@ -63,7 +63,7 @@ def centre_peak(pressure):
 @pytest.mark.parametrize(
     ("length", "load", "counts"),
     [
-        pytest.param(11.8, 1500.0, (96, 512), id="long", marks=pytest.mark.slow),
+        pytest.param(11.8, 1500.0, (96, 512), id="long", marks=pytest.mark.nightly),
         pytest.param(2.0, 1500.0, (96, 256), id="short", marks=pytest.mark.slow),
         pytest.param(0.3, 400.0, (192, 128), id="shorter than wide", marks=pytest.mark.slow),
     ],

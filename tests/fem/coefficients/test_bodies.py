@@ -299,6 +299,7 @@ def test_mesh_halved(disc_shape, stations, disc):
     assert change < 3e-3 * np.max(reference)
 
 
+@pytest.mark.nightly
 @pytest.mark.slow
 def test_clearance_changes_little(paper_cases, disc_shape, stations, disc):
     """0.03 mm in the holes thin the ligaments by 0.4 %; CS-6 has the largest clearances of the paper."""

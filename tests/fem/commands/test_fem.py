@@ -8,6 +8,7 @@ import pytest
 import xarray as xr
 
 from fem.commands import fem as command
+from fem.pictures import solution_pictures
 from fem.reducer.solution_files import ARRAYS
 from ltca.errors import CycloError
 from ltca.output.labelled import LabelledDataset
@@ -136,7 +137,9 @@ def test_fields_and_deck_are_there(folder):
 
 
 @pytest.mark.slow
-def test_pictures(tmp_path):
+def test_pictures(tmp_path, monkeypatch):
+    monkeypatch.setattr(solution_pictures, "ZOOM_SIDE", 400)
+    monkeypatch.setitem(solution_pictures.draw_solution.__kwdefaults__, "side", 500)
     assert run("paper", "--case", "CS-1", "--angle", "0.5", "--size", "6", "--out", str(tmp_path), "--pictures") == 0
     for name in ("von_mises.png", "contacts.png", "deformed.png"):
         assert (tmp_path / name).stat().st_size > 20_000
@@ -146,6 +149,7 @@ def test_pictures(tmp_path):
     assert len(page) < 2_500_000
 
 
+@pytest.mark.slow
 def test_pictures_without_gl(monkeypatch, tmp_path):
     """matplotlib draws the same scenes where pyvista must not be tried."""
     from fem.pictures.offscreen import rendering_problem

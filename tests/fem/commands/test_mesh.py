@@ -14,7 +14,7 @@ import pytest
 
 from fem.commands import mesh
 from fem.mesh.mesh_file import read_msh
-from fem.pictures import offscreen
+from fem.pictures import mesh_picture, offscreen
 from ltca.errors import CycloError
 
 
@@ -39,7 +39,10 @@ def image_detail(path: Path) -> list[float]:
 
 
 @pytest.mark.slow
-def test_writes_all_files_and_a_picture(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_writes_all_files_and_a_picture(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(mesh_picture, "PIXELS_PER_INCH", 60.0)
     assert run("paper", "--case", "CS-3", "--angle", "0.5", "--size", "6", "--out", str(tmp_path / "out")) == 0
     names = ["disc", "inner_race", *(f"pin_{i}" for i in range(14)), *(f"roller_{n}" for n in range(11))]
     expected = {f"{name}{suffix}" for name in names for suffix in (".msh", ".vtu")} | {
@@ -60,6 +63,7 @@ def test_writes_all_files_and_a_picture(tmp_path: Path, capsys: pytest.CaptureFi
 def test_falls_back_to_matplotlib_with_a_message(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr(mesh_picture, "PIXELS_PER_INCH", 60.0)
     offscreen.rendering_problem.cache_clear()
     # The probe ends as VTK does without GL libraries.
     monkeypatch.setattr(offscreen, "_PROBE", "import os; os.kill(os.getpid(), 11)")

@@ -37,9 +37,9 @@ def places_of(gmsh, tag, count):
     ("kind", "disc", "inward"),
     [
         ("paper", 0, 0.0),
-        pytest.param("robot-joint", 1, 0.0, marks=pytest.mark.slow),
+        pytest.param("robot-joint", 1, 0.0, marks=pytest.mark.nightly),
         pytest.param("rv", 0, 0.0, marks=pytest.mark.slow),
-        pytest.param("many", 0, 0.0, marks=pytest.mark.slow),
+        pytest.param("many", 0, 0.0, marks=pytest.mark.nightly),
         pytest.param("plastic", 0, 0.2, marks=pytest.mark.slow),
     ],
 )

@@ -248,6 +248,7 @@ def test_drive_meshes_are_good_and_of_the_estimated_size(drive: Drive, shapes: D
     assert 0.9 < estimate / meshes.disc.unknowns < 1.6
 
 
+@pytest.mark.slow
 def test_contacts_of_the_turned_meshes_meet_the_expected_places(drive: Drive, shapes: DriveShapes) -> None:
     """The smallest edges of every loaded pin and roller lie where the contact is expected."""
     contacts = expect_contacts(drive, 1.0)

@@ -13,7 +13,7 @@ from ltca.geometry.placement import position_angles
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
 
-ANGLES = position_angles(24)
+ANGLES = position_angles(6)
 
 
 def shipped(name):

@@ -62,7 +62,7 @@ def test_paper(paper_cases):
 @pytest.mark.parametrize(
     ("name", "case", "steps", "angles"),
     [
-        ("paper", "CS-6", {"clearance.bearing": 2e-5, "pin_wheel.pin_errors.radial.2": 1e-5}, ANGLES),
+        ("paper", "CS-6", {"clearance.bearing": 2e-5}, ANGLES),
         ("robot-joint", "nominal", {"crank.eccentricity": 1e-5, "pin_shaft.hole_radius": 1e-5}, ANGLES),
         ("rv", "nominal", {"disc.equidistant_offset": 2e-6, "crank.support.diameter": 0.003}, ANGLES + 0.37),
         ("sleeved", "nominal", {"pin_wheel.beam.span": 2e-3, "pin_shaft.beam.diameter": 1e-3}, ANGLES),
@@ -106,7 +106,7 @@ def test_friction():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("engine", [PlaneStrain, Hybrid])
+@pytest.mark.parametrize("engine", [pytest.param(PlaneStrain, marks=pytest.mark.nightly), Hybrid])
 def test_coupled_bodies(paper_cases, engine, tmp_path):
     """Fields that leave the body: clearances, loads, the place of a pin; stations of the coefficients move along."""
     path = tmp_path / "bodies.nc"
@@ -117,6 +117,7 @@ def test_coupled_bodies(paper_cases, engine, tmp_path):
 SOFT_DISC = {"materials.disc.youngs_modulus": 3000.0, "materials.disc.poisson_ratio": 0.38, "load.torque": 50_000.0}
 
 
+@pytest.mark.slow
 def test_beside_a_lightly_loaded_pin(paper_cases):
     """Steps by the load of all contacts went over the opening of a pin with a thousandth of it: 1e-5 off here, 2 % elsewhere."""
     drive = with_fields(paper_cases["CS-3"], {**SOFT_DISC, "load.light_torque": 25_000.0})
@@ -134,7 +135,7 @@ def test_beside_a_lightly_loaded_pin(paper_cases):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("angle", "disc"), [(1.6, 0), (5.0, 1)])
+@pytest.mark.parametrize(("angle", "disc"), [pytest.param(1.6, 0, marks=pytest.mark.nightly), (5.0, 1)])
 def test_a_disc_that_floats_under_the_light_torque(paper_cases, angle, disc):
     """A step by no stiffness ended in "a load is not a number"; the disc stays, or is taken along by what it touches."""
     drive = with_fields(
@@ -215,6 +216,7 @@ def test_what_is_no_real_field_is_refused_by_name(paper_cases, path, told):
         ltca.derivatives(result, [path])
 
 
+@pytest.mark.slow
 def test_a_field_that_reshapes_a_body_is_refused_by_name(paper_cases, tmp_path):
     path = tmp_path / "bodies.nc"
     closed_form_coefficients(paper_cases["CS-1"], half_width=0.02, depth=300.0).to_netcdf(path, engine="h5netcdf")

@@ -48,7 +48,7 @@ def test_one_contact_is_a_slider_on_a_spring():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["paper", "robot-joint"])
+@pytest.mark.parametrize("name", ["paper", pytest.param("robot-joint", marks=pytest.mark.nightly)])
 def test_the_loop_lies_between_the_turning_branches(paper, name):
     """Where the drive turns one way or the other every contact rubs with all it has; locked, with no more."""
     drive = paper
@@ -76,6 +76,7 @@ def test_the_loop_lies_between_the_turning_branches(paper, name):
     assert abs(rise - fall) > 0.8 * (high - low)[2]
 
 
+@pytest.mark.slow
 def test_small_cycles_stick(paper):
     """A small part of the torque back and forth ends in contacts that stick: one line, there and back, and no energy."""
     torque = paper.load.torque

@@ -115,6 +115,7 @@ def test_fields_survive_their_file(fields, tmp_path):
         assert read["roller_pressure_inner"].dims == rollers
 
 
+@pytest.mark.slow
 def test_no_light_falls_on_the_colours_of_a_surface(fields):
     """Colours were shaded and told other pressures than their scale, whose ticks were 724, 1448, 2171."""
     figure = draw_roller_pressure(fields, "CS-3")

@@ -251,6 +251,7 @@ def test_no_geometry_is_made_of_lengths_that_are_not_warm_yet():
             made(hot)
 
 
+@pytest.mark.slow
 def test_studies_vary_what_is_written_and_solve_what_is_warm():
     """A sample is the drive as written with a field replaced, as warm as it is: the same as that drive analysed by itself."""
     hot = with_fields(PAPER, EXPANSION | warmth(20.0, 45.0, 60.0))

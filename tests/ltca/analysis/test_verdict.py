@@ -547,6 +547,7 @@ def rv():
     return parse_drive(shipped_drive("rv"), "rv").cases["nominal"]
 
 
+@pytest.mark.slow
 def test_nothing_is_said_of_shaft_pins_that_are_not_there():
     """An RV had "materials.shaft_pin has no yield_strength" three times, and a limit on the stress along its holes."""
     analysis = analyse(rv(), ANGLES[:1])

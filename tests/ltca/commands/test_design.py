@@ -26,7 +26,7 @@ def passes_check(path, out):
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("few")
+@pytest.mark.usefixtures("few", "coarse_derivations")
 def test_the_paper_drive_is_matched_at_its_own_figures(tmp_path):
     out = tmp_path / "out"
     assert main(["design", str(EXAMPLES / "possible-paper.toml"), "--best", "1", "--out", str(out)]) == 0
@@ -48,7 +48,7 @@ def test_the_paper_drive_is_matched_at_its_own_figures(tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("few")
+@pytest.mark.usefixtures("few", "coarse_derivations")
 def test_what_stands_in_the_way_is_told_and_would_do(tmp_path, capsys):
     out = tmp_path / "out"
     assert main(["design", str(EXAMPLES / "impossible-diameter.toml"), "--out", str(out)]) == 1

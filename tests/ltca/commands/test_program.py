@@ -65,7 +65,8 @@ START = {".svg": b"<?xml", ".png": b"\x89PNG", ".pdf": b"%PDF"}
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("words", "suffix"), [([], ".svg"), (["png"], ".png"), pytest.param(["pdf"], ".pdf", marks=pytest.mark.nightly)]
+    ("words", "suffix"),
+    [([], ".svg"), *(pytest.param([name], f".{name}", marks=pytest.mark.nightly) for name in ("png", "pdf"))],
 )
 def test_figures_of_the_paper_when_asked_for(words, suffix, tmp_path):
     """They were drawn twice, as SVG and PNG, by every run: two thirds of its time."""

@@ -25,16 +25,21 @@ def quoted():
     return found
 
 
+WITHOUT = {"show": [], "check": ["--no-advice", "--no-page"], "run": ["--no-page"]}
+
+
+def test_the_first_page_quotes_three_commands():
+    assert {command.split()[1] for command in quoted()} == set(WITHOUT)
+
+
+# What `run` tells beside `check`'s numbers has tests of its own (`test_run_table`).
 @pytest.mark.slow
-def test_the_first_page_quotes_what_is_printed(tmp_path, monkeypatch, capsys):
+@pytest.mark.parametrize("name", ["show", "check", pytest.param("run", marks=pytest.mark.nightly)])
+def test_the_first_page_quotes_what_is_printed(name, tmp_path, monkeypatch, capsys):
     """Rows of `check` had places and limits of former versions."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "my.toml").write_text(shipped_drive(DRIVE), encoding="utf-8")
-    screens = quoted()
-    assert {command.split()[1] for command in screens} == {"show", "check", "run"}
-    for command, lines in screens.items():
-        words = command.split()
-        without = {"check": ["--no-advice", "--no-page"], "run": ["--no-page"], "show": []}[words[1]]
-        assert main([*words[1:], *without]) == 0
-        printed = {" ".join(line.split()) for line in capsys.readouterr().out.splitlines()}
-        assert [line for line in lines if line not in printed] == []
+    ((words, lines),) = ((command.split(), lines) for command, lines in quoted().items() if command.split()[1] == name)
+    assert main([*words[1:], *WITHOUT[name]]) == 0
+    printed = {" ".join(line.split()) for line in capsys.readouterr().out.splitlines()}
+    assert [line for line in lines if line not in printed] == []

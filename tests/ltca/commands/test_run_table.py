@@ -76,6 +76,7 @@ def test_cases_that_find_no_room_go_on_below(monkeypatch, answers):
     assert max(map(len, table)) <= 60
 
 
+@pytest.mark.slow
 def test_a_drive_without_shaft_pins_has_no_row_of_them():
     """Seven rows of dashes."""
     drive = parse_drive(shipped_drive("rv"), "rv").cases["nominal"]
@@ -119,6 +120,7 @@ def test_pressures_of_rollers_stand_on_both_races(paper):
     assert float(rows["roller in the bore"]) < 0.5 * float(rows["roller on inner race"])
 
 
+@pytest.mark.slow
 def test_lives_that_are_not_rated_say_why(paper):
     plastic = replace(paper.materials.disc, youngs_modulus=2000.0)
     drive = replace(

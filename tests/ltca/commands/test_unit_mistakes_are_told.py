@@ -8,8 +8,8 @@ from ltca.commands.program import main
 from ltca.reading.drive_file import shipped_drive
 
 COMMANDS = {
-    "curves": ["--turns", "1", "--no-page"],
-    "tolerance": ["--samples", "2", "--positions", "2", "--no-page"],
+    "curves": ["--turns", "1", "--quick", "--no-page"],
+    "tolerance": ["--samples", "2", "--positions", "2", "--quick", "--no-page"],
     "export": ["--format", "csv", "--part", "disc"],
 }
 

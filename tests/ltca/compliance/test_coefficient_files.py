@@ -25,6 +25,7 @@ from ltca.compliance.coefficients import load_coefficients
 from ltca.drive.deviations import OneDisc, Runout
 from ltca.drive.single_discs import single_discs
 from ltca.errors import CycloError, DriveError
+from ltca.output.provenance import code_hash
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import shipped_drive
 from ltca.testing.closed_form_bodies import closed_form_coefficients
@@ -42,6 +43,7 @@ def derived(monkeypatch, tmp_path):
         shapes.append(drive.body_shape())
         return closed_form_coefficients(drive, half_width=0.05, depth=300.0)
 
+    code_hash("ltca", "fem")  # by the usual cache, where it is kept
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     monkeypatch.setattr(coefficient_files, "_derivation", lambda: derive)
     monkeypatch.setattr(coefficient_files, "MAX_DERIVATIONS", 1)

@@ -87,6 +87,7 @@ def test_wide_holes_press_like_hertz(drive):
     assert np.max(faded[2:]) < np.min(faded[:2])
 
 
+@pytest.mark.slow
 def test_holes_of_plane_strain_press_rigid_pins(drive, closed_form):
     """Hertz to the last digit, with the modulus of the disc alone; the spring's pin is elastic again without that wall."""
     coefficients = closed_form(drive)
@@ -105,7 +106,7 @@ def test_holes_of_plane_strain_press_rigid_pins(drive, closed_form):
 ELASTIC = {"pin_shaft.elastic_contact": True}
 
 
-@pytest.mark.parametrize("pins", [STEEL, ALUMINIUM])
+@pytest.mark.parametrize("pins", [pytest.param(STEEL, marks=pytest.mark.slow), ALUMINIUM])
 def test_elastic_shaft_pins_press_their_holes_like_hertz(pins, drive, closed_form):
     """Both moduli in plane strain, to the last digit; the pins give way, so the wheel turns further than on rigid ones."""
     made_of = {"materials.shaft_pin.youngs_modulus": pins[0], "materials.shaft_pin.poisson_ratio": pins[1]}

@@ -178,6 +178,7 @@ def test_a_case_cannot_change_a_size_of_a_named_bearing():
     assert problem.startswith("case a: crank_bearing.roller_length = 10.0: must be left out, or 13.8")
 
 
+@pytest.mark.slow
 def test_messages_on_sizes_that_nobody_wrote_name_the_bearing():
     with pytest.raises(DriveError) as caught:
         drive("K30x40x30")

@@ -53,6 +53,7 @@ def test_a_torque_a_thousand_times_too_large(vary):
         analyse(vary(), ANGLE, 377.3e6)
 
 
+@pytest.mark.slow
 def test_a_light_torque_beyond_reason(vary):
     """It was 'no equilibrium … the teeth slip': only the torque itself was looked at."""
     with pytest.raises(DriveError, match=r"^load.light_torque = 1e\+09 N·mm is 1e\+06 N·m and would press"):

@@ -37,7 +37,10 @@ def line_of(spline, count):
 
 @pytest.mark.parametrize(
     ("kind", "disc", "inward"),
-    [("paper", 0, 0.0), ("robot-joint", 1, 0.0), ("sleeved", 0, 0.1), ("rv", 1, 0.0), ("many", 0, 0.0), ("plastic", 0, 0.2)],
+    [
+        ("paper", 0, 0.0), ("sleeved", 0, 0.1), ("plastic", 0, 0.2),
+        *(pytest.param(*one, marks=pytest.mark.slow) for one in [("robot-joint", 1, 0.0), ("rv", 1, 0.0), ("many", 0, 0.0)]),
+    ],
 )  # fmt: skip
 def test_read_back_within_a_micron_of_the_exact_flank(kinds_of_drives, tmp_path, kind, disc, inward):
     drive = kinds_of_drives[kind]
@@ -79,6 +82,7 @@ def test_circles_layers_and_units(kinds_of_drives, tmp_path):
         assert hole.dxf.radius == pytest.approx(radius + 0.1, abs=1e-12)
 
 
+@pytest.mark.slow
 def test_an_assembly_has_layers_for_each_disc(kinds_of_drives, tmp_path):
     (part,) = make_parts(kinds_of_drives["sleeved"], "nominal", "assembly")
     space = read_back(part, tmp_path / "part.dxf").modelspace()

@@ -229,7 +229,7 @@ def ranking(study, method):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", ["tolerance", "sweep"])
+@pytest.mark.parametrize("kind", ["tolerance", pytest.param("sweep", marks=pytest.mark.nightly)])
 def test_words_of_studies_stand_apart(kind):
     """Titles of rankings were cut, responses stood 3835 pixels tall."""
     if kind == "tolerance":

@@ -79,6 +79,7 @@ def test_the_profile_is_the_ellipse_of_hertz():
     assert line == pytest.approx(0.25 * np.pi * top * 2.0 * half, rel=5e-3)
 
 
+@pytest.mark.slow
 def test_hybrid_bodies_have_it_too():
     """Without coupling by the bodies hybrid contacts are half-spaces; in plane strain nothing has a width."""
     drive = load_drive("paper").cases["CS-1"]

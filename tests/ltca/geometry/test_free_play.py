@@ -119,6 +119,7 @@ def test_preloaded_drives_of_a_batch_keep_their_own_parts(vary):
     np.testing.assert_allclose(together.play, np.concatenate([one.play for one in alone]), rtol=0.0, atol=1e-12)
 
 
+@pytest.mark.slow
 def test_turns_together_are_those_alone(paper_cases):
     """Sizes differ, and each drive keeps the steps of its own: programmes end where they do alone, to round-off."""
     drives = [discs_of(paper_cases[case]) for case in ("CS-1", "CS-3", "CS-6")]
@@ -187,7 +188,7 @@ def test_loads_that_vanish_end_at_the_free_play(seed):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", [2, 3, 4, 9, 10, 14, 19, 20, 22, 23, 30, 33])
+@pytest.mark.parametrize("seed", [2, 10, 33])
 def test_loads_of_a_millionth_turn_practical_drives_as_far(seed):
     """1 % or 0.005′; where pins with next to no lever touch first the load goes on, as far as its overlaps allow.
 

@@ -86,7 +86,7 @@ def test_every_kind_of_variable(packed, tmp_path):
 
 @pytest.mark.slow
 @AS_WRITTEN_TODAY
-@pytest.mark.parametrize("name", ["paper", "rv"])
+@pytest.mark.parametrize("name", [pytest.param("paper", marks=pytest.mark.nightly), "rv"])
 def test_results_of_a_run(name, tmp_path):
     """One crank and holes; several discs and cranks and no holes, a dimension of no size."""
     drive = next(iter(parse_drive(shipped_drive(name)).cases.values()))

@@ -30,7 +30,10 @@ def test_plain_signs_stand_in_any_encoding():
     assert all(plain.isascii() for plain in PLAIN.values())
 
 
-@pytest.mark.parametrize("encoding", ["ascii", "ascii:strict", "latin-1", "cp1252"])
+@pytest.mark.parametrize(
+    "encoding",
+    ["ascii:strict", "cp1252", *(pytest.param(name, marks=pytest.mark.slow) for name in ("ascii", "latin-1"))],
+)
 def test_messages_come_out_in_any_encoding(encoding):
     words = ("run", "paper", "--torque", "-5 µm")
     status, _, err = cyclo(*words, LC_ALL="C", PYTHONIOENCODING=encoding)
@@ -40,7 +43,9 @@ def test_messages_come_out_in_any_encoding(encoding):
     assert err.decode(encoding.partition(":")[0])
 
 
-@pytest.mark.parametrize("columns", ["0", "1", "7", "wide"])
+@pytest.mark.parametrize(
+    "columns", ["1", "wide", *(pytest.param(number, marks=pytest.mark.slow) for number in ("0", "7"))]
+)
 def test_help_fits_any_terminal(columns):
     status, out, err = cyclo("run", "--help", COLUMNS=columns, LC_ALL="C", PYTHONIOENCODING="ascii")
     assert status == 0

@@ -40,13 +40,18 @@ def test_values_all_alike_have_an_axis(values):
 @pytest.mark.parametrize(
     ("figure", "panel", "name"),
     [
-        ("fig23_transmission_error", 0, "light/te"),
         ("fig23_transmission_error", 1, "full/te"),
-        ("fig24_pin_load", 0, "full/pin/load"),
         ("fig26_pin_pressure", 0, "full/pin/pressure"),
-        ("fig28_bearing_load", 0, "total"),
-        ("fig29_tangential_bearing_load", 0, "tangential"),
-        ("fig30_radial_bearing_load", 0, "radial"),
+        *(
+            pytest.param(*one, marks=pytest.mark.slow)
+            for one in [
+                ("fig23_transmission_error", 0, "light/te"),
+                ("fig24_pin_load", 0, "full/pin/load"),
+                ("fig28_bearing_load", 0, "total"),
+                ("fig29_tangential_bearing_load", 0, "tangential"),
+                ("fig30_radial_bearing_load", 0, "radial"),
+            ]
+        ),
     ],
 )
 def test_page_and_figure_have_one_axis(figure, panel, name, paper_run):

@@ -100,7 +100,9 @@ def test_swapped_fields_are_both_named(part, smaller, larger):
     )
 
 
-@pytest.mark.parametrize("drive", ["paper", "rv", "robot-joint"])
+@pytest.mark.parametrize(
+    "drive", ["paper", *(pytest.param(name, marks=pytest.mark.slow) for name in ("rv", "robot-joint"))]
+)
 @pytest.mark.parametrize(
     "offset", [pytest.param(-100.0, marks=pytest.mark.slow), -60.0, pytest.param(-20.0, marks=pytest.mark.slow)]
 )
@@ -115,6 +117,7 @@ def test_a_shifting_offset_far_below_zero_is_named_itself(drive, offset):
     parse_drive(text.replace("[disc]", f"[disc]\nshifting_offset = {bound}", 1))
 
 
+@pytest.mark.slow
 def test_a_case_that_is_wrong_in_another_way_is_told_beside(paper_table):
     """What one field of the common part mends is told once, what it does not mend stays with its case."""
     text = shipped_drive().replace("\nshifting_offset = 0.09 ", "\nshifting_offset = 9 ").partition("[[case]]")[0]

@@ -48,6 +48,7 @@ def same_losses(drives):
     np.testing.assert_allclose(solved(drives, OF_FRICTION), [losses_alone(drive) for drive in drives], rtol=1e-7)
 
 
+@pytest.mark.slow
 def test_seals_and_oil_take_what_they_take_in_each_sample():
     """Efficiency, input torque and power of a batch were those of its first sample's no-load torque."""
     base = with_fields(load_drive("paper").cases["CS-2"], RUBS)
@@ -58,6 +59,7 @@ def test_seals_and_oil_take_what_they_take_in_each_sample():
     np.testing.assert_allclose(np.diff(np.abs(torque)), [1480.0, 1500.0], rtol=1e-7)
 
 
+@pytest.mark.slow
 def test_each_sample_is_driven_at_its_side_and_held_at_its_member():
     """An efficiency of 1.33: the second sample's losses were those of a drive that is driven and held like the first."""
     base = with_fields(shipped("robot-joint"), RUBS)
@@ -72,6 +74,7 @@ def test_each_sample_is_driven_at_its_side_and_held_at_its_member():
     same_losses([with_fields(base, sample) for sample in samples])
 
 
+@pytest.mark.slow
 def test_each_sample_has_its_first_stage():
     base = with_fields(shipped("rv"), {**RUBS, "friction.hole": 0.0})
     same_losses([with_fields(base, {"installation.first_stage_ratio": value}) for value in (3.0, None)])
@@ -94,6 +97,7 @@ def test_pins_slip_in_the_seats_of_each_sample():
     assert not lost.pins.seat_slip[:, 1].any()
 
 
+@pytest.mark.slow
 def test_half_widths_are_bounded_by_the_radii_of_each_sample(vary):
     """The first sample's rollers bounded all: one with rollers as small as a pin's contact passed, or refused its neighbours."""
     plain = with_fields(vary(), {"materials.disc.youngs_modulus": 3000.0, "materials.disc.poisson_ratio": 0.38})
@@ -137,6 +141,7 @@ def test_a_ring_lies_on_the_circle_of_each_sample():
     np.testing.assert_allclose(solved(drives, ("max_pin_load",), angles=few)[:, 0], alone, rtol=1e-7)
 
 
+@pytest.mark.slow
 def test_samples_of_other_coordinates_start_from_first_contact():
     """A nominal solution without the wheel's displacement, or of other numbers of parts, was started from."""
     base, quantities = load_drive("paper").cases["CS-2"], ("max_pin_load",)
@@ -194,6 +199,7 @@ def test_a_quantity_that_a_case_has_not_is_refused_by_name(tmp_path, capsys, qua
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 def test_cases_share_the_default_quantities_that_all_have(tmp_path):
     path = str(case_file(tmp_path))
     for cases, has in ((["rubs", "smooth"], False), (["smooth", "rubs"], False), (["rubs", "at rest"], True)):

@@ -124,6 +124,7 @@ def test_regression_with_few_samples_is_adjusted():
     np.testing.assert_allclose(found.shares, np.maximum(found.coefficients**2 - chance, 0.0), atol=1e-10)
 
 
+@pytest.mark.slow
 def test_sobol_indices_of_ishigami():
     """a = 7, b = 0.1: S = 0.3139, 0.4424, 0; S_T = 0.5576, 0.4424, 0.2437 (Ishigami and Homma 1990)."""
 

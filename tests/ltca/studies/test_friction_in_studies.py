@@ -27,6 +27,7 @@ kind = "grid"
 """
 
 
+@pytest.mark.slow
 def test_a_drive_without_friction_is_studied_over_it(tmp_path, capsys):
     """`cyclo sweep` was refused: quantities were judged on the drive before its factors were applied."""
     import json

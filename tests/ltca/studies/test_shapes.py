@@ -20,6 +20,7 @@ from ltca.compliance.coefficient_files import cached_file
 from ltca.compliance.coefficients import without_coupling
 from ltca.errors import CycloError, DriveError
 from ltca.geometry.placement import position_angles
+from ltca.output.provenance import code_hash
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
 from ltca.studies import shapes
@@ -71,6 +72,7 @@ def derived(monkeypatch, tmp_path):
 
     monkeypatch.setattr(engines, "find_coefficients", find)
     monkeypatch.setattr(shapes, "find_case_coefficients", find_all)
+    code_hash("ltca", "fem")  # by the usual cache, where it is kept
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     monkeypatch.setattr(shapes, "_ENGINES", shapes.OrderedDict())
     return asked

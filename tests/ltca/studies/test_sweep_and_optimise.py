@@ -342,6 +342,7 @@ def test_replacing_fields_keeps_the_rest(drive):
     assert changed.pin_wheel is drive.pin_wheel or changed.pin_wheel == drive.pin_wheel
 
 
+@pytest.mark.slow
 def test_a_study_with_failed_samples_is_a_partial_result(tmp_path, capsys):
     """Status 0 told a script that all was well: a flank that overlaps its pins by 0.75 mm was among the samples."""
     path = tmp_path / "study.toml"

@@ -70,6 +70,7 @@ def test_a_central_crank_stands_to_its_load_and_the_bore_goes_round(paper_cases)
     assert power_mean(rollers.inner_load, 4.5) > 1.04 * power_mean(rollers.inner_load, 4.0)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("even")
 def test_one_turn_is_nearly_enough(paper_cases, papers):
     """What `cyclo run` has; of 11 rollers one turn leaves 0.7 % of the load in the bore, where it does most."""

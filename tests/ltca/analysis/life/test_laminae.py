@@ -82,6 +82,7 @@ def test_straight_rollers_of_all_sizes_are_one():
     np.testing.assert_allclose(found, row, rtol=1e-6)
 
 
+@pytest.mark.slow
 def test_heavy_crown_against_the_ellipse_of_hertz():
     """A contact that ends inside: q = ¾ Q/a (1 − y²/a²), whose 4.5-power mean over the length is known."""
     crown = 0.05  # mm at the ends: a radius of 348 mm along the length

@@ -184,6 +184,7 @@ def test_ratings_are_those_of_the_life_of_one_drive():
     assert told["static_safety_S0"][0] == pytest.approx(bearing.static_load_rating / 8000.0, rel=1e-12)
 
 
+@pytest.mark.slow
 def test_what_is_kept_keeps_its_walls_and_comes_from_stock():
     requirements = parse_requirements(PAPER + STEEL)
     found = enumerate_candidates(requirements, find_demands(requirements))
