@@ -26,6 +26,7 @@ from math import log, pi
 import numpy as np
 
 from ltca.arrays import FloatArray
+from ltca.drive.parts import Drive
 
 ORDERS = 512
 """Fourier orders summed one by one; the rest of the sum is below 1e-12 of it."""
@@ -203,3 +204,28 @@ def _axes(angles: FloatArray) -> FloatArray:
     return np.stack(
         (np.stack((np.cos(angles), np.sin(angles)), axis=-1), np.stack((-np.sin(angles), np.cos(angles)), axis=-1)), axis=1
     )
+
+
+def ring_flexibility(drive: Drive) -> FloatArray | None:
+    """Return displacements of the seats of the wheel pins of a drive under unit forces there; None where the ring is rigid.
+
+    Shape (z_P, 2, z_P, 2) by seat and component in the wheel, mm/N. Forces act at the centres of the seats, evenly spaced:
+    errors of single seats are far too small to matter here.
+    """
+    ring, wheel = drive.ring, drive.pin_wheel
+    if ring is None:
+        return None
+    beam = RingBeam(
+        inner_radius=ring.inner_radius,
+        outer_radius=ring.outer_radius,
+        width=ring.width,
+        youngs_modulus=ring.material.youngs_modulus,
+        poisson_ratio=ring.material.poisson_ratio,
+    )
+    seats = 2.0 * pi * np.arange(wheel.number_of_pins) / wheel.number_of_pins
+    if ring.flange == "built-in":
+        return beam.built_in(seats, wheel.pin_circle_radius)
+    if ring.bolts is None:
+        return beam.free(seats, wheel.pin_circle_radius)
+    bolts = 2.0 * pi * np.arange(ring.bolts.number) / ring.bolts.number
+    return beam.bolted(seats, wheel.pin_circle_radius, bolts, ring.bolts.circle_radius, ring.bolts.stiffness)
