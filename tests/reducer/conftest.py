@@ -10,8 +10,8 @@ import pytest
 from ltca.analysis.engines import HalfSpace
 from ltca.equilibrium.balance import lever_arms
 from ltca.equilibrium.output_torque import crank_moments, solve_at_output
-from ltca.equilibrium.reducer import Reducer
 from ltca.equilibrium.pin_displacements import DisplacedPins
+from ltca.equilibrium.reducer import Reducer
 from ltca.geometry.coordinates import WHEEL_ANGLE
 
 
@@ -40,7 +40,7 @@ def stored_energy(model, response, pose, angle=0.0):
     if isinstance(model, Reducer) and model.pins is not None:
         ratio = model.discs[0].geometry.placement.reduction_ratio
         turned = np.exp(1j * (angle / ratio + pose[:, WHEEL_ANGLE]))
-        held = DisplacedPins(model.pins, response.parts, model.coordinates, turned)
+        held = DisplacedPins(model.pins, response.parts, model.coordinates, turned, response.shifts)
         moved = model.pins.under(held.force)
         total = total + 0.5 * (held.force.conjugate() * moved).real.sum(axis=(1, 2))
     return total, np.concatenate(slopes, axis=1)
