@@ -256,7 +256,7 @@ class DisplacedPins:
         positions, discs, pairs = self.force.shape
         own = np.flatnonzero(self.moves)
         if not self.coupled:
-            disc, pair = np.arange(discs)[None, None, :], own[None, :, None]
+            disc, pair = np.broadcast_arrays(np.arange(discs)[None, None, :], own[None, :, None])
             at_once = max(1, ENTRIES_AT_ONCE // max(1, own.size * (2 * discs) ** 2))
         else:
             # A contact that carries nothing has no stiffness. Most rows have a few idle ones for the sake of the fullest.
