@@ -10,6 +10,7 @@ import pytest
 from ltca.analysis.engines import HalfSpace
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.results import labelled_results
+from ltca.drive.single_discs import single_discs
 from ltca.errors import DriveError
 from ltca.export.parts import make_parts
 from ltca.page.run_arrays import ring_arrays
@@ -58,7 +59,7 @@ def test_dataset_and_page_have_its_displacements(found, drive):
         assert data[name].dims == ("case", "position", "pin")
     page = ring_arrays(data.isel(case=0))
     np.testing.assert_array_equal(page["ring/radial"], found.ring_displacements.real.T)
-    assert moving_scene(drive)["ring"] == [60.0, 80.0]
+    assert moving_scene(single_discs(drive)[0])["ring"] == [60.0, 80.0]
     stiff = load_drive("robot-joint").cases["nominal"]
     rigid = labelled_results("joint", {"nominal": analyse(stiff, ANGLES, engine=HalfSpace())})
     assert ring_arrays(rigid.isel(case=0)) == {}
