@@ -176,7 +176,8 @@ class RingBeam:
             pi**4 / 90.0 - pi**2 * angles**2 / 12.0 + pi * angles**3 / 12.0 - angles**4 / 48.0
         )
         sines += cubes[..., None] * (angles**3 / 12.0 - pi * angles**2 / 4.0 + pi**2 * angles / 6.0)
-        cosines[0, 0] += 0.5 / stretch  # the ring as a whole grows under an even pressure
+        # Order 0: the ring as a whole grows under an even pressure, and shears between pins and bolts that turn it.
+        cosines += 0.5 * np.linalg.pinv(third, rcond=1e-10, hermitian=True)[..., None]
         # Terms that mix u_r with the others are odd in the order, the others even.
         shape = (3, 3, *apart.shape)
         return (cosines[..., places].reshape(shape) / pi, sines[..., places].reshape(shape) / pi)

@@ -91,6 +91,8 @@ def _ring(drive: Drive) -> Iterator[str]:
         )
     if ring.flange == "one-side":
         yield 'ring.flange = "one-side": must be "free" or "built-in": a flange on one side warps the ring, which no plane model has'
+    if ring.model == "fe":
+        yield 'ring.model = "fe": must be "beam": coefficients of a ring by finite elements are not there yet'
     bolts = ring.bolts
     if bolts is None:
         return
