@@ -63,7 +63,9 @@ class PinDisplacements:
 
     def under(self, force: ComplexArray) -> ComplexArray:
         """Return S f, mm, for forces on the pins by disc, N, shape (positions, discs, pairs)."""
-        found: ComplexArray = np.matmul(self.beams.astype(complex), force.swapaxes(1, 2)[..., None])[..., 0].swapaxes(1, 2)
+        found: ComplexArray = np.matmul(self.beams.astype(complex), force.swapaxes(1, 2)[..., None])[..., 0].swapaxes(
+            1, 2
+        )
         if self.ring is not None:
             found[:, :, : self.ring.shape[-2]] += self.of_ring(force)[:, None]
         return found
@@ -233,7 +235,9 @@ class DisplacedPins:
             slope = every[rows[..., None], disc[..., :, None], pair[..., :, None], pair[..., None, :]] * same
             found = normal[..., :, :, None, None] * slope[..., :, None, :, None] * normal[..., None, None, :, :]
         bend = self._bend(rows, disc, pair)
-        found[:, :, itself, :, itself, :] += np.moveaxis(bend[..., None, None] * slip[..., :, None] * slip[..., None, :], 2, 0)
+        found[:, :, itself, :, itself, :] += np.moveaxis(
+            bend[..., None, None] * slip[..., :, None] * slip[..., None, :], 2, 0
+        )
         return np.asarray(found.reshape(*found.shape[:2], 2 * members, 2 * members))
 
     def _by_pose(self, rows: NDArray[np.intp], disc: NDArray[np.intp], pair: NDArray[np.intp]) -> FloatArray:
@@ -258,7 +262,10 @@ class DisplacedPins:
 
         A pin moves against a disc as the disc moves the other way against it.
         """
-        each = [np.concatenate((getattr(p.flank, name), getattr(p.holes, name)), axis=1)[..., DISC_PLACE] for p in self.parts]
+        each = [
+            np.concatenate((getattr(p.flank, name), getattr(p.holes, name)), axis=1)[..., DISC_PLACE]
+            for p in self.parts
+        ]
         every = np.stack(each, axis=1)
         turned = -(every[..., 0] + 1j * every[..., 1]) * self.frame[:, None]
         found = turned[rows, disc, pair]

@@ -93,7 +93,9 @@ class RingBeam:
         found = _beyond(modes, among.reshape(2 * seats.size, -1))
         return np.asarray(found.reshape(among.shape))
 
-    def bolted(self, seats: FloatArray, radius: float, bolts: FloatArray, circle: float, stiffness: float) -> FloatArray:
+    def bolted(
+        self, seats: FloatArray, radius: float, bolts: FloatArray, circle: float, stiffness: float
+    ) -> FloatArray:
         """Return displacements of the seats of a ring on bolts, as `free`; bolts at angles (rad) on a circle (mm), N/mm each."""
         places = np.concatenate((seats, bolts))
         radii = np.concatenate((np.full(seats.size, radius), np.full(bolts.size, circle)))
@@ -142,7 +144,9 @@ class RingBeam:
         factor = 10.0 * (1.0 + ratio) / (12.0 + 11.0 * ratio)
         return factor * self.youngs_modulus / (2.0 * (1.0 + ratio))
 
-    def _among(self, to: FloatArray, to_radius: FloatArray | float, of: FloatArray, of_radius: FloatArray | float) -> FloatArray:
+    def _among(
+        self, to: FloatArray, to_radius: FloatArray | float, of: FloatArray, of_radius: FloatArray | float
+    ) -> FloatArray:
         """Displacements of places under unit forces at others, all by angle (rad) and radius (mm), but for rigid motions."""
         apart = (to[:, None] - of) % (2.0 * pi)
         lever = np.broadcast_to(np.asarray(to_radius) - self.neutral_radius, to.shape)[:, None]
@@ -173,7 +177,9 @@ class RingBeam:
         fourths = squares @ second @ squares @ second @ squares - squares @ third @ squares
         order = np.arange(1, ORDERS + 1)[:, None, None]
         matrices = order**2 * first + order * second + third
-        inverse = np.concatenate((np.linalg.pinv(matrices[:1], rcond=1e-10, hermitian=True), np.linalg.inv(matrices[1:])))
+        inverse = np.concatenate(
+            (np.linalg.pinv(matrices[:1], rcond=1e-10, hermitian=True), np.linalg.inv(matrices[1:]))
+        )
         left = inverse - squares / order**2 - cubes / order.astype(float) ** 3 - fourths / order.astype(float) ** 4
         # Seats stand at few distinct distances.
         angles, places = np.unique(np.round(apart, 12), return_inverse=True)
@@ -212,7 +218,8 @@ def _beyond(modes: FloatArray, flexibility: FloatArray) -> FloatArray:
 def _axes(angles: FloatArray) -> FloatArray:
     """Components (x, y) of the radial and of the tangential direction, shape (places, 2, 2)."""
     return np.stack(
-        (np.stack((np.cos(angles), np.sin(angles)), axis=-1), np.stack((-np.sin(angles), np.cos(angles)), axis=-1)), axis=1
+        (np.stack((np.cos(angles), np.sin(angles)), axis=-1), np.stack((-np.sin(angles), np.cos(angles)), axis=-1)),
+        axis=1,
     )
 
 
