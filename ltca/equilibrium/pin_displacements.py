@@ -197,6 +197,7 @@ class DisplacedPins:
         self.moves |= (held.ring is not None) & (np.arange(pairs) < wheel)
         self.frame = np.where(np.arange(pairs) < wheel, turned.conjugate()[:, None], 1.0)
         """What turns directions into those of the part that holds the pin, shape (positions, pairs)."""
+        self.rubs = _friction_by_load(parts)
         # Against the pins' displacements.
         self.force = np.stack([-part.pin_forces * self.frame for part in parts], axis=1)
         self.left = shifts + held.under(self.force)
@@ -235,14 +236,15 @@ class DisplacedPins:
             given = self.left[rows, disc, pair]
             flat = np.stack((given.real, given.imag), axis=-1).reshape(*given.shape[:2], -1, 1)
             moved = -np.linalg.solve(matrix, np.concatenate((np.matmul(flexibility, by_pose), flat), axis=-1))
-            onto = np.matmul(by_pose.swapaxes(2, 3), moved).sum(axis=1)
+            back = by_pose if self.rubs is None else self._by_shift(rows, disc, pair)
+            onto = np.matmul(back.swapaxes(2, 3), moved).sum(axis=1)
             tangent[own], added[own] = onto[..., :-1], onto[..., -1]
             force = (by_pose + np.matmul(stiffness, moved[..., :-1])).reshape(*given.shape, 2, size)
             change[:, rows, disc, pair] = np.moveaxis(force[..., 0, :] + 1j * force[..., 1, :], -1, 0)
             stiffest[own] = np.abs(stiffness).max(axis=(1, 2, 3))
         return Settled(
             force=added,
-            tangent=0.5 * (tangent + tangent.swapaxes(1, 2)),
+            tangent=0.5 * (tangent + tangent.swapaxes(1, 2)) if self.rubs is None else tangent,
             onward=self.shifts + self.step if np.any(self.size > 0.0) else self.shifts,
             by_pose=-np.stack([self.held.under(each) for each in change], axis=-1),
             left=stiffest * self.size,
@@ -300,19 +302,20 @@ class DisplacedPins:
     def _stiffness(self, rows: NDArray[np.intp], disc: NDArray[np.intp], pair: NDArray[np.intp]) -> FloatArray:
         """K among the members of groups: that of the contacts along their normals, and loads that turn with them."""
         normal, slip = self._vectors(rows, disc, pair, "gradient"), self._vectors(rows, disc, pair, "along")
+        pushing = self._pushing(rows, disc, pair)
         members = normal.shape[2]
         itself = np.arange(members)
         if self.slopes[0].by_approach.ndim == 2:
             by_approach = np.stack([slopes.by_approach for slopes in self.slopes], axis=1)[rows, disc, pair]
             found = np.zeros((*normal.shape[:2], members, 2, members, 2))
             found[:, :, itself, :, itself, :] = np.moveaxis(
-                by_approach[..., None, None] * normal[..., :, None] * normal[..., None, :], 2, 0
+                by_approach[..., None, None] * pushing[..., :, None] * normal[..., None, :], 2, 0
             )
         else:
             every = np.stack([slopes.by_approach for slopes in self.slopes], axis=1)
             same = disc[..., :, None] == disc[..., None, :]
             slope = every[rows[..., None], disc[..., :, None], pair[..., :, None], pair[..., None, :]] * same
-            found = normal[..., :, :, None, None] * slope[..., :, None, :, None] * normal[..., None, None, :, :]
+            found = pushing[..., :, :, None, None] * slope[..., :, None, :, None] * normal[..., None, None, :, :]
         bend = self._bend(rows, disc, pair)
         found[:, :, itself, :, itself, :] += np.moveaxis(
             bend[..., None, None] * slip[..., :, None] * slip[..., None, :], 2, 0
@@ -321,12 +324,44 @@ class DisplacedPins:
 
     def _by_pose(self, rows: NDArray[np.intp], disc: NDArray[np.intp], pair: NDArray[np.intp]) -> FloatArray:
         """H of the members of groups, shape (positions, groups, 2 members, coordinates)."""
-        normal, slip = self._vectors(rows, disc, pair, "gradient"), self._vectors(rows, disc, pair, "along")
+        loads = [slopes.by_pose[rows, pair] for slopes in self.slopes]
+        return self._following(rows, disc, pair, loads, self._pushing(rows, disc, pair))
+
+    def _by_shift(self, rows: NDArray[np.intp], disc: NDArray[np.intp], pair: NDArray[np.intp]) -> FloatArray:
+        """How generalised forces follow the displacements, in the layout of H, which they are without friction.
+
+        Friction works by the place of the pin; the lever of the point of contact about it is left out.
+        """
+        loads = []
+        for number, (part, slopes) in enumerate(zip(self.parts, self.slopes, strict=True)):
+            assert self.rubs is not None
+            along = np.concatenate((part.flank.along, part.holes.along), axis=1) * self.rubs[:, number, :, None]
+            by_approach = slopes.by_approach
+            rubbed = by_approach[..., None] * along if by_approach.ndim == 2 else np.matmul(by_approach, along)
+            loads.append((slopes.by_pose + rubbed)[rows, pair])
+        return self._following(rows, disc, pair, loads, self._vectors(rows, disc, pair, "gradient"))
+
+    def _pushing(self, rows: NDArray[np.intp], disc: NDArray[np.intp], pair: NDArray[np.intp]) -> FloatArray:
+        """Forces of unit loads on the pins, friction included, shape (positions, groups, members, 2)."""
+        normal = self._vectors(rows, disc, pair, "gradient")
+        if self.rubs is None:
+            return normal
+        return np.asarray(normal + self.rubs[rows, disc, pair][..., None] * self._vectors(rows, disc, pair, "along"))
+
+    def _following(
+        self,
+        rows: NDArray[np.intp],
+        disc: NDArray[np.intp],
+        pair: NDArray[np.intp],
+        by_pose: list[FloatArray],
+        normal: FloatArray,
+    ) -> FloatArray:
+        """Forces along normals whose loads follow the pose as given, and loads that turn with it."""
+        slip = self._vectors(rows, disc, pair, "along")
         bend, on_flank = self._bend(rows, disc, pair), self._load(rows, disc, pair) * self._on_flank(pair)
         found = np.zeros((*normal.shape, self.coordinates.size))
-        for number, (part, slopes) in enumerate(zip(self.parts, self.slopes, strict=True)):
+        for number, (part, loads) in enumerate(zip(self.parts, by_pose, strict=True)):
             mine = (disc == number)[..., None, None]
-            loads = slopes.by_pose[rows, pair]
             # F ∂²δ/∂u∂q: κ s_u s_qᵀ, on the flank with s_u e₂ᵀ − s_u e_Wᵀ as well.
             every = np.concatenate((part.flank.along, part.holes.along), axis=1)[rows, pair]
             block = bend[..., None, None] * slip[..., :, None] * every[..., None, :]
@@ -362,6 +397,15 @@ class DisplacedPins:
         bending = [np.concatenate((part.flank.bending, part.holes.bending), axis=1) for part in self.parts]
         turning = np.stack(bending, axis=1)[rows, disc, pair] * self._load(rows, disc, pair)
         return np.asarray(turning * np.where(self._on_flank(pair), -1.0, 1.0))
+
+
+def _friction_by_load(parts: tuple[DiscResponse, ...]) -> FloatArray | None:
+    """Friction of contacts by their loads, shape (positions, discs, pairs); None without friction."""
+    if parts[0].friction is None:
+        return None
+    load = np.stack([np.concatenate((part.pin_load, part.hole_load), axis=1) for part in parts], axis=1)
+    friction = np.stack([np.asarray(part.friction) for part in parts], axis=1)
+    return np.asarray(np.divide(friction, load, out=np.zeros_like(load), where=load > 0.0))
 
 
 def _beams(drive: Drive) -> FloatArray:
