@@ -1,0 +1,452 @@
+r"""Pins displaced by the parts that hold them: beams under several discs, and the ring of the pin wheel under all its pins.
+
+What the forces on pins displace is :math:`u = -S f`, with one symmetric flexibility S and the forces :math:`f = F e` of the
+discs against the displacements, :math:`e = \partial \delta / \partial u`. S is a sum: a pin is one beam under the forces of all
+discs (`ltca.laws.beam`), and the ring moves every pin by the forces on all of them, summed over the discs
+(`ltca.laws.ring_beam`). Displacements of wheel pins are those in the turning wheel, so S does not turn.
+What a disc's own force makes a beam yield lies along the common normal, in series with the contact, and is part of its law
+(`ltca.laws.backed`).
+
+Gaps are those of the displaced pins, with no normal linearised: loads and displacements are found together at every pose by
+Newton's method, pin by pin where neither the ring nor the body of a disc couples them, for all that carry at once elsewhere.
+With :math:`K = \partial f/\partial u` and :math:`H = \partial f/\partial q` the tangent of the whole is that of pins at rest
+less :math:`H^T (1 + S K)^{-1} S H`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.arrays import ComplexArray, FloatArray, by_drive
+from ltca.compliance.response import DiscResponse, PairSlopes
+from ltca.drive.parts import Drive
+from ltca.errors import ConvergenceError
+from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION, WHEEL_ANGLE, Coordinates
+from ltca.laws.backed import from_start, shaft_pin_beam, wheel_pin_beam
+from ltca.laws.beam import PinBeam
+from ltca.laws.ring_beam import ring_flexibility
+
+MAX_ITERATIONS = 60
+SHIFT_TOLERANCE = 5e-14
+"""Largest residual of a pin's displacement, mm: a few round-offs of coordinates of 100 mm."""
+ROUGH = 0.02
+"""Residual of displacements, as a part of the largest approach, that loads follow linearly well enough for a step."""
+ENTRIES_AT_ONCE = 2_000_000
+"""Entries of the matrices solved at once, 16 MB each."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PinDisplacements:
+    """What displaces pins.
+
+    Attributes
+    ----------
+    beams : array, shape (pairs, discs, discs) or (positions, pairs, discs, discs)
+        Deflection of each pin at disc d under a unit force of disc d', wheel pins before shaft pins, mm/N; zero for d = d', and
+        for pins that do not bend.
+    ring : array, shape (z_P, 2, z_P, 2) or (positions, z_P, 2, z_P, 2), or None
+        Displacement (x, y) of the seats of the wheel pins in the wheel under unit forces at the seats, mm/N.
+    """
+
+    beams: FloatArray = by_drive(3)
+    ring: FloatArray | None = by_drive(4, default=None)
+
+    @classmethod
+    def of_drive(cls, drive: Drive) -> PinDisplacements | None:
+        """Return what displaces the pins of a drive; None where they stand still but for what each disc alone bends."""
+        beams, ring = _beams(drive), ring_flexibility(drive)
+        if ring is None and not beams.any():
+            return None
+        return cls(beams=beams, ring=ring)
+
+    def under(self, force: ComplexArray) -> ComplexArray:
+        """Return S f, mm, for forces on the pins by disc, N, shape (positions, discs, pairs)."""
+        found: ComplexArray = np.matmul(self.beams.astype(complex), force.swapaxes(1, 2)[..., None])[..., 0].swapaxes(
+            1, 2
+        )
+        if self.ring is not None:
+            found[:, :, : self.ring.shape[-2]] += self.of_ring(force)[:, None]
+        return found
+
+    def of_ring(self, force: ComplexArray) -> ComplexArray:
+        """Return the part of the ring in S f, the same for all discs, shape (positions, z_P)."""
+        if self.ring is None:
+            return np.zeros((force.shape[0], 0), dtype=complex)
+        seats = self.ring.shape[-2]
+        total = force[:, :, :seats].sum(axis=1)
+        flat = np.stack((total.real, total.imag), axis=-1).reshape(-1, 2 * seats, 1)
+        matrix = self.ring.reshape(*self.ring.shape[:-4], 2 * seats, 2 * seats)
+        moved = np.matmul(matrix, flat).reshape(-1, seats, 2)
+        return np.asarray(moved[..., 0] + 1j * moved[..., 1])
+
+    def settle(
+        self,
+        respond: Callable[[ComplexArray], tuple[DiscResponse, ...]],
+        coordinates: Coordinates,
+        turned: ComplexArray,
+        shifts: ComplexArray,
+        *,
+        roughly: bool = False,
+    ) -> DisplacedPins:
+        """Return the contacts of all discs with the pins displaced by all forces, and how all follow the pose.
+
+        Parameters
+        ----------
+        respond : callable
+            Returns the contacts of all discs for displacements, mm, complex, shape (positions, discs, pairs).
+        coordinates : Coordinates
+            Of the whole.
+        turned : array of complex, shape (positions,)
+            Direction in which the wheel stands.
+        shifts : array of complex, shape (positions, discs, pairs)
+            Displacements to start from, mm.
+        roughly : bool
+            End where what is left follows linearly (`ROUGH`): pose and displacements are then found together.
+
+        Raises
+        ------
+        ConvergenceError
+            When they do not settle.
+        """
+        history: list[float] = []
+        system = DisplacedPins(self, respond(shifts), coordinates, turned, shifts)
+        for _ in range(MAX_ITERATIONS):
+            size = system.size
+            history.append(float(np.max(size, initial=0.0)))
+            most = float(np.max(np.abs(system.shifts), initial=0.0))
+            if history[-1] <= SHIFT_TOLERANCE + 1e-13 * most or (roughly and np.all(size <= system.rough)):
+                return system
+            step, fraction = system.step, np.ones(size.shape)
+            for _ in range(10):
+                trial = system.shifts + fraction[:, None, None] * step
+                there = DisplacedPins(self, respond(trial), coordinates, turned, trial)
+                worse = (there.size > size) & (there.size > SHIFT_TOLERANCE + 1e-11 * most)
+                if not worse.any():
+                    break
+                fraction = np.where(worse, 0.5 * fraction, fraction)
+            system = there
+            if (
+                len(history) > 2
+                and history[-1] < 1e-11 * (1.0 + most)
+                and float(np.max(system.size)) >= 0.5 * history[-1]
+            ):
+                return system  # round-off
+        raise ConvergenceError("the displacements of the pins do not settle; largest change in mm", history)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Settled:
+    """What displaced pins do to the whole.
+
+    Attributes
+    ----------
+    force : array, shape (positions, coordinates)
+        What is added to the generalised force because displacements have not settled, to first order, N and N·mm.
+    tangent : array, shape (positions, coordinates, coordinates)
+        What is added to the tangent.
+    onward : array of complex, shape (positions, discs, pairs)
+        Displacements to go on from, mm.
+    by_pose : array of complex, shape (positions, discs, pairs, coordinates)
+        How displacements follow the pose.
+    left : array, shape (positions,)
+        Force that what is left of the displacements amounts to, N.
+    """
+
+    force: FloatArray
+    tangent: FloatArray
+    onward: ComplexArray
+    by_pose: ComplexArray
+    left: FloatArray
+
+
+class DisplacedPins:
+    """How loads on pins and their displacements follow each other and the pose.
+
+    Parameters
+    ----------
+    held : PinDisplacements
+        What displaces the pins.
+    parts : tuple of DiscResponse
+        Contacts of each disc, with their slopes.
+    coordinates : Coordinates
+        Of the whole.
+    turned : array of complex, shape (positions,)
+        Direction in which the wheel stands.
+    shifts : array of complex, shape (positions, discs, pairs)
+        Displacements that the contacts were found at, mm.
+    """
+
+    def __init__(
+        self,
+        held: PinDisplacements,
+        parts: tuple[DiscResponse, ...],
+        coordinates: Coordinates,
+        turned: ComplexArray,
+        shifts: ComplexArray,
+    ) -> None:
+        self.held, self.parts, self.coordinates, self.shifts = held, parts, coordinates, shifts
+        self.slopes: list[PairSlopes] = [part.slopes for part in parts if part.slopes is not None]
+        self.coupled = held.ring is not None or any(slopes.by_approach.ndim > 2 for slopes in self.slopes)
+        wheel, pairs = parts[0].pin_load.shape[1], parts[0].pin_forces.shape[1]
+        self.moves = np.any(held.beams != 0.0, axis=(-2, -1)).reshape(-1, pairs).any(axis=0)
+        self.moves |= (held.ring is not None) & (np.arange(pairs) < wheel)
+        self.frame = np.where(np.arange(pairs) < wheel, turned.conjugate()[:, None], 1.0)
+        """What turns directions into those of the part that holds the pin, shape (positions, pairs)."""
+        self.rubs = _friction_by_load(parts)
+        # Against the pins' displacements.
+        self.force = np.stack([-part.pin_forces * self.frame for part in parts], axis=1)
+        self.left = shifts + held.under(self.force)
+        """Displacements less what the forces make of them, mm, shape (positions, discs, pairs)."""
+        self.size = np.max(np.abs(self.left), axis=(1, 2), initial=0.0)
+
+    @property
+    def rough(self) -> FloatArray:
+        """Residual from which on loads follow displacements linearly, mm, shape (positions,)."""
+        largest = [np.max(part.flank.approach, axis=1) for part in self.parts]
+        return np.asarray(ROUGH * np.maximum(np.max(largest, axis=0), 0.0))
+
+    @property
+    def step(self) -> ComplexArray:
+        """Newton's step of the displacements with the pose held, mm."""
+        change = np.zeros_like(self.left)
+        for rows, disc, pair in self._groups():
+            stiffness, flexibility = self._stiffness(rows, disc, pair), self._flexibility(rows, disc, pair)
+            given = self._flat(self.left[rows, disc, pair])
+            moved: FloatArray = np.linalg.solve(_one_plus(flexibility, stiffness), -given)
+            change[rows, disc, pair] = _vectors_of(_times(stiffness, moved))[..., 0]
+        return -self.left - self.held.under(change)
+
+    def settled(self) -> Settled:
+        """Return what displaced pins add to force and tangent of discs whose pins stand still, and how they follow the pose."""
+        positions, size = self.force.shape[0], self.coordinates.size
+        added, tangent = np.zeros((positions, size)), np.zeros((positions, size, size))
+        # By the coordinates, and by what is left of the displacements.
+        change = np.zeros((size + 1, *self.force.shape), dtype=complex)
+        stiffest = np.zeros(positions)
+        for rows, disc, pair in self._groups():
+            stiffness, flexibility = self._stiffness(rows, disc, pair), self._flexibility(rows, disc, pair)
+            by_pose, own = self._by_pose(rows, disc, pair), rows[:, 0, 0]
+            given = self._flat(self.left[rows, disc, pair])
+            right = np.concatenate((np.matmul(flexibility, by_pose), given), axis=-1)
+            moved = -np.linalg.solve(_one_plus(flexibility, stiffness), right)
+            back = by_pose if self.rubs is None else self._by_shift(rows, disc, pair)
+            onto = np.matmul(back.swapaxes(2, 3), moved).sum(axis=1)
+            tangent[own], added[own] = onto[..., :-1], onto[..., -1]
+            force = _times(stiffness, moved)
+            force[..., :-1] += by_pose
+            change[:, rows, disc, pair] = np.moveaxis(_vectors_of(force), -1, 0)
+            stiffest[own] = np.abs(stiffness).reshape(own.size, -1).max(axis=1)
+        *by_pose_of_all, by_left = (self.held.under(each) for each in change)
+        return Settled(
+            force=added,
+            tangent=0.5 * (tangent + tangent.swapaxes(1, 2)) if self.rubs is None else tangent,
+            onward=self.shifts - self.left - by_left,
+            by_pose=-np.stack(by_pose_of_all, axis=-1),
+            left=stiffest * self.size,
+        )
+
+    @staticmethod
+    def _flat(values: ComplexArray) -> FloatArray:
+        """Displacements of the members of groups by member and component, as a column."""
+        return np.stack((values.real, values.imag), axis=-1).reshape(*values.shape[:2], -1, 1)
+
+    def _groups(self) -> Iterator[tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.intp]]]:
+        """Positions, discs and pairs of what is solved together, shape (positions, groups, members) when broadcast.
+
+        A group is a pin under all discs where nothing else couples pins, or everything that carries and can move.
+        """
+        positions, discs, pairs = self.force.shape
+        own = np.flatnonzero(self.moves)
+        if not self.coupled:
+            disc, pair = np.broadcast_arrays(np.arange(discs)[None, None, :], own[None, :, None])
+            at_once = max(1, ENTRIES_AT_ONCE // max(1, own.size * (2 * discs) ** 2))
+        else:
+            # A contact that carries nothing has no stiffness. Most rows have a few idle ones for the sake of the fullest.
+            load = np.stack([np.concatenate((part.pin_load, part.hole_load), axis=1) for part in self.parts], axis=1)
+            carries = ((load > 0.0) & self.moves).reshape(positions, discs * pairs)
+            most = max(1, int(np.max(np.count_nonzero(carries, axis=1), initial=0)))
+            chosen = np.sort(np.argsort(~carries, axis=1, kind="stable")[:, :most], axis=1)[:, None, :]
+            disc, pair = chosen // pairs, chosen % pairs
+            at_once = max(1, ENTRIES_AT_ONCE // (2 * most) ** 2)
+        for first in range(0, positions, at_once):
+            rows = np.arange(first, min(first + at_once, positions))[:, None, None]
+            part = slice(None) if not self.coupled else rows[:, 0, 0]
+            yield rows, disc[part], pair[part]
+
+    def _flexibility(self, rows: NDArray[np.intp], disc: NDArray[np.intp], pair: NDArray[np.intp]) -> FloatArray:
+        """S among the members of groups, by member and component, shape (positions or 1, groups, 2 members, 2 members)."""
+        beams, ring = self.held.beams, self.held.ring
+        one, other = np.broadcast_arrays(pair[..., :, None], pair[..., None, :])
+        places: tuple[NDArray[np.intp], ...] = (one, disc[..., :, None], disc[..., None, :])
+        if beams.ndim > 3:
+            places = (rows[..., None], *places)
+        count = 2 * one.shape[-1]
+        found = np.zeros(
+            (*np.broadcast_shapes(one.shape[:-2], (*rows.shape[:1], 1) if beams.ndim > 3 else ()), count, count)
+        )
+        if beams.any():
+            along = beams[places] * (one == other)
+            found[..., ::2, ::2] = found[..., 1::2, 1::2] = along
+        if ring is not None:
+            # Row by row of a matrix with an empty seat in the place of all shaft pins.
+            seats = ring.shape[-2]
+            whole = np.zeros((*ring.shape[:-4], 2 * seats + 2, 2 * seats + 2))
+            whole[..., :-2, :-2] = ring.reshape(*ring.shape[:-4], 2 * seats, 2 * seats)
+            seat = (2 * np.minimum(pair, seats)[..., None] + np.arange(2)).reshape(*pair.shape[:-1], count)
+            if ring.ndim > 4:
+                found = found + whole[rows[..., None], seat[..., :, None], seat[..., None, :]]
+            else:
+                found = found + np.take(whole, seat[..., :, None] * whole.shape[-1] + seat[..., None, :])
+        return found
+
+    def _stiffness(self, rows: NDArray[np.intp], disc: NDArray[np.intp], pair: NDArray[np.intp]) -> FloatArray:
+        """K among the members of groups: that of the contacts along their normals, and loads that turn with them.
+
+        A matrix by member and component where the body of a disc couples them; a block for each member, shape (…, members, 2, 2),
+        where nothing does.
+        """
+        normal, slip = self._vectors(rows, disc, pair, "gradient"), self._vectors(rows, disc, pair, "along")
+        pushing = self._pushing(rows, disc, pair)
+        bend = self._bend(rows, disc, pair)[..., None, None] * slip[..., :, None] * slip[..., None, :]
+        if self.slopes[0].by_approach.ndim == 2:
+            by_approach = np.stack([slopes.by_approach for slopes in self.slopes], axis=1)[rows, disc, pair]
+            return np.asarray(bend + by_approach[..., None, None] * pushing[..., :, None] * normal[..., None, :])
+        members = normal.shape[2]
+        itself = np.arange(members)
+        every = np.stack([slopes.by_approach for slopes in self.slopes], axis=1)
+        same = disc[..., :, None] == disc[..., None, :]
+        slope = every[rows[..., None], disc[..., :, None], pair[..., :, None], pair[..., None, :]] * same
+        found = pushing[..., :, :, None, None] * slope[..., :, None, :, None] * normal[..., None, None, :, :]
+        found[:, :, itself, :, itself, :] += np.moveaxis(bend, 2, 0)
+        return np.asarray(found.reshape(*found.shape[:2], 2 * members, 2 * members))
+
+    def _by_pose(self, rows: NDArray[np.intp], disc: NDArray[np.intp], pair: NDArray[np.intp]) -> FloatArray:
+        """H of the members of groups, shape (positions, groups, 2 members, coordinates)."""
+        loads = [slopes.by_pose[rows, pair] for slopes in self.slopes]
+        return self._following(rows, disc, pair, loads, self._pushing(rows, disc, pair))
+
+    def _by_shift(self, rows: NDArray[np.intp], disc: NDArray[np.intp], pair: NDArray[np.intp]) -> FloatArray:
+        """How generalised forces follow the displacements, in the layout of H, which they are without friction.
+
+        Friction works by the place of the pin; the lever of the point of contact about it is left out.
+        """
+        loads = []
+        for number, (part, slopes) in enumerate(zip(self.parts, self.slopes, strict=True)):
+            assert self.rubs is not None
+            along = np.concatenate((part.flank.along, part.holes.along), axis=1) * self.rubs[:, number, :, None]
+            by_approach = slopes.by_approach
+            rubbed = by_approach[..., None] * along if by_approach.ndim == 2 else np.matmul(by_approach, along)
+            loads.append((slopes.by_pose + rubbed)[rows, pair])
+        return self._following(rows, disc, pair, loads, self._vectors(rows, disc, pair, "gradient"))
+
+    def _pushing(self, rows: NDArray[np.intp], disc: NDArray[np.intp], pair: NDArray[np.intp]) -> FloatArray:
+        """Forces of unit loads on the pins, friction included, shape (positions, groups, members, 2)."""
+        normal = self._vectors(rows, disc, pair, "gradient")
+        if self.rubs is None:
+            return normal
+        return np.asarray(normal + self.rubs[rows, disc, pair][..., None] * self._vectors(rows, disc, pair, "along"))
+
+    def _following(
+        self,
+        rows: NDArray[np.intp],
+        disc: NDArray[np.intp],
+        pair: NDArray[np.intp],
+        by_pose: list[FloatArray],
+        normal: FloatArray,
+    ) -> FloatArray:
+        """Forces along normals whose loads follow the pose as given, and loads that turn with it."""
+        slip = self._vectors(rows, disc, pair, "along")
+        bend, on_flank = self._bend(rows, disc, pair), self._load(rows, disc, pair) * self._on_flank(pair)
+        found = np.zeros((*normal.shape, self.coordinates.size))
+        for number, (part, loads) in enumerate(zip(self.parts, by_pose, strict=True)):
+            mine = (disc == number)[..., None, None]
+            # F ∂²δ/∂u∂q: κ s_u s_qᵀ, on the flank with s_u e₂ᵀ − s_u e_Wᵀ as well.
+            every = np.concatenate((part.flank.along, part.holes.along), axis=1)[rows, pair]
+            block = bend[..., None, None] * slip[..., :, None] * every[..., None, :]
+            block[..., DISC_ROTATION] -= on_flank[..., None] * slip
+            block[..., WHEEL_ANGLE] += on_flank[..., None] * slip
+            block += normal[..., :, None] * loads[..., None, :]
+            found[..., self.coordinates.columns(number)] += mine * block
+        return np.asarray(found.reshape(*found.shape[:2], -1, self.coordinates.size))
+
+    def _vectors(self, rows: NDArray[np.intp], disc: NDArray[np.intp], pair: NDArray[np.intp], name: str) -> FloatArray:
+        """Normals (`gradient`) or tangents (`along`) against displacements of the pins, shape (positions, groups, members, 2).
+
+        A pin moves against a disc as the disc moves the other way against it.
+        """
+        each = [
+            np.concatenate((getattr(p.flank, name), getattr(p.holes, name)), axis=1)[..., DISC_PLACE]
+            for p in self.parts
+        ]
+        every = np.stack(each, axis=1)
+        turned = -(every[..., 0] + 1j * every[..., 1]) * self.frame[:, None]
+        found = turned[rows, disc, pair]
+        return np.stack((found.real, found.imag), axis=-1)
+
+    def _load(self, rows: NDArray[np.intp], disc: NDArray[np.intp], pair: NDArray[np.intp]) -> FloatArray:
+        load = [np.concatenate((part.pin_load, part.hole_load), axis=1) for part in self.parts]
+        return np.asarray(np.stack(load, axis=1)[rows, disc, pair])
+
+    def _on_flank(self, pair: NDArray[np.intp]) -> NDArray[np.bool_]:
+        return np.asarray(pair < self.parts[0].pin_load.shape[1])
+
+    def _bend(self, rows: NDArray[np.intp], disc: NDArray[np.intp], pair: NDArray[np.intp]) -> FloatArray:
+        """F κ of the contacts with the sign of their curvature."""
+        bending = [np.concatenate((part.flank.bending, part.holes.bending), axis=1) for part in self.parts]
+        turning = np.stack(bending, axis=1)[rows, disc, pair] * self._load(rows, disc, pair)
+        return np.asarray(turning * np.where(self._on_flank(pair), -1.0, 1.0))
+
+
+def _friction_by_load(parts: tuple[DiscResponse, ...]) -> FloatArray | None:
+    """Friction of contacts by their loads, shape (positions, discs, pairs); None without friction."""
+    if parts[0].friction is None:
+        return None
+    load = np.stack([np.concatenate((part.pin_load, part.hole_load), axis=1) for part in parts], axis=1)
+    friction = np.stack([np.asarray(part.friction) for part in parts], axis=1)
+    return np.asarray(np.divide(friction, load, out=np.zeros_like(load), where=load > 0.0))
+
+
+def _times(stiffness: FloatArray, moved: FloatArray) -> FloatArray:
+    """K u of groups; see `DisplacedPins._stiffness`."""
+    if stiffness.ndim == 4:
+        return np.asarray(np.matmul(stiffness, moved))
+    each = moved.reshape(*stiffness.shape[:-1], moved.shape[-1])
+    return np.asarray(np.matmul(stiffness, each).reshape(moved.shape))
+
+
+def _one_plus(flexibility: FloatArray, stiffness: FloatArray) -> FloatArray:
+    """1 + S K of groups."""
+    if stiffness.ndim == 4:
+        found = np.matmul(flexibility, stiffness)
+    else:
+        first, second = flexibility[..., ::2], flexibility[..., 1::2]
+        shape = (*np.broadcast_shapes(first.shape[:2], stiffness.shape[:2]), *flexibility.shape[2:])
+        found = np.empty(shape)
+        for way in (0, 1):
+            found[..., way::2] = first * stiffness[:, :, None, :, 0, way] + second * stiffness[:, :, None, :, 1, way]
+    itself = np.arange(found.shape[-1])
+    found[..., itself, itself] += 1.0
+    return np.asarray(found)
+
+
+def _vectors_of(values: FloatArray) -> ComplexArray:
+    """Components of the members of groups, shape (…, 2 members, columns), as complex numbers."""
+    return np.asarray(values[..., ::2, :] + 1j * values[..., 1::2, :])
+
+
+def _beams(drive: Drive) -> FloatArray:
+    """Flexibility of the pins between discs, without what each disc bends alone."""
+    discs, thickness = drive.disc.number_of_discs, drive.disc.thickness
+
+    def of(beam: PinBeam | None, pins: int) -> FloatArray:
+        if beam is None or discs == 1:
+            return np.zeros((pins, discs, discs))
+        found = beam.flexibility(from_start(beam, drive).tolist(), thickness)
+        return np.broadcast_to(found - np.diag(np.diag(found)), (pins, discs, discs))
+
+    shaft = of(shaft_pin_beam(drive), drive.number_of_holes)
+    return np.concatenate((of(wheel_pin_beam(drive), drive.pin_wheel.number_of_pins), shaft))
