@@ -9,6 +9,7 @@ crank_drives        Reducers of all kinds: one or several cranks, with and witho
                     member held
 pin_drives          Reducers of all kinds with loose, sleeved or bending pins, or with friction
 actual_parts        Actual places of all parts of a drive, computed from its definition independently of `ltca.geometry`
+ring_statics        The elastic ring of the wheel by statics: complementary energy with redundants, independently of `ltca.laws`
 yielding_pins       Places and energies of loose and bent pins by explicit coordinates, independently of `ltca.laws`
 friction_check      Friction of a drive that turns: forces, work and moments, independently of `ltca.equilibrium.friction`
 balance_check       Check of an equilibrium by its potential energy, independently of the code that finds it

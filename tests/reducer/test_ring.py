@@ -241,6 +241,34 @@ def test_finite_elements_of_the_ring_are_not_there_yet():
         ringed("robot-joint", model="fe")
 
 
+def test_engines_with_rigid_rings_tell_what_the_ring_has():
+    """Of a material or bolts in a ring the refusal broke off: "unsupported format string"."""
+    drive = with_fields(ringed("paper", **{"material.youngs_modulus": 70e3}), BOLTS)
+    with pytest.raises(DriveError) as refused:
+        HalfSpace(method="paper").prepare(drive)
+    (told,) = refused.value.problems
+    assert "ring.material.youngs_modulus = 70000 MPa, ring.bolts.number = 6, ring.bolts.circle_radius = 85 mm" in told
+    assert "must be left out for method paper (the wheel pins stand in a rigid ring in the model)" in told
+
+
+def test_the_ring_grows_by_its_own_expansion():
+    drive = with_fields(
+        ringed("robot-joint", **{"material.thermal_expansion": 2.3e-5}),
+        {"temperature.housing": 60.0}
+        | {
+            f"materials.{part}.thermal_expansion": 1.15e-5
+            for part in ("disc", "wheel_pin", "roller", "inner_race", "shaft_pin")
+        },
+    )
+    warm = warm_drive(drive)
+    assert warm.pin_wheel.pin_circle_radius == pytest.approx(60.0 * (1.0 + 2.3e-5 * 40.0), rel=1e-12)
+    assert warm.pin_wheel.pin_radius == pytest.approx(2.5 * (1.0 + 1.15e-5 * 40.0), rel=1e-12)
+    with pytest.raises(
+        DriveError, match=r"ring\.material\.thermal_expansion = 2\.3e-05 1/K: must equal materials\.wheel_seat"
+    ):
+        with_fields(drive, {"materials.wheel_seat.thermal_expansion": 1.2e-5})
+
+
 def test_ring_grows_with_the_wheel():
     drive = with_fields(ringed("robot-joint"), BOLTS)
     expansion = {

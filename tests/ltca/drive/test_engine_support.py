@@ -67,6 +67,9 @@ def test_every_problem_is_named_at_once(engine):
             "crank.support.positions": (-20.0, 20.0),
             "crank.support.stiffness": (2e5, 3e5),
             "friction.pin": 0.05,
+            "ring.inner_radius": 70.0,
+            "ring.outer_radius": 90.0,
+            "ring.width": 30.0,
         },
         check=False,
     )
