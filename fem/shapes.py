@@ -21,12 +21,6 @@ from ltca.drive.parts import Drive
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.placement import Placement
 
-DEFAULT_CORE_RADIUS = 2.0
-DEFAULT_RACE_BORE_RADIUS = 10.0
-# A default core or race bore shrinks with the part, or a small drive would have no material left to deform.
-LARGEST_CORE_SHARE = 1.0 / 3.0
-LARGEST_RACE_BORE_SHARE = 0.6
-
 
 class Curve(Protocol):
     """A closed curve that bounds a body, counter-clockwise, parameter of period 2π."""
@@ -335,42 +329,19 @@ class DriveShapes:
     shaft_pins: tuple[CircleShape, ...]
 
     @classmethod
-    def of_drive(
-        cls, drive: Drive, *, core_radius: float | None = None, race_bore_radius: float | None = None
-    ) -> DriveShapes:
-        """Return the shapes of a drive.
-
-        Parameters
-        ----------
-        drive : Drive
-            The drive in one case.
-        core_radius : float, optional
-            Radius of the rigid core of the wheel pins, mm; 2 mm by default, at most a third of the pin radius.
-        race_bore_radius : float, optional
-            Fixed bore of the inner race, mm; 10 mm by default, at most 0.6 of r_i.
-
-        Raises
-        ------
-        MeshError
-            When a given radius leaves no material.
-        """
-        placement = Placement.of_drive(drive)
-        if core_radius is None:
-            core_radius = min(DEFAULT_CORE_RADIUS, LARGEST_CORE_SHARE * float(placement.wheel_pin_radii.min()))
-        if race_bore_radius is None:
-            race_bore_radius = min(
-                DEFAULT_RACE_BORE_RADIUS, LARGEST_RACE_BORE_SHARE * drive.crank_bearing.inner_race_radius
-            )
+    def of_drive(cls, drive: Drive) -> DriveShapes:
+        """Return the shapes of a drive."""
+        placement, race = Placement.of_drive(drive), drive.crank_bearing
         return cls(
             disc=DiscShape.of_drive(drive),
             wheel_pins=tuple(
-                CircleShape(name=f"pin_{i}", radius=float(radius), core_radius=core_radius)
+                CircleShape(name=f"pin_{i}", radius=float(radius), core_radius=drive.pin_wheel.held_core_radius)
                 for i, radius in enumerate(placement.wheel_pin_radii)
             ),
             rollers=tuple(
                 CircleShape(name=f"roller_{n}", radius=float(radius)) for n, radius in enumerate(placement.roller_radii)
             ),
-            inner_race=RingShape(inner_radius=race_bore_radius, outer_radius=drive.crank_bearing.inner_race_radius),
+            inner_race=RingShape(inner_radius=race.held_bore_radius, outer_radius=race.inner_race_radius),
             shaft_pins=tuple(
                 CircleShape(name=f"shaft_pin_{k}", radius=float(radius))
                 for k, radius in enumerate(placement.shaft_pin_radii if shaft_pins_yield(drive) else ())

@@ -17,6 +17,8 @@ SHARE_ROUNDING = 1e-9
 """Round-off accepted in the sum of the shares of a duty."""
 ROUNDING = 1e-9
 """Difference up to which lengths are equal, mm: round-off of a sum, and less than any real play."""
+MOST_OF_BODY = 0.95
+"""Largest rigid core of a pin, or fixed bore of a race, by its radius: thinner walls the default meshes do not resolve."""
 BELONGS = {"radius": "slot", "pin_radius": "sleeve", "bore_radius": "sleeve"}
 """Fields of a seat, and the kind of seat they belong to."""
 
@@ -60,7 +62,7 @@ def _installation(drive: Drive) -> Iterator[str]:
                 )
         if drive.materials.shaft_pin != Material():
             yield "materials.shaft_pin: must be left out without a pin shaft"
-    yield from (*_crank_support(drive), *find_pin_problems(drive), *_duty(drive))
+    yield from (*_crank_support(drive), *_race_bore(drive), *find_pin_problems(drive), *_duty(drive))
 
 
 def _duty(drive: Drive) -> Iterator[str]:
@@ -218,6 +220,7 @@ def find_pin_problems(drive: Drive) -> Iterator[str]:
     wheel, shaft = drive.pin_wheel, drive.pin_shaft
     yield from _seat(wheel, "pin_wheel", 1.0, drive.crank.eccentricity)
     yield from _slots(wheel)
+    yield from _core(wheel)
     if wheel.beam is not None:
         yield from _beam(drive, wheel, wheel.beam, "pin_wheel")
     if shaft is not None:
@@ -315,6 +318,32 @@ def _slots(wheel: PinWheel) -> Iterator[str]:
     if wheel.seat.kind == "slot" and radius >= room > wheel.pin_radius > 0.5 * radius:
         yield (
             f"pin_wheel.seat.radius = {radius:g} mm: must be less than {room:.6g} mm, or neighbouring slots cut into each other"
+        )
+
+
+def _core(wheel: PinWheel) -> Iterator[str]:
+    core, errors = wheel.core_radius, wheel.pin_errors.diameter
+    if core is None:
+        return
+    smallest = wheel.pin_radius + 0.5 * min((*errors, 0.0))
+    if wheel.seat.kind == "sleeve":
+        yield (
+            f'pin_wheel.core_radius = {core:g} mm: must be left out with sleeves (pin_wheel.seat.kind = "sleeve"), which lie '
+            "loose on their pins and have no core"
+        )
+    elif core > MOST_OF_BODY * smallest:
+        yield (
+            f"pin_wheel.core_radius = {core:g} mm: must be at most {MOST_OF_BODY * smallest:g} mm, {MOST_OF_BODY:g} of the "
+            f"radius of the smallest pin (pin_wheel.pin_radius, pin_wheel.pin_errors.diameter), or too little of it deforms"
+        )
+
+
+def _race_bore(drive: Drive) -> Iterator[str]:
+    bore, most = drive.crank_bearing.race_bore_radius, MOST_OF_BODY * drive.crank_bearing.inner_race_radius
+    if bore is not None and bore > most:
+        yield (
+            f"crank_bearing.race_bore_radius = {bore:g} mm: must be at most {most:g} mm, {MOST_OF_BODY:g} of "
+            "crank_bearing.inner_race_radius, or too little of the race deforms"
         )
 
 
