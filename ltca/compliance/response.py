@@ -58,7 +58,7 @@ class DiscResponse:
         What a model wants to find again at the next pose of each position, a value that nothing changes; None where it
         wants nothing. It saves work and alters no answer.
     shifts : array of complex, shape (positions, pairs), or None
-        Displacements of wheel pins and shaft pins that were given, mm: what the forces of other discs make them yield.
+        Displacements of wheel pins and shaft pins that were given, mm: what the parts that hold them yield.
     slopes : PairSlopes or None
         Where they were given.
     friction : array, shape (positions, pairs), or None
@@ -203,7 +203,7 @@ class Start:
         Approaches of the pins of these drives at other poses, by which a model may leave out pins that cannot touch; None
         where all are asked for.
     shifts : array of complex, shape (positions, discs, pairs), or None
-        Displacements of pins that several discs bend, mm.
+        Displacements of pins by what holds them, mm.
     """
 
     parameter: FloatArray

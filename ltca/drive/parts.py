@@ -48,6 +48,7 @@ from ltca.drive.members.pins import (
     WheelPinBeam as WheelPinBeam,
     WheelPinSeat as WheelPinSeat,
 )
+from ltca.drive.members.ring import Ring as Ring, RingBolts as RingBolts
 from ltca.drive.names import Name
 from ltca.drive.units.quantities import COUNT, grows
 from ltca.errors import DriveError
@@ -162,6 +163,8 @@ class Drive:
         Roller bearing between crank and disc.
     pin_shaft : PinShaft or None
         Pin shaft, the carrier of the cranks, with its pins; drives with several cranks need none.
+    ring : Ring or None
+        Elastic ring that holds the wheel pins; rigid when left out.
     load : Load
         Torque and direction.
     installation : Installation
@@ -190,6 +193,7 @@ class Drive:
     disc: Disc
     crank_bearing: CrankBearing
     pin_shaft: PinShaft | None = None
+    ring: Ring | None = None
     load: Load
     installation: Installation = field(default_factory=Installation)
     clearance: Annotated[Clearance, grows("disc")] = field(default_factory=Clearance)

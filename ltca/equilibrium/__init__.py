@@ -5,7 +5,8 @@ Modules in the order data passes:
 ===============  ============================================================
 reducer          A reducer of several discs: every disc a member with its own joints to wheel, crank and pin shaft, one wheel
                  for all
-shared_pins      Pins that bend under several discs: each disc finds the pins where the forces of the others have moved them
+pin_displacements  Pins displaced by beams under several discs and by the ring of the wheel: discs find them where all forces
+                 have moved them
 friction         Friction of the joints: what slips, and the forces that follow
 supports         Springs on coordinates: crankshafts on their bearings, and the wheel on its own
 newton           Damped Newton iteration for the pose in which a batch of positions balances

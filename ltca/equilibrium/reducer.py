@@ -28,11 +28,12 @@ from ltca.compliance.response import (
 )
 from ltca.drive.parts import Drive
 from ltca.equilibrium.friction.turning import Rubbing, TurningFriction
-from ltca.equilibrium.shared_pins import SharedPins
+from ltca.equilibrium.pin_displacements import PinDisplacements
 from ltca.equilibrium.supports import support_stiffness
 from ltca.geometry.coordinates import WHEEL_ANGLE, Coordinates
 from ltca.geometry.pair_motion import KnownPins
 from ltca.geometry.pairs import ContactGeometry
+from ltca.geometry.rotation import unit
 
 
 class JointFriction(Protocol):
@@ -96,15 +97,15 @@ class Reducer:
         How the contacts of each disc yield, all by the same model.
     supports : array, shape (coordinates, coordinates) or (positions, coordinates, coordinates), or None
         Stiffness of the supports (`ltca.equilibrium.supports`), N/mm; None where nothing yields.
-    pins : SharedPins or None
-        Pins that several discs bend.
+    pins : PinDisplacements or None
+        What displaces pins: beams under several discs, the ring of the wheel.
     friction : JointFriction or None
         What rubs.
     """
 
     discs: tuple[DiscModel, ...]
     supports: FloatArray | None = by_drive(2, default=None)
-    pins: SharedPins | None = None
+    pins: PinDisplacements | None = None
     friction: JointFriction | None = None
     _by_position: bool | None = field(init=False, repr=False, compare=False, default=None)
 
@@ -114,7 +115,7 @@ class Reducer:
         return cls(
             discs=tuple(discs),
             supports=support_stiffness(drive, discs[0].geometry),
-            pins=SharedPins.of_drive(drive),
+            pins=PinDisplacements.of_drive(drive),
             friction=TurningFriction.of_drive(drive),
         )
 
@@ -171,7 +172,9 @@ class Reducer:
             begin = None if start is None else start.shifts
             if begin is None:
                 begin = self._unmoved(crank_angle.size)
-            parts, shifts, settled = self.pins.settle(respond, coordinates, begin)
+            placement = self.discs[0].geometry.placement
+            turned = unit(placement.wheel_rotation(crank_angle) + pose[:, WHEEL_ANGLE])
+            parts, shifts, settled = self.pins.settle(respond, coordinates, turned, begin)
         force, tangent = np.zeros((crank_angle.size, size)), np.zeros((crank_angle.size, size, size))
         for own, part in zip(places, parts, strict=True):
             force[:, own] += part.force

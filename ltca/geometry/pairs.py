@@ -140,7 +140,7 @@ class ContactGeometry:
         start : array, shape (positions, z_P), optional
             First guess of the contact parameters; the nominal ones by default.
         shifts : array of complex, shape (positions, z_P), optional
-            Displacements of the pins in the fixed frame, mm.
+            Displacements of the pins in the turning wheel, mm.
         known : KnownPins, optional
             Of the same drives: pins that cannot touch the flank are left out, see `complete_flank`.
         """
@@ -197,10 +197,9 @@ class ContactGeometry:
             wheel = coordinates.wheel_place
             disc_centre = disc_centre - (pose[:, wheel.start] + 1j * pose[:, wheel.start + 1])[:, None]
         turned = place.wheel_rotation(crank_angle)[:, None] + pose[:, WHEEL_ANGLE, None]
-        pin = place.wheel_pin_centres * unit(turned)
+        centres = place.wheel_pin_centres if shifts is None else place.wheel_pin_centres + shifts
+        pin = centres * unit(turned)
         arm, turn = place.wheel_axis + pin - disc_centre, unit(pose[:, DISC_ROTATION, None])
-        if shifts is not None:
-            arm = arm + shifts
         return _Pins(
             centre=pin,
             arm=arm,

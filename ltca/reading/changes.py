@@ -127,6 +127,7 @@ def _by_path(values: Mapping[str, Any], above: str = "") -> dict[str, Any]:
 def _without_names(values: Mapping[str, Any]) -> Mapping[str, Any]:
     """Changes with named materials and bearings as their properties, which properties given beside them replace."""
     readers = {f"materials.{part}": (_numbers_of_material, "a material") for part in PARTS}
+    readers["ring.material"] = (_numbers_of_material, "a material")
     readers[BEARING] = (_numbers_of_bearing, "a bearing")
     named = readers.keys() & values.keys()
     if not named:

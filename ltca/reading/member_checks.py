@@ -62,7 +62,47 @@ def _installation(drive: Drive) -> Iterator[str]:
                 )
         if drive.materials.shaft_pin != Material():
             yield "materials.shaft_pin: must be left out without a pin shaft"
-    yield from (*_crank_support(drive), *_race_bore(drive), *find_pin_problems(drive), *_duty(drive))
+    yield from (*_crank_support(drive), *_race_bore(drive), *_ring(drive), *find_pin_problems(drive), *_duty(drive))
+
+
+def _ring(drive: Drive) -> Iterator[str]:
+    """Problems of the ring that holds the wheel pins."""
+    ring, wheel = drive.ring, drive.pin_wheel
+    if ring is None:
+        return
+    inner, outer, circle = ring.inner_radius, ring.outer_radius, wheel.pin_circle_radius
+    seat = wheel.seat.radius if wheel.seat.kind == "slot" else wheel.seat.pin_radius
+    seat = seat or wheel.pin_radius
+    if outer <= inner:
+        yield f"ring.outer_radius = {outer:g} mm: must be greater than ring.inner_radius = {inner:g} mm"
+        return
+    if inner <= circle - seat:
+        yield (
+            f"ring.inner_radius = {inner:g} mm: must be greater than {circle - seat:g} mm, where the wheel pins begin "
+            "(pin_wheel.pin_circle_radius less the radius of the seat): they would not stand out of the ring"
+        )
+    if inner > circle + seat:
+        yield (
+            f"ring.inner_radius = {inner:g} mm: must be at most {circle + seat:g} mm, where the wheel pins end "
+            "(pin_wheel.pin_circle_radius plus the radius of the seat): they would not touch the ring"
+        )
+    if outer <= circle + seat:
+        yield (
+            f"ring.outer_radius = {outer:g} mm: must be greater than {circle + seat:g} mm, where the seats of the wheel pins end "
+            "(pin_wheel.pin_circle_radius plus the radius of the seat)"
+        )
+    if ring.flange == "one-side":
+        yield 'ring.flange = "one-side": must be "free" or "built-in": a flange on one side warps the ring, which no plane model has'
+    bolts = ring.bolts
+    if bolts is None:
+        return
+    if ring.flange == "built-in":
+        yield (
+            f'ring.bolts (number = {bolts.number}): must be left out with ring.flange = "built-in", where the housing holds the '
+            "outer face all around"
+        )
+    if not inner <= bolts.circle_radius:
+        yield f"ring.bolts.circle_radius = {bolts.circle_radius:g} mm: must be at least ring.inner_radius = {inner:g} mm"
 
 
 def _duty(drive: Drive) -> Iterator[str]:

@@ -11,7 +11,7 @@ from ltca.analysis.engines import HalfSpace
 from ltca.equilibrium.balance import lever_arms
 from ltca.equilibrium.output_torque import crank_moments, solve_at_output
 from ltca.equilibrium.reducer import Reducer
-from ltca.equilibrium.shared_pins import SharedTangent
+from ltca.equilibrium.pin_displacements import DisplacedPins
 from ltca.geometry.coordinates import WHEEL_ANGLE
 
 
@@ -21,7 +21,7 @@ def stored():
     return stored_energy
 
 
-def stored_energy(model, response, pose):
+def stored_energy(model, response, pose, angle=0.0):
     """ΣU of contacts and supports, N·mm, and ∂U/∂ρ of every wheel pin, N, by differences of the law alone."""
     total, slopes = np.zeros(pose.shape[0]), []
     for disc, part in zip(model.discs, response.parts, strict=True):
@@ -38,9 +38,11 @@ def stored_energy(model, response, pose):
     if isinstance(model, Reducer) and model.supports is not None:
         total = total + 0.5 * np.einsum("bi,ij,bj->b", pose, model.supports, pose)
     if isinstance(model, Reducer) and model.pins is not None:
-        shared = SharedTangent(model.pins.flexibility, response.parts, model.coordinates)
-        force = shared.load.swapaxes(1, 2)[..., None] * shared.normal
-        total = total + 0.5 * np.einsum("bpdi,pde,bpei->b", force, shared.flexibility, force)
+        ratio = model.discs[0].geometry.placement.reduction_ratio
+        turned = np.exp(1j * (angle / ratio + pose[:, WHEEL_ANGLE]))
+        held = DisplacedPins(model.pins, response.parts, model.coordinates, turned)
+        moved = model.pins.under(held.force)
+        total = total + 0.5 * (held.force.conjugate() * moved).real.sum(axis=(1, 2))
     return total, np.concatenate(slopes, axis=1)
 
 
@@ -55,13 +57,13 @@ def work_left_over(drive, angle):
     model = HalfSpace().prepare(drive).model
     centre = solve_at_output(model, [drive], angle, drive.load.torque)
     crank = crank_moments(model, angle, centre.pose, centre.response).sum(axis=1)
-    slope = stored_energy(model, centre.response, centre.pose)[1]
+    slope = stored_energy(model, centre.response, centre.pose, angle)[1]
 
     def left(step):
         ends = []
         for side in (1.0, -1.0):
             found = solve_at_output(model, [drive], angle + side * step, drive.load.torque, centre.pose)
-            energy = stored_energy(model, found.response, found.pose)[0]
+            energy = stored_energy(model, found.response, found.pose, angle + side * step)[0]
             ends.append((energy, found.pose[:, WHEEL_ANGLE], found.response.flank.effective_radius))
         (up, wheel_up, radius_up), (down, wheel_down, radius_down) = ends
         turn = (wheel_up - wheel_down) / (2.0 * step)

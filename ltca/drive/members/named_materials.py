@@ -195,25 +195,26 @@ def with_named_materials(table: Mapping[str, Any], problems: list[str]) -> dict[
 
     Mistakes are appended to `problems`.
     """
-    parts = table.get("materials")
-    if not isinstance(parts, Mapping):
-        return dict(table)
-    return {**table, "materials": {part: _resolved(part, given, problems) for part, given in parts.items()}}
+    found, parts, ring = dict(table), table.get("materials"), table.get("ring")
+    if isinstance(parts, Mapping):
+        found["materials"] = {
+            part: _resolved(f"materials.{part}", given, problems) if part in PARTS else given
+            for part, given in parts.items()
+        }
+    if isinstance(ring, Mapping) and "material" in ring:
+        found["ring"] = {**ring, "material": _resolved("ring.material", ring["material"], problems)}
+    return found
 
 
-def _resolved(part: str, given: Any, problems: list[str]) -> Any:
-    if part not in PARTS:
-        return given
+def _resolved(path: str, given: Any, problems: list[str]) -> Any:
     below: Mapping[str, Any] = {}
     if isinstance(given, Mapping) and LIKE in given:
         given, below = given[LIKE], {key: value for key, value in given.items() if key != LIKE}
-        path = f"materials.{part}.{LIKE}"
+        path = f"{path}.{LIKE}"
         if not isinstance(given, str):
             problems.append(f"{path} = {shortened(given)}: must be the name of a material")
             return dict(below)
-    elif isinstance(given, str):
-        path = f"materials.{part}"
-    else:
+    elif not isinstance(given, str):
         return given
     try:
         known = named_material(given)

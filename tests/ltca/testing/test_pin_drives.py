@@ -11,7 +11,7 @@ from ltca.analysis.engines import HalfSpace
 from ltca.drive.materials import Material
 from ltca.drive.parts import ShaftPinBeam, ShaftPinSeat, WheelPinBeam, WheelPinSeat
 from ltca.equilibrium.output_torque import solve_at_output
-from ltca.equilibrium.shared_pins import SharedPins, SharedTangent
+from ltca.equilibrium.pin_displacements import DisplacedPins, PinDisplacements
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import parse_drive, shipped_drive
 from ltca.testing.balance_check import find_imbalance
@@ -35,7 +35,7 @@ def test_drives_of_all_pins_quick():
 def test_shared_pins_settle_to_round_off_and_no_further(monkeypatch):
     """Of pins on a circle of 150 mm displacements were wanted to less than round-off: eight evaluations instead of four."""
     counts = []
-    plain_settle, plain_left_over = SharedPins.settle, SharedTangent.left_over
+    plain_settle, plain_left_over = PinDisplacements.settle, DisplacedPins.left_over
 
     def settle(*arguments):
         counts.append(0)
@@ -45,8 +45,8 @@ def test_shared_pins_settle_to_round_off_and_no_further(monkeypatch):
         counts[-1] += 1
         return plain_left_over(*arguments)
 
-    monkeypatch.setattr(SharedPins, "settle", settle)
-    monkeypatch.setattr(SharedTangent, "left_over", left_over)
+    monkeypatch.setattr(PinDisplacements, "settle", settle)
+    monkeypatch.setattr(DisplacedPins, "left_over", left_over)
     check_seeds(21, 1)
     assert max(counts) <= 5
 
