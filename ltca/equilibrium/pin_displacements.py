@@ -3,7 +3,7 @@ r"""Pins displaced by the parts that hold them: beams under several discs, and t
 What the forces on pins displace is :math:`u = -S f`, with one symmetric flexibility S and the forces :math:`f = F e` of the
 discs against the displacements, :math:`e = \partial \delta / \partial u`. S is a sum: a pin is one beam under the forces of all
 discs (`ltca.laws.beam`), and the ring moves every pin by the forces on all of them, summed over the discs
-(`ltca.laws.ring_beam`). Displacements of wheel pins are those in the turning wheel, so S does not turn.
+(`ltca.compliance.ring`). Displacements of wheel pins are those in the turning wheel, so S does not turn.
 What a disc's own force makes a beam yield lies along the common normal, in series with the contact, and is part of its law
 (`ltca.laws.backed`).
 
@@ -23,12 +23,12 @@ from numpy.typing import NDArray
 
 from ltca.arrays import ComplexArray, FloatArray, by_drive
 from ltca.compliance.response import DiscResponse, PairSlopes
+from ltca.compliance.ring import ring_flexibility
 from ltca.drive.parts import Drive
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION, WHEEL_ANGLE, Coordinates
 from ltca.laws.backed import from_start, shaft_pin_beam, wheel_pin_beam
 from ltca.laws.beam import PinBeam
-from ltca.laws.ring_beam import ring_flexibility
 
 MAX_ITERATIONS = 60
 SHIFT_TOLERANCE = 5e-14
@@ -63,7 +63,9 @@ class PinDisplacements:
 
     def under(self, force: ComplexArray) -> ComplexArray:
         """Return S f, mm, for forces on the pins by disc, N, shape (positions, discs, pairs)."""
-        found: ComplexArray = np.matmul(self.beams.astype(complex), force.swapaxes(1, 2)[..., None])[..., 0].swapaxes(1, 2)
+        found: ComplexArray = np.matmul(self.beams.astype(complex), force.swapaxes(1, 2)[..., None])[..., 0].swapaxes(
+            1, 2
+        )
         if self.ring is not None:
             found[:, :, : self.ring.shape[-2]] += self.of_ring(force)[:, None]
         return found
@@ -233,7 +235,9 @@ class DisplacedPins:
             slope = every[rows[..., None], disc[..., :, None], pair[..., :, None], pair[..., None, :]] * same
             found = normal[..., :, :, None, None] * slope[..., :, None, :, None] * normal[..., None, None, :, :]
         bend = self._bend(rows, disc, pair)
-        found[:, :, itself, :, itself, :] += np.moveaxis(bend[..., None, None] * slip[..., :, None] * slip[..., None, :], 2, 0)
+        found[:, :, itself, :, itself, :] += np.moveaxis(
+            bend[..., None, None] * slip[..., :, None] * slip[..., None, :], 2, 0
+        )
         return np.asarray(found.reshape(*found.shape[:2], 2 * members, 2 * members))
 
     def _by_pose(self, rows: NDArray[np.intp], disc: NDArray[np.intp], pair: NDArray[np.intp]) -> FloatArray:
@@ -258,7 +262,10 @@ class DisplacedPins:
 
         A pin moves against a disc as the disc moves the other way against it.
         """
-        each = [np.concatenate((getattr(p.flank, name), getattr(p.holes, name)), axis=1)[..., DISC_PLACE] for p in self.parts]
+        each = [
+            np.concatenate((getattr(p.flank, name), getattr(p.holes, name)), axis=1)[..., DISC_PLACE]
+            for p in self.parts
+        ]
         every = np.stack(each, axis=1)
         turned = -(every[..., 0] + 1j * every[..., 1]) * self.frame[:, None]
         found = turned[rows, disc, pair]

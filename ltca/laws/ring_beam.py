@@ -90,24 +90,18 @@ class RingBeam:
         """
         among = self._among(seats, radius, seats, radius)
         modes = rigid_motions(seats, radius).reshape(-1, 3)
-        found = _beyond(modes, among.reshape(2 * seats.size, -1))
+        found = beyond_rigid_motions(modes, among.reshape(2 * seats.size, -1))
         return np.asarray(found.reshape(among.shape))
 
-    def bolted(self, seats: FloatArray, radius: float, bolts: FloatArray, circle: float, stiffness: float) -> FloatArray:
+    def bolted(
+        self, seats: FloatArray, radius: float, bolts: FloatArray, circle: float, stiffness: float
+    ) -> FloatArray:
         """Return displacements of the seats of a ring on bolts, as `free`; bolts at angles (rad) on a circle (mm), N/mm each."""
         places = np.concatenate((seats, bolts))
         radii = np.concatenate((np.full(seats.size, radius), np.full(bolts.size, circle)))
         among = self._among(places, radii, places, radii).reshape(2 * places.size, -1)
         modes = rigid_motions(places, radii).reshape(-1, 3)
-        among = _beyond(modes, among)
-        count = 2 * seats.size
-        # Forces t of the bolts on the ring and its rigid motion g: the bolts yield by −t/k, all forces balance.
-        held = among[count:, count:] + np.eye(2 * bolts.size) / stiffness
-        system = np.block([[held, modes[count:]], [modes[count:].T, np.zeros((3, 3))]])
-        right = np.concatenate((-among[count:, :count], -modes[:count].T))
-        reaction, motion = np.split(np.linalg.solve(system, right), [2 * bolts.size])
-        found = among[:count, :count] + among[:count, count:] @ reaction + modes[:count] @ motion
-        return np.asarray(0.5 * (found + found.T).reshape(seats.size, 2, seats.size, 2))
+        return on_bolts(beyond_rigid_motions(modes, among), modes, seats.size, stiffness)
 
     def built_in(self, seats: FloatArray, radius: float) -> FloatArray:
         """Return displacements of the seats of a ring whose outer face is held all around, as `free`."""
@@ -132,7 +126,9 @@ class RingBeam:
         factor = 10.0 * (1.0 + ratio) / (12.0 + 11.0 * ratio)
         return factor * self.youngs_modulus / (2.0 * (1.0 + ratio))
 
-    def _among(self, to: FloatArray, to_radius: FloatArray | float, of: FloatArray, of_radius: FloatArray | float) -> FloatArray:
+    def _among(
+        self, to: FloatArray, to_radius: FloatArray | float, of: FloatArray, of_radius: FloatArray | float
+    ) -> FloatArray:
         """Displacements of places under unit forces at others, all by angle (rad) and radius (mm), but for rigid motions."""
         apart = (to[:, None] - of) % (2.0 * pi)
         lever = np.broadcast_to(np.asarray(to_radius) - self.neutral_radius, to.shape)[:, None]
@@ -164,7 +160,9 @@ class RingBeam:
         fourths = squares @ second @ squares @ second @ squares - squares @ third @ squares
         order = np.arange(1, ORDERS + 1)[:, None, None]
         matrices = order**2 * first + order * second + third
-        inverse = np.concatenate((np.linalg.pinv(matrices[:1], rcond=1e-10, hermitian=True), np.linalg.inv(matrices[1:])))
+        inverse = np.concatenate(
+            (np.linalg.pinv(matrices[:1], rcond=1e-10, hermitian=True), np.linalg.inv(matrices[1:]))
+        )
         left = inverse - squares / order**2 - cubes / order.astype(float) ** 3 - fourths / order.astype(float) ** 4
         # Seats stand at few distinct distances.
         angles, places = np.unique(np.round(apart, 12), return_inverse=True)
@@ -191,7 +189,24 @@ def rigid_motions(angles: FloatArray, radius: FloatArray | float) -> FloatArray:
     return motions
 
 
-def _beyond(modes: FloatArray, flexibility: FloatArray) -> FloatArray:
+def on_bolts(among: FloatArray, modes: FloatArray, seats: int, stiffness: float) -> FloatArray:
+    """Return the flexibility of a ring on bolts at its seats, shape (seats, 2, seats, 2).
+
+    `among` is that of the free ring at seats, then bolts, without rigid motions, and `modes` are their displacements by those;
+    rows are places by component. Bolts have a stiffness in N/mm.
+    """
+    count = 2 * seats
+    bolts = len(among) - count
+    # Forces t of the bolts on the ring and its rigid motion g: the bolts yield by −t/k, all forces balance.
+    held = among[count:, count:] + np.eye(bolts) / stiffness
+    system = np.block([[held, modes[count:]], [modes[count:].T, np.zeros((3, 3))]])
+    right = np.concatenate((-among[count:, :count], -modes[:count].T))
+    reaction, motion = np.split(np.linalg.solve(system, right), [bolts])
+    found = among[:count, :count] + among[:count, count:] @ reaction + modes[:count] @ motion
+    return np.asarray(0.5 * (found + found.T).reshape(seats, 2, seats, 2))
+
+
+def beyond_rigid_motions(modes: FloatArray, flexibility: FloatArray) -> FloatArray:
     """A flexibility without the motions that fit best, and for forces without their dual part."""
     base, _ = np.linalg.qr(modes)
     once = flexibility - base @ (base.T @ flexibility)
@@ -202,11 +217,12 @@ def _beyond(modes: FloatArray, flexibility: FloatArray) -> FloatArray:
 def _axes(angles: FloatArray) -> FloatArray:
     """Components (x, y) of the radial and of the tangential direction, shape (places, 2, 2)."""
     return np.stack(
-        (np.stack((np.cos(angles), np.sin(angles)), axis=-1), np.stack((-np.sin(angles), np.cos(angles)), axis=-1)), axis=1
+        (np.stack((np.cos(angles), np.sin(angles)), axis=-1), np.stack((-np.sin(angles), np.cos(angles)), axis=-1)),
+        axis=1,
     )
 
 
-def ring_flexibility(drive: Drive) -> FloatArray | None:
+def beam_flexibility(drive: Drive) -> FloatArray | None:
     """Return displacements of the seats of the wheel pins of a drive under unit forces there; None where the ring is rigid.
 
     Shape (z_P, 2, z_P, 2) by seat and component in the wheel, mm/N. Forces act at the centres of the seats, evenly spaced:

@@ -10,8 +10,8 @@ import pytest
 from ltca.analysis.engines import HalfSpace
 from ltca.equilibrium.balance import lever_arms
 from ltca.equilibrium.output_torque import crank_moments, solve_at_output
-from ltca.equilibrium.reducer import Reducer
 from ltca.equilibrium.pin_displacements import DisplacedPins
+from ltca.equilibrium.reducer import Reducer
 from ltca.geometry.coordinates import WHEEL_ANGLE
 
 

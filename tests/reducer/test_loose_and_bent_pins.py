@@ -18,8 +18,8 @@ from ltca.compliance.coupled import CoupledCompliance
 from ltca.drive.parts import CrankSupport, ShaftPinBeam, ShaftPinSeat, WheelPinBeam, WheelPinSeat
 from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.output_torque import solve_at_output
-from ltca.equilibrium.reducer import Reducer
 from ltca.equilibrium.pin_displacements import PinDisplacements
+from ltca.equilibrium.reducer import Reducer
 from ltca.equilibrium.supports import support_stiffness
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, X, Y
