@@ -25,6 +25,7 @@ DIMENSIONS = {
     "disc": ("case", "disc", "position"),
     "crank": ("case", "disc", "crank", "position"),
     "crankshaft": ("case", "crank", "position"),
+    "seat": ("case", "position", "pin"),
     "pin": ("case", "disc", "position", "pin"),
     "roller": ("case", "disc", "crank", "position", "roller"),
     "hole": ("case", "disc", "position", "hole"),
@@ -420,6 +421,13 @@ _DECLARED = (
     ),
     Quantity("crank_deflection_tangential", "crank", "mm", "crank at the disc, 90° ahead of its eccentricity"),
     _scalar("mm", Scalar("max_crank_deflection_crank_#", "deflection of crank #, largest", digits=".4f")),
+    Quantity(
+        "ring_displacement_radial", "seat", "mm",
+        "displacement of the seat of the wheel pin by the elastic ring of the wheel, outward; of a free ring beyond the rigid "
+        "motion that fits all seats best",
+        (_bend("largest radial displacement of the ring of the wheel", "radial displacement of the ring of the wheel"),),
+    ),
+    Quantity("ring_displacement_tangential", "seat", "mm", "the same, 90° ahead"),
     Quantity("wheel_x", "drive", "mm", "displacement of the wheel on its bearing in the fixed frame"),
     Quantity("wheel_y", "drive", "mm", "displacement of the wheel on its bearing in the fixed frame"),
     _checked("bearing_deflection", "mm", "deflection of the crank bearings"),
@@ -467,7 +475,7 @@ _DECLARED = (
     ),
     *(
         _scalar("1", Scalar(f"compliance_share_{part}", f"part of the compliance: {part.replace('_', ' ')}", digits=".4f"))
-        for part in ("pins", "crank_bearings", "shaft_pins", "cranks", "wheel_bearing", "geometry")
+        for part in ("pins", "ring", "ring", "crank_bearings", "shaft_pins", "cranks", "wheel_bearing", "geometry")
     ),
     # the solution
     Quantity(

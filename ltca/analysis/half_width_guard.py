@@ -26,8 +26,9 @@ from ltca.drive.unit_mistakes import BORNE
 from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError, DriveError
-from ltca.geometry.coordinates import X, Y
+from ltca.geometry.coordinates import WHEEL_ANGLE, X, Y
 from ltca.geometry.interference import ROUNDING, drawn_interference
+from ltca.geometry.rotation import unit
 from ltca.geometry.separation import circle_departure
 from ltca.laws.backed import own_flexibility, shaft_pin_beam, wheel_pin_beam
 
@@ -224,16 +225,21 @@ def pin_deflections(drive: Drive, model: Reducer, found: Equilibrium) -> dict[st
     Drive, model and balanced positions are those of one disc; keys are names of the dataset, none where no pins are beams.
     """
     contacts, geometry = found.response, model.discs[0].geometry
-    moved, by_ring = split_shifts(contacts.shifts, geometry), geometry.moved_by_ring(found.pose)
+    moved, by_tips = split_shifts(contacts.shifts, geometry), geometry.moved_by_ring(found.pose)
+    others = moved[0]
+    if others is not None:
+        bent = others if contacts.ring is None else others - contacts.ring
+        turned = geometry.placement.wheel_rotation(found.crank_angle) + found.pose[:, WHEEL_ANGLE]
+        others = bent * unit(turned)[:, None]
     values: dict[str, FloatArray] = {}
-    for name, beam, load, motion, others in (
-        ("pin_deflection", wheel_pin_beam(drive), contacts.pin_load, contacts.flank, (moved[0], None)),
-        ("shaft_pin_deflection", shaft_pin_beam(drive), contacts.hole_load, contacts.holes, (moved[1], by_ring)),
+    for name, beam, load, motion, beside in (
+        ("pin_deflection", wheel_pin_beam(drive), contacts.pin_load, contacts.flank, (others, None)),
+        ("shaft_pin_deflection", shaft_pin_beam(drive), contacts.hole_load, contacts.holes, (moved[1], by_tips)),
     ):
         if beam is not None:
             # The pin yields to its own disc against the direction in which it would be pressed in.
             own = own_flexibility(drive, beam) * load * (motion.gradient[..., X] + 1j * motion.gradient[..., Y])
-            values[name] = np.abs(sum((part for part in others if part is not None), own))
+            values[name] = np.abs(sum((part for part in beside if part is not None), own))
     return values
 
 

@@ -186,6 +186,18 @@ class LoadedAnalysis:
         return np.stack(parts, axis=1)
 
     @property
+    def ring_displacements(self) -> ComplexArray | None:
+        """Displacement of the seat of each wheel pin by the ring, radially outward + i · 90° ahead, mm, shape (positions, z_P).
+
+        None where the ring is rigid.
+        """
+        moved = self.full.response.ring
+        if moved is None:
+            return None
+        centres = self.model.discs[0].geometry.placement.wheel_pin_centres
+        return np.asarray(moved * (centres / np.abs(centres)).conjugate())
+
+    @property
     def compliance_shares(self) -> dict[str, FloatArray]:
         """Which part yields how much of the output's compliance (`ltca.equilibrium.compliance_shares`).
 
@@ -263,6 +275,8 @@ class LoadedAnalysis:
             found["shaft pins yield"] = "pin_shaft.stiffness", self.full.response.hole_load / shaft.stiffness
         if coordinates.cranks:
             found["cranks yield"] = "crank.support", np.abs(self.crank_deflections)
+        if (ring := self.ring_displacements) is not None:
+            found["the ring of the wheel yields"] = "ring", np.abs(ring)
         if coordinates.wheel:
             wheel = self.full.pose[:, coordinates.wheel_place]
             found["the wheel moves"] = "pin_wheel.support_stiffness", np.hypot(wheel[:, 0], wheel[:, 1])

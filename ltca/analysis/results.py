@@ -64,6 +64,8 @@ def _supports(analysis: LoadedAnalysis) -> dict[str, Any]:
     values: dict[str, Any] = {}
     if coordinates.ring:
         values["ring_x"], values["ring_y"], values["ring_rotation"] = pose[:, coordinates.ring_place].T
+    if (ring := analysis.ring_displacements) is not None:
+        values["ring_displacement_radial"], values["ring_displacement_tangential"] = ring.real, ring.imag
     if coordinates.wheel:
         values["wheel_x"], values["wheel_y"] = pose[:, coordinates.wheel_place].T
     if coordinates.cranks:

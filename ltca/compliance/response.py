@@ -59,6 +59,8 @@ class DiscResponse:
         wants nothing. It saves work and alters no answer.
     shifts : array of complex, shape (positions, pairs), or None
         Displacements of wheel pins and shaft pins that were given, mm: what the parts that hold them yield.
+    ring : array of complex, shape (positions, z_P), or None
+        What the ring of the wheel moves the wheel pins in the turning wheel, mm, a part of `shifts`; None where it is rigid.
     slopes : PairSlopes or None
         Where they were given.
     friction : array, shape (positions, pairs), or None
@@ -74,6 +76,7 @@ class DiscResponse:
     hole_load: FloatArray
     warm_start: NDArray[np.object_]
     shifts: ComplexArray | None = None
+    ring: ComplexArray | None = None
     slopes: PairSlopes | None = None
     friction: FloatArray | None = None
 
@@ -91,6 +94,30 @@ class DiscResponse:
         return np.asarray(force[..., 0] + 1j * force[..., 1])
 
 
+@dataclass(frozen=True, slots=True)
+class FollowingPins:
+    """Displacements of pins at a pose, and how they follow it.
+
+    Attributes
+    ----------
+    shifts : array of complex, shape (positions, discs, pairs)
+        mm.
+    by_pose : array of complex, shape (positions, discs, pairs, coordinates)
+        mm by mm and rad.
+    pose : array, shape (positions, coordinates)
+        q.
+    """
+
+    shifts: ComplexArray
+    by_pose: ComplexArray
+    pose: FloatArray
+
+    def at(self, pose: FloatArray) -> ComplexArray:
+        """Return the displacements to expect at other poses of the same positions."""
+        moved: ComplexArray = np.einsum("bdpq,bq->bdp", self.by_pose, pose - self.pose)
+        return self.shifts + moved
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Response(DiscResponse):
     """Contacts of all discs of a reducer, disc after disc: of n discs array axes for pairs are n times as long.
@@ -102,9 +129,15 @@ class Response(DiscResponse):
     ----------
     parts : tuple of DiscResponse
         Of each disc, by its own pose.
+    follow : FollowingPins or None
+        How the displacements of pins follow the pose; None where none are displaced.
+    left : array, shape (positions,), or None
+        Force that displacements which have not settled amount to, N; None where none are displaced.
     """
 
     parts: tuple[DiscResponse, ...]
+    follow: FollowingPins | None = None
+    left: FloatArray | None = None
 
     @classmethod
     def of_disc(cls, part: DiscResponse) -> Response:
@@ -202,15 +235,15 @@ class Start:
     known : KnownPins or None
         Approaches of the pins of these drives at other poses, by which a model may leave out pins that cannot touch; None
         where all are asked for.
-    shifts : array of complex, shape (positions, discs, pairs), or None
-        Displacements of pins by what holds them, mm.
+    follow : FollowingPins or None
+        Displacements of pins by what holds them, of the same positions.
     """
 
     parameter: FloatArray
     share: FloatArray
     warm_start: NDArray[np.object_]
     known: KnownPins | None = None
-    shifts: ComplexArray | None = None
+    follow: FollowingPins | None = None
 
     @classmethod
     def after(cls, response: Response) -> Start:
@@ -219,7 +252,7 @@ class Start:
             parameter=response.flank.parameter,
             share=response.rollers.share,
             warm_start=response.warm_start,
-            shifts=response.shifts,
+            follow=response.follow,
         )
 
     @classmethod

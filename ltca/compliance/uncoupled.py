@@ -89,7 +89,8 @@ class UncoupledContacts(ABC, Generic[Law]):
         start : Start, optional
             Inner unknowns of a neighbouring pose.
         shifts : array of complex, shape (positions, z_P + z_PS), optional
-            Displacements of the pins, of wheel pins in the turning wheel, of shaft pins in the fixed frame, mm; slopes come with them.
+            Displacements of the pins, mm: of wheel pins in the turning wheel, of shaft pins in the fixed frame. Slopes come
+            with them.
 
         Returns
         -------

@@ -1,23 +1,26 @@
 r"""Which parts of the reducer yield how much of what its output yields: shares of the compliance at a balanced position.
 
-A little more torque moves everything by :math:`dq = K^{-1} e\, dT`. The work of that torque, :math:`dT\, d\psi`, is what the
-contacts take, :math:`\sum dF_i\, d\delta_i`, and the supports, :math:`dq^T K_S\, dq`; what is left is geometry: loads that turn
-with their contacts. Changes of loads come from two poses beside the balanced one, whatever the bodies' compliance is.
+A little more torque moves everything by :math:`dq = K^{-1} e\, dT`. The work of that torque, :math:`dT\, d\psi`, is what
+contacts and what holds their pins take, :math:`\sum dF_i\, d\delta_i`, and the supports, :math:`dq^T K_S\, dq`; what is left
+is geometry: loads that turn with their contacts. Changes of loads come from two poses beside the balanced one, whatever the
+bodies' compliance is.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from ltca.arrays import FloatArray
-from ltca.compliance.response import Start, bearing_pushes
+from ltca.compliance.response import Response, Start, bearing_pushes
 from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.reducer import Reducer
 from ltca.geometry.coordinates import WHEEL_ANGLE
+from ltca.geometry.rotation import unit
 
-PARTS = ("pins", "crank_bearings", "shaft_pins", "cranks", "wheel_bearing", "geometry")
+PARTS = ("pins", "ring", "crank_bearings", "shaft_pins", "cranks", "wheel_bearing", "geometry")
 RELATIVE_TORQUE_STEP = 1e-4
 """Relative change of the torque: loads follow it linearly, and round-off stays below 1e-4 of their change."""
 
@@ -50,6 +53,10 @@ def compliance_shares(model: Reducer, found: Equilibrium) -> dict[str, FloatArra
         shift = np.einsum("bcj,bj->bc", bores.gradient, own)
         push = bearing_pushes(up.rollers, shift.shape[1]) - bearing_pushes(down.rollers, shift.shape[1])
         work["crank_bearings"] -= (push.conjugate() * shift).real.sum(axis=1)
+    if model.pins is not None and ends[0].ring is not None:
+        poses = [found.pose + side * moved for side in (0.5, -0.5)]
+        work["ring"] = _of_ring(model, found.crank_angle, poses, ends)
+        work["pins"] -= work["ring"]
     if model.supports is not None:
         wheel, ring = np.zeros(size, dtype=bool), np.zeros(size, dtype=bool)
         wheel[model.coordinates.wheel_place] = True
@@ -60,6 +67,19 @@ def compliance_shares(model: Reducer, found: Equilibrium) -> dict[str, FloatArra
     total = one[:, WHEEL_ANGLE, 0] * moved[:, WHEEL_ANGLE]
     work["geometry"] = total - sum(work[part] for part in PARTS[:-1])
     return {part: value / total for part, value in work.items()}
+
+
+def _of_ring(
+    model: Reducer, crank_angle: FloatArray, poses: Sequence[FloatArray], ends: Sequence[Response]
+) -> FloatArray:
+    """Work of changed forces on the ring along what they move it."""
+    place, forces = model.discs[0].geometry.placement, []
+    for pose, end in zip(poses, ends, strict=True):
+        turned = unit(place.wheel_rotation(crank_angle) + pose[:, WHEEL_ANGLE])[:, None]
+        pins = end.parts[0].pin_load.shape[1]
+        forces.append(sum(part.pin_forces[:, :pins] for part in end.parts) * turned.conjugate())
+    moved = np.asarray(ends[0].ring) - np.asarray(ends[1].ring)
+    return np.asarray(((forces[0] - forces[1]).conjugate() * moved).real.sum(axis=1))
 
 
 def _taken(gradient: FloatArray, moved: FloatArray, change: FloatArray) -> FloatArray:

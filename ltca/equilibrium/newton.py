@@ -96,10 +96,14 @@ class Search:
         """Return the lever arms of some positions: one row for all where the drives are the same."""
         return self.lever[rows] if self.lever.ndim > 1 else self.lever
 
-    def evaluate(self, rows: NDArray[np.intp], pose: FloatArray, start: Start | None) -> Response:
-        """Return the contacts of some positions at poses."""
+    def evaluate(
+        self, rows: NDArray[np.intp], pose: FloatArray, start: Start | None, *, roughly: bool = False
+    ) -> Response:
+        """Return the contacts of some positions at poses; `roughly` as for `Reducer.respond`."""
         model = self.model if rows.size == self.angle.size else self.model.take(rows)
-        return model.respond(self.angle[rows], pose, start)
+        if model.pins is None:
+            return model.respond(self.angle[rows], pose, start)
+        return model.respond(self.angle[rows], pose, start, roughly=roughly)
 
     def scaled(self, rows: NDArray[np.intp], response: Response) -> tuple[FloatArray, FloatArray]:
         """Return the scaled gradient and the scaled tangent (forces and lengths only)."""
@@ -136,10 +140,10 @@ class Search:
         first_bound = STEP_BOUND * float(np.max(self.lever[..., WHEEL_ANGLE]))
         damping, bound = np.full(self.angle.size, 1e-6), np.full(self.angle.size, first_bound)
         if response is None:
-            response = self.evaluate(active, self.pose[active], begin)
+            response = self.evaluate(active, self.pose[active], begin, roughly=True)
         gradient, tangent = self.scaled(active, response)
         residual = self.residual
-        residual[active] = np.max(np.abs(gradient), axis=1)
+        residual[active] = _left_over(gradient, response)
         for _ in range(most):
             self.history.append(residual.copy())
             # A residual that is no number does not balance either.
@@ -156,7 +160,7 @@ class Search:
             taken, response, gradient, tangent, fraction = self.walk(active, step, slope, Start.onward(response))
             self.pose[active] = taken
             self.slipped[active] = np.max(np.abs(taken[:, self.rotations]), axis=1) > self.half_pitch
-            residual[active] = np.max(np.abs(gradient), axis=1)
+            residual[active] = _left_over(gradient, response)
             bound[active] *= np.where(fraction == 1.0, 2.0, np.where(fraction < 0.1, 0.5, 1.0))
             bound[active] = bound[active].clip(1e-3 * first_bound, max(first_bound, 0.1 * self.smallest_pin))
             damping[active] *= np.where(fraction > 0.5, 0.1, np.where(fraction < 0.1, 10.0, 1.0))
@@ -291,7 +295,7 @@ class Search:
         fraction = np.ones(rows.size)
         step_pose = step / self.levers(rows)
         pose = self.pose[rows] + step_pose
-        response = self.evaluate(rows, pose, start)
+        response = self.evaluate(rows, pose, start, roughly=True)
         gradient, tangent = self.scaled(rows, response)
         # Longer than the minimum: round-off of the slope must not send a step back.
         noise = 1e-3 * TOLERANCE * self.load[rows] * np.max(np.abs(step), axis=1)
@@ -308,13 +312,19 @@ class Search:
             place = np.divide(-low_slope[back], rise, out=np.zeros(back.size), where=rise != 0.0)
             fraction[back] = low[back] + width * place.clip(0.05, 0.9)
             pose[back] = self.pose[rows[back]] + fraction[back, None] * step_pose[back]
-            again = self.evaluate(rows[back], pose[back], take_positions(Start.onward(response), back))
+            again = self.evaluate(rows[back], pose[back], take_positions(Start.onward(response), back), roughly=True)
             response = put_positions(response, back, again)
             gradient[back], tangent[back] = self.scaled(rows[back], again)
             end[back] = np.einsum("bi,bi->b", gradient[back], step[back])
             near = back[end[back] < 0.0]
             low[near], low_slope[near] = fraction[near], end[near]
         return pose, response, gradient, tangent, fraction
+
+
+def _left_over(gradient: FloatArray, response: Response) -> FloatArray:
+    """Largest unbalanced force of every position, N, and what displacements of pins that have not settled amount to."""
+    left = np.max(np.abs(gradient), axis=1)
+    return left if response.left is None else np.maximum(left, response.left)
 
 
 def _damped_step(

@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +34,8 @@ from ltca.laws.beam import PinBeam
 MAX_ITERATIONS = 60
 SHIFT_TOLERANCE = 5e-14
 """Largest residual of a pin's displacement, mm: a few round-offs of coordinates of 100 mm."""
+ROUGH = 0.02
+"""Residual of displacements, as a part of the largest approach, that loads follow linearly well enough for a step."""
 ENTRIES_AT_ONCE = 2_000_000
 """Entries of the matrices solved at once, 16 MB each."""
 
@@ -87,37 +90,78 @@ class PinDisplacements:
         coordinates: Coordinates,
         turned: ComplexArray,
         shifts: ComplexArray,
-    ) -> tuple[tuple[DiscResponse, ...], ComplexArray, DisplacedPins]:
-        """Return the contacts of all discs with the pins displaced by all forces, the displacements, and how all follow the pose.
+        *,
+        roughly: bool = False,
+    ) -> DisplacedPins:
+        """Return the contacts of all discs with the pins displaced by all forces, and how all follow the pose.
 
-        `respond` returns the contacts of all discs for displacements, mm, complex, shape (positions, discs, pairs); `turned` is
-        the direction in which the wheel stands, shape (positions,). A ConvergenceError is raised where they do not settle.
+        Parameters
+        ----------
+        respond : callable
+            Returns the contacts of all discs for displacements, mm, complex, shape (positions, discs, pairs).
+        coordinates : Coordinates
+            Of the whole.
+        turned : array of complex, shape (positions,)
+            Direction in which the wheel stands.
+        shifts : array of complex, shape (positions, discs, pairs)
+            Displacements to start from, mm.
+        roughly : bool
+            End where what is left follows linearly (`ROUGH`): pose and displacements are then found together.
+
+        Raises
+        ------
+        ConvergenceError
+            When they do not settle.
         """
         history: list[float] = []
-        parts = respond(shifts)
-        system = DisplacedPins(self, parts, coordinates, turned)
-        left = system.left_over(shifts)
-        size = np.max(np.abs(left), axis=(1, 2), initial=0.0)
+        system = DisplacedPins(self, respond(shifts), coordinates, turned, shifts)
         for _ in range(MAX_ITERATIONS):
+            size = system.size
             history.append(float(np.max(size, initial=0.0)))
-            most = float(np.max(np.abs(shifts), initial=0.0))
-            if history[-1] <= SHIFT_TOLERANCE + 1e-13 * most:
-                return parts, shifts, system
-            step, fraction = system.step(left), np.ones(size.shape)
+            most = float(np.max(np.abs(system.shifts), initial=0.0))
+            if history[-1] <= SHIFT_TOLERANCE + 1e-13 * most or (roughly and np.all(size <= system.rough)):
+                return system
+            step, fraction = system.step, np.ones(size.shape)
             for _ in range(10):
-                trial = shifts + fraction[:, None, None] * step
-                parts = respond(trial)
-                system = DisplacedPins(self, parts, coordinates, turned)
-                left = system.left_over(trial)
-                found = np.max(np.abs(left), axis=(1, 2), initial=0.0)
-                worse = (found > size) & (found > SHIFT_TOLERANCE + 1e-11 * most)
+                trial = system.shifts + fraction[:, None, None] * step
+                there = DisplacedPins(self, respond(trial), coordinates, turned, trial)
+                worse = (there.size > size) & (there.size > SHIFT_TOLERANCE + 1e-11 * most)
                 if not worse.any():
                     break
                 fraction = np.where(worse, 0.5 * fraction, fraction)
-            shifts, size = trial, found
-            if len(history) > 2 and history[-1] < 1e-11 * (1.0 + most) and float(np.max(size)) >= 0.5 * history[-1]:
-                return parts, shifts, system  # round-off
+            system = there
+            if (
+                len(history) > 2
+                and history[-1] < 1e-11 * (1.0 + most)
+                and float(np.max(system.size)) >= 0.5 * history[-1]
+            ):
+                return system  # round-off
         raise ConvergenceError("the displacements of the pins do not settle; largest change in mm", history)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Settled:
+    """What displaced pins do to the whole.
+
+    Attributes
+    ----------
+    force : array, shape (positions, coordinates)
+        What is added to the generalised force because displacements have not settled, to first order, N and N·mm.
+    tangent : array, shape (positions, coordinates, coordinates)
+        What is added to the tangent.
+    onward : array of complex, shape (positions, discs, pairs)
+        Displacements to go on from, mm.
+    by_pose : array of complex, shape (positions, discs, pairs, coordinates)
+        How displacements follow the pose.
+    left : array, shape (positions,)
+        Force that what is left of the displacements amounts to, N.
+    """
+
+    force: FloatArray
+    tangent: FloatArray
+    onward: ComplexArray
+    by_pose: ComplexArray
+    left: FloatArray
 
 
 class DisplacedPins:
@@ -133,12 +177,19 @@ class DisplacedPins:
         Of the whole.
     turned : array of complex, shape (positions,)
         Direction in which the wheel stands.
+    shifts : array of complex, shape (positions, discs, pairs)
+        Displacements that the contacts were found at, mm.
     """
 
     def __init__(
-        self, held: PinDisplacements, parts: tuple[DiscResponse, ...], coordinates: Coordinates, turned: ComplexArray
+        self,
+        held: PinDisplacements,
+        parts: tuple[DiscResponse, ...],
+        coordinates: Coordinates,
+        turned: ComplexArray,
+        shifts: ComplexArray,
     ) -> None:
-        self.held, self.parts, self.coordinates = held, parts, coordinates
+        self.held, self.parts, self.coordinates, self.shifts = held, parts, coordinates, shifts
         self.slopes: list[PairSlopes] = [part.slopes for part in parts if part.slopes is not None]
         self.coupled = held.ring is not None or any(slopes.by_approach.ndim > 2 for slopes in self.slopes)
         wheel, pairs = parts[0].pin_load.shape[1], parts[0].pin_forces.shape[1]
@@ -148,34 +199,54 @@ class DisplacedPins:
         """What turns directions into those of the part that holds the pin, shape (positions, pairs)."""
         # Against the pins' displacements.
         self.force = np.stack([-part.pin_forces * self.frame for part in parts], axis=1)
+        self.left = shifts + held.under(self.force)
+        """Displacements less what the forces make of them, mm, shape (positions, discs, pairs)."""
+        self.size = np.max(np.abs(self.left), axis=(1, 2), initial=0.0)
 
-    def left_over(self, shifts: ComplexArray) -> ComplexArray:
-        """Return displacements less what the forces make of them, mm, shape (positions, discs, pairs)."""
-        return shifts + self.held.under(self.force)
+    @property
+    def rough(self) -> FloatArray:
+        """Residual from which on loads follow displacements linearly, mm, shape (positions,)."""
+        largest = [np.max(part.flank.approach, axis=1) for part in self.parts]
+        return np.asarray(ROUGH * np.maximum(np.max(largest, axis=0), 0.0))
 
-    def step(self, left: ComplexArray) -> ComplexArray:
-        """Return Newton's step of the displacements."""
-        change = np.zeros_like(left)
+    @cached_property
+    def step(self) -> ComplexArray:
+        """Newton's step of the displacements with the pose held, mm."""
+        change = np.zeros_like(self.left)
         for rows, disc, pair in self._groups():
             stiffness, flexibility = self._stiffness(rows, disc, pair), self._flexibility(rows, disc, pair)
-            given = left[rows, disc, pair]
+            given = self.left[rows, disc, pair]
             flat = np.stack((given.real, given.imag), axis=-1).reshape(*given.shape[:2], -1, 1)
             moved = np.linalg.solve(np.eye(flat.shape[2]) + np.matmul(flexibility, stiffness), -flat)
             force = np.matmul(stiffness, moved).reshape(*given.shape, 2)
             change[rows, disc, pair] = force[..., 0] + 1j * force[..., 1]
-        return -left - self.held.under(change)
+        return -self.left - self.held.under(change)
 
-    def correction(self) -> FloatArray:
-        """Return what displaced pins add to the tangent of discs whose pins stand still."""
-        size = self.coordinates.size
-        found = np.zeros((self.force.shape[0], size, size))
+    def settled(self) -> Settled:
+        """Return what displaced pins add to force and tangent of discs whose pins stand still, and how they follow the pose."""
+        positions, size = self.force.shape[0], self.coordinates.size
+        added, tangent = np.zeros((positions, size)), np.zeros((positions, size, size))
+        change = np.zeros((size, *self.force.shape), dtype=complex)
+        stiffest = np.zeros(positions)
         for rows, disc, pair in self._groups():
             stiffness, flexibility = self._stiffness(rows, disc, pair), self._flexibility(rows, disc, pair)
-            by_pose = self._by_pose(rows, disc, pair)
+            by_pose, own = self._by_pose(rows, disc, pair), rows[:, 0, 0]
             matrix = np.eye(stiffness.shape[-1]) + np.matmul(flexibility, stiffness)
-            moved = np.linalg.solve(matrix, np.matmul(flexibility, by_pose))
-            found[rows[:, 0, 0]] -= np.matmul(by_pose.swapaxes(2, 3), moved).sum(axis=1)
-        return 0.5 * (found + found.swapaxes(1, 2))
+            given = self.left[rows, disc, pair]
+            flat = np.stack((given.real, given.imag), axis=-1).reshape(*given.shape[:2], -1, 1)
+            moved = -np.linalg.solve(matrix, np.concatenate((np.matmul(flexibility, by_pose), flat), axis=-1))
+            onto = np.matmul(by_pose.swapaxes(2, 3), moved).sum(axis=1)
+            tangent[own], added[own] = onto[..., :-1], onto[..., -1]
+            force = (by_pose + np.matmul(stiffness, moved[..., :-1])).reshape(*given.shape, 2, size)
+            change[:, rows, disc, pair] = np.moveaxis(force[..., 0, :] + 1j * force[..., 1, :], -1, 0)
+            stiffest[own] = np.abs(stiffness).max(axis=(1, 2, 3))
+        return Settled(
+            force=added,
+            tangent=0.5 * (tangent + tangent.swapaxes(1, 2)),
+            onward=self.shifts + self.step if np.any(self.size > 0.0) else self.shifts,
+            by_pose=-np.stack([self.held.under(each) for each in change], axis=-1),
+            left=stiffest * self.size,
+        )
 
     def _groups(self) -> Iterator[tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.intp]]]:
         """Positions, discs and pairs of what is solved together, shape (positions, groups, members) when broadcast.
@@ -185,7 +256,7 @@ class DisplacedPins:
         positions, discs, pairs = self.force.shape
         own = np.flatnonzero(self.moves)
         if not self.coupled:
-            disc, pair = np.arange(discs)[None, None, :], own[None, :, None]
+            disc, pair = np.broadcast_arrays(np.arange(discs)[None, None, :], own[None, :, None])
             at_once = max(1, ENTRIES_AT_ONCE // max(1, own.size * (2 * discs) ** 2))
         else:
             # A contact that carries nothing has no stiffness. Most rows have a few idle ones for the sake of the fullest.
@@ -207,16 +278,24 @@ class DisplacedPins:
         places: tuple[NDArray[np.intp], ...] = (one, disc[..., :, None], disc[..., None, :])
         if beams.ndim > 3:
             places = (rows[..., None], *places)
-        along = beams[places] * (one == other)
-        found = along[..., :, None, :, None] * np.eye(2)[:, None, :]
+        count = 2 * one.shape[-1]
+        found = np.zeros(
+            (*np.broadcast_shapes(one.shape[:-2], (*rows.shape[:1], 1) if beams.ndim > 3 else ()), count, count)
+        )
+        if beams.any():
+            along = beams[places] * (one == other)
+            found[..., ::2, ::2] = found[..., 1::2, 1::2] = along
         if ring is not None:
+            # Row by row of a matrix with an empty seat in the place of all shaft pins.
             seats = ring.shape[-2]
-            both = (one < seats) & (other < seats)
-            seat, by = np.where(both, one, 0), np.where(both, other, 0)
-            held = ring[seat, :, by] if ring.ndim == 4 else ring[rows[..., None], seat, :, by]
-            found = found + (held * both[..., None, None]).swapaxes(-3, -2)
-        count = 2 * found.shape[-2]
-        return np.asarray(found.reshape(*found.shape[:-4], count, count))
+            whole = np.zeros((*ring.shape[:-4], 2 * seats + 2, 2 * seats + 2))
+            whole[..., :-2, :-2] = ring.reshape(*ring.shape[:-4], 2 * seats, 2 * seats)
+            seat = (2 * np.minimum(pair, seats)[..., None] + np.arange(2)).reshape(*pair.shape[:-1], count)
+            if ring.ndim > 4:
+                found = found + whole[rows[..., None], seat[..., :, None], seat[..., None, :]]
+            else:
+                found = found + np.take(whole, seat[..., :, None] * whole.shape[-1] + seat[..., None, :])
+        return found
 
     def _stiffness(self, rows: NDArray[np.intp], disc: NDArray[np.intp], pair: NDArray[np.intp]) -> FloatArray:
         """K among the members of groups: that of the contacts along their normals, and loads that turn with them."""

@@ -20,6 +20,7 @@ from ltca.compliance.response import (
     ContactPressures,
     DiscModel,
     DiscResponse,
+    FollowingPins,
     KindPressures,
     Response,
     Start,
@@ -135,7 +136,9 @@ class Reducer:
         """The contact geometry of every disc."""
         return tuple(disc.geometry for disc in self.discs)
 
-    def respond(self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None) -> Response:
+    def respond(
+        self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None, *, roughly: bool = False
+    ) -> Response:
         """Return the contact forces of all discs.
 
         Parameters
@@ -146,6 +149,9 @@ class Reducer:
             q of `ltca.geometry.coordinates`.
         start : Start, optional
             Inner unknowns of a neighbouring pose, displacements of the pins among them.
+        roughly : bool
+            Whether displacements of pins that have nearly settled will do: force and tangent are then those of settled ones to
+            first order, and `Response.left` tells what is left.
         """
         count, coordinates = len(self.discs), self.coordinates
         places = [coordinates.columns(number) for number in range(count)]
@@ -169,18 +175,23 @@ class Reducer:
         if self.pins is None:
             parts = respond(None)
         else:
-            begin = None if start is None else start.shifts
-            if begin is None:
-                begin = self._unmoved(crank_angle.size)
+            begin = self._unmoved(crank_angle.size)
+            if start is not None and start.follow is not None:
+                begin = start.follow.at(pose)
             placement = self.discs[0].geometry.placement
             turned = unit(placement.wheel_rotation(crank_angle) + pose[:, WHEEL_ANGLE])
-            parts, shifts, settled = self.pins.settle(respond, coordinates, turned, begin)
+            system = self.pins.settle(respond, coordinates, turned, begin, roughly=roughly)
+            parts, shifts, settled = system.parts, system.shifts, system.settled()
+            if self.pins.ring is not None:
+                ring = -self.pins.of_ring(system.force)
+                parts = tuple(replace(part, ring=ring) for part in parts)
         force, tangent = np.zeros((crank_angle.size, size)), np.zeros((crank_angle.size, size, size))
         for own, part in zip(places, parts, strict=True):
             force[:, own] += part.force
             tangent[:, own[:, None], own] += part.tangent
         if settled is not None:
-            tangent += settled.correction()
+            force += settled.force
+            tangent += settled.tangent
         if self.supports is not None:
             force += np.matmul(self.supports, pose[..., None])[..., 0]
             tangent += self.supports
@@ -197,6 +208,9 @@ class Reducer:
             warm_start=np.stack([part.warm_start for part in parts], axis=1),
             parts=parts,
             shifts=shifts,
+            ring=parts[0].ring,
+            follow=None if settled is None else FollowingPins(settled.onward, settled.by_pose, pose),
+            left=None if settled is None else settled.left,
         )
 
     def _unmoved(self, positions: int) -> ComplexArray:
@@ -274,7 +288,7 @@ def disc_torques(response: Response) -> FloatArray:
 
 def _split_start(start: Start, count: int) -> list[Start]:
     if count == 1:
-        return [replace(start, warm_start=start.warm_start[:, 0], shifts=None)]
+        return [replace(start, warm_start=start.warm_start[:, 0], follow=None)]
 
     def of_each(values: Any) -> list[Any]:
         return np.split(values, count, axis=1)

@@ -88,11 +88,14 @@ def _ring(drive: Drive) -> Iterator[str]:
         )
     if outer <= circle + seat:
         yield (
-            f"ring.outer_radius = {outer:g} mm: must be greater than {circle + seat:g} mm, where the seats of the wheel pins end "
+            f"ring.outer_radius = {outer:g} mm: must be greater than {circle + seat:g} mm, where the seats of the pins end "
             "(pin_wheel.pin_circle_radius plus the radius of the seat)"
         )
     if ring.flange == "one-side":
-        yield 'ring.flange = "one-side": must be "free" or "built-in": a flange on one side warps the ring, which no plane model has'
+        yield (
+            'ring.flange = "one-side": must be "free" or "built-in": a flange on one side warps the ring, which no plane '
+            "model has"
+        )
     bolts = ring.bolts
     if bolts is None:
         return

@@ -40,7 +40,7 @@ def stored_energy(model, response, pose, angle=0.0):
     if isinstance(model, Reducer) and model.pins is not None:
         ratio = model.discs[0].geometry.placement.reduction_ratio
         turned = np.exp(1j * (angle / ratio + pose[:, WHEEL_ANGLE]))
-        held = DisplacedPins(model.pins, response.parts, model.coordinates, turned)
+        held = DisplacedPins(model.pins, response.parts, model.coordinates, turned, response.shifts)
         moved = model.pins.under(held.force)
         total = total + 0.5 * (held.force.conjugate() * moved).real.sum(axis=(1, 2))
     return total, np.concatenate(slopes, axis=1)
