@@ -18,6 +18,7 @@ import json
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import gcd
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -35,11 +36,12 @@ from fem.mesh.memory_need import require_memory, solution_memory
 from fem.mesh.triangulation import default_coarse_size, estimate_unknowns, mesh_pin_ring
 from fem.shapes import PinRingShape, SlottedCircle
 from ltca.arrays import ComplexArray, FloatArray
+from ltca.drive.materials import Material
 from ltca.drive.parts import Drive
 from ltca.drive.ring_shape import bolt_patch_radius, ring_fingerprint, ring_shape, seat_radius
-from ltca.errors import DriveError
+from ltca.errors import DamagedFileError, DriveError, PlaceError
 from ltca.output.provenance import code_hash, code_version
-from ltca.reading.ring_file import rigid_motions
+from ltca.reading.ring_file import read_ring, rigid_motions
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -121,7 +123,7 @@ def derive_ring(
     Returns
     -------
     Dataset
-        As ``docs/theory/ring.md`` describes it.
+        As ``docs/theory/ring_elements.md`` describes it.
 
     Raises
     ------
@@ -179,6 +181,22 @@ def derive_ring(
     )
 
 
+def require_replaceable_ring(path: Path) -> None:
+    """Refuse to derive into the place of a file (``--out``) that is no file of a ring's flexibility: PlaceError."""
+    if path.is_symlink() or (path.exists() and not _is_ring_file(path)):
+        raise PlaceError(
+            f"--out {path}: is there and is no file of a ring that cyclo derive wrote: move it, or choose another place"
+        )
+
+
+def _is_ring_file(path: Path) -> bool:
+    try:
+        read_ring(path, lawful=False)
+    except DamagedFileError:
+        return False
+    return True
+
+
 def flexibility_of(
     shape: PinRingShape,
     bolts: ComplexArray,
@@ -202,8 +220,6 @@ def flexibility_of(
     unknowns = estimate_unknowns(shape, balls, coarse_size=coarse, growth=GROWTH)
     require_memory(unknowns, solution_memory(unknowns), "the ring for its flexibility")
     body = mesh_pin_ring(shape, balls, coarse_size=coarse, growth=GROWTH)
-    from ltca.drive.materials import Material
-
     stiffness = assemble_stiffness(
         body, Material(youngs_modulus=1.0, poisson_ratio=poisson_ratio), thickness=1.0, state="stress"
     )

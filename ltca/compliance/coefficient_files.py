@@ -328,7 +328,7 @@ def derivation(name: str = DERIVATION) -> Callable[..., Any]:
     if not found:
         if name != DERIVATION:
             raise CycloError(
-                f'nothing is installed that derives the {name} of a drive by finite elements: use ring.model = "beam"'
+                f'ring.model = "fe": nothing is installed that derives a {name} by finite elements: use "beam"'
             )
         raise CycloError("no coefficients: give a file of 'cyclo derive' with --coefficients")
     derive: Callable[..., Any] = found[0].load()

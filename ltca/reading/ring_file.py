@@ -1,7 +1,7 @@
 """Files of the flexibility of a ring of the pin wheel: schema, and laws that need no second computation.
 
 A file holds the displacement (x, y) of the seats of the pins and of the bolts by unit forces there, times E b of the ring
-(docs/theory/ring.md); of a free ring beyond the rigid motion that fits all of them best.
+(docs/theory/ring_elements.md); of a free ring beyond the rigid motion that fits all of them best.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ def read_ring(path: Path, *, lawful: bool = True) -> LabelledDataset:
     dataset = read_netcdf(path, "a file of a ring's flexibility")
     if problems := [*_malformed(dataset)]:
         raise DamagedFileError(
-            f"{path}: is no file of a ring's flexibility (docs/theory/ring.md): {'; '.join(problems)}"
+            f"{path}: is no file of a ring's flexibility (docs/theory/ring_elements.md): {'; '.join(problems)}"
         )
     stated = dataset.attrs.get(CHECKSUM)
     if stated is not None and str(stated) != checksum_of(dataset):
@@ -83,6 +83,8 @@ def read_ring(path: Path, *, lawful: bool = True) -> LabelledDataset:
 def require_same_ring(dataset: Labelled, drive: Drive, source: str) -> None:
     """Refuse a file of another ring than that of a drive: CycloError with the numbers that differ."""
     theirs, own = shape_of(dataset), ring_shape(drive)
+    if drive.ring is None:
+        raise CycloError(f"{source}: belongs to a ring, and {drive.name} has none ([ring] is left out)")
     if theirs != own:
         different = ", ".join(
             f"{name} {there} (here {here})" for name, (there, here) in shape_differences(theirs, own).items()
