@@ -47,7 +47,7 @@ def derived(monkeypatch, tmp_path):
 
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     monkeypatch.delenv(coefficient_files.INSTEAD, raising=False)
-    monkeypatch.setattr(coefficient_files, "_derivation", lambda: derive)
+    monkeypatch.setattr(coefficient_files, "derivation", lambda: derive)
     return made
 
 

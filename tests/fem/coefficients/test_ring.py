@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fem.coefficients.ring import derive_ring, flexibility_of, seat_loads
+from fem.body.pin_ring import flexibility_of, seat_loads
+from fem.coefficients.ring import derive_ring
 from fem.mesh.element_size import Refinement
 from fem.mesh.triangulation import mesh_pin_ring
 from fem.shapes import PinRingShape, SlottedCircle
