@@ -203,7 +203,7 @@ class HalfSpace:
         tables = model = _on_tables(drive, singles)
         if self.contacts == "grids":
             grids = tuple(GridCompliance.of_drive(single) for single in singles)
-            model = replace(tables, discs=grids, pins=None, friction=None)
+            model = replace(tables, discs=grids, friction=None)
         if self.method == "paper":
             return _method("paper")(drive, tables, model)
         if self.method == "direct":

@@ -163,8 +163,10 @@ def separation_warning(
         told = f"at {at} the surfaces at {name} depart from the parabola of the tables by {100.0 * most:.2g} % at the edge of"
         more = "the contact: loads may be a percent off, or more (grids, which would say, know fixed pins alone)"
         return f"{told} {more}" if most >= LARGE_PARABOLA_DEPARTURE else None
+    shifts = contacts.parts[0].shifts
+    moved = None if shifts is None else shifts[row : row + 1]
     try:
-        found = GridCompliance.of_drive(drive).respond(angle, pose)
+        found = GridCompliance.of_drive(drive).respond(angle, pose, shifts=moved)
     except ConvergenceError:
         return f"contacts are wider at {at} than the flank goes on: the parabola of the tables does not stand for it"
     worst, name = 0.0, ""

@@ -15,14 +15,13 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ltca.arrays import ComplexArray, FloatArray
-from ltca.compliance.response import DiscResponse, KindPressures, Start
+from ltca.arrays import FloatArray
+from ltca.compliance.response import KindPressures
 from ltca.compliance.rollers import RollerLaws
 from ltca.compliance.uncoupled import PairLaws, UncoupledContacts
 from ltca.contact.end_pressure import largest_pressure
 from ltca.contact.tracked_grid import CELLS, ContactKind, ContactKinds, Pieces, Separation, press, recover_patches
 from ltca.drive.parts import Drive
-from ltca.errors import DriveError
 from ltca.geometry.pair_motion import FlankMotion
 from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.separation import circle_departure, flank_departure
@@ -89,21 +88,6 @@ class GridCompliance(UncoupledContacts[_KindGrids]):
             kinds=ContactKinds.of_drive(drive, cells),
             hole_law=SpringLaw(stiffness=drive.hole_stiffness),
         )
-
-    def respond(
-        self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None, shifts: ComplexArray | None = None
-    ) -> DiscResponse:
-        """Return the contact forces at the poses of a batch of positions; see `UncoupledContacts`.
-
-        Raises
-        ------
-        DriveError
-            For displacements of the pins: grids know pins that stand still.
-        """
-        if shifts is not None:
-            raise DriveError(["pin_wheel.beam, pin_shaft.beam: must be left out for grids, whose pins stand still"])
-        # A dataclass with slots is another class than the one that super() without arguments would know.
-        return super(GridCompliance, self).respond(crank_angle, pose, start)
 
     def laws(self, flank: FlankMotion, warm_start: NDArray[np.object_] | None) -> PairLaws[_KindGrids]:
         """Return the grids of the pins and of the rollers on the inner race and in the bore."""

@@ -323,7 +323,7 @@ class Search:
 
 def _left_over(gradient: FloatArray, response: Response) -> FloatArray:
     """Largest unbalanced force of every position, N, and what displacements of pins that have not settled amount to."""
-    left = np.max(np.abs(gradient), axis=1)
+    left: FloatArray = np.max(np.abs(gradient), axis=1)
     return left if response.left is None else np.maximum(left, response.left)
 
 

@@ -17,7 +17,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -197,6 +196,7 @@ class DisplacedPins:
         self.moves |= (held.ring is not None) & (np.arange(pairs) < wheel)
         self.frame = np.where(np.arange(pairs) < wheel, turned.conjugate()[:, None], 1.0)
         """What turns directions into those of the part that holds the pin, shape (positions, pairs)."""
+        self.rubs = _friction_by_load(parts)
         # Against the pins' displacements.
         self.force = np.stack([-part.pin_forces * self.frame for part in parts], axis=1)
         self.left = shifts + held.under(self.force)
@@ -209,44 +209,50 @@ class DisplacedPins:
         largest = [np.max(part.flank.approach, axis=1) for part in self.parts]
         return np.asarray(ROUGH * np.maximum(np.max(largest, axis=0), 0.0))
 
-    @cached_property
+    @property
     def step(self) -> ComplexArray:
         """Newton's step of the displacements with the pose held, mm."""
         change = np.zeros_like(self.left)
         for rows, disc, pair in self._groups():
             stiffness, flexibility = self._stiffness(rows, disc, pair), self._flexibility(rows, disc, pair)
-            given = self.left[rows, disc, pair]
-            flat = np.stack((given.real, given.imag), axis=-1).reshape(*given.shape[:2], -1, 1)
-            moved = np.linalg.solve(np.eye(flat.shape[2]) + np.matmul(flexibility, stiffness), -flat)
-            force = np.matmul(stiffness, moved).reshape(*given.shape, 2)
-            change[rows, disc, pair] = force[..., 0] + 1j * force[..., 1]
+            given = self._flat(self.left[rows, disc, pair])
+            moved = np.linalg.solve(_one_plus(flexibility, stiffness), -given)
+            change[rows, disc, pair] = _vectors_of(_times(stiffness, moved))[..., 0]
         return -self.left - self.held.under(change)
 
     def settled(self) -> Settled:
         """Return what displaced pins add to force and tangent of discs whose pins stand still, and how they follow the pose."""
         positions, size = self.force.shape[0], self.coordinates.size
         added, tangent = np.zeros((positions, size)), np.zeros((positions, size, size))
-        change = np.zeros((size, *self.force.shape), dtype=complex)
+        # By the coordinates, and by what is left of the displacements.
+        change = np.zeros((size + 1, *self.force.shape), dtype=complex)
         stiffest = np.zeros(positions)
         for rows, disc, pair in self._groups():
             stiffness, flexibility = self._stiffness(rows, disc, pair), self._flexibility(rows, disc, pair)
             by_pose, own = self._by_pose(rows, disc, pair), rows[:, 0, 0]
-            matrix = np.eye(stiffness.shape[-1]) + np.matmul(flexibility, stiffness)
-            given = self.left[rows, disc, pair]
-            flat = np.stack((given.real, given.imag), axis=-1).reshape(*given.shape[:2], -1, 1)
-            moved = -np.linalg.solve(matrix, np.concatenate((np.matmul(flexibility, by_pose), flat), axis=-1))
-            onto = np.matmul(by_pose.swapaxes(2, 3), moved).sum(axis=1)
+            given = self._flat(self.left[rows, disc, pair])
+            right = np.concatenate((np.matmul(flexibility, by_pose), given), axis=-1)
+            moved = -np.linalg.solve(_one_plus(flexibility, stiffness), right)
+            back = by_pose if self.rubs is None else self._by_shift(rows, disc, pair)
+            onto = np.matmul(back.swapaxes(2, 3), moved).sum(axis=1)
             tangent[own], added[own] = onto[..., :-1], onto[..., -1]
-            force = (by_pose + np.matmul(stiffness, moved[..., :-1])).reshape(*given.shape, 2, size)
-            change[:, rows, disc, pair] = np.moveaxis(force[..., 0, :] + 1j * force[..., 1, :], -1, 0)
-            stiffest[own] = np.abs(stiffness).max(axis=(1, 2, 3))
+            force = _times(stiffness, moved)
+            force[..., :-1] += by_pose
+            change[:, rows, disc, pair] = np.moveaxis(_vectors_of(force), -1, 0)
+            stiffest[own] = np.abs(stiffness).reshape(own.size, -1).max(axis=1)
+        *by_pose_of_all, by_left = (self.held.under(each) for each in change)
         return Settled(
             force=added,
-            tangent=0.5 * (tangent + tangent.swapaxes(1, 2)),
-            onward=self.shifts + self.step if np.any(self.size > 0.0) else self.shifts,
-            by_pose=-np.stack([self.held.under(each) for each in change], axis=-1),
+            tangent=0.5 * (tangent + tangent.swapaxes(1, 2)) if self.rubs is None else tangent,
+            onward=self.shifts - self.left - by_left,
+            by_pose=-np.stack(by_pose_of_all, axis=-1),
             left=stiffest * self.size,
         )
+
+    @staticmethod
+    def _flat(values: ComplexArray) -> FloatArray:
+        """Displacements of the members of groups by member and component, as a column."""
+        return np.stack((values.real, values.imag), axis=-1).reshape(*values.shape[:2], -1, 1)
 
     def _groups(self) -> Iterator[tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.intp]]]:
         """Positions, discs and pairs of what is solved together, shape (positions, groups, members) when broadcast.
@@ -298,35 +304,66 @@ class DisplacedPins:
         return found
 
     def _stiffness(self, rows: NDArray[np.intp], disc: NDArray[np.intp], pair: NDArray[np.intp]) -> FloatArray:
-        """K among the members of groups: that of the contacts along their normals, and loads that turn with them."""
+        """K among the members of groups: that of the contacts along their normals, and loads that turn with them.
+
+        A matrix by member and component where the body of a disc couples them; a block for each member, shape (…, members, 2, 2),
+        where nothing does.
+        """
         normal, slip = self._vectors(rows, disc, pair, "gradient"), self._vectors(rows, disc, pair, "along")
-        members = normal.shape[2]
-        itself = np.arange(members)
+        pushing = self._pushing(rows, disc, pair)
+        bend = self._bend(rows, disc, pair)[..., None, None] * slip[..., :, None] * slip[..., None, :]
         if self.slopes[0].by_approach.ndim == 2:
             by_approach = np.stack([slopes.by_approach for slopes in self.slopes], axis=1)[rows, disc, pair]
-            found = np.zeros((*normal.shape[:2], members, 2, members, 2))
-            found[:, :, itself, :, itself, :] = np.moveaxis(
-                by_approach[..., None, None] * normal[..., :, None] * normal[..., None, :], 2, 0
-            )
-        else:
-            every = np.stack([slopes.by_approach for slopes in self.slopes], axis=1)
-            same = disc[..., :, None] == disc[..., None, :]
-            slope = every[rows[..., None], disc[..., :, None], pair[..., :, None], pair[..., None, :]] * same
-            found = normal[..., :, :, None, None] * slope[..., :, None, :, None] * normal[..., None, None, :, :]
-        bend = self._bend(rows, disc, pair)
-        found[:, :, itself, :, itself, :] += np.moveaxis(
-            bend[..., None, None] * slip[..., :, None] * slip[..., None, :], 2, 0
-        )
+            return np.asarray(bend + by_approach[..., None, None] * pushing[..., :, None] * normal[..., None, :])
+        members = normal.shape[2]
+        itself = np.arange(members)
+        every = np.stack([slopes.by_approach for slopes in self.slopes], axis=1)
+        same = disc[..., :, None] == disc[..., None, :]
+        slope = every[rows[..., None], disc[..., :, None], pair[..., :, None], pair[..., None, :]] * same
+        found = pushing[..., :, :, None, None] * slope[..., :, None, :, None] * normal[..., None, None, :, :]
+        found[:, :, itself, :, itself, :] += np.moveaxis(bend, 2, 0)
         return np.asarray(found.reshape(*found.shape[:2], 2 * members, 2 * members))
 
     def _by_pose(self, rows: NDArray[np.intp], disc: NDArray[np.intp], pair: NDArray[np.intp]) -> FloatArray:
         """H of the members of groups, shape (positions, groups, 2 members, coordinates)."""
-        normal, slip = self._vectors(rows, disc, pair, "gradient"), self._vectors(rows, disc, pair, "along")
+        loads = [slopes.by_pose[rows, pair] for slopes in self.slopes]
+        return self._following(rows, disc, pair, loads, self._pushing(rows, disc, pair))
+
+    def _by_shift(self, rows: NDArray[np.intp], disc: NDArray[np.intp], pair: NDArray[np.intp]) -> FloatArray:
+        """How generalised forces follow the displacements, in the layout of H, which they are without friction.
+
+        Friction works by the place of the pin; the lever of the point of contact about it is left out.
+        """
+        loads = []
+        for number, (part, slopes) in enumerate(zip(self.parts, self.slopes, strict=True)):
+            assert self.rubs is not None
+            along = np.concatenate((part.flank.along, part.holes.along), axis=1) * self.rubs[:, number, :, None]
+            by_approach = slopes.by_approach
+            rubbed = by_approach[..., None] * along if by_approach.ndim == 2 else np.matmul(by_approach, along)
+            loads.append((slopes.by_pose + rubbed)[rows, pair])
+        return self._following(rows, disc, pair, loads, self._vectors(rows, disc, pair, "gradient"))
+
+    def _pushing(self, rows: NDArray[np.intp], disc: NDArray[np.intp], pair: NDArray[np.intp]) -> FloatArray:
+        """Forces of unit loads on the pins, friction included, shape (positions, groups, members, 2)."""
+        normal = self._vectors(rows, disc, pair, "gradient")
+        if self.rubs is None:
+            return normal
+        return np.asarray(normal + self.rubs[rows, disc, pair][..., None] * self._vectors(rows, disc, pair, "along"))
+
+    def _following(
+        self,
+        rows: NDArray[np.intp],
+        disc: NDArray[np.intp],
+        pair: NDArray[np.intp],
+        by_pose: list[FloatArray],
+        normal: FloatArray,
+    ) -> FloatArray:
+        """Forces along normals whose loads follow the pose as given, and loads that turn with it."""
+        slip = self._vectors(rows, disc, pair, "along")
         bend, on_flank = self._bend(rows, disc, pair), self._load(rows, disc, pair) * self._on_flank(pair)
         found = np.zeros((*normal.shape, self.coordinates.size))
-        for number, (part, slopes) in enumerate(zip(self.parts, self.slopes, strict=True)):
+        for number, (part, loads) in enumerate(zip(self.parts, by_pose, strict=True)):
             mine = (disc == number)[..., None, None]
-            loads = slopes.by_pose[rows, pair]
             # F ∂²δ/∂u∂q: κ s_u s_qᵀ, on the flank with s_u e₂ᵀ − s_u e_Wᵀ as well.
             every = np.concatenate((part.flank.along, part.holes.along), axis=1)[rows, pair]
             block = bend[..., None, None] * slip[..., :, None] * every[..., None, :]
@@ -362,6 +399,43 @@ class DisplacedPins:
         bending = [np.concatenate((part.flank.bending, part.holes.bending), axis=1) for part in self.parts]
         turning = np.stack(bending, axis=1)[rows, disc, pair] * self._load(rows, disc, pair)
         return np.asarray(turning * np.where(self._on_flank(pair), -1.0, 1.0))
+
+
+def _friction_by_load(parts: tuple[DiscResponse, ...]) -> FloatArray | None:
+    """Friction of contacts by their loads, shape (positions, discs, pairs); None without friction."""
+    if parts[0].friction is None:
+        return None
+    load = np.stack([np.concatenate((part.pin_load, part.hole_load), axis=1) for part in parts], axis=1)
+    friction = np.stack([np.asarray(part.friction) for part in parts], axis=1)
+    return np.asarray(np.divide(friction, load, out=np.zeros_like(load), where=load > 0.0))
+
+
+def _times(stiffness: FloatArray, moved: FloatArray) -> FloatArray:
+    """K u of groups; see `DisplacedPins._stiffness`."""
+    if stiffness.ndim == 4:
+        return np.asarray(np.matmul(stiffness, moved))
+    each = moved.reshape(*stiffness.shape[:-1], moved.shape[-1])
+    return np.asarray(np.matmul(stiffness, each).reshape(moved.shape))
+
+
+def _one_plus(flexibility: FloatArray, stiffness: FloatArray) -> FloatArray:
+    """1 + S K of groups."""
+    if stiffness.ndim == 4:
+        found = np.matmul(flexibility, stiffness)
+    else:
+        first, second = flexibility[..., ::2], flexibility[..., 1::2]
+        shape = (*np.broadcast_shapes(first.shape[:2], stiffness.shape[:2]), *flexibility.shape[2:])
+        found = np.empty(shape)
+        for way in (0, 1):
+            found[..., way::2] = first * stiffness[:, :, None, :, 0, way] + second * stiffness[:, :, None, :, 1, way]
+    itself = np.arange(found.shape[-1])
+    found[..., itself, itself] += 1.0
+    return np.asarray(found)
+
+
+def _vectors_of(values: FloatArray) -> ComplexArray:
+    """Components of the members of groups, shape (…, 2 members, columns), as complex numbers."""
+    return np.asarray(values[..., ::2, :] + 1j * values[..., 1::2, :])
 
 
 def _beams(drive: Drive) -> FloatArray:

@@ -29,7 +29,7 @@ PLANAR = 8
 """Flag of splines in one plane."""
 COLOURS = {
     "bore": 4, "hole": 3, "pin": 30, "slot": 8, "sleeve": 6, "sleeve-bore": 6, "shaft-pin": 1, "shaft-sleeve": 6,
-    "shaft-sleeve-bore": 6, "inner-race": 150, "roller": 140,
+    "shaft-sleeve-bore": 6, "inner-race": 150, "roller": 140, "ring": 9, "ring-bore": 9,
 }  # fmt: skip
 """AutoCAD colour index of each feature."""
 FLANKS = (7, 2, 6, 4)

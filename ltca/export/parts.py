@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ltca.drive.parts import Drive
+from ltca.drive.parts import Drive, Ring
 from ltca.drive.single_discs import single_discs
 from ltca.errors import DriveError
 from ltca.export.flank_outline import FlankSpline, MadeFlank, follow_flank
@@ -313,7 +313,21 @@ def _pins_of_wheel(drive: Drive, place: Placement) -> tuple[list[Body], list[Wal
         if seat.kind == "slot":
             slot = Circle(feature="slot", name=f"slot {number}", radius=seat.radius or 0.0, centre=centre)
             walls.append(Wall(circle=slot, bottom=low, top=high))
+    if drive.ring is not None:
+        bodies.append(_ring(drive.ring))
     return bodies, walls
+
+
+def _ring(ring: Ring) -> Body:
+    """The elastic ring about the middle of the discs' planes; the seats of the pins are not cut into it."""
+    outer, inner = (
+        Circle(feature=feature, name=name, radius=radius, centre=0j)
+        for feature, name, radius in (
+            ("ring", "ring of the wheel", ring.outer_radius),
+            ("ring-bore", "bore of ring of the wheel", ring.inner_radius),
+        )
+    )
+    return Body(name=outer.name, outer=outer, inner=(inner,), bottom=-0.5 * ring.width, top=0.5 * ring.width)
 
 
 def _pins_of_shaft(drive: Drive, place: Placement) -> list[Body]:

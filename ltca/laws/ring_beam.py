@@ -21,7 +21,7 @@ the wall are left.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import log, pi
+from math import log1p, pi
 
 import numpy as np
 
@@ -60,7 +60,7 @@ class RingBeam:
     @property
     def neutral_radius(self) -> float:
         """Radius about which bending does not stretch the ring, mm."""
-        return self.height / log(self.outer_radius / self.inner_radius)
+        return self.height / self._wall
 
     def free(self, seats: FloatArray, radius: float) -> FloatArray:
         """Return displacements of seats of a free ring beyond their rigid motion under unit forces there, mm/N.
@@ -105,10 +105,9 @@ class RingBeam:
 
     def built_in(self, seats: FloatArray, radius: float) -> FloatArray:
         """Return displacements of the seats of a ring whose outer face is held all around, as `free`."""
-        inner, outer = self.inner_radius, self.outer_radius
-        wall = log(outer / inner)
-        bend = self.youngs_modulus * (0.5 * (outer**2 - inner**2) - 2.0 * outer * self.height + outer**2 * wall)
-        shear = self._shear_modulus * outer**2 * wall
+        outer = self.outer_radius
+        bend = self.youngs_modulus * self._second_moment(outer)
+        shear = self._shear_modulus * outer**2 * self._wall
         # θ of a ring: bend θ″ − shear θ = −moment by the angle; its periodic solution under a unit moment.
         apart = (seats[:, None] - seats) % (2.0 * pi)
         rate = np.sqrt(shear / bend)
@@ -118,6 +117,17 @@ class RingBeam:
         along = 1j * np.exp(1j * seats)
         tangent = np.stack((along.real, along.imag), axis=-1)
         return np.asarray((radius - outer) ** 2 * np.einsum("ij,ia,jb->iajb", turned, tangent, tangent))
+
+    @property
+    def _wall(self) -> float:
+        """L."""
+        return log1p(self.height / self.inner_radius)
+
+    def _second_moment(self, about: float) -> float:
+        """∫(r − about)²/r dr over the height, mm², by quadrature: closed forms of thin rings are differences of large numbers."""
+        nodes, weights = np.polynomial.legendre.leggauss(24)
+        radii = self.inner_radius + 0.5 * self.height * (1.0 + nodes)
+        return float(np.sum(0.5 * self.height * weights * (radii - about) ** 2 / radii))
 
     @property
     def _shear_modulus(self) -> float:
@@ -143,10 +153,9 @@ class RingBeam:
 
     def _series(self, apart: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Sums of the inverses of the orders' matrices with cosines and with sines, 1/N, shape (3, 3, …)."""
-        wall, radius = log(self.outer_radius / self.inner_radius), self.neutral_radius
-        mean = 0.5 * (self.inner_radius + self.outer_radius)
+        wall, radius = self._wall, self.neutral_radius
         stretch = self.youngs_modulus * wall * self.width
-        bend = self.youngs_modulus * self.height * (mean - radius) * self.width
+        bend = self.youngs_modulus * self._second_moment(radius) * self.width
         shear = self._shear_modulus * wall * self.width
 
         # Of each order n the matrix is n² first + n second + third, by (u_r, u_t, θ).
@@ -174,7 +183,8 @@ class RingBeam:
             pi**4 / 90.0 - pi**2 * angles**2 / 12.0 + pi * angles**3 / 12.0 - angles**4 / 48.0
         )
         sines += cubes[..., None] * (angles**3 / 12.0 - pi * angles**2 / 4.0 + pi**2 * angles / 6.0)
-        cosines[0, 0] += 0.5 / stretch  # the ring as a whole grows under an even pressure
+        # Order 0: the ring as a whole grows under an even pressure, and shears between pins and bolts that turn it.
+        cosines += 0.5 * np.linalg.pinv(third, rcond=1e-10, hermitian=True)[..., None]
         # Terms that mix u_r with the others are odd in the order, the others even.
         shape = (3, 3, *apart.shape)
         return (cosines[..., places].reshape(shape) / pi, sines[..., places].reshape(shape) / pi)

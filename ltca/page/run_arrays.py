@@ -74,16 +74,31 @@ def by_contact(values: LabelledArray | xr.DataArray) -> FloatArray:
     return found.reshape(found.shape[0], int(np.prod(found.shape[1:-1])), found.shape[-1])
 
 
+def ring_arrays(case: Labelled) -> dict[str, FloatArray]:
+    """Return the displacements of the seats of the wheel pins by an elastic ring, mm, shape (pins, positions); none of a rigid.
+
+    ``ring/radial`` outward, ``ring/tangential`` 90° ahead, both in the turning wheel.
+    """
+    names = {f"ring/{way}": f"ring_displacement_{way}" for way in ("radial", "tangential")}
+    if not all(name in case and np.isfinite(case[name].values).any() for name in names.values()):
+        return {}
+    return {key: np.asarray(case[name].transpose("pin", "position").values) for key, name in names.items()}
+
+
 def _state(case: Labelled) -> dict[str, FloatArray]:
     """Contacts and poses of a case at one torque."""
-    return contact_arrays(case) | {
-        "pin/parameter": by_contact(case["pin_contact_parameter"]),
-        "radial": case["disc_radial"].values,
-        "tangential": case["disc_tangential"].values,
-        "rotation": case["disc_rotation"].values,
-        "wheel": case["wheel_angle"].values,
-        "te": case["transmission_error"].values * ARCSEC,
-    }
+    return (
+        contact_arrays(case)
+        | ring_arrays(case)
+        | {
+            "pin/parameter": by_contact(case["pin_contact_parameter"]),
+            "radial": case["disc_radial"].values,
+            "tangential": case["disc_tangential"].values,
+            "rotation": case["disc_rotation"].values,
+            "wheel": case["wheel_angle"].values,
+            "te": case["transmission_error"].values * ARCSEC,
+        }
+    )
 
 
 def bearing_curves(case: Labelled) -> dict[str, FloatArray]:

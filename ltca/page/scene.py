@@ -27,7 +27,15 @@ def drive_scene(drive: Drive) -> dict[str, Any]:
         "race": round(drive.crank_bearing.inner_race_radius, DIGITS),
         "holes": circles(place.hole_centres, place.hole_radii),
         "reach": round(1.1 * float(np.max(np.abs(place.wheel_pin_centres) + place.wheel_pin_radii)), DIGITS),
-    }  # fmt: skip
+    } | _ring(drive)  # fmt: skip
+
+
+def _ring(drive: Drive) -> dict[str, Any]:
+    """Inner and outer radius of an elastic ring of the wheel, which the picture then has room for; nothing of a rigid one."""
+    if drive.ring is None:
+        return {}
+    inner, outer = drive.ring.inner_radius, drive.ring.outer_radius
+    return {"ring": [round(inner, DIGITS), round(outer, DIGITS)], "reach": round(1.1 * outer, DIGITS)}
 
 
 def moving_scene(drive: Drive) -> dict[str, Any]:

@@ -99,6 +99,12 @@ def _ring(drive: Drive) -> Iterator[str]:
             'ring.flange = "one-side": must be "free" or "built-in": a flange on one side warps the ring, which no plane '
             "model has"
         )
+    own, slots = ring.material.thermal_expansion, drive.materials.wheel_seat.thermal_expansion
+    if own is not None and slots is not None and own != slots:
+        yield (
+            f"ring.material.thermal_expansion = {own:g} 1/K: must equal materials.wheel_seat.thermal_expansion = {slots:g} 1/K, "
+            "or leave one of them out: pin circle, slots and ring grow together"
+        )
     if ring.model == "fe" and circle - seat < inner <= circle + seat and outer > circle + seat:
         yield from _ring_of_elements(drive, ring)
     bolts = ring.bolts

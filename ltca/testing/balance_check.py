@@ -5,7 +5,9 @@ the drive with its deviations, distances from the flank from a search over point
 search on their energy. Shared are only the definition of the drive and the energies ∫F dδ of the contact laws, crown and
 relief included. At an equilibrium the potential Π has a minimum: no small displacement lowers it, and its slope by
 central differences vanishes. Loose and bent pins have explicit coordinates (`ltca.testing.yielding_pins`), by which the
-slope vanishes as well. Friction (`ltca.testing.friction_check`) adds its work.
+slope vanishes as well. An elastic ring moves the wheel pins by statics of its own (`ltca.testing.ring_statics`) under the loads
+of the answer; at the displaced places the slopes of the energies of the contacts are those loads. Friction
+(`ltca.testing.friction_check`) adds its work.
 
 The effective radii of the flank contacts are those of the pose that is checked: a frictionless contact pushes along its
 normal with F(δ, ρ), and the change of energy because the contact moves to another curvature (about 1e-3 of the load, along the
@@ -27,6 +29,7 @@ from ltca.equilibrium.reducer import Reducer
 from ltca.laws.backed import BackedLaw
 from ltca.testing.actual_parts import ActualParts, DeviatedFlank
 from ltca.testing.friction_check import FrictionCheck
+from ltca.testing.ring_statics import ring_by_statics
 from ltca.testing.yielding_pins import (
     EnergyLaw,
     SeatEnergy,
@@ -62,6 +65,8 @@ class PotentialEnergy:
         N·mm.
     wheel_pins, shaft_pins : YieldingPins
         Where forces hold them.
+    ring : array of complex, shape (z_P,)
+        Displacements of the seats of the wheel pins by the elastic ring, in the turning wheel, mm.
     """
 
     drive: Drive
@@ -72,6 +77,7 @@ class PotentialEnergy:
     wheel_moment: float
     wheel_pins: YieldingPins
     shaft_pins: YieldingPins
+    ring: ComplexArray
 
     def at(self, pose: FloatArray) -> FloatArray:
         """Return Π of poses, shape (poses, coordinates), with the effective radii of the first of them, N·mm.
@@ -91,12 +97,21 @@ class PotentialEnergy:
         """
         held = self.wheel_pins
         place = np.stack([held.bent, held.loose])[None] + moved
-        total = held.stored(place[:, 0], place[:, 1], np.zeros((1, held.tip.size), dtype=complex))
+        stored = held.stored(place[:, 0], place[:, 1], np.zeros((1, held.tip.size), dtype=complex))
+        return stored + self.of_flanks(pose, place.sum(axis=1))
+
+    def of_flanks(self, pose: FloatArray, place: ComplexArray) -> FloatArray:
+        """Return the energy of the flank contacts of each wheel pin, N·mm, shape (rows, pins).
+
+        `place` are displacements of the pins from their seats in the ring, mm, complex, shape (rows, discs, pins).
+        """
+        total = np.zeros((max(pose.shape[0], place.shape[0]), place.shape[2]))
         for disc in range(self.drive.disc.number_of_discs):
             parts, centre, turn = self._place(disc, pose)
             pins, radii = parts.wheel_pins
-            axis = parts.wheel_axis + self.wheel_displacement(pose)[:, None] + place.sum(axis=1)[:, disc]
-            point = (axis + pins * np.exp(1j * pose[:, -1])[:, None] - centre) * np.conj(turn)
+            axis = parts.wheel_axis + self.wheel_displacement(pose)[:, None] + place[:, disc]
+            seats = (pins + self.ring * self.wheel_turn) * np.exp(1j * pose[:, -1])[:, None]
+            point = (axis + seats - centre) * np.conj(turn)
             farthest = float(np.max(np.abs(point - point[:1])))
             approach, effective = DeviatedFlank(self.drive, disc).approaches(point, radii, 2.0 * farthest)
             total = total + self.pin_law.energy(approach, effective)
@@ -120,6 +135,21 @@ class PotentialEnergy:
                 pushed, load = held.stiffness[disc, disc], held.load[disc]
                 total = total + 0.5 * (np.maximum(load + pushed * overlap, 0.0) ** 2 - load**2) / pushed
         return np.asarray(total)
+
+    @property
+    def wheel_turn(self) -> complex:
+        """Direction in which the wheel stands without load."""
+        wheel = self.drive.pin_wheel
+        return complex(np.exp(1j * self.crank_angle * self.drive.tooth_number_difference / wheel.number_of_pins))
+
+    def slopes_at_seats(self, pose: FloatArray, step: float) -> ComplexArray:
+        """Return the slopes of the energies of the flank contacts by the places of the wheel pins under all discs, N, shape
+        (pins,), by central differences over a step, mm.
+        """
+        place = (self.wheel_pins.bent + self.wheel_pins.loose)[None]
+        ways = step * np.array([0.0, 1.0, -1.0, 1j, -1j])[:, None, None]
+        energy = self.of_flanks(pose[None], place + ways)
+        return np.asarray((energy[1] - energy[2] + 1j * (energy[3] - energy[4])) / (2.0 * step))
 
     def _place(self, disc: int, pose: FloatArray) -> tuple[ActualParts, ComplexArray, ComplexArray]:
         """Parts at a disc, its centre and its rotation at poses."""
@@ -264,6 +294,22 @@ def _yielding(drive: Drive, laws: HalfSpaceCompliance, balanced: Equilibrium, ro
     return found
 
 
+def _ring(drive: Drive, balanced: Equilibrium, row: int) -> ComplexArray:
+    """Displacements of the seats in the turning wheel under the forces of the discs at a position of a solution, mm."""
+    wheel, flexibility = drive.pin_wheel, ring_by_statics(drive)
+    if flexibility is None:
+        return np.zeros(wheel.number_of_pins, dtype=complex)
+    force = np.zeros((wheel.number_of_pins, 2))
+    for part in balanced.response.parts:
+        force += part.pin_load[row, :, None] * part.flank.gradient[row, :, :2]
+        if part.friction is not None:
+            force += part.friction[row, : wheel.number_of_pins, None] * part.flank.along[row, :, :2]
+    turned = balanced.crank_angle[row] * drive.tooth_number_difference / wheel.number_of_pins + balanced.pose[row, -1]
+    pushed = (force[:, 0] + 1j * force[:, 1]) * np.exp(-1j * turned)
+    moved = np.einsum("iajb,jb->ia", flexibility, np.stack((pushed.real, pushed.imag), axis=1))
+    return np.asarray(moved[:, 0] + 1j * moved[:, 1])
+
+
 def potential_of(drive: Drive, model: Reducer, balanced: Equilibrium, position: int) -> PotentialEnergy:
     """Return Π about a position of a solution; arguments as for `find_imbalance`."""
     laws = cast(HalfSpaceCompliance, model.discs[0])
@@ -277,6 +323,7 @@ def potential_of(drive: Drive, model: Reducer, balanced: Equilibrium, position: 
         wheel_moment=float(balanced.wheel_moment[position]),
         wheel_pins=pins["wheel_pins"],
         shaft_pins=pins["shaft_pins"],
+        ring=_ring(drive, balanced, position),
     )
 
 
@@ -290,7 +337,7 @@ def friction_at(potential: PotentialEnergy, balanced: Equilibrium, position: int
         pose=pose,
         wheel=complex(potential.wheel_displacement(pose[None])[0]),
         wheel_column=None if not supported else -6 if has_ring(drive) else -3,
-        wheel_place=wheel.bent + wheel.loose,
+        wheel_place=wheel.bent + wheel.loose + potential.ring * potential.wheel_turn * np.exp(1j * pose[-1]),
         shaft_place=shaft.bent + shaft.loose,
         parts=[take_positions(part, np.array([position])) for part in balanced.response.parts],
         bearings=potential.bearing_forces(pose),
@@ -365,6 +412,14 @@ def find_imbalance(
     best = int(np.argmin(slope - noise / steps))
     if slope[best] > 1e-3 * load + noise / steps[best]:
         problems.append(f"slope of the potential {slope[best]:.3g} N against a load of {load:.3g} N")
+    if drive.ring is not None:
+        force = (potential.wheel_pins.load * potential.wheel_pins.away).sum(axis=0)
+        off = [np.abs(potential.slopes_at_seats(pose, step) + force) - noise / step for step in steps]
+        worst = float(np.max(np.min(off, axis=0)))
+        if worst > 1e-3 * load:
+            problems.append(
+                f"slope of the contacts by the place of a wheel pin {worst:.3g} N beside its force (load: {load:.3g} N)"
+            )
     for name, held, stored in (
         ("wheel", potential.wheel_pins, potential.of_wheel_pins),
         ("shaft", potential.shaft_pins, potential.of_shaft_pins),

@@ -15,7 +15,7 @@ from ltca.drive.deviations import BoreErrors, OneDisc, OneEccentric
 from ltca.drive.parts import Clearance, CrankSupport, Drive, Installation
 from ltca.geometry.flank import FlankProfile
 from ltca.reading.physical_checks import is_sound
-from ltca.testing.practical_drives import practical_drive
+from ltca.testing.practical_drives import practical_drive, with_ring
 
 
 def crank_drive(seed: int) -> tuple[Drive, float]:
@@ -24,12 +24,14 @@ def crank_drive(seed: int) -> tuple[Drive, float]:
     """
     random = np.random.default_rng((seed, 2))
     while True:
-        drive, angle = practical_drive(int(random.integers(2**32)))
+        number = int(random.integers(2**32))
+        drive, angle = practical_drive(number)
+        drive = replace(drive, ring=None)  # drawn again for what the drive has become
         if random.uniform() < 0.67:
             drive = _on_the_carrier(random, drive)
         drive = _supported(random, drive)
         if is_sound(drive):
-            return drive, angle
+            return with_ring(number, drive), angle
 
 
 def _on_the_carrier(random: Generator, drive: Drive) -> Drive:

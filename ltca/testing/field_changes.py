@@ -49,6 +49,9 @@ GOES_WITH = {
     "load.speed": "friction",
     "load.driven_by": "friction",
     "friction": "friction",
+    "ring": "ring",
+    "ring.material": "ring",
+    "ring.bolts": "ring",
 }
 """Tables that fields of other tables belong to, in whose names they are refused."""
 _LEFT_OUT = {
@@ -74,6 +77,11 @@ _LEFT_OUT |= {
         "thermal_expansion": 1.2e-5,
     }.items()
 }
+_LEFT_OUT |= {
+    path.replace("materials.disc.", "ring.material."): value
+    for path, value in _LEFT_OUT.items()
+    if path.startswith("materials.disc.")
+}
 """Plausible values of fields that may be left out."""
 _FROM_ZERO = {"mm": 1e-3, "rad": 0.3, "dimensionless": 0.5}
 _RELIEF = {"end_relief_length": 0.8, "end_relief_depth": 0.002}
@@ -89,6 +97,7 @@ _NAME = {
     "materials.crankshaft.poisson_ratio": "a shaft without shear and torsion bends by its modulus alone",
 }
 _NAME |= {f"materials.{part}.{name}": "moves no load: results are judged by it" for part in PARTS for name in JUDGED_BY}
+_NAME |= {f"ring.material.{name}": "moves no load; named materials have it" for name in JUDGED_BY}
 _OF_LIFE = dict.fromkeys(
     ("duty.0.torque", "duty.0.speed", "duty.0.share", "lubricant.viscosity", "lubricant.contamination"),
     "duty and lubricant concern lives of bearings alone, and here none is told",
@@ -122,7 +131,11 @@ EXCEPTIONS: Mapping[str, Mapping[str, str]] = {
     | {"load.light_torque": "curves are those of full load"}
     | dict.fromkeys(_SHAFT_PIN, "curves tell no pressure of the holes, and in half-spaces nothing else sees it"),
     "studies": _SPRINGS,
-    "full FE": _EVERYWHERE | {"load.light_torque": "a full solution is one of full load"},
+    "full FE": _EVERYWHERE
+    | {
+        "load.light_torque": "a full solution is one of full load",
+        "ring.model": "the ring of full finite elements is one of finite elements",
+    },
 }
 """Fields without effect on the answer of a model, with the reason."""
 
@@ -224,8 +237,20 @@ def _warmth(drive: Drive, path: str) -> dict[str, Any]:
     return seat | expansion | {"temperature.housing": 30.0, "temperature.disc": 40.0, "temperature.shaft": 50.0}
 
 
+def _ring(drive: Drive, path: str) -> dict[str, Any]:
+    """A ring in which the pins stand half, with bolts where the path is one of theirs."""
+    circle, pin = drive.pin_wheel.pin_circle_radius, drive.pin_wheel.pin_radius
+    found = {"ring.inner_radius": circle, "ring.outer_radius": circle + 2.5 * pin, "ring.width": drive.disc.thickness}
+    if not path.startswith("ring.bolts."):
+        return found
+    bolts = {"number": 5, "circle_radius": circle + 2.0 * pin, "stiffness": 2e5}
+    return found | {f"ring.bolts.{name}": value for name, value in bolts.items()}
+
+
 def _beside(drive: Drive, path: str) -> dict[str, Any]:
     """Further fields that a field needs to have an effect, where the drive is without them."""
+    if path.startswith("ring.") and drive.ring is None:
+        return _ring(drive, path) | (_warmth(drive, path) if path.endswith(".thermal_expansion") else {})
     span = 3.0 * (2.0 * max(map(abs, drive.disc.disc_planes)) + drive.disc.thickness)
     wheel, shaft, name = drive.pin_wheel, drive.pin_shaft, path.rpartition(".")[2]
     if path.endswith(".thermal_expansion") or path.startswith("temperature."):

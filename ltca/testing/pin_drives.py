@@ -17,6 +17,7 @@ from ltca.drive.members.pins import PinShaft, PinWheel, ShaftPinBeam, ShaftPinSe
 from ltca.drive.parts import Drive, Friction
 from ltca.reading.physical_checks import is_sound
 from ltca.testing.crank_drives import crank_drive
+from ltca.testing.practical_drives import with_ring
 from ltca.testing.yielding_pins import beam_stiffness
 
 PLAYS = (0.001, 0.004, 0.01, 0.01, 0.02, 0.05)
@@ -42,7 +43,9 @@ def pin_drive(seed: int) -> tuple[Drive, float]:
     """
     random = np.random.default_rng((seed, 3))
     while True:
-        drive, angle = crank_drive(int(random.integers(2**32)))
+        number = int(random.integers(2**32))
+        drive, angle = crank_drive(number)
+        drive = replace(drive, ring=None)  # drawn again around the pins as they sit
         play = float(random.choice(PLAYS))
         drive = replace(drive, pin_wheel=_bent_wheel_pins(random, drive, _seated_wheel_pins(random, drive, play)))
         if drive.pin_shaft is not None:
@@ -51,7 +54,7 @@ def pin_drive(seed: int) -> tuple[Drive, float]:
             drive = replace(drive, pin_shaft=_bent_shaft_pins(random, drive, _seated_shaft_pins(random, drive, play)))
         drive = _made_of(random, drive)
         if largest_deflection(drive) < SOFTEST * drive.crank.eccentricity and is_sound(drive):
-            return drive, angle
+            return with_ring(number, drive), angle
 
 
 def friction_drive(seed: int) -> tuple[Drive, float]:
@@ -62,7 +65,9 @@ def friction_drive(seed: int) -> tuple[Drive, float]:
     """
     random = np.random.default_rng((seed, 4))
     while True:
-        drive, angle = crank_drive(int(random.integers(2**32)))
+        number = int(random.integers(2**32))
+        drive, angle = crank_drive(number)
+        drive = replace(drive, ring=None)  # drawn again around the pins as they sit
         play = float(random.choice(PLAYS))
         drive = replace(drive, pin_wheel=_seated_wheel_pins(random, drive, play))
         if drive.pin_shaft is not None:
@@ -87,7 +92,7 @@ def friction_drive(seed: int) -> tuple[Drive, float]:
         speed = [None, 1500.0][int(random.integers(2))]
         drive = replace(drive, friction=friction, load=replace(drive.load, driven_by=driven, speed=speed))
         if is_sound(drive):
-            return drive, angle
+            return with_ring(number, drive), angle
 
 
 def _bearing_radius(drive: Drive) -> float:

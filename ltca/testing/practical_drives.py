@@ -16,8 +16,9 @@ from numpy.random import Generator
 from ltca.analysis.engines import HalfSpace
 from ltca.arrays import FloatArray
 from ltca.drive.deviations import OneDisc, OneEccentric, Runout
+from ltca.drive.materials import Material
 from ltca.drive.members.temperatures import warm_drive
-from ltca.drive.parts import Clearance, Drive, Installation
+from ltca.drive.parts import Clearance, Drive, Installation, Ring, RingBolts
 from ltca.drive.units.quantities import ARCMIN
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.errors import ConvergenceError, DriveError
@@ -27,6 +28,7 @@ from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.play import free_play, largest_overlap, rigid_poses
 from ltca.reading.drive_file import build_drive
 from ltca.reading.physical_checks import is_sound
+from ltca.testing.ring_statics import ring_by_statics
 
 MATERIALS = {
     "steel": (206e3, 0.3, 1200.0),
@@ -37,20 +39,80 @@ MATERIALS = {
 PIN_NUMBERS = (
     6, 8, 10, 11, 12, 14, 16, 18, 20, 24, 25, 26, 30, 32, 36, 40, 41, 44, 48, 50, 52, 60, 64, 76, 80, 90, 100, 120,
 )  # fmt: skip
+RINGS: tuple[tuple[Material, float], ...] = (
+    (Material(), 1.0), (Material(), 1.0), (Material(youngs_modulus=70e3, poisson_ratio=0.33), 1.0),
+    (Material(youngs_modulus=2.6e3, poisson_ratio=0.38), 2.0),
+)  # fmt: skip
+"""Materials of elastic rings: steel, aluminium, or plastic at twice the height."""
+SOFTEST_RING = 0.2
+"""Largest displacement of a seat when a quarter of the pins carry the torque, in eccentricities: beyond that teeth slip."""
 CIRCLES = (20.0, 25.0, 30.0, 32.0, 40.0, 50.0, 55.0, 60.0, 72.0, 80.0, 88.0, 100.0, 120.0, 150.0, 180.0)
 
 
 def practical_drive(seed: int) -> tuple[Drive, float]:
     """Return a drive as people draw them, and a crank angle in rad (one in four is zero), by a seed (not negative).
 
-    It has its rated torque or a hundredth of it, one to three discs, and either member held.
+    It has its rated torque or a hundredth of it, one to three discs, either member held, and half of all an elastic ring.
     """
     random = np.random.default_rng(seed)
     while True:
         drawn = _draw(random)
         if drawn is not None:
             break
-    return _built_in(random, drawn), float(random.choice([0.0, *random.uniform(0.0, 2.0 * np.pi, 3)]))
+    drive, angle = _built_in(random, drawn), float(random.choice([0.0, *random.uniform(0.0, 2.0 * np.pi, 3)]))
+    return with_ring(seed, drive), angle
+
+
+def with_ring(seed: int, drive: Drive) -> Drive:
+    """Return a drive with an elastic ring around its wheel pins, or with a rigid one, by a seed (not negative).
+
+    Rings are free, bolted or built in, half of all drives have none. Pins stand half in the ring (its inner radius is that of
+    their circle), deeper or less deep, or touch it just so. A ring so soft that teeth would slip is left out.
+    """
+    random = np.random.default_rng((seed, 5))
+    drive = replace(drive, ring=None)
+    if random.uniform() < 0.5:
+        return drive
+    wheel = drive.pin_wheel
+    circle, seat = wheel.pin_circle_radius, wheel.pin_radius
+    if wheel.seat.kind != "fixed":
+        seat = (wheel.seat.radius if wheel.seat.kind == "slot" else wheel.seat.pin_radius) or seat
+    material, higher = RINGS[int(random.integers(len(RINGS)))]
+    inner = circle + float(random.choice([0.0, 0.0, 0.5, -0.3, 1.0])) * seat
+    height = higher * float(random.choice([0.1, 0.2, 0.3, 0.5])) * circle
+    stack = 2.0 * max(abs(plane) for plane in drive.disc.disc_planes) + drive.disc.thickness
+    outer = _round(circle + seat + height, _step(height))
+    kind = str(random.choice(["free", "free", "bolted", "built-in"]))
+    bolts = None
+    if kind == "bolted":
+        bolts = RingBolts(
+            number=int(random.choice([3, 4, 6, 8, 12, wheel.number_of_pins])),
+            circle_radius=float(random.choice([0.5 * (circle + outer), outer, 1.1 * outer])),
+            stiffness=float(random.choice([1e5, 5e5, 1e6])),
+        )
+    ring = Ring(
+        inner_radius=inner,
+        outer_radius=outer,
+        width=stack * float(random.choice([1.0, 1.0, 1.5])),
+        material=material,
+        flange="built-in" if kind == "built-in" else "free",
+        bolts=bolts,
+    )
+    ringed = replace(drive, ring=ring)
+    soft = largest_ring_displacement(ringed) > SOFTEST_RING * drive.crank.eccentricity
+    return drive if soft or not is_sound(ringed) else ringed
+
+
+def largest_ring_displacement(drive: Drive) -> float:
+    """Return the largest displacement of a seat, mm, when a quarter of the pins, side by side, carry the torque at 45°."""
+    flexibility, pins = ring_by_statics(drive), drive.pin_wheel.number_of_pins
+    if flexibility is None:
+        return 0.0
+    angles = 2.0 * np.pi * np.arange(pins) / pins
+    each = abs(drive.wheel_moment()) / (drive.crank.eccentricity * pins) / np.ceil(0.25 * pins)
+    force = np.where(angles < 0.5 * np.pi, each * np.sqrt(2.0) * np.exp(1j * (angles + 0.25 * np.pi)), 0.0)
+    moved = np.einsum("iajb,jb->ia", flexibility, np.stack((force.real, force.imag), axis=1))
+    return float(np.max(np.hypot(moved[:, 0], moved[:, 1])))
 
 
 def _built_in(random: Generator, drive: Drive) -> Drive:

@@ -19,6 +19,7 @@ from ltca.errors import DriveError
 from ltca.geometry.flank import FlankProfile
 from ltca.reading.drive_file import build_drive
 from ltca.reading.physical_checks import find_contradictions
+from ltca.testing.practical_drives import with_ring
 
 COORDINATES = 34
 REFERENCE_PRESSURE = 2000.0
@@ -153,7 +154,8 @@ def random_drive(point: Sequence[float]) -> tuple[Drive, float] | None:
 
 
 def random_reducer(seed: int) -> tuple[Drive, float] | None:
-    """Return a random drive of one to three discs with either member held, and a crank angle in rad; None where none fits.
+    """Return a random drive of one to three discs with either member held, half of them with an elastic ring, and a crank
+    angle in rad; None where none fits.
 
     The seed determines the point of `random_drive` and the values per disc.
     """
@@ -176,7 +178,7 @@ def random_reducer(seed: int) -> tuple[Drive, float] | None:
     load = replace(drive.load, torque=discs * drive.load.torque)
     held: Any = str(random.choice(["pin-shaft", "pin-wheel"]))
     found = replace(drive, disc=disc, crank=crank, load=load, installation=Installation(held=held))
-    return None if find_contradictions(found) else (found, angle)
+    return None if find_contradictions(found) else (with_ring(seed, found), angle)
 
 
 def _own_errors(random: Generator, drive: Drive, size: float) -> OneDisc:

@@ -46,7 +46,7 @@ class Ring:
     width : float
         Axial width of the ring, mm.
     material : Material
-        Material of the ring, by name or by its properties.
+        Material of the ring, by name or by its properties. Its thermal expansion, where given, is that of the whole wheel.
     flange : {"free", "one-side", "built-in"}
         How the ring is held: free to deform, its seats displaced relative to the rigid motion that fits them best; by a flange
         on one side, which a plane model cannot represent; or with its outer face in a rigid housing.

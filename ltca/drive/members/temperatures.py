@@ -31,7 +31,7 @@ class Growth:
     Attributes
     ----------
     wheel, wheel_pin, wheel_sleeve : float
-        Circle and slots of the wheel; its pins; what the flank touches, pins or sleeves.
+        Circle, slots and ring of the wheel; its pins; what the flank touches, pins or sleeves.
     disc : float
         Flank, holes, bores, thickness.
     eccentric, race, roller : float
@@ -103,16 +103,17 @@ def growth_of(drive: Drive) -> Growth:
     housing, disc, shaft = held.housing, held.disc, held.shaft
     missing: dict[str, str] = {}
 
-    def factor(part: str, temperature: float, table: str) -> float:
+    def factor(part: str, temperature: float, table: str, own: float | None = None) -> float:
         if temperature == REFERENCE_TEMPERATURE:
             return 1.0
-        expansion = getattr(materials, part).thermal_expansion
+        expansion = own if own is not None else getattr(materials, part).thermal_expansion
         if expansion is None:
             missing.setdefault(part, f"temperature.{table} = {getattr(held, table):g} °C")
             return 1.0
         return float(1.0 + expansion * (temperature - REFERENCE_TEMPERATURE))
 
-    # The material of the slots is that of the wheel; with fixed pins it is given for its expansion alone.
+    # The material of the slots is that of the wheel; with fixed pins it is given for its expansion alone. A ring is the wheel.
+    ring = None if drive.ring is None else drive.ring.material.thermal_expansion
     seat = "wheel_seat" if materials.wheel_seat.thermal_expansion is not None else "wheel_pin"
     crank = "crankshaft" if materials.crankshaft.thermal_expansion is not None else "inner_race"
     pins = drive.pin_shaft
@@ -120,7 +121,7 @@ def growth_of(drive: Drive) -> Growth:
     on_shaft = "sleeve" if pins is not None and pins.seat.kind == "sleeve" else "shaft_pin"
     carrier = factor("shaft_pin" if pins is not None else crank, shaft, "shaft")
     found = Growth(
-        wheel=factor(seat, housing, "housing"),
+        wheel=factor(seat, housing, "housing", ring),
         wheel_pin=factor("wheel_pin", housing, "housing"),
         wheel_sleeve=factor(on_wheel, housing, "housing"),
         disc=factor("disc", disc, "disc"),

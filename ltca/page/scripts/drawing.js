@@ -1,3 +1,10 @@
+// A closed curve through points: each piece a cubic whose ends run along the line between the neighbours.
+function smooth(points) {
+  const count = points.length, at = i => points[(i + count) % count];
+  const pull = (i, by) => at(i).map((value, c) => value + by * (at(i + 1)[c] - at(i - 1)[c]) / 6).join(",");
+  return `M${at(0)}` + points.map((_, i) => `C${pull(i, 1)} ${pull(i + 1, -1)} ${at(i + 1)}`).join("") + "Z";
+}
+
 // The drive as a picture: parts, and at each contact an arrow for every load and a spot for its pressure.
 class Drawing {
   constructor(svg, answers) {
@@ -22,6 +29,7 @@ class Drawing {
     this.svg.setAttribute("viewBox", [-reach, -reach, 2 * reach, 2 * reach].join(" "));
     const world = (this.world = node("g", { transform: "scale(1,-1)" }, this.svg));
     const circle = ([x, y, r]) => `M${x - r},${y}a${r},${r} 0 1,0 ${2 * r},0a${r},${r} 0 1,0 ${-2 * r},0Z`;
+    this.ring = now.ring ? node("path", { class: "wheelring", "fill-rule": "evenodd", "stroke-width": thin }, world) : null;
     const outline = "M" + scene.outline.map(p => p.join(",")).join("L") + "Z";
     const openings = [...scene.bores, ...scene.holes].map(circle).join("");
     this.disc = node("path", { d: outline + openings, "fill-rule": "evenodd", class: "disc", "stroke-width": thin }, world);
@@ -50,6 +58,7 @@ class Drawing {
   // Parts at their places, contacts with arrows {load, kind, width, model} as long as their part of the largest load.
   show(scene, now, largest) {
     if (scene !== this.scene) this.build(scene, now);
+    if (this.ring && now.ring) this.ring.setAttribute("d", now.ring.map(smooth).join(""));
     this.disc.setAttribute("transform", `translate(${now.disc[0]},${now.disc[1]}) rotate(${now.disc[2] * 180 / Math.PI})`);
     ["pins", "rollers", "shafts"].forEach((kind, k) => now[kind].forEach(([x, y], i) => {
       const part = this.parts[k][i], out = 1 + part.away / (Math.hypot(x, y) || 1);

@@ -46,6 +46,33 @@ function contactName(kind, number) {
   return `crank ${Math.floor(number / each)}, roller ${number % each}`;
 }
 
+// How much larger the shape of the ring is drawn: its largest displacement is a twentieth of the picture, rounded.
+const ringScales = new Map();
+function ringScale(view) {
+  const prefix = `${view.kase}/${view.torque}/ring/`;
+  if (!has(prefix + "radial")) return 0;
+  if (!ringScales.has(prefix)) {
+    let most = 0;
+    for (const way of ["radial", "tangential"]) {
+      const [first, ...shape] = content.places[prefix + way];
+      for (let i = first; i < first + shape.reduce((a, b) => a * b, 1); i++) most = Math.max(most, Math.abs(numbers[i]) || 0);
+    }
+    const whole = most > 0 ? content.cases[view.kase].scenes[0].reach / 20 / most : 1, power = 10 ** Math.floor(Math.log10(whole));
+    ringScales.set(prefix, power * [5, 2, 1].find(each => each * power <= whole));
+  }
+  return ringScales.get(prefix);
+}
+// Edges of the ring with its displacements enlarged: a smooth closed line through the angles of the pins.
+function ringAt(view, prefix, wheel) {
+  const scene = content.cases[view.kase].scenes[view.disc], scale = ringScale(view);
+  if (!scene.ring || !scale) return null;
+  const moved = scene.pins.map(([x, y], i) => {
+    const out = unit([x, y]), each = ["radial", "tangential"].map(way => scale * row(`${prefix}ring/${way}`, i)[view.index]);
+    return [out, times(out, each)];
+  });
+  return scene.ring.map(radius => moved.map(([out, by]) => plus(scene.wheelAxis, times(plus([radius * out[0], radius * out[1]], by), wheel))));
+}
+
 // Everything at one position: parts as circles, contacts with place and direction of the force on the disc.
 function placesAt(view) {
   const scene = content.cases[view.kase].scenes[view.disc], prefix = `${view.kase}/${view.torque}/`;
@@ -57,6 +84,7 @@ function placesAt(view) {
   const disc = plus(middle, times([of("radial"), of("tangential")], turned(angle + phase)));
   const pins = scene.pins.map(([x, y, r]) => [...plus(scene.wheelAxis, times([x, y], wheel)), r]);
   const each = scene.rollers[0].length / scene.axes.length, around = scene.cageSpeed * angle;
+  const ring = ringAt(view, prefix, wheel);
   const rollers = scene.rollers[0].map((cage, i) => {
     const crank = Math.floor(i / each), r = scene.rollers[1][i];
     return [...plus(races[crank], times([scene.race + r, 0], turned(around + cage))), r];
@@ -64,7 +92,7 @@ function placesAt(view) {
   const found = {
     known: known(rotation), angle: angle, contacts: [],
     disc: [...disc, rotation], cranks: races.map((race, i) => [...scene.axes[i], ...race]),
-    pins: pins, rollers: rollers, shafts: scene.shafts,
+    pins: pins, rollers: rollers, shafts: scene.shafts, ring: ring,
   };
   if (!found.known) found.disc = [...middle, 0];
   const inWorld = point => plus(disc, times(point, turn));

@@ -80,6 +80,8 @@ function fillLegend(view) {
   const item = (kind, words) => { const each = html("span", { class: "item" }, legend); html("span", { class: `key ${kind}` }, each); each.append(words); };
   for (const kind of ["pin", "outer", "hole"]) if (shapeOf(`${view.kase}/full/${kind}/load`)[1]) item(`k-${kind}`, `${KINDS[kind]}s`);
   if (content.compared && content.compared.cases.length) item("k-second", `${content.compared.name}${view.torque === "full" ? "" : " (torque of the run only)"}`);
+  const ring = ringScale(view);
+  if (ring) item("k-ring", `ring of the wheel, its displacement × ${figure(ring, 0)}`);
   html("span", { class: "item" }, legend, `longest arrow ${figure(scale.load)} N`);
   if (scale.pressure > 0) {
     const each = html("span", { class: "item" }, legend, "pressure 0");

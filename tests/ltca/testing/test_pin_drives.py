@@ -35,18 +35,18 @@ def test_drives_of_all_pins_quick():
 def test_shared_pins_settle_to_round_off_and_no_further(monkeypatch):
     """Of pins on a circle of 150 mm displacements were wanted to less than round-off: eight evaluations instead of four."""
     counts = []
-    plain_settle, plain_left_over = PinDisplacements.settle, DisplacedPins.left_over
+    plain_settle, plain = PinDisplacements.settle, DisplacedPins.__init__
 
-    def settle(*arguments):
+    def settle(*arguments, **options):
         counts.append(0)
-        return plain_settle(*arguments)
+        return plain_settle(*arguments, **options)
 
-    def left_over(*arguments):
+    def evaluated(*arguments):
         counts[-1] += 1
-        return plain_left_over(*arguments)
+        plain(*arguments)
 
     monkeypatch.setattr(PinDisplacements, "settle", settle)
-    monkeypatch.setattr(DisplacedPins, "left_over", left_over)
+    monkeypatch.setattr(DisplacedPins, "__init__", evaluated)
     check_seeds(21, 1)
     assert max(counts) <= 5
 
