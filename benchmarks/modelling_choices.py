@@ -4,7 +4,7 @@ LTCA ``fe`` and full finite elements support the wheel pins by the same rigid co
 plane strain, so their difference measures precision only. The effect of these assumptions is part of the accuracy and is measured
 here on the paper's drive for some positions of a turn:
 
-- radius of the rigid core of the wheel pins and of the fixed bore of the inner race, by ``fe`` with coefficients for each,
+- ``pin_wheel.core_radius`` and ``crank_bearing.race_bore_radius``, by ``fe`` with coefficients for each,
 - plane stress instead of plane strain, and elastic contact of the shaft pins, by full finite elements.
 
 Meshes are coarse, and equal on both sides of a difference.
@@ -19,7 +19,6 @@ import tempfile
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -34,7 +33,6 @@ from fem.body.elasticity import PlaneState
 from fem.coefficients.dataset import derive_coefficients
 from fem.options import SolutionOptions
 from fem.reducer.series import solve_positions
-from fem.shapes import DriveShapes
 from ltca.analysis.engines import PlaneStrain
 from ltca.analysis.loaded_analysis import analyse
 from ltca.compliance.coefficients import load_coefficients
@@ -60,11 +58,11 @@ class Answer:
     wheel: FloatArray
 
 
-def by_coefficients(drive: Drive, angles: FloatArray, size: float, stations: float, **chosen: Any) -> Answer:
-    """Return the results of ``fe`` with coefficients derived for given options."""
+def by_coefficients(drive: Drive, angles: FloatArray, size: float, stations: float) -> Answer:
+    """Return the results of ``fe`` with coefficients of the drive's own bodies."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "coefficients.nc"
-        derive_coefficients(drive, stations=stations, size=size, **chosen).to_netcdf(path, engine="h5netcdf")
+        derive_coefficients(drive, stations=stations, size=size).to_netcdf(path, engine="h5netcdf")
         found = analyse(drive, angles, engine=PlaneStrain(coefficients=load_coefficients(path, drive)))
     contacts = found.full.response
     return Answer(
@@ -120,8 +118,7 @@ def main() -> None:
     )
     arguments = parser.parse_args()
     drive, angles = load_drive("paper").cases[arguments.case], position_angles(arguments.positions)
-    shapes = DriveShapes.of_drive(drive)
-    core, bore = shapes.wheel_pins[0].core_radius, shapes.inner_race.inner_radius
+    core, bore = drive.pin_wheel.held_core_radius, drive.crank_bearing.held_bore_radius
     start, size, stations = time.process_time(), arguments.size, arguments.stations
     print(
         f"paper {arguments.case}, {drive.load_words()}, {angles.size} positions; meshes of {size:g} times the default edge,"
@@ -131,12 +128,13 @@ def main() -> None:
     )
     print(f"{'':<44}{'load, %':>9}{'flank, %':>9}{'hole, %':>9}{'wheel, ″':>9}", flush=True)
     base = by_coefficients(drive, angles, size, stations)
-    choices: list[tuple[str, dict[str, float]]] = [
-        *((f"rigid core of the pins {core:g} -> {one:g} mm", {"core_radius": one}) for one in CORES),
-        *((f"bore of the inner race {bore:g} -> {one:g} mm", {"race_bore_radius": one}) for one in BORES),
+    choices = [
+        *((f"rigid core of the pins {core:g} -> {one:g} mm", {"pin_wheel.core_radius": one}) for one in CORES),
+        *((f"bore of the inner race {bore:g} -> {one:g} mm", {"crank_bearing.race_bore_radius": one}) for one in BORES),
     ]
     for name, chosen in choices:
-        print(row(f"{name} (fe)", base, by_coefficients(drive, angles, size, stations, **chosen)), flush=True)
+        changed = with_fields(drive, chosen)
+        print(row(f"{name} (fe)", base, by_coefficients(changed, angles, size, stations)), flush=True)
     full = by_full_solution(drive, angles, size)
     print(
         row("plane strain -> stress (full FE)", full, by_full_solution(drive, angles, size, plane="stress")), flush=True

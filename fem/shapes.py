@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from fem.errors import MeshError
@@ -20,12 +21,6 @@ from ltca.drive.hole_contact import shaft_pins_yield
 from ltca.drive.parts import Drive
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.placement import Placement
-
-DEFAULT_CORE_RADIUS = 2.0
-DEFAULT_RACE_BORE_RADIUS = 10.0
-# A default core or race bore shrinks with the part, or a small drive would have no material left to deform.
-LARGEST_CORE_SHARE = 1.0 / 3.0
-LARGEST_RACE_BORE_SHARE = 0.6
 
 
 class Curve(Protocol):
@@ -42,6 +37,10 @@ class Curve(Protocol):
     @property
     def samples(self) -> int:
         """How many equally spaced parameters resolve the shape."""
+
+    @property
+    def corners(self) -> tuple[float, ...]:
+        """Parameters, ascending in (0, 2π), at which an edge has to end; none on a smooth curve."""
 
     def points(self, parameter: FloatArray) -> ComplexArray:
         """Return points, mm."""
@@ -81,6 +80,11 @@ class CircleCurve:
     def samples(self) -> int:
         """How many equally spaced parameters resolve the shape."""
         return 360
+
+    @property
+    def corners(self) -> tuple[float, ...]:
+        """None."""
+        return ()
 
     def points(self, parameter: FloatArray) -> ComplexArray:
         """Return points, mm."""
@@ -124,6 +128,11 @@ class FlankCurve:
     def samples(self) -> int:
         """How many equally spaced parameters resolve the shape: 128 for each tooth."""
         return 128 * round(self.profile.reduction_ratio)
+
+    @property
+    def corners(self) -> tuple[float, ...]:
+        """None."""
+        return ()
 
     def points(self, parameter: FloatArray) -> ComplexArray:
         """Return points, mm."""
@@ -307,7 +316,172 @@ class RingShape:
         return float(np.pi * (self.outer_radius**2 - self.inner_radius**2))
 
 
-Shape = DiscShape | CircleShape | RingShape
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SlottedCircle:
+    """Inner boundary of the ring of the pin wheel: a circle into which the seats of the pins are cut.
+
+    Over one pitch, of which the seat is in the middle, the parameter runs with the arc length: along the circle, around the
+    seat, along the circle.
+
+    Attributes
+    ----------
+    radius : float
+        Of the circle, mm.
+    seats : int
+        Number of seats; seat i has its centre at the polar angle 2πi/seats.
+    seat_circle_radius, seat_radius : float
+        Circle of the centres of the seats, and their radius, mm; the seats cut the circle.
+    name : str
+        Name of the boundary.
+    """
+
+    radius: float
+    seats: int
+    seat_circle_radius: float
+    seat_radius: float
+    name: str = "inner"
+
+    @property
+    def encloses_body(self) -> bool:
+        """Whether the body lies inside: never."""
+        return False
+
+    @property
+    def samples(self) -> int:
+        """How many equally spaced parameters resolve the shape: 60 for each pitch."""
+        return 60 * self.seats
+
+    @property
+    def pitch(self) -> float:
+        """Angle from a seat to the next, rad."""
+        return 2.0 * np.pi / self.seats
+
+    @property
+    def opening(self) -> float:
+        """Half the angle, about the ring's centre, over which a seat opens the circle, rad."""
+        inner, circle, seat = self.radius, self.seat_circle_radius, self.seat_radius
+        return float(np.arccos((inner**2 + circle**2 - seat**2) / (2.0 * inner * circle)))
+
+    @property
+    def half_arc(self) -> float:
+        """Half the angle of a seat's wall about its own centre, rad: π − that to which it is open inwards."""
+        inner, circle, seat = self.radius, self.seat_circle_radius, self.seat_radius
+        return float(np.arccos((inner**2 - circle**2 - seat**2) / (2.0 * circle * seat)))
+
+    @property
+    def loaded_half_arc(self) -> float:
+        """Half the angle of the wall that a pin loads: that of its outer half, rad."""
+        return min(self.half_arc, 0.5 * np.pi)
+
+    @property
+    def seat_centres(self) -> ComplexArray:
+        """Centres of the seats, mm."""
+        return np.asarray(self.seat_circle_radius * np.exp(1j * self.pitch * np.arange(self.seats)))
+
+    @property
+    def corners(self) -> tuple[float, ...]:
+        """Parameters where circle and seats meet."""
+        land, wall = self._shares
+        every = (np.arange(self.seats)[:, None] + np.array([land, land + wall])) * self.pitch
+        return tuple(every.ravel().tolist())
+
+    @property
+    def _shares(self) -> tuple[float, float]:
+        """Shares of a pitch of the parameter: circle before the seat (as after it), and seat."""
+        land, wall = self.radius * (0.5 * self.pitch - self.opening), 2.0 * self.half_arc * self.seat_radius
+        return land / (2.0 * land + wall), wall / (2.0 * land + wall)
+
+    def _pieces(self, parameter: FloatArray) -> tuple[FloatArray, FloatArray, NDArray[np.bool_]]:
+        """Polar angle of the middle of the pitch, angle along the piece from there, whether it is the seat's."""
+        land, wall = self._shares
+        number = np.floor(parameter / self.pitch)
+        place = parameter / self.pitch - number
+        on_seat = (place >= land) & (place <= land + wall)
+        along_seat = self.half_arc * (2.0 * (place - land) / wall - 1.0)
+        rise = (0.5 * self.pitch - self.opening) / land
+        along_circle = np.where(
+            place < land, -0.5 * self.pitch + rise * place, self.opening + rise * (place - land - wall)
+        )
+        return number * self.pitch, np.where(on_seat, along_seat, along_circle), on_seat
+
+    def points(self, parameter: FloatArray) -> ComplexArray:
+        """Return points, mm."""
+        middle, along, on_seat = self._pieces(np.asarray(parameter, dtype=float))
+        seat = self.seat_circle_radius + self.seat_radius * np.exp(1j * along)
+        return np.asarray(np.exp(1j * middle) * np.where(on_seat, seat, self.radius * np.exp(1j * along)))
+
+    def normals(self, parameter: FloatArray) -> ComplexArray:
+        """Return unit normals out of the body: towards the centre of the ring, or of the seat."""
+        middle, along, _ = self._pieces(np.asarray(parameter, dtype=float))
+        return np.asarray(-np.exp(1j * (middle + along)))
+
+    def curvature_radius(self, parameter: FloatArray) -> FloatArray:
+        """Return the radius of the piece, mm."""
+        on_seat = self._pieces(np.asarray(parameter, dtype=float))[2]
+        return np.where(on_seat, self.seat_radius, self.radius)
+
+    def parameter_of(self, point: ComplexArray) -> FloatArray:
+        """Return the parameter in [0, 2π) of the nearest point."""
+        point = np.asarray(point)
+        turned = np.mod(np.angle(point) + 0.5 * self.pitch, 2.0 * np.pi)
+        number = np.floor(turned / self.pitch)
+        own = point * np.exp(-1j * number * self.pitch)
+        land, wall = self._shares
+        arm = own - self.seat_circle_radius
+        along = np.clip(np.angle(arm), -self.half_arc, self.half_arc)
+        on_seat = np.abs(own - self.seat_circle_radius - self.seat_radius * np.exp(1j * along))
+        polar = np.angle(own)
+        polar = np.where(np.abs(polar) < self.opening, np.where(polar < 0.0, -1.0, 1.0) * self.opening, polar)
+        on_circle = np.abs(own - self.radius * np.exp(1j * polar))
+        rise = land / (0.5 * self.pitch - self.opening)
+        beside = np.where(polar < 0.0, rise * (polar + 0.5 * self.pitch), land + wall + rise * (polar - self.opening))
+        place = np.where(on_seat <= on_circle, land + 0.5 * wall * (along / self.half_arc + 1.0), beside)
+        return np.asarray(np.mod((number + place) * self.pitch, 2.0 * np.pi))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PinRingShape:
+    """Ring of the pin wheel with the seats of its pins, centre at the origin.
+
+    Attributes
+    ----------
+    inner : SlottedCircle
+        Boundary "inner".
+    outer_radius : float
+        Boundary "outer", mm.
+    name : str
+        Name of the body.
+    """
+
+    inner: SlottedCircle
+    outer_radius: float
+    name: str = "pin_ring"
+
+    @property
+    def curves(self) -> tuple[Curve, ...]:
+        """Outer curve first, then the inner one."""
+        return (CircleCurve(name="outer", radius=self.outer_radius), self.inner)
+
+    @property
+    def narrowest_wall(self) -> float:
+        """Wall outside the seats, or metal between two of them, mm."""
+        inner = self.inner
+        between = 2.0 * (inner.seat_circle_radius * np.sin(0.5 * inner.pitch) - inner.seat_radius)
+        outside = self.outer_radius - inner.seat_circle_radius - inner.seat_radius
+        return float(min(between, outside) if inner.radius < inner.seat_circle_radius else outside)
+
+    @property
+    def area(self) -> float:
+        """Area, mm²."""
+        inner = self.inner
+        half, opening = inner.half_arc, inner.opening
+        # Of a seat beyond the circle: its sector and the triangle to the chord, less the circle's segment under it.
+        seat = inner.seat_radius**2 * (half - np.sin(half) * np.cos(half))
+        segment = inner.radius**2 * (opening - np.sin(opening) * np.cos(opening))
+        return float(np.pi * (self.outer_radius**2 - inner.radius**2) - inner.seats * (seat - segment))
+
+
+Shape = DiscShape | CircleShape | RingShape | PinRingShape
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -335,42 +509,19 @@ class DriveShapes:
     shaft_pins: tuple[CircleShape, ...]
 
     @classmethod
-    def of_drive(
-        cls, drive: Drive, *, core_radius: float | None = None, race_bore_radius: float | None = None
-    ) -> DriveShapes:
-        """Return the shapes of a drive.
-
-        Parameters
-        ----------
-        drive : Drive
-            The drive in one case.
-        core_radius : float, optional
-            Radius of the rigid core of the wheel pins, mm; 2 mm by default, at most a third of the pin radius.
-        race_bore_radius : float, optional
-            Fixed bore of the inner race, mm; 10 mm by default, at most 0.6 of r_i.
-
-        Raises
-        ------
-        MeshError
-            When a given radius leaves no material.
-        """
-        placement = Placement.of_drive(drive)
-        if core_radius is None:
-            core_radius = min(DEFAULT_CORE_RADIUS, LARGEST_CORE_SHARE * float(placement.wheel_pin_radii.min()))
-        if race_bore_radius is None:
-            race_bore_radius = min(
-                DEFAULT_RACE_BORE_RADIUS, LARGEST_RACE_BORE_SHARE * drive.crank_bearing.inner_race_radius
-            )
+    def of_drive(cls, drive: Drive) -> DriveShapes:
+        """Return the shapes of a drive."""
+        placement, race = Placement.of_drive(drive), drive.crank_bearing
         return cls(
             disc=DiscShape.of_drive(drive),
             wheel_pins=tuple(
-                CircleShape(name=f"pin_{i}", radius=float(radius), core_radius=core_radius)
+                CircleShape(name=f"pin_{i}", radius=float(radius), core_radius=drive.pin_wheel.held_core_radius)
                 for i, radius in enumerate(placement.wheel_pin_radii)
             ),
             rollers=tuple(
                 CircleShape(name=f"roller_{n}", radius=float(radius)) for n, radius in enumerate(placement.roller_radii)
             ),
-            inner_race=RingShape(inner_radius=race_bore_radius, outer_radius=drive.crank_bearing.inner_race_radius),
+            inner_race=RingShape(inner_radius=race.held_bore_radius, outer_radius=race.inner_race_radius),
             shaft_pins=tuple(
                 CircleShape(name=f"shaft_pin_{k}", radius=float(radius))
                 for k, radius in enumerate(placement.shaft_pin_radii if shaft_pins_yield(drive) else ())

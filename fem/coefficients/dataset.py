@@ -55,8 +55,6 @@ def derive_coefficients(
     stations: float = 1.0,
     size: float = 1.0,
     state: PlaneState = "strain",
-    core_radius: float | None = None,
-    race_bore_radius: float | None = None,
     keep_clearance: bool = True,
     processes: int = 1,
     progress: Callable[[str], None] | None = None,
@@ -77,8 +75,6 @@ def derive_coefficients(
         Multiple of the default element edges; the convergence estimate takes a mesh of twice that.
     state : {"strain", "stress"}
         Plane strain or plane stress.
-    core_radius, race_bore_radius : float, optional
-        Rigid core of the wheel pins and fixed bore of the race, mm; defaults of `DriveShapes.of_drive`.
     keep_clearance : bool
         Derive the disc with the bearing and pin-hole clearance of this case; without them on purpose, one dataset serves
         all clearance cases approximately, and says so.
@@ -103,7 +99,7 @@ def derive_coefficients(
     """
     require_element_size(size, MAX_SIZE / COARSE_RATIO)
     nominal = nominal_shape(drive, keep_clearance=keep_clearance)
-    shapes = DriveShapes.of_drive(nominal, core_radius=core_radius, race_bore_radius=race_bore_radius)
+    shapes = DriveShapes.of_drive(nominal)
     places = DiscStations.of_disc(shapes.disc, stations)
     require_disc_memory(shapes.disc, places, size, processes)
     if (coarse_walls := places.coarse_walls) is not None:

@@ -12,7 +12,7 @@ from ltca.drive.parts import Drive
 from ltca.drive.single_discs import nominal_shape
 from ltca.errors import CycloError
 from ltca.reading.coefficient_laws import Check
-from ltca.reading.coefficient_schema import shape_differences, shape_of
+from ltca.reading.coefficient_schema import require_same_supports, shape_differences, shape_of
 
 if TYPE_CHECKING:
     from ltca.output.labelled import Labelled
@@ -63,6 +63,7 @@ def _served_by(dataset: Labelled, drive: Drive, source: str) -> Drive:
     for keep in (True, False) if float(dataset.attrs["clearances_left_out"]) else (True,):
         nominal = nominal_shape(drive, keep_clearance=keep)
         if theirs == nominal.body_shape():
+            require_same_supports(source, dataset, nominal)
             return nominal
     own = drive.body_shape()
     different = shape_differences(theirs, own)

@@ -1,8 +1,9 @@
-"""``cyclo derive``: influence coefficients of the bodies of a drive by finite elements, as a file."""
+"""``cyclo derive``: influence coefficients of the bodies of a drive, or the flexibility of its ring, by finite elements."""
 
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterable
 from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -23,20 +24,40 @@ if TYPE_CHECKING:
     from ltca.output.labelled import Labelled
     from ltca.reading.coefficient_laws import Check
 
-SUMMARY: str = "derive the bodies' influence coefficients by finite elements, or check a file of them"
+SUMMARY: str = (
+    "derive the bodies' influence coefficients, or the ring's flexibility, by finite elements, or check a file of them"
+)
 EXAMPLES = (
     ("cyclo derive paper --case CS-1 --out coefficients.nc", "for cyclo run --compliance fe or hybrid"),
+    ("cyclo derive drive.toml --part ring", 'the flexibility of the ring of the wheel pins, with ring.model = "fe"'),
     ("cyclo derive --check coefficients.nc paper", "any file of coefficients against schema and laws"),
 )
 # Options of a derivation, and their defaults.
-DERIVING = {"stations": 1.0, "size": 1.0, "plane": "strain", "without_clearance": False, "out": None}
+DERIVING = {
+    "part": "bodies",
+    "stations": 1.0,
+    "size": 1.0,
+    "plane": "strain",
+    "without_clearance": False,
+    "out": None,
+}
+OF_BODIES = {"stations", "plane", "without_clearance"}
+"""Options that a derivation of the ring has no use for."""
 COEFFICIENTS = "coefficients.nc"
+RING = "ring.nc"
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add_drive_argument(parser, optional=True)
     add_case_argument(parser, "case; default the first", several=False)
+    parser.add_argument(
+        "--part",
+        choices=("bodies", "ring"),
+        default="bodies",
+        help="disc, wheel pin, roller and inner race (default), or the ring of [ring] with the seats of the wheel pins and its "
+        "bolts, always in plane stress",
+    )
     parser.add_argument(
         "--stations",
         type=quantity_argument("--stations", "dimensionless", ge=1e-2, le=1e2),
@@ -59,7 +80,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--out",
         metavar="FILE",
         type=path_argument("--out"),
-        help=f"file for the coefficients; default {default_folder('<drive>', 'derive') / COEFFICIENTS}; discs cut otherwise "
+        help=f"file for the coefficients; default {default_folder('<drive>', 'derive') / COEFFICIENTS}, of a ring "
+        f"{RING} there; discs cut otherwise "
         "get one each, its name ending in _disc_ and the number of the first of them",
     )
     parser.add_argument(
@@ -89,6 +111,8 @@ def execute(arguments: argparse.Namespace) -> int:
         return _check_file(arguments)
     if arguments.drive is None:
         raise CycloError("derive: give a drive file, or a file of coefficients with --check")
+    if arguments.part == "ring":
+        return _derive_ring(arguments)
     from ltca.output.locks import claimed_file
     from ltca.reading.coefficient_file import require_replaceable
 
@@ -156,6 +180,49 @@ def _derive(name: str, case: str, drive: Drive, arguments: argparse.Namespace, o
     return 0 if all(check.passed for check in checks) else 1
 
 
+def _derive_ring(arguments: argparse.Namespace) -> int:
+    """Derive the ring of a drive, write it whole or not at all, and check it."""
+    for option in sorted(OF_BODIES):
+        if getattr(arguments, option) != DERIVING[option]:
+            raise CycloError(f"--{option.replace('_', '-')}: has no meaning with --part ring, a body by itself")
+    import time
+
+    from fem.coefficients.ring import derive_ring, require_replaceable_ring
+    from ltca.output.locks import claimed_file
+    from ltca.output.progress import steps
+    from ltca.reading.ring_file import check_ring, read_ring, write_ring
+
+    name, case, drive = chosen_drive(arguments)
+    out: Path = arguments.out or default_folder(name, "derive") / RING
+    start = time.perf_counter()
+    with claimed_file(out, "derive"):
+        require_replaceable_ring(out)
+        with steps("deriving the ring") as show:
+            dataset = derive_ring(drive, case=case, size=arguments.size, progress=show)
+        write_ring(dataset, out)
+    written = read_ring(out, lawful=False)
+    checks = check_ring(written)
+    print(
+        f"{name} {case}: {drive.pin_wheel.number_of_pins} seats, {written.attrs['bolts']} bolts, {written.attrs['unknowns']:,} "
+        f"unknowns of the ring, plane stress, {time.perf_counter() - start:.1f} s"
+    )
+    _print_verdicts(checks)
+    print(f"written to {out}")
+    return 0 if all(check.passed for check in checks) else 1
+
+
+def _check_ring_file(arguments: argparse.Namespace, path: Path) -> int:
+    from ltca.reading.ring_file import check_ring, read_ring, require_same_ring
+
+    dataset = read_ring(path, lawful=False)
+    if arguments.drive is not None:
+        require_same_ring(dataset, chosen_drive(arguments)[2], arguments.check)
+    checks = check_ring(dataset)
+    print(f"{arguments.check}: ring, {dataset['flexibility'].values.shape[0]} seats and bolts")
+    _print_verdicts(checks)
+    return 0 if all(check.passed for check in checks) else 1
+
+
 def _check_file(arguments: argparse.Namespace) -> int:
     """Check a file that is there; return 0 when all laws held, 1 when one is broken."""
     for option, default in DERIVING.items():
@@ -163,9 +230,13 @@ def _check_file(arguments: argparse.Namespace) -> int:
             raise CycloError(f"--{option.replace('_', '-')}: has no meaning with --check, which derives nothing")
     if not Path(arguments.check).is_file():
         raise CycloError(f"--check {arguments.check}: no such file")
+    from ltca.output.netcdf import read_netcdf
     from ltca.reading.coefficient_file import read_coefficients
     from ltca.reading.coefficient_laws import check_coefficients
+    from ltca.reading.ring_file import is_ring
 
+    if is_ring(read_netcdf(Path(arguments.check), "a coefficient file")):
+        return _check_ring_file(arguments, Path(arguments.check))
     dataset = read_coefficients(Path(arguments.check), lawful=False)
     checks = check_coefficients(dataset)
     if arguments.drive is not None:
@@ -198,8 +269,14 @@ def _print_checks(dataset: Labelled, checks: tuple[Check, ...]) -> None:
     from ltca.reading.coefficient_laws import unstated_laws
 
     unstated = unstated_laws(dataset)
-    width = max(len(name) for name in [*(check.name for check in checks), *unstated])
-    for check in checks:
-        print(f"{check.name:<{width}}  {check.value:>10.4g}  {check.bounds:<16}  {'ok' if check.passed else 'FAILED'}")
+    width = _print_verdicts(checks, unstated)
     for name, lacking in unstated.items():
         print(f"{name:<{width}}  {'':>10}  {'':<16}  not checked: the file has no {lacking}")
+
+
+def _print_verdicts(checks: tuple[Check, ...], also: Iterable[str] = ()) -> int:
+    """Print the laws with value, limit and verdict; return the width of their names and of others that follow."""
+    width = max(len(name) for name in [*(check.name for check in checks), *also])
+    for check in checks:
+        print(f"{check.name:<{width}}  {check.value:>10.4g}  {check.bounds:<16}  {'ok' if check.passed else 'FAILED'}")
+    return width

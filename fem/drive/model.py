@@ -41,6 +41,8 @@ class DrivePose:
         Distance of each roller from the centre of its race along its cage ray, mm.
     shaft_pin_displacements : array of complex, shape (z_PS,)
         Displacement of each shaft pin on its spring, mm.
+    wheel_pin_displacements : array of complex, shape (z_P,)
+        Displacement of the seat of each wheel pin in the turning wheel, mm; zero in a rigid ring.
     """
 
     disc_x: float
@@ -49,6 +51,7 @@ class DrivePose:
     wheel_angle: float
     roller_distances: FloatArray
     shaft_pin_displacements: ComplexArray
+    wheel_pin_displacements: ComplexArray
 
     @property
     def disc_displacement(self) -> complex:
@@ -174,6 +177,10 @@ class DriveModel:
         Nominal places of the parts.
     race_loads : array of int
         Unit load of `race` that each pressure unknown of an inner race is, crank after crank.
+    ring : array, shape (2 z_P, 2 z_P), or None
+        Displacement (x, y) of the seats of the wheel pins in the wheel by unit forces there, mm/N; None in a rigid ring.
+    by_others : array of complex, shape (z_P,)
+        Displacement of the seats in the wheel by the forces of other discs, mm.
     """
 
     drive: Drive
@@ -187,6 +194,8 @@ class DriveModel:
     pairs: tuple[ContactPair, ...]
     placement: Placement
     race_loads: NDArray[np.intp]
+    ring: FloatArray | None
+    by_others: ComplexArray
 
     @property
     def unknown_count(self) -> int:
@@ -246,12 +255,23 @@ class DriveModel:
         """Return the centre of a pin, roller or shaft pin in the fixed frame, mm."""
         place = self.placement
         if kind == "pin":
-            turn = self.crank_angle / place.reduction_ratio + pose.wheel_angle
-            return complex(place.wheel_pin_centres[index] * np.exp(1j * turn))
+            centre = place.wheel_pin_centres[index] + pose.wheel_pin_displacements[index]
+            return complex(centre * self.wheel_direction(pose))
         if kind == "hole":
             return complex(place.shaft_pin_centres[index] + pose.shaft_pin_displacements[index])
         race = complex(self.race_centres[self.crank_of(index)])
         return race + complex(pose.roller_distances[index] * self.roller_rays[index])
+
+    def wheel_direction(self, pose: DrivePose) -> complex:
+        """Return the direction in which the wheel stands."""
+        return complex(np.exp(1j * (self.crank_angle / self.placement.reduction_ratio + pose.wheel_angle)))
+
+    def seats_moved_by(self, force: ComplexArray) -> ComplexArray:
+        """Return the displacement of all seats by forces on the wheel pins, in the wheel, mm and N, shape (z_P,)."""
+        if self.ring is None:
+            return np.zeros(force.shape, dtype=complex)
+        moved = (self.ring @ np.stack([force.real, force.imag], axis=-1).ravel()).reshape(-1, 2)
+        return np.asarray(moved[:, 0] + 1j * moved[:, 1])
 
     def carrier_pose(self, pair: ContactPair, pose: DrivePose) -> Pose:
         """Return the frame of the body that carries the pressure of a pair."""
@@ -291,6 +311,7 @@ class DriveModel:
             wheel_angle=wheel,
             roller_distances=0.5 * (outer + inner),
             shaft_pin_displacements=np.zeros(len(place.hole_radii), dtype=complex),
+            wheel_pin_displacements=self.by_others.copy(),
         )
 
     def start_active(self) -> NDArray[np.bool_]:
@@ -318,7 +339,8 @@ class DriveModel:
         motions = np.zeros((count, 4 + len(rollers)))
         gap = np.zeros(count)
         centre = self.disc_pose(pose).centre
-        spring = self.drive.hole_stiffness
+        spring, in_wheel = self.drive.hole_stiffness, self.wheel_direction(pose).conjugate()
+        on_seats = np.zeros((2 * len(self.placement.wheel_pin_radii), count))
         by_roller: dict[int, list[tuple[ContactPair, PairIntegrals]]] = {}
         for pair, integral in zip(self.pairs, integrals, strict=True):
             own = pair.unknowns
@@ -331,6 +353,10 @@ class DriveModel:
                 motions[own, 3] = moment
                 loads = integral.opposite_loads
                 compliance[own, own] += loads.T @ self.groups[pair.group].condensed.compliance @ loads
+                along = (fx + 1j * fy) * in_wheel
+                more = self.by_others[pair.index] - pose.wheel_pin_displacements[pair.index]
+                gap[own] += along.real * more.real + along.imag * more.imag
+                on_seats[2 * pair.index, own], on_seats[2 * pair.index + 1, own] = along.real, along.imag
             elif pair.kind == "hole":
                 moved = pose.shaft_pin_displacements[pair.index]
                 gap[own] -= fx * moved.real + fy * moved.imag
@@ -352,6 +378,8 @@ class DriveModel:
             loads[:split, :width] = outer_integral.opposite_loads
             loads[split:, width:] = inner_integral.opposite_loads
             compliance[np.ix_(own, own)] += loads.T @ compliance_round @ loads
+        if self.ring is not None:
+            compliance += on_seats.T @ self.ring @ on_seats
         external = np.zeros(4 + len(rollers))
         external[3] = -wheel_moment
         return ContactProblem(compliance=compliance, gap=gap, motions=motions, external=external)

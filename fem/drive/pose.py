@@ -156,11 +156,16 @@ def _move(
     distances = pose.roller_distances.copy()
     for column, roller in enumerate(model.rollers, start=4):
         distances[roller] += motion[column]
-    pins = np.zeros_like(pose.shaft_pin_displacements)
+    pins, on_seats = np.zeros_like(pose.shaft_pin_displacements), np.zeros_like(pose.wheel_pin_displacements)
+    in_wheel = model.wheel_direction(pose).conjugate()
     for pair, force in zip(model.pairs, forces, strict=True):
         if pair.kind == "hole":
             pins[pair.index] = complex(force[0], force[1]) / model.drive.hole_stiffness
-    increment = max(largest, float(np.max(np.abs(pins - pose.shaft_pin_displacements), initial=0.0)))
+        elif pair.kind == "pin":
+            on_seats[pair.index] = complex(force[0], force[1]) * in_wheel
+    seats = model.by_others + model.seats_moved_by(on_seats)
+    change = np.concatenate([pins - pose.shaft_pin_displacements, seats - pose.wheel_pin_displacements])
+    increment = max(largest, float(np.max(np.abs(change), initial=0.0)))
     moved = DrivePose(
         disc_x=pose.disc_x + float(motion[0]),
         disc_y=pose.disc_y + float(motion[1]),
@@ -168,5 +173,6 @@ def _move(
         wheel_angle=pose.wheel_angle + float(motion[3]),
         roller_distances=distances,
         shaft_pin_displacements=pins,
+        wheel_pin_displacements=seats,
     )
     return moved, increment

@@ -5,7 +5,7 @@ The guess of the contacts (`fem.drive.expected_contacts`) and the grading of the
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -69,6 +69,11 @@ class RigidBodies:
         return cls(
             profile=FlankProfile.of_drive(drive), placement=Placement.of_drive(drive), crank_angle=float(crank_angle)
         )
+
+    def with_pins_moved(self, displacements: ComplexArray) -> RigidBodies:
+        """Return the bodies with wheel pins displaced in the wheel, mm, shape (z_P,)."""
+        place = self.placement
+        return replace(self, placement=replace(place, wheel_pin_centres=place.wheel_pin_centres + displacements))
 
     def gaps(self, displacement: complex, rotation: float, wheel_angle: float) -> RigidGaps:
         """Return all gaps at a pose, exact, from flank and circles.

@@ -28,10 +28,11 @@ from fem.drive.meshes import DriveMeshes, mesh_drive, require_model_memory
 from fem.drive.model import DriveModel, RoundGroup
 from fem.drive.pose import POSE_TOLERANCE, PoseSolution, solve_pose
 from fem.drive.rigid_bodies import RigidBodies
+from fem.drive.ring import ring_of_seats
 from fem.errors import MeshError
 from fem.options import DEFAULT_OPTIONS, SolutionOptions
 from fem.shapes import DriveShapes
-from ltca.arrays import FloatArray
+from ltca.arrays import ComplexArray, FloatArray
 from ltca.drive.engine_support import require
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
@@ -66,6 +67,8 @@ class _Task:
     approach: float
     say: Callable[[str], None]
     watch: _Stopwatch
+    ring: FloatArray | None
+    by_others: ComplexArray | None
 
     def solve_guess(
         self, guess: ExpectedContacts, start: tuple[float, float, float, float] | None, rounds: tuple[RoundGroup, ...]
@@ -73,7 +76,7 @@ class _Task:
         """Solve on coarse meshes wherever the guess has a load."""
         place = (complex(guess.disc_x, guess.disc_y), guess.disc_rotation, guess.wheel_angle)
         loads = (guess.pins.load, guess.rollers_outer.load, guess.holes.load)
-        contacts = self.grade(place, loads, margin=COARSE_MARGIN, share=COARSE_SHARE)
+        contacts = self.grade(self.rigid, place, loads, margin=COARSE_MARGIN, share=COARSE_SHARE)
         self.watch.lap("guess")
         self.say("coarse meshes")
         model = self.condense_coarse(contacts, rounds)
@@ -102,7 +105,8 @@ class _Task:
         loads = (results.pin_load, results.roller_load, results.pin_shaft_load)
         # A contact that closes although the rigid bodies leave it open is caught by the wider margin next time.
         margin, deformed = FINE_MARGIN * 3.0 ** (grading - 1), deformed_contacts(model, solution)
-        contacts = self.grade(place, loads, margin=margin, share=FINE_SHARE, deformed=deformed)
+        rigid = self.rigid.with_pins_moved(pose.wheel_pin_displacements)
+        contacts = self.grade(rigid, place, loads, margin=margin, share=FINE_SHARE, deformed=deformed)
         self.say("meshes")
         meshes = self.mesh(contacts, replace(self.options, size=self.options.size * SIZE_RESERVE), rounds)
         self.watch.lap("mesh")
@@ -117,10 +121,20 @@ class _Task:
         return mesh_drive(self.shapes, contacts, options, known=known)
 
     def condense(self, contacts: ExpectedContacts, meshes: DriveMeshes, rounds: tuple[RoundGroup, ...]) -> DriveModel:
-        return condense_drive(self.drive, self.shapes, contacts, meshes, plane=self.options.plane, known=rounds)
+        return condense_drive(
+            self.drive,
+            self.shapes,
+            contacts,
+            meshes,
+            plane=self.options.plane,
+            known=rounds,
+            ring=self.ring,
+            by_others=self.by_others,
+        )
 
     def grade(
         self,
+        rigid: RigidBodies,
         pose: tuple[complex, float, float],
         loads: tuple[FloatArray, FloatArray, FloatArray],
         *,
@@ -130,7 +144,7 @@ class _Task:
     ) -> ExpectedContacts:
         return grade_contacts(
             self.drive,
-            self.rigid,
+            rigid,
             *pose,
             loads,
             margin=margin * self.approach,
@@ -214,6 +228,7 @@ def solve_disc(
     *,
     start: tuple[float, float, float, float] | None = None,
     rounds: tuple[RoundGroup, ...] = (),
+    by_others: ComplexArray | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> FullSolution:
     """Solve one disc with wheel, crank and pin shaft at one crank angle.
@@ -233,6 +248,8 @@ def solve_disc(
     rounds : tuple of RoundGroup
         Condensed pins and rollers of another solution (`FullSolution.rounds`), of any crank angle or disc: they save time
         and change no bit of the result.
+    by_others : array of complex, shape (z_P,), optional
+        Displacement of the seats of the wheel pins in the wheel by the forces of other discs on the ring, mm.
     progress : callable, optional
         Called with one line for each step.
 
@@ -263,6 +280,8 @@ def solve_disc(
         approach=_largest_approach(rigid, guess),
         say=say,
         watch=watch,
+        ring=None if drive.ring is None else ring_of_seats(drive),
+        by_others=by_others,
     )
     require_model_memory([(shapes, guess)], options)
     model, solution = task.solve_guess(guess, start, rounds)
@@ -318,7 +337,13 @@ def solve_moment(
     results = summarise_contacts(model, solution)
     if find_shortcoming(model, solution, results, previous.options.size):
         return solve_disc(
-            model.drive, model.crank_angle, wheel_moment, previous.options, rounds=previous.rounds, progress=progress
+            model.drive,
+            model.crank_angle,
+            wheel_moment,
+            previous.options,
+            rounds=previous.rounds,
+            by_others=model.by_others,
+            progress=progress,
         )
     return replace(
         previous,

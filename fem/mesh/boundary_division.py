@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -78,13 +79,24 @@ def sample_parameters(curve: Curve, field: SizeField) -> FloatArray:
 def divide_curve(curve: Curve, field: SizeField) -> DividedCurve:
     """Divide a closed curve into edges whose lengths follow the size field and the curvature."""
     parameters = sample_parameters(curve, field)
+    if len(curve.corners):
+        parameters = np.union1d(parameters, curve.corners)
     points = curve.points(parameters)
     wanted = np.minimum(field.at(points), MAX_TURN * curve.curvature_radius(parameters))
     density = 1.0 / wanted
     count = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]) * np.abs(np.diff(points)))])
-    edges = max(int(np.ceil(count[-1])), round(2.0 * np.pi / MAX_TURN))
-    places = np.arange(edges) * (count[-1] / edges)
-    return DividedCurve(curve=curve, parameters=np.interp(places, count, parameters))
+    if not len(curve.corners):
+        edges = max(int(np.ceil(count[-1])), round(2.0 * np.pi / MAX_TURN))
+        places = np.arange(edges) * (count[-1] / edges)
+        return DividedCurve(curve=curve, parameters=np.interp(places, count, parameters))
+    # Every piece between corners by itself; the first begins at parameter 0.
+    ends = np.interp(np.concatenate([[0.0], curve.corners, [2.0 * np.pi]]), parameters, count)
+    pieces = [
+        start + (end - start) * np.arange(edges) / edges
+        for start, end in pairwise(ends)
+        if (edges := int(np.ceil(end - start))) > 0
+    ]
+    return DividedCurve(curve=curve, parameters=np.interp(np.concatenate(pieces), count, parameters))
 
 
 def serve_curvature(curves: tuple[Curve, ...], field: SizeField) -> SizeField:

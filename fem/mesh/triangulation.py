@@ -20,7 +20,7 @@ from fem.mesh.element_size import DEFAULT_GROWTH, Refinement, SizeField
 from fem.mesh.gmsh_session import gmsh_model
 from fem.mesh.memory_need import UNKNOWNS_PER_TRIANGLE, mesh_memory, require_memory
 from fem.mesh.quality import require_quality
-from fem.shapes import CircleShape, DiscShape, RingShape, Shape
+from fem.shapes import CircleShape, DiscShape, PinRingShape, RingShape, Shape
 from ltca.arrays import ComplexArray, IntArray
 
 FRONTAL_DELAUNAY = 6
@@ -108,6 +108,21 @@ def mesh_ring(
     order: int = 2,
 ) -> BodyMesh:
     """Mesh the inner race about the origin; boundaries "inner" and "outer".
+
+    Parameters, result and errors as for `mesh_disc`.
+    """
+    return _mesh_shape(shape, refinements, coarse_size, growth, order)
+
+
+def mesh_pin_ring(
+    shape: PinRingShape,
+    refinements: Sequence[Refinement] = (),
+    *,
+    coarse_size: float | None = None,
+    growth: float = DEFAULT_GROWTH,
+    order: int = 2,
+) -> BodyMesh:
+    """Mesh the ring of the pin wheel; boundaries "inner", edges ending at the ends of every seat, and "outer".
 
     Parameters, result and errors as for `mesh_disc`.
     """

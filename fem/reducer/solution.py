@@ -2,12 +2,13 @@
 
 Each disc with its pins, rollers and race is a separate finite-element problem (`fem.drive.solution`); the discs share the
 wheel's angle and its moment (`fem.reducer.shares`). Where the wheel is held, its moment is what balances the output's torque
-and the moment of the input, which follows from the bearing forces found.
+and the moment of the input, which follows from the bearing forces found. On an elastic ring each disc finds the seats of its pins
+where the forces of the others hold them, in turn until nothing moves.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -19,9 +20,10 @@ from fem.drive.meshes import require_model_memory
 from fem.drive.model import RoundGroup
 from fem.drive.solution import solve_disc, solve_moment
 from fem.options import DEFAULT_OPTIONS, SolutionOptions
+from fem.reducer.mixing import AndersonMixing
 from fem.reducer.shares import SharedAnswer, share_moment
 from fem.shapes import DriveShapes
-from ltca.arrays import FloatArray
+from ltca.arrays import ComplexArray, FloatArray
 from ltca.drive.engine_support import require
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
@@ -30,6 +32,12 @@ from ltca.errors import ConvergenceError
 
 POSE_TOLERANCE = 1e-7
 """Largest rigid increment of a converged pose, mm: of the wheel, 1e-9 rad at a pin circle of 0.1 m."""
+SEAT_TOLERANCE = 1e-7
+"""Largest change of the seats of a ring in the last round of all discs, mm."""
+MAX_SWEEPS = 40
+"""Rounds of all discs on one ring."""
+MIXED_ROUNDS = 5
+"""Rounds whose changes are combined for the next: without, a free ring takes thirty rounds, with them six."""
 RELATIVE_MOMENT_STEP = 0.01
 """Step of a central difference of the springs' wheel angle, as a part of the moment."""
 SPRING_TOLERANCE = 1e-7
@@ -135,7 +143,9 @@ class _Task:
     say: Callable[[str], None]
     seconds: dict[str, float] = field(default_factory=dict)
 
-    def start(self, disc: int, moment: float, rounds: tuple[RoundGroup, ...]) -> FullSolution:
+    def start(
+        self, disc: int, moment: float, rounds: tuple[RoundGroup, ...], by_others: ComplexArray | None = None
+    ) -> FullSolution:
         return self.timed(
             solve_disc(
                 self.singles[disc],
@@ -143,18 +153,56 @@ class _Task:
                 moment,
                 self.options,
                 rounds=rounds,
+                by_others=by_others,
                 progress=self.saying(disc),
             )
         )
 
     def settle(
-        self, disc: int, previous: FullSolution | None, moment: float, rounds: tuple[RoundGroup, ...]
+        self,
+        disc: int,
+        previous: FullSolution | None,
+        moment: float,
+        rounds: tuple[RoundGroup, ...],
+        by_others: ComplexArray,
     ) -> FullSolution:
-        """Solve one disc under a moment until its pose has converged to `POSE_TOLERANCE`."""
-        found = self.start(disc, moment, rounds) if previous is None else previous
+        """Solve one disc under a moment until its pose has converged to `POSE_TOLERANCE`, seats displaced by other discs."""
+        found = self.start(disc, moment, rounds, by_others) if previous is None else previous
+        if not np.array_equal(found.model.by_others, by_others):
+            moved = replace(found, model=replace(found.model, by_others=by_others))
+            found = self.timed(solve_moment(moved, moment, pose_tolerance=POSE_TOLERANCE, progress=self.saying(disc)))
         while found.state.wheel_moment != moment or found.state.increments[-1] > POSE_TOLERANCE:
             found = self.timed(solve_moment(found, moment, pose_tolerance=POSE_TOLERANCE, progress=self.saying(disc)))
         return found
+
+    def settle_all(
+        self, discs: Sequence[FullSolution | None], moments: FloatArray, rounds: tuple[RoundGroup, ...]
+    ) -> list[FullSolution]:
+        """Solve every disc under its moment, all on one ring: each finds the seats where the forces of the others hold them.
+
+        One disc after the other lowers the complementary energy of all, which is convex, so this ends; without a ring discs do
+        not know of each other.
+        """
+        now = list(discs)
+        parts = np.stack([_seats_moved(disc, self.drive) for disc in now])
+        mixing, history = AndersonMixing(depth=MIXED_ROUNDS), list[float]()
+        for _ in range(MAX_SWEEPS):
+            found = parts.copy()
+            for disc, moment in enumerate(moments):
+                others = found.sum(axis=0) - found[disc]
+                # Pins and rollers of one disc serve the next.
+                last = now[disc - 1] if disc else None
+                known = rounds if last is None else last.rounds
+                now[disc] = own = self.settle(disc, now[disc], float(moment), known, others)
+                found[disc] = _seats_moved(own, self.drive)
+            history.append(float(np.max(np.abs(found - parts))))
+            if self.drive.ring is None or len(now) == 1 or history[-1] <= SEAT_TOLERANCE:
+                return [own for own in now if own is not None]
+            self.say(f"ring: seats moved by {1e3 * history[-1]:.3g} µm")
+            parts = mixing.next(parts, found)
+        raise ConvergenceError(
+            f"the seats of the ring did not settle in {MAX_SWEEPS} rounds of all discs; their changes in mm", history
+        )
 
     def left_over(self, discs: list[FullSolution]) -> float:
         """Moment by which wheel, input and output do not balance; of a held shaft none."""
@@ -173,6 +221,13 @@ class _Task:
         for stage, value in found.seconds.items():
             self.seconds[stage] = self.seconds.get(stage, 0.0) + value
         return found
+
+
+def _seats_moved(disc: FullSolution | None, drive: Drive) -> ComplexArray:
+    """Displacement of the seats of the wheel pins by the forces of one disc, in the wheel, mm; zero before it is solved."""
+    if disc is None:
+        return np.zeros(drive.pin_wheel.number_of_pins, dtype=complex)
+    return np.asarray(disc.pose.wheel_pin_displacements - disc.model.by_others)
 
 
 @names_unit_mistakes
@@ -237,11 +292,7 @@ def solve_reducer(
     discs: list[FullSolution | None] = [None] * len(singles)
 
     def answer(moments: FloatArray) -> SharedAnswer:
-        found: list[FullSolution] = []
-        for disc, own in enumerate(moments):
-            # Pins and rollers of one disc serve the next.
-            known = found[-1].rounds if found else rounds
-            found.append(task.settle(disc, discs[disc], float(own), known))
+        found = task.settle_all(discs, moments, rounds)
         discs[:] = found
         angle = np.array([disc.pose.wheel_angle for disc in found])
         shares = ", ".join(f"{share:.4f}" for share in moments / moments.sum())

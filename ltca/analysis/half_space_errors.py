@@ -75,5 +75,15 @@ def half_space_words(engine: Engine, drive: Drive) -> str:
     told = ", ".join(f"{WORDS[key]} {value:.2f}" for key, value in measured()[name]["ratio"].items())
     return (
         f"half-spaces, {why}: contacts yield, bodies beyond them do not; on {name}, the nearest shipped drive, they give "
-        f"of what hybrid gives: {told}"
+        f"of what hybrid gives: {told}{_supports_of_bodies(drive)}"
     )
+
+
+def _supports_of_bodies(drive: Drive) -> str:
+    """What a drive says of the supports of its bodies, which half-spaces do not have."""
+    given = {
+        "pin_wheel.core_radius": drive.pin_wheel.core_radius,
+        "crank_bearing.race_bore_radius": drive.crank_bearing.race_bore_radius,
+    }
+    told = ", ".join(f"{path} = {value:g} mm" for path, value in given.items() if value is not None)
+    return f"; without effect on them: {told}" if told else ""

@@ -53,7 +53,12 @@ def cached_file(drive: Drive) -> Path:
     The folder carries version and hash of the code that derived them: other code derives its own. Where it cannot be
     written and has not got them, it is a temporary one of this run (`require_cache`).
     """
-    new, kept = (folder / file_name(drive) for folder in (cache_folder(), _kept_folder()))
+    return kept_file(file_name(drive))
+
+
+def kept_file(name: str) -> Path:
+    """Return where a derived file of a name is kept, or would be."""
+    new, kept = (folder / name for folder in (cache_folder(), _kept_folder()))
     return kept if kept.exists() and not new.exists() else new
 
 
@@ -273,7 +278,7 @@ def _derive_missing(cases: Mapping[str, Drive]) -> None:
         missing.setdefault(cached_file(drive), name)
     if not missing:
         return
-    _derivation()
+    derivation()
     require_cache()
     missing = {cache_folder() / file_name(cases[name]): name for name in missing.values()}
     each = expected_seconds(cases[name] for name in missing.values())
@@ -314,14 +319,21 @@ def _processes(derivations: int) -> int:
 
 def _derive_file(drive: Drive, path: Path, processes: int) -> None:
     """Derive the coefficients of one drive into a file, one of some processes that share the memory."""
-    dataset = _derivation()(drive, state="strain", processes=processes)
+    dataset = derivation()(drive, state="strain", processes=processes)
     require_laws(dataset, str(path))
     write_coefficients(dataset, path)
 
 
-def _derivation() -> Callable[..., Any]:
-    found = [entry for entry in entry_points(group=GROUP) if entry.name == DERIVATION]
+def derivation(name: str = DERIVATION) -> Callable[..., Any]:
+    """Return what derives influence coefficients, or another part by the name of its entry point; CycloError where nothing
+    does.
+    """
+    found = [entry for entry in entry_points(group=GROUP) if entry.name == name]
     if not found:
+        if name != DERIVATION:
+            raise CycloError(
+                f'ring.model = "fe": nothing is installed that derives a {name} by finite elements: use "beam"'
+            )
         raise CycloError("no coefficients: give a file of 'cyclo derive' with --coefficients")
     derive: Callable[..., Any] = found[0].load()
     return derive

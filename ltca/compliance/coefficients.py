@@ -31,7 +31,7 @@ from ltca.geometry.boundary_stations import (
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.placement import Placement
 from ltca.reading.coefficient_file import read_coefficients
-from ltca.reading.coefficient_schema import flank_clustering, shape_differences, shape_of
+from ltca.reading.coefficient_schema import flank_clustering, require_same_supports, shape_differences, shape_of
 
 if TYPE_CHECKING:
     from ltca.output.labelled import Labelled
@@ -293,11 +293,10 @@ def load_coefficients(path: Path, drive: Drive, *, lawful: bool = True) -> Influ
 def _require_same_bodies(path: Path, data: Labelled, drive: Drive) -> bool:
     """Return whether the file serves the drive although it leaves the clearances out, which it must say itself."""
     own, theirs, attributes = drive.body_shape(), shape_of(data), data.attrs
-    if theirs == own:
-        return False
     nominal = replace(drive, clearance=Clearance()).body_shape()
-    if theirs == nominal and bool(attributes["clearances_left_out"]):
-        return True
+    if theirs == own or (theirs == nominal and bool(attributes["clearances_left_out"])):
+        require_same_supports(str(path), data, drive)
+        return theirs != own
     different = shape_differences(theirs, own)
     if set(different) <= {"bore_radius", "hole_radius"}:
         bearing, hole = (f"{float(attributes[name]):g} mm" for name in ("bearing_clearance", "pin_hole_clearance"))

@@ -91,7 +91,7 @@ REFUSALS = (
     Refusal("pin_shaft.seat", _FIXED, "pins are fixed in the model"),
     Refusal("pin_shaft.beam", _FIXED, "pins do not bend in the model", "give pin_shaft.stiffness"),
     Refusal("installation.first_stage_ratio", _ONE_BORE, "the model has one crank"),
-    Refusal("ring", _RIGID, "the wheel pins stand in a rigid ring in the model"),
+    Refusal("ring", _ONE_BORE, "the wheel pins stand in a rigid ring in the model"),
     Refusal("friction", _FIXED, "the model is frictionless"),
 )
 """Everything that an engine refuses, in the order of the definition of a drive."""

@@ -420,7 +420,8 @@ class Drive:
 
         Bore and holes have their actual radii, clearances included. Left out are errors of single parts, load, name,
         lengths and profiles along the length, numbers of rollers and discs, and of the shaft pins all but their number and
-        circle, which are those of the holes.
+        circle, which are those of the holes; rigid core of the wheel pins and fixed bore of the race where they are the
+        defaults.
         """
         self.require_warmed()
         wheel, disc, bearing, shaft = self.pin_wheel, self.disc, self.crank_bearing, self.pin_shaft
@@ -451,6 +452,11 @@ class Drive:
         turn = self.part_turn[0]
         if turn:
             shape["flank_turn"] = turn
+        # Coefficients that were derived before these were fields have the defaults.
+        if wheel.held_core_radius != wheel.default_core_radius:
+            shape["pin_wheel.core_radius"] = wheel.held_core_radius
+        if bearing.held_bore_radius != bearing.default_race_bore_radius:
+            shape["crank_bearing.race_bore_radius"] = bearing.held_bore_radius
         for part in ("disc", "wheel_pin", "roller", "inner_race"):
             material = getattr(self.body_materials, part)
             shape[f"materials.{part}.youngs_modulus"] = material.youngs_modulus

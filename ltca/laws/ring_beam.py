@@ -90,7 +90,7 @@ class RingBeam:
         """
         among = self._among(seats, radius, seats, radius)
         modes = rigid_motions(seats, radius).reshape(-1, 3)
-        found = _beyond(modes, among.reshape(2 * seats.size, -1))
+        found = beyond_rigid_motions(modes, among.reshape(2 * seats.size, -1))
         return np.asarray(found.reshape(among.shape))
 
     def bolted(
@@ -101,15 +101,7 @@ class RingBeam:
         radii = np.concatenate((np.full(seats.size, radius), np.full(bolts.size, circle)))
         among = self._among(places, radii, places, radii).reshape(2 * places.size, -1)
         modes = rigid_motions(places, radii).reshape(-1, 3)
-        among = _beyond(modes, among)
-        count = 2 * seats.size
-        # Forces t of the bolts on the ring and its rigid motion g: the bolts yield by −t/k, all forces balance.
-        held = among[count:, count:] + np.eye(2 * bolts.size) / stiffness
-        system = np.block([[held, modes[count:]], [modes[count:].T, np.zeros((3, 3))]])
-        right = np.concatenate((-among[count:, :count], -modes[:count].T))
-        reaction, motion = np.split(np.linalg.solve(system, right), [2 * bolts.size])
-        found = among[:count, :count] + among[:count, count:] @ reaction + modes[:count] @ motion
-        return np.asarray(0.5 * (found + found.T).reshape(seats.size, 2, seats.size, 2))
+        return on_bolts(beyond_rigid_motions(modes, among), modes, seats.size, stiffness)
 
     def built_in(self, seats: FloatArray, radius: float) -> FloatArray:
         """Return displacements of the seats of a ring whose outer face is held all around, as `free`."""
@@ -207,7 +199,24 @@ def rigid_motions(angles: FloatArray, radius: FloatArray | float) -> FloatArray:
     return motions
 
 
-def _beyond(modes: FloatArray, flexibility: FloatArray) -> FloatArray:
+def on_bolts(among: FloatArray, modes: FloatArray, seats: int, stiffness: float) -> FloatArray:
+    """Return the flexibility of a ring on bolts at its seats, shape (seats, 2, seats, 2).
+
+    `among` is that of the free ring at seats, then bolts, without rigid motions, and `modes` are their displacements by those;
+    rows are places by component. Bolts have a stiffness in N/mm.
+    """
+    count = 2 * seats
+    bolts = len(among) - count
+    # Forces t of the bolts on the ring and its rigid motion g: the bolts yield by −t/k, all forces balance.
+    held = among[count:, count:] + np.eye(bolts) / stiffness
+    system = np.block([[held, modes[count:]], [modes[count:].T, np.zeros((3, 3))]])
+    right = np.concatenate((-among[count:, :count], -modes[:count].T))
+    reaction, motion = np.split(np.linalg.solve(system, right), [bolts])
+    found = among[:count, :count] + among[:count, count:] @ reaction + modes[:count] @ motion
+    return np.asarray(0.5 * (found + found.T).reshape(seats, 2, seats, 2))
+
+
+def beyond_rigid_motions(modes: FloatArray, flexibility: FloatArray) -> FloatArray:
     """A flexibility without the motions that fit best, and for forces without their dual part."""
     base, _ = np.linalg.qr(modes)
     once = flexibility - base @ (base.T @ flexibility)
@@ -223,7 +232,7 @@ def _axes(angles: FloatArray) -> FloatArray:
     )
 
 
-def ring_flexibility(drive: Drive) -> FloatArray | None:
+def beam_flexibility(drive: Drive) -> FloatArray | None:
     """Return displacements of the seats of the wheel pins of a drive under unit forces there; None where the ring is rigid.
 
     Shape (z_P, 2, z_P, 2) by seat and component in the wheel, mm/N. Forces act at the centres of the seats, evenly spaced:

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ltca.arrays import FloatArray
-from ltca.drive.parts import Materials
-from ltca.errors import DamagedFileError
+from ltca.drive.parts import Drive, Materials
+from ltca.errors import CycloError, DamagedFileError
 from ltca.geometry.boundary_stations import uniform_parameter
 
 if TYPE_CHECKING:
@@ -64,9 +64,14 @@ LABELS: dict[str, tuple[str, ...]] = {
     "roller_end_loaded": ("inner", "outer"),
 }
 # Attributes that repeat numbers of `shape`, which identifies the bodies (`ltca.drive.parts.Drive.body_shape`).
-REPEATED = {"thickness": "disc.thickness", "roller_radius": "crank_bearing.roller_radius"} | {
-    f"{body}_{constant}": f"materials.{part}.{constant}" for body, part in PARTS.items() for constant in CONSTANTS
-}
+REPEATED = {
+    "thickness": "disc.thickness",
+    "roller_radius": "crank_bearing.roller_radius",
+    "core_radius": "pin_wheel.core_radius",
+    "race_bore_radius": "crank_bearing.race_bore_radius",
+} | {f"{body}_{constant}": f"materials.{part}.{constant}" for body, part in PARTS.items() for constant in CONSTANTS}
+# Numbers that a shape holds only where they are not the defaults.
+HAVE_DEFAULTS = ("pin_wheel.core_radius", "crank_bearing.race_bore_radius")
 CLEARANCES = ("bearing_clearance", "pin_hole_clearance")
 POSITIVE_ATTRIBUTES = ("thickness", "roller_radius", *(f"{body}_youngs_modulus" for body in PARTS))
 STATEMENTS = ("symmetry", "rigid_residual", "convergence_estimate", "convergence_stress")
@@ -203,7 +208,7 @@ def shape_of(dataset: Labelled) -> dict[str, float]:
 def shape_differences(theirs: dict[str, float], own: dict[str, float]) -> dict[str, tuple[str, str]]:
     """Return the numbers in which two shapes (`ltca.drive.parts.Drive.body_shape`) differ, theirs and ours as texts.
 
-    "none" stands where a shape is without the number.
+    "none" stands where a shape is without the number, "the default" where it then has one.
 
     Examples
     --------
@@ -212,10 +217,27 @@ def shape_differences(theirs: dict[str, float], own: dict[str, float]) -> dict[s
     """
 
     def told(shape: dict[str, float], name: str) -> str:
-        return f"{shape[name]:g}" if name in shape else "none"
+        return f"{shape[name]:g}" if name in shape else "the default" if name in HAVE_DEFAULTS else "none"
 
     names = [name for name in own | theirs if own.get(name) != theirs.get(name)]
     return {name: (told(theirs, name), told(own, name)) for name in names}
+
+
+def require_same_supports(source: str, dataset: Labelled, drive: Drive) -> None:
+    """Refuse a file that says it held pins or race otherwise than the drive does; a file need not say it."""
+    wheel, bearing = drive.pin_wheel, drive.crank_bearing
+    for name, field, own in (
+        ("core_radius", "pin_wheel.core_radius", wheel.held_core_radius),
+        ("race_bore_radius", "crank_bearing.race_bore_radius", bearing.held_bore_radius),
+    ):
+        if name not in dataset.attrs:
+            continue
+        there = _number(dataset.attrs[name])
+        if not abs(there - own) <= REPEATED_TOLERANCE * own:
+            raise CycloError(
+                f"{source}: belongs to {field} = {there:g} mm, not to the {own:g} mm of {drive.name}: give the drive that "
+                f"{field}, or derive its own (cyclo derive)"
+            )
 
 
 def _contradictions(dataset: Labelled) -> Iterator[str]:
@@ -226,6 +248,8 @@ def _contradictions(dataset: Labelled) -> Iterator[str]:
         if not _number(dataset.attrs[name]) >= 0.0:
             yield f"{name} = {dataset.attrs[name]}: must be a number, at least 0"
     for name, path in REPEATED.items():
+        if name not in dataset.attrs:
+            continue  # optional, or missing, which was said
         own = _number(dataset.attrs[name])
         if path in shape and not abs(own - shape[path]) <= REPEATED_TOLERANCE * abs(shape[path]):
             yield f"{name} = {own:g}: must be {shape[path]:g} as in shape"

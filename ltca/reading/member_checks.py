@@ -9,14 +9,20 @@ from math import fsum, pi, sin
 
 from ltca.drive.fields import ANY, OWN
 from ltca.drive.members.pins import PinShaft, PinWheel, ShaftPinBeam, WheelPinBeam
+from ltca.drive.members.ring import Ring
 from ltca.drive.mistakes import entry_words
 from ltca.drive.parts import Drive, Material
+from ltca.drive.ring_shape import bolt_patch_radius, inner_radius_bounds, seat_radius
 from ltca.reading.disc_checks import deviation_bound, part_errors
 
 SHARE_ROUNDING = 1e-9
 """Round-off accepted in the sum of the shares of a duty."""
 ROUNDING = 1e-9
 """Difference up to which lengths are equal, mm: round-off of a sum, and less than any real play."""
+MOST_OF_BODY = 0.95
+"""Largest rigid core of a pin, or fixed bore of a race, by its radius: thinner walls the default meshes do not resolve."""
+LEAST_METAL = 0.1
+"""Least metal between two seats of a ring by finite elements, by the radius of a seat."""
 BELONGS = {"radius": "slot", "pin_radius": "sleeve", "bore_radius": "sleeve"}
 """Fields of a seat, and the kind of seat they belong to."""
 
@@ -60,7 +66,7 @@ def _installation(drive: Drive) -> Iterator[str]:
                 )
         if drive.materials.shaft_pin != Material():
             yield "materials.shaft_pin: must be left out without a pin shaft"
-    yield from (*_crank_support(drive), *_ring(drive), *find_pin_problems(drive), *_duty(drive))
+    yield from (*_crank_support(drive), *_race_bore(drive), *_ring(drive), *find_pin_problems(drive), *_duty(drive))
 
 
 def _ring(drive: Drive) -> Iterator[str]:
@@ -69,8 +75,7 @@ def _ring(drive: Drive) -> Iterator[str]:
     if ring is None:
         return
     inner, outer, circle = ring.inner_radius, ring.outer_radius, wheel.pin_circle_radius
-    seat = wheel.seat.radius if wheel.seat.kind == "slot" else wheel.seat.pin_radius
-    seat = seat or wheel.pin_radius
+    seat = seat_radius(wheel)
     if outer <= inner:
         yield f"ring.outer_radius = {outer:g} mm: must be greater than ring.inner_radius = {inner:g} mm"
         return
@@ -100,8 +105,8 @@ def _ring(drive: Drive) -> Iterator[str]:
             f"ring.material.thermal_expansion = {own:g} 1/K: must equal materials.wheel_seat.thermal_expansion = {slots:g} 1/K, "
             "or leave one of them out: pin circle, slots and ring grow together"
         )
-    if ring.model == "fe":
-        yield 'ring.model = "fe": must be "beam": coefficients of a ring by finite elements are not there yet'
+    if ring.model == "fe" and circle - seat < inner <= circle + seat and outer > circle + seat:
+        yield from _ring_of_elements(drive, ring)
     bolts = ring.bolts
     if bolts is None:
         return
@@ -112,6 +117,37 @@ def _ring(drive: Drive) -> Iterator[str]:
         )
     if not inner <= bolts.circle_radius:
         yield f"ring.bolts.circle_radius = {bolts.circle_radius:g} mm: must be at least ring.inner_radius = {inner:g} mm"
+
+
+def _ring_of_elements(drive: Drive, ring: Ring) -> Iterator[str]:
+    """Problems of a ring by finite elements: its seats have to lead the pins, its bolts to stand in metal."""
+    sharp, short = inner_radius_bounds(drive.pin_wheel)
+    inner, circle, seat = ring.inner_radius, drive.pin_wheel.pin_circle_radius, seat_radius(drive.pin_wheel)
+    if inner < sharp:
+        yield (
+            f'ring.inner_radius = {inner:g} mm: must be at least {sharp:g} mm with ring.model = "fe", or metal between two seats '
+            "ends too sharp for a mesh"
+        )
+    if inner > short:
+        yield (
+            f'ring.inner_radius = {inner:g} mm: must be at most {short:g} mm with ring.model = "fe", or the seats are too flat '
+            "to lead the pins"
+        )
+    between = 2.0 * circle * sin(pi / drive.pin_wheel.number_of_pins) - 2.0 * seat
+    if between <= LEAST_METAL * seat and inner < circle:
+        yield (
+            f"ring.inner_radius = {inner:g} mm: must be at least {circle:g} mm (pin_wheel.pin_circle_radius) with ring.model = "
+            f'"fe": {between:.4g} mm of metal are left between two seats'
+        )
+    bolts, patch = ring.bolts, bolt_patch_radius(drive)
+    if bolts is None or ring.flange == "built-in":
+        return
+    low, high = circle + seat + patch, ring.outer_radius - patch
+    if not low <= bolts.circle_radius <= high:
+        yield (
+            f'ring.bolts.circle_radius = {bolts.circle_radius:g} mm: must be {low:g} to {high:g} mm with ring.model = "fe", in '
+            "metal outside the seats"
+        )
 
 
 def _duty(drive: Drive) -> Iterator[str]:
@@ -269,6 +305,7 @@ def find_pin_problems(drive: Drive) -> Iterator[str]:
     wheel, shaft = drive.pin_wheel, drive.pin_shaft
     yield from _seat(wheel, "pin_wheel", 1.0, drive.crank.eccentricity)
     yield from _slots(wheel)
+    yield from _core(wheel)
     if wheel.beam is not None:
         yield from _beam(drive, wheel, wheel.beam, "pin_wheel")
     if shaft is not None:
@@ -366,6 +403,32 @@ def _slots(wheel: PinWheel) -> Iterator[str]:
     if wheel.seat.kind == "slot" and radius >= room > wheel.pin_radius > 0.5 * radius:
         yield (
             f"pin_wheel.seat.radius = {radius:g} mm: must be less than {room:.6g} mm, or neighbouring slots cut into each other"
+        )
+
+
+def _core(wheel: PinWheel) -> Iterator[str]:
+    core, errors = wheel.core_radius, wheel.pin_errors.diameter
+    if core is None:
+        return
+    smallest = wheel.pin_radius + 0.5 * min((*errors, 0.0))
+    if wheel.seat.kind == "sleeve":
+        yield (
+            f'pin_wheel.core_radius = {core:g} mm: must be left out with sleeves (pin_wheel.seat.kind = "sleeve"), which lie '
+            "loose on their pins and have no core"
+        )
+    elif core > MOST_OF_BODY * smallest:
+        yield (
+            f"pin_wheel.core_radius = {core:g} mm: must be at most {MOST_OF_BODY * smallest:g} mm, {MOST_OF_BODY:g} of the "
+            f"radius of the smallest pin (pin_wheel.pin_radius, pin_wheel.pin_errors.diameter), or too little of it deforms"
+        )
+
+
+def _race_bore(drive: Drive) -> Iterator[str]:
+    bore, most = drive.crank_bearing.race_bore_radius, MOST_OF_BODY * drive.crank_bearing.inner_race_radius
+    if bore is not None and bore > most:
+        yield (
+            f"crank_bearing.race_bore_radius = {bore:g} mm: must be at most {most:g} mm, {MOST_OF_BODY:g} of "
+            "crank_bearing.inner_race_radius, or too little of the race deforms"
         )
 
 

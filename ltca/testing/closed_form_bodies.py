@@ -1,6 +1,7 @@
 """Influence coefficients of bodies in closed form: a coefficient file without finite elements.
 
-Disc, wheel pins and race are half-planes with a datum at a depth, rollers are cylinders between two loads (K. L. Johnson,
+Disc, wheel pins and race are half-planes with a datum at a depth (pins and race rings held inside, where the drive says on
+which core or bore), rollers are cylinders between two loads (K. L. Johnson,
 *Contact Mechanics* (1985), section 5.6). Contacts of one boundary are coupled as on a half-plane, different boundaries are
 not coupled. Results with such a file can be worked out by hand.
 """
@@ -14,6 +15,7 @@ import numpy as np
 
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.contact.hertz import cylinder_approach, half_plane_approach
+from ltca.contact.round_bodies import held_ring_approach
 from ltca.drive.parts import Drive, Material
 from ltca.drive.single_discs import nominal_shape
 from ltca.geometry.flank import FlankProfile
@@ -48,8 +50,14 @@ def closed_form_coefficients(drive: Drive, *, half_width: float, depth: float) -
     disc = np.where(same, _half_plane(places, parts.disc, thickness, half_width, depth), 0.0)
     angle = 2.0 * np.pi * np.arange(RACE_ANGLES) / RACE_ANGLES
     on_race = drive.crank_bearing.inner_race_radius * np.exp(1j * angle)
+    wheel, bearing = drive.pin_wheel, drive.crank_bearing
     race = _half_plane(on_race, parts.inner_race, thickness, half_width, depth)[0]
+    if bearing.race_bore_radius is not None:
+        radii = bearing.race_bore_radius, bearing.inner_race_radius
+        race = _held_ring(*radii, parts.inner_race, thickness, half_width, angle)
     pin = _half_plane(np.zeros(1), parts.wheel_pin, thickness, half_width, depth)[0, 0]
+    if wheel.core_radius is not None:
+        pin = _held_ring(wheel.core_radius, wheel.pin_radius, parts.wheel_pin, thickness, half_width, np.zeros(1))[0]
     unit = _unit(parts.roller, thickness)
     squeezed = cylinder_approach(
         1.0 / thickness,
@@ -96,6 +104,14 @@ def closed_form_coefficients(drive: Drive, *, half_width: float, depth: float) -
 def _unit(material: Material, thickness: float) -> float:
     """2(1 − ν²)/(πEt), the unit of the near field of a half-plane, mm/N."""
     return 2.0 * (1.0 - material.poisson_ratio**2) / (np.pi * material.youngs_modulus * thickness)
+
+
+def _held_ring(
+    inner: float, outer: float, material: Material, thickness: float, half_width: float, angle: FloatArray
+) -> FloatArray:
+    """Approach of a ring held inside, at angles from a newton, mm."""
+    kolosov = 3.0 - 4.0 * material.poisson_ratio
+    return _unit(material, thickness) * held_ring_approach(inner, outer, half_width, kolosov, angle)
 
 
 def _half_plane(

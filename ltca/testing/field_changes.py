@@ -57,6 +57,8 @@ GOES_WITH = {
 _LEFT_OUT = {
     "load.speed": 1500.0,
     "pin_wheel.support_stiffness": 5e5,
+    "pin_wheel.core_radius": 0.3,
+    "crank_bearing.race_bore_radius": 1.0,
     "installation.first_stage_ratio": 2.0,
     "crank.circle_radius": 6.0,
     "crank_bearing.dynamic_load_rating": 5e4,
@@ -105,9 +107,18 @@ _OF_LIFE |= dict.fromkeys(
     "ratings of the maker concern lives of bearings alone, and here none is told",
 )
 _EVERYWHERE = _NAME | _OF_LIFE
-_SPRINGS = _EVERYWHERE | {
-    "pin_shaft.elastic_contact": "half-spaces have springs in the holes, which stand for all that yields there; said where false"
-}
+_BODIES = dict.fromkeys(
+    ("pin_wheel.core_radius", "crank_bearing.race_bore_radius"),
+    "half-spaces have no bodies to support; said where given",
+)
+_SPRINGS = (
+    _EVERYWHERE
+    | {
+        "pin_shaft.elastic_contact": "half-spaces have springs in the holes, which stand for all that yields there; said where "
+        "false"
+    }
+    | _BODIES
+)
 _SHAFT_PIN = ("materials.shaft_pin.youngs_modulus", "materials.shaft_pin.poisson_ratio", "pin_shaft.elastic_contact")
 EXCEPTIONS: Mapping[str, Mapping[str, str]] = {
     "tables": _SPRINGS,
@@ -116,10 +127,15 @@ EXCEPTIONS: Mapping[str, Mapping[str, str]] = {
     "hybrid": _EVERYWHERE,
     "fe": _EVERYWHERE,
     "curves": _NAME
+    | _BODIES
     | {"load.light_torque": "curves are those of full load"}
     | dict.fromkeys(_SHAFT_PIN, "curves tell no pressure of the holes, and in half-spaces nothing else sees it"),
     "studies": _SPRINGS,
-    "full FE": _EVERYWHERE | {"load.light_torque": "a full solution is one of full load"},
+    "full FE": _EVERYWHERE
+    | {
+        "load.light_torque": "a full solution is one of full load",
+        "ring.model": "the ring of full finite elements is one of finite elements",
+    },
 }
 """Fields without effect on the answer of a model, with the reason."""
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 
 import h5py
@@ -13,7 +14,7 @@ from ltca.compliance import coefficient_files
 from ltca.compliance.coefficient_files import cached_file, find_case_coefficients, find_coefficients
 from ltca.compliance.coefficients import load_coefficients
 from ltca.contact.round_bodies import held_ring_approach
-from ltca.errors import DamagedFileError
+from ltca.errors import CycloError, DamagedFileError
 from ltca.output.netcdf import write_netcdf
 from ltca.output.provenance import code_hash
 from ltca.reading.coefficient_file import CHECKSUM, checksum_of, read_coefficients, write_coefficients
@@ -48,7 +49,7 @@ def derived(monkeypatch, tmp_path):
     code_hash("ltca", "fem")  # by the usual cache, where it is kept
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     monkeypatch.delenv(coefficient_files.INSTEAD, raising=False)
-    monkeypatch.setattr(coefficient_files, "_derivation", lambda: derive)
+    monkeypatch.setattr(coefficient_files, "derivation", lambda: derive)
     return made
 
 
@@ -163,6 +164,21 @@ def of_rings(drive):
         ring = held_ring_approach(inner, outer, float(dataset[f"{body}_half_width"]), kolosov, angle)
         dataset[f"{body}_approach"] = (own.dims, near_field_unit(dataset, body) * ring.reshape(own.shape))
     return dataset
+
+
+@pytest.mark.parametrize(
+    ("attribute", "field", "default"),
+    [("core_radius", "pin_wheel.core_radius", 2.0), ("race_bore_radius", "crank_bearing.race_bore_radius", 10.0)],
+)
+def test_a_file_of_other_supports_is_refused(attribute, field, default, drive, tmp_path):
+    """A file may say on which core and bore it held pins and race; the shape alone did not tell such files apart."""
+    path, other = tmp_path / "coefficients.nc", 0.9 * default
+    own = closed_form(drive)
+    own.attrs[attribute] = other  # closed forms of half-planes; laws of rings are not what is looked at
+    write_netcdf(own, path)
+    told = rf"belongs to {re.escape(field)} = {other:g} mm, not to the {default:g} mm of paper: give the drive that"
+    with pytest.raises(CycloError, match=told):
+        load_coefficients(path, drive, lawful=False)
 
 
 @pytest.mark.slow

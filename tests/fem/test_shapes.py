@@ -13,6 +13,7 @@ from fem.shapes import CircleCurve, CircleShape, DiscShape, DriveShapes, RingSha
 from ltca.drive.deviations import BoreErrors, OneDisc
 from ltca.drive.parts import Drive, PlacementErrors
 from ltca.drive.single_discs import single_discs
+from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
 
 
@@ -117,6 +118,34 @@ def test_default_core_and_race_bore_shrink_with_the_part(drive: Drive) -> None:
     )
     assert DriveShapes.of_drive(small).wheel_pins[0].core_radius == pytest.approx(1.0)
     assert DriveShapes.of_drive(small).inner_race.inner_radius == pytest.approx(4.8)
+
+
+def test_core_and_race_bore_of_the_drive_are_those_of_the_bodies(drive: Drive) -> None:
+    changed = with_fields(drive, {"pin_wheel.core_radius": 3.5, "crank_bearing.race_bore_radius": 15.0})
+    shapes = DriveShapes.of_drive(changed)
+    assert {pin.core_radius for pin in shapes.wheel_pins} == {3.5}
+    assert shapes.inner_race.inner_radius == 15.0
+
+
+def test_a_single_small_pin_does_not_change_the_core_of_all(drive: Drive) -> None:
+    """Coefficients are of nominal pins: with the core of the smallest one full finite elements had another support."""
+    small = with_fields(
+        drive,
+        {
+            "pin_wheel.pin_radius": 5.7,
+            "disc.equidistant_offset": 0.0,
+            "pin_wheel.pin_errors.diameter": (-0.05, *[0.0] * (drive.pin_wheel.number_of_pins - 1)),
+        },
+        check=False,
+    )
+    assert DriveShapes.of_drive(small).wheel_pins[0].core_radius == pytest.approx(5.7 / 3.0)
+
+
+def test_coefficients_of_the_default_supports_keep_their_shape(drive: Drive) -> None:
+    """Files from before the fields serve drives that leave them out, or give the defaults."""
+    given = with_fields(drive, {"pin_wheel.core_radius": 2.0, "crank_bearing.race_bore_radius": 10.0})
+    assert given.body_shape() == drive.body_shape()
+    assert not {"pin_wheel.core_radius", "crank_bearing.race_bore_radius"} & drive.body_shape().keys()
 
 
 def test_narrowest_wall_of_the_disc(shapes: DriveShapes) -> None:

@@ -24,6 +24,10 @@ from ltca.drive.units.quantities import COUNT, grows, quantity
 
 Stiffness = Annotated[float, quantity("N/mm", gt=0.0)]
 Force = Annotated[float, quantity("N", gt=0.0)]
+LARGEST_DEFAULT_RACE_BORE = 10.0
+"""Fixed bore of the inner race where a drive gives none, mm: at most `DEFAULT_RACE_BORE_SHARE` of the race."""
+DEFAULT_RACE_BORE_SHARE = 0.6
+"""Largest part of r_i that the fixed bore has by default, or a small race would have no material left to deform."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
@@ -114,6 +118,9 @@ class CrankBearing:
         Number of rollers n_BR of one bearing.
     roller_radius : float
         Radius r_BR of the rollers, mm.
+    race_bore_radius : float or None
+        Radius of the fixed bore by which ``fe``, ``hybrid`` and full finite elements hold the inner race, mm; the smaller of
+        10 mm and 0.6 r_i when left out. Without effect on half-spaces, which have no bodies.
     roller_length : float or None
         Length of the rollers, at most the thickness of the disc, mm; as long as that when left out.
     roller_profile : LengthProfile
@@ -131,8 +138,19 @@ class CrankBearing:
     outer_race_radius: Annotated[PositiveLength, grows("disc")]
     number_of_rollers: Annotated[int, Field(ge=3, le=500), COUNT]
     roller_radius: Annotated[PositiveLength, grows("roller")]
+    race_bore_radius: Annotated[PositiveLength | None, grows("race")] = None
     roller_length: Annotated[PositiveLength | None, grows("roller")] = None
     roller_profile: Annotated[LengthProfile, grows("roller")] = field(default_factory=LengthProfile)
     roller_errors: Annotated[RollerErrors, grows("roller")] = field(default_factory=RollerErrors)
     dynamic_load_rating: Force | None = None
     static_load_rating: Force | None = None
+
+    @property
+    def default_race_bore_radius(self) -> float:
+        """Radius of the fixed bore of the inner race where the drive gives none, min(10 mm, 0.6 r_i), mm."""
+        return min(LARGEST_DEFAULT_RACE_BORE, DEFAULT_RACE_BORE_SHARE * self.inner_race_radius)
+
+    @property
+    def held_bore_radius(self) -> float:
+        """Radius of the fixed bore of the inner race, mm."""
+        return self.default_race_bore_radius if self.race_bore_radius is None else self.race_bore_radius

@@ -13,6 +13,11 @@ from ltca.drive.materials import LengthProfile
 from ltca.drive.members.crank import Stiffness
 from ltca.drive.units.quantities import COUNT, grows
 
+LARGEST_DEFAULT_CORE = 2.0
+"""Radius of the rigid core of a wheel pin where a drive gives none, mm: at most `DEFAULT_CORE_SHARE` of the pin."""
+DEFAULT_CORE_SHARE = 1.0 / 3.0
+"""Largest part of the pin's radius that its core has by default, or a small pin would have no material left to deform."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
 class WheelPinSeat:
@@ -108,6 +113,9 @@ class PinWheel:
         Outer radius r_P at the flank, of the pin or of its sleeve, mm.
     pin_profile : LengthProfile
         Crown and relief of the wheel pins.
+    core_radius : float or None
+        Radius of the rigid core by which ``fe``, ``hybrid`` and full finite elements hold a wheel pin, mm; the smaller of 2 mm
+        and r_P/3 when left out. Without effect on half-spaces, which have no bodies.
     pin_errors : PlacementErrors
         Errors of the wheel pins.
     axis_offset : AxisOffset
@@ -124,6 +132,7 @@ class PinWheel:
     number_of_pins: Annotated[int, Field(ge=4, le=1000), COUNT]
     pin_circle_radius: Annotated[PositiveLength, grows("wheel")]
     pin_radius: Annotated[PositiveLength, grows("wheel_sleeve")]
+    core_radius: Annotated[PositiveLength | None, grows("wheel_sleeve")] = None
     pin_profile: Annotated[LengthProfile, grows("wheel_sleeve")] = field(default_factory=LengthProfile)
     pin_errors: Annotated[PlacementErrors, grows("wheel", diameter=grows("wheel_sleeve"))] = field(
         default_factory=PlacementErrors
@@ -132,6 +141,16 @@ class PinWheel:
     support_stiffness: Stiffness | None = None
     seat: WheelPinSeat = field(default_factory=WheelPinSeat)
     beam: WheelPinBeam | None = None
+
+    @property
+    def default_core_radius(self) -> float:
+        """Radius of the rigid core of a wheel pin where the drive gives none, min(2 mm, r_P/3), mm."""
+        return min(LARGEST_DEFAULT_CORE, DEFAULT_CORE_SHARE * self.pin_radius)
+
+    @property
+    def held_core_radius(self) -> float:
+        """Radius of the rigid core of a wheel pin, mm."""
+        return self.default_core_radius if self.core_radius is None else self.core_radius
 
     @property
     def seat_play(self) -> float:

@@ -323,6 +323,8 @@ def test_cases_share_their_nominal_shape(paper_cases):
 RATINGS = ("crank_bearing.dynamic_load_rating", "crank_bearing.static_load_rating")
 LEFT_OUT = (
     "pin_wheel.support_stiffness",
+    "pin_wheel.core_radius",
+    "crank_bearing.race_bore_radius",
     "installation.first_stage_ratio",
     "crank.circle_radius",
     "load.speed",

@@ -22,6 +22,7 @@ def plain_pose(rollers=2, pins=1):
     return DrivePose(
         disc_x=0.0, disc_y=0.0, disc_rotation=0.0, wheel_angle=0.0,
         roller_distances=np.full(rollers, 24.5), shaft_pin_displacements=np.zeros(pins, dtype=complex),
+        wheel_pin_displacements=np.zeros(2, dtype=complex),
     )  # fmt: skip
 
 
@@ -67,7 +68,7 @@ def test_a_pose_that_never_rests_is_an_error_with_its_increments(stepping):
     assert list(caught.value.history) == [0.03, 0.02, 0.01]
 
 
-def move(motion, start=None, force=(0.0, 0.0, 0.0)):
+def move(motion, start=None, force=(0.0, 0.0, 0.0), ring=0.0):
     """Move from a pose with the multipliers of one step: disc x, y, rotation, wheel, two rollers."""
     model = SimpleNamespace(
         shapes=SimpleNamespace(disc=SimpleNamespace(flank=SimpleNamespace(profile=SimpleNamespace(tip_radius=50.0)))),
@@ -75,6 +76,9 @@ def move(motion, start=None, force=(0.0, 0.0, 0.0)):
         rollers=(1, 0),
         pairs=(SimpleNamespace(kind="hole", index=0), SimpleNamespace(kind="pin", index=0)),
         drive=SimpleNamespace(hole_stiffness=1e6),
+        by_others=np.zeros(2, dtype=complex),
+        wheel_direction=lambda at: 1j,
+        seats_moved_by=lambda force: ring * force,
     )
     found = SimpleNamespace(motion=np.asarray(motion))
     return pose._move(model, plain_pose() if start is None else start, found, np.array([force, (9.0, 9.0, 9.0)]))
@@ -90,6 +94,13 @@ def test_bodies_move_by_the_multipliers():
     assert move([0.01, 0.0, 3e-4, -2e-4, 0.0, 0.0])[1] == pytest.approx(16e-3)  # the wheel at its pin circle
     assert move([0.01, 0.0, 3e-4, 0.0, 0.0, 0.0])[1] == pytest.approx(15e-3)  # the disc at its tip
     assert move(np.zeros(6), force=(0.0, -5000.0, 0.0))[1] == pytest.approx(5e-3)  # a shaft pin alone
+
+
+def test_seats_of_a_ring_move_in_the_wheel():
+    """9 + 9j N on a pin are 9 − 9j in a wheel that stands a quarter turn ahead; 1 µm/N of the ring."""
+    at, increment = move(np.zeros(6), ring=1e-3)
+    np.testing.assert_allclose(at.wheel_pin_displacements, [0.009 - 0.009j, 0.0], rtol=1e-14)
+    assert increment == pytest.approx(0.009 * np.sqrt(2.0))
 
 
 def test_no_step_is_longer_than_five_hundredths():

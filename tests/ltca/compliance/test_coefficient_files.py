@@ -45,7 +45,7 @@ def derived(monkeypatch, tmp_path):
 
     code_hash("ltca", "fem")  # by the usual cache, where it is kept
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    monkeypatch.setattr(coefficient_files, "_derivation", lambda: derive)
+    monkeypatch.setattr(coefficient_files, "derivation", lambda: derive)
     monkeypatch.setattr(coefficient_files, "MAX_DERIVATIONS", 1)
     return shapes
 
@@ -185,7 +185,7 @@ def test_what_does_not_fit_beside_another_is_derived_alone(paper_cases, derived,
             raise CycloError("too large")
         return closed_form_coefficients(drive, half_width=0.05, depth=300.0)
 
-    monkeypatch.setattr(coefficient_files, "_derivation", lambda: derive)
+    monkeypatch.setattr(coefficient_files, "derivation", lambda: derive)
     monkeypatch.setattr(coefficient_files, "MAX_DERIVATIONS", 2)
     monkeypatch.setattr(coefficient_files.os, "cpu_count", lambda: 4)
     monkeypatch.setattr(coefficient_files, "process_pool", lambda count: ThreadPoolExecutor(1))

@@ -64,6 +64,8 @@ def test_length_profile_of_a_cylinder():
 RATINGS = ("crank_bearing.dynamic_load_rating", "crank_bearing.static_load_rating")
 LEFT_OUT = (
     "pin_wheel.support_stiffness",
+    "pin_wheel.core_radius",
+    "crank_bearing.race_bore_radius",
     "installation.first_stage_ratio",
     "crank.circle_radius",
     "load.speed",
@@ -78,6 +80,8 @@ OF_THE_BODIES = [
     "pin_wheel.number_of_pins",
     "pin_wheel.pin_circle_radius",
     "pin_wheel.pin_radius",
+    "pin_wheel.core_radius",
+    "crank_bearing.race_bore_radius",
     "disc.number_of_teeth",
     "disc.thickness",
     "disc.phases",

@@ -54,6 +54,15 @@ WRONG = [
     ({"pin_wheel.seat.bore_radius": 2.5}, "pin_wheel.seat.bore_radius = 2.5 mm: must be left out with pin_wheel.seat.kind"),
     ({"pin_shaft.elastic_contact": False}, "pin_shaft.elastic_contact = false: must be true with sleeves (pin_shaft.seat.kind"),
     ({"pin_shaft.elastic_contact": "yes"}, "pin_shaft.elastic_contact = 'yes': must be true or false"),
+    # what holds the finite-element bodies
+    ({"pin_wheel.core_radius": 0.0}, "pin_wheel.core_radius = 0.0: must be greater than 0 mm"),
+    ({"pin_wheel.core_radius": 3.4}, "pin_wheel.core_radius = 3.4 mm: must be at most 3.325 mm, 0.95 of the radius of the"),
+    (
+        FIXED | {"pin_wheel.core_radius": 3.3, "pin_wheel.pin_errors.diameter": (0.0,) * 29 + (-0.2,)},
+        "pin_wheel.core_radius = 3.3 mm: must be at most 3.23 mm, 0.95 of the radius of the smallest pin",
+    ),
+    ({"crank_bearing.race_bore_radius": 15.5}, "crank_bearing.race_bore_radius = 15.5 mm: must be at most 15.2 mm, 0.95 of"),
+    (SLEEVES | {"pin_wheel.core_radius": 1.0}, "pin_wheel.core_radius = 1 mm: must be left out with sleeves (pin_wheel.seat"),
     # sleeves
     (SLEEVES | {"pin_wheel.seat.pin_radius": None}, "pin_wheel.seat.pin_radius: must be given with pin_wheel.seat.kind"),
     (SLEEVES | {"pin_wheel.seat.bore_radius": 2.5}, "pin_wheel.seat.bore_radius = 2.5 mm: must be greater than 2.5 mm (pin_w"),

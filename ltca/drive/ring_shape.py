@@ -1,0 +1,75 @@
+"""The plane finite-element ring of the pin wheel: what determines its flexibility, and the key of a file of it.
+
+The flexibility of a plane body is a number by 1/(E b): modulus and width of the ring, and the stiffness of its bolts, take no
+new derivation.
+"""
+
+from __future__ import annotations
+
+from math import acos, cos, pi, radians, sin, sqrt
+
+from ltca.drive.fingerprints import fingerprint_of
+from ltca.drive.parts import Drive, PinWheel
+
+LEAST_HALF_ARC = radians(45.0)
+"""Half the arc of a seat below which it cannot lead its pin tangentially."""
+SHARPEST_CORNER = radians(25.0)
+"""Angle of the metal between two seats at their mouths, below which no sound mesh is made."""
+BOLT_PATCH = 0.1
+"""Radius of the patch that a bolt holds, by the radial height of the ring outside the seats."""
+
+
+def seat_radius(wheel: PinWheel) -> float:
+    """Return the radius of the seats of the wheel pins in their ring, mm: of the slot, or of the pin that is fixed in it."""
+    own = wheel.seat.radius if wheel.seat.kind == "slot" else wheel.seat.pin_radius
+    return own or wheel.pin_radius
+
+
+def inner_radius_bounds(wheel: PinWheel) -> tuple[float, float]:
+    """Return between which inner radii a ring with its seats can be meshed, mm: metal between the mouths of seats not too
+    sharp, arcs long enough to lead a pin.
+    """
+    circle, seat = wheel.pin_circle_radius, seat_radius(wheel)
+    sharp = -seat * cos(SHARPEST_CORNER) + sqrt(circle**2 - (seat * sin(SHARPEST_CORNER)) ** 2)
+    return sharp, sqrt(circle**2 + seat**2 + 2.0 * circle * seat * cos(LEAST_HALF_ARC))
+
+
+def bolt_patch_radius(drive: Drive) -> float:
+    """Return the radius of the patch that a bolt of the ring holds, mm."""
+    ring, wheel = drive.ring, drive.pin_wheel
+    outer = 0.0 if ring is None else ring.outer_radius
+    return BOLT_PATCH * (outer - wheel.pin_circle_radius - seat_radius(wheel))
+
+
+def ring_shape(drive: Drive) -> dict[str, float]:
+    """Return the numbers that determine the plane ring of a drive up to 1/(E b), by name: mm, counts; empty without ring."""
+    drive.require_warmed()
+    ring, wheel = drive.ring, drive.pin_wheel
+    if ring is None:
+        return {}
+    shape = {
+        "pin_wheel.number_of_pins": float(wheel.number_of_pins),
+        "pin_wheel.pin_circle_radius": wheel.pin_circle_radius,
+        "seat_radius": seat_radius(wheel),
+        "ring.inner_radius": ring.inner_radius,
+        "ring.outer_radius": ring.outer_radius,
+        "ring.material.poisson_ratio": ring.material.poisson_ratio,
+        "built_in": float(ring.flange == "built-in"),
+    }
+    if ring.bolts is not None:
+        shape |= {
+            "ring.bolts.number": float(ring.bolts.number),
+            "ring.bolts.circle_radius": ring.bolts.circle_radius,
+        }
+    return {name: float(f"{value:.12g}") for name, value in shape.items()}
+
+
+def ring_fingerprint(drive: Drive) -> str:
+    """Return a hash of `ring_shape` (hex, 16 digits), the key of a file of the ring's flexibility."""
+    return fingerprint_of(ring_shape(drive))
+
+
+def loaded_half_arc(shape: dict[str, float]) -> float:
+    """Return half the angle of a seat's wall that its pin loads, that of the outer half, rad, by a `ring_shape`."""
+    inner, circle, seat = shape["ring.inner_radius"], shape["pin_wheel.pin_circle_radius"], shape["seat_radius"]
+    return min(acos((inner**2 - circle**2 - seat**2) / (2.0 * circle * seat)), 0.5 * pi)
