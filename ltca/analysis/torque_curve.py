@@ -131,7 +131,7 @@ def torque_curve(
         model = replace(engine.prepare(drive).model, friction=None)
         found = solve_at_output(model, [drive], held, loads, found.pose)
     wheel = found.pose[:, WHEEL_ANGLE].reshape(angles.size, torque.size)
-    output = drive.output_per_wheel_angle * wheel
+    output = drive.output_deviation(wheel, opposing * torque)
 
     def at(part: float) -> FloatArray:
         return np.asarray(output[:, int(np.argmin(np.abs(torque - part * rated)))])

@@ -90,6 +90,7 @@ REFUSALS = (
     Refusal("crank_bearing.roller_profile", _PLANE, _TWO_DIMENSIONS, _HYBRID, accepts=attrgetter("is_cylinder")),
     Refusal("pin_shaft.seat", _FIXED, "pins are fixed in the model"),
     Refusal("pin_shaft.beam", _FIXED, "pins do not bend in the model", "give pin_shaft.stiffness"),
+    Refusal("carrier", _RIGID, "the carrier is rigid in the model"),
     Refusal("installation.first_stage_ratio", _ONE_BORE, "the model has one crank"),
     Refusal("friction", _FIXED, "the model is frictionless"),
 )

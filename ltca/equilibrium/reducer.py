@@ -33,6 +33,7 @@ from ltca.equilibrium.supports import support_stiffness
 from ltca.geometry.coordinates import WHEEL_ANGLE, Coordinates
 from ltca.geometry.pair_motion import KnownPins
 from ltca.geometry.pairs import ContactGeometry
+from ltca.laws.carrier import far_flange_stiffness
 
 
 class JointFriction(Protocol):
@@ -96,6 +97,8 @@ class Reducer:
         How the contacts of each disc yield, all by the same model.
     supports : array, shape (coordinates, coordinates) or (positions, coordinates, coordinates), or None
         Stiffness of the supports (`ltca.equilibrium.supports`), N/mm; None where nothing yields.
+    flange : array, shape (3, 3) or (positions, 3, 3), or None
+        What of the supports holds the far flange of a carrier (`ltca.laws.carrier`); None without posts.
     pins : SharedPins or None
         Pins that several discs bend.
     friction : JointFriction or None
@@ -104,6 +107,7 @@ class Reducer:
 
     discs: tuple[DiscModel, ...]
     supports: FloatArray | None = by_drive(2, default=None)
+    flange: FloatArray | None = by_drive(2, default=None)
     pins: SharedPins | None = None
     friction: JointFriction | None = None
     _by_position: bool | None = field(init=False, repr=False, compare=False, default=None)
@@ -114,6 +118,7 @@ class Reducer:
         return cls(
             discs=tuple(discs),
             supports=support_stiffness(drive, discs[0].geometry),
+            flange=far_flange_stiffness(drive),
             pins=SharedPins.of_drive(drive),
             friction=TurningFriction.of_drive(drive),
         )
