@@ -402,9 +402,9 @@ _DECLARED = (
     _checked("shaft_pin_bending_amplitude", "MPa", "bending of shaft pins, fatigue"),
     _checked("shaft_pin_shear_stress", "MPa", "shear of shaft pins, largest (static)"),
     # supports
-    Quantity("ring_x", "drive", "mm", "displacement of the ring that ties the tips of the shaft pins, fixed frame"),
-    Quantity("ring_y", "drive", "mm", "displacement of the ring that ties the tips of the shaft pins, fixed frame"),
-    Quantity("ring_rotation", "drive", "rad", "rotation of that ring, ccw positive"),
+    Quantity("ring_x", "drive", "mm", "displacement of the ring that ties the tips of the shaft pins, or of the far flange"),
+    Quantity("ring_y", "drive", "mm", "displacement of the ring that ties the tips of the shaft pins, or of the far flange"),
+    Quantity("ring_rotation", "drive", "rad", "rotation of that ring or flange, ccw positive"),
     Quantity(
         "crank_torque", "crankshaft", "N mm",
         "external moment that holds the crank by virtual work, ∂U/∂φ_C: that of the forces on it plus cage_speed times "
@@ -478,7 +478,7 @@ _DECLARED = (
     ),
     *(
         _scalar("1", Scalar(f"compliance_share_{part}", f"part of the compliance: {part.replace('_', ' ')}", digits=".4f"))
-        for part in ("pins", "ring", "ring", "crank_bearings", "shaft_pins", "cranks", "wheel_bearing", "geometry")
+        for part in ("pins", "ring", "crank_bearings", "shaft_pins", "cranks", "wheel_bearing", "carrier", "geometry")
     ),
     # the solution
     Quantity(

@@ -27,7 +27,7 @@ EXAMPLES = (
     ("cyclo export my.toml --format stl --compensate 0.1", "for a printer whose walls grow by 0.1 mm"),
 )
 FORMATS = ("dxf", "step", "stl", "csv")
-PARTS = ("disc", "pin-wheel", "pin-shaft", "assembly")
+PARTS = ("disc", "pin-wheel", "pin-shaft", "carrier", "assembly")
 SOLID = ("step", "stl")
 
 

@@ -42,6 +42,7 @@ from ltca.equilibrium.reducer import Reducer, bearing_forces, disc_pressures, di
 from ltca.errors import ConvergenceError, DriveError, shortened
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.interference import lost_play, preload_warning
+from ltca.laws.carrier import loaded_circle
 
 COMPLIANCE_SHARE_POSITIONS = 24
 """Number of positions at which shares of the compliance are evaluated: they change slowly over the turn."""
@@ -207,7 +208,8 @@ class LoadedAnalysis:
         rows = np.linspace(0, positions, min(positions, COMPLIANCE_SHARE_POSITIONS), endpoint=False).astype(int)
         if not np.all(self.balanced[rows]):
             return dict.fromkeys(PARTS, np.full(rows.size, np.nan))
-        return compliance_shares(self.model, take_positions(self.full, rows))
+        behind = self.drive.carrier_compliance / self.drive.output_per_wheel_angle**2
+        return compliance_shares(self.model, take_positions(self.full, rows), behind)
 
     @property
     def engine_words(self) -> str:
@@ -222,12 +224,12 @@ class LoadedAnalysis:
     @property
     def transmission_error(self) -> FloatArray:
         """Deviation of the output at the torque of the run, ccw positive, shape (positions,), rad."""
-        return np.asarray(self.drive.output_per_wheel_angle * self.full.pose[:, WHEEL_ANGLE])
+        return np.asarray(self.drive.output_deviation(self.full.pose[:, WHEEL_ANGLE], self.torque))
 
     @property
     def transmission_error_light(self) -> FloatArray:
         """The same at the light torque, rad."""
-        return np.asarray(self.drive.output_per_wheel_angle * self.light.pose[:, WHEEL_ANGLE])
+        return np.asarray(self.drive.output_deviation(self.light.pose[:, WHEEL_ANGLE], self.drive.load.light_torque))
 
     @property
     def hole_words(self) -> str:
@@ -278,6 +280,10 @@ class LoadedAnalysis:
         if coordinates.wheel:
             wheel = self.full.pose[:, coordinates.wheel_place]
             found["the wheel moves"] = "pin_wheel.support_stiffness", np.hypot(wheel[:, 0], wheel[:, 1])
+        if self.model.flange is not None:
+            x, y, turned = self.full.pose[:, coordinates.ring_place].T
+            radius = loaded_circle(self.drive)
+            found["the far flange moves"] = "carrier.posts", np.hypot(x, y) + radius * np.abs(turned)
         return found
 
     def _lost_play(self) -> str | None:

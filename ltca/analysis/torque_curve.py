@@ -2,8 +2,8 @@
 
 The crank is held, the output is loaded one way and the other. Without friction the curve has no loop; towards vanishing torque
 its branches end at the two stops of the free play (`ltca.geometry.play`), which is the backlash. The stiffness is that of
-the cycloid stage: flanks, pins, crank bearings and, where the file has them, beams and supports; the ring that carries the wheel
-pins, carrier, main bearing and a first stage yield on top of it. With friction the curve is what the bodies
+the cycloid stage: flanks, pins, crank bearings and, where the file has them, beams, supports and carrier; the ring that carries
+the wheel pins and a first stage yield on top of it. With friction the curve is what the bodies
 yield, and the loop about it is told beside it (`ltca.analysis.friction.hysteresis`). Torques and angles are those of the output,
 whichever member that is.
 """
@@ -131,7 +131,7 @@ def torque_curve(
         model = replace(engine.prepare(drive).model, friction=None)
         found = solve_at_output(model, [drive], held, loads, found.pose)
     wheel = found.pose[:, WHEEL_ANGLE].reshape(angles.size, torque.size)
-    output = drive.output_per_wheel_angle * wheel
+    output = drive.output_deviation(wheel, opposing * torque)
 
     def at(part: float) -> FloatArray:
         return np.asarray(output[:, int(np.argmin(np.abs(torque - part * rated)))])

@@ -90,6 +90,9 @@ REFUSALS = (
     Refusal("crank_bearing.roller_profile", _PLANE, _TWO_DIMENSIONS, _HYBRID, accepts=attrgetter("is_cylinder")),
     Refusal("pin_shaft.seat", _FIXED, "pins are fixed in the model"),
     Refusal("pin_shaft.beam", _FIXED, "pins do not bend in the model", "give pin_shaft.stiffness"),
+    Refusal("carrier.stiffness_torsion", _RIGID, "the carrier is rigid in the model"),
+    Refusal("carrier.flange", _RIGID, "the carrier is rigid in the model"),
+    Refusal("carrier.posts", _RIGID, "the carrier is rigid in the model"),
     Refusal("installation.first_stage_ratio", _ONE_BORE, "the model has one crank"),
     Refusal("ring", _ONE_BORE, "the wheel pins stand in a rigid ring in the model"),
     Refusal("friction", _FIXED, "the model is frictionless"),
@@ -153,7 +156,9 @@ def _problems(drive: Drive, row: Refusal, engine: str) -> Iterator[str]:
             continue
         elif default is not None and not is_dataclass(default):
             bound = f"{default:g}{unit}"
-        named = f"{path} ({_contents(path, value, row.path)})" if is_dataclass(value) else f"{path} = {value:g}{unit}"
+        named = (
+            f"{path} ({_contents(path, value, row.path)})" if is_dataclass(value) else f"{path} = {_shown(value)}{unit}"
+        )
         instead = f"; {row.instead}" if row.instead else ""
         yield f"{named}: must be {bound} for {_IN_MESSAGES[engine]} ({row.reason}){instead}"
 

@@ -172,6 +172,7 @@ def element_count(drive: Drive, path: str) -> int | None:
         "pin_shaft.pin_errors": drive.number_of_holes,
         "disc.of.0.bore_errors": drive.crank.number,
         "crank.support": 2,
+        "carrier": 2,
         "crank_bearing.roller_errors": drive.crank_bearing.number_of_rollers,
         "disc.profile_errors": len(errors.parameter) if path.endswith(".deviation") else len(errors.orders),
     }
@@ -201,6 +202,7 @@ _OF_PARTS = {
     "clearance.pin_hole": "pin_shaft",
     "friction.hole": "pin_shaft",
     "materials.crankshaft.": "crank.support",
+    "materials.carrier.": "carrier.posts",
 }
 """Fields of a part that may be left out, which stand in other tables."""
 
@@ -210,7 +212,11 @@ def absence(drive: Drive, path: str) -> str | None:
     found = numbered(path)
     if found is not None and (problem := no_entry(drive, found[0], found[1])) is not None:
         return problem
-    held = {"pin_shaft": drive.pin_shaft, "crank.support": drive.crank.support}
+    held = {
+        "pin_shaft": drive.pin_shaft,
+        "crank.support": drive.crank.support,
+        "carrier.posts": None if drive.carrier is None else drive.carrier.posts,
+    }
     name = path if found is None else found[2]
     beside = [part for head, part in _OF_PARTS.items() if held[part] is None and name.startswith(head)]
     if missing := missing_part(drive, path) or next(iter(beside), None):
@@ -273,6 +279,7 @@ _FOLLOWS = {
     "pin_wheel.beam.span": "wheel_pin_span",
     "disc.planes": "disc.disc_planes",
     "pin_shaft.beam.diameter": "pin_shaft.beam_diameter",
+    "carrier.posts.length": "post_length",
     "pin_wheel.beam.diameter": "pin_wheel.beam_diameter",
 }
 """Fields that follow from others where they are left out, and the property with their value."""

@@ -89,6 +89,8 @@ class Materials:
         Material of the slots of loose wheel pins; with temperatures that of the wheel.
     sleeve : Material
         Material of the sleeves on wheel pins and shaft pins.
+    carrier : Material
+        Material of posts and flanges of the carrier; with temperatures that of the circle of shaft pins or cranks.
     """
 
     disc: Material = field(default_factory=Material)
@@ -99,9 +101,10 @@ class Materials:
     crankshaft: Material = field(default_factory=Material)
     wheel_seat: Material = field(default_factory=Material)
     sleeve: Material = field(default_factory=Material)
+    carrier: Material = field(default_factory=Material)
 
 
-PARTS = ("disc", "wheel_pin", "roller", "inner_race", "shaft_pin", "crankshaft", "wheel_seat", "sleeve")
+PARTS = ("disc", "wheel_pin", "roller", "inner_race", "shaft_pin", "crankshaft", "wheel_seat", "sleeve", "carrier")
 """Fields of `Materials`."""
 JUDGED_BY = ("allowable_pressure", "yield_strength", "bending_fatigue_limit", "hardness", "hardness_depth", "density")
 """Properties of a material that change no load."""

@@ -29,6 +29,7 @@ from ltca.drive.materials import (
     Materials as Materials,
     contact_modulus as contact_modulus,
 )
+from ltca.drive.members.carrier import Carrier as Carrier, CarrierPosts as CarrierPosts
 from ltca.drive.members.crank import Crank as Crank, CrankBearing as CrankBearing, CrankSupport as CrankSupport
 from ltca.drive.members.operation import (
     Analysis as Analysis,
@@ -165,6 +166,8 @@ class Drive:
         Pin shaft, the carrier of the cranks, with its pins; drives with several cranks need none.
     ring : Ring or None
         Elastic ring that holds the wheel pins; rigid when left out.
+    carrier : Carrier or None
+        How the carrier of shaft pins and cranks gives way; rigid in one piece when left out.
     load : Load
         Torque and direction.
     installation : Installation
@@ -194,6 +197,7 @@ class Drive:
     crank_bearing: CrankBearing
     pin_shaft: PinShaft | None = None
     ring: Ring | None = None
+    carrier: Carrier | None = None
     load: Load
     installation: Installation = field(default_factory=Installation)
     clearance: Annotated[Clearance, grows("disc")] = field(default_factory=Clearance)
@@ -277,6 +281,49 @@ class Drive:
         if self.crank.number == 1:
             return -self.pin_wheel.number_of_pins / self.disc.number_of_teeth
         return -1.0 / (1.0 - self.input_per_crank_moment / self.reduction_ratio)
+
+    @property
+    def carrier_compliance(self) -> float:
+        """Deviation of the output by its torque where the carrier twists (``carrier.stiffness_torsion``), rad/(N·mm); 0 where
+        it is rigid.
+
+        The carrier passes on what the wheel and the input leave over, :math:`|T_W + T_{in}|` in the mean of a turn: the torque of
+        the output with the wheel held, with the pin shaft held 1 − 1/i of it, and its twist counts at the output by the same
+        part (virtual work).
+        """
+        stiffness = None if self.carrier is None else self.carrier.stiffness_torsion
+        if stiffness is None:
+            return 0.0
+        part = 1.0 if self.wheel_is_held else 1.0 - self.input_per_crank_moment / self.reduction_ratio
+        return part * part / stiffness
+
+    def output_deviation(self, wheel_angle: Any, torque: Any) -> Any:
+        """Return the deviation of the output, ccw positive, rad: that of the wheel against the near flange of the carrier
+        (`output_per_wheel_angle`), and the twist between that flange and what it is fixed to (`carrier_compliance`).
+
+        `wheel_angle` in rad and `torque`, on the output in N·mm, positive as the load, are numbers or arrays of one shape.
+        """
+        against = (1.0 if self.wheel_is_held else -1.0) * self.driving_sign
+        found = self.output_per_wheel_angle * wheel_angle
+        return found + against * self.carrier_compliance * torque if self.carrier_compliance else found
+
+    @property
+    def post_length(self) -> float:
+        """Distance of the flanges of the carrier, the length of its posts, mm; placeholder without posts."""
+        posts = None if self.carrier is None else self.carrier.posts
+        return self.shaft_pin_span if posts is None or posts.length is None else posts.length
+
+    @property
+    def crank_supports(self) -> tuple[float, float] | None:
+        """Axial places of the two bearings of every crank: of ``crank.support``, or the middles of the flanges of a carrier
+        with posts, mm; None where cranks are held in the plane of every disc.
+        """
+        if self.crank.support is not None:
+            return self.crank.support.positions
+        if self.carrier is None or self.carrier.posts is None:
+            return None
+        near, far = self.carrier.flange or (0.0, 0.0)
+        return -0.5 * (self.post_length + near), 0.5 * (self.post_length + far)
 
     def wheel_moment(self, torque: float | None = None) -> float:
         """Return the external moment on the wheel, ccw positive, N·mm, at an output torque of the whole drive (N·mm, its

@@ -77,13 +77,15 @@ def _single(drive: Drive, number: int) -> Drive:
 
 
 def _with_spans(drive: Drive) -> Drive:
-    """The drive with the spans of its pins that follow from all discs, of which a single one knows nothing."""
-    wheel, shaft = drive.pin_wheel, drive.pin_shaft
+    """The drive with the spans of its pins and posts that follow from all discs, of which a single one knows nothing."""
+    wheel, shaft, carrier = drive.pin_wheel, drive.pin_shaft, drive.carrier
     if wheel.beam is not None:
         wheel = replace(wheel, beam=replace(wheel.beam, span=drive.wheel_pin_span))
     if shaft is not None and shaft.beam is not None:
         shaft = replace(shaft, beam=replace(shaft.beam, span=drive.shaft_pin_span))
-    return replace(drive, pin_wheel=wheel, pin_shaft=shaft)
+    if carrier is not None and carrier.posts is not None:
+        carrier = replace(carrier, posts=replace(carrier.posts, length=drive.post_length))
+    return replace(drive, pin_wheel=wheel, pin_shaft=shaft, carrier=carrier)
 
 
 def _eccentrics_alone(crank: Crank, disc: int) -> Crank:

@@ -65,14 +65,16 @@ POOREST = 0.02
 """Load rating by an estimate from the rollers' sizes below which it is likely in kN; makers differ by a factor of two."""
 FASTEST = 1.5e6
 """Speed by the mean diameter of the crank bearing, mm/min, that no roller bearing of a drive reaches: the fastest have 1e6."""
+TWISTED = 0.03
+"""Twist of the carrier under the torque beyond that of any reducer, rad: precision reducers wind up by some 3e-4 as a whole."""
 SLOW_INPUT, SLOW_OUTPUT = 60.0, 5.0
 """Speeds of input and output, rpm, below which a speed is likely in Hz: motors make 10 to 100 turns a second."""
 
 
 def _parts(drive: Drive) -> list[str]:
-    """Parts whose material is under contact pressure: without crankshafts, and slots and sleeves where there are none."""
+    """Parts whose material is under contact pressure: without cranks, carrier, and slots and sleeves where there are none."""
     seats = {drive.pin_wheel.seat.kind} | (set() if drive.pin_shaft is None else {drive.pin_shaft.seat.kind})
-    counts = {"crankshaft": False, "wheel_seat": "slot" in seats, "sleeve": "sleeve" in seats}
+    counts = {"crankshaft": False, "carrier": False, "wheel_seat": "slot" in seats, "sleeve": "sleeve" in seats}
     return [item.name for item in fields(Materials) if counts.get(item.name, True)]
 
 
@@ -236,7 +238,13 @@ def unit_warnings(drive: Drive, torque: float | None = None) -> list[str]:
     """
     # What a drive carries follows from its lengths.
     found = _impossible(drive) or [*_odd_lengths(drive)] or [*_odd_strengths(drive)]
-    return found or [*_odd_torques(drive, torque), *_odd_stiffnesses(drive), *_odd_ratings(drive), *_odd_speeds(drive)]
+    return found or [
+        *_odd_torques(drive, torque),
+        *_odd_stiffnesses(drive),
+        *_odd_ratings(drive),
+        *_odd_speeds(drive),
+        *_soft_carrier(drive, torque),
+    ]
 
 
 def limit_warnings(drive: Drive, limits: Iterable[Limit]) -> list[str]:
@@ -410,6 +418,13 @@ def _lengths_beside(drive: Drive) -> Iterator[tuple[str, float, float, str]]:
     if support is not None:
         inner = 2.0 * bearing.inner_race_radius
         yield "crank.support.diameter", support.diameter, inner, "the diameter of the inner race on it"
+    posts = None if drive.carrier is None else drive.carrier.posts
+    if posts is not None:
+        yield "carrier.posts.radius", posts.radius, half_circle, "half the pin circle radius"
+        yield "carrier.posts.size", posts.size, posts.radius, "the radius of the circle of the posts"
+        yield "carrier.posts.length", drive.post_length, stack, "the thickness of all discs"
+        for number, flange in enumerate(() if drive.carrier is None else drive.carrier.flange or ()):
+            yield f"carrier.flange.{number}", flange, stack, "the thickness of all discs"
     for name, part, span in (
         ("pin_wheel", wheel, drive.wheel_pin_span),
         ("pin_shaft", shaft, drive.shaft_pin_span),
@@ -439,6 +454,18 @@ def _odd_speeds(drive: Drive) -> Iterator[str]:
                 f'faster than roller bearings run (some 1e6); a plain number is rpm, did you mean "{value:g} deg/s" '
                 f"({value / 6.0:g} rpm) or {value / 60.0:g} rpm?"
             )
+
+
+def _soft_carrier(drive: Drive, torque: float | None) -> Iterator[str]:
+    """A torsional stiffness in N·m/rad, or by the minute, that was read as N·mm/rad."""
+    twist, carrier = (drive.load.torque if torque is None else torque) * drive.carrier_compliance, drive.carrier
+    if carrier is None or carrier.stiffness_torsion is None or twist < TWISTED:
+        return
+    value = carrier.stiffness_torsion
+    yield (
+        f"carrier.stiffness_torsion = {value:g} N·mm/rad would let the output turn by {_rounded(twist * 180.0 / pi)}° under its "
+        f'torque; did you mean "{value:g} N·m/rad" or "{value:g} N·m/arcmin"?'
+    )
 
 
 def _impossible(drive: Drive) -> list[str]:

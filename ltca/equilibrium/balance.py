@@ -91,7 +91,9 @@ def lever_arms(model: Reducer) -> FloatArray:
     eccentricities = [geometry.placement.mean_eccentricity[..., 0] for geometry in geometries]
     ring = np.ones(())
     if coordinates.ring:
-        ring = np.abs(geometries[0].placement.shaft_pin_centres).mean(axis=-1)
+        place = geometries[0].placement
+        held = place.shaft_pin_centres if place.shaft_pin_centres.size else place.crank_axes
+        ring = np.abs(held).mean(axis=-1)
     arms = np.ones((*np.broadcast_shapes(ring.shape, *(e.shape for e in eccentricities)), coordinates.size))
     for place, geometry, e in zip(coordinates.rotations, geometries, eccentricities, strict=False):
         wheel = e * geometry.placement.reduction_ratio

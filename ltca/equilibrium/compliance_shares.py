@@ -20,15 +20,16 @@ from ltca.equilibrium.reducer import Reducer
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.rotation import unit
 
-PARTS = ("pins", "ring", "crank_bearings", "shaft_pins", "cranks", "wheel_bearing", "geometry")
+PARTS = ("pins", "ring", "crank_bearings", "shaft_pins", "cranks", "wheel_bearing", "carrier", "geometry")
 RELATIVE_TORQUE_STEP = 1e-4
 """Relative change of the torque: loads follow it linearly, and round-off stays below 1e-4 of their change."""
 
 
-def compliance_shares(model: Reducer, found: Equilibrium) -> dict[str, FloatArray]:
-    """Return the shares of the wheel's compliance by part (`PARTS`), crank held, shape (positions,); they add up to one.
+def compliance_shares(model: Reducer, found: Equilibrium, behind: float = 0.0) -> dict[str, FloatArray]:
+    """Return the shares of the output's compliance by part (`PARTS`), crank held, shape (positions,); they add up to one.
 
-    They are not a number where nothing resists a free motion.
+    `behind` is the compliance of what twists between wheel and output and holds no contact, by the moment of the wheel,
+    rad/(N·mm); it is the carrier's. Shares are not a number where nothing resists a free motion.
     """
     response, size = found.response, found.pose.shape[1]
     if model.friction is not None:  # what bodies yield, not what rubs
@@ -61,10 +62,19 @@ def compliance_shares(model: Reducer, found: Equilibrium) -> dict[str, FloatArra
         wheel, ring = np.zeros(size, dtype=bool), np.zeros(size, dtype=bool)
         wheel[model.coordinates.wheel_place] = True
         ring[model.coordinates.ring_place] = True
-        for part, columns in (("cranks", ~(wheel | ring)), ("wheel_bearing", wheel), ("shaft_pins", ring)):
-            held = np.where(columns, moved, 0.0)
-            work[part] += np.matmul(held[:, None, :], np.matmul(model.supports, held[..., None]))[:, 0, 0]
-    total = one[:, WHEEL_ANGLE, 0] * moved[:, WHEEL_ANGLE]
+        work["wheel_bearing"] += _stored(model.supports, np.where(wheel, moved, 0.0))
+        if model.flange is None:
+            work["cranks"] += _stored(model.supports, np.where(wheel | ring, 0.0, moved))
+            work["shaft_pins"] += _stored(model.supports, np.where(ring, moved, 0.0))
+        else:
+            work["cranks"] += _stored(model.supports, np.where(wheel | ring, 0.0, _against_flanges(model, moved)))
+            work["carrier"] += _stored(model.flange, moved[:, model.coordinates.ring_place])
+            if model.discs[0].geometry.tips_by_ring.size:  # what is left are the tips of the shaft pins
+                held = _stored(model.supports, np.where(wheel, 0.0, moved))
+                work["shaft_pins"] += held - work["cranks"] - work["carrier"]
+    twisted = behind * one[:, WHEEL_ANGLE, 0] ** 2
+    work["carrier"] += twisted
+    total = one[:, WHEEL_ANGLE, 0] * moved[:, WHEEL_ANGLE] + twisted
     work["geometry"] = total - sum(work[part] for part in PARTS[:-1])
     return {part: value / total for part, value in work.items()}
 
@@ -80,6 +90,24 @@ def _of_ring(
         forces.append(sum(part.pin_forces[:, :pins] for part in end.parts) * turned.conjugate())
     moved = np.asarray(ends[0].ring) - np.asarray(ends[1].ring)
     return np.asarray(((forces[0] - forces[1]).conjugate() * moved).real.sum(axis=1))
+
+
+def _against_flanges(model: Reducer, moved: FloatArray) -> FloatArray:
+    """Displacements with those of yielding cranks taken against the straight lines between their bearings."""
+    coordinates = model.coordinates
+    bent = moved.copy()
+    for number, disc in enumerate(model.discs):
+        by_flange = np.einsum("...cj,bj->bc", disc.geometry.cranks_by_ring, moved[:, coordinates.ring_place])
+        for crank in range(coordinates.cranks):
+            x = coordinates.own * number + coordinates.crank(crank)
+            bent[:, x] -= by_flange[:, crank].real
+            bent[:, x + 1] -= by_flange[:, crank].imag
+    return bent
+
+
+def _stored(stiffness: FloatArray, moved: FloatArray) -> FloatArray:
+    """Work of the forces of springs along a motion, shape (positions,)."""
+    return np.asarray(np.matmul(moved[:, None, :], np.matmul(stiffness, moved[..., None]))[:, 0, 0])
 
 
 def _taken(gradient: FloatArray, moved: FloatArray, change: FloatArray) -> FloatArray:

@@ -35,6 +35,7 @@ from ltca.geometry.coordinates import WHEEL_ANGLE, Coordinates
 from ltca.geometry.pair_motion import KnownPins
 from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.rotation import unit
+from ltca.laws.carrier import far_flange_stiffness
 
 
 class JointFriction(Protocol):
@@ -100,6 +101,8 @@ class Reducer:
         Stiffness of the supports (`ltca.equilibrium.supports`), N/mm; None where nothing yields.
     pins : PinDisplacements or None
         What displaces pins: beams under several discs, the ring of the wheel.
+    flange : array, shape (3, 3) or (positions, 3, 3), or None
+        What of the supports holds the far flange of a carrier (`ltca.laws.carrier`); None without posts.
     friction : JointFriction or None
         What rubs.
     """
@@ -107,6 +110,7 @@ class Reducer:
     discs: tuple[DiscModel, ...]
     supports: FloatArray | None = by_drive(2, default=None)
     pins: PinDisplacements | None = None
+    flange: FloatArray | None = by_drive(2, default=None)
     friction: JointFriction | None = None
     _by_position: bool | None = field(init=False, repr=False, compare=False, default=None)
 
@@ -117,6 +121,7 @@ class Reducer:
             discs=tuple(discs),
             supports=support_stiffness(drive, discs[0].geometry),
             pins=PinDisplacements.of_drive(drive),
+            flange=far_flange_stiffness(drive),
             friction=TurningFriction.of_drive(drive),
         )
 

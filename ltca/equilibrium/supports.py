@@ -2,7 +2,9 @@
 
 Every crank is a beam on two bearings (`ltca.laws.beam`); its stiffness ties x and y of the crank in the planes of the discs,
 alike in every direction. The wheel's main bearing holds its x and y. A ring that ties the tips of the shaft pins is held by
-what the pins resist when it moves all tips.
+what the pins resist when it moves all tips; as the far flange of a carrier it is held by the posts as well
+(`ltca.laws.carrier`), and the far bearings of the cranks stand in it: a crank bends by its displacement relative to the straight
+line between its bearings.
 """
 
 from __future__ import annotations
@@ -15,6 +17,7 @@ from ltca.geometry.coordinates import Coordinates
 from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.backed import shaft_pin_beam
 from ltca.laws.beam import shaft_flexibility
+from ltca.laws.carrier import far_flange_stiffness
 
 
 def crank_stiffness(drive: Drive) -> FloatArray | None:
@@ -42,18 +45,41 @@ def support_stiffness(drive: Drive, geometry: ContactGeometry) -> FloatArray | N
     if shaft is None and wheel is None and not coordinates.ring:
         return None
     matrix = np.zeros((coordinates.size, coordinates.size))
+    flange = far_flange_stiffness(drive)
     if shaft is not None:
         starts = coordinates.own * np.arange(coordinates.discs)
         for crank in range(coordinates.cranks):
             for direction in (0, 1):
                 places = starts + coordinates.crank(crank) + direction
                 matrix[np.ix_(places, places)] += shaft
+                if flange is not None:
+                    seats = np.outer(_seat_shares(drive), _seat_by_flange(geometry, crank, direction))
+                    ring = np.arange(coordinates.size)[coordinates.ring_place]
+                    matrix[np.ix_(places, ring)] -= shaft @ seats
+                    matrix[np.ix_(ring, places)] -= seats.T @ shaft
+                    matrix[np.ix_(ring, ring)] += seats.T @ shaft @ seats
     if wheel is not None:
         places = np.arange(coordinates.size)[coordinates.wheel_place]
         matrix[places, places] += wheel
-    if coordinates.ring:
+    if flange is not None:
+        matrix[coordinates.ring_place, coordinates.ring_place] += flange
+    if geometry.tips_by_ring.size and coordinates.ring:
         matrix[coordinates.ring_place, coordinates.ring_place] += _ring_stiffness(drive, geometry)
     return matrix
+
+
+def _seat_shares(drive: Drive) -> FloatArray:
+    """Displacement of a straight crank in the plane of each disc by its bearing in the far flange."""
+    if drive.crank_supports is None:
+        raise AssertionError("cranks stand in a flange")
+    near, far = drive.crank_supports
+    return (np.asarray(drive.disc.disc_planes) - near) / (far - near)
+
+
+def _seat_by_flange(geometry: ContactGeometry, crank: int, direction: int) -> FloatArray:
+    """x or y of the bearing of a crank in the far flange by x, y and rotation of the flange, shape (3,)."""
+    by_ring = geometry.seats_by_ring[..., crank, :]
+    return np.asarray(by_ring.imag if direction else by_ring.real)
 
 
 def _ring_stiffness(drive: Drive, geometry: ContactGeometry) -> FloatArray:

@@ -30,6 +30,7 @@ PLANAR = 8
 COLOURS = {
     "bore": 4, "hole": 3, "pin": 30, "slot": 8, "sleeve": 6, "sleeve-bore": 6, "shaft-pin": 1, "shaft-sleeve": 6,
     "shaft-sleeve-bore": 6, "inner-race": 150, "roller": 140, "ring": 9, "ring-bore": 9,
+    "post": 2, "flange": 9, "flange-hole": 9,
 }  # fmt: skip
 """AutoCAD colour index of each feature."""
 FLANKS = (7, 2, 6, 4)

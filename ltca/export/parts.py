@@ -3,8 +3,9 @@
 A disc is written in its own frame: centre of its bore (of several, of the disc) at the origin, hole 0 on +x, its lower face at
 z = 0. The root θ = 0 of its flank would lie on +x, too; the phase ζ of the disc turns the flank by −Δz ζ/z_C against bores and
 holes, as it is made. Pins of the wheel stand about the wheel's axis and those of the shaft about the shaft's, number 0 on +x.
-The assembly is that of φ_C = 0 in the frame of the pin shaft: each disc on its eccentrics, z as in ``disc.planes``. What a
-drive does not say has no body: housing, flanges, crankshafts, cages.
+The assembly is that of φ_C = 0 in the frame of the pin shaft: each disc on its eccentrics, z as in ``disc.planes``. Flanges of a
+carrier are plain discs with the holes of shaft pins and cranks, tied by posts. What a drive does not say has no body: housing,
+crankshafts, cages.
 """
 
 from __future__ import annotations
@@ -21,13 +22,15 @@ from ltca.export.flank_outline import FlankSpline, MadeFlank, follow_flank
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.placement import Placement
 
-PARTS = ("disc", "pin-wheel", "pin-shaft", "assembly")
+PARTS = ("disc", "pin-wheel", "pin-shaft", "carrier", "assembly")
 """What can be exported."""
 OWN_FRAME = {
     "disc": "origin at the centre of the bore, hole 0 on +x, lower face at z = 0",
     "cranked disc": "origin at the centre of the disc, about which the bores stand; lower face at z = 0",
     "pin-wheel": "origin on the axis of the wheel, pin 0 on +x, lower ends at z = 0",
     "pin-shaft": "origin on the axis of the pin shaft, pin 0 on +x, lower ends at z = 0",
+    "carrier": "origin on the axis of the pin shaft, lower face at z = 0; the drive gives neither the radius of the flanges "
+    "nor the place of post 0, which stands half-way between two pins or cranks",
     "assembly": "frame of the pin shaft at crank angle 0, z of disc.planes",
 }
 
@@ -110,7 +113,7 @@ class Part:
     Attributes
     ----------
     name : str
-        ``disc``, ``disc_1``, ``pin-wheel``, ``pin-shaft``, ``assembly``.
+        ``disc``, ``disc_1``, ``pin-wheel``, ``pin-shaft``, ``carrier``, ``assembly``.
     drive, case : str
         Whose.
     frame : str
@@ -186,7 +189,13 @@ def make_parts(
     drive = replace(drive, temperature=None)
     if disc is not None:
         _require_disc(drive, part, disc)
-    makers = {"disc": _discs, "pin-wheel": _pin_wheel, "pin-shaft": _pin_shaft, "assembly": _assembly}
+    makers = {
+        "disc": _discs,
+        "pin-wheel": _pin_wheel,
+        "pin-shaft": _pin_shaft,
+        "carrier": _carrier,
+        "assembly": _assembly,
+    }
     if part == "assembly" and compensation:
         raise DriveError(["--compensate: is for parts that are made one by one, not for --part assembly"])
     if part == "disc":
@@ -405,6 +414,69 @@ def _pin_shaft(drive: Drive, case: str, _: int, compensation: float) -> Part:
     )
 
 
+def _carrier(drive: Drive, case: str, _: int, compensation: float) -> Part:
+    bodies = _carrier_bodies(drive, Placement.of_drive(single_discs(drive)[0]))
+    if not bodies:
+        raise DriveError(["--part carrier: there is no carrier.posts in this drive"])
+    lift = -min(body.bottom for body in bodies)
+    return Part(
+        name="carrier",
+        drive=drive.name,
+        case=case,
+        frame=OWN_FRAME["carrier"],
+        compensation=compensation,
+        bodies=tuple(_compensated(body, compensation, lift) for body in bodies),
+    )
+
+
+MARGIN = 0.25
+"""What the flanges reach beyond all that stands in them, in diameters of a post."""
+
+
+def _carrier_bodies(drive: Drive, place: Placement) -> list[Body]:
+    """Posts, and flanges where their thickness is given, on the axis of the discs' planes."""
+    carrier, shaft = drive.carrier, drive.pin_shaft
+    posts = None if carrier is None else carrier.posts
+    if carrier is None or posts is None:
+        return []
+    half, cranks = 0.5 * drive.post_length, drive.crank.number
+    beside = drive.crank.angle + np.pi / cranks if shaft is None else np.pi / shaft.number_of_pins
+    around = np.exp(1j * (beside + 2.0 * np.pi * np.arange(posts.number) / posts.number))
+    bodies = []
+    for number, centre in enumerate((posts.radius * around).tolist()):
+        post = Circle(feature="post", name=f"post {number}", radius=0.5 * posts.size, centre=centre)
+        bodies.append(Body(name=post.name, outer=post, bottom=-half, top=half))
+    if carrier.flange is None:
+        return bodies
+    support = drive.crank.support
+    shaft_radius = drive.crank_bearing.inner_race_radius if support is None else 0.5 * support.diameter
+    holes = [
+        Circle(feature="flange-hole", name=_numbered("hole of crank", c, cranks), radius=shaft_radius, centre=centre)
+        for c, centre in enumerate(place.crank_axes.tolist())
+    ]
+    if shaft is not None:
+        sizes = (
+            place.shaft_pin_radii
+            if shaft.seat.pin_radius is None
+            else np.full(place.shaft_pin_radii.size, shaft.seat.pin_radius)
+        )
+        holes += [
+            Circle(feature="flange-hole", name=f"hole of shaft pin {k}", radius=radius, centre=centre)
+            for k, (centre, radius) in enumerate(zip(place.shaft_pin_centres.tolist(), sizes.tolist(), strict=True))
+        ]
+    reach = max(posts.radius + 0.5 * posts.size, *(abs(hole.centre) + hole.radius for hole in holes))
+    outline = Circle(feature="flange", name="flange", radius=reach + MARGIN * posts.size)
+    for name, bottom, thickness in (
+        ("near flange", -half - carrier.flange[0], carrier.flange[0]),
+        ("far flange", half, carrier.flange[1]),
+    ):
+        inner = tuple(replace(hole, name=f"{hole.name}, {name}") for hole in holes)
+        bodies.append(
+            Body(name=name, outer=replace(outline, name=name), inner=inner, bottom=bottom, top=bottom + thickness)
+        )
+    return bodies
+
+
 def _profiled(drive: Drive, *, rollers: bool) -> tuple[str, ...]:
     """Fields of profiles along the length, which no straight body has."""
     fields = [] if drive.pin_wheel.pin_profile.is_cylinder else ["pin_wheel.pin_profile"]
@@ -421,6 +493,7 @@ def _assembly(drive: Drive, case: str, _: int, __: float) -> Part:
     wheel, walls = _pins_of_wheel(drive, places[0])
     axis = complex(places[0].wheel_axis)
     bodies = [_moved(body, axis) for body in wheel] + _pins_of_shaft(drive, places[0])
+    bodies += _carrier_bodies(drive, places[0])
     for number, (single, place) in enumerate(zip(singles, places, strict=True)):
         bodies += _disc_and_bearings(single, place, _numbered("disc", number, len(singles)))
     return Part(

@@ -3,8 +3,8 @@
 A pose of one disc at a held crank angle is q = (x, y, disc rotation, …, wheel angle): x and y in mm are the displacement of
 the disc from its nominal place in the fixed frame, the angles in rad; the wheel angle is its deviation from φ_C/u. Between
 them stand x and y of each crank in the plane of the disc, if cranks yield; x and y of the wheel, if its bearing yields; and
-x, y and rotation of the ring that ties the tips of the shaft pins, if there is one. The poses of several discs follow each
-other, with one wheel.
+x, y and rotation of the ring that ties the tips of the shaft pins, or of the far flange of the carrier, if there is one. The
+poses of several discs follow each other, with one wheel.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ class Coordinates:
     wheel : bool
         Whether the wheel's bearing yields.
     ring : bool
-        Whether a floating ring ties the tips of the shaft pins.
+        Whether a ring ties the tips of the shaft pins and floats, or is the far flange of a carrier on posts.
     """
 
     discs: int = 1
@@ -58,7 +58,8 @@ class Coordinates:
         cranks = 0 if drive.crank.support is None else drive.crank.number
         wheel = drive.pin_wheel.support_stiffness is not None
         beam = None if drive.pin_shaft is None else drive.pin_shaft.beam
-        ring = beam is not None and beam.tip != "free"
+        posts = None if drive.carrier is None else drive.carrier.posts
+        ring = posts is not None or (beam is not None and beam.tip != "free")
         return cls(discs=drive.disc.number_of_discs, cranks=cranks, wheel=wheel, ring=ring)
 
     @property

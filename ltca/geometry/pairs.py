@@ -81,24 +81,43 @@ class ContactGeometry:
         Of a pose in which every member moves that can.
     tip_share : float or array, shape (positions, 1)
         Displacement of a shaft pin at the disc per displacement of its tip, where a ring ties the tips.
+    seat_share : float or array, shape (positions, 1)
+        Displacement of a crank's axis at the disc per displacement of its bearing in the far flange of the carrier, as long as
+        the crank stays straight; 0 where no flange moves.
     """
 
     placement: Placement
     profile: FlankProfile
     coordinates: Coordinates
     tip_share: float | FloatArray = by_drive(0, default=0.0)
+    seat_share: float | FloatArray = by_drive(0, default=0.0)
 
     @classmethod
     def of_drive(cls, drive: Drive) -> ContactGeometry:
         """Return the contact geometry of a drive of one disc."""
         place, profile = Placement.of_drive(drive), FlankProfile.of_drive(drive)
-        return cls(placement=place, profile=profile, coordinates=Coordinates.of_drive(drive))
+        coordinates, share = Coordinates.of_drive(drive), 0.0
+        if drive.carrier is not None and drive.carrier.posts is not None and drive.crank_supports is not None:
+            near, far = drive.crank_supports
+            share = (drive.disc.disc_planes[0] - near) / (far - near)
+        return cls(placement=place, profile=profile, coordinates=coordinates, seat_share=share)
 
     @property
     def tips_by_ring(self) -> ComplexArray:
         """Displacement of the tips of the shaft pins by x, y and rotation of the ring that ties them, shape (…, z_PS, 3)."""
         places = self.placement.shaft_pin_centres
         return np.stack((np.ones_like(places), np.full_like(places, 1j), 1j * places), axis=-1)
+
+    @property
+    def seats_by_ring(self) -> ComplexArray:
+        """Displacement of the bearings of the cranks in the far flange by its x, y and rotation, shape (…, cranks, 3)."""
+        places = self.placement.crank_axes
+        return np.stack((np.ones_like(places), np.full_like(places, 1j), 1j * places), axis=-1)
+
+    @property
+    def cranks_by_ring(self) -> ComplexArray:
+        """Displacement of the axes of straight cranks at the disc by the far flange, shape (…, cranks, 3)."""
+        return np.asarray(np.asarray(self.seat_share)[..., None] * self.seats_by_ring)
 
     def moved_by_ring(self, pose: FloatArray) -> ComplexArray | None:
         """Return the displacement of the shaft pins at the disc by the ring, shape (positions, z_PS), mm; None without ring."""
@@ -320,6 +339,10 @@ class ContactGeometry:
             x = coordinates.crank(crank)
             moved[:, crank] -= pose[:, x] + 1j * pose[:, x + 1]
             gradient[:, crank, x], gradient[:, crank, x + 1] = -1.0, -1j
+        if coordinates.ring and not coordinates.cranks:  # rigid cranks go with their bearing in the far flange
+            by_ring = self.cranks_by_ring
+            moved = moved - _moved(pose[:, coordinates.ring_place], by_ring)
+            gradient[..., coordinates.ring_place] = -by_ring
         return BoreMotion(displacement=moved, arm=arm, gradient=gradient)
 
     def rollers(self, crank_angle: FloatArray) -> RollerRays:

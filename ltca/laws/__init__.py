@@ -18,5 +18,6 @@ conforming             A pin in a bore that is hardly larger: arc, pressure and 
 beam                   Round shafts and pins as beams: deflections at the planes of the discs under the forces of the discs
 ring_beam              The ring of the pin wheel as a curved beam: displacements of the seats under the forces at all of them
 backed                 A contact in series with the seat of a loose pin or sleeve and with the bending of the pin
+carrier                Posts and flanges of a carrier: forces on the far flange by its motion against the near one
 =====================  ============================================================
 """

@@ -18,6 +18,7 @@ from ltca.geometry.first_contact import backlash
 from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.placement import position_angles
 from ltca.geometry.play import play_over_a_turn, preload_words
+from ltca.laws.carrier import far_flange_stiffness
 from ltca.quantities import SCALARS
 
 Rows = list[tuple[str, str]]
@@ -177,6 +178,23 @@ def _supports(drive: Drive) -> Rows:
         )
     if wheel is not None:
         rows.append(("main bearing of the wheel", f"{wheel:g} N/mm, radial; tilt and the ring's own bending left out"))
+    return [*rows, *_carrier(drive)]
+
+
+def _carrier(drive: Drive) -> Rows:
+    """Stiffness of the carrier: between its flanges, and between the near one and what it is fixed to."""
+    rows, carrier, held = [], drive.carrier, far_flange_stiffness(drive)
+    if carrier is not None and carrier.posts is not None and held is not None:
+        posts, flanges = carrier.posts, "rigid flanges"
+        if carrier.flange is not None:
+            flanges = f"flanges of {carrier.flange[0]:g} and {carrier.flange[1]:g} mm"
+        told = f"{posts.number} posts ⌀ {posts.size:g} mm on a circle of {posts.radius:g} mm"
+        told = f"{told}, {drive.post_length:g} mm long, {flanges}"
+        stiff = f"{held[0, 0]:.4g} N/mm across, {held[2, 2] / ARCMIN / 1e3:.4g} N·m/′ in rotation; tilt left out"
+        rows = [("carrier", told), ("far flange against the near one", stiff)]
+    if carrier is not None and carrier.stiffness_torsion is not None:
+        what = "output" if drive.wheel_is_held else "housing"
+        rows.append((f"near flange against the {what}", f"{carrier.stiffness_torsion / ARCMIN / 1e3:.4g} N·m/′"))
     return rows
 
 
@@ -199,7 +217,10 @@ def _pins(drive: Drive) -> Rows:
         return rows
     rows += _seat(shaft, "shaft pins", "the holes")
     if shaft.beam is not None:
-        tips = {"free": "free", "tied-clamped": "clamped in a ring", "tied-pinned": "pinned in a ring"}[shaft.beam.tip]
+        ring = "a ring" if drive.carrier is None or drive.carrier.posts is None else "the far flange"
+        tips = {"free": "free", "tied-clamped": f"clamped in {ring}", "tied-pinned": f"pinned in {ring}"}[
+            shaft.beam.tip
+        ]
         reach = f"{drive.shaft_pin_span:g} mm from the flange at {-0.5 * drive.shaft_pin_span:g} mm, tips {tips}"
         rows.append(("shaft pins, as beams", f"⌀ {shaft.beam_diameter:g} mm, {reach}"))
     return rows

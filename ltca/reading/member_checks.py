@@ -66,7 +66,8 @@ def _installation(drive: Drive) -> Iterator[str]:
                 )
         if drive.materials.shaft_pin != Material():
             yield "materials.shaft_pin: must be left out without a pin shaft"
-    yield from (*_crank_support(drive), *_race_bore(drive), *_ring(drive), *find_pin_problems(drive), *_duty(drive))
+    parts = (*_crank_support(drive), *_race_bore(drive), *_ring(drive), *_carrier(drive))
+    yield from (*parts, *find_pin_problems(drive), *_duty(drive))
 
 
 def _ring(drive: Drive) -> Iterator[str]:
@@ -192,6 +193,54 @@ def _crank_support(drive: Drive) -> Iterator[str]:
             return
 
 
+def _carrier(drive: Drive) -> Iterator[str]:
+    """Problems of the flanges of the carrier, of its posts and of their material."""
+    carrier, shaft = drive.carrier, drive.pin_shaft
+    posts = None if carrier is None else carrier.posts
+    if posts is None and drive.materials.carrier != Material() and not _expands(drive, "carrier"):
+        yield (
+            "materials.carrier: must be left out without carrier.posts, where the flanges do not yield, but for its "
+            "thermal_expansion beside [temperature]"
+        )
+    if carrier is None:
+        return
+    if posts is None:
+        if carrier.flange is not None:
+            near, far = carrier.flange
+            yield (
+                f"carrier.flange = [{near:g}, {far:g}] mm: must be left out without carrier.posts, which tie the flanges and "
+                "bend them"
+            )
+        elif carrier.stiffness_torsion is None:
+            yield "carrier: is empty; give carrier.stiffness_torsion, carrier.posts or both, or leave the table out"
+        return
+    room = posts.radius * sin(pi / posts.number)
+    if posts.size >= 2.0 * room:
+        yield (
+            f"carrier.posts.size = {posts.size:g} mm: must be less than {2.0 * room:.6g} mm, the distance of {posts.number} "
+            f"posts on a circle of radius {posts.radius:g} mm (carrier.posts.number, carrier.posts.radius)"
+        )
+    reach = 2.0 * max(abs(plane) for plane in drive.disc.disc_planes) + drive.disc.thickness
+    if posts.length is not None and posts.length < reach - ROUNDING * max(reach, 1.0):
+        yield (
+            f"carrier.posts.length = {posts.length:g} mm: must be at least {reach:.6g} mm, or the discs are not between the "
+            "flanges (disc.planes, disc.thickness)"
+        )
+    if shaft is None:
+        return
+    if shaft.beam is None:
+        stiffness = "" if shaft.stiffness is None else f" = {shaft.stiffness:g} N/mm"
+        yield (
+            f"pin_shaft.stiffness{stiffness}: must be left out beside carrier.posts; pins between two flanges are beams "
+            '(pin_shaft.beam with tip = "tied-clamped" or "tied-pinned")'
+        )
+    elif shaft.beam.tip == "free":
+        yield (
+            'pin_shaft.beam.tip = "free": must be "tied-clamped" or "tied-pinned" beside carrier.posts, whose far flange holds '
+            "the tips of the shaft pins"
+        )
+
+
 def _per_disc(drive: Drive) -> Iterator[str]:
     """Yield the problems of values per disc, which need an entry for every disc or none at all, one sentence each."""
     discs = drive.disc.number_of_discs
@@ -214,7 +263,8 @@ def _per_disc(drive: Drive) -> Iterator[str]:
             )
     # One disc may be one of several checked alone; where shafts or pins bend, the axis has its zero at supports and beams.
     shaft = drive.pin_shaft
-    placed = (drive.crank.support, drive.pin_wheel.beam, None if shaft is None else shaft.beam)
+    posts = None if drive.carrier is None else drive.carrier.posts
+    placed = (drive.crank.support, drive.pin_wheel.beam, None if shaft is None else shaft.beam, posts)
     if discs > 1 and not any(placed) and abs(sum(planes)) > 1e-6 * len(planes) * thickness:
         mean = sum(planes) / len(planes)
         yield f"disc.planes has the mean {mean:g} mm: must be 0 mm, planes are centred on 0 where nothing bends"

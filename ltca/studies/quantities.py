@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias
 
@@ -84,20 +84,21 @@ class SampleBatch:
         found = self.losses()
         return np.asarray(self.by_sample(found.watts(found.total)).mean(axis=1))
 
-    def _at_output(self, pose: FloatArray) -> FloatArray:
-        """Deviation of the output, arcsec."""
-        output = np.array([drive.output_per_wheel_angle for drive in self.drives])
-        return np.asarray(output[:, None] * self.by_sample(pose[:, WHEEL_ANGLE]) * ARCSEC)
+    def _at_output(self, pose: FloatArray, torque: Sequence[float]) -> FloatArray:
+        """Deviation of the output at the torque of each drive, arcsec."""
+        wheel = self.by_sample(pose[:, WHEEL_ANGLE])
+        each = zip(self.drives, wheel, torque, strict=True)
+        return np.array([drive.output_deviation(angle, load) for drive, angle, load in each]) * ARCSEC
 
     def transmission_error(self) -> FloatArray:
         """Transmission error at the torque of each drive, arcsec."""
-        return self._at_output(self.full.pose)
+        return self._at_output(self.full.pose, [drive.load.torque for drive in self.drives])
 
     def light_transmission_error(self) -> FloatArray:
         """Transmission error at the light torque, arcsec."""
         if self.light is None:
             raise ValueError("the light torque was not solved")
-        return self._at_output(self.light.pose)
+        return self._at_output(self.light.pose, [drive.load.light_torque for drive in self.drives])
 
     def backlashes(self) -> FloatArray:
         """Backlash of the wheel, disc held, arcmin."""

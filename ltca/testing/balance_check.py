@@ -38,6 +38,7 @@ from ltca.testing.yielding_pins import (
     contact_alone,
     crankshaft_deflections,
     has_ring,
+    post_forces,
     ring_tips,
 )
 
@@ -167,8 +168,27 @@ class PotentialEnergy:
         first = self.own * disc + 3
         yielding = pose[:, first : first + self.own - 3]
         if yielding.shape[1] == 0:
-            return np.zeros((pose.shape[0], self.drive.crank.number), dtype=complex)
+            return self._lines(disc, pose)
         return np.asarray(yielding[:, ::2] + 1j * yielding[:, 1::2])
+
+    def _lines(self, disc: int, pose: FloatArray) -> ComplexArray:
+        """Displacements of the straight lines between the bearings of the cranks in a disc, shape (poses, cranks)."""
+        drive, crank = self.drive, self.drive.crank
+        if drive.carrier is None or drive.carrier.posts is None:
+            return np.zeros((pose.shape[0], crank.number), dtype=complex)
+        if crank.support is not None:
+            near, far = crank.support.positions
+        else:
+            thick = drive.carrier.flange or (0.0, 0.0)
+            length = drive.carrier.posts.length
+            if length is None:
+                beam = None if drive.pin_shaft is None else drive.pin_shaft.beam
+                length = drive.disc.stack_length if beam is None or beam.span is None else beam.span
+            near, far = -0.5 * length - 0.5 * thick[0], 0.5 * length + 0.5 * thick[1]
+        angle = crank.angle + 2.0 * np.pi * np.arange(crank.number) / crank.number
+        place = complex(crank.axis_offset.x, crank.axis_offset.y) + (crank.circle_radius or 0.0) * np.exp(1j * angle)
+        seat = pose[:, -4, None] + 1j * pose[:, -3, None] + 1j * pose[:, -2, None] * place
+        return np.asarray((drive.disc.disc_planes[disc] - near) / (far - near) * seat)
 
     def wheel_displacement(self, pose: FloatArray) -> ComplexArray:
         """Displacement of the wheel, mm."""
@@ -178,13 +198,16 @@ class PotentialEnergy:
         return np.asarray(pose[:, last] + 1j * pose[:, last + 1])
 
     def _supports(self, pose: FloatArray) -> FloatArray:
-        """Energy of crankshafts on their bearings and of the wheel on its main bearing, N·mm."""
+        """Energy of crankshafts on their bearings, of the wheel on its main bearing and of the posts of the carrier, N·mm."""
         total = 0.5 * (self.drive.pin_wheel.support_stiffness or 0.0) * np.abs(self.wheel_displacement(pose)) ** 2
         if self.drive.crank.support is not None:
             holding = np.linalg.inv(crankshaft_deflections(self.drive))
             discs = range(self.drive.disc.number_of_discs)
-            moved = np.stack([self._cranks(disc, pose) for disc in discs], axis=1)
+            moved = np.stack([self._cranks(disc, pose) - self._lines(disc, pose) for disc in discs], axis=1)
             total = total + 0.5 * np.einsum("pdc,de,pec->p", moved.conj(), holding, moved).real
+        if self.drive.carrier is not None and self.drive.carrier.posts is not None:
+            flange = pose[:, -4:-1]
+            total = total + 0.5 * np.einsum("pi,ij,pj->p", flange, post_forces(self.drive), flange)
         return np.asarray(total)
 
     def crank_moment(self, pose: FloatArray) -> float:
@@ -366,8 +389,9 @@ def find_imbalance(
     lever = np.ones(size)
     lever[2 : potential.own * drive.disc.number_of_discs : potential.own] = wheel - drive.crank.eccentricity
     lever[-1] = wheel
-    if drive.pin_shaft is not None and has_ring(drive):
-        lever[-2] = drive.pin_shaft.pin_circle_radius
+    if has_ring(drive):
+        pins = drive.pin_shaft
+        lever[-2] = (drive.crank.circle_radius or 1.0) if pins is None else pins.pin_circle_radius
     load = abs(moment) / wheel
     if not np.all(np.isfinite(pose)):
         return ["the pose is not finite"]

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.random import Generator
 
 from ltca.drive.deviations import BoreErrors, OneDisc, OneEccentric
-from ltca.drive.parts import Clearance, CrankSupport, Drive, Installation
+from ltca.drive.parts import Carrier, CarrierPosts, Clearance, CrankSupport, Drive, Installation
 from ltca.geometry.flank import FlankProfile
 from ltca.reading.physical_checks import is_sound
 from ltca.testing.practical_drives import practical_drive, with_ring
@@ -22,14 +22,14 @@ def crank_drive(seed: int) -> tuple[Drive, float]:
     """Return a reducer of any kind, two thirds with two to five cranks on the carrier, and a crank angle in rad, by a seed
     (not negative).
     """
-    random = np.random.default_rng((seed, 2))
+    random, of_carrier = np.random.default_rng((seed, 2)), np.random.default_rng((seed, 5))
     while True:
         number = int(random.integers(2**32))
         drive, angle = practical_drive(number)
         drive = replace(drive, ring=None)  # drawn again for what the drive has become
         if random.uniform() < 0.67:
             drive = _on_the_carrier(random, drive)
-        drive = _supported(random, drive)
+        drive = with_carrier(of_carrier, _supported(random, drive))
         if is_sound(drive):
             return with_ring(number, drive), angle
 
@@ -107,3 +107,28 @@ def _supported(random: Generator, drive: Drive) -> Drive:
     if random.uniform() < 0.3:
         wheel = replace(wheel, support_stiffness=float(random.choice([3e5, 1e6])))
     return replace(drive, crank=crank, pin_wheel=wheel)
+
+
+def with_carrier(random: Generator, drive: Drive) -> Drive:
+    """Return the drive with a carrier that twists, with a far flange on posts, with both or, half of all, with none.
+
+    Posts need the tips of the shaft pins tied, or cranks alone; they stand on the circle of pins or cranks as often as not.
+    """
+    shaft = drive.pin_shaft
+    twists, stands = random.uniform() < 0.25, random.uniform() < 0.4
+    tied = shaft is None or (shaft.beam is not None and shaft.beam.tip != "free")
+    circle = (drive.crank.circle_radius or 0.0) if shaft is None else shaft.pin_circle_radius
+    number, part = int(random.choice([2, 3, 3, 4, 6])), float(random.choice([1.0, 1.0, 0.8, 1.1]))
+    thickness, longer = float(random.choice([0.5, 1.0])), float(random.choice([1.0, 1.3]))
+    own, length = random.uniform() < 0.5, random.uniform() < 0.5
+    posts = None
+    if stands and tied:
+        size = float(random.choice([0.25, 0.4])) * 2.0 * part * circle * float(np.sin(np.pi / number))
+        reach = 2.0 * max(abs(plane) for plane in drive.disc.disc_planes) + drive.disc.thickness
+        posts = CarrierPosts(number=number, radius=part * circle, size=size, length=longer * reach if length else None)
+    if posts is None and not twists:
+        return drive
+    # A minute or so at the rated torque, or ten times stiffer.
+    stiffness = float(random.choice([1.0, 10.0])) * drive.load.torque / 3e-4 if twists else None
+    flange = (thickness * posts.size, posts.size) if posts is not None and own else None
+    return replace(drive, carrier=Carrier(stiffness_torsion=stiffness, flange=flange, posts=posts))

@@ -44,6 +44,8 @@ _SUPPORT = {
 }
 GOES_WITH = {
     "materials.crankshaft": "crank.support",
+    # Posts need shaft pins that are beams, which some engines refuse first.
+    **dict.fromkeys(("carrier.flange", "carrier.posts", "materials.carrier"), "pin_shaft.beam"),
     "materials.sleeve": "pin_wheel.seat",
     "materials.wheel_seat": "pin_wheel.seat",
     "load.speed": "friction",
@@ -63,6 +65,8 @@ _LEFT_OUT = {
     "crank.circle_radius": 6.0,
     "crank_bearing.dynamic_load_rating": 5e4,
     "crank_bearing.static_load_rating": 6e4,
+    "carrier.stiffness_torsion": 2e8,
+    "carrier.flange": (8.0, 6.0),
 }
 _LEFT_OUT |= {
     f"materials.{part}.{name}": value
@@ -196,7 +200,7 @@ def _changed_array(drive: Drive, path: str, values: list[Any]) -> tuple[Any, ...
     if path.endswith("profile_errors.parameter"):
         return (*values[:-1], values[-1] + 0.1) if values else ()
     kind = field_kind(path)
-    if kind is not None and kind.unit == "N/mm":
+    if path == "carrier.flange" or (kind is not None and kind.unit == "N/mm"):
         return tuple(1.1 * value for value in values)
     count = element_count(drive, path)
     # Different amounts for the parts: a circle that shifts or grows as a whole could be hidden by a free motion.
@@ -247,6 +251,22 @@ def _ring(drive: Drive, path: str) -> dict[str, Any]:
     return found | {f"ring.bolts.{name}": value for name, value in bolts.items()}
 
 
+def _carrier(drive: Drive, path: str, span: float) -> dict[str, Any]:
+    """A carrier with what a field of it needs, its pins tied to the far flange."""
+    if path == "carrier.stiffness_torsion":
+        return {} if drive.carrier is not None else {path: 1e8}
+    given: dict[str, Any] = {}
+    if drive.carrier is None or drive.carrier.posts is None:
+        circle = drive.crank.circle_radius if drive.pin_shaft is None else drive.pin_shaft.pin_circle_radius
+        radius = 0.9 * (circle or 0.0)
+        given = {"carrier.posts.number": 4, "carrier.posts.radius": radius, "carrier.posts.size": 0.3 * radius}
+        given |= {} if path == "carrier.flange" else {"carrier.flange": (8.0, 8.0)}
+    shaft = drive.pin_shaft
+    if shaft is not None and (shaft.beam is None or shaft.beam.tip == "free"):
+        given |= {"pin_shaft.stiffness": None, "pin_shaft.beam.span": span, "pin_shaft.beam.tip": "tied-clamped"}
+    return given
+
+
 def _beside(drive: Drive, path: str) -> dict[str, Any]:
     """Further fields that a field needs to have an effect, where the drive is without them."""
     if path.startswith("ring.") and drive.ring is None:
@@ -283,6 +303,8 @@ def _beside(drive: Drive, path: str) -> dict[str, Any]:
         return {"lubricant.viscosity": 60.0, "lubricant.contamination": 0.5} | speed
     if path in ("pin_shaft.seat.pin_radius", "pin_shaft.seat.bore_radius") and shaft and shaft.seat.kind == "fixed":
         return _seat(drive, "pin_shaft", "sleeve")
+    if path.startswith(("carrier.", "materials.carrier.")):
+        return _carrier(drive, path, span)
     if path.startswith("pin_wheel.beam.") and wheel.beam is None:
         return {"pin_wheel.beam.span": span, "pin_wheel.beam.ends": "supported"}
     if path.startswith("pin_shaft.beam.") and shaft and shaft.beam is None:
@@ -331,7 +353,7 @@ def change_of(drive: Drive, path: str) -> tuple[Drive, dict[str, Any]]:
             field: ()
             for field, kind in field_kinds().items()
             if kind.is_array and "profile_errors" not in field and ANY not in field.split(".")
-            if not field.startswith("crank.support.") and missing_part(drive, field) is None
+            if not field.startswith(("crank.support.", "carrier.")) and missing_part(drive, field) is None
         }
         base = with_fields(drive, cleared)
         change = {path: sensible_change(base, path)}

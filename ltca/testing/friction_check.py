@@ -133,11 +133,11 @@ class FrictionCheck:
     @property
     def at_cranks(self) -> float:
         """Moment of friction on all cranks, ccw positive, N·mm."""
-        support, planes = self.drive.crank.support, self.drive.disc.disc_planes
-        if support is None:  # held beside every disc
+        places, planes = self.drive.crank_supports, self.drive.disc.disc_planes
+        if places is None:  # held beside every disc
             carried = np.abs(self.bearings).sum()
         else:
-            near, far = support.positions
+            near, far = places
             share = (np.asarray(planes) - near) / (far - near)
             carried = np.abs(share @ self.bearings).sum() + np.abs((1.0 - share) @ self.bearings).sum()
         friction = self._friction

@@ -16,7 +16,7 @@ from ltca.drive.materials import Material
 from ltca.drive.members.pins import PinShaft, PinWheel, ShaftPinBeam, ShaftPinSeat, WheelPinBeam, WheelPinSeat
 from ltca.drive.parts import Drive, Friction
 from ltca.reading.physical_checks import is_sound
-from ltca.testing.crank_drives import crank_drive
+from ltca.testing.crank_drives import crank_drive, with_carrier
 from ltca.testing.practical_drives import with_ring
 from ltca.testing.yielding_pins import beam_stiffness
 
@@ -41,7 +41,7 @@ def pin_drive(seed: int) -> tuple[Drive, float]:
 
     Wheel pins are fixed, loose in slots or under sleeves, shaft pins fixed or under sleeves; either kind is rigid or bends.
     """
-    random = np.random.default_rng((seed, 3))
+    random, of_carrier = np.random.default_rng((seed, 3)), np.random.default_rng((seed, 6))
     while True:
         number = int(random.integers(2**32))
         drive, angle = crank_drive(number)
@@ -53,6 +53,7 @@ def pin_drive(seed: int) -> tuple[Drive, float]:
             play = play if random.uniform() < 0.5 else float(random.choice(PLAYS))
             drive = replace(drive, pin_shaft=_bent_shaft_pins(random, drive, _seated_shaft_pins(random, drive, play)))
         drive = _made_of(random, drive)
+        drive = drive if drive.carrier is not None else with_carrier(of_carrier, drive)
         if largest_deflection(drive) < SOFTEST * drive.crank.eccentricity and is_sound(drive):
             return with_ring(number, drive), angle
 

@@ -189,8 +189,9 @@ class YieldingPins:
 
 
 def has_ring(drive: Drive) -> bool:
-    """Tell whether a ring ties the tips of the shaft pins."""
-    return drive.pin_shaft is not None and drive.pin_shaft.beam is not None and drive.pin_shaft.beam.tip != "free"
+    """Tell whether a ring ties the tips of the shaft pins, or the carrier has a far flange on posts."""
+    tied = drive.pin_shaft is not None and drive.pin_shaft.beam is not None and drive.pin_shaft.beam.tip != "free"
+    return tied or (drive.carrier is not None and drive.carrier.posts is not None)
 
 
 def ring_tips(drive: Drive, pose: FloatArray) -> ComplexArray:
@@ -200,6 +201,68 @@ def ring_tips(drive: Drive, pose: FloatArray) -> ComplexArray:
         return np.zeros((pose.shape[0], places.size), dtype=complex)
     x, y, turned = pose[:, -4, None], pose[:, -3, None], pose[:, -2, None]
     return np.asarray(x + 1j * y + 1j * turned * places)
+
+
+def post_forces(drive: Drive) -> FloatArray:
+    """Return the forces on the far flange by its x, y and rotation, shape (3, 3), post by post from stiffness matrices of bars.
+
+    Each post has displacement and rotation at both ends as unknowns, each end a spring to a flange that does not turn; the far
+    flange is sheared between posts and pins by a quadrature of its rings.
+    """
+    assert drive.carrier is not None
+    posts, flange, material = drive.carrier.posts, drive.carrier.flange, drive.materials.carrier
+    assert posts is not None
+    length = posts.length
+    if length is None:
+        beam = None if drive.pin_shaft is None else drive.pin_shaft.beam
+        length = drive.disc.stack_length if beam is None or beam.span is None else beam.span
+    nu, modulus = material.poisson_ratio, material.youngs_modulus
+    second, area, shear = np.pi * posts.size**4 / 64.0, np.pi * posts.size**2 / 4.0, modulus / (2.0 * (1.0 + nu))
+    phi = 12.0 * modulus * second / (6.0 * (1.0 + nu) / (7.0 + 6.0 * nu) * shear * area * length**2)
+    bar = np.array([
+        [12.0, 6.0 * length, -12.0, 6.0 * length],
+        [6.0 * length, (4.0 + phi) * length**2, -6.0 * length, (2.0 - phi) * length**2],
+        [-12.0, -6.0 * length, 12.0, -6.0 * length],
+        [6.0 * length, (2.0 - phi) * length**2, -6.0 * length, (4.0 + phi) * length**2],
+    ]) * modulus * second / ((1.0 + phi) * length**3)  # fmt: skip
+    total, sheared = np.zeros((3, 3)), 0.0
+    kept = [2]  # rotations at rigid flanges and the near displacement are held
+    if flange is not None:
+        half = posts.radius * np.sin(np.pi / posts.number)
+        for place, thickness in zip((1, 3), flange, strict=True):
+            bar[place, place] += 1.0 / plate_rotation(thickness, 0.5 * posts.size, half, modulus, nu)
+        kept = [2, 1, 3]
+        pins = drive.pin_shaft
+        circle = (drive.crank.circle_radius or 0.0) if pins is None else pins.pin_circle_radius
+        if circle:
+            nodes, weights = np.polynomial.legendre.leggauss(40)
+            low, high = sorted((posts.radius, circle))
+            at = 0.5 * (high + low) + 0.5 * (high - low) * nodes
+            sheared = float(0.5 * (high - low) * (weights / (2.0 * np.pi * shear * flange[1] * at**3)).sum())
+    across = float(1.0 / np.linalg.inv(bar[np.ix_(kept, kept)])[0, 0])
+    for angle in 2.0 * np.pi * np.arange(posts.number) / posts.number:
+        x, y = posts.radius * np.cos(angle), posts.radius * np.sin(angle)
+        moved = np.array([[1.0, 0.0, -y], [0.0, 1.0, x]])
+        total += across * moved.T @ moved
+        total[2, 2] += shear * 2.0 * second / length
+    return np.asarray(np.linalg.inv(np.linalg.inv(total) + np.diag([0.0, 0.0, sheared])))
+
+
+def plate_rotation(thickness: float, boss: float, support: float, modulus: float, ratio: float) -> float:
+    """Return the rotation of a rigid boss by its moment in a plate supported about it, from the four constants of the plate."""
+    rigidity = modulus * thickness**3 / (12.0 * (1.0 - ratio**2))
+
+    def terms(r: float) -> FloatArray:
+        """Deflection, slope and moment by the radius of r, 1/r, r³, r ln r times cos θ, shape (3, 4)."""
+        value = np.array([r, 1.0 / r, r**3, r * np.log(r)])
+        slope = np.array([1.0, -1.0 / r**2, 3.0 * r**2, np.log(r) + 1.0])
+        bend = np.array([0.0, 2.0 / r**3, 6.0 * r, 1.0 / r])
+        return np.stack([value, slope, bend + ratio * (slope / r - value / r**2)])
+
+    inner, outer = terms(boss), terms(support)
+    matrix = np.stack([inner[0] - boss * inner[1], outer[0], outer[2], np.array([0.0, 0.0, 0.0, 1.0])])
+    constants = np.linalg.solve(matrix, np.array([0.0, 0.0, 0.0, -1.0 / (4.0 * np.pi * rigidity)]))
+    return float(inner[1] @ constants)
 
 
 def contact_alone(law: EnergyLaw) -> EnergyLaw:

@@ -42,7 +42,13 @@ def numbers(analysis):
     """Everything that an analysis found of a case, in one row: poses, loads, pressures, what its dataset is made of."""
     contacts, pressures = analysis.full.response, analysis.pressures
     kinds = (pressures.pins, pressures.outer, pressures.inner, pressures.holes)
-    arrays = [analysis.full.pose, analysis.light.pose, contacts.pin_load, contacts.hole_load]
+    arrays = [
+        analysis.full.pose,
+        analysis.light.pose,
+        analysis.transmission_error,
+        contacts.pin_load,
+        contacts.hole_load,
+    ]
     arrays += [contacts.rollers.outer_load, contacts.rollers.inner_load]
     arrays += [array for kind in kinds for array in (kind.mid, kind.largest, kind.half_width)]
     if analysis.losses is not None:
@@ -66,8 +72,9 @@ def direct(drive):
     found = solve_at_output(model, [drive], ANGLES[:1], drive.load.torque, near.pose)
     pressures = model.pressures(found.response)
     kinds = (pressures.pins, pressures.outer, pressures.inner, pressures.holes)
+    turned = drive.output_deviation(found.pose[:, -1], drive.load.torque)
     return np.concatenate(
-        [found.pose.ravel(), *(kind.mid.ravel() for kind in kinds), *(k.largest.ravel() for k in kinds)]
+        [found.pose.ravel(), turned, *(kind.mid.ravel() for kind in kinds), *(k.largest.ravel() for k in kinds)]
     )
 
 
@@ -194,6 +201,9 @@ OF_SEVERAL_CRANKS = [
     "crank.support.diameter",
     "crank.support.positions",
     "crank.support.stiffness",
+    "carrier.stiffness_torsion",
+    "carrier.posts.size",
+    "materials.carrier.youngs_modulus",
     "crank.of.0.eccentricity_error",
     "crank.of.0.phase_error",
     "disc.of.0.bore_errors.radial",

@@ -94,7 +94,7 @@ def locked_path(
             raise
         state = state.after(model, found)
         wound.append(found.pose[:, WHEEL_ANGLE])
-    return np.asarray(drive.output_per_wheel_angle * np.stack(wound, axis=1))
+    return np.asarray(drive.output_deviation(np.stack(wound, axis=1), path))
 
 
 def hysteresis_loop(

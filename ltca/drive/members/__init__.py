@@ -11,6 +11,8 @@ operation        Installation and use: the fixed member, load, speed, duty, lubr
 crank            Crankshafts: their eccentrics, the circle they stand on, their supports and their bearings
 pins             Pins of the pin wheel and of the pin shaft: fixed, loose or sleeved, rigid or bending
 ring             The ring in which the wheel pins are seated: its size, material, flange and bolts
+carrier          Carrier: two flanges, tied by posts, between which shaft pins or cranks stand, and what twists between it
+                 and the output
 temperatures     A drive at its temperatures: every length multiplied by 1 + α ΔT of its part
 limits           ``[limits]`` of a drive file: bounds on results, by the names of the summary, each with its source
 judgement        Limits of values, from the drive file or its materials, with safety and verdict

@@ -119,7 +119,10 @@ def growth_of(drive: Drive) -> Growth:
     pins = drive.pin_shaft
     on_wheel = "sleeve" if drive.pin_wheel.seat.kind == "sleeve" else "wheel_pin"
     on_shaft = "sleeve" if pins is not None and pins.seat.kind == "sleeve" else "shaft_pin"
-    carrier = factor("shaft_pin" if pins is not None else crank, shaft, "shaft")
+    shaft_pin = factor("shaft_pin", shaft, "shaft") if pins is not None else factor(crank, shaft, "shaft")
+    carrier = shaft_pin
+    if materials.carrier.thermal_expansion is not None:
+        carrier = factor("carrier", shaft, "shaft")
     found = Growth(
         wheel=factor(seat, housing, "housing", ring),
         wheel_pin=factor("wheel_pin", housing, "housing"),
@@ -129,7 +132,7 @@ def growth_of(drive: Drive) -> Growth:
         race=factor("inner_race", shaft, "shaft"),
         roller=factor("roller", 0.5 * (disc + shaft), "shaft" if shaft != REFERENCE_TEMPERATURE else "disc"),
         carrier=carrier,
-        shaft_pin=carrier,
+        shaft_pin=shaft_pin,
         shaft_sleeve=1.0 if pins is None else factor(on_shaft, shaft, "shaft"),
     )
     if missing:
@@ -153,6 +156,8 @@ def _mechanical(drive: Drive) -> Materials:
     materials = drive.materials
     if drive.pin_wheel.seat.kind != "slot":
         materials = replace(materials, wheel_seat=Material())
+    if drive.carrier is None or drive.carrier.posts is None:
+        materials = replace(materials, carrier=Material())
     return materials if drive.crank.support is not None else replace(materials, crankshaft=Material())
 
 

@@ -190,9 +190,9 @@ class TurningFriction:
 
 def _bearing_loads(drive: Drive) -> FloatArray:
     """Load of the bearings of a crank by the forces of the discs: two supports in balance, or a bearing beside each disc."""
-    planes, support = np.array(drive.disc.disc_planes), drive.crank.support
+    planes, support = np.array(drive.disc.disc_planes), drive.crank_supports
     if support is None:
         return np.eye(planes.size)
-    first, second = support.positions
+    first, second = support
     part = (planes - first) / (second - first)
     return np.stack([1.0 - part, part])

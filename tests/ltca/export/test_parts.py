@@ -167,3 +167,34 @@ def test_names_of_files_fit(kinds_of_drives):
     long = replace(kinds_of_drives["paper"], name="ä" * 60)
     (part,) = make_parts(long, "b" * 120, compensation=-0.125)
     assert len(f"{part.stem}_flank.csv".encode()) < 255
+
+
+CARRIER = {
+    "carrier.flange": (10.0, 8.0), "carrier.posts.number": 3, "carrier.posts.radius": 42.0, "carrier.posts.size": 14.0,
+}  # fmt: skip
+
+
+def test_flanges_stand_on_their_posts(kinds_of_drives):
+    """Holes where cranks and pins go through; posts between two cranks; the assembly has them at the discs' planes."""
+    drive = with_fields(kinds_of_drives["rv"], CARRIER)
+    (part,) = make_parts(drive, "nominal", "carrier")
+    assert features(part) == {"post": 3, "flange": 2, "flange-hole": 6}
+    heights = {body.name: (body.bottom, body.top) for body in part.bodies}
+    assert heights["near flange"] == pytest.approx((0.0, 10.0))
+    assert heights["post 1"] == pytest.approx((10.0, 40.0))  # the stack of the discs
+    assert heights["far flange"] == pytest.approx((40.0, 48.0))
+    posts = np.array([post.centre for post in circles(part, "post")])
+    assert np.abs(posts) == pytest.approx(42.0)
+    for hole in circles(part, "flange-hole"):
+        assert hole.radius == 10.0  # of the shaft in its bearings
+        assert abs(hole.centre) == pytest.approx(42.0)
+        assert np.min(np.abs(posts - hole.centre)) == pytest.approx(42.0)  # a sixth of a turn aside
+    (whole,) = make_parts(drive, "nominal", "assembly")
+    (far,) = (body for body in whole.bodies if body.name == "far flange")
+    assert (far.bottom, far.top) == (15.0, 23.0)
+    sleeved = with_fields(kinds_of_drives["sleeved"], CARRIER)
+    (part,) = make_parts(sleeved, "nominal", "carrier", compensation=0.1)
+    assert features(part) == {"post": 3, "flange": 2, "flange-hole": 22}
+    assert {hole.radius for hole in circles(part, "flange-hole") if abs(hole.centre) > 1.0} == {4.6}
+    with pytest.raises(DriveError, match=r"--part carrier: there is no carrier\.posts in this drive"):
+        make_parts(kinds_of_drives["paper"], "CS-1", "carrier")

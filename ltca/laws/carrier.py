@@ -1,0 +1,109 @@
+r"""How the far flange of a carrier moves against the near one: posts as beams, flanges as plates where the posts are fixed.
+
+A post of length L is a round Timoshenko beam between two flanges that stay parallel (their tilt is left out). Under a force F
+across it bends in an S; the ends carry moments :math:`M_1 + M_2 = FL` and turn by :math:`c_i M_i` where the flanges bend.
+By Castigliano's theorem the flange moves by
+
+.. math:: \Delta = F \left[\frac{L^3}{3EI} + \frac{L}{\kappa GA} + c_2 L^2\right]
+   - M_1 L \left[\frac{L}{2EI} + c_2\right], \qquad M_1 = FL\,\frac{L/2EI + c_2}{L/EI + c_1 + c_2} ,
+
+which is :math:`FL^3/12EI + FL/\kappa GA` between rigid flanges. A flange of thickness t turns with the end of a post like a
+plate with a rigid boss of radius a that is supported half-way to the next posts, at :math:`b = R \sin(\pi/n)`, where their
+equal tilts meet: :math:`w = (Ar + B/r + Cr^3 + Dr\ln r)\cos\theta` (Timoshenko and Woinowsky-Krieger, Theory of Plates and
+Shells, 2nd ed., art. 63), a plane boss and no moment at the support give, with :math:`D_P = Et^3/12(1-\nu^2)`,
+
+.. math:: c = \frac{1}{4\pi D_P}\left[\ln\frac{b}{a}
+   - \frac{(b^2 - a^2)\,[(2+\nu)\,b^2 - \nu a^2]}{(3+\nu)\,b^4 + (1-\nu)\,a^4}\right] .
+
+n posts on the circle R resist x and y with n times the stiffness k of one, and rotation with
+:math:`n(kR^2 + GJ/L)`; in series with rotation stands the far flange itself, sheared between the circle of the posts and that
+of the pins or cranks, :math:`|1/R^2 - 1/R_P^2|/4\pi Gt` (an annular disc in torsion).
+"""
+
+from __future__ import annotations
+
+from math import log, pi, sin
+
+import numpy as np
+
+from ltca.arrays import FloatArray
+from ltca.drive.parts import Drive
+
+
+def post_stiffness(
+    length: float, diameter: float, youngs_modulus: float, poisson_ratio: float, ends: tuple[float, float] = (0.0, 0.0)
+) -> tuple[float, float]:
+    """Return the force by unit displacement of one post's far end that does not turn, N/mm, and its moment by unit twist, N·mm.
+
+    Parameters
+    ----------
+    length, diameter : float
+        mm.
+    youngs_modulus : float
+        MPa.
+    poisson_ratio : float
+        ν; the shear coefficient is that of Cowper (1966), 6(1 + ν)/(7 + 6ν).
+    ends : tuple of float
+        Rotation of each end by its moment, rad/(N·mm).
+
+    Examples
+    --------
+    A long post between rigid flanges resists with 12 EI/L³:
+
+    >>> across, _ = post_stiffness(1e4, 10.0, 2e5, 0.3)
+    >>> print(f"{across / (12.0 * 2e5 * pi * 10.0**4 / 64.0 / 1e12):.4f}")
+    1.0000
+    """
+    second, shear_modulus = pi * diameter**4 / 64.0, youngs_modulus / (2.0 * (1.0 + poisson_ratio))
+    bending = youngs_modulus * second
+    shear = 6.0 * (1.0 + poisson_ratio) / (7.0 + 6.0 * poisson_ratio) * shear_modulus * pi * diameter**2 / 4.0
+    first, far = ends
+    near_moment = length * (0.5 * length / bending + far) / (length / bending + first + far)
+    moved = length**3 / (3.0 * bending) + length / shear + far * length**2
+    moved -= near_moment * length * (0.5 * length / bending + far)
+    return 1.0 / moved, shear_modulus * 2.0 * second / length
+
+
+def boss_compliance(
+    thickness: float, boss: float, support: float, youngs_modulus: float, poisson_ratio: float
+) -> float:
+    """Return the rotation of a rigid boss in a round plate by its moment, rad/(N·mm).
+
+    The plate of a thickness is supported at the radius `support`, free to turn there, and `boss` is the radius of what is fixed
+    in it, all in mm.
+    """
+    rigidity = youngs_modulus * thickness**3 / (12.0 * (1.0 - poisson_ratio**2))
+    inner, outer, nu = boss**2, support**2, poisson_ratio
+    spread = (outer - inner) * ((2.0 + nu) * outer - nu * inner)
+    left = log(support / boss) - spread / ((3.0 + nu) * outer**2 + (1.0 - nu) * inner**2)
+    return left / (4.0 * pi * rigidity)
+
+
+def far_flange_stiffness(drive: Drive) -> FloatArray | None:
+    """Return the forces on the far flange by its x, y and rotation, shape (3, 3), N/mm, N and N·mm; None without posts."""
+    carrier = drive.carrier
+    posts = None if carrier is None else carrier.posts
+    if carrier is None or posts is None:
+        return None
+    material = drive.materials.carrier
+    modulus, ratio = material.youngs_modulus, material.poisson_ratio
+    half_pitch = posts.radius * sin(pi / posts.number)
+    ends, sheared = (0.0, 0.0), 0.0
+    if carrier.flange is not None:
+        near, far = carrier.flange
+        ends = tuple(  # type: ignore[assignment]
+            boss_compliance(thickness, 0.5 * posts.size, half_pitch, modulus, ratio) for thickness in (near, far)
+        )
+        if loaded := loaded_circle(drive):
+            shear_modulus = modulus / (2.0 * (1.0 + ratio))
+            sheared = abs(posts.radius**-2 - loaded**-2) / (4.0 * pi * shear_modulus * far)
+    across, twist = post_stiffness(drive.post_length, posts.size, modulus, ratio, ends)
+    turning = posts.number * (across * posts.radius**2 + twist)
+    return np.diag([posts.number * across, posts.number * across, turning / (1.0 + sheared * turning)])
+
+
+def loaded_circle(drive: Drive) -> float:
+    """Return the radius of the circle on which the far flange is pressed, that of the shaft pins or else of the cranks, mm."""
+    if drive.pin_shaft is not None:
+        return drive.pin_shaft.pin_circle_radius
+    return drive.crank.circle_radius or 0.0
