@@ -7,9 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from ltca.analysis.derivatives import derivatives
 from ltca.analysis.engines import HalfSpace, Hybrid, PlaneStrain
 from ltca.analysis.loaded_analysis import analyse
+from ltca.analysis.results import labelled_results
 from ltca.compliance.coefficients import load_coefficients
+from ltca.drive.fields import read_field
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import WheelPinBeam, WheelPinSeat
 from ltca.drive.single_discs import single_discs, without_own
@@ -18,6 +21,7 @@ from ltca.errors import DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
+from ltca.studies.batch_analysis import BatchSettings, analyse_samples
 from ltca.testing.balance_check import find_imbalance
 from ltca.testing.closed_form_bodies import closed_form_coefficients
 from ltca.testing.practical_drives import practical_drive
@@ -285,3 +289,45 @@ def test_ring_grows_with_the_wheel():
     growth = wheel.pin_circle_radius / drive.pin_wheel.pin_circle_radius
     assert growth == pytest.approx(1.0 + 1.15e-5 * 40.0, rel=1e-12)
     np.testing.assert_allclose(lengths, growth * np.array([60.0, 90.0, 50.0, 85.0]), rtol=1e-12)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("field", "values"),
+    [
+        ("ring.width", (50.0, 40.0)),
+        ("ring.outer_radius", (90.0, 84.0)),
+        ("ring.material.poisson_ratio", (0.3, 0.2)),
+        ("ring.bolts.stiffness", (2e5, 5e4)),
+        ("ring.bolts.circle_radius", (85.0, 80.0)),
+    ],
+)
+def test_samples_of_rings_are_those_of_each_alone(field, values):
+    """Many drives at once have the ring of each, not of the first: a study or tolerances of a ring."""
+    drives = [with_fields(ringed("robot-joint"), BOLTS | {field: value}) for value in values]
+    settings = BatchSettings(
+        crank_angle=ANGLES[:2], quantities=("mean_transmission_error", "max_pin_load"), engine=HalfSpace(), nominal=None
+    )
+    together = analyse_samples(drives, settings)
+    alone = np.concatenate([analyse_samples([drive], settings).values for drive in drives])
+    assert together.messages == ("", "")
+    # Solved from other starts: 1e-9 of the load
+    np.testing.assert_allclose(together.values, alone, rtol=1e-8)
+    assert np.ptp(alone[:, 1]) > 1e-4 * alone[0, 1]
+
+
+@pytest.mark.slow
+@pytest.mark.nightly
+def test_derivatives_by_fields_of_the_ring():
+    drive = with_fields(ringed("robot-joint"), BOLTS)
+    fields = {"ring.outer_radius": 2e-3, "ring.bolts.stiffness": 20.0}
+    found = derivatives(analyse(drive, ANGLES[:1]), list(fields))["pin_load"]
+    for path, step in fields.items():
+        value = read_field(drive, path)
+        loads = [
+            labelled_results("", {"": analyse(with_fields(drive, {path: value + side * step}), ANGLES[:1])})["pin_load"]
+            for side in (1.0, -1.0)
+        ]
+        slope = (loads[0].values - loads[1].values).squeeze() / (2.0 * step)
+        # Differences of second order over some 2e-5 of a field, of loads that balance to 1e-9.
+        np.testing.assert_allclose(found.sel(field=path).values.squeeze(), slope, atol=1e-4 * np.abs(slope).max())
