@@ -157,8 +157,8 @@ def plays_over_a_turn(drives: Sequence[Sequence[ContactGeometry]], near: TurnPla
     (play, preloaded), spread = plays(angle), 2.0 * np.pi / POSITIONS
     for _ in range(REFINEMENTS):
         order = np.argsort(play, axis=1, kind="stable")
-        near = np.concatenate([order[:, :1], order[:, -LARGEST_REFINED:]], axis=1)
-        places = np.take_along_axis(angle, near, axis=1)[..., None] + spread * REFINED_PLACES
+        chosen = np.concatenate([order[:, :1], order[:, -LARGEST_REFINED:]], axis=1)
+        places = np.take_along_axis(angle, chosen, axis=1)[..., None] + spread * REFINED_PLACES
         between = places.reshape(len(drives), -1)
         angle, play = np.append(angle, between, axis=1), np.append(play, plays(between)[0], axis=1)
         spread *= 0.3
