@@ -77,6 +77,25 @@ def test_shipped_drives(name, case, steps, angles):
 
 
 @pytest.mark.slow
+def test_carrier():
+    """Posts by differences; what twists behind all contacts turns the output by T/k alone, whose slope is −T/k²."""
+    posts = {
+        "carrier.posts.number": 3,
+        "carrier.posts.radius": 42.0,
+        "carrier.posts.size": 20.0,
+        "carrier.flange": (10.0, 8.0),
+    }
+    drive = with_fields(shipped("rv"), posts | {"carrier.stiffness_torsion": 4e8})
+    agree(drive, {"carrier.posts.size": 0.003, "carrier.flange.1": 0.003}, angles=ANGLES + 0.37)
+    found = ltca.derivatives(
+        ltca.analyse(drive, crank_angle=ANGLES, compliance=HalfSpace()), ["carrier.stiffness_torsion"]
+    )
+    slope = found["transmission_error"].values
+    np.testing.assert_allclose(slope, -drive.driving_sign * drive.load.torque / 4e8**2, rtol=RELATIVE)
+    np.testing.assert_allclose(found["pin_load"].values, 0.0, atol=1e-12)  # round-off of loads of kilonewtons
+
+
+@pytest.mark.slow
 def test_no_offsets_at_all(vary):
     agree(
         vary(disc={"equidistant_offset": 0.0, "shifting_offset": 0.0}, clearance={"bearing": 0.02, "pin_hole": 0.05}),

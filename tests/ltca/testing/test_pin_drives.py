@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from ltca.analysis.engines import HalfSpace
+from ltca.drive.fields import read_field
 from ltca.drive.materials import Material
 from ltca.drive.parts import ShaftPinBeam, ShaftPinSeat, WheelPinBeam, WheelPinSeat
 from ltca.equilibrium.output_torque import solve_at_output
@@ -49,6 +50,41 @@ def test_shared_pins_settle_to_round_off_and_no_further(monkeypatch):
     monkeypatch.setattr(DisplacedPins, "__init__", evaluated)
     check_seeds(21, 1)
     assert max(counts) <= 5
+
+
+def test_carriers_of_all_kinds_are_drawn():
+    """Twisting, on posts, both or none; posts on the circle of pins or cranks, as long as the discs, flanges left out."""
+    drives = [pin_drive(seed)[0] for seed in range(60)]
+    kinds = {
+        None if d.carrier is None else (d.carrier.stiffness_torsion is None, d.carrier.posts is None) for d in drives
+    }
+    assert kinds == {None, (True, False), (False, True), (False, False)}
+    on_posts = [d for d in drives if d.carrier is not None and d.carrier.posts is not None]
+    assert (
+        {d.carrier.flange is None for d in on_posts}
+        == {d.carrier.posts.length is None for d in on_posts}
+        == {True, False}
+    )
+    assert {d.crank.support is None for d in on_posts} == {d.pin_shaft is None for d in on_posts} == {True, False}
+    circles = [d.crank.circle_radius if d.pin_shaft is None else d.pin_shaft.pin_circle_radius for d in on_posts]
+    assert {d.carrier.posts.radius == circle for d, circle in zip(on_posts, circles, strict=True)} == {True, False}
+
+
+@pytest.mark.parametrize("path", ["carrier.posts.size", "carrier.flange.1"])
+def test_the_check_sees_a_wrong_carrier(path):
+    """Of an answer to a drive whose posts or far flange are a twentieth thicker."""
+    given = {
+        "carrier.posts.number": 3,
+        "carrier.posts.radius": 42.0,
+        "carrier.posts.size": 14.0,
+        "carrier.flange": (8.0, 8.0),
+    }
+    drive = with_fields(parse_drive(shipped_drive("rv"), "rv").cases["nominal"], given)
+    model = HalfSpace().prepare(drive).model
+    balanced = solve_at_output(model, [drive], np.array([0.4]), drive.load.torque)
+    assert find_imbalance(drive, model, balanced) == []
+    other = with_fields(drive, {path: 1.05 * read_field(drive, path)})
+    assert any("slope of the potential" in told for told in find_imbalance(other, model, balanced))
 
 
 @pytest.mark.slow
