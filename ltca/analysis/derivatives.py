@@ -320,9 +320,7 @@ class _Field:
             raise DriveError([f"{path}: reshapes a body, whose influence coefficients are those of the body as it is"])
         if has_ring_of_elements(balanced.drive) and self._reshapes_ring():
             raise DriveError(
-                [
-                    f'{path}: reshapes the ring, whose finite elements are those of the ring as it is; ring.model = "beam" follows it'
-                ]
+                [f'{path}: reshapes the ring of finite elements, which stays as it is; use ring.model = "beam"']
             )
 
     def slopes(self) -> dict[str, Any]:
