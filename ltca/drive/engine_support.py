@@ -182,7 +182,12 @@ def _contents(path: str, table: Any, declared: str) -> str:
     changed = {name: value for name, value in told.items() if value != _default(table, name)}
     if not changed:
         return ", ".join(f"{path}.{name}" for name in told)
-    return ", ".join(f"{path}.{name} = {_shown(value)}{_unit(f'{declared}.{name}')}" for name, value in changed.items())
+    return ", ".join(
+        _contents(f"{path}.{name}", value, f"{declared}.{name}")
+        if is_dataclass(value)
+        else f"{path}.{name} = {_shown(value)}{_unit(f'{declared}.{name}')}"
+        for name, value in changed.items()
+    )
 
 
 def _shown(value: Any) -> str:
