@@ -142,6 +142,16 @@ def _meshed(
     shape: PinRingShape, bolts: ComplexArray, patch: float, poisson_ratio: float, size: float
 ) -> tuple[BodyMesh, sp.csc_matrix, sp.csc_matrix]:
     """The mesh of a ring, its stiffness for E b = 1 N/mm, and unit forces on seats, then on bolts."""
+    body, inner = mesh_ring_for_seats(shape, bolts, patch, size), shape.inner
+    steel = Material(youngs_modulus=1.0, poisson_ratio=poisson_ratio)
+    loads = sp.hstack([seat_loads(body, inner), *(_patch_load(body, bolt, patch) for bolt in bolts)], format="csc")
+    return body, assemble_stiffness(body, steel, thickness=1.0, state="stress"), loads
+
+
+def mesh_ring_for_seats(
+    shape: PinRingShape, bolts: ComplexArray, patch: float, size: float = 1.0, *, order: int = 2
+) -> BodyMesh:
+    """Mesh a ring, fine at its seats and at the patches of its bolts; `size` is a multiple of all element edges."""
     inner = shape.inner
     balls = [
         _ball(centre, SEAT_EDGE * size * inner.seat_radius, 1.1 * inner.seat_radius) for centre in inner.seat_centres
@@ -150,10 +160,7 @@ def _meshed(
     coarse = default_coarse_size(shape, size)
     unknowns = estimate_unknowns(shape, balls, coarse_size=coarse, growth=GROWTH)
     require_memory(unknowns, solution_memory(unknowns), "the ring for its flexibility")
-    body = mesh_pin_ring(shape, balls, coarse_size=coarse, growth=GROWTH)
-    steel = Material(youngs_modulus=1.0, poisson_ratio=poisson_ratio)
-    loads = sp.hstack([seat_loads(body, inner), *(_patch_load(body, bolt, patch) for bolt in bolts)], format="csc")
-    return body, assemble_stiffness(body, steel, thickness=1.0, state="stress"), loads
+    return mesh_pin_ring(shape, balls, coarse_size=coarse, growth=GROWTH, order=order)
 
 
 def without_rigid_motions(flexibility: FloatArray, places: ComplexArray) -> FloatArray:

@@ -75,12 +75,16 @@ def execute(arguments: argparse.Namespace) -> int:
     CycloError
         For wrong input, no convergence, or meshes that would not fit into memory.
     """
+    from ltca.errors import DriveError
     from ltca.output.run_folder import claimed_folder
 
     referee = _referee(arguments.referee)
     file, case, drive = chosen_case(arguments)
     name = file.name
     out = arguments.out or default_folder(name, "fem")
+    if drive.ring is not None and (arguments.export or referee):
+        option = "--referee" if referee else "--export"
+        raise DriveError([f"ring: must be left out for {option} calculix, whose deck holds the pins in a rigid wheel"])
     discs = drive.disc.number_of_discs
     writes = ["fem.nc", "fem.vtm", "summary.json", *body_files("vtu", discs)]
     writes += [] if arguments.no_page else ["report.html"]

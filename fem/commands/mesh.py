@@ -56,6 +56,7 @@ def execute(arguments: argparse.Namespace) -> int:
     discs = drive.disc.number_of_discs
     writes = [f"{disc_prefix(disc, discs)}mesh.png" for disc in range(discs)]
     writes += [file for ending in ("msh", "vtu") for file in body_files(ending, discs)]
+    writes += [] if drive.ring is None else ["pin_ring.msh", "pin_ring.vtu"]
     with claimed_folder(out, "mesh", writes=writes):
         _mesh_and_write(name, case, drive, arguments, out)
     return 0
@@ -77,7 +78,23 @@ def _mesh_and_write(name: str, case: str, drive: Drive, arguments: argparse.Name
         for number, (single, moment) in enumerate(zip(singles, moments.tolist(), strict=True)):
             print(f"disc {number}, {moment / 1e3:.6g} N·m on the wheel expected", flush=True)
             _mesh_disc(single, moment, f"{title}, disc {number}", (number, len(singles)), arguments, out)
+    if drive.ring is not None:
+        _mesh_ring(drive, arguments, out)
     print(f"written to {out}")
+
+
+def _mesh_ring(drive: Drive, arguments: argparse.Namespace, out: Path) -> None:
+    """Mesh the ring of the wheel pins, once for all discs; it is not drawn."""
+    from fem.body.pin_ring import bolts_of_drive, mesh_ring_for_seats, ring_of_drive
+    from fem.mesh.mesh_file import write_msh, write_vtu
+    from fem.mesh.quality import measure_quality
+    from ltca.drive.ring_shape import bolt_patch_radius
+
+    patch, size = bolt_patch_radius(drive), arguments.size
+    body = mesh_ring_for_seats(ring_of_drive(drive), bolts_of_drive(drive), patch, size, order=arguments.order)
+    print(f"{body.name}: {measure_quality(body).describe()}", flush=True)
+    write_msh(body, out / f"{body.name}.msh")
+    write_vtu(body, out / f"{body.name}.vtu")
 
 
 def _mesh_disc(

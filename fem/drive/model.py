@@ -311,7 +311,7 @@ class DriveModel:
             wheel_angle=wheel,
             roller_distances=0.5 * (outer + inner),
             shaft_pin_displacements=np.zeros(len(place.hole_radii), dtype=complex),
-            wheel_pin_displacements=self.by_others.copy(),
+            wheel_pin_displacements=np.zeros(len(place.wheel_pin_radii), dtype=complex),
         )
 
     def start_active(self) -> NDArray[np.bool_]:

@@ -113,6 +113,16 @@ class ReducerSolution:
         return self.drive.output_per_wheel_angle * self.wheel_angle
 
     @property
+    def ring_displacements(self) -> ComplexArray | None:
+        """Displacement of the seats of the wheel pins by the ring, radial + i tangential, mm, shape (z_P,); None if rigid."""
+        if self.drive.ring is None:
+            return None
+        moved = sum(
+            (_seats_moved(disc, self.drive) for disc in self.discs[1:]), _seats_moved(self.discs[0], self.drive)
+        )
+        return np.asarray(moved * np.exp(-2j * np.pi * np.arange(moved.size) / moved.size))
+
+    @property
     def equilibrium_residual(self) -> float:
         """Largest unbalanced force, N."""
         return max(disc.contacts.equilibrium_residual for disc in self.discs)

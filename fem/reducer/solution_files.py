@@ -83,6 +83,9 @@ def summarise(solution: ReducerSolution) -> dict[str, Any]:
         "seconds": solution.seconds["total"],
         "seconds_by_stage": {stage: value for stage, value in solution.seconds.items() if stage != "total"},
     }
+    if (ring := solution.ring_displacements) is not None:
+        content[QUANTITIES["ring_displacement_radial"].fem_key] = ring.real.tolist()
+        content[QUANTITIES["ring_displacement_tangential"].fem_key] = ring.imag.tolist()
     return content
 
 
@@ -131,6 +134,9 @@ def label_solution(solution: ReducerSolution, case: str, stresses: Sequence[Disc
         ("equilibrium_residual", solution.equilibrium_residual),
     ):
         add(name, value)
+    if (ring := solution.ring_displacements) is not None:
+        add("ring_displacement_radial", ring.real)
+        add("ring_displacement_tangential", ring.imag)
     data |= {name: QUANTITIES[name].labelled(values) for name, values in _pressure_profiles(discs).items()}
     coordinates = place_coordinates(
         {case: solution.drive}, [[disc.model.placement for disc in discs]], np.atleast_1d(solution.crank_angle)

@@ -36,6 +36,7 @@ from ltca.compliance.response import Start
 from ltca.drive.fields import field_kind, is_element, read_field
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Drive
+from ltca.drive.ring_shape import has_ring_of_elements, ring_fingerprint
 from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.balance import Equilibrium, lever_arms
 from ltca.equilibrium.output_torque import input_moment, solve_at_output
@@ -317,6 +318,10 @@ class _Field:
             raise DriveError([f"{path}: the analysis has a torque of its own, {balanced.analysis.torque:g} N·mm"])
         if balanced.engine.options["compliance"] != "half-space" and self._reshapes():
             raise DriveError([f"{path}: reshapes a body, whose influence coefficients are those of the body as it is"])
+        if has_ring_of_elements(balanced.drive) and self._reshapes_ring():
+            raise DriveError(
+                [f'{path}: reshapes the ring of finite elements, which stays as it is; use ring.model = "beam"']
+            )
 
     def slopes(self) -> dict[str, Any]:
         """Slopes of pose, arrays and scalars, by name; every position has those of the longest step that its contacts keep to.
@@ -365,6 +370,11 @@ class _Field:
     def _reshapes(self) -> bool:
         """Whether the field is one of the shape of a body."""
         return any(_shapes(drive) != self.balanced.shapes for drive in self._drives((self._first_step,)))
+
+    def _reshapes_ring(self) -> bool:
+        """Whether the field is one of the shape of the ring."""
+        own = ring_fingerprint(self.balanced.drive)
+        return any(ring_fingerprint(drive) != own for drive in self._drives((self._first_step,)))
 
     @property
     def _first_step(self) -> float:

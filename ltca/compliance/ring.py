@@ -21,7 +21,7 @@ import numpy as np
 from ltca.arrays import FloatArray
 from ltca.compliance.coefficient_files import cache_folder, derivation, kept_file, require_cache
 from ltca.drive.parts import Drive
-from ltca.drive.ring_shape import loaded_half_arc, ring_fingerprint, ring_shape
+from ltca.drive.ring_shape import has_ring_of_elements, loaded_half_arc, ring_fingerprint, ring_shape
 from ltca.errors import DamagedFileError
 from ltca.laws.backed import SLOT_DATUM
 from ltca.laws.ring_beam import beam_flexibility, beyond_rigid_motions, on_bolts, rigid_motions
@@ -48,7 +48,7 @@ def ring_flexibility(drive: Drive) -> FloatArray | None:
     CycloError
         When the ring is of finite elements and nothing is installed that derives them.
     """
-    if drive.ring is None or drive.ring.model == "beam":
+    if not has_ring_of_elements(drive):
         return beam_flexibility(drive)
     found = _of_elements(drive)
     # What is left of a stiff wall may be negative; with the law of the slot, which is in series, it is the ring's own again.

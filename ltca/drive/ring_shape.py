@@ -41,6 +41,11 @@ def bolt_patch_radius(drive: Drive) -> float:
     return BOLT_PATCH * (outer - wheel.pin_circle_radius - seat_radius(wheel))
 
 
+def has_ring_of_elements(drive: Drive) -> bool:
+    """Tell whether the analysis of a drive takes its ring from finite elements."""
+    return drive.ring is not None and drive.ring.model == "fe"
+
+
 def ring_shape(drive: Drive) -> dict[str, float]:
     """Return the numbers that determine the plane ring of a drive up to 1/(E b), by name: mm, counts; empty without ring."""
     drive.require_warmed()

@@ -17,7 +17,6 @@ from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import WheelPinBeam, WheelPinSeat
 from ltca.drive.single_discs import single_discs, without_own
 from ltca.equilibrium.output_torque import solve_at_output
-from ltca.errors import DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
@@ -238,11 +237,6 @@ def test_friction_moves_the_pins_along_the_ring(coefficients):
     drive = with_fields(ringed("paper", **{"material.youngs_modulus": 70e3}), coefficients)
     model, found = solved(drive, ANGLES[:1])
     assert find_imbalance(drive, model, found, torque=drive.load.torque) == []
-
-
-def test_finite_elements_of_the_ring_are_not_there_yet():
-    with pytest.raises(DriveError, match=r'ring\.model = "fe": must be "beam"'):
-        ringed("robot-joint", model="fe")
 
 
 def test_engines_with_rigid_rings_tell_what_the_ring_has():

@@ -331,6 +331,9 @@ LEFT_OUT = (
     *RATINGS,
 )
 TABLES_LEFT_OUT = (
+    "ring",
+    "ring.material",
+    "ring.bolts",
     "crank.support",
     "pin_wheel.seat",
     "pin_wheel.beam",

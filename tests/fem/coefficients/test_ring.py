@@ -12,6 +12,7 @@ from fem.coefficients.ring import derive_ring
 from fem.mesh.element_size import Refinement
 from fem.mesh.triangulation import mesh_pin_ring
 from fem.shapes import PinRingShape, SlottedCircle
+from ltca.analysis.derivatives import derivatives
 from ltca.analysis.loaded_analysis import analyse
 from ltca.commands.program import main
 from ltca.compliance import ring as rings
@@ -302,3 +303,21 @@ def test_nothing_installed_that_derives_is_said(joint, derived, monkeypatch):
     monkeypatch.setattr(rings, "derivation", coefficient_files.derivation)
     with pytest.raises(CycloError, match=r'ring\.model = "fe": nothing is installed that derives a ring'):
         ring_flexibility(joint)
+
+
+@pytest.mark.slow
+def test_derivatives_by_what_reshapes_the_ring_are_refused(derived):
+    """Differences of two meshes of the ring are noise; of what only scales its flexibility they are not."""
+    drive = load_drive("paper").cases["CS-1"]
+    sizes = {"inner_radius": 88.5, "outer_radius": 106.0, "width": 20.0, "model": "fe"}
+    found = analyse(with_fields(drive, {"ring": sizes}), np.array([0.5]))
+    for path in ("ring.inner_radius", "pin_wheel.pin_radius", "ring.material.poisson_ratio"):
+        with pytest.raises(DriveError, match=f"^{path}: reshapes the ring"):
+            derivatives(found, [path])
+    slopes = derivatives(found, ["ring.width"])
+    wider, narrower = (
+        analyse(with_fields(drive, {"ring": sizes | {"width": width}}), np.array([0.5])) for width in (20.02, 19.98)
+    )
+    turned = (wider.transmission_error - narrower.transmission_error) / 0.04
+    slope = float(slopes["transmission_error"].values.ravel()[0])
+    assert slope == pytest.approx(float(turned[0]), rel=1e-4)  # a central difference over a thousandth

@@ -9,7 +9,7 @@ from ltca.drive.engine_support import ENGINES, REFUSALS, refusals, require
 from ltca.drive.single_discs import single_discs
 from ltca.errors import DriveError
 from ltca.reading.changes import with_fields
-from ltca.reading.drive_file import parse_drive, shipped_drive
+from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
 from ltca.reading.writing import drive_text
 from ltca.testing.field_changes import EXCEPTIONS
 
@@ -85,6 +85,19 @@ def test_every_problem_is_named_at_once(engine):
     for row, problem in zip(rows, refused.value.problems, strict=True):
         assert problem.startswith((f"{row.path} = ", f"{row.path} (")), problem
         assert f" ({row.reason})" in problem
+
+
+def test_tables_in_a_refused_table_are_told():
+    """A ring with a material or bolts ended the paper's method in a TypeError."""
+    ring = {"inner_radius": 88.0, "outer_radius": 105.0, "width": 20.0, "material.youngs_modulus": 1.7e5}
+    bolts = {"number": 8, "circle_radius": 100.0, "stiffness": 5e5}
+    changes = {f"ring.{name}": value for name, value in ring.items()}
+    changes |= {f"ring.bolts.{name}": value for name, value in bolts.items()}
+    drive = with_fields(load_drive("paper").cases["CS-1"], changes)
+    with pytest.raises(
+        DriveError, match=r"^ring \(.*ring\.material\.youngs_modulus = 170000 MPa, ring\.bolts\.number = 8, "
+    ):
+        require(drive, "paper")
 
 
 def test_fields_of_several_cranks_are_refused_together():

@@ -72,6 +72,7 @@ LEFT_OUT = (
     *RATINGS,
 )
 OF_PARTS = (
+    "ring",
     "carrier",
     "crank.support",
     "materials.crankshaft",

@@ -1,0 +1,122 @@
+"""Full finite elements with the elastic ring of the pin wheel, against the loaded tooth contact analysis with the same ring."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fem.body.pin_ring import seat_flexibility
+from fem.options import SolutionOptions
+from fem.reducer.mixing import AndersonMixing
+from fem.reducer.solution import solve_reducer
+from fem.reducer.solution_files import build_dataset, summarise
+from ltca.analysis.engines import PlaneStrain
+from ltca.analysis.loaded_analysis import analyse
+from ltca.commands.program import main
+from ltca.compliance.ring import ring_flexibility
+from ltca.drive.single_discs import single_discs
+from ltca.drive.units.quantities import ARCSEC
+from ltca.reading.changes import with_fields
+from ltca.reading.drive_file import load_drive
+from ltca.reading.writing import drive_text
+
+ANGLE = 0.5
+RING = {"inner_radius": 60.5, "outer_radius": 72.5, "width": 30.0, "model": "fe"}
+
+
+def joint(discs):
+    """The shipped joint, which `fe` has coefficients of, with an elastic ring; lengths as plane strain has them."""
+    drive = load_drive("robot-joint").cases["nominal"]
+    plain = {"crank_bearing.roller_length": drive.disc.thickness, "ring": RING}
+    for table in ("crank_bearing.roller_profile", "pin_wheel.pin_profile"):
+        plain |= {f"{table}.{name}": 0.0 for name in ("crown_drop", "logarithmic_factor")}
+        plain |= {f"{table}.{name}": 0.0 for name in ("end_relief_length", "end_relief_depth")}
+    return with_fields(drive if discs == 2 else single_discs(drive)[0], plain)
+
+
+def compared(drive, size):
+    """Largest difference of a load, of the largest of its kind, and of the output, ″; largest pin load with a rigid ring."""
+    full = solve_reducer(drive, ANGLE, SolutionOptions(size=size))
+    own = analyse(drive, np.array([ANGLE]), engine=PlaneStrain())
+    loads = []
+    for disc, other in zip(full.discs, own.discs, strict=True):
+        found, answer = disc.contacts, other.full.response
+        for load, expected in (
+            (found.pin_load, answer.pin_load),
+            (found.roller_load, answer.rollers.outer_load),
+            (found.pin_shaft_load, answer.hole_load),
+        ):
+            loads.append(float(np.max(np.abs(load - expected[0])) / np.max(load)))
+    turned = ARCSEC * abs(full.transmission_error - float(own.transmission_error[0]))
+    return full, own, max(loads), turned
+
+
+@pytest.fixture(autouse=True)
+def own_cache(tmp_path, monkeypatch):
+    """A cache of rings of its own."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+
+
+@pytest.mark.slow
+def test_one_disc_on_an_elastic_ring():
+    """1 % of load and 0.5″; on two elements for a half-width 0.5 % and 0.1″, where without a ring 0.2 % and 0.1″ are left."""
+    drive = joint(1)
+    full, own, load, turned = compared(drive, 4.0)
+    assert load < 0.01
+    assert turned < 0.5
+    rigid = analyse(replace(drive, ring=None), np.array([ANGLE]), engine=PlaneStrain())
+    assert full.discs[0].contacts.pin_load.max() < 0.95 * rigid.full.response.pin_load.max()
+    np.testing.assert_allclose(full.ring_displacements, own.ring_displacements[0], atol=2e-4)  # of 0.01 mm, 1 % of load
+    summary, dataset = summarise(full), build_dataset(full, "nominal")
+    np.testing.assert_array_equal(summary["ring_displacement_radial_mm"], full.ring_displacements.real)
+    np.testing.assert_array_equal(dataset["ring_displacement_tangential"].values[0, 0], full.ring_displacements.imag)
+
+
+@pytest.mark.slow
+@pytest.mark.nightly
+def test_two_discs_share_the_ring():
+    """Each disc finds the seats where the forces of the other hold them: as for one disc."""
+    full, own, load, turned = compared(joint(2), 4.0)
+    assert load < 0.01
+    assert turned < 0.5
+    first, second = (disc.pose.wheel_pin_displacements for disc in full.discs)
+    np.testing.assert_allclose(first, second, atol=3e-7)  # the last change of a round, 1e-7
+    np.testing.assert_allclose(full.ring_displacements, own.ring_displacements[0], atol=2e-4)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "more", [{}, {"flange": "built-in"}, {"bolts": {"number": 8, "circle_radius": 101.0, "stiffness": 5e5}}]
+)
+def test_the_ring_of_the_analysis_is_that_of_the_full_solution(more):
+    """Bolts as springs in the mesh against bolts joined to its flexibility; means over the ring's symmetry against none."""
+    sizes = {"inner_radius": 88.5, "outer_radius": 106.0, "width": 20.0, "model": "fe"}
+    drive = with_fields(load_drive("paper").cases["CS-1"], {"ring": sizes | more})
+    own, other = seat_flexibility(drive), ring_flexibility(drive)
+    np.testing.assert_allclose(
+        own.reshape(other.shape), other, atol=1e-4 * np.max(other)
+    )  # equal seats on a mesh: 6e-5
+
+
+def test_mixing_ends_where_the_iteration_alone_hardly_does():
+    """x = A x + b with eigenvalues up to 0.95 in five directions: after six rounds it is exact."""
+    rng = np.random.default_rng(3)
+    basis, _ = np.linalg.qr(rng.normal(size=(12, 12)))
+    matrix = basis[:, :5] @ np.diag([0.95, 0.8, 0.5, -0.3, 0.1]) @ basis[:, :5].T
+    constant = rng.normal(size=12)
+    exact = np.linalg.solve(np.eye(12) - matrix, constant)
+    mixing, given = AndersonMixing(depth=5), np.zeros(6, dtype=complex)
+    for _ in range(8):
+        found = (matrix @ given.view(float) + constant).view(complex)
+        given = mixing.next(given, found)
+    np.testing.assert_allclose(given.view(float), exact, rtol=1e-6)  # the conditioning of the last differences
+
+
+def test_calculix_is_refused_with_a_ring(tmp_path, capsys):
+    path = tmp_path / "joint.toml"
+    path.write_text(drive_text(joint(1)), encoding="utf-8")
+    assert main(["fem", str(path), "--angle", "0.5", "--export", "calculix", "--out", str(tmp_path / "out")]) == 2
+    assert "ring: must be left out for --export calculix" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
