@@ -17,6 +17,7 @@ from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import WheelPinBeam, WheelPinSeat
 from ltca.drive.single_discs import single_discs, without_own
 from ltca.equilibrium.output_torque import solve_at_output
+from ltca.errors import DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive

@@ -69,15 +69,15 @@ def test_two_opposite_forces_by_castigliano(ring):
 @pytest.mark.parametrize("order", [2, 3, 5])
 def test_cosine_row_of_pins_on_a_thin_ring(order):
     """Inextensible ring: w = q R⁴/(EI (k² − 1)²). Single pins have the orders k + m z as well, all of one size: alias sum."""
-    pins, radius, height = 40, 100.0, 0.05
+    pins, radius, height = 40, 100.0, 0.01
     ring = RingBeam(inner_radius=radius - 0.5 * height, outer_radius=radius + 0.5 * height, width=10.0, **STEEL)
     force = np.cos(order * even(pins))
     moved = radial(np.einsum("iajb,jb->ia", ring.free(even(pins), radius), on_circle(force)))
     rigidity, line = 206e3 * 10.0 * height**3 / 12.0, pins / (2.0 * pi * radius)
     orders = np.abs(order + pins * np.arange(-50, 51)).astype(float)
     expected = line * radius**4 / rigidity * np.sum(1.0 / (orders**2 - 1.0) ** 2)
-    # Stretch and shear are (h/R)² = 2.5e-7 of the bending, times some tens in the aliases, which are 1e-4 of the sum.
-    np.testing.assert_allclose(moved, expected * force, rtol=0.0, atol=1e-6 * 10.0 * expected)
+    # Stretch and shear are (h/R)² = 1e-8 of the bending, times k² and more; round-off is 1e-15 (R/h)².
+    np.testing.assert_allclose(moved, expected * force, rtol=0.0, atol=2e-7 * expected)
     lowest = line * radius**4 / rigidity / (order**2 - 1.0) ** 2
     # The first alias has order 35 at least: (24/1224)² of the lowest.
     assert expected == pytest.approx(lowest, rel=1e-3)
