@@ -52,7 +52,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="draw von_mises.png, contacts.png and deformed.png, which takes as long as the solution",
     )
-    drawn.add_argument("--no-pictures", "--no-figures", action="store_true", help="draw no pictures, the default")
+    drawn.add_argument("--no-pictures", "--no-figures", action="store_true", help="no pictures of stress, the default")
     add_page_argument(parser)
     parser.add_argument(
         "--export", choices=("calculix",), help="write a complete input deck of the same problem for another code"
@@ -95,11 +95,13 @@ def execute(arguments: argparse.Namespace) -> int:
     with claimed_folder(out, "fem", writes=writes):
         solution, checks, pictures = _solve_and_write(name, case, drive, file.limits[case], arguments, out, referee)
         if not arguments.no_page:
+            from fem.pictures.drive_loads import draw_loads
             from fem.reducer.solution_page import solution_page
             from ltca.page.study_page import write_study_page
 
             words = f"case {case}, {drive.load_words(arguments.torque)}, full finite elements, plane {arguments.plane}"
-            write_study_page(solution_page(solution, checks, case, words, file.text, pictures), out)
+            page = solution_page(solution, checks, case, words, file.text, draw_loads(solution), pictures)
+            write_study_page(page, out)
     return 0
 
 

@@ -3,6 +3,7 @@
 Modules in the order data passes:
 
 =================  ============================================================
+drive_loads        The drive with its loads and pressures as SVG for a page; nothing is rendered
 offscreen          Whether pyvista can render off-screen here, tried in a subprocess
 flat_view          Common parts of off-screen pictures of plane bodies: surfaces and lines of pyvista, a camera that
                    looks down

@@ -21,14 +21,17 @@ def solution_page(
     case: str,
     told: str,
     text: str,
+    loads: Picture,
     pictures: Sequence[Sequence[Picture]] = (),
 ) -> StudyPage:
     """Return the page of a full solution with its verdict.
 
-    `told` describes the problem, `text` is the drive file, and `pictures` are those of every disc, none where they were left out.
+    `told` describes the problem, `text` is the drive file, `loads` is the drive with its loads, and `pictures` are those of
+    the stress in every disc, none where they were left out.
     """
     sentence, state = verdict_of({case: checks})
     sections = [Section(heading="Verdict at this position", tables=folded(verdict_tables({case: checks})))]
+    sections.append(Section(heading="The drive under load", pictures=[loads]))
     several = len(solution.discs) > 1
     for place, own in enumerate(pictures):
         sections.append(

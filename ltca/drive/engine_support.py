@@ -89,7 +89,7 @@ REFUSALS = (
     Refusal("crank_bearing.roller_length", _PLANE, _TWO_DIMENSIONS, _HYBRID, equals="disc.thickness"),
     Refusal("crank_bearing.roller_profile", _PLANE, _TWO_DIMENSIONS, _HYBRID, accepts=attrgetter("is_cylinder")),
     Refusal("pin_shaft.seat", _FIXED, "pins are fixed in the model"),
-    Refusal("pin_shaft.beam", _FIXED, "pins do not bend in the model", "give pin_shaft.stiffness"),
+    Refusal("pin_shaft.beam", _FIXED, "pins do not bend in the model", "give pin_shaft.stiffness in its place"),
     Refusal("carrier.stiffness_torsion", _RIGID, "the carrier is rigid in the model"),
     Refusal("carrier.flange", _RIGID, "the carrier is rigid in the model"),
     Refusal("carrier.posts", _RIGID, "the carrier is rigid in the model"),

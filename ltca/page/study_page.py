@@ -72,11 +72,14 @@ class Picture:
         Of its kind, and what it shows.
     panels : sequence of (str, str)
         What each shows, and the panel as SVG, whose texts are escaped and whose colours are classes of ``page.css``.
+    keys : sequence of (str, str, str)
+        What stands behind the title: words, classes of a sign, empty without one, and words behind it.
     """
 
     name: str
     title: str
     panels: Sequence[tuple[str, str]]
+    keys: Sequence[tuple[str, str, str]] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -254,6 +254,10 @@ def test_files_are_by_crank(solved, small, tmp_path, monkeypatch, capsys):
     names = {path.name for path in (tmp_path / "out").iterdir()}
     assert {f"inner_race_{crank}.vtu" for crank in range(3)} | {"roller_26.vtu"} <= names
     assert "inner_race.vtu" not in names
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert all(page.count(f"<title>crank {crank}, roller ") > 0 for crank in range(3))
+    assert ">crank 2</text>" in page
+    assert "shaft pins</span>" not in page
     deck = (tmp_path / "out" / "calculix.inp").read_text(encoding="ascii")
     assert all(f"ELSET=RACE_{crank}\n" in deck for crank in range(3))
     with xr.open_dataset(tmp_path / "out" / "fem.nc", engine="h5netcdf") as written:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import argparse
 import json
+import re
+import xml.etree.ElementTree as ET
 from dataclasses import replace
 
 import numpy as np
@@ -14,6 +16,7 @@ from fem.coefficients.dataset import derive_coefficients
 from fem.commands import fem as command
 from fem.drive.disc_stress import recover_disc_stress
 from fem.options import SolutionOptions
+from fem.pictures.drive_loads import draw_loads
 from fem.reducer.solution import solve_reducer
 from fem.reducer.solution_files import build_dataset, summarise
 from fem.reducer.verdict import judge_solution
@@ -120,6 +123,39 @@ def test_equal_discs_and_a_held_wheel(paper_cases):
     assert found.transmission_error == pytest.approx(-14.0 / 13.0 * found.wheel_angle, rel=1e-12)
 
 
+def test_the_picture_has_an_arrow_for_every_load(solved):
+    """Arrows are forces: those on a disc balance, in sum and in moment. Dots are at all contacts, the inner races' too."""
+    picture, lengths = draw_loads(solved), []
+    for disc, (told, svg) in zip(solved.discs, picture.panels, strict=True):
+        assert "% of the torque" in told
+        loaded, drawn = disc.contacts.loaded, ET.fromstring(svg)
+        arrows = [group for group in drawn if group.get("class", "").startswith("load ")]
+        dots = [dot for dot in drawn if dot.get("class", "").startswith("pressed ")]
+        assert len(dots) == len(loaded)
+        on_disc = [load for kind, _, load, _, _ in loaded if kind != "roller_inner"]
+        assert len(arrows) == len(on_disc)
+        ends = [[path.get("d") for path in group if path.tag == "path"] for group in arrows]
+        start, tip = (np.array([complex(*map(float, _first(pair[k]))) for pair in ends]) for k in (0, 1))
+        force = tip - start
+        lengths.append([np.abs(force), on_disc])
+        # Texts have 3 decimals of a millimetre, forces balance to far less.
+        assert abs(force.sum()) < 1e-3 * len(force)
+        assert abs((start.conjugate() * force).imag.sum()) < 1e-3 * np.abs(start).sum() + 1e-3 * np.abs(force).sum()
+        assert max(float(one.get("class")[-1]) for one in dots) >= 8.0
+    longest = max(load for disc in solved.discs for _, _, load, _, _ in disc.contacts.loaded)
+    length, load = np.hstack(lengths)
+    # One scale for both discs; each end of an arrow is a text that is off by up to 0.0007 mm.
+    np.testing.assert_allclose(length, load / longest * length.max(), atol=3e-3)
+    keys = " ".join(" ".join(key) for key in picture.keys)
+    assert f"longest arrow {longest:.0f} N" in keys
+    assert "28.6479°" in picture.title
+    assert "377.3 N·m" in picture.title
+
+
+def _first(path):
+    return re.match(r"M([-.\d]+),([-.\d]+)", path).groups()
+
+
 def test_the_command_writes_files_by_disc(solved, uneven, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr("fem.reducer.solution.solve_reducer", lambda *words, **options: solved)
     source = tmp_path / "two.toml"
@@ -132,6 +168,11 @@ def test_the_command_writes_files_by_disc(solved, uneven, tmp_path, monkeypatch,
     assert {"fem.nc", "summary.json", "fem.vtm", "disc_0.vtu", "disc_1.vtu", "disc_1_pin_13.vtu"} <= names
     assert {"disc_0_calculix.inp", "disc_1_calculix.inp", "disc_0_inner_race.vtu"} <= names
     assert "disc.vtu" not in names
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert page.count('<svg class="drive"') == 2
+    assert page.count('<g class="load ') == sum(
+        kind != "roller_inner" for disc in solved.discs for kind, *_ in disc.contacts.loaded
+    )
     with xr.open_dataset(tmp_path / "out" / "fem.nc", engine="h5netcdf") as data:
         assert data.sizes["disc"] == 2
         assert set(data["wall_disc"].values) == {0, 1}

@@ -15,6 +15,8 @@ import xarray as xr
 
 from ltca.commands.init import FOLLOWING
 from ltca.commands.program import main
+from ltca.drive.engine_support import require
+from ltca.errors import DriveError
 from ltca.output.run_folder import MANIFEST
 from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
 
@@ -224,6 +226,31 @@ def test_a_template_holds_back_no_change_of_thickness_or_number(like, tmp_path):
         assert len(drive.disc.disc_planes) == len(drive.disc.disc_phases) == discs
         assert drive.roller_length == thickness
     assert drive.pin_shaft is None or like == "paper" or drive.pin_shaft.beam is not None
+
+
+def test_a_template_of_beams_names_the_spring_that_full_finite_elements_take(tmp_path):
+    """A reader of `cyclo fem` is told what to give in the place of the beam; the line waits in the file."""
+    path = tmp_path / "robot-joint.toml"
+    assert main(["init", str(path), "--like", "robot-joint"]) == 0
+    text = path.read_text(encoding="utf-8")
+    with pytest.raises(DriveError, match=r"^pin_shaft\.beam .*; give pin_shaft\.stiffness in its place$"):
+        require(parse_drive(text).cases["nominal"], "full FE")
+    swapped = re.sub(r"(?m)^beam = ", "# beam = ", re.sub(r"(?m)^# stiffness = ", "stiffness = ", text))
+    drive = parse_drive(swapped).cases["nominal"]
+    require(drive, "full FE")
+    # The spring is that of the shipped drive, and nothing else differs from it.
+    assert drive == parse_drive(shipped_drive("robot-joint")).cases["nominal"]
+
+
+def test_the_template_of_springs_names_the_beam(tmp_path):
+    path = tmp_path / "my.toml"
+    assert main(["init", str(path)]) == 0
+    text = path.read_text(encoding="utf-8")
+    told = re.search(r"(?m)^# In its place a beam.*: (beam = .*)$", text)[1]
+    drive = parse_drive(re.sub(r"(?m)^stiffness = .*$", told, text)).cases["CS-1"]
+    assert drive.pin_shaft.stiffness is None
+    assert drive.pin_shaft.beam.tip == "tied-clamped"
+    assert drive.shaft_pin_span == drive.disc.thickness
 
 
 def test_lines_that_init_changes_are_there():
