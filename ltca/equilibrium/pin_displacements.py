@@ -216,7 +216,7 @@ class DisplacedPins:
         for rows, disc, pair in self._groups():
             stiffness, flexibility = self._stiffness(rows, disc, pair), self._flexibility(rows, disc, pair)
             given = self._flat(self.left[rows, disc, pair])
-            moved: FloatArray = np.linalg.solve(_one_plus(flexibility, stiffness), -given)
+            moved = np.asarray(np.linalg.solve(_one_plus(flexibility, stiffness), -given), dtype=float)
             change[rows, disc, pair] = _vectors_of(_times(stiffness, moved))[..., 0]
         return -self.left - self.held.under(change)
 
