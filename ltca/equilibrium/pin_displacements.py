@@ -30,6 +30,8 @@ from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION, WHEEL_ANGLE, Co
 from ltca.laws.backed import from_start, shaft_pin_beam, wheel_pin_beam
 from ltca.laws.beam import PinBeam
 
+PLAIN_ITERATIONS = 20
+"""Iterations by the size of the residual; rings so soft that contacts alternate are settled by their energy."""
 MAX_ITERATIONS = 60
 SHIFT_TOLERANCE = 5e-14
 """Largest residual of a pin's displacement, mm: a few round-offs of coordinates of 100 mm."""
@@ -114,7 +116,7 @@ class PinDisplacements:
         """
         history: list[float] = []
         system = DisplacedPins(self, respond(shifts), coordinates, turned, shifts)
-        for _ in range(MAX_ITERATIONS):
+        for _ in range(PLAIN_ITERATIONS):
             size = system.size
             history.append(float(np.max(size, initial=0.0)))
             most = float(np.max(np.abs(system.shifts), initial=0.0))
@@ -135,7 +137,47 @@ class PinDisplacements:
                 and float(np.max(system.size)) >= 0.5 * history[-1]
             ):
                 return system  # round-off
-        raise ConvergenceError("the displacements of the pins do not settle; largest change in mm", history)
+
+        def at(moved: ComplexArray) -> DisplacedPins:
+            return DisplacedPins(self, respond(moved), coordinates, turned, moved)
+
+        return _settled_by_energy(system, at, history, roughly)
+
+
+def _settled_by_energy(
+    system: DisplacedPins, at: Callable[[ComplexArray], DisplacedPins], history: list[float], roughly: bool
+) -> DisplacedPins:
+    """Settle the pins of a soft ring, on which contacts open and close from step to step, along the slope of the energy.
+
+    With :math:`u = -S g` the energy of contacts and parts is :math:`U(u) + g^T S g/2`, whose slope along a step of g is that of
+    what is left over: steps end where it has not turned upward, which no alternation of contacts can escape.
+    """
+    # The first step is a whole one: what made the displacements is known from there on.
+    aim = system.aim
+    known, system = aim, at(system.shifts + system.step)
+    for _ in range(MAX_ITERATIONS):
+        most = float(np.max(np.abs(system.shifts), initial=0.0))
+        history.append(float(np.max(system.size, initial=0.0)))
+        if history[-1] <= SHIFT_TOLERANCE + 1e-12 * most or (roughly and np.all(system.size <= system.rough)):
+            return system
+        way, step = system.aim - known, system.step
+        steep = np.abs(_along(way, system.left))
+        fraction, there = np.ones(steep.shape), at(system.shifts + step)
+        for _ in range(20):
+            uphill = -_along(way, there.left)
+            too_far = (uphill > 0.1 * steep) & (there.size > SHIFT_TOLERANCE + 1e-12 * most)
+            if not too_far.any():
+                break
+            shorter = np.divide(steep, steep + uphill, out=np.ones_like(steep), where=too_far).clip(0.1, 0.8)
+            fraction = np.where(too_far, shorter * fraction, fraction)
+            there = at(system.shifts + fraction[:, None, None] * step)
+        known, system = known + fraction[:, None, None] * way, there
+    raise ConvergenceError("the displacements of the pins do not settle; largest change in mm", history)
+
+
+def _along(way: ComplexArray, left: ComplexArray) -> FloatArray:
+    """Σ of products of components, shape (positions,)."""
+    return np.asarray((way.conjugate() * left).real.sum(axis=(1, 2)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -212,13 +254,18 @@ class DisplacedPins:
     @property
     def step(self) -> ComplexArray:
         """Newton's step of the displacements with the pose held, mm."""
+        return -self.left - self.held.under(self.aim - self.force)
+
+    @property
+    def aim(self) -> ComplexArray:
+        """Forces on the pins after Newton's step, linear, N."""
         change = np.zeros_like(self.left)
         for rows, disc, pair in self._groups():
             stiffness, flexibility = self._stiffness(rows, disc, pair), self._flexibility(rows, disc, pair)
             given = self._flat(self.left[rows, disc, pair])
             moved = np.asarray(np.linalg.solve(_one_plus(flexibility, stiffness), -given), dtype=float)
             change[rows, disc, pair] = _vectors_of(_times(stiffness, moved))[..., 0]
-        return -self.left - self.held.under(change)
+        return self.force + change
 
     def settled(self) -> Settled:
         """Return what displaced pins add to force and tangent of discs whose pins stand still, and how they follow the pose."""

@@ -1,5 +1,7 @@
 """Rigid gaps of the drive against independent geometry, and the contacts to grade for."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -116,6 +118,7 @@ def test_elements_lie_where_a_soft_disc_presses(drive):
 def test_a_plastic_disc_is_answered():
     """Failed after five gradings, the pressure at the end of a zone that lay where the undeformed flank is."""
     drive, angle = practical_drive(5)
+    drive = replace(drive, ring=None)  # which full finite elements do not have
     found = solve_disc(single_discs(drive)[0], angle, drive.wheel_moment() / 2.0, SolutionOptions(size=4.0))
     assert drive.materials.disc.youngs_modulus == 2600.0
     # The pose is iterated until loads change by a tenth of a newton; the wheel carries 2,700 N at the pin circle.
