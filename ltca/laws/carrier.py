@@ -1,4 +1,4 @@
-r"""How the far flange of a carrier moves against the near one: posts as beams, flanges as plates where the posts are fixed.
+r"""How the far flange of a carrier moves against the near one: posts as beams, flanges as strips that bend between posts.
 
 A post of length L is a round Timoshenko beam between two flanges that stay parallel (their tilt is left out). Under a force F
 across it bends in an S; the ends carry moments :math:`M_1 + M_2 = FL` and turn by :math:`c_i M_i` where the flanges bend.
@@ -7,14 +7,13 @@ By Castigliano's theorem the flange moves by
 .. math:: \Delta = F \left[\frac{L^3}{3EI} + \frac{L}{\kappa GA} + c_2 L^2\right]
    - M_1 L \left[\frac{L}{2EI} + c_2\right], \qquad M_1 = FL\,\frac{L/2EI + c_2}{L/EI + c_1 + c_2} ,
 
-which is :math:`FL^3/12EI + FL/\kappa GA` between rigid flanges. A flange of thickness t turns with the end of a post like a
-plate with a rigid boss of radius a that is supported half-way to the next posts, at :math:`b = R \sin(\pi/n)`, where their
-equal tilts meet: :math:`w = (Ar + B/r + Cr^3 + Dr\ln r)\cos\theta` (Timoshenko and Woinowsky-Krieger, Theory of Plates and
-Shells, 2nd ed., art. 63), a plane boss and no moment at the support give, with :math:`D_P = Et^3/12(1-\nu^2)`,
+which is :math:`FL^3/12EI + FL/\kappa GA` between rigid flanges. A flange of thickness t turns where a post is fixed: between two
+posts it is a strip that both bend alike, :math:`6EI_s/s` at each end, with the free length :math:`s = 2\pi R/n - d` along the
+circle of the posts and the width R of a flange from R/2 to 3R/2; a post has such a strip on either side,
 
-.. math:: c = \frac{1}{4\pi D_P}\left[\ln\frac{b}{a}
-   - \frac{(b^2 - a^2)\,[(2+\nu)\,b^2 - \nu a^2]}{(3+\nu)\,b^4 + (1-\nu)\,a^4}\right] .
+.. math:: c = \frac{s}{12 E I_s} = \frac{s}{E R t^3} .
 
+Thin plates of usual outlines by finite elements tilt from 0.8 to 1.25 times as far (``tests/fem/test_flange_of_a_carrier.py``).
 n posts on the circle R resist x and y with n times the stiffness k of one, and rotation with
 :math:`n(kR^2 + GJ/L)`; in series with rotation stands the far flange itself, sheared between the circle of the posts and that
 of the pins or cranks, :math:`|1/R^2 - 1/R_P^2|/4\pi Gt` (an annular disc in torsion).
@@ -22,7 +21,7 @@ of the pins or cranks, :math:`|1/R^2 - 1/R_P^2|/4\pi Gt` (an annular disc in tor
 
 from __future__ import annotations
 
-from math import log, pi, sin
+from math import pi
 
 import numpy as np
 
@@ -64,19 +63,19 @@ def post_stiffness(
     return 1.0 / moved, shear_modulus * 2.0 * second / length
 
 
-def boss_compliance(
-    thickness: float, boss: float, support: float, youngs_modulus: float, poisson_ratio: float
-) -> float:
-    """Return the rotation of a rigid boss in a round plate by its moment, rad/(N·mm).
+def flange_compliance(thickness: float, number: int, radius: float, size: float, youngs_modulus: float) -> float:
+    """Return the rotation of a flange at the end of a post by its moment, rad/(N·mm).
 
-    The plate of a thickness is supported at the radius `support`, free to turn there, and `boss` is the radius of what is fixed
-    in it, all in mm.
+    `number` posts of a diameter `size` stand on a circle of a radius, lengths in mm, and all tilt alike.
+
+    Examples
+    --------
+    Posts that touch each other leave nothing to bend:
+
+    >>> flange_compliance(10.0, 6, 30.0, 10.0 * pi, 2e5)
+    0.0
     """
-    rigidity = youngs_modulus * thickness**3 / (12.0 * (1.0 - poisson_ratio**2))
-    inner, outer, nu = boss**2, support**2, poisson_ratio
-    spread = (outer - inner) * ((2.0 + nu) * outer - nu * inner)
-    left = log(support / boss) - spread / ((3.0 + nu) * outer**2 + (1.0 - nu) * inner**2)
-    return left / (4.0 * pi * rigidity)
+    return max(2.0 * pi * radius / number - size, 0.0) / (youngs_modulus * radius * thickness**3)
 
 
 def far_flange_stiffness(drive: Drive) -> FloatArray | None:
@@ -87,12 +86,11 @@ def far_flange_stiffness(drive: Drive) -> FloatArray | None:
         return None
     material = drive.materials.carrier
     modulus, ratio = material.youngs_modulus, material.poisson_ratio
-    half_pitch = posts.radius * sin(pi / posts.number)
     ends, sheared = (0.0, 0.0), 0.0
     if carrier.flange is not None:
         near, far = carrier.flange
         ends = tuple(  # type: ignore[assignment]
-            boss_compliance(thickness, 0.5 * posts.size, half_pitch, modulus, ratio) for thickness in (near, far)
+            flange_compliance(thickness, posts.number, posts.radius, posts.size, modulus) for thickness in (near, far)
         )
         if loaded := loaded_circle(drive):
             shear_modulus = modulus / (2.0 * (1.0 + ratio))

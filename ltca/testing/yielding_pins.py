@@ -228,9 +228,11 @@ def post_forces(drive: Drive) -> FloatArray:
     total, sheared = np.zeros((3, 3)), 0.0
     kept = [2]  # rotations at rigid flanges and the near displacement are held
     if flange is not None:
-        half = posts.radius * np.sin(np.pi / posts.number)
+        # Strips to either side, as wide as the circle's radius; a neighbour turns as the post does.
+        free = 2.0 * np.pi * posts.radius / posts.number - posts.size
         for place, thickness in zip((1, 3), flange, strict=True):
-            bar[place, place] += 1.0 / plate_rotation(thickness, 0.5 * posts.size, half, modulus, nu)
+            strip = modulus * posts.radius * thickness**3 / 12.0 / free
+            bar[place, place] += 2.0 * (4.0 + 2.0) * strip
         kept = [2, 1, 3]
         pins = drive.pin_shaft
         circle = (drive.crank.circle_radius or 0.0) if pins is None else pins.pin_circle_radius
@@ -246,23 +248,6 @@ def post_forces(drive: Drive) -> FloatArray:
         total += across * moved.T @ moved
         total[2, 2] += shear * 2.0 * second / length
     return np.asarray(np.linalg.inv(np.linalg.inv(total) + np.diag([0.0, 0.0, sheared])))
-
-
-def plate_rotation(thickness: float, boss: float, support: float, modulus: float, ratio: float) -> float:
-    """Return the rotation of a rigid boss by its moment in a plate supported about it, from the four constants of the plate."""
-    rigidity = modulus * thickness**3 / (12.0 * (1.0 - ratio**2))
-
-    def terms(r: float) -> FloatArray:
-        """Deflection, slope and moment by the radius of r, 1/r, r³, r ln r times cos θ, shape (3, 4)."""
-        value = np.array([r, 1.0 / r, r**3, r * np.log(r)])
-        slope = np.array([1.0, -1.0 / r**2, 3.0 * r**2, np.log(r) + 1.0])
-        bend = np.array([0.0, 2.0 / r**3, 6.0 * r, 1.0 / r])
-        return np.stack([value, slope, bend + ratio * (slope / r - value / r**2)])
-
-    inner, outer = terms(boss), terms(support)
-    matrix = np.stack([inner[0] - boss * inner[1], outer[0], outer[2], np.array([0.0, 0.0, 0.0, 1.0])])
-    constants = np.linalg.solve(matrix, np.array([0.0, 0.0, 0.0, -1.0 / (4.0 * np.pi * rigidity)]))
-    return float(inner[1] @ constants)
 
 
 def contact_alone(law: EnergyLaw) -> EnergyLaw:

@@ -48,7 +48,7 @@ class Carrier:
     stiffness_torsion : float or None
         Torsional stiffness between the near flange and what it is fixed to, N·mm/rad; rigid when left out.
     flange : tuple of float or None
-        Thicknesses of the near and the far flange, which bend where the posts are fixed, mm; rigid when left out.
+        Thicknesses of the near and the far flange, which bend between the posts, mm; rigid when left out.
     posts : CarrierPosts or None
         Posts between the flanges; when left out the flanges do not move against each other.
     """
