@@ -8,7 +8,8 @@ counter-clockwise with a parameter of period 2π and knows on which side the bod
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass
+import pickle
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -104,7 +105,7 @@ class CircleCurve:
         return np.asarray(np.mod(np.angle(np.asarray(point) - self.centre), 2.0 * np.pi))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class FlankCurve:
     """Flank of the disc; the parameter is θ of Eq. 1.
 
@@ -118,6 +119,22 @@ class FlankCurve:
 
     profile: FlankProfile
     name: str = "flank"
+
+    def __eq__(self, other: object) -> bool:
+        """Whether the other is the same flank, to the last bit of its deviations."""
+        return isinstance(other, FlankCurve) and self._content == other._content
+
+    def __hash__(self) -> int:
+        """Of flank and name."""
+        return hash(self._content)
+
+    @property
+    def _content(self) -> tuple[FlankProfile, str, bytes]:
+        """What tells flanks apart; arrays of deviations, which have neither hash nor truth, as bytes."""
+        deviation = self.profile.deviation
+        if deviation is None:
+            return self.profile, self.name, b""
+        return replace(self.profile, deviation=None), self.name, pickle.dumps(deviation)
 
     @property
     def encloses_body(self) -> bool:

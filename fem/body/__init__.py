@@ -11,5 +11,6 @@ free_body     Datum of a floating body: its displacement relative to the best-fi
 influence     Influence between very many loads of a free body: only the blocks that are asked for, none by a dense factor
 stress        Stress recovery: from nodal displacements to nodal Cauchy stresses
 wall_stress   Stress along a meshed boundary, from recovered nodal stresses
+pin_ring      The ring of the pin wheel: forces of pins on its seats and of bolts, flexibility between them
 ============  ============================================================
 """

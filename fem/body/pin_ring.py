@@ -33,7 +33,7 @@ from fem.shapes import PinRingShape, SlottedCircle
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.drive.materials import Material
 from ltca.drive.parts import Drive
-from ltca.drive.ring_shape import bolt_patch_radius, seat_radius
+from ltca.drive.ring_shape import bolt_patch_radius, ring_mesh_problems, seat_radius
 from ltca.errors import DriveError
 from ltca.reading.ring_file import rigid_motions
 
@@ -69,11 +69,13 @@ class DerivedRing:
 def ring_of_drive(drive: Drive) -> PinRingShape:
     """Return the shape of the ring of a drive with the seats of its pins, all of nominal radius and place.
 
-    DriveError for a drive without ring.
+    DriveError for a drive without ring, and for a ring that cannot be meshed.
     """
     ring, wheel = drive.ring, drive.pin_wheel
     if ring is None:
         raise DriveError(["ring: is left out in this drive; there is no ring to derive"])
+    if problems := [*ring_mesh_problems(drive)]:
+        raise DriveError(problems)
     inner = SlottedCircle(
         radius=ring.inner_radius,
         seats=wheel.number_of_pins,

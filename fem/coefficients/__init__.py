@@ -9,5 +9,6 @@ wall_strain  Tangential strain of walls as a linear measure of the displacement,
 bodies       Normal approach influence coefficients of the bodies of a drive, derived by finite elements
 dataset      All influence coefficients of a drive as one labelled dataset, the content of ``coefficients.nc``
 fit          Check that a file of influence coefficients belongs to the bodies of a drive: dimensions and stations
+ring         Flexibility of the ring of the pin wheel at its seats and bolts, as a labelled dataset
 ===========  ============================================================
 """

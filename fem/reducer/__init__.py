@@ -2,6 +2,7 @@
 
 ==============  ===============================================================
 shares          Part of the wheel's moment that each disc carries: iteration of the moments until the wheel angles agree
+mixing          A fixed point from the last rounds of an iteration: seats of the ring that several discs press
 solution        Solution of a drive at one crank angle with either member held
 series          Solutions at one crank angle after the other; condensed pins and rollers are reused
 verdict         Largest loads, pressures and stresses of a solution, judged by the same limits as the LTCA

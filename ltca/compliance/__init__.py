@@ -20,6 +20,7 @@ near_field           Near fields of all contacts of a drive, and what finite ele
                      body part C
 coefficient_files    Where influence coefficients come from: files of the user's, or derived once for each distinct
                      shape and kept
+ring                 Flexibility of the ring of the pin wheel: a curved beam, or finite elements from a file
 undeformed           Overlap of the undeformed bodies at a pose, and where on the disc each contact lies: what coupled bodies
                      start from
 coupled              Loads of all contact pairs at a pose when the pairs feel each other through the bodies (`fe` and

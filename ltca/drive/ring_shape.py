@@ -6,6 +6,7 @@ new derivation.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from math import acos, cos, pi, radians, sin, sqrt
 
 from ltca.drive.fingerprints import fingerprint_of
@@ -15,6 +16,8 @@ LEAST_HALF_ARC = radians(45.0)
 """Half the arc of a seat below which it cannot lead its pin tangentially."""
 SHARPEST_CORNER = radians(25.0)
 """Angle of the metal between two seats at their mouths, below which no sound mesh is made."""
+LEAST_METAL = 0.1
+"""Least metal between two seats whose mouths are narrower than they, by the radius of a seat."""
 BOLT_PATCH = 0.1
 """Radius of the patch that a bolt holds, by the radial height of the ring outside the seats."""
 
@@ -39,6 +42,42 @@ def bolt_patch_radius(drive: Drive) -> float:
     ring, wheel = drive.ring, drive.pin_wheel
     outer = 0.0 if ring is None else ring.outer_radius
     return BOLT_PATCH * (outer - wheel.pin_circle_radius - seat_radius(wheel))
+
+
+def ring_mesh_problems(drive: Drive) -> Iterator[str]:
+    """Yield why the ring of a drive cannot be one of finite elements, one sentence each: its seats have to lead the pins, its
+    bolts to stand in metal.
+    """
+    ring, wheel = drive.ring, drive.pin_wheel
+    if ring is None:
+        return
+    sharp, short = inner_radius_bounds(wheel)
+    inner, circle, seat = ring.inner_radius, wheel.pin_circle_radius, seat_radius(wheel)
+    if inner < sharp:
+        yield (
+            f"ring.inner_radius = {inner:g} mm: must be at least {sharp:g} mm for finite elements of the ring, or metal "
+            "between two seats ends too sharp for a mesh"
+        )
+    if inner > short:
+        yield (
+            f"ring.inner_radius = {inner:g} mm: must be at most {short:g} mm for finite elements of the ring, or the seats "
+            "are too flat to lead the pins"
+        )
+    between = 2.0 * circle * sin(pi / wheel.number_of_pins) - 2.0 * seat
+    if between <= LEAST_METAL * seat and inner < circle:
+        yield (
+            f"ring.inner_radius = {inner:g} mm: must be at least {circle:g} mm (pin_wheel.pin_circle_radius) for finite "
+            f"elements of the ring: {between:.4g} mm of metal are left between two seats"
+        )
+    bolts, patch = ring.bolts, bolt_patch_radius(drive)
+    if bolts is None or ring.flange == "built-in":
+        return
+    low, high = circle + seat + patch, ring.outer_radius - patch
+    if not low <= bolts.circle_radius <= high:
+        yield (
+            f"ring.bolts.circle_radius = {bolts.circle_radius:g} mm: must be {low:g} to {high:g} mm for finite elements of the "
+            "ring, in metal outside the seats"
+        )
 
 
 def has_ring_of_elements(drive: Drive) -> bool:

@@ -23,5 +23,6 @@ station_walls       Walls of a disc between its stations: how they bend as beams
 coefficient_laws    Checks of a file of influence coefficients by laws that need no second computation
 coefficient_file    Files of influence coefficients: written whole with a checksum, read only when schema, laws and
                     checksum hold
+ring_file           Files of the flexibility of a ring of the pin wheel: schema and laws
 ==================  ============================================================
 """

@@ -9,10 +9,9 @@ from math import fsum, pi, sin
 
 from ltca.drive.fields import ANY, OWN
 from ltca.drive.members.pins import PinShaft, PinWheel, ShaftPinBeam, WheelPinBeam
-from ltca.drive.members.ring import Ring
 from ltca.drive.mistakes import entry_words
 from ltca.drive.parts import Drive, Material
-from ltca.drive.ring_shape import bolt_patch_radius, inner_radius_bounds, seat_radius
+from ltca.drive.ring_shape import ring_mesh_problems, seat_radius
 from ltca.reading.disc_checks import deviation_bound, part_errors
 
 SHARE_ROUNDING = 1e-9
@@ -21,8 +20,6 @@ ROUNDING = 1e-9
 """Difference up to which lengths are equal, mm: round-off of a sum, and less than any real play."""
 MOST_OF_BODY = 0.95
 """Largest rigid core of a pin, or fixed bore of a race, by its radius: thinner walls the default meshes do not resolve."""
-LEAST_METAL = 0.1
-"""Least metal between two seats of a ring by finite elements, by the radius of a seat."""
 BELONGS = {"radius": "slot", "pin_radius": "sleeve", "bore_radius": "sleeve"}
 """Fields of a seat, and the kind of seat they belong to."""
 
@@ -107,7 +104,7 @@ def _ring(drive: Drive) -> Iterator[str]:
             "or leave one of them out: pin circle, slots and ring grow together"
         )
     if ring.model == "fe" and circle - seat < inner <= circle + seat and outer > circle + seat:
-        yield from _ring_of_elements(drive, ring)
+        yield from ring_mesh_problems(drive)
     bolts = ring.bolts
     if bolts is None:
         return
@@ -118,37 +115,6 @@ def _ring(drive: Drive) -> Iterator[str]:
         )
     if not inner <= bolts.circle_radius:
         yield f"ring.bolts.circle_radius = {bolts.circle_radius:g} mm: must be at least ring.inner_radius = {inner:g} mm"
-
-
-def _ring_of_elements(drive: Drive, ring: Ring) -> Iterator[str]:
-    """Problems of a ring by finite elements: its seats have to lead the pins, its bolts to stand in metal."""
-    sharp, short = inner_radius_bounds(drive.pin_wheel)
-    inner, circle, seat = ring.inner_radius, drive.pin_wheel.pin_circle_radius, seat_radius(drive.pin_wheel)
-    if inner < sharp:
-        yield (
-            f'ring.inner_radius = {inner:g} mm: must be at least {sharp:g} mm with ring.model = "fe", or metal between two seats '
-            "ends too sharp for a mesh"
-        )
-    if inner > short:
-        yield (
-            f'ring.inner_radius = {inner:g} mm: must be at most {short:g} mm with ring.model = "fe", or the seats are too flat '
-            "to lead the pins"
-        )
-    between = 2.0 * circle * sin(pi / drive.pin_wheel.number_of_pins) - 2.0 * seat
-    if between <= LEAST_METAL * seat and inner < circle:
-        yield (
-            f"ring.inner_radius = {inner:g} mm: must be at least {circle:g} mm (pin_wheel.pin_circle_radius) with ring.model = "
-            f'"fe": {between:.4g} mm of metal are left between two seats'
-        )
-    bolts, patch = ring.bolts, bolt_patch_radius(drive)
-    if bolts is None or ring.flange == "built-in":
-        return
-    low, high = circle + seat + patch, ring.outer_radius - patch
-    if not low <= bolts.circle_radius <= high:
-        yield (
-            f'ring.bolts.circle_radius = {bolts.circle_radius:g} mm: must be {low:g} to {high:g} mm with ring.model = "fe", in '
-            "metal outside the seats"
-        )
 
 
 def _duty(drive: Drive) -> Iterator[str]:

@@ -127,6 +127,20 @@ def test_core_and_race_bore_of_the_drive_are_those_of_the_bodies(drive: Drive) -
     assert shapes.inner_race.inner_radius == 15.0
 
 
+def test_discs_with_profile_errors_are_told_apart(drive: Drive) -> None:
+    """A flank with deviations could not be hashed: full finite elements of it ended in a TypeError."""
+    waves = {
+        "disc.profile_errors.orders": (2,),
+        "disc.profile_errors.cosine": (0.001,),
+        "disc.profile_errors.sine": (0.0,),
+    }
+    first, again = (DiscShape.of_drive(with_fields(drive, waves)) for _ in range(2))
+    other = DiscShape.of_drive(with_fields(drive, waves | {"disc.profile_errors.cosine": (0.002,)}))
+    assert first == again
+    assert hash(first) == hash(again)
+    assert len({first, other, DiscShape.of_drive(drive)}) == 3
+
+
 def test_a_single_small_pin_does_not_change_the_core_of_all(drive: Drive) -> None:
     """Coefficients are of nominal pins: with the core of the smallest one full finite elements had another support."""
     small = with_fields(

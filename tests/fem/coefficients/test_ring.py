@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fem.body.pin_ring import flexibility_of, seat_loads
+from fem.body.pin_ring import flexibility_of, seat_flexibility, seat_loads
 from fem.coefficients.ring import derive_ring
 from fem.mesh.element_size import Refinement
 from fem.mesh.triangulation import mesh_pin_ring
@@ -278,22 +278,24 @@ def test_the_command_derives_and_checks(joint, tmp_path, capsys):
     [
         (
             {"inner_radius": 57.6},
-            r"ring.inner_radius = 57.6 mm: must be at least 57.72\d* mm with ring.model = \"fe\", or metal",
+            r"ring.inner_radius = 57.6 mm: must be at least 57.72\d* mm for finite elements of the ring, or metal",
         ),
         (
             {"inner_radius": 62.2},
-            r"ring.inner_radius = 62.2 mm: must be at most 61.79\d* mm with ring.model = \"fe\", or the",
+            r"ring.inner_radius = 62.2 mm: must be at most 61.79\d* mm for finite elements of the ring, or the",
         ),
         (
             {"bolts": {"number": 8, "circle_radius": 72.0, "stiffness": 5e5}},
-            r"ring.bolts.circle_radius = 72 mm: must be 63.45 to 71.05 mm with ring.model = \"fe\", in metal outside",
+            r"ring.bolts.circle_radius = 72 mm: must be 63.45 to 71.05 mm for finite elements of the ring, in metal",
         ),
     ],
 )
 def test_rings_that_cannot_be_meshed_are_refused_by_name(joint, change, told):
     with pytest.raises(DriveError, match=told):
         with_fields(joint, {"ring": SIZES | change})
-    with_fields(joint, {"ring": SIZES | {"model": "beam"} | change})
+    beam = with_fields(joint, {"ring": SIZES | {"model": "beam"} | change})
+    with pytest.raises(DriveError, match=told):  # the ring of full finite elements, whatever the model
+        seat_flexibility(beam)
 
 
 def test_nothing_installed_that_derives_is_said(joint, derived, monkeypatch):
