@@ -94,7 +94,7 @@ def test_scalars_have_the_unit_of_what_they_sum_up():
 
 @pytest.fixture(scope="module")
 def drives():
-    """The shipped drives, and one that rubs, is warm, has an elastic ring and carrier, stands on a soft bearing and has a hardened case."""
+    """The shipped drives, and one that rubs, is warm, has an elastic ring and carrier, a soft bearing and a hardened case."""
     files = {name: parse_drive(shipped_drive(name), name) for name in SHIPPED}
     text = re.sub(r"(?m)^(torque = .*)$", r"\1\nspeed = 1000.0", shipped_drive("sleeved")).replace(
         'disc = { like = "100Cr6",', 'disc = { like = "100Cr6", hardness_depth = 0.5,'

@@ -36,64 +36,6 @@ class PairSlopes:
     by_pose: FloatArray
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class DiscResponse:
-    """Contacts of one disc in a batch of positions at given poses.
-
-    Attributes
-    ----------
-    force : array, shape (positions, coordinates)
-        Generalised contact force Σ F ∂δ/∂q, of `ltca.geometry.coordinates`: N and N·mm.
-    tangent : array, shape (positions, coordinates, coordinates)
-        Its derivative by the pose.
-    flank : FlankMotion
-        Kinematics of the wheel pins.
-    holes : PairMotion
-        Kinematics of the pin holes.
-    rollers : RollerState
-        Balanced rollers.
-    pin_load, hole_load : array, shape (positions, pairs)
-        N.
-    warm_start : array of object, shape (positions,)
-        What a model wants to find again at the next pose of each position, a value that nothing changes; None where it
-        wants nothing. It saves work and alters no answer.
-    shifts : array of complex, shape (positions, pairs), or None
-        Displacements of wheel pins and shaft pins that were given, mm: what the parts that hold them yield.
-    ring : array of complex, shape (positions, z_P), or None
-        What the ring of the wheel moves the wheel pins in the turning wheel, mm, a part of `shifts`; None where it is rigid.
-    slopes : PairSlopes or None
-        Where they were given.
-    friction : array, shape (positions, pairs), or None
-        Forces of wheel pins and shaft pins along their tangents, N; None without friction.
-    """
-
-    force: FloatArray
-    tangent: FloatArray
-    flank: FlankMotion
-    holes: PairMotion
-    rollers: RollerState
-    pin_load: FloatArray
-    hole_load: FloatArray
-    warm_start: NDArray[np.object_]
-    shifts: ComplexArray | None = None
-    ring: ComplexArray | None = None
-    slopes: PairSlopes | None = None
-    friction: FloatArray | None = None
-
-    @property
-    def pin_forces(self) -> ComplexArray:
-        """Force of the disc on each wheel pin and shaft pin in the fixed frame, with friction, N, shape (positions, pairs)."""
-        load = np.concatenate((self.pin_load, self.hole_load), axis=1)
-        normal, along = (
-            np.concatenate((getattr(self.flank, name), getattr(self.holes, name)), axis=1)[..., DISC_PLACE]
-            for name in ("gradient", "along")
-        )
-        force = load[..., None] * normal
-        if self.friction is not None:
-            force = force + self.friction[..., None] * along
-        return np.asarray(force[..., 0] + 1j * force[..., 1])
-
-
 @dataclass(frozen=True, slots=True)
 class FollowingPins:
     """Displacements of pins at a pose, and how they follow it.
@@ -119,6 +61,67 @@ class FollowingPins:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class DiscResponse:
+    """Contacts of one disc in a batch of positions at given poses.
+
+    Attributes
+    ----------
+    force : array, shape (positions, coordinates)
+        Generalised contact force Σ F ∂δ/∂q, of `ltca.geometry.coordinates`: N and N·mm.
+    tangent : array, shape (positions, coordinates, coordinates)
+        Its derivative by the pose.
+    flank : FlankMotion
+        Kinematics of the wheel pins.
+    holes : PairMotion
+        Kinematics of the pin holes.
+    rollers : RollerState
+        Balanced rollers.
+    pin_load, hole_load : array, shape (positions, pairs)
+        N.
+    warm_start : array of object, shape (positions,)
+        What a model wants to find again at the next pose of each position, a value that nothing changes; None where it
+        wants nothing. It saves work and alters no answer.
+    shifts : array of complex, shape (positions, pairs), or None
+        Displacements of wheel pins and shaft pins that were given, mm: what the parts that hold them yield.
+    ring : array of complex, shape (positions, z_P), or None
+        What the ring of the wheel moves the wheel pins in the turning wheel, mm, a part of `shifts`; None where it is rigid.
+    follow : FollowingPins or None
+        How the displacements of pins follow the pose, of all discs; None where none are displaced.
+    slopes : PairSlopes or None
+        Where they were given.
+    friction : array, shape (positions, pairs), or None
+        Forces of wheel pins and shaft pins along their tangents, N; None without friction.
+    """
+
+    force: FloatArray
+    tangent: FloatArray
+    flank: FlankMotion
+    holes: PairMotion
+    rollers: RollerState
+    pin_load: FloatArray
+    hole_load: FloatArray
+    warm_start: NDArray[np.object_]
+    shifts: ComplexArray | None = None
+    ring: ComplexArray | None = None
+    follow: FollowingPins | None = None
+    slopes: PairSlopes | None = None
+    friction: FloatArray | None = None
+
+    @property
+    def pin_forces(self) -> ComplexArray:
+        """Force of the disc on each wheel pin and shaft pin in the fixed frame, with friction, N, shape (positions, pairs)."""
+        load = np.concatenate((self.pin_load, self.hole_load), axis=1)
+        normal, along = (
+            np.concatenate((getattr(self.flank, name), getattr(self.holes, name)), axis=1)[..., DISC_PLACE]
+            for name in ("gradient", "along")
+        )
+        force = load[..., None] * normal
+        if self.friction is not None:
+            force = force + self.friction[..., None] * along
+        return np.asarray(force[..., 0] + 1j * force[..., 1])
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Response(DiscResponse):
     """Contacts of all discs of a reducer, disc after disc: of n discs array axes for pairs are n times as long.
 
@@ -129,14 +132,11 @@ class Response(DiscResponse):
     ----------
     parts : tuple of DiscResponse
         Of each disc, by its own pose.
-    follow : FollowingPins or None
-        How the displacements of pins follow the pose; None where none are displaced.
     left : array, shape (positions,), or None
         Force that displacements which have not settled amount to, N; None where none are displaced.
     """
 
     parts: tuple[DiscResponse, ...]
-    follow: FollowingPins | None = None
     left: FloatArray | None = None
 
     @classmethod
