@@ -3,7 +3,7 @@
 ``--practical`` generates drives with practical proportions (`ltca.testing.practical_drives`), ``--preloaded`` drives whose parts
 overlap as drawn, ``--cranks`` reducers of all kinds (`ltca.testing.crank_drives`), ``--pins`` reducers with loose, sleeved or
 bending pins, ``--friction`` reducers with friction, also with reversed motion (`ltca.testing.pin_drives`). All of these must
-be solved.
+be solved. Up to half of the drives have an elastic ring, free, bolted or built in.
 
 A solution has to be confirmed by `ltca.testing.balance_check` (residual, complementarity, minimum of the potential) or be a
 `ConvergenceError` with its history; anything else counts as wrong and is reported with its seed. Results are written as JSON
