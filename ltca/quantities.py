@@ -428,7 +428,7 @@ _DECLARED = (
         "ring_displacement_radial", "seat", "mm",
         "displacement of the seat of the wheel pin by the elastic ring of the wheel, outward; of a free ring beyond the rigid "
         "motion that fits all seats best",
-        (_bend("largest radial displacement of the ring of the wheel", "radial displacement of the ring of the wheel"),),
+        (Scalar("max_{}", "largest outward displacement of the ring of the wheel", digits=".4f"),),
     ),
     Quantity("ring_displacement_tangential", "seat", "mm", "the same, 90° ahead"),
     Quantity("wheel_x", "drive", "mm", "displacement of the wheel on its bearing in the fixed frame"),

@@ -10,6 +10,7 @@ friction                   Losses of a drive that turns, the loop of one whose i
 loaded_analysis            Loaded tooth contact analysis of one drive at many crank angles: equilibrium, then
                            pressures and bearing forces
 contact_arrays             Arrays of all contacts by their names in the registry
+time_need                  About how long the analysis of a drive takes, told beforehand
 light_torque               The answer of an analysis at its light torque, as an analysis at that torque
 half_width_guard           Where half-spaces and the parabolas of tables end: contacts wider than the bodies are curved are
                            refused, by name

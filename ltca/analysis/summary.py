@@ -28,8 +28,11 @@ OF_CONTACTS = tuple(
     f"max_{part}_{kind}" for part in ("pin", "roller", "pin_shaft") for kind in ("load", "pressure_mid", "pressure_max")
 )
 """Largest loads and pressures of the contacts."""
-OF_PINS = ("max_pin_seat_pressure", "max_hole_seat_pressure", "max_pin_deflection", "max_shaft_pin_deflection")
-"""What loose pins, sleeves and pins that bend have."""
+OF_PINS = (
+    "max_pin_seat_pressure", "max_hole_seat_pressure", "max_pin_deflection", "max_shaft_pin_deflection",
+    "max_ring_displacement_radial",
+)  # fmt: skip
+"""What loose pins, sleeves, pins that bend and an elastic ring have."""
 OF_RANGES = (
     "ptp_tangential_bearing_load",
     "ptp_transmission_error",

@@ -15,7 +15,10 @@ ROWS = (
     "mean_loaded_pin_shaft_pins", "ptp_transmission_error", "ptp_transmission_error_light", "backlash_output",
     "backlash_disc", "backlash_wheel",
 )  # fmt: skip
-SEAT_ROWS = ("max_pin_seat_pressure", "max_hole_seat_pressure", "max_pin_deflection", "max_shaft_pin_deflection")
+SEAT_ROWS = (
+    "max_pin_seat_pressure", "max_hole_seat_pressure", "max_pin_deflection", "max_shaft_pin_deflection",
+    "max_ring_displacement_radial",
+)  # fmt: skip
 FRICTION_ROWS = (
     "mean_efficiency", "mean_efficiency_back", "moves_back", "mean_crank_torque", "power_loss", "power_loss_pin",
     "power_loss_seat", "power_loss_hole", "power_loss_roller", "power_loss_support_bearing", "power_loss_no_load",
