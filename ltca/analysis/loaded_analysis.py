@@ -31,7 +31,9 @@ from ltca.drive.unit_mistakes import names_unit_mistakes, unit_warnings
 from ltca.drive.units.table import range_of
 from ltca.equilibrium.balance import Equilibrium, equilibrium_of_disc
 from ltca.equilibrium.compliance_shares import PARTS, compliance_shares
-from ltca.equilibrium.output_torque import cage_moments, crank_moments, solve_at_output
+from ltca.equilibrium.crank_moments import cage_moments, crank_moments
+from ltca.equilibrium.output_angle import crank_lag, wheel_angle_of_input
+from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.partial_balance import (
     PartlyBalanced,
     all_balanced,
@@ -147,7 +149,7 @@ class LoadedAnalysis:
     @property
     def cage_moments(self) -> FloatArray:
         """External moment that holds the roller cages of each crank, ccw positive, shape (positions, cranks), N·mm."""
-        return cage_moments(self.model, self.full.crank_angle, self.full.pose, self.full.response)
+        return cage_moments(self.model, self.full.crank_angle, self.full.pose, self.full.response.parts)
 
     @property
     def losses(self) -> Losses | None:
@@ -212,12 +214,38 @@ class LoadedAnalysis:
     @property
     def transmission_error(self) -> FloatArray:
         """Deviation of the output at the torque of the run, ccw positive, shape (positions,), rad."""
-        return np.asarray(self.drive.output_per_wheel_angle * self.full.pose[:, WHEEL_ANGLE])
+        return np.asarray(self.drive.output_per_wheel_angle * wheel_angle_of_input(self.model, self.full))
 
     @property
     def transmission_error_light(self) -> FloatArray:
         """The same at the light torque, rad."""
-        return np.asarray(self.drive.output_per_wheel_angle * self.light.pose[:, WHEEL_ANGLE])
+        return np.asarray(self.drive.output_per_wheel_angle * wheel_angle_of_input(self.model, self.light))
+
+    @property
+    def wind_up(self) -> FloatArray:
+        """Angle of the output between light torque and torque, input held, shape (positions,), rad."""
+        return np.abs(self.transmission_error - self.transmission_error_light)
+
+    @property
+    def stage_wind_up(self) -> FloatArray:
+        """The same of the cycloid stage alone, cranks held, rad."""
+        wound = self.full.pose[:, WHEEL_ANGLE] - self.light.pose[:, WHEEL_ANGLE]
+        return np.abs(self.drive.output_per_wheel_angle * wound)
+
+    def stiffness_from_light(self, wound: FloatArray) -> float:
+        """Return the torque from the light one on by the wind-up that it takes, where that is most, N·mm/rad.
+
+        Not a number where nothing is wound up between the two, or no position has an answer.
+        """
+        known = wound[self.balanced & self.balanced_light]
+        if not (known.size and np.all(known > 0.0)):
+            return float("nan")
+        return float(abs(self.torque - self.drive.load.light_torque) / np.max(known))
+
+    @property
+    def crank_lag(self) -> FloatArray:
+        """Angle of the cranks less the one that the held input gives them, rad, shape (positions,)."""
+        return crank_lag(self.model, self.full)
 
     @property
     def hole_words(self) -> str:

@@ -30,10 +30,12 @@ from ltca.drive.materials import (
     contact_modulus as contact_modulus,
 )
 from ltca.drive.members.crank import Crank as Crank, CrankBearing as CrankBearing, CrankSupport as CrankSupport
+from ltca.drive.members.first_stage import FirstStage as FirstStage
 from ltca.drive.members.operation import (
     Analysis as Analysis,
     Compliance as Compliance,
     Duty as Duty,
+    ExternalLoad as ExternalLoad,
     Friction as Friction,
     Installation as Installation,
     Load as Load,
@@ -162,6 +164,8 @@ class Drive:
         Roller bearing between crank and disc.
     pin_shaft : PinShaft or None
         Pin shaft, the carrier of the cranks, with its pins; drives with several cranks need none.
+    first_stage : FirstStage or None
+        Teeth between a central input and several cranks; ``installation.first_stage_ratio`` alone gives its ratio.
     load : Load
         Torque and direction.
     installation : Installation
@@ -190,6 +194,7 @@ class Drive:
     disc: Disc
     crank_bearing: CrankBearing
     pin_shaft: PinShaft | None = None
+    first_stage: FirstStage | None = None
     load: Load
     installation: Installation = field(default_factory=Installation)
     clearance: Annotated[Clearance, grows("disc")] = field(default_factory=Clearance)
@@ -227,13 +232,18 @@ class Drive:
         return self.installation.held == "pin-wheel"
 
     @property
+    def first_stage_ratio(self) -> float | None:
+        """z₂/z₁ of the first stage, by its teeth or as it is given; None without one."""
+        return self.installation.first_stage_ratio if self.first_stage is None else self.first_stage.ratio
+
+    @property
     def transmission_ratio(self) -> float:
         """Turns of the input for one of the output.
 
         A central crank: u with the pin shaft held, −z_C/Δz with the pin wheel held. Several cranks driven from the carrier,
         relative to it: u and −u. Behind a first stage i₁ the input is its sun: −i₁ u and 1 + i₁ u.
         """
-        stage = self.installation.first_stage_ratio
+        stage = self.first_stage_ratio
         if stage is not None:
             return 1.0 + stage * self.reduction_ratio if self.wheel_is_held else -stage * self.reduction_ratio
         if self.crank.number > 1:
@@ -262,7 +272,7 @@ class Drive:
         """
         if self.crank.number == 1:
             return 1.0
-        stage = self.installation.first_stage_ratio
+        stage = self.first_stage_ratio
         return 0.0 if stage is None else -1.0 / stage
 
     @property

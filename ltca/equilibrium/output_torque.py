@@ -20,9 +20,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.arrays import FloatArray, put_positions, take_positions
-from ltca.compliance.response import Response, Start, bearing_pushes
+from ltca.compliance.response import Response, Start
 from ltca.drive.parts import Drive
 from ltca.equilibrium.balance import Equilibrium, follow_equilibrium, solve_equilibrium
+from ltca.equilibrium.crank_moments import crank_moments
 from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError
 
@@ -32,37 +33,6 @@ Balance = Callable[[FloatArray, FloatArray, FloatArray | None], Equilibrium]
 MAX_ITERATIONS = 30
 TORQUE_TOLERANCE = 1e-10
 """Unbalanced moment relative to the output torque; the balance of forces leaves more."""
-
-
-def crank_moments(model: Reducer, crank_angle: FloatArray, pose: FloatArray, response: Response) -> FloatArray:
-    r"""Return the external moment that holds each crank by virtual work, ccw positive, N·mm, shape (positions, cranks).
-
-    It is ∂U/∂φ_C of the contacts: the moment of every bearing's force about the crank axis, which is that of the forces on the
-    crank alone, and that of its cages (`cage_moments`) times `cage_speed`, the part of the crank's angle by which they turn.
-    Friction at the crank adds its own.
-    """
-    cranks, friction = model.discs[0].geometry.placement.cranks, model.friction
-    pushes = [bearing_pushes(part.rollers, cranks) for part in response.parts]
-    total = model.discs[0].geometry.placement.cage_speed * cage_moments(model, crank_angle, pose, response)
-    for disc, push in zip(model.discs, pushes, strict=True):
-        place = disc.geometry.placement
-        lever = place.race_centres(crank_angle) - place.crank_axes
-        total = total + (lever.conjugate() * push).imag
-    return total if friction is None else total + friction.of_cranks(pushes)
-
-
-def cage_moments(model: Reducer, crank_angle: FloatArray, pose: FloatArray, response: Response) -> FloatArray:
-    """Return the external moment that holds the cages of each crank at their angle, ccw positive, N·mm, (positions, cranks).
-
-    Cage and inner race are concentric and the race pushes its rollers along its radii, the bore along its own: what holds the
-    cage is the moment of the bearing's force at the displaced centre of the bore, the sum over all discs.
-    """
-    cranks = model.discs[0].geometry.placement.cranks
-    total = np.zeros((crank_angle.size, cranks))
-    for number, (disc, part) in enumerate(zip(model.discs, response.parts, strict=True)):
-        bores = disc.geometry.bores(crank_angle, pose[:, model.coordinates.columns(number)])
-        total += (bores.displacement.conjugate() * bearing_pushes(part.rollers, cranks)).imag
-    return total
 
 
 def input_moment(

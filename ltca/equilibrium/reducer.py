@@ -27,6 +27,9 @@ from ltca.compliance.response import (
     split_shifts,
 )
 from ltca.drive.parts import Drive
+from ltca.equilibrium.crank_moments import moments_of_parts
+from ltca.equilibrium.external_force import ExternalForce
+from ltca.equilibrium.first_stage import StageMesh
 from ltca.equilibrium.friction.turning import Rubbing, TurningFriction
 from ltca.equilibrium.shared_pins import SharedPins
 from ltca.equilibrium.supports import support_stiffness
@@ -77,11 +80,13 @@ class JointFriction(Protocol):
         """Return what friction does to a disc."""
         ...
 
-    def of_wheel(self, parts: Sequence[DiscResponse], reduction_ratio: float) -> FloatArray:
+    def of_wheel(
+        self, parts: Sequence[DiscResponse], reduction_ratio: float, external: ComplexArray | float = 0.0
+    ) -> FloatArray:
         """Return the moment by which the wheel's bearing rubs, N·mm."""
         ...
 
-    def of_cranks(self, pushes: Sequence[ComplexArray]) -> FloatArray:
+    def of_cranks(self, pushes: Sequence[ComplexArray], on_bearings: ComplexArray | None = None) -> FloatArray:
         """Return the moment that rubbing takes at every crank, N·mm, shape (positions, cranks)."""
         ...
 
@@ -100,12 +105,18 @@ class Reducer:
         Pins that several discs bend.
     friction : JointFriction or None
         What rubs.
+    stage : StageMesh or None
+        Teeth of the first stage.
+    external : ExternalForce or None
+        Forces from outside on the output.
     """
 
     discs: tuple[DiscModel, ...]
     supports: FloatArray | None = by_drive(2, default=None)
     pins: SharedPins | None = None
     friction: JointFriction | None = None
+    stage: StageMesh | None = None
+    external: ExternalForce | None = None
     _by_position: bool | None = field(init=False, repr=False, compare=False, default=None)
 
     @classmethod
@@ -116,6 +127,8 @@ class Reducer:
             supports=support_stiffness(drive, discs[0].geometry),
             pins=SharedPins.of_drive(drive),
             friction=TurningFriction.of_drive(drive),
+            stage=StageMesh.of_drive(drive),
+            external=ExternalForce.of_drive(drive),
         )
 
     def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Reducer:
@@ -123,6 +136,11 @@ class Reducer:
         if self._by_position is None:  # looked up once, and only for models that are solved
             object.__setattr__(self, "_by_position", has_rows(self))
         return take_rows(self, rows) if self._by_position else self
+
+    @property
+    def symmetric(self) -> bool:
+        """Whether its forces are slopes of a potential: neither friction nor forces that go with the moments of the cranks."""
+        return self.friction is None and not (self.stage is not None and self.stage.yields)
 
     @property
     def coordinates(self) -> Coordinates:
@@ -178,11 +196,17 @@ class Reducer:
             tangent[:, own[:, None], own] += part.tangent
         if settled is not None:
             tangent += settled.correction()
+        if self.stage is not None and self.stage.yields:
+            self._press_teeth(self.stage, crank_angle, pose, parts, force, tangent)
         if self.supports is not None:
             force += np.matmul(self.supports, pose[..., None])[..., 0]
             tangent += self.supports
+        pressed: ComplexArray | float = 0.0 if self.external is None else self.external.on_wheel(crank_angle)
+        if self.external is not None and coordinates.wheel:
+            force[:, coordinates.wheel_place] -= np.stack((np.real(pressed), np.imag(pressed)), axis=-1)
         if self.friction is not None:
-            force[:, WHEEL_ANGLE] += self.friction.of_wheel(parts, self.discs[0].geometry.placement.reduction_ratio)
+            ratio = self.discs[0].geometry.placement.reduction_ratio
+            force[:, WHEEL_ANGLE] += self.friction.of_wheel(parts, ratio, pressed)
         return Response(
             force=force,
             tangent=tangent,
@@ -195,6 +219,36 @@ class Reducer:
             parts=parts,
             shifts=shifts,
         )
+
+    def _press_teeth(
+        self,
+        stage: StageMesh,
+        crank_angle: FloatArray,
+        pose: FloatArray,
+        parts: Sequence[DiscResponse],
+        force: FloatArray,
+        tangent: FloatArray,
+    ) -> None:
+        """Take the forces of the first stage from the cranks' coordinates, where so far only contacts press, in place."""
+        coordinates, places = self.coordinates, self.discs[0].geometry.placement
+        columns = coordinates.own * np.arange(coordinates.discs)[:, None] + coordinates.crank(0)
+        x = columns + 2 * np.arange(coordinates.cranks)
+        moments = moments_of_parts(self, crank_angle, pose, parts)
+        slopes = np.zeros((*moments.shape, coordinates.size))
+        for number, (disc, part) in enumerate(zip(self.discs, parts, strict=True)):
+            own, place = coordinates.columns(number), disc.geometry.placement
+            bores = disc.geometry.bores(crank_angle, pose[:, own])
+            cage = np.asarray(places.cage_speed)
+            arm = place.race_centres(crank_angle) - place.crank_axes + cage * bores.displacement
+            changes = tangent[:, x[number]] + 1j * tangent[:, x[number] + 1]
+            slopes += (arm.conjugate()[..., None] * changes).imag
+            push = bearing_pushes(part.rollers, coordinates.cranks)
+            slopes[..., own] += cage[..., None] * (bores.gradient.conjugate() * push[..., None]).imag
+        pressed, by_moment = stage.on_cranks(moments)
+        changed = by_moment[..., None] * slopes[:, None]
+        for shift, part_of in ((0, np.real), (1, np.imag)):
+            force[:, x + shift] -= part_of(pressed)
+            tangent[:, x + shift] -= part_of(changed)
 
     def _unmoved(self, positions: int) -> ComplexArray:
         """Pins that stand where they stand without load, shape (positions, discs, pairs)."""

@@ -13,6 +13,7 @@ from ltca.drive.members.temperatures import temperature_words
 from ltca.drive.parts import Drive, PinShaft, PinWheel
 from ltca.drive.single_discs import equal_parts, single_discs
 from ltca.drive.units.quantities import ARCMIN
+from ltca.equilibrium.first_stage import StageMesh
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.first_contact import backlash
 from ltca.geometry.pairs import ContactGeometry
@@ -51,7 +52,7 @@ def _properties(drive: Drive, plays: bool) -> Rows:
         ("smallest flank radius, convex", f"{1.0 / curvature.max():.4f} mm"),
         ("smallest flank radius, concave", f"{-1.0 / curvature.min():.4f} mm"),
         ("pin radius at which the flank is undercut", f"{1.0 / locus.max() - drive.disc.equidistant_offset:.4f} mm"),
-        *(_plays(geometries, abs(drive.output_per_wheel_angle) * ARCMIN) if plays else []),
+        *(_plays(drive, geometries, abs(drive.output_per_wheel_angle) * ARCMIN) if plays else []),
         (f"bore radius{of} with clearance", f"{single.bore_radius:.4f} mm"),
         (f"play of a roller{of} between the races", f"{roller_play:.4f} mm"),
         ("gap between neighbouring rollers", f"{roller_gap(drive):.4f} mm"),
@@ -61,9 +62,10 @@ def _properties(drive: Drive, plays: bool) -> Rows:
     ]  # fmt: skip
 
 
-def _plays(geometries: list[ContactGeometry], leverage: float) -> Rows:
+def _plays(drive: Drive, geometries: list[ContactGeometry], leverage: float) -> Rows:
     gap = np.stack([-each.flank(position_angles(90), np.zeros((90, 4))).approach for each in geometries])
-    turn = play_over_a_turn(geometries)
+    turn, stage = play_over_a_turn(geometries), StageMesh.of_drive(drive)
+    before = 0.0 if stage is None else float(stage.play)
     disc = backlash(geometries[0], position_angles(360), DISC_ROTATION) * ARCMIN
     wheel = backlash(geometries, position_angles(360), WHEEL_ANGLE) * ARCMIN
     at, held = ("the disc", "disc") if len(geometries) == 1 else ("disc 0", "discs")
@@ -75,7 +77,7 @@ def _plays(geometries: list[ContactGeometry], leverage: float) -> Rows:
                 filter(
                     None,
                     (
-                        f"{leverage * turn.least:z.2f}′ … {leverage * turn.largest:z.2f}′",
+                        f"{leverage * (turn.least + before):z.2f}′ … {leverage * (turn.largest + before):z.2f}′",
                         preload_words(turn.preloaded),
                     ),
                 )
@@ -138,7 +140,7 @@ def _installation(drive: Drive) -> Rows:
     held = (
         "pin wheel held, pin shaft is the output" if drive.wheel_is_held else "pin shaft held, pin wheel is the output"
     )
-    stage, crank = drive.installation.first_stage_ratio, drive.crank
+    stage, crank = drive.first_stage_ratio, drive.crank
     turned = "crank" if stage is None else "input"
     rows = [
         ("installation", held),

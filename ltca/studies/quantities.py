@@ -15,9 +15,9 @@ from ltca.compliance.response import ContactPressures
 from ltca.drive.parts import Drive, Friction
 from ltca.drive.units.quantities import ARCMIN, ARCSEC
 from ltca.equilibrium.balance import Equilibrium
+from ltca.equilibrium.output_angle import play_of_input, wheel_angle_of_input
 from ltca.equilibrium.reducer import Reducer, bearing_forces
 from ltca.errors import DriveError, did_you_mean, shortened, told_twice
-from ltca.geometry.coordinates import WHEEL_ANGLE
 
 Stage = Literal["full", "light", "backlash", "play"]
 
@@ -84,20 +84,20 @@ class SampleBatch:
         found = self.losses()
         return np.asarray(self.by_sample(found.watts(found.total)).mean(axis=1))
 
-    def _at_output(self, pose: FloatArray) -> FloatArray:
+    def _at_output(self, found: Equilibrium) -> FloatArray:
         """Deviation of the output, arcsec."""
         output = np.array([drive.output_per_wheel_angle for drive in self.drives])
-        return np.asarray(output[:, None] * self.by_sample(pose[:, WHEEL_ANGLE]) * ARCSEC)
+        return np.asarray(output[:, None] * self.by_sample(wheel_angle_of_input(self.model, found)) * ARCSEC)
 
     def transmission_error(self) -> FloatArray:
         """Transmission error at the torque of each drive, arcsec."""
-        return self._at_output(self.full.pose)
+        return self._at_output(self.full)
 
     def light_transmission_error(self) -> FloatArray:
         """Transmission error at the light torque, arcsec."""
         if self.light is None:
             raise ValueError("the light torque was not solved")
-        return self._at_output(self.light.pose)
+        return self._at_output(self.light)
 
     def backlashes(self) -> FloatArray:
         """Backlash of the wheel, disc held, arcmin."""
@@ -110,7 +110,7 @@ class SampleBatch:
         if self.play is None:
             raise ValueError("the free play was not asked for")
         output = np.array([abs(drive.output_per_wheel_angle) for drive in self.drives])
-        return np.asarray(output[:, None] * self.by_sample(self.play) * ARCMIN)
+        return np.asarray(output[:, None] * self.by_sample(play_of_input(self.model, self.play)) * ARCMIN)
 
     def loaded(self, load: FloatArray) -> FloatArray:
         """Mean number of loaded pairs over the positions."""

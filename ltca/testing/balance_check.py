@@ -390,7 +390,7 @@ def find_imbalance(
         output = drive.driving_sign * torque
         left = moment + output
         if drive.wheel_is_held:
-            stage = drive.installation.first_stage_ratio
+            stage = drive.first_stage_ratio
             reaction = 1.0 if drive.crank.number == 1 else 0.0 if stage is None else -1.0 / stage
             left += reaction * (potential.crank_moment(pose) + (0.0 if rubbed is None else rubbed.at_cranks))
         if abs(left) > 1e-3 * abs(output):

@@ -8,7 +8,7 @@ a radian of the crank it is a moment, which needs no speed. The efficiency is 1 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -18,9 +18,9 @@ from ltca.arrays import BoolArray, FloatArray
 from ltca.compliance.response import bearing_pushes
 from ltca.drive.parts import Drive, PinShaft, PinWheel
 from ltca.equilibrium.balance import Equilibrium
+from ltca.equilibrium.crank_moments import crank_moments
 from ltca.equilibrium.friction.slip import Slip
 from ltca.equilibrium.friction.turning import rubbing, seat_travel
-from ltca.equilibrium.output_torque import crank_moments
 from ltca.equilibrium.reducer import Reducer
 
 KINDS = ("pin", "seat", "hole", "roller", "support_bearing", "no_load")
@@ -155,9 +155,14 @@ def losses(model: Reducer, drives: Sequence[Drive], found: Equilibrium, torque: 
     shaft = _joint(force[..., pins:], slip[..., pins:], *map(by_position, zip(*on_shaft, strict=True)))
     pushes = [bearing_pushes(part.rollers, model.discs[0].geometry.placement.cranks) for part in parts]
     rolled = friction.rolling * np.abs(np.stack(pushes)).sum(axis=(0, 2))
-    at_cranks = np.abs(friction.of_cranks(pushes)).sum(axis=1) - rolled
+    on_bearings = None
+    if model.stage is not None:
+        smooth = crank_moments(replace(model, friction=None), angle, found.pose, found.response)
+        on_bearings = model.stage.on_bearings(smooth)
+    at_cranks = np.abs(friction.of_cranks(pushes, on_bearings)).sum(axis=1) - rolled
     ratio = drives[0].reduction_ratio  # that of all: their parts are as many
-    at_wheel = np.abs(friction.of_wheel(parts, ratio) / ratio)
+    external = 0.0 if model.external is None else model.external.on_wheel(angle)
+    at_wheel = np.abs(friction.of_wheel(parts, ratio, external) / ratio)
     input_turns = by_position([1.0 / drive.crank_turns_per_input for drive in drives])
     no_load = by_position([rubs.no_load_torque for rubs in coefficients])
     lost: dict[str, FloatArray] = dict.fromkeys(KINDS, np.zeros(angle.shape))

@@ -8,14 +8,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from shutil import get_terminal_size
 
-import numpy as np
-
 from ltca.analysis.life.bearing_lives import BearingLives
 from ltca.analysis.life.life_text import life_summary
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.analysis.summary import refined_value
 from ltca.analysis.verdict.values import race_pressures
 from ltca.drive.units.quantities import ARCMIN
+from ltca.drive.yielding_parts import stiffness_notes, yielding_parts
 from ltca.quantities import scalar_named
 
 Summaries = Mapping[str, Mapping[str, float | None]]
@@ -86,8 +85,7 @@ def run_table(
     rows = [("torque, crank", [loads[name] for name in summaries])] if loads else []
     for heading, each in GROUPS:
         rows += _group(heading, [row for title, name in each for row in _rows(title, name, summaries)])
-    stiffness = [_number(_least_stiffness(analyses[name]), ".2f") for name in summaries]
-    rows += _group("stiffness of the cycloid stage [N·m/′]", [("from light torque, least", stiffness)])
+    rows += _group("torsional stiffness from light torque, least [N·m/′]", _stiffness_rows(summaries))
     rows += _group(
         "life of the crank bearings, L10r",
         [row for title, name, digits in LIFE for row in _life(title, name, digits, lives)],
@@ -131,17 +129,22 @@ def _life(title: str, name: str, digits: str, lives: Lives) -> list[tuple[str, l
     return [] if all(value is None for value in values) else [(title, [_number(value, digits) for value in values])]
 
 
-def _least_stiffness(analysis: LoadedAnalysis) -> float | None:
-    """Torque from the light one on, by the wind-up that it takes, where that is most; N·m by minute of arc."""
-    known = analysis.balanced & analysis.balanced_light
-    wound = np.abs(analysis.transmission_error - analysis.transmission_error_light)[known]
-    if not (wound.size and np.all(wound > 0.0)):
-        return None
-    return float(abs(analysis.torque - analysis.drive.load.light_torque) / np.max(wound) / ARCMIN / 1e3)
+def _stiffness_rows(summaries: Summaries) -> list[tuple[str, list[str]]]:
+    """Stiffness of the cycloid stage, and of the reducer where its file describes more."""
+    rows = []
+    for title, name in (("cycloid stage", "cycloid_stage_stiffness"), ("reducer as described", "reducer_stiffness")):
+        values = [case.get(scalar_named(name).key) for case in summaries.values()]
+        rows.append((title, [_number(None if one is None else one / ARCMIN / 1e3, ".2f") for one in values]))
+    return rows[: 1 + (rows[0][1] != rows[1][1])]
 
 
 def _number(value: float | None, digits: str) -> str:
     return "–" if value is None else f"{value:{digits}}"
+
+
+def whose_stiffness(analyses: Mapping[str, LoadedAnalysis]) -> list[str]:
+    """Return what yields in the stiffness of every case and what is rigid because its file leaves it out, as lines."""
+    return stiffness_notes({name: yielding_parts(analysis.drive) for name, analysis in analyses.items()})
 
 
 def lives_told(lives: Lives) -> list[str]:
