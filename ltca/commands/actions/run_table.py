@@ -85,7 +85,7 @@ def run_table(
     rows = [("torque, crank", [loads[name] for name in summaries])] if loads else []
     for heading, each in GROUPS:
         rows += _group(heading, [row for title, name in each for row in _rows(title, name, summaries)])
-    rows += _group("torsional stiffness from light torque, least [N·m/′]", _stiffness_rows(summaries))
+    rows += _group("stiffness of the cycloid stage [N·m/′]", _stiffness_rows(summaries))
     rows += _group(
         "life of the crank bearings, L10r",
         [row for title, name, digits in LIFE for row in _life(title, name, digits, lives)],
@@ -132,7 +132,11 @@ def _life(title: str, name: str, digits: str, lives: Lives) -> list[tuple[str, l
 def _stiffness_rows(summaries: Summaries) -> list[tuple[str, list[str]]]:
     """Stiffness of the cycloid stage, and of the reducer where its file describes more."""
     rows = []
-    for title, name in (("cycloid stage", "cycloid_stage_stiffness"), ("reducer as described", "reducer_stiffness")):
+    titles = {
+        "from light torque, least": "cycloid_stage_stiffness",
+        "reducer as described, least": "reducer_stiffness",
+    }
+    for title, name in titles.items():
         values = [case.get(scalar_named(name).key) for case in summaries.values()]
         rows.append((title, [_number(None if one is None else one / ARCMIN / 1e3, ".2f") for one in values]))
     return rows[: 1 + (rows[0][1] != rows[1][1])]

@@ -328,6 +328,8 @@ LEFT_OUT = (
     *RATINGS,
 )
 TABLES_LEFT_OUT = (
+    "first_stage",
+    *(f"load.external.0{part}" for part in ("", ".force", ".moment", ".at")),
     "crank.support",
     "pin_wheel.seat",
     "pin_wheel.beam",
