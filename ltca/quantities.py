@@ -568,6 +568,7 @@ _DECLARED = (
         "input_torque", "drive", "N mm", "external moment of the input, seals and oil included, ccw positive",
         (Scalar("mean_{}", "torque of the input, mean"),),
     ),
+    _scalar("N mm", Scalar("drag_torque", "torque that friction takes at the input, nothing at the output", digits=".4g")),
     Quantity(
         "input_torque_back", "drive", "N mm", "the same with the motion reversed",
         (Scalar("mean_{}", "torque of the input, motion reversed, mean"),),

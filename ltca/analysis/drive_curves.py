@@ -160,6 +160,7 @@ def solve_curves(
     advance: Callable[[int], None] = lambda _: None,
 ) -> DriveCurves:
     """Solve a warm drive, a part of its positions at a time, to bound memory."""
+    drive.require_torque("torque curves, which go up to it")
     asked, engine = settings, engine.with_coefficients(drive)
     mesh = 2.0 * np.pi / drive.disc.number_of_teeth
     settings = settings._replace(speed=_crank_speed(drive, settings))

@@ -28,6 +28,7 @@ from ltca.drive.members.temperatures import temperature_words, warm_drive
 from ltca.drive.parts import Drive, Temperature
 from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import names_unit_mistakes, unit_warnings
+from ltca.drive.units.quantities import ARCMIN
 from ltca.drive.units.table import range_of
 from ltca.equilibrium.balance import Equilibrium, equilibrium_of_disc
 from ltca.equilibrium.compliance_shares import PARTS, compliance_shares
@@ -44,9 +45,13 @@ from ltca.equilibrium.reducer import Reducer, bearing_forces, disc_pressures, di
 from ltca.errors import ConvergenceError, DriveError, shortened
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.interference import lost_play, preload_warning
+from ltca.geometry.pairs import ContactGeometry
+from ltca.geometry.play import free_play
 
 COMPLIANCE_SHARE_POSITIONS = 24
 """Number of positions at which shares of the compliance are evaluated: they change slowly over the turn."""
+HELD_PLAY = 1e-6
+"""Free play of the wheel times u, rad, up to which parts that overlap hold it: programmes stop at some 2e-9 of the wheel."""
 MAX_BATCH_POSITIONS = 20_000
 """Most positions that are balanced as one batch: more take memory and save no time."""
 
@@ -199,7 +204,10 @@ class LoadedAnalysis:
         )
         if not np.all(self.balanced[rows]):
             return dict.fromkeys(PARTS, np.full(rows.size, np.nan))
-        return compliance_shares(self.model, take_positions(self.full, rows))
+        found = take_positions(self.full, rows)
+        if self.torque == 0.0:  # what a little torque turns, from none
+            found = replace(found, wheel_moment=self.light.wheel_moment[rows])
+        return compliance_shares(self.model, found)
 
     @property
     def engine_words(self) -> str:
@@ -209,6 +217,8 @@ class LoadedAnalysis:
     @property
     def torque_share(self) -> FloatArray:
         """Part of the wheel's moment that each disc carries, shape (positions, discs)."""
+        if self.torque == 0.0:  # parts of nothing
+            return np.full(self.disc_torques.shape, np.nan)
         return np.asarray(self.disc_torques / self.disc_torques.sum(axis=1, keepdims=True))
 
     @property
@@ -258,7 +268,7 @@ class LoadedAnalysis:
         units = unit_warnings(self.as_written, self.torque)
         found = [*units, preload_warning(self.drive), self._lost_play()]
         found.append(strength_warning(self.drive.materials))
-        if not units and self.drive.load.light_torque > self.torque:
+        if not units and self.drive.load.light_torque > self.torque > 0.0:
             found.append(
                 f"load.light_torque = {self.drive.load.light_torque:g} N·mm is more than the torque of {self.torque:g} N·mm "
                 "that it is light against: are the two swapped, or is one in N·m?"
@@ -436,6 +446,8 @@ def _analysed(
 ) -> LoadedAnalysis:
     """The analysis of a case, from its balanced positions where these are known."""
     prepared, light_torque = case.prepared, case.drive.load.light_torque
+    if case.torque == 0.0:
+        require_preload(prepared.model.geometries, case.drive, angle, "load.torque" if torque is None else "torque")
 
     def at_torque(rows: NDArray[np.intp], start: FloatArray | None) -> Equilibrium:
         return prepared.balance(angle[rows], case.torque, start)
@@ -549,6 +561,36 @@ def _wall_stresses(model: Reducer, full: Equilibrium, pressures: ContactPressure
     )
 
 
+def require_preload(
+    discs: Sequence[ContactGeometry], drive: Drive, crank_angle: FloatArray, named: str = "load.torque"
+) -> None:
+    """Refuse positions at which nothing holds the discs without a torque, which field or argument `named` has left out.
+
+    Where the output has a free play, or parts only just touch, no force says where discs and wheel stand. Where parts overlap in
+    every pose and hold the wheel, they balance each other.
+
+    Raises
+    ------
+    DriveError
+        Naming the torque and the play.
+    """
+    found = free_play(discs, crank_angle)
+    loose = np.flatnonzero(~(found.preloaded & (found.play * drive.reduction_ratio < HELD_PLAY)))
+    if not loose.size:
+        return
+    row = loose[int(np.argmax(found.play[loose]))]
+    played = abs(drive.output_per_wheel_angle) * float(found.play[row]) * ARCMIN
+    told = f"has a free play of {played:.3g}′" if played > 0.0 else "is held by parts that only just touch"
+    raise DriveError(
+        [
+            f"{named} = 0 N·mm: must be greater than 0: without a torque the output {told} at crank angle "
+            f"{crank_angle[row]:.6g} rad ({loose.size} of {crank_angle.size} positions), and nothing says where discs and wheel stand; "
+            "drives whose parts "
+            "hold each other everywhere, such as with pins that are too thick, are answered"
+        ]
+    )
+
+
 def check_positions(crank_angle: FloatArray) -> FloatArray:
     """Return crank angles as a new array of one axis, rad.
 
@@ -580,7 +622,7 @@ def check_torque(drive: Drive, torque: float | None) -> float:
     Raises
     ------
     DriveError
-        When it is not a finite number greater than zero.
+        When it is not a finite number of at least zero.
     """
     if torque is None:
         return drive.load.torque
@@ -591,8 +633,8 @@ def check_torque(drive: Drive, torque: float | None) -> float:
         number = float(torque)
     except OverflowError:
         number = np.inf
-    if not (np.isfinite(number) and number > 0.0):
-        raise DriveError([f"torque = {number:g}: must be finite and greater than 0 N·mm (load.direction turns it)"])
-    if not smallest <= number <= largest:
+    if not (np.isfinite(number) and number >= 0.0):
+        raise DriveError([f"torque = {number:g}: must be finite and at least 0 N·mm (load.direction turns it)"])
+    if number and not smallest <= number <= largest:
         raise DriveError([f"torque = {number:g}: must be from {smallest:g} to {largest:g} N·mm"])
     return number

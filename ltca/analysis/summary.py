@@ -250,6 +250,7 @@ def _of_friction(analysis: LoadedAnalysis, arrays: Mapping[str, FloatArray]) -> 
         "mean_efficiency_back": back.mean_efficiency,
         **_sums(arrays, "moves_back"),
         "mean_crank_torque": float(np.mean(analysis.crank_torques.sum(axis=1))),
+        "drag_torque": found.drag_torque,
         **_sums(arrays, "mean_input_torque", "mean_input_torque_back", "power_loss"),
         **{f"power_loss_{kind}": float(np.mean(found.watts(found.by_kind[kind]))) for kind in KINDS},
         **_sums(arrays, *(f"mean_loss_{kind}" for kind in KINDS), *(f"max_{name}" for name in rubbed)),

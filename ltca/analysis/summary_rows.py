@@ -17,7 +17,7 @@ ROWS = (
 )  # fmt: skip
 SEAT_ROWS = ("max_pin_seat_pressure", "max_hole_seat_pressure", "max_pin_deflection", "max_shaft_pin_deflection")
 FRICTION_ROWS = (
-    "mean_efficiency", "mean_efficiency_back", "moves_back", "mean_crank_torque", "power_loss", "power_loss_pin",
+    "mean_efficiency", "mean_efficiency_back", "moves_back", "mean_crank_torque", "drag_torque", "power_loss", "power_loss_pin",
     "power_loss_seat", "power_loss_hole", "power_loss_roller", "power_loss_support_bearing", "power_loss_no_load",
     "max_pin_pv", "max_pin_shaft_pv",
 )  # fmt: skip

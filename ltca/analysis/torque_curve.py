@@ -122,7 +122,7 @@ def torque_curve(
             [f"lost_motion = {lost_motion:g}: must be from {LEAST_PART:g} to {MOST_PART:g} of the rated torque"]
         )
     angles = np.atleast_1d(np.asarray(crank_angle, dtype=float))
-    rated = drive.load.torque
+    rated = drive.require_torque("torque curves, which go up to it").load.torque
     parts = np.unique(
         np.concatenate(
             [np.linspace(LEAST_TORQUE_RATIO**0.5, 1.0, points) ** 2, [LEAST_TORQUE_RATIO, lost_motion, STIFF_FROM]]

@@ -294,6 +294,12 @@ class Drive:
         total = self.load.torque if torque is None else torque
         return -self.driving_sign * total * abs(self.output_per_wheel_angle)
 
+    def require_torque(self, what: str, torque: float | None = None) -> Drive:
+        """Return the drive itself; DriveError where the torque, its load by default, is zero, at which `what` says nothing."""
+        if (self.load.torque if torque is None else torque) == 0.0:
+            raise DriveError([f"load.torque = 0 N·mm: must be greater than 0 for {what}"])
+        return self
+
     def load_words(self, torque: float | None = None) -> str:
         """Return torque (N·mm; the load by default) and direction for the heading of a table."""
         total = self.load.torque if torque is None else torque

@@ -74,7 +74,8 @@ def solve_at_output(
     crank_angle : array, shape (positions,)
         φ_C, rad.
     torque : float or array, shape (positions,)
-        On the output, N·mm, positive as `load.direction` says; a negative one loads the other way.
+        On the output, N·mm, positive as `load.direction` says; a negative one loads the other way. Without any the parts
+        must hold each other.
     start : array, shape (positions, coordinates), optional
         Poses to start from, first contact by default.
     inner : Start, optional
@@ -91,6 +92,13 @@ def solve_at_output(
     ConvergenceError
         When a position does not balance.
     """
+    if start is None and np.any(np.asarray(torque) == 0.0):
+        angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
+        light = np.repeat([drive.load.light_torque for drive in drives], angle.size // len(drives))
+        near = solve_at_output(
+            replace(model, friction=None), drives, angle, np.where(torque, torque, light), gaps=False
+        )
+        start, inner = near.pose, Start.after(near.response)
     friction = model.friction
     if friction is None or not friction.turns:
         return _solve(model, drives, crank_angle, torque, start, inner, gaps)
@@ -174,13 +182,18 @@ def _solve(
     mean = np.repeat([drive.wheel_moment(1.0) for drive in drives], repeats) * loads
     held = np.repeat([drive.wheel_is_held for drive in drives], repeats)
     signed = np.repeat([drive.driving_sign for drive in drives], repeats) * loads
+    # What parts that hold each other carry without a torque is balanced as well as under the light one.
+    light = np.where(loads == 0.0, np.repeat([drive.load.light_torque for drive in drives], repeats), 0.0)
 
     def follow(rows: NDArray[np.intp], moment: FloatArray, near: Equilibrium) -> Equilibrium:
-        return follow_equilibrium(model if rows.size == angle.size else model.take(rows), near, moment, gaps)
+        return follow_equilibrium(
+            model if rows.size == angle.size else model.take(rows), near, moment, gaps, light[rows]
+        )
 
     input_per_crank_moment = np.repeat([drive.input_per_crank_moment for drive in drives], repeats)
-    found = solve_equilibrium(model, angle, mean, start, inner, gaps, len(drives))
-    return _at_output(model, follow, found, signed, held, input_per_crank_moment)
+    by_wheel = np.repeat([1.0 / abs(drive.output_per_wheel_angle) for drive in drives], repeats)
+    found = solve_equilibrium(model, angle, mean, start, inner, gaps, len(drives), light)
+    return _at_output(model, follow, found, signed, held, input_per_crank_moment, by_wheel, light)
 
 
 def balance_at_output(
@@ -204,7 +217,9 @@ def balance_at_output(
 
     input_per_crank_moment = np.full(angle.size, drive.input_per_crank_moment)
     signed = np.full(angle.size, drive.driving_sign * torque)
-    return _at_output(model, follow, balance(angle, mean, start), signed, held, input_per_crank_moment)
+    by_wheel = np.full(angle.size, 1.0 / abs(drive.output_per_wheel_angle))
+    found, light = balance(angle, mean, start), np.zeros(angle.size)
+    return _at_output(model, follow, found, signed, held, input_per_crank_moment, by_wheel, light)
 
 
 def _at_output(
@@ -214,10 +229,14 @@ def _at_output(
     signed: FloatArray,
     held: NDArray[np.bool_],
     input_per_crank_moment: FloatArray,
+    by_wheel: FloatArray,
+    reference: FloatArray,
 ) -> Equilibrium:
     """Find the moments on held wheels by secants, from positions balanced at the mean moment of a turn.
 
-    `follow` balances some positions under other moments, from what they were balanced under last.
+    `follow` balances some positions under other moments, from what they were balanced under last. `by_wheel` is the mean of
+    the output torque by the moment on the wheel, and `reference` the torque that what is left over is measured by where the
+    output torque is smaller, N·mm.
     """
     if not np.any(held):
         return found
@@ -225,11 +244,11 @@ def _at_output(
     moment = mean.copy()
     left = moment + input_moment(model, angle, found.pose, found.response, input_per_crank_moment) + signed
     # The cranks carry 1/u of the wheel's moment in the mean, the input its part of that: what is left grows with the moment.
-    slope = -signed / mean
+    slope = by_wheel.copy()
     history = []
     for _ in range(MAX_ITERATIONS):
         history.append(float(np.max(np.abs(np.where(held, left, 0.0)))))
-        open_rows = np.nonzero(held & (np.abs(left) > TORQUE_TOLERANCE * np.abs(signed)))[0]
+        open_rows = np.nonzero(held & (np.abs(left) > TORQUE_TOLERANCE * np.maximum(np.abs(signed), reference)))[0]
         if open_rows.size == 0:
             return found
         step = -left[open_rows] / slope[open_rows]

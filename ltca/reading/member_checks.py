@@ -91,8 +91,9 @@ def _first_stage(drive: Drive) -> Iterator[str]:
         return
     if mesh.working_angle > MOST_WORKING_ANGLE:
         yield (
-            f"{named}: the working pressure angle at crank.circle_radius = {distance:g} mm is {degrees(mesh.working_angle):.4g}°: "
-            f"must be at most {degrees(MOST_WORKING_ANGLE):g}°; the reference circles touch at {reference or distance:.6g} mm"
+            f"{named}: the working pressure angle at crank.circle_radius = {distance:g} mm is "
+            f"{degrees(mesh.working_angle):.4g}°: must be at most {degrees(MOST_WORKING_ANGLE):g}°; "
+            f"the reference circles touch at {reference or distance:.6g} mm"
         )
     apart = 2.0 * distance * sin(pi / crank.number)
     if 2.0 * mesh.pitch_radius >= apart:

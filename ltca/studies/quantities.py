@@ -77,7 +77,9 @@ class SampleBatch:
     def efficiency(self) -> FloatArray:
         """1 − mean loss/mean input of each sample."""
         found = self.losses()
-        return np.asarray(1.0 - self.by_sample(found.total).mean(axis=1) / self.by_sample(found.driving).mean(axis=1))
+        driving = self.by_sample(found.driving).mean(axis=1)
+        through = np.where(self.by_sample(found.at_output).any(axis=1), driving, np.nan)
+        return np.asarray(1.0 - self.by_sample(found.total).mean(axis=1) / through)
 
     def power_loss(self) -> FloatArray:
         """Mean power of all losses of each sample, W; not a number without speed."""

@@ -136,6 +136,7 @@ def hysteresis_loop(
     """
     if not 0.0 < lost_motion < amplitude:
         raise DriveError([f"lost_motion = {lost_motion:g}: must be greater than 0 and less than {amplitude:g}"])
+    drive.require_torque("loops, which go up to it")
     read = lost_motion / amplitude
     up = np.unique(np.concatenate([np.linspace(LEAST_TORQUE_RATIO**0.5, 1.0, points) ** 2, [read]]))
     once = np.concatenate([-up[::-1], up])

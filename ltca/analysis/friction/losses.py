@@ -69,6 +69,8 @@ class Losses:
         Energy put in at input and output by radian of the crank, N·mm; what comes out there is negative.
     driven_by_input : array of bool, shape (positions,)
         Which of them drives.
+    input_turns : array, shape (positions,)
+        Turns of the input by those of the cranks.
     crank_speed : array, shape (positions,)
         Of the cranks against the pin shaft, rad/s; not a number without `ltca.drive.parts.Load.speed`.
     """
@@ -80,6 +82,7 @@ class Losses:
     at_input: FloatArray
     at_output: FloatArray
     driven_by_input: BoolArray
+    input_turns: FloatArray
     crank_speed: FloatArray
 
     @property
@@ -94,13 +97,25 @@ class Losses:
 
     @property
     def efficiency(self) -> FloatArray:
-        """1 − loss/input at every position; not positive where a drive that is driven at its output locks itself."""
-        return np.asarray(1.0 - self.total / self.driving)
+        """1 − loss/input at every position; not positive where a drive that is driven at its output locks itself.
+
+        Not a number where nothing goes through: without a torque at the output all that is put in is lost.
+        """
+        through = np.where(self.at_output == 0.0, np.nan, self.driving)
+        return np.asarray(1.0 - self.total / through)
 
     @property
     def mean_efficiency(self) -> float:
-        """1 − mean loss/mean input."""
-        return float(1.0 - np.mean(self.total) / np.mean(self.driving))
+        """1 − mean loss/mean input; not a number where nothing goes through."""
+        through = np.nan if not np.any(self.at_output) else np.mean(self.driving)
+        return float(1.0 - np.mean(self.total) / through)
+
+    @property
+    def drag_torque(self) -> float:
+        """Mean torque that friction takes at the input of a drive without a torque at the output, N·mm; else not a number."""
+        if np.any(self.at_output):
+            return float("nan")
+        return float(np.mean(self.total / np.abs(self.input_turns)))
 
     def per_second(self, per_radian: FloatArray) -> FloatArray:
         """Return what happens in a second from what happens in a radian of the crank; not a number without speed.
@@ -186,6 +201,7 @@ def losses(model: Reducer, drives: Sequence[Drive], found: Equilibrium, torque: 
         at_input=friction.motion * input_turns * moments,
         at_output=np.where(driven_by_input, -at_output, at_output),
         driven_by_input=driven_by_input,
+        input_turns=input_turns,
         crank_speed=by_position([np.nan if (speed := drive.crank_speed) is None else speed for drive in drives]),
     )
 

@@ -270,7 +270,9 @@ def _of_friction(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) 
         return
     for quantity in ("mean_efficiency", "mean_efficiency_back", "moves_back", "power_loss"):
         value = summary[LIMITED[quantity].key]
-        yield Value(quantity=quantity, value=value, reason="there is no speed (load.speed)" if value is None else "")
+        through = "no torque goes through (load.torque = 0)" if "efficiency" in quantity else ""
+        reason = through if analysis.torque == 0.0 and through else "there is no speed (load.speed)"
+        yield Value(quantity=quantity, value=value, reason=reason if value is None else "")
     values = case_arrays(analysis)
     for quantity in ("pin_pv", "pin_seat_pv", "pin_shaft_pv", "hole_seat_pv"):
         if quantity not in values or not values[quantity].size:

@@ -65,6 +65,7 @@ LOSSES: Group = (
         ("efficiency, mean", "mean_efficiency"),
         ("moves back (1) or not", "moves_back"),
         ("power lost [W]", "power_loss"),
+        ("drag at the input [N·mm]", "drag_torque"),
     ),
 )
 LIFE = (
