@@ -584,9 +584,8 @@ def require_preload(
     raise DriveError(
         [
             f"{named} = 0 N·mm: must be greater than 0: without a torque the output {told} at crank angle "
-            f"{crank_angle[row]:.6g} rad ({loose.size} of {crank_angle.size} positions), and nothing says where discs and wheel stand; "
-            "drives whose parts "
-            "hold each other everywhere, such as with pins that are too thick, are answered"
+            f"{crank_angle[row]:.6g} rad ({loose.size} of {crank_angle.size} positions), and nothing says where discs and wheel "
+            "stand; drives whose parts hold each other everywhere, such as with pins that are too thick, are answered"
         ]
     )
 
