@@ -447,7 +447,8 @@ def _analysed(
     """The analysis of a case, from its balanced positions where these are known."""
     prepared, light_torque = case.prepared, case.drive.load.light_torque
     if case.torque == 0.0:
-        require_preload(prepared.model.geometries, case.drive, angle, "load.torque" if torque is None else "torque")
+        named = "load.torque" if drive.load.torque == 0.0 else "torque"
+        require_preload(prepared.model.geometries, case.drive, angle, named)
 
     def at_torque(rows: NDArray[np.intp], start: FloatArray | None) -> Equilibrium:
         return prepared.balance(angle[rows], case.torque, start)

@@ -288,9 +288,11 @@ def test_loads_of_a_millionth_turn_geared_drives_as_far(geared):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("first", [0, *(pytest.param(n, marks=pytest.mark.nightly) for n in range(20, 300, 20))])
-def test_loads_of_a_millionth_turn_reducers_of_all_kinds_as_far(first):
+@pytest.mark.parametrize(
+    ("first", "count"), [(0, 2), *(pytest.param(n, 20, marks=pytest.mark.nightly) for n in range(2, 302, 20))]
+)
+def test_loads_of_a_millionth_turn_reducers_of_all_kinds_as_far(first, count):
     """1 % or 0.005′ of three hundred reducers, some with teeth; those whose loads settle on are as in ``test_free_play``."""
-    found = [one for seed in range(first, first + 20) for one in compare_with_load(seed, crank_drive)]
+    found = [one for seed in range(first, first + count) for one in compare_with_load(seed, crank_drive)]
     assert not [one for one in found if one.outcome == "wrong"]
-    assert sum(one.outcome == "alike" for one in found) >= 10
+    assert sum(one.outcome == "alike" for one in found) >= count // 2
