@@ -147,9 +147,9 @@ def _installation(drive: Drive) -> Rows:
         (f"reduction ratio ({turned} turns by output turns)", f"{drive.transmission_ratio:g}"),
     ]
     if crank.number > 1:
-        driven = "turned in the carrier" if stage is None else f"driven by a spur stage, z₂/z₁ = {stage:g}"
+        driven = "turned in the carrier" if stage is None else f"driven by a first stage, z₂/z₁ = {stage:g}"
         rows.append(("cranks", f"{crank.number} on a circle of {crank.circle_radius:g} mm, {driven}"))
-    rows += _supports(drive) + _pins(drive)
+    rows += _teeth(drive) + _supports(drive) + _outside(drive) + _pins(drive)
     discs = drive.disc.number_of_discs
     if discs == 1:
         return rows
@@ -164,6 +164,40 @@ def _installation(drive: Drive) -> Rows:
         ("discs, phases of their eccentrics", ", ".join(f"{degrees(phase):.6g}°" for phase in drive.disc.disc_phases)),
         ("axial places of the discs", ", ".join(f"{plane:.6g}" for plane in drive.disc.disc_planes) + " mm"),
         ("the discs", alike),
+    ]
+
+
+def _teeth(drive: Drive) -> Rows:
+    """Teeth of the first stage, and the forces of a planet by its tangential one."""
+    stage, distance = drive.first_stage, drive.crank.circle_radius
+    if stage is None or distance is None:
+        return []
+    mesh, give = stage.mesh(distance), stage.mesh_stiffness
+    yields = "rigid" if give is None else f"{give:g} N/mm along the line of action"
+    return [
+        (
+            "first stage",
+            f"{stage.sun_teeth} and {stage.planet_teeth} teeth, helix angle {degrees(stage.helix_angle):g}°, pitch circles ⌀ "
+            f"{2.0 * (distance - mesh.pitch_radius):.6g} and {2.0 * mesh.pitch_radius:.6g} mm, planets at {stage.plane:g} mm",
+        ),
+        (
+            "forces of a planet",
+            f"working pressure angle {degrees(mesh.working_angle):.4g}°; radial {mesh.separating:.4f}, axial "
+            f"{abs(mesh.axial):.4f} of the tangential force",
+        ),
+        ("backlash and stiffness of the first stage", f"{stage.backlash:g} mm at the pitch circle, {yields}"),
+    ]
+
+
+def _outside(drive: Drive) -> Rows:
+    """Forces from outside on the output, one row for each entry."""
+    return [
+        (
+            f"force from outside {number}, frame of the {entry.frame}",
+            f"({entry.force.x:g}, {entry.force.y:g}, {entry.force.z:g}) N at z = {entry.at.z:g} mm, "
+            f"moment ({entry.moment.x:g}, {entry.moment.y:g}) N·mm",
+        )
+        for number, entry in enumerate(drive.load.external)
     ]
 
 

@@ -26,6 +26,7 @@ from ltca.contact.subsurface import LINE_SHEAR_DEPTH, line_contact_shear, line_c
 from ltca.drive.members.judgement import WHOLE, Check, Value, judge
 from ltca.drive.members.limits import Limit
 from ltca.drive.single_discs import single_discs
+from ltca.drive.yielding_parts import yielding_parts
 from ltca.errors import DriveError
 from ltca.geometry.play import preload_words
 from ltca.quantities import LIMITED, QUANTITIES
@@ -76,7 +77,7 @@ STIFF_PINS = 10.0
 def notes(analysis: LoadedAnalysis) -> list[str]:
     """Return what to know beside the checks, one sentence each: warnings, odd sizes, pins that dwarf the disc."""
     drive, shaft = analysis.drive, analysis.drive.pin_shaft
-    found = [*analysis.warnings, *odd_proportions(analysis.as_written)]
+    found = [*analysis.warnings, *odd_proportions(analysis.as_written), yielding_parts(drive).words]
     found += [words for words in (analysis.engine_words, analysis.hole_words) if words]
     if shaft is not None and shaft.stiffness is not None and analysis.engine.compliance == "half-space":
         disc = drive.materials.disc.youngs_modulus * drive.disc.thickness

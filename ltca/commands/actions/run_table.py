@@ -29,6 +29,12 @@ GROUPS: tuple[Group, ...] = (
     ("largest load [N]", (
         ("wheel pin", "max_pin_load"), ("roller", "max_roller_load"), ("shaft pin", "max_pin_shaft_load"),
         ("crank bearing", "max_bearing_load"), ("crank bearing, crank #", "max_bearing_load_crank_#"),
+        ("crank in carrier, first", "max_crank_support_load_first"),
+        ("crank in carrier, second", "max_crank_support_load_second"),
+        ("planet, tangential", "max_first_stage_tangential_force"),
+        ("planet, radial", "max_first_stage_radial_force"),
+        ("planet, axial", "max_first_stage_axial_force"),
+        ("main bearing, radial", "max_main_bearing_radial"), ("main bearing, axial", "max_main_bearing_axial"),
     )),
     ("parts that carry at once, mean", (
         ("wheel pins", "mean_loaded_pins"), ("rollers", "mean_loaded_rollers"), ("shaft pins", "mean_loaded_pin_shaft_pins"),
@@ -57,7 +63,17 @@ GROUPS: tuple[Group, ...] = (
 """Headings with the unit, and rows with the scalar of each; ``#`` stands for every disc or crank where there are several."""
 WHERE_NOT_ZERO = ("preloaded_part_of_turn", "interference")
 """Scalars that have a row where they are not zero."""
-WHERE_KNOWN = ("pin_shaft", "shaft_pin", "seat", "stress", "deflection", "ptp")
+WHERE_KNOWN = (
+    "crank_support",
+    "first_stage",
+    "main_bearing",
+    "pin_shaft",
+    "shaft_pin",
+    "seat",
+    "stress",
+    "deflection",
+    "ptp",
+)
 """Parts of names of scalars that not every drive, engine and run has: a single position has no range."""
 LOSSES: Group = (
     "efficiency and losses",

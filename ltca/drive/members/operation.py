@@ -177,7 +177,7 @@ class Installation:
     held : {"pin-shaft", "pin-wheel"}
         The fixed member; ``load.torque`` acts on the other one, which is the output.
     first_stage_ratio : float or None
-        z₂/z₁ of a spur stage between a central input and several cranks; left out, the cranks are driven from the carrier.
+        z₂/z₁ of a first stage between a central input and several cranks; left out, the cranks are driven from the carrier.
     """
 
     held: Literal["pin-shaft", "pin-wheel"] = "pin-shaft"
