@@ -111,7 +111,9 @@ class StageMesh:
             return None
         mesh, places = stage.mesh(distance), np.array(drive.crank.places)
         stiffness, support, discs = stage.mesh_stiffness, drive.crank.support, drive.disc.number_of_discs
-        bending, own, on_supports = np.zeros((discs, 2)), np.zeros((2, 2)), np.eye(discs + 1, 2, -discs)
+        bending: FloatArray = np.zeros((discs, 2))
+        own: FloatArray = np.zeros((2, 2))
+        on_supports: FloatArray = np.eye(discs + 1, 2, -discs)
         if support is not None:
             planes = drive.disc.disc_planes
             whole = shaft_flexibility(

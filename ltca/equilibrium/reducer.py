@@ -201,9 +201,11 @@ class Reducer:
         if self.supports is not None:
             force += np.matmul(self.supports, pose[..., None])[..., 0]
             tangent += self.supports
-        pressed: ComplexArray | float = 0.0 if self.external is None else self.external.on_wheel(crank_angle)
-        if self.external is not None and coordinates.wheel:
-            force[:, coordinates.wheel_place] -= np.stack((np.real(pressed), np.imag(pressed)), axis=-1)
+        pressed: ComplexArray | float = 0.0
+        if self.external is not None:
+            pressed = on_wheel = self.external.on_wheel(crank_angle)
+            if coordinates.wheel:
+                force[:, coordinates.wheel_place] -= np.stack((on_wheel.real, on_wheel.imag), axis=-1)
         if self.friction is not None:
             ratio = self.discs[0].geometry.placement.reduction_ratio
             force[:, WHEEL_ANGLE] += self.friction.of_wheel(parts, ratio, pressed)

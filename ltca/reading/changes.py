@@ -200,7 +200,7 @@ def _with_own(drive: Drive, own: Mapping[tuple[str, int], Mapping[str, Any]], pr
     )
 
 
-_ENTRIES = {"duty": TypeAdapter(Duty), "load.external": TypeAdapter(ExternalLoad)}
+_ENTRIES: dict[str, TypeAdapter[Any]] = {"duty": TypeAdapter(Duty), "load.external": TypeAdapter(ExternalLoad)}
 """What makes an entry of a list of the drive file."""
 
 

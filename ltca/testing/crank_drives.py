@@ -114,8 +114,8 @@ def _pushed(random: Generator, drive: Drive) -> Drive:
         return drive
     size = 0.3 * drive.load.torque / drive.pin_wheel.pin_circle_radius
     force = OuterForce(x=size * float(random.choice([0.0, 1.0])), y=size * float(random.choice([0.0, -0.5])), z=size)
-    frame: Any = random.choice(["housing", "output"])
-    own = ExternalLoad(force=force, at=OuterPlace(z=float(random.choice([0.0, 50.0]))), frame=str(frame))
+    frame: Any = str(random.choice(["housing", "output"]))
+    own = ExternalLoad(force=force, at=OuterPlace(z=float(random.choice([0.0, 50.0]))), frame=frame)
     return replace(drive, load=replace(drive.load, external=(own, ExternalLoad())[: int(random.integers(1, 3))]))
 
 
