@@ -87,6 +87,8 @@ class StageMesh:
         force, behind those beside the discs.
     yields : bool
         Whether cranks yield.
+    carried : bool
+        Whether the carrier is the output, which the main bearing holds against what the sun presses on its planets.
     """
 
     pitch_radius: BatchScalar = by_drive(0)
@@ -102,6 +104,7 @@ class StageMesh:
     own: FloatArray = by_drive(2)
     on_supports: FloatArray = by_drive(2)
     yields: bool
+    carried: bool
 
     @classmethod
     def of_drive(cls, drive: Drive) -> StageMesh | None:
@@ -137,6 +140,7 @@ class StageMesh:
             own=own,
             on_supports=on_supports,
             yields=support is not None,
+            carried=drive.wheel_is_held,
         )
 
     @property
@@ -156,6 +160,13 @@ class StageMesh:
             in_plane=(radial - 1j * tangential) * self.outward,
             couple=axial * self.pitch_radius * self.outward,
         )
+
+    def on_wheel(self, moments: FloatArray) -> tuple[ComplexArray, ComplexArray]:
+        """Return the force of the sun on all planets as one on the wheel relative to the carrier, N, shape (positions,), and its
+        derivatives by the moments of the cranks, 1/mm, shape (positions, cranks); zero where the carrier is held.
+        """
+        sign = -1.0 if self.carried else 0.0
+        return sign * self.forces(moments).in_plane.sum(axis=1), sign * self._slope(np.sign(moments))[0]
 
     def on_bearings(self, moments: FloatArray) -> ComplexArray:
         """Return what bearings of the cranks carry of the forces of the teeth, N, shape (positions, cranks, supports)."""

@@ -140,7 +140,13 @@ class Reducer:
     @property
     def symmetric(self) -> bool:
         """Whether its forces are slopes of a potential: neither friction nor forces that go with the moments of the cranks."""
-        return self.friction is None and not (self.stage is not None and self.stage.yields)
+        return self.friction is None and not self._teeth_press
+
+    @property
+    def _teeth_press(self) -> bool:
+        """Whether the forces of a first stage act on something that yields."""
+        stage = self.stage
+        return stage is not None and (stage.yields or (stage.carried and self.coordinates.wheel))
 
     @property
     def coordinates(self) -> Coordinates:
@@ -196,19 +202,18 @@ class Reducer:
             tangent[:, own[:, None], own] += part.tangent
         if settled is not None:
             tangent += settled.correction()
-        if self.stage is not None and self.stage.yields:
+        if self.stage is not None and self._teeth_press:
             self._press_teeth(self.stage, crank_angle, pose, parts, force, tangent)
         if self.supports is not None:
             force += np.matmul(self.supports, pose[..., None])[..., 0]
             tangent += self.supports
-        pressed: ComplexArray | float = 0.0
-        if self.external is not None:
-            pressed = on_wheel = self.external.on_wheel(crank_angle)
-            if coordinates.wheel:
-                force[:, coordinates.wheel_place] -= np.stack((on_wheel.real, on_wheel.imag), axis=-1)
+        if self.external is not None and coordinates.wheel:
+            pressed = self.external.on_wheel(crank_angle)
+            force[:, coordinates.wheel_place] -= np.stack((pressed.real, pressed.imag), axis=-1)
         if self.friction is not None:
             ratio = self.discs[0].geometry.placement.reduction_ratio
-            force[:, WHEEL_ANGLE] += self.friction.of_wheel(parts, ratio, pressed)
+            beside = self.force_beside_pins(crank_angle, pose, parts)
+            force[:, WHEEL_ANGLE] += self.friction.of_wheel(parts, ratio, beside)
         return Response(
             force=force,
             tangent=tangent,
@@ -222,6 +227,19 @@ class Reducer:
             shifts=shifts,
         )
 
+    def force_beside_pins(
+        self, crank_angle: FloatArray, pose: FloatArray, parts: Sequence[DiscResponse]
+    ) -> ComplexArray:
+        """Return the force on the wheel relative to the pin shaft from outside and by the teeth of a first stage, N, shape
+        (positions,).
+        """
+        total = np.zeros(crank_angle.shape, dtype=complex)
+        if self.external is not None:
+            total = total + self.external.on_wheel(crank_angle)
+        if self.stage is not None and self.stage.carried:
+            total = total + self.stage.on_wheel(moments_of_parts(self, crank_angle, pose, parts))[0]
+        return total
+
     def _press_teeth(
         self,
         stage: StageMesh,
@@ -231,11 +249,19 @@ class Reducer:
         force: FloatArray,
         tangent: FloatArray,
     ) -> None:
-        """Take the forces of the first stage from the cranks' coordinates, where so far only contacts press, in place."""
+        """Take the forces of the first stage from the coordinates of cranks and wheel, in place, before any but contacts press.
+
+        Where cranks are rigid, the derivatives of what the planets press on the main bearing are left out.
+        """
         coordinates, places = self.coordinates, self.discs[0].geometry.placement
+        moments = moments_of_parts(self, crank_angle, pose, parts)
+        on_wheel, by_moments = stage.on_wheel(moments)
+        if coordinates.wheel:
+            force[:, coordinates.wheel_place] -= np.stack((on_wheel.real, on_wheel.imag), axis=-1)
+        if not stage.yields:
+            return
         columns = coordinates.own * np.arange(coordinates.discs)[:, None] + coordinates.crank(0)
         x = columns + 2 * np.arange(coordinates.cranks)
-        moments = moments_of_parts(self, crank_angle, pose, parts)
         slopes = np.zeros((*moments.shape, coordinates.size))
         for number, (disc, part) in enumerate(zip(self.discs, parts, strict=True)):
             own, place = coordinates.columns(number), disc.geometry.placement
@@ -251,6 +277,9 @@ class Reducer:
         for shift, part_of in ((0, np.real), (1, np.imag)):
             force[:, x + shift] -= part_of(pressed)
             tangent[:, x + shift] -= part_of(changed)
+        if coordinates.wheel:
+            moved = np.einsum("pc,pcj->pj", by_moments, slopes)
+            tangent[:, coordinates.wheel_place] -= np.stack((moved.real, moved.imag), axis=1)
 
     def _unmoved(self, positions: int) -> ComplexArray:
         """Pins that stand where they stand without load, shape (positions, discs, pairs)."""

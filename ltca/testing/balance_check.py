@@ -14,7 +14,7 @@ flank) is no force.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import cast
 
 import numpy as np
@@ -26,7 +26,7 @@ from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.reducer import Reducer
 from ltca.laws.backed import BackedLaw
 from ltca.testing.actual_parts import ActualParts, DeviatedFlank
-from ltca.testing.first_stage_check import outside_on_wheel, teeth_on_cranks, teeth_on_supports
+from ltca.testing.first_stage_check import outside_on_wheel, teeth_on_cranks, teeth_on_supports, tooth_forces
 from ltca.testing.friction_check import FrictionCheck
 from ltca.testing.yielding_pins import (
     EnergyLaw,
@@ -195,6 +195,8 @@ class PotentialEnergy:
                 work[first + 1 : first + 2 * drive.crank.number : 2] -= forces.imag
         if drive.pin_wheel.support_stiffness is not None:
             last, force = -6 if has_ring(drive) else -3, outside_on_wheel(drive, self.crank_angle)
+            if drive.first_stage is not None and drive.installation.held == "pin-wheel":
+                force -= tooth_forces(drive, self.crank_moments(pose) + rubbed_at_cranks)[0].sum()
             work[last] -= force.real
             work[last + 1] -= force.imag
         return work
@@ -308,7 +310,7 @@ def friction_at(potential: PotentialEnergy, balanced: Equilibrium, position: int
     """Return the friction at that position of a drive with friction."""
     drive, pose, wheel, shaft = potential.drive, balanced.pose[position], potential.wheel_pins, potential.shaft_pins
     supported = drive.pin_wheel.support_stiffness is not None
-    return FrictionCheck(
+    found = FrictionCheck(
         drive=drive,
         crank_angle=potential.crank_angle,
         pose=pose,
@@ -321,6 +323,10 @@ def friction_at(potential: PotentialEnergy, balanced: Equilibrium, position: int
         teeth=None if drive.first_stage is None else teeth_on_supports(drive, potential.crank_moments(pose)),
         outside=outside_on_wheel(drive, potential.crank_angle),
     )
+    if drive.first_stage is None or drive.installation.held == "pin-shaft":
+        return found
+    pressed, _ = tooth_forces(drive, potential.crank_moments(pose) + found.at_each_crank)
+    return replace(found, outside=found.outside - pressed.sum())
 
 
 def find_imbalance(

@@ -7,12 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from ltca.analysis.engines import HalfSpace
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.reactions import crank_support_forces, mesh_forces
 from ltca.analysis.summary import summarise
 from ltca.analysis.torque_curve import torque_curve
 from ltca.compliance.response import bearing_pushes
 from ltca.drive.members.first_stage import FirstStage
+from ltca.drive.parts import Material
 from ltca.drive.units.quantities import ARCMIN
 from ltca.drive.yielding_parts import yielding_parts
 from ltca.equilibrium.crank_moments import crank_moments
@@ -23,6 +25,7 @@ from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.placement import position_angles
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
+from ltca.testing.balance_check import find_imbalance
 from ltca.testing.crank_drives import crank_drive
 from ltca.testing.practical_drives import compare, compare_with_load
 
@@ -53,9 +56,8 @@ def answer(geared):
 
 
 def rigid(drive):
-    return with_fields(
-        replace(drive, crank=replace(drive.crank, support=None)), {"materials.crankshaft": "100Cr6"}, check=False
-    )
+    stiff = replace(drive, crank=replace(drive.crank, support=None))
+    return replace(stiff, materials=replace(drive.materials, crankshaft=Material()))
 
 
 def test_forces_by_hand(answer):
@@ -112,7 +114,7 @@ def test_ratio_follows_from_the_teeth(rv):
 def test_teeth_alone_change_nothing_of_rigid_cranks(rv):
     """Left out is rigid and without play: with teeth but without backlash and stiffness the answer is the same, bit for bit."""
     plain = rigid(rv)
-    found, teeth = analyse(plain, ANGLES), analyse(with_fields(plain, TEETH, check=False), ANGLES)
+    found, teeth = analyse(plain, ANGLES), analyse(with_fields(plain, TEETH), ANGLES)
     np.testing.assert_array_equal(teeth.full.pose, found.full.pose)
     np.testing.assert_array_equal(teeth.transmission_error, found.transmission_error)
 
@@ -150,7 +152,7 @@ def test_backlash_at_the_output_is_that_of_the_teeth_by_the_ratio(rv, geared):
 def test_give_of_the_teeth_is_that_of_springs_by_the_ratio(rv):
     """n springs c at the base circles r_b = r cos α_t: ΣT/(n c r_b²) at the cranks, 1/u of it at the wheel."""
     plain = rigid(rv)
-    drive = with_fields(plain, TEETH | {"first_stage.mesh_stiffness": 3e5}, check=False)
+    drive = with_fields(plain, TEETH | {"first_stage.mesh_stiffness": 3e5})
     found = analyse(drive, ANGLES)
     wheel = found.transmission_error / drive.output_per_wheel_angle - found.full.pose[:, WHEEL_ANGLE]
     by_hand = -found.crank_torques.sum(axis=1) / (3.0 * 3e5 * (28.0 * np.cos(np.pi / 9.0)) ** 2) / 40.0
@@ -162,7 +164,7 @@ def test_work_of_the_input_is_what_the_teeth_store(rv):
 
     The sun turns by −i₁ of the crank's lag under −ΣT/i₁; teeth are springs, so trapezoids are exact.
     """
-    drive = with_fields(rigid(rv), TEETH | {"first_stage.mesh_stiffness": 3e5}, check=False)
+    drive = with_fields(rigid(rv), TEETH | {"first_stage.mesh_stiffness": 3e5})
     found = [analyse(drive, ANGLES, part * drive.load.torque) for part in (0.4, 0.7, 1.0)]
     moment = [one.crank_torques.sum(axis=1) for one in found]
     sun = [2.0 * one.crank_lag for one in found]
@@ -216,16 +218,40 @@ def test_virtual_work_with_bending_cranks(geared, stored):
     np.testing.assert_allclose((4.0 * left(1e-4) - left(2e-4)) / 3.0 / geared.load.torque, 0.0, atol=1e-7)
 
 
-@pytest.mark.parametrize("angle", [0.31, 1.7])
-def test_tangent_is_the_slope_of_the_force(geared, angle, tangent_and_slope):
-    scaled, slope = tangent_and_slope(geared, np.array([angle]))
+@pytest.mark.parametrize(("angle", "wheel"), [(0.31, None), (1.7, 5e5)])
+def test_tangent_is_the_slope_of_the_force(geared, angle, wheel, tangent_and_slope):
+    drive = with_fields(geared, {"pin_wheel.support_stiffness": wheel})
+    scaled, slope = tangent_and_slope(drive, np.array([angle]))
     np.testing.assert_allclose(slope, scaled, rtol=0.0, atol=2e-6 * np.abs(scaled).max())
+
+
+RUBS = {
+    "friction.pin": 0.05,
+    "friction.roller": 1e-3,
+    "friction.support_bearing": 0.01,
+    "friction.support_bearing_radius": 40.0,
+}
+SLOWLY = [pytest.param(name, marks=pytest.mark.slow) for name in ("rigid", "rubs", "held")]
+
+
+@pytest.mark.parametrize("kind", ["plain", *SLOWLY])
+def test_teeth_arm_and_main_bearing_balance_by_energies_alone(geared, kind):
+    """Tooth forces from base circles, bending by quadrature; the carrier moves on the main bearing under the sun's forces."""
+    drive = with_fields(geared, {"load.external.0.force.x": 500.0, "pin_wheel.support_stiffness": 5e5})
+    if kind == "rigid":
+        drive = rigid(drive)
+    if kind in ("rubs", "held"):
+        drive = with_fields(drive, RUBS | {"installation.held": "pin-shaft" if kind == "held" else "pin-wheel"})
+    model = HalfSpace().prepare(drive).model
+    found = solve_at_output(model, [drive], ANGLES, drive.load.torque)
+    for position in range(ANGLES.size):
+        assert find_imbalance(drive, model, found, position, torque=drive.load.torque) == []
 
 
 def test_stiffness_of_the_reducer_is_that_of_both_stages_in_series(rv):
     """Of rigid cranks 1/K grows by 1/(n c r_b² u²) of the mean crank moment, T_out/(i₁ u) … ; whose it is stands beside it."""
     plain = rigid(rv)
-    drive = with_fields(plain, TEETH | {"first_stage.mesh_stiffness": 3e5, "first_stage.backlash": 0.03}, check=False)
+    drive = with_fields(plain, TEETH | {"first_stage.mesh_stiffness": 3e5, "first_stage.backlash": 0.03})
     curve, bare = (torque_curve(one, position_angles(8) / 39.0, points=4) for one in (drive, plain))
     np.testing.assert_array_equal(curve.stiffness, bare.stiffness)
     np.testing.assert_array_equal(bare.reducer_stiffness, bare.stiffness)

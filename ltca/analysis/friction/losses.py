@@ -176,8 +176,8 @@ def losses(model: Reducer, drives: Sequence[Drive], found: Equilibrium, torque: 
         on_bearings = model.stage.on_bearings(smooth)
     at_cranks = np.abs(friction.of_cranks(pushes, on_bearings)).sum(axis=1) - rolled
     ratio = drives[0].reduction_ratio  # that of all: their parts are as many
-    external = 0.0 if model.external is None else model.external.on_wheel(angle)
-    at_wheel = np.abs(friction.of_wheel(parts, ratio, external) / ratio)
+    beside = model.force_beside_pins(angle, found.pose, parts)
+    at_wheel = np.abs(friction.of_wheel(parts, ratio, beside) / ratio)
     input_turns = by_position([1.0 / drive.crank_turns_per_input for drive in drives])
     no_load = by_position([rubs.no_load_torque for rubs in coefficients])
     lost: dict[str, FloatArray] = dict.fromkeys(KINDS, np.zeros(angle.shape))
