@@ -24,12 +24,12 @@ def crank_drive(seed: int) -> tuple[Drive, float]:
     """Return a reducer of any kind, two thirds with two to five cranks on the carrier, and a crank angle in rad, by a seed
     (not negative).
     """
-    random = np.random.default_rng((seed, 2))
+    random, beside = np.random.default_rng((seed, 2)), np.random.default_rng((seed, 3))
     while True:
         drive, angle = practical_drive(int(random.integers(2**32)))
         if random.uniform() < 0.67:
             drive = _on_the_carrier(random, drive)
-        drive = _pushed(random, _geared(random, _supported(random, drive)))
+        drive = _pushed(beside, _geared(beside, _supported(random, drive)))
         if is_sound(drive):
             return drive, angle
 
