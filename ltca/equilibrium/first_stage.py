@@ -123,7 +123,7 @@ class StageMesh:
                 [*planes, stage.plane], support.positions, support.stiffness, support.diameter,
                 drive.materials.crankshaft.youngs_modulus, [stage.plane],
             )  # fmt: skip
-            bending = np.linalg.solve(whole[:discs, :discs], whole[:discs, discs:])
+            bending = np.asarray(np.linalg.solve(whole[:discs, :discs], whole[:discs, discs:]), dtype=float)
             own = whole[discs:, discs:] - whole[discs:, :discs] @ bending
             on_supports = support_parts([stage.plane], support.positions, [stage.plane])
         return cls(
