@@ -47,9 +47,9 @@ ANY_NUMBER = (None, None)
 FROM_0_TO_1 = (0.0, 1.0)
 AT_MOST_1 = (None, 1.0)
 
-SUFFIXES = {"1": "", "N mm": "_Nmm", "MPa m/s": "_MPa_m_s"}
+SUFFIXES = {"1": "", "N mm": "_Nmm", "MPa m/s": "_MPa_m_s", "N mm/rad": "_Nmm_per_rad"}
 """Units as they end the keys of ``summary.json``, where they are spelled otherwise."""
-SIGNS = {"1": "", "arcmin": "′", "arcsec": "″", "deg": "°", "N mm": "N·mm"}
+SIGNS = {"1": "", "N mm/rad": "N·mm/rad", "arcmin": "′", "arcsec": "″", "deg": "°", "N mm": "N·mm"}
 """Units as they are printed, where they are spelled otherwise."""
 
 RESOLUTION = {"arcmin": 1e-5, "arcsec": 1e-4, "mm": 1e-9}
@@ -235,6 +235,11 @@ def _wall(name: str, of: str, along: str, short: str) -> Quantity:
 def _peak(title: str, judged: str = "") -> Scalar:
     """The largest of what `[limits]` may bound, refined over the turn."""
     return Scalar("max_{}", title, limit=AT_LEAST_0, judged=judged, refined=True)
+
+
+def _amount(title: str) -> Scalar:
+    """The largest amount of a force of either sense."""
+    return Scalar("max_{}", f"{title}, largest", how="largest amount")
 
 
 def _bend(title: str, judged: str) -> Scalar:
@@ -431,6 +436,40 @@ _DECLARED = (
         (Scalar("max_{}", "largest outward displacement of the ring of the wheel", digits=".4f"),),
     ),
     Quantity("ring_displacement_tangential", "seat", "mm", "the same, 90° ahead"),
+    Quantity(
+        "crank_support_load_first", "crankshaft", "N", "load of the first bearing of the crank in the carrier",
+        (_amount("load of the first bearing of a crank in the carrier"),),
+    ),
+    Quantity(
+        "crank_support_load_second", "crankshaft", "N", "load of the second bearing of the crank in the carrier",
+        (_amount("load of the second bearing of a crank in the carrier"),),
+    ),
+    Quantity(
+        "first_stage_tangential_force", "crankshaft", "N",
+        "force of the sun on the planet along its pitch circle, positive where it turns the crank ccw",
+        (_amount("tangential force on a planet"),),
+    ),
+    Quantity(
+        "first_stage_radial_force", "crankshaft", "N", "force of the sun on the planet, away from the sun",
+        (_amount("radial force on a planet"),),
+    ),
+    Quantity(
+        "first_stage_axial_force", "crankshaft", "N", "force of the sun on the planet along the axis",
+        (_amount("axial force on a planet"),),
+    ),
+    Quantity("first_stage_lag", "drive", "rad", "angle of the cranks less the one that the held input gives them, ccw positive"),
+    Quantity("main_bearing_x", "drive", "N", "force of the main bearing on the output, frame of the housing"),
+    Quantity("main_bearing_y", "drive", "N", "force of the main bearing on the output, frame of the housing"),
+    Quantity("main_bearing_z", "drive", "N", "force of the main bearing on the output along the axis"),
+    Quantity(
+        "main_bearing_moment_x", "drive", "N mm", "moment of the main bearing on the output about the zero of disc.planes"
+    ),
+    Quantity(
+        "main_bearing_moment_y", "drive", "N mm", "moment of the main bearing on the output about the zero of disc.planes"
+    ),
+    _scalar("N", Scalar("max_main_bearing_radial", "radial load of the main bearing, largest")),
+    _scalar("N", Scalar("max_main_bearing_axial", "axial load of the main bearing, largest")),
+    _scalar("N mm", Scalar("max_main_bearing_moment", "tilting moment of the main bearing, largest", digits=".0f")),
     Quantity("wheel_x", "drive", "mm", "displacement of the wheel on its bearing in the fixed frame"),
     Quantity("wheel_y", "drive", "mm", "displacement of the wheel on its bearing in the fixed frame"),
     _checked("bearing_deflection", "mm", "deflection of the crank bearings"),
@@ -440,6 +479,14 @@ _DECLARED = (
     _checked("wheel_deflection", "mm", "deflection of the wheel on its bearing"),
     _checked("wheel_deflection_by_clearance", "1", "deflection of the wheel by the crank bearings' radial clearance"),
     # torque and motion
+    _scalar(
+        "N mm/rad",
+        Scalar("cycloid_stage_stiffness", "stiffness of the cycloid stage from the light torque on, least", digits=".4g"),
+    ),
+    _scalar(
+        "N mm/rad",
+        Scalar("reducer_stiffness", "stiffness of what is described from the light torque on, least", digits=".4g"),
+    ),
     Quantity(
         "disc_torque", "disc", "N mm", "part of the external moment on the wheel that the disc carries, ccw positive",
         in_fem="part of that moment that the disc carries",
@@ -532,6 +579,7 @@ _DECLARED = (
         "input_torque", "drive", "N mm", "external moment of the input, seals and oil included, ccw positive",
         (Scalar("mean_{}", "torque of the input, mean"),),
     ),
+    _scalar("N mm", Scalar("drag_torque", "torque that friction takes at the input, nothing at the output", digits=".4g")),
     Quantity(
         "input_torque_back", "drive", "N mm", "the same with the motion reversed",
         (Scalar("mean_{}", "torque of the input, motion reversed, mean"),),

@@ -283,6 +283,7 @@ def solve_reducer(
         When the meshes would not fit into memory.
     """
     require(drive, "full FE")
+    drive.require_torque("full finite elements, whose loads follow those of the torque", torque)
     singles = single_discs(drive)
     task = _Task(
         drive=drive,

@@ -9,6 +9,7 @@ half_space_errors          How far half-spaces are off on the shipped drives, to
 friction                   Losses of a drive that turns, the loop of one whose input is locked
 loaded_analysis            Loaded tooth contact analysis of one drive at many crank angles: equilibrium, then
                            pressures and bearing forces
+reactions                  What the bearings of cranks and output carry: forces of discs, first stage and from outside
 contact_arrays             Arrays of all contacts by their names in the registry
 time_need                  About how long the analysis of a drive takes, told beforehand
 light_torque               The answer of an analysis at its light torque, as an analysis at that torque

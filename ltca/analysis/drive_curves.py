@@ -160,6 +160,7 @@ def solve_curves(
     advance: Callable[[int], None] = lambda _: None,
 ) -> DriveCurves:
     """Solve a warm drive, a part of its positions at a time, to bound memory."""
+    drive.require_torque("torque curves, which go up to it")
     asked, engine = settings, engine.with_coefficients(drive)
     mesh = 2.0 * np.pi / drive.disc.number_of_teeth
     settings = settings._replace(speed=_crank_speed(drive, settings))
@@ -222,6 +223,8 @@ def curve_lines(found: DriveCurves, title: str) -> list[str]:
         f"  lost motion at ±{100.0 * curve.lost_motion_part:g} % of the rated torque   {_range(curve.lost_motion * ARCMIN)}′",
         *of_loop,
         f"  stiffness of the cycloid stage, 50…100 %  {_range(curve.stiffness / ARCMIN / 1e3)} N m/′",
+        f"  of the reducer with what is described     {_range(curve.reducer_stiffness / ARCMIN / 1e3)} N m/′",
+        f"  {curve.yielding.words}",
         f"orders of the transmission error {over}",
         *(f"  {order.value:>9.4f}  {order.name:<32}{size * ARCSEC:>9.4f}″" for order, size in strongest),
         f"  unexplained, rms{'':<29}{spectrum.residual * ARCSEC:>9.4f}″",
@@ -236,7 +239,7 @@ def speed_words(drive: Drive, speed: float) -> str:
     if drive.crank.number == 1:
         return f"{told} of the crank against the held {drive.installation.held.replace('-', ' ')}"
     told += " of the cranks against the carrier"
-    if drive.installation.first_stage_ratio is not None:
+    if drive.first_stage_ratio is not None:
         return f"{told}, {speed * abs(drive.transmission_ratio) / ratio:.6g} of the input before the first stage"
     # The carrier turns backward, by one turn for u of the cranks in it.
     return f"{told}, {speed * (1.0 - 1.0 / ratio):.6g} against the housing" if drive.wheel_is_held else told

@@ -23,9 +23,10 @@ from ltca.drive.single_discs import single_discs
 from ltca.drive.units.quantities import ARCSEC
 from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.neighbours import pose_between
+from ltca.equilibrium.output_angle import wheel_angle_of_input
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.reducer import Reducer, bearing_forces
-from ltca.geometry.coordinates import WHEEL_ANGLE, Coordinates
+from ltca.geometry.coordinates import Coordinates
 from ltca.geometry.placement import Placement, position_angles
 from ltca.quantities import REFINED
 
@@ -415,7 +416,7 @@ def _solve(
 
 
 def _wheel_signals(analysis: LoadedAnalysis, found: Equilibrium) -> dict[str, FloatArray]:
-    output = analysis.drive.output_per_wheel_angle * found.pose[:, WHEEL_ANGLE, None]
+    output = analysis.drive.output_per_wheel_angle * wheel_angle_of_input(analysis.model, found)[:, None]
     return {"wheel_angle": output, "wheel_angle_negative": -output}
 
 

@@ -28,10 +28,13 @@ from ltca.drive.members.temperatures import temperature_words, warm_drive
 from ltca.drive.parts import Drive, Temperature
 from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import names_unit_mistakes, unit_warnings
+from ltca.drive.units.quantities import ARCMIN
 from ltca.drive.units.table import range_of
 from ltca.equilibrium.balance import Equilibrium, equilibrium_of_disc
 from ltca.equilibrium.compliance_shares import PARTS, compliance_shares
-from ltca.equilibrium.output_torque import cage_moments, crank_moments, solve_at_output
+from ltca.equilibrium.crank_moments import cage_moments, crank_moments
+from ltca.equilibrium.output_angle import crank_lag, wheel_angle_of_input
+from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.partial_balance import (
     PartlyBalanced,
     all_balanced,
@@ -42,10 +45,14 @@ from ltca.equilibrium.reducer import Reducer, bearing_forces, disc_pressures, di
 from ltca.errors import ConvergenceError, DriveError, shortened
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.interference import lost_play, preload_warning
+from ltca.geometry.pairs import ContactGeometry
+from ltca.geometry.play import free_play
 from ltca.laws.carrier import loaded_circle
 
 COMPLIANCE_SHARE_POSITIONS = 24
 """Number of positions at which shares of the compliance are evaluated: they change slowly over the turn."""
+HELD_PLAY = 1e-6
+"""Free play of the wheel times u, rad, up to which parts that overlap hold it: programmes stop at some 2e-9 of the wheel."""
 MAX_BATCH_POSITIONS = 20_000
 """Most positions that are balanced as one batch: more take memory and save no time."""
 
@@ -148,7 +155,7 @@ class LoadedAnalysis:
     @property
     def cage_moments(self) -> FloatArray:
         """External moment that holds the roller cages of each crank, ccw positive, shape (positions, cranks), N·mm."""
-        return cage_moments(self.model, self.full.crank_angle, self.full.pose, self.full.response)
+        return cage_moments(self.model, self.full.crank_angle, self.full.pose, self.full.response.parts)
 
     @property
     def losses(self) -> Losses | None:
@@ -208,8 +215,11 @@ class LoadedAnalysis:
         rows = np.linspace(0, positions, min(positions, COMPLIANCE_SHARE_POSITIONS), endpoint=False).astype(int)
         if not np.all(self.balanced[rows]):
             return dict.fromkeys(PARTS, np.full(rows.size, np.nan))
+        found = take_positions(self.full, rows)
+        if self.torque == 0.0:  # what a little torque turns, from none
+            found = replace(found, wheel_moment=self.light.wheel_moment[rows])
         behind = self.drive.carrier_compliance / self.drive.output_per_wheel_angle**2
-        return compliance_shares(self.model, take_positions(self.full, rows), behind)
+        return compliance_shares(self.model, found, behind)
 
     @property
     def engine_words(self) -> str:
@@ -219,17 +229,46 @@ class LoadedAnalysis:
     @property
     def torque_share(self) -> FloatArray:
         """Part of the wheel's moment that each disc carries, shape (positions, discs)."""
+        if self.torque == 0.0:  # parts of nothing
+            return np.full(self.disc_torques.shape, np.nan)
         return np.asarray(self.disc_torques / self.disc_torques.sum(axis=1, keepdims=True))
 
     @property
     def transmission_error(self) -> FloatArray:
         """Deviation of the output at the torque of the run, ccw positive, shape (positions,), rad."""
-        return np.asarray(self.drive.output_deviation(self.full.pose[:, WHEEL_ANGLE], self.torque))
+        return np.asarray(self.drive.output_deviation(wheel_angle_of_input(self.model, self.full), self.torque))
 
     @property
     def transmission_error_light(self) -> FloatArray:
         """The same at the light torque, rad."""
-        return np.asarray(self.drive.output_deviation(self.light.pose[:, WHEEL_ANGLE], self.drive.load.light_torque))
+        wheel = wheel_angle_of_input(self.model, self.light)
+        return np.asarray(self.drive.output_deviation(wheel, self.drive.load.light_torque))
+
+    @property
+    def wind_up(self) -> FloatArray:
+        """Angle of the output between light torque and torque, input held, shape (positions,), rad."""
+        return np.abs(self.transmission_error - self.transmission_error_light)
+
+    @property
+    def stage_wind_up(self) -> FloatArray:
+        """The same of the cycloid stage alone, cranks held, rad."""
+        wound = self.full.pose[:, WHEEL_ANGLE] - self.light.pose[:, WHEEL_ANGLE]
+        return np.abs(self.drive.output_deviation(wound, self.torque - self.drive.load.light_torque))
+
+    def stiffness_from_light(self, wound: FloatArray) -> float:
+        """Return the torque from the light one on by the wind-up that it takes, where that is most, N·mm/rad.
+
+        Not a number where nothing is wound up between the two, or no position has an answer.
+        """
+        known = wound[self.balanced & self.balanced_light]
+        if not (known.size and np.all(known > 0.0)):
+            return float("nan")
+        return float(abs(self.torque - self.drive.load.light_torque) / np.max(known))
+
+    @property
+    def crank_lag(self) -> FloatArray:
+        """Angle of the cranks less the one that the held input gives them, rad, shape (positions,)."""
+        return crank_lag(self.model, self.full)
 
     @property
     def hole_words(self) -> str:
@@ -242,7 +281,7 @@ class LoadedAnalysis:
         units = unit_warnings(self.as_written, self.torque)
         found = [*units, preload_warning(self.drive), self._lost_play()]
         found.append(strength_warning(self.drive.materials))
-        if not units and self.drive.load.light_torque > self.torque:
+        if not units and self.drive.load.light_torque > self.torque > 0.0:
             found.append(
                 f"load.light_torque = {self.drive.load.light_torque:g} N·mm is more than the torque of {self.torque:g} N·mm "
                 "that it is light against: are the two swapped, or is one in N·m?"
@@ -447,6 +486,9 @@ def _analysed(
 ) -> LoadedAnalysis:
     """The analysis of a case, from its balanced positions where these are known, or from poses near by."""
     prepared, light_torque = case.prepared, case.drive.load.light_torque
+    if case.torque == 0.0:
+        named = "load.torque" if drive.load.torque == 0.0 else "torque"
+        require_preload(prepared.model.geometries, case.drive, angle, named)
 
     def at_torque(rows: NDArray[np.intp], start: FloatArray | None) -> Equilibrium:
         return prepared.balance(angle[rows], case.torque, start)
@@ -561,6 +603,35 @@ def _wall_stresses(model: Reducer, full: Equilibrium, pressures: ContactPressure
     )
 
 
+def require_preload(
+    discs: Sequence[ContactGeometry], drive: Drive, crank_angle: FloatArray, named: str = "load.torque"
+) -> None:
+    """Refuse positions at which nothing holds the discs without a torque, which field or argument `named` has left out.
+
+    Where the output has a free play, or parts only just touch, no force says where discs and wheel stand. Where parts overlap in
+    every pose and hold the wheel, they balance each other.
+
+    Raises
+    ------
+    DriveError
+        Naming the torque and the play.
+    """
+    found = free_play(discs, crank_angle)
+    loose = np.flatnonzero(~(found.preloaded & (found.play * drive.reduction_ratio < HELD_PLAY)))
+    if not loose.size:
+        return
+    row = loose[int(np.argmax(found.play[loose]))]
+    played = abs(drive.output_per_wheel_angle) * float(found.play[row]) * ARCMIN
+    told = f"has a free play of {played:.3g}′" if played > 0.0 else "is held by parts that only just touch"
+    raise DriveError(
+        [
+            f"{named} = 0 N·mm: must be greater than 0: without a torque the output {told} at crank angle "
+            f"{crank_angle[row]:.6g} rad ({loose.size} of {crank_angle.size} positions), and nothing says where discs and wheel "
+            "stand; drives whose parts hold each other everywhere, such as with pins that are too thick, are answered"
+        ]
+    )
+
+
 def check_positions(crank_angle: FloatArray) -> FloatArray:
     """Return crank angles as a new array of one axis, rad.
 
@@ -592,7 +663,7 @@ def check_torque(drive: Drive, torque: float | None) -> float:
     Raises
     ------
     DriveError
-        When it is not a finite number greater than zero.
+        When it is not a finite number of at least zero.
     """
     if torque is None:
         return drive.load.torque
@@ -603,8 +674,8 @@ def check_torque(drive: Drive, torque: float | None) -> float:
         number = float(torque)
     except OverflowError:
         number = np.inf
-    if not (np.isfinite(number) and number > 0.0):
-        raise DriveError([f"torque = {number:g}: must be finite and greater than 0 N·mm (load.direction turns it)"])
-    if not smallest <= number <= largest:
+    if not (np.isfinite(number) and number >= 0.0):
+        raise DriveError([f"torque = {number:g}: must be finite and at least 0 N·mm (load.direction turns it)"])
+    if number and not smallest <= number <= largest:
         raise DriveError([f"torque = {number:g}: must be from {smallest:g} to {largest:g} N·mm"])
     return number

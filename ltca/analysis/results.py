@@ -16,6 +16,7 @@ from ltca.analysis.contact_arrays import contact_arrays
 from ltca.analysis.friction.variables import friction_values
 from ltca.analysis.half_width_guard import pin_deflections
 from ltca.analysis.loaded_analysis import LoadedAnalysis
+from ltca.analysis.reactions import reaction_values
 from ltca.arrays import FloatArray
 from ltca.compliance.response import ContactPressures
 from ltca.compliance.wall_stress import WallStresses
@@ -52,6 +53,7 @@ def case_arrays(analysis: LoadedAnalysis) -> dict[str, Any]:
         "crank_torque": analysis.crank_torques.T,
         "cage_moment": analysis.cage_moments.T,
         **_supports(analysis),
+        **reaction_values(analysis),
         **rubbed,
         "status": (~analysis.balanced).astype(np.int32),
         "status_light": (~analysis.balanced_light).astype(np.int32),

@@ -15,6 +15,7 @@ from ltca.analysis.loaded_analysis import MAX_BATCH_POSITIONS, LoadedAnalysis
 from ltca.analysis.results import case_arrays
 from ltca.arrays import FloatArray, batch_layout, stack_drives, take_rows
 from ltca.drive.units.quantities import ARCMIN, ARCSEC
+from ltca.equilibrium.output_angle import play_of_input
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.first_contact import backlash, interference
@@ -33,6 +34,11 @@ OF_PINS = (
     "max_ring_displacement_radial",
 )  # fmt: skip
 """What loose pins, sleeves, pins that bend and an elastic ring have."""
+OF_REACTIONS = (
+    *(f"max_crank_support_load_{which}" for which in ("first", "second")),
+    *(f"max_first_stage_{which}_force" for which in ("tangential", "radial", "axial")),
+)
+"""Largest forces of the teeth of a first stage and on the bearings of cranks."""
 OF_RANGES = (
     "ptp_tangential_bearing_load",
     "ptp_transmission_error",
@@ -142,6 +148,8 @@ def _summary(analysis: LoadedAnalysis, unloaded: Values, plays: Values, refined:
         "mean_loaded_pin_shaft_pins": np.mean(holes.sum(axis=1)) if holes.size else np.nan,
         "max_equilibrium_residual": max(np.max(full.residual), np.max(analysis.light.residual)),
         **scalars_of_positions(analysis, arrays),
+        "cycloid_stage_stiffness": analysis.stiffness_from_light(analysis.stage_wind_up),
+        "reducer_stiffness": analysis.stiffness_from_light(analysis.wind_up),
     }
     values |= {f"compliance_share_{part}": np.mean(share) for part, share in analysis.compliance_shares.items()}
     values |= {f"refined_{name}": refined.get(name, np.nan) for name in values if name in REFINED}
@@ -177,7 +185,8 @@ def scalars_of_positions(analysis: LoadedAnalysis, arrays: Mapping[str, FloatArr
     for crank in range(torques.shape[1]):
         values[f"mean_torque_crank_{crank}"] = np.mean(torques[:, crank])
         values[f"max_torque_crank_{crank}"] = np.max(np.abs(torques[:, crank]))
-    values |= _of_cranks(analysis) | _sums(arrays, *OF_PINS) | _of_friction(analysis, arrays)
+    values |= _of_cranks(analysis) | _sums(arrays, *OF_PINS, *OF_REACTIONS) | _of_friction(analysis, arrays)
+    values |= _of_main_bearing(arrays)
     return values | _sums(arrays, "max_root_stress", "max_bore_stress", "max_hole_stress")
 
 
@@ -214,18 +223,23 @@ def _plays(analyses: Sequence[LoadedAnalysis], near: TurnPlay | None = None) -> 
             dict.fromkeys(FREE_PLAY, np.nan)
         ]  # nothing stops the wheel, or no pose was found: there is no play to tell
     scales = [abs(analysis.drive.output_per_wheel_angle) * ARCMIN for analysis in analyses]
+    plays = [
+        scale * play_of_input(analysis.model, np.array([play.largest, play.least]))
+        for analysis, scale, play in zip(analyses, scales, found, strict=True)
+    ]
     return [
-        dict(zip(FREE_PLAY, (scale * play.largest, scale * play.least, play.preloaded), strict=True))
-        for scale, play in zip(scales, found, strict=True)
+        dict(zip(FREE_PLAY, (*play.tolist(), turn.preloaded), strict=True))
+        for play, turn in zip(plays, found, strict=True)
     ]
 
 
-SUMS: dict[str, Callable[[FloatArray], Any]] = {
+SUMS: dict[str, Callable[..., Any]] = {
     "max": np.max,
     "min": np.min,
     "mean": np.mean,
     "ptp": np.ptp,
     "largest known": np.nanmax,
+    "largest amount": lambda values: np.max(np.abs(values)),
 }
 """How a scalar sums its array up."""
 
@@ -257,9 +271,23 @@ def _of_friction(analysis: LoadedAnalysis, arrays: Mapping[str, FloatArray]) -> 
         "mean_efficiency_back": back.mean_efficiency,
         **_sums(arrays, "moves_back"),
         "mean_crank_torque": float(np.mean(analysis.crank_torques.sum(axis=1))),
+        "drag_torque": found.drag_torque,
         **_sums(arrays, "mean_input_torque", "mean_input_torque_back", "power_loss"),
         **{f"power_loss_{kind}": float(np.mean(found.watts(found.by_kind[kind]))) for kind in KINDS},
         **_sums(arrays, *(f"mean_loss_{kind}" for kind in KINDS), *(f"max_{name}" for name in rubbed)),
+    }
+
+
+def _of_main_bearing(arrays: Mapping[str, FloatArray]) -> dict[str, float]:
+    """Largest loads of the main bearing; nothing without forces from outside."""
+    if "main_bearing_x" not in arrays:
+        return {}
+    return {
+        "max_main_bearing_radial": float(np.max(np.hypot(arrays["main_bearing_x"], arrays["main_bearing_y"]))),
+        "max_main_bearing_axial": float(np.max(np.abs(arrays["main_bearing_z"]))),
+        "max_main_bearing_moment": float(
+            np.max(np.hypot(arrays["main_bearing_moment_x"], arrays["main_bearing_moment_y"]))
+        ),
     }
 
 

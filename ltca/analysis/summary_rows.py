@@ -19,8 +19,13 @@ SEAT_ROWS = (
     "max_pin_seat_pressure", "max_hole_seat_pressure", "max_pin_deflection", "max_shaft_pin_deflection",
     "max_ring_displacement_radial",
 )  # fmt: skip
+REACTION_ROWS = (
+    "max_crank_support_load_first", "max_crank_support_load_second", "max_first_stage_tangential_force",
+    "max_first_stage_radial_force", "max_first_stage_axial_force", "max_main_bearing_radial", "max_main_bearing_axial",
+    "max_main_bearing_moment", "cycloid_stage_stiffness", "reducer_stiffness",
+)  # fmt: skip
 FRICTION_ROWS = (
-    "mean_efficiency", "mean_efficiency_back", "moves_back", "mean_crank_torque", "power_loss", "power_loss_pin",
+    "mean_efficiency", "mean_efficiency_back", "moves_back", "mean_crank_torque", "drag_torque", "power_loss", "power_loss_pin",
     "power_loss_seat", "power_loss_hole", "power_loss_roller", "power_loss_support_bearing", "power_loss_no_load",
     "max_pin_pv", "max_pin_shaft_pv",
 )  # fmt: skip
@@ -32,7 +37,9 @@ Summaries = Mapping[str, Mapping[str, float | None]]
 
 def rows_of(summaries: Summaries, *, yields: bool) -> list[Scalar]:
     """Return the rows of a table of summaries that say something; `yields` tells whether cranks or wheel yield on supports."""
-    found = [scalar_named(name) for name in (*ROWS, "preloaded_part_of_turn", *SEAT_ROWS, *FRICTION_ROWS)]
+    found = [
+        scalar_named(name) for name in (*ROWS, "preloaded_part_of_turn", *SEAT_ROWS, *REACTION_ROWS, *FRICTION_ROWS)
+    ]
     needed = ("preloaded_part_of_turn", "interference")
     found += [*_share_rows(summaries), *_compliance_rows(summaries, yields)]
     found += [scalar_named(name) for name in ("max_equilibrium_residual", "residual_part", "interference", *WALL_ROWS)]

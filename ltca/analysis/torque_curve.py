@@ -1,9 +1,10 @@
 """Torque against wind-up over both directions, and what is read from it: backlash, lost motion, torsional stiffness.
 
-The crank is held, the output is loaded one way and the other. Without friction the curve has no loop; towards vanishing torque
-its branches end at the two stops of the free play (`ltca.geometry.play`), which is the backlash. The stiffness is that of
-the cycloid stage: flanks, pins, crank bearings and, where the file has them, beams, supports and carrier; the ring that carries
-the wheel pins and a first stage yield on top of it. With friction the curve is what the bodies
+The input is held, the output is loaded one way and the other. Without friction the curve has no loop; towards vanishing torque
+its branches end at the two stops of the free play (`ltca.geometry.play`), which is the backlash, with that of
+a first stage. The stiffness of the cycloid stage is that with the cranks held: flanks, pins, crank bearings and, where the file
+has them, beams, supports, ring and carrier; that of the reducer has everything that the file describes, and what it leaves out
+is told (`ltca.drive.yielding_parts`). With friction the curve is what the bodies
 yield, and the loop about it is told beside it (`ltca.analysis.friction.hysteresis`). Torques and angles are those of the output,
 whichever member that is.
 """
@@ -20,6 +21,8 @@ from ltca.analysis.friction.hysteresis import HysteresisLoop, hysteresis_loop
 from ltca.arrays import FloatArray
 from ltca.drive.parts import Drive
 from ltca.drive.unit_mistakes import names_unit_mistakes
+from ltca.drive.yielding_parts import YieldingParts, yielding_parts
+from ltca.equilibrium.output_angle import play_of_input, wheel_angle_of_input
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.errors import DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
@@ -48,14 +51,18 @@ class TorqueCurve:
     wheel_angle : array, shape (angles, points)
         Wheel angle, rad.
     output_angle : array, shape (angles, points)
-        Deviation of the output, rad: that of the wheel with the pin shaft held.
+        Deviation of the output with the input held, rad.
     backlash : array, shape (angles,)
         Free play of the output with every clearance (`ltca.geometry.play`), rad.
     lost_motion : array, shape (angles,)
         Between ± `lost_motion_part` of the rated torque, rad; with friction between the middles of the loop there.
     stiffness : array, shape (angles, 2)
         Torsional stiffness of the cycloid stage, all discs, from half the rated torque to all of it, clockwise and
-        counter-clockwise, N·mm/rad.
+        counter-clockwise, cranks held, N·mm/rad.
+    reducer_stiffness : array, shape (angles, 2)
+        The same with the input held: of everything that the file describes, N·mm/rad.
+    yielding : YieldingParts
+        What yields in both, and what is rigid because the file leaves it out.
     lost_motion_part : float
         Part of the rated torque at which lost motion is read.
     loop : HysteresisLoop or None
@@ -69,6 +76,8 @@ class TorqueCurve:
     backlash: FloatArray
     lost_motion: FloatArray
     stiffness: FloatArray
+    reducer_stiffness: FloatArray
+    yielding: YieldingParts
     lost_motion_part: float = LOST_MOTION
     loop: HysteresisLoop | None = None
 
@@ -113,7 +122,7 @@ def torque_curve(
             [f"lost_motion = {lost_motion:g}: must be from {LEAST_PART:g} to {MOST_PART:g} of the rated torque"]
         )
     angles = np.atleast_1d(np.asarray(crank_angle, dtype=float))
-    rated = drive.load.torque
+    rated = drive.require_torque("torque curves, which go up to it").load.torque
     parts = np.unique(
         np.concatenate(
             [np.linspace(LEAST_TORQUE_RATIO**0.5, 1.0, points) ** 2, [LEAST_TORQUE_RATIO, lost_motion, STIFF_FROM]]
@@ -125,16 +134,22 @@ def torque_curve(
     # other way, and so does what opposes it.
     opposing = (1.0 if drive.wheel_is_held else -1.0) * drive.driving_sign
     loads = np.tile(opposing * torque, angles.size)
-    tables = replace(HalfSpace().prepare(drive).model, friction=None)
+    model = tables = replace(HalfSpace().prepare(drive).model, friction=None)
     found = solve_at_output(tables, [drive], held, loads)
     if not (engine is None or engine == HalfSpace()):
         model = replace(engine.prepare(drive).model, friction=None)
         found = solve_at_output(model, [drive], held, loads, found.pose)
     wheel = found.pose[:, WHEEL_ANGLE].reshape(angles.size, torque.size)
-    output = drive.output_deviation(wheel, opposing * torque)
+    of_stage = drive.output_deviation(wheel, opposing * torque)
+    by_input = wheel_angle_of_input(model, found).reshape(wheel.shape)
+    output = drive.output_deviation(by_input, opposing * torque)
 
-    def at(part: float) -> FloatArray:
-        return np.asarray(output[:, int(np.argmin(np.abs(torque - part * rated)))])
+    def at(part: float, angle: FloatArray = output) -> FloatArray:
+        return np.asarray(angle[:, int(np.argmin(np.abs(torque - part * rated)))])
+
+    def stiffness(angle: FloatArray) -> FloatArray:
+        low, high = at(-STIFF_FROM, angle) - at(-1.0, angle), at(1.0, angle) - at(STIFF_FROM, angle)
+        return np.stack([half / low, half / high], axis=1)
 
     loop = None
     if drive.friction is not None:
@@ -145,9 +160,11 @@ def torque_curve(
         torque=torque,
         wheel_angle=wheel,
         output_angle=output,
-        backlash=abs(drive.output_per_wheel_angle) * free_play(tables.geometries, angles).play,
+        backlash=abs(drive.output_per_wheel_angle) * play_of_input(tables, free_play(tables.geometries, angles).play),
         lost_motion=at(lost_motion) - at(-lost_motion) if loop is None else loop.lost_motion,
-        stiffness=np.stack([half / (at(-STIFF_FROM) - at(-1.0)), half / (at(1.0) - at(STIFF_FROM))], axis=1),
+        stiffness=stiffness(of_stage),
+        reducer_stiffness=stiffness(output),
+        yielding=yielding_parts(drive),
         lost_motion_part=lost_motion,
         loop=loop,
     )
@@ -164,7 +181,8 @@ def torsional_stiffness(drive: Drive, crank_angle: FloatArray, *, engine: Engine
     model = replace((HalfSpace() if engine is None else engine).prepare(drive).model, friction=None)
     loads = sense * rated * np.tile(parts, angles.size)
     found = solve_at_output(model, [drive], np.repeat(angles, parts.size), loads)
-    output = drive.output_per_wheel_angle * found.pose[:, WHEEL_ANGLE].reshape(angles.size, parts.size)
+    wheel = found.pose[:, WHEEL_ANGLE].reshape(angles.size, parts.size)
+    output = drive.output_deviation(wheel, sense * rated * parts)
     return np.asarray((1.0 - STIFF_FROM) * rated / np.diff(output, axis=1)[:, [0, 2]])
 
 
@@ -189,6 +207,8 @@ def curve_content(curve: TorqueCurve, drive: Drive) -> dict[str, Any]:
         "lost_motion_part": curve.lost_motion_part,
         "lost_motion_rad": curve.lost_motion.tolist(),
         "stiffness_N_mm_per_rad": curve.stiffness.tolist(),
+        "reducer_stiffness_N_mm_per_rad": curve.reducer_stiffness.tolist(),
+        "torsional_stiffness_of": curve.yielding.content,
         "hysteresis": _loop(curve.loop),
     }
 

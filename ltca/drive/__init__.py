@@ -15,6 +15,7 @@ engine_support  Fields that engines refuse: the one table behind engines, finite
 single_discs    A drive of several discs as drives of one disc each
 hole_contact    The contact of holes and shaft pins: whether the pins are elastic there, and the modulus of the pair
 ring_shape      What determines the plane finite-element ring of the pin wheel, and its fingerprint
+yielding_parts  Which parts yield in the torsional stiffness, and which are rigid because a file leaves them out
 fields          Fields of a drive by dotted path: values, numbers of elements, absent parts
 mistakes        Mistakes in a definition as sentences: field, value, bound, and the name that a misspelt one is close to
 unit_mistakes   Likely mistakes of units behind a drive that cannot carry its load

@@ -84,6 +84,8 @@ REFUSALS = (
     Refusal("pin_wheel.support_stiffness", _RIGID, "the axis of the wheel is fixed in the model"),
     Refusal("pin_wheel.seat", _FIXED, "pins are fixed in the model"),
     Refusal("pin_wheel.beam", _FIXED, "pins do not bend in the model"),
+    Refusal("first_stage", _RIGID, "the model has no first stage", "give installation.first_stage_ratio"),
+    Refusal(f"load.external.{ANY}", _RIGID, "the axis of the wheel is fixed in the model"),
     Refusal("disc.number_of_discs", ("paper",), "the model has one disc"),
     Refusal(f"disc.of.{ANY}.bore_errors", _ONE_BORE, "the model has one crank"),
     Refusal("crank_bearing.roller_length", _PLANE, _TWO_DIMENSIONS, _HYBRID, equals="disc.thickness"),
@@ -171,7 +173,10 @@ def _given(part: Any, names: Sequence[str], above: str = "") -> Iterator[tuple[s
         yield path, value, _default(part, name)
     elif below[0] == ANY:
         for number, entry in enumerate(value):
-            yield from _given(entry, below[1:], f"{path}.{number}.")
+            if below[1:]:
+                yield from _given(entry, below[1:], f"{path}.{number}.")
+            else:
+                yield f"{path}.{number}", entry, None
     elif value is not None:
         yield from _given(value, below, f"{path}.")
 
@@ -196,6 +201,8 @@ def _contents(path: str, table: Any, declared: str) -> str:
 
 
 def _shown(value: Any) -> str:
+    if is_dataclass(value):
+        return f"{{{', '.join(f'{item.name} = {_shown(getattr(value, item.name))}' for item in fields(value))}}}"
     if isinstance(value, tuple):
         return f"[{', '.join(_shown(each) for each in value)}]"
     return f'"{value}"' if isinstance(value, str) else f"{value:g}"

@@ -31,10 +31,12 @@ from ltca.drive.materials import (
 )
 from ltca.drive.members.carrier import Carrier as Carrier, CarrierPosts as CarrierPosts
 from ltca.drive.members.crank import Crank as Crank, CrankBearing as CrankBearing, CrankSupport as CrankSupport
+from ltca.drive.members.first_stage import FirstStage as FirstStage
 from ltca.drive.members.operation import (
     Analysis as Analysis,
     Compliance as Compliance,
     Duty as Duty,
+    ExternalLoad as ExternalLoad,
     Friction as Friction,
     Installation as Installation,
     Load as Load,
@@ -168,6 +170,8 @@ class Drive:
         Elastic ring that holds the wheel pins; rigid when left out.
     carrier : Carrier or None
         How the carrier of shaft pins and cranks gives way; rigid in one piece when left out.
+    first_stage : FirstStage or None
+        Teeth between a central input and several cranks; ``installation.first_stage_ratio`` alone gives its ratio.
     load : Load
         Torque and direction.
     installation : Installation
@@ -198,6 +202,7 @@ class Drive:
     pin_shaft: PinShaft | None = None
     ring: Ring | None = None
     carrier: Carrier | None = None
+    first_stage: FirstStage | None = None
     load: Load
     installation: Installation = field(default_factory=Installation)
     clearance: Annotated[Clearance, grows("disc")] = field(default_factory=Clearance)
@@ -235,13 +240,18 @@ class Drive:
         return self.installation.held == "pin-wheel"
 
     @property
+    def first_stage_ratio(self) -> float | None:
+        """z₂/z₁ of the first stage, by its teeth or as it is given; None without one."""
+        return self.installation.first_stage_ratio if self.first_stage is None else self.first_stage.ratio
+
+    @property
     def transmission_ratio(self) -> float:
         """Turns of the input for one of the output.
 
         A central crank: u with the pin shaft held, −z_C/Δz with the pin wheel held. Several cranks driven from the carrier,
         relative to it: u and −u. Behind a first stage i₁ the input is its sun: −i₁ u and 1 + i₁ u.
         """
-        stage = self.installation.first_stage_ratio
+        stage = self.first_stage_ratio
         if stage is not None:
             return 1.0 + stage * self.reduction_ratio if self.wheel_is_held else -stage * self.reduction_ratio
         if self.crank.number > 1:
@@ -270,7 +280,7 @@ class Drive:
         """
         if self.crank.number == 1:
             return 1.0
-        stage = self.installation.first_stage_ratio
+        stage = self.first_stage_ratio
         return 0.0 if stage is None else -1.0 / stage
 
     @property
@@ -334,6 +344,12 @@ class Drive:
         """
         total = self.load.torque if torque is None else torque
         return -self.driving_sign * total * abs(self.output_per_wheel_angle)
+
+    def require_torque(self, what: str, torque: float | None = None) -> Drive:
+        """Return the drive itself; DriveError where the torque, its load by default, is zero, at which `what` says nothing."""
+        if (self.load.torque if torque is None else torque) == 0.0:
+            raise DriveError([f"load.torque = 0 N·mm: must be greater than 0 for {what}"])
+        return self
 
     def load_words(self, torque: float | None = None) -> str:
         """Return torque (N·mm; the load by default) and direction for the heading of a table."""

@@ -279,7 +279,7 @@ def _odd_torques(drive: Drive, torque: float | None) -> Iterator[str]:
     of_it = f"what this drive carries (some {_rounded(carried / 1000.0)} N·m by the pressure of its flank)"
     beyond = False
     for path, value in used:
-        if value < UNLOADED * carried:
+        if 0.0 < value < UNLOADED * carried:
             share = _fraction(value / carried)
             yield f'{_newton_metres(path, value)}, {share} of {of_it}; did you mean "{value:g} N m"?'
         elif value > OVERLOADED * carried:

@@ -8,11 +8,15 @@ reducer          A reducer of several discs: every disc a member with its own jo
 pin_displacements  Pins displaced by beams under several discs and by the ring of the wheel: discs find them where all forces
                  have moved them
 friction         Friction of the joints: what slips, and the forces that follow
+first_stage      First stage: forces of the sun on the planets of the cranks, and what its teeth add to the angle of the output
+external_force   Forces and moments from outside on the output
+crank_moments    Moments that hold cranks and their roller cages, from the forces of the contacts
 supports         Springs on coordinates: crankshafts on their bearings, and the wheel on its own
 newton           Damped Newton iteration for the pose in which a batch of positions balances
 neighbours       Which positions of many are balanced first, and the poses of those between them: seen from the crank they
                  hardly differ
 balance          Equilibrium of the floating discs at held crank angles (Eq. 43–44, 70–72, 85–89)
+output_angle     The angle of the wheel with the input held, and its free play
 output_torque    Equilibrium at a given torque of the output, whichever member is held
 partial_balance  Balance as many positions as have an answer: one that has none costs the others nothing
 compliance_shares  Which parts of the reducer yield how much of what its output yields: shares of the compliance at a

@@ -111,6 +111,7 @@ def solve_equilibrium(
     inner: Start | None = None,
     gaps: bool = True,
     series: int = 1,
+    reference: FloatArray | float = 0.0,
 ) -> Equilibrium:
     """Find the pose in which every position of a batch balances.
 
@@ -130,6 +131,9 @@ def solve_equilibrium(
         Whether the pairs of pins that do not touch are wanted, which balance does not need (`FlankMotion.left_out`).
     series : int
         Number of series of equally many positions, one after the other: turns of different drives or under different torques.
+    reference : float or array, shape (positions,)
+        Moment that the residual is measured by where the one on the wheel is smaller, N·mm: parts that hold each other carry
+        loads without any.
 
     Returns
     -------
@@ -143,19 +147,30 @@ def solve_equilibrium(
     """
     angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
     moment = np.broadcast_to(np.asarray(wheel_moment, dtype=float), angle.shape)
-    search = _search(model, angle, moment, np.zeros((angle.size, model.coordinates.size)))
+    search = _search(model, angle, moment, np.zeros((angle.size, model.coordinates.size)), reference)
     return _completed(search, _solve_by_neighbours(search, start, inner, series), gaps)
 
 
-def follow_equilibrium(model: Reducer, found: Equilibrium, wheel_moment: FloatArray, gaps: bool = True) -> Equilibrium:
-    """Balance positions under other moments, N·mm, from what this model answered; `gaps` as for `solve_equilibrium`."""
-    search = _search(model, found.crank_angle, wheel_moment, found.pose.copy())
+def follow_equilibrium(
+    model: Reducer,
+    found: Equilibrium,
+    wheel_moment: FloatArray,
+    gaps: bool = True,
+    reference: FloatArray | float = 0.0,
+) -> Equilibrium:
+    """Balance positions under other moments, N·mm, from what this model answered; `gaps` and `reference` as for
+    `solve_equilibrium`.
+    """
+    search = _search(model, found.crank_angle, wheel_moment, found.pose.copy(), reference)
     return _completed(search, search.iterate(MAX_ITERATIONS, response=found.response), gaps)
 
 
-def _search(model: Reducer, angle: FloatArray, moment: FloatArray, pose: FloatArray) -> Search:
+def _search(
+    model: Reducer, angle: FloatArray, moment: FloatArray, pose: FloatArray, reference: FloatArray | float
+) -> Search:
     lever = lever_arms(model)
-    return Search(model, angle, moment, lever, np.abs(moment) / lever[..., WHEEL_ANGLE], pose)
+    load = np.maximum(np.abs(moment), reference) / lever[..., WHEEL_ANGLE]
+    return Search(model, angle, moment, lever, load, pose)
 
 
 def _completed(search: Search, left: NDArray[np.intp], gaps: bool) -> Equilibrium:

@@ -83,7 +83,7 @@ class Search:
         self.place = model.discs[0].geometry.placement
         """The wheel's places are those of every disc."""
         self.smallest_pin = float(np.min(self.place.wheel_pin_radii))
-        self.symmetric = model.friction is None
+        self.symmetric = model.symmetric
         self.half_pitch = np.pi / self.place.reduction_ratio
         self.rotations = model.coordinates.rotations
         self.history: list[FloatArray] = []

@@ -20,9 +20,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.arrays import FloatArray, put_positions, take_positions
-from ltca.compliance.response import Response, Start, bearing_pushes
+from ltca.compliance.response import Response, Start
 from ltca.drive.parts import Drive
 from ltca.equilibrium.balance import Equilibrium, follow_equilibrium, solve_equilibrium
+from ltca.equilibrium.crank_moments import crank_moments
 from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError
 
@@ -32,37 +33,6 @@ Balance = Callable[[FloatArray, FloatArray, FloatArray | None], Equilibrium]
 MAX_ITERATIONS = 30
 TORQUE_TOLERANCE = 1e-10
 """Unbalanced moment relative to the output torque; the balance of forces leaves more."""
-
-
-def crank_moments(model: Reducer, crank_angle: FloatArray, pose: FloatArray, response: Response) -> FloatArray:
-    r"""Return the external moment that holds each crank by virtual work, ccw positive, N·mm, shape (positions, cranks).
-
-    It is ∂U/∂φ_C of the contacts: the moment of every bearing's force about the crank axis, which is that of the forces on the
-    crank alone, and that of its cages (`cage_moments`) times `cage_speed`, the part of the crank's angle by which they turn.
-    Friction at the crank adds its own.
-    """
-    cranks, friction = model.discs[0].geometry.placement.cranks, model.friction
-    pushes = [bearing_pushes(part.rollers, cranks) for part in response.parts]
-    total = model.discs[0].geometry.placement.cage_speed * cage_moments(model, crank_angle, pose, response)
-    for disc, push in zip(model.discs, pushes, strict=True):
-        place = disc.geometry.placement
-        lever = place.race_centres(crank_angle) - place.crank_axes
-        total = total + (lever.conjugate() * push).imag
-    return total if friction is None else total + friction.of_cranks(pushes)
-
-
-def cage_moments(model: Reducer, crank_angle: FloatArray, pose: FloatArray, response: Response) -> FloatArray:
-    """Return the external moment that holds the cages of each crank at their angle, ccw positive, N·mm, (positions, cranks).
-
-    Cage and inner race are concentric and the race pushes its rollers along its radii, the bore along its own: what holds the
-    cage is the moment of the bearing's force at the displaced centre of the bore, the sum over all discs.
-    """
-    cranks = model.discs[0].geometry.placement.cranks
-    total = np.zeros((crank_angle.size, cranks))
-    for number, (disc, part) in enumerate(zip(model.discs, response.parts, strict=True)):
-        bores = disc.geometry.bores(crank_angle, pose[:, model.coordinates.columns(number)])
-        total += (bores.displacement.conjugate() * bearing_pushes(part.rollers, cranks)).imag
-    return total
 
 
 def input_moment(
@@ -104,7 +74,8 @@ def solve_at_output(
     crank_angle : array, shape (positions,)
         φ_C, rad.
     torque : float or array, shape (positions,)
-        On the output, N·mm, positive as `load.direction` says; a negative one loads the other way.
+        On the output, N·mm, positive as `load.direction` says; a negative one loads the other way. Without any the parts
+        must hold each other.
     start : array, shape (positions, coordinates), optional
         Poses to start from, first contact by default.
     inner : Start, optional
@@ -121,6 +92,13 @@ def solve_at_output(
     ConvergenceError
         When a position does not balance.
     """
+    if start is None and np.any(np.asarray(torque) == 0.0):
+        angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
+        light = np.repeat([drive.load.light_torque for drive in drives], angle.size // len(drives))
+        near = solve_at_output(
+            replace(model, friction=None), drives, angle, np.where(torque, torque, light), gaps=False
+        )
+        start, inner = near.pose, Start.after(near.response)
     friction = model.friction
     if friction is None or not friction.turns:
         return _solve(model, drives, crank_angle, torque, start, inner, gaps)
@@ -204,13 +182,18 @@ def _solve(
     mean = np.repeat([drive.wheel_moment(1.0) for drive in drives], repeats) * loads
     held = np.repeat([drive.wheel_is_held for drive in drives], repeats)
     signed = np.repeat([drive.driving_sign for drive in drives], repeats) * loads
+    # What parts that hold each other carry without a torque is balanced as well as under the light one.
+    light = np.where(loads == 0.0, np.repeat([drive.load.light_torque for drive in drives], repeats), 0.0)
 
     def follow(rows: NDArray[np.intp], moment: FloatArray, near: Equilibrium) -> Equilibrium:
-        return follow_equilibrium(model if rows.size == angle.size else model.take(rows), near, moment, gaps)
+        return follow_equilibrium(
+            model if rows.size == angle.size else model.take(rows), near, moment, gaps, light[rows]
+        )
 
     input_per_crank_moment = np.repeat([drive.input_per_crank_moment for drive in drives], repeats)
-    found = solve_equilibrium(model, angle, mean, start, inner, gaps, len(drives))
-    return _at_output(model, follow, found, signed, held, input_per_crank_moment)
+    by_wheel = np.repeat([1.0 / abs(drive.output_per_wheel_angle) for drive in drives], repeats)
+    found = solve_equilibrium(model, angle, mean, start, inner, gaps, len(drives), light)
+    return _at_output(model, follow, found, signed, held, input_per_crank_moment, by_wheel, light)
 
 
 def balance_at_output(
@@ -234,7 +217,9 @@ def balance_at_output(
 
     input_per_crank_moment = np.full(angle.size, drive.input_per_crank_moment)
     signed = np.full(angle.size, drive.driving_sign * torque)
-    return _at_output(model, follow, balance(angle, mean, start), signed, held, input_per_crank_moment)
+    by_wheel = np.full(angle.size, 1.0 / abs(drive.output_per_wheel_angle))
+    found, light = balance(angle, mean, start), np.zeros(angle.size)
+    return _at_output(model, follow, found, signed, held, input_per_crank_moment, by_wheel, light)
 
 
 def _at_output(
@@ -244,10 +229,14 @@ def _at_output(
     signed: FloatArray,
     held: NDArray[np.bool_],
     input_per_crank_moment: FloatArray,
+    by_wheel: FloatArray,
+    reference: FloatArray,
 ) -> Equilibrium:
     """Find the moments on held wheels by secants, from positions balanced at the mean moment of a turn.
 
-    `follow` balances some positions under other moments, from what they were balanced under last.
+    `follow` balances some positions under other moments, from what they were balanced under last. `by_wheel` is the mean of
+    the output torque by the moment on the wheel, and `reference` the torque that what is left over is measured by where the
+    output torque is smaller, N·mm.
     """
     if not np.any(held):
         return found
@@ -255,11 +244,11 @@ def _at_output(
     moment = mean.copy()
     left = moment + input_moment(model, angle, found.pose, found.response, input_per_crank_moment) + signed
     # The cranks carry 1/u of the wheel's moment in the mean, the input its part of that: what is left grows with the moment.
-    slope = -signed / mean
+    slope = by_wheel.copy()
     history = []
     for _ in range(MAX_ITERATIONS):
         history.append(float(np.max(np.abs(np.where(held, left, 0.0)))))
-        open_rows = np.nonzero(held & (np.abs(left) > TORQUE_TOLERANCE * np.abs(signed)))[0]
+        open_rows = np.nonzero(held & (np.abs(left) > TORQUE_TOLERANCE * np.maximum(np.abs(signed), reference)))[0]
         if open_rows.size == 0:
             return found
         step = -left[open_rows] / slope[open_rows]

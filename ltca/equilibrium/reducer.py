@@ -28,6 +28,9 @@ from ltca.compliance.response import (
     split_shifts,
 )
 from ltca.drive.parts import Drive
+from ltca.equilibrium.crank_moments import moments_of_parts
+from ltca.equilibrium.external_force import ExternalForce
+from ltca.equilibrium.first_stage import StageMesh
 from ltca.equilibrium.friction.turning import Rubbing, TurningFriction
 from ltca.equilibrium.pin_displacements import PinDisplacements
 from ltca.equilibrium.supports import support_stiffness
@@ -80,11 +83,13 @@ class JointFriction(Protocol):
         """Return what friction does to a disc."""
         ...
 
-    def of_wheel(self, parts: Sequence[DiscResponse], reduction_ratio: float) -> FloatArray:
+    def of_wheel(
+        self, parts: Sequence[DiscResponse], reduction_ratio: float, external: ComplexArray | float = 0.0
+    ) -> FloatArray:
         """Return the moment by which the wheel's bearing rubs, N·mm."""
         ...
 
-    def of_cranks(self, pushes: Sequence[ComplexArray]) -> FloatArray:
+    def of_cranks(self, pushes: Sequence[ComplexArray], on_bearings: ComplexArray | None = None) -> FloatArray:
         """Return the moment that rubbing takes at every crank, N·mm, shape (positions, cranks)."""
         ...
 
@@ -105,6 +110,10 @@ class Reducer:
         What of the supports holds the far flange of a carrier (`ltca.laws.carrier`); None without posts.
     friction : JointFriction or None
         What rubs.
+    stage : StageMesh or None
+        Teeth of the first stage.
+    external : ExternalForce or None
+        Forces from outside on the output.
     """
 
     discs: tuple[DiscModel, ...]
@@ -112,6 +121,8 @@ class Reducer:
     pins: PinDisplacements | None = None
     flange: FloatArray | None = by_drive(2, default=None)
     friction: JointFriction | None = None
+    stage: StageMesh | None = None
+    external: ExternalForce | None = None
     _by_position: bool | None = field(init=False, repr=False, compare=False, default=None)
 
     @classmethod
@@ -123,6 +134,8 @@ class Reducer:
             pins=PinDisplacements.of_drive(drive),
             flange=far_flange_stiffness(drive),
             friction=TurningFriction.of_drive(drive),
+            stage=StageMesh.of_drive(drive),
+            external=ExternalForce.of_drive(drive),
         )
 
     def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Reducer:
@@ -130,6 +143,17 @@ class Reducer:
         if self._by_position is None:  # looked up once, and only for models that are solved
             object.__setattr__(self, "_by_position", has_rows(self))
         return take_rows(self, rows) if self._by_position else self
+
+    @property
+    def symmetric(self) -> bool:
+        """Whether its forces are slopes of a potential: neither friction nor forces that go with the moments of the cranks."""
+        return self.friction is None and not self._teeth_press
+
+    @property
+    def _teeth_press(self) -> bool:
+        """Whether the forces of a first stage act on something that yields."""
+        stage = self.stage
+        return stage is not None and (stage.yields or (stage.carried and self.coordinates.wheel))
 
     @property
     def coordinates(self) -> Coordinates:
@@ -197,11 +221,18 @@ class Reducer:
         if settled is not None:
             force += settled.force
             tangent += settled.tangent
+        if self.stage is not None and self._teeth_press:
+            self._press_teeth(self.stage, crank_angle, pose, parts, force, tangent)
         if self.supports is not None:
             force += np.matmul(self.supports, pose[..., None])[..., 0]
             tangent += self.supports
+        if self.external is not None and coordinates.wheel:
+            pressed = self.external.on_wheel(crank_angle)
+            force[:, coordinates.wheel_place] -= np.stack((pressed.real, pressed.imag), axis=-1)
         if self.friction is not None:
-            force[:, WHEEL_ANGLE] += self.friction.of_wheel(parts, self.discs[0].geometry.placement.reduction_ratio)
+            ratio = self.discs[0].geometry.placement.reduction_ratio
+            beside = self.force_beside_pins(crank_angle, pose, parts)
+            force[:, WHEEL_ANGLE] += self.friction.of_wheel(parts, ratio, beside)
         return Response(
             force=force,
             tangent=tangent,
@@ -217,6 +248,60 @@ class Reducer:
             follow=None if settled is None else FollowingPins(settled.onward, settled.by_pose, pose),
             left=None if settled is None else settled.left,
         )
+
+    def force_beside_pins(
+        self, crank_angle: FloatArray, pose: FloatArray, parts: Sequence[DiscResponse]
+    ) -> ComplexArray:
+        """Return the force on the wheel relative to the pin shaft from outside and by the teeth of a first stage, N, shape
+        (positions,).
+        """
+        total = np.zeros(crank_angle.shape, dtype=complex)
+        if self.external is not None:
+            total = total + self.external.on_wheel(crank_angle)
+        if self.stage is not None and self.stage.carried:
+            total = total + self.stage.on_wheel(moments_of_parts(self, crank_angle, pose, parts))[0]
+        return total
+
+    def _press_teeth(
+        self,
+        stage: StageMesh,
+        crank_angle: FloatArray,
+        pose: FloatArray,
+        parts: Sequence[DiscResponse],
+        force: FloatArray,
+        tangent: FloatArray,
+    ) -> None:
+        """Take the forces of the first stage from the coordinates of cranks and wheel, in place, before any but contacts press.
+
+        Where cranks are rigid, the derivatives of what the planets press on the main bearing are left out.
+        """
+        coordinates, places = self.coordinates, self.discs[0].geometry.placement
+        moments = moments_of_parts(self, crank_angle, pose, parts)
+        on_wheel, by_moments = stage.on_wheel(moments)
+        if coordinates.wheel:
+            force[:, coordinates.wheel_place] -= np.stack((on_wheel.real, on_wheel.imag), axis=-1)
+        if not stage.yields:
+            return
+        columns = coordinates.own * np.arange(coordinates.discs)[:, None] + coordinates.crank(0)
+        x = columns + 2 * np.arange(coordinates.cranks)
+        slopes = np.zeros((*moments.shape, coordinates.size))
+        for number, (disc, part) in enumerate(zip(self.discs, parts, strict=True)):
+            own, place = coordinates.columns(number), disc.geometry.placement
+            bores = disc.geometry.bores(crank_angle, pose[:, own])
+            cage = np.asarray(places.cage_speed)
+            arm = place.race_centres(crank_angle) - place.crank_axes + cage * bores.displacement
+            changes = tangent[:, x[number]] + 1j * tangent[:, x[number] + 1]
+            slopes += (arm.conjugate()[..., None] * changes).imag
+            push = bearing_pushes(part.rollers, coordinates.cranks)
+            slopes[..., own] += cage[..., None] * (bores.gradient.conjugate() * push[..., None]).imag
+        pressed, by_moment = stage.on_cranks(moments)
+        changed = by_moment[..., None] * slopes[:, None]
+        for shift, part_of in ((0, np.real), (1, np.imag)):
+            force[:, x + shift] -= part_of(pressed)
+            tangent[:, x + shift] -= part_of(changed)
+        if coordinates.wheel:
+            moved = np.einsum("pc,pcj->pj", by_moments, slopes)
+            tangent[:, coordinates.wheel_place] -= np.stack((moved.real, moved.imag), axis=1)
 
     def _unmoved(self, positions: int) -> ComplexArray:
         """Pins that stand where they stand without load, shape (positions, discs, pairs)."""

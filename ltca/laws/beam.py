@@ -20,7 +20,7 @@ from typing import Literal
 
 import numpy as np
 
-from ltca.arrays import FloatArray
+from ltca.arrays import BoolArray, FloatArray
 
 End = Literal["free", "supported", "clamped"]
 
@@ -31,11 +31,13 @@ def shaft_flexibility(
     stiffness: tuple[float, float],
     diameter: float,
     youngs_modulus: float,
+    slopes: Sequence[float] = (),
 ) -> FloatArray:
     """Return deflections of a shaft at planes under unit forces at these planes, mm/N, symmetric, shape (planes, planes).
 
     Planes and the two supports are axial places in mm; `stiffness` is that of each support in N/mm, the diameter in mm, Young's
-    modulus in MPa.
+    modulus in MPa. Behind the planes come the places `slopes`, with the slope there under a unit force, 1/N, and what a
+    unit couple does.
 
     Examples
     --------
@@ -46,21 +48,39 @@ def shaft_flexibility(
     True
     """
     start, span = supports[0], supports[1] - supports[0]
-    place = np.asarray(planes, dtype=float) - start
-    far = place / span
-    # Parts of a force that each support carries.
-    parts = np.stack((1.0 - far, far))
-    ends = np.array([0.0, span])
+    place = np.asarray([*planes, *slopes], dtype=float) - start
+    turned = np.arange(place.size) >= len(planes)
+    parts = support_parts(planes, supports, slopes)
+    ends, still = np.array([0.0, span]), np.zeros(2, dtype=bool)
 
-    def cubes(at: FloatArray) -> FloatArray:
-        """|z − s|³ less those of the reactions, by z and s."""
-        reactions = np.abs(at[:, None] - ends) ** 3 @ parts
-        return np.asarray(np.abs(at[:, None] - place) ** 3 - reactions)
+    def cubes(at: FloatArray, slope: BoolArray) -> FloatArray:
+        """|z − s|³ less those of the reactions, by z and s; its derivative by z, by s or by both where slopes are asked for."""
+        reactions = _cubes(at, slope, ends, still) @ parts
+        return np.asarray(_cubes(at, slope, place, turned) - reactions)
 
-    bent = cubes(place) - np.einsum("ez,es->zs", parts, cubes(ends))
+    bent = cubes(place, turned) - np.einsum("ez,es->zs", parts, cubes(ends, still))
     bent /= 12.0 * youngs_modulus * pi * diameter**4 / 64.0
     yielding = np.einsum("ez,es,e->zs", parts, parts, 1.0 / np.asarray(stiffness, dtype=float))
     return np.asarray(0.5 * (bent + bent.T) + yielding)
+
+
+def support_parts(planes: Sequence[float], supports: tuple[float, float], slopes: Sequence[float] = ()) -> FloatArray:
+    """Return the part of a force at each plane that each of two supports carries, and of a couple at each place in `slopes`,
+    1/mm, shape (2, planes + slopes).
+    """
+    start, span = supports[0], supports[1] - supports[0]
+    far = (np.asarray(planes, dtype=float) - start) / span
+    of_couples = np.full(len(slopes), 1.0 / span)
+    return np.stack((np.append(1.0 - far, -of_couples), np.append(far, of_couples)))
+
+
+def _cubes(at: FloatArray, slope: BoolArray, place: FloatArray, turned: BoolArray) -> FloatArray:
+    """|z − s|³ by z and s, or its derivatives by z (`slope`) and by s (`turned`)."""
+    apart = at[:, None] - place
+    size = np.abs(apart)
+    once = 3.0 * apart * size
+    by_z, by_s = np.broadcast_arrays(slope[:, None], turned)
+    return np.where(by_z & by_s, -6.0 * size, np.where(by_z, once, np.where(by_s, -once, size**3)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

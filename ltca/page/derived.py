@@ -13,6 +13,7 @@ from ltca.drive.members.temperatures import temperature_words
 from ltca.drive.parts import Drive, PinShaft, PinWheel
 from ltca.drive.single_discs import equal_parts, single_discs
 from ltca.drive.units.quantities import ARCMIN
+from ltca.equilibrium.first_stage import StageMesh
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.first_contact import backlash
 from ltca.geometry.pairs import ContactGeometry
@@ -52,7 +53,7 @@ def _properties(drive: Drive, plays: bool) -> Rows:
         ("smallest flank radius, convex", f"{1.0 / curvature.max():.4f} mm"),
         ("smallest flank radius, concave", f"{-1.0 / curvature.min():.4f} mm"),
         ("pin radius at which the flank is undercut", f"{1.0 / locus.max() - drive.disc.equidistant_offset:.4f} mm"),
-        *(_plays(geometries, abs(drive.output_per_wheel_angle) * ARCMIN) if plays else []),
+        *(_plays(drive, geometries, abs(drive.output_per_wheel_angle) * ARCMIN) if plays else []),
         (f"bore radius{of} with clearance", f"{single.bore_radius:.4f} mm"),
         (f"play of a roller{of} between the races", f"{roller_play:.4f} mm"),
         ("gap between neighbouring rollers", f"{roller_gap(drive):.4f} mm"),
@@ -62,9 +63,10 @@ def _properties(drive: Drive, plays: bool) -> Rows:
     ]  # fmt: skip
 
 
-def _plays(geometries: list[ContactGeometry], leverage: float) -> Rows:
+def _plays(drive: Drive, geometries: list[ContactGeometry], leverage: float) -> Rows:
     gap = np.stack([-each.flank(position_angles(90), np.zeros((90, 4))).approach for each in geometries])
-    turn = play_over_a_turn(geometries)
+    turn, stage = play_over_a_turn(geometries), StageMesh.of_drive(drive)
+    before = 0.0 if stage is None else float(stage.play)
     disc = backlash(geometries[0], position_angles(360), DISC_ROTATION) * ARCMIN
     wheel = backlash(geometries, position_angles(360), WHEEL_ANGLE) * ARCMIN
     at, held = ("the disc", "disc") if len(geometries) == 1 else ("disc 0", "discs")
@@ -76,7 +78,7 @@ def _plays(geometries: list[ContactGeometry], leverage: float) -> Rows:
                 filter(
                     None,
                     (
-                        f"{leverage * turn.least:z.2f}′ … {leverage * turn.largest:z.2f}′",
+                        f"{leverage * (turn.least + before):z.2f}′ … {leverage * (turn.largest + before):z.2f}′",
                         preload_words(turn.preloaded),
                     ),
                 )
@@ -139,16 +141,16 @@ def _installation(drive: Drive) -> Rows:
     held = (
         "pin wheel held, pin shaft is the output" if drive.wheel_is_held else "pin shaft held, pin wheel is the output"
     )
-    stage, crank = drive.installation.first_stage_ratio, drive.crank
+    stage, crank = drive.first_stage_ratio, drive.crank
     turned = "crank" if stage is None else "input"
     rows = [
         ("installation", held),
         (f"reduction ratio ({turned} turns by output turns)", f"{drive.transmission_ratio:g}"),
     ]
     if crank.number > 1:
-        driven = "turned in the carrier" if stage is None else f"driven by a spur stage, z₂/z₁ = {stage:g}"
+        driven = "turned in the carrier" if stage is None else f"driven by a first stage, z₂/z₁ = {stage:g}"
         rows.append(("cranks", f"{crank.number} on a circle of {crank.circle_radius:g} mm, {driven}"))
-    rows += _supports(drive) + _pins(drive)
+    rows += _teeth(drive) + _supports(drive) + _outside(drive) + _pins(drive)
     discs = drive.disc.number_of_discs
     if discs == 1:
         return rows
@@ -163,6 +165,40 @@ def _installation(drive: Drive) -> Rows:
         ("discs, phases of their eccentrics", ", ".join(f"{degrees(phase):.6g}°" for phase in drive.disc.disc_phases)),
         ("axial places of the discs", ", ".join(f"{plane:.6g}" for plane in drive.disc.disc_planes) + " mm"),
         ("the discs", alike),
+    ]
+
+
+def _teeth(drive: Drive) -> Rows:
+    """Teeth of the first stage, and the forces of a planet by its tangential one."""
+    stage, distance = drive.first_stage, drive.crank.circle_radius
+    if stage is None or distance is None:
+        return []
+    mesh, give = stage.mesh(distance), stage.mesh_stiffness
+    yields = "rigid" if give is None else f"{give:g} N/mm along the line of action"
+    return [
+        (
+            "first stage",
+            f"{stage.sun_teeth} and {stage.planet_teeth} teeth, helix angle {degrees(stage.helix_angle):g}°, pitch circles ⌀ "
+            f"{2.0 * (distance - mesh.pitch_radius):.6g} and {2.0 * mesh.pitch_radius:.6g} mm, planets at {stage.plane:g} mm",
+        ),
+        (
+            "forces of a planet",
+            f"working pressure angle {degrees(mesh.working_angle):.4g}°; radial {mesh.separating:.4f}, axial "
+            f"{abs(mesh.axial):.4f} of the tangential force",
+        ),
+        ("backlash and stiffness of the first stage", f"{stage.backlash:g} mm at the pitch circle, {yields}"),
+    ]
+
+
+def _outside(drive: Drive) -> Rows:
+    """Forces from outside on the output, one row for each entry."""
+    return [
+        (
+            f"force from outside {number}, frame of the {entry.frame}",
+            f"({entry.force.x:g}, {entry.force.y:g}, {entry.force.z:g}) N at z = {entry.at.z:g} mm, "
+            f"moment ({entry.moment.x:g}, {entry.moment.y:g}) N·mm",
+        )
+        for number, entry in enumerate(drive.load.external)
     ]
 
 

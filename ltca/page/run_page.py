@@ -87,7 +87,7 @@ def run_page(run: Run) -> str:
     unjudged = [case for case in cases if case not in run.checks]
     if unjudged and run.checks:
         sentence, state = f"No answer at some positions, not judged: {', '.join(unjudged)}. {sentence}", "fail"
-    sections = [wind_up(dataset, run.summaries), lives_of_cases(run.lives)]
+    sections = [wind_up(dataset, run.summaries, run.drives), lives_of_cases(run.lives)]
     places, numbers = pack(_arrays(run, drives))
     content = {
         "cases": [_case(dataset, place, drive) for place, drive in enumerate(drives.values())],

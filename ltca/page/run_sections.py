@@ -13,7 +13,9 @@ import numpy as np
 
 from ltca.analysis.life.bearing_lives import BearingLives
 from ltca.arrays import FloatArray
+from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import ARCMIN
+from ltca.drive.yielding_parts import stiffness_notes, yielding_parts
 from ltca.page.study_page import Section
 from ltca.page.tables import Cell, Table, minus, number, word
 from ltca.quantities import SCALARS
@@ -24,21 +26,25 @@ if TYPE_CHECKING:
 PLAY = SCALARS["backlash_output"]
 
 
-def wind_up(dataset: Labelled, summaries: Mapping[str, Mapping[str, float | None]]) -> Section:
+def wind_up(
+    dataset: Labelled, summaries: Mapping[str, Mapping[str, float | None]], drives: Mapping[str, Drive]
+) -> Section:
     """Return the wind-up of every case between the two torques of the run."""
     rows, equal = list[list[Cell]](), list[str]()
     for place, name in enumerate(summaries):
         case = dataset.isel(case=place)
-        wound = np.abs(case["transmission_error"].values - case["transmission_error_light"].values)
-        wound = wound[(case["status"].values == 0) & (case["status_light"].values == 0)]
+        known = (case["status"].values == 0) & (case["status_light"].values == 0)
+        wound = np.abs(case["transmission_error"].values - case["transmission_error_light"].values)[known]
         torque, light = float(case["torque"].values), float(case["light_torque"].values)
-        if not (wound.size and np.all(wound > 0.0)):
+        turned = (case["wheel_angle"].values - case["wheel_angle_light"].values)[known]
+        of_stage = np.abs(drives[name].output_deviation(turned, torque - light))
+        if not (wound.size and np.all(wound > 0.0) and np.all(of_stage > 0.0)):
             equal.append(name)
             continue
-        stiffness = abs(torque - light) / wound
+        stiffness = [_range(abs(torque - light) / each / ARCMIN / 1e3) for each in (of_stage, wound)]
         torques = word(minus(f"{light / 1e3:.4g} … {torque / 1e3:.4g}"))
         play = number(summaries[name][PLAY.key])
-        rows.append([word(name), play, torques, _range(wound * ARCMIN), _range(stiffness / ARCMIN / 1e3)])
+        rows.append([word(name), play, torques, _range(wound * ARCMIN), *stiffness])
     notes = [
         "Least … largest over the positions, between the answers at the light torque and at the torque. The whole curve, both "
         "ways, with lost motion and loops of friction: cyclo curves."
@@ -47,8 +53,9 @@ def wind_up(dataset: Labelled, summaries: Mapping[str, Mapping[str, float | None
         notes.append(
             f"{', '.join(equal)}: the light torque winds up no less than the torque, so nothing stands between them."
         )
-    stiffness_title = "stiffness of the cycloid stage there, N·m/′"
-    columns = ["case", "backlash at the output, ′", "torques, N·m", "wind-up between them, ′", stiffness_title]
+    notes += stiffness_notes({name: yielding_parts(drive) for name, drive in drives.items()})
+    titles = ["stiffness of the cycloid stage there, N·m/′", "of the reducer with what the file describes, N·m/′"]
+    columns = ["case", "backlash at the output, ′", "torques, N·m", "wind-up between them, ′", *titles]
     table = Table(name="wind_up", caption="", columns=columns, rows=rows)
     return Section(heading="Wind-up", notes=notes, tables=[table] if rows else [])
 

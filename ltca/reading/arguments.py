@@ -187,10 +187,10 @@ def torque_argument(text: str, name: str = "--torque") -> float:
     from ltca.drive.units.quantities import parse_quantity
 
     try:
-        return parse_quantity(text, "N*mm", name, gt=0.0)
+        return parse_quantity(text, "N*mm", name, ge=0.0)
     except DriveError as error:
         (problem,) = error.problems
-        hint = " (load.direction turns it)" if problem.endswith("must be greater than 0 N·mm") else ""
+        hint = " (load.direction turns it)" if problem.endswith("must be at least 0 N·mm") else ""
         raise DriveError([f"{problem}{hint}"]) from error
 
 

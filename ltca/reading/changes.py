@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import fields, is_dataclass, replace
+from dataclasses import is_dataclass, replace
 from functools import cache
 from typing import Any
 
-from pydantic import ValidationError
+from pydantic import TypeAdapter, ValidationError
 
-from ltca.drive.declaration import REQUIRED
+from ltca.drive.declaration import ANY, REQUIRED
 from ltca.drive.deviations import BoreErrors, DiscClearance, OneDisc, OneEccentric
 from ltca.drive.fields import (
+    LISTS,
     field_kind,
     field_kinds,
     is_element,
@@ -25,7 +26,7 @@ from ltca.drive.materials import PARTS
 from ltca.drive.members.bearings import named_bearing
 from ltca.drive.members.named_materials import LIKE, named_material, numbers_of
 from ltca.drive.mistakes import describe_mistakes
-from ltca.drive.parts import Drive, Duty
+from ltca.drive.parts import Drive, Duty, ExternalLoad
 from ltca.errors import DriveError, shortened
 from ltca.reading.physical_checks import find_contradictions
 
@@ -58,7 +59,6 @@ def with_fields(drive: Drive, values: Mapping[str, Any], *, check: bool = True) 
     >>> with_fields(drive, {"clearance": {"bearing": "30 µm"}}).clearance.bearing
     0.03
     """
-    tree: dict[str, Any] = {}
     arrays: dict[str, list[Any]] = {}
     whole = {}
     values = _without_names(_by_path(values))
@@ -82,15 +82,13 @@ def with_fields(drive: Drive, values: Mapping[str, Any], *, check: bool = True) 
                     [f"{path}: there is no {missing} in this drive; to add it, give {', '.join(lacking)}, too"]
                 )
     own: dict[tuple[str, int], dict[str, Any]] = {}
+    common = {}
     for path, value in {**whole, **{name: tuple(row) for name, row in arrays.items()}}.items():
         if (place := numbered(path)) is not None:
             own.setdefault(place[:2], {})[place[2]] = value
-            continue
-        branch = tree
-        *above, name = path.split(".")
-        for step in above:
-            branch = branch.setdefault(step, {})
-        branch[name] = value
+        else:
+            common[path] = value
+    tree = _nested(common)
     if drive.pin_shaft is not None and len(given := INSTEAD.keys() & tree.get("pin_shaft", {}).keys()) == 1:
         tree["pin_shaft"][INSTEAD[given.pop()]] = None
     problems: list[str] = []
@@ -169,14 +167,15 @@ def _with_own(drive: Drive, own: Mapping[tuple[str, int], Mapping[str, Any]], pr
         "disc": [*(drive.disc.of or (OneDisc(),) * drive.disc.number_of_discs)],
         "crank": _eccentrics(drive),
     }
-    duty = [*drive.duty]
+    lists = {name: [*entries(drive)] for name, entries in LISTS.items()}
     for (table, number), values in sorted(own.items()):
         part = table.partition(".")[0]
-        if table == "duty" and number == len(duty) and {*values} == {item.name for item in fields(Duty)}:
-            duty.append(_made(values, f"duty.{number}", problems))
+        entries = lists.get(table, [])
+        if table in _ENTRIES and number == len(entries) and _required_of(table) <= {*values}:
+            entries.append(_made(table, _nested(values), number, problems))
             continue
-        if table == "duty" and number < len(duty):
-            duty[number] = _replaced(duty[number], dict(values), f"duty.{number}.", problems)
+        if table in _ENTRIES and number < len(entries):
+            entries[number] = _replaced(entries[number], _nested(values), f"{table}.{number}.", problems)
             continue
         if (problem := no_entry(drive, table, number)) is not None:
             problems.append(f"{table}.{number}: {problem}")
@@ -193,7 +192,8 @@ def _with_own(drive: Drive, own: Mapping[tuple[str, int], Mapping[str, Any]], pr
         return drive
     return replace(
         drive,
-        duty=tuple(duty),
+        duty=tuple(lists["duty"]),
+        load=replace(drive.load, external=tuple(lists["load.external"])),
         disc=replace(drive.disc, of=tuple(rows["disc"]) if any(key[0] == "disc.of" for key in own) else drive.disc.of),
         crank=replace(
             drive.crank, of=tuple(rows["crank"]) if any(key[0] == "crank.of" for key in own) else drive.crank.of
@@ -201,12 +201,33 @@ def _with_own(drive: Drive, own: Mapping[tuple[str, int], Mapping[str, Any]], pr
     )
 
 
-def _made(values: Mapping[str, Any], path: str, problems: list[str]) -> Any:
-    """A further entry of the duty; None with its mistakes in `problems`."""
+_ENTRIES: dict[str, TypeAdapter[Any]] = {"duty": TypeAdapter(Duty), "load.external": TypeAdapter(ExternalLoad)}
+"""What makes an entry of a list of the drive file."""
+
+
+def _required_of(table: str) -> set[str]:
+    """Names without which an entry of a list cannot be made."""
+    return {path.rpartition(".")[2] for path in _required(f"{table}.{ANY}")}
+
+
+def _nested(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Values by dotted name as nested tables."""
+    tree: dict[str, Any] = {}
+    for name, value in values.items():
+        *above, last = name.split(".")
+        branch = tree
+        for step in above:
+            branch = branch.setdefault(step, {})
+        branch[last] = value
+    return tree
+
+
+def _made(table: str, values: dict[str, Any], number: int, problems: list[str]) -> Any:
+    """A further entry of a list; None with its mistakes in `problems`."""
     try:
-        return Duty(**values)
+        return _ENTRIES[table].validate_python(values)
     except ValidationError as error:
-        problems += describe_mistakes(error.errors(), path.split("."))
+        problems += describe_mistakes(error.errors(), [*table.split("."), str(number)])
         return None
 
 

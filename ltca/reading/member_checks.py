@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from itertools import pairwise
-from math import fsum, pi, sin
+from math import cos, degrees, fsum, pi, sin
 
 from ltca.drive.fields import ANY, OWN
 from ltca.drive.members.pins import PinShaft, PinWheel, ShaftPinBeam, WheelPinBeam
@@ -20,6 +20,8 @@ ROUNDING = 1e-9
 """Difference up to which lengths are equal, mm: round-off of a sum, and less than any real play."""
 MOST_OF_BODY = 0.95
 """Largest rigid core of a pin, or fixed bore of a race, by its radius: thinner walls the default meshes do not resolve."""
+MOST_WORKING_ANGLE = pi / 4.0
+"""Largest working pressure angle: teeth cut at 20° and shifted as far as they go have some 30°."""
 BELONGS = {"radius": "slot", "pin_radius": "sleeve", "bore_radius": "sleeve"}
 """Fields of a seat, and the kind of seat they belong to."""
 
@@ -63,7 +65,7 @@ def _installation(drive: Drive) -> Iterator[str]:
                 )
         if drive.materials.shaft_pin != Material():
             yield "materials.shaft_pin: must be left out without a pin shaft"
-    parts = (*_crank_support(drive), *_race_bore(drive), *_ring(drive), *_carrier(drive))
+    parts = (*_first_stage(drive), *_crank_support(drive), *_race_bore(drive), *_ring(drive), *_carrier(drive))
     yield from (*parts, *find_pin_problems(drive), *_duty(drive))
 
 
@@ -115,6 +117,49 @@ def _ring(drive: Drive) -> Iterator[str]:
         )
     if not inner <= bolts.circle_radius:
         yield f"ring.bolts.circle_radius = {bolts.circle_radius:g} mm: must be at least ring.inner_radius = {inner:g} mm"
+
+
+def _first_stage(drive: Drive) -> Iterator[str]:
+    """Problems of the teeth of the first stage, alone and beside cranks and the ratio that is given."""
+    stage, crank, given = drive.first_stage, drive.crank, drive.installation.first_stage_ratio
+    if stage is None:
+        return
+    teeth = f"first_stage.planet_teeth = {stage.planet_teeth} by first_stage.sun_teeth = {stage.sun_teeth}"
+    if crank.number == 1:
+        yield "first_stage: must be left out with one crank (crank.number = 1), which is the input itself"
+        return
+    if given is not None and abs(given - stage.ratio) > ROUNDING * stage.ratio:
+        yield f"installation.first_stage_ratio = {given:g}: must be {stage.ratio:.12g}, {teeth}, or be left out"
+    if crank.circle_radius is None:
+        return
+    distance, reference = crank.circle_radius, stage.reference_distance()
+    named = f"first_stage.module = {stage.module:g} mm" if stage.module is not None else teeth
+    try:
+        mesh = stage.mesh(distance)
+    except ValueError:
+        least = (reference or 0.0) * cos(stage.transverse_pressure_angle)
+        yield (
+            f"{named}: teeth do not reach each other, crank.circle_radius = {distance:g} mm must be at least "
+            f"{least:.6g} mm, the radii of the base circles of sun and planet together"
+        )
+        return
+    if mesh.working_angle > MOST_WORKING_ANGLE:
+        yield (
+            f"{named}: the working pressure angle at crank.circle_radius = {distance:g} mm is "
+            f"{degrees(mesh.working_angle):.4g}°: must be at most {degrees(MOST_WORKING_ANGLE):g}°; "
+            f"the reference circles touch at {reference or distance:.6g} mm"
+        )
+    apart = 2.0 * distance * sin(pi / crank.number)
+    if 2.0 * mesh.pitch_radius >= apart:
+        yield (
+            f"{teeth}: planets of {2.0 * mesh.pitch_radius:.6g} mm cut into each other, neighbouring cranks stand {apart:.6g} mm "
+            "apart (crank.circle_radius, crank.number)"
+        )
+    if mesh.backlash_angle(stage.backlash) >= 0.5 * pi / stage.planet_teeth:
+        most = 0.5 * pi / stage.planet_teeth * mesh.pitch_radius
+        yield (
+            f"first_stage.backlash = {stage.backlash:g} mm: must be less than {most:.4g} mm, a quarter of the pitch of the teeth"
+        )
 
 
 def _duty(drive: Drive) -> Iterator[str]:

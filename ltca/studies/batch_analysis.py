@@ -9,10 +9,12 @@ import numpy as np
 
 from ltca.analysis.engines import Engine, HalfSpace, PreparedEngine
 from ltca.analysis.half_width_guard import check_half_widths
+from ltca.analysis.loaded_analysis import require_preload
 from ltca.arrays import FloatArray, batch_layout, stack_drives, take_positions
 from ltca.compliance.response import Start
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Drive
+from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import explain_failure
 from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.output_torque import solve_at_output
@@ -20,6 +22,7 @@ from ltca.equilibrium.reducer import Reducer, reach_beyond
 from ltca.errors import CycloError, DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.first_contact import backlash
+from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.play import free_play
 from ltca.studies.quantities import STAGES, SampleBatch, evaluate, require_quantities
 from ltca.studies.shapes import with_kept_coefficients
@@ -229,6 +232,10 @@ def solve_batch(
     (`ltca.analysis.half_width_guard`).
     """
     drives = [warm_drive(drive) for drive in drives]
+    for drive in drives:
+        if drive.load.torque == 0.0:
+            discs = [ContactGeometry.of_drive(single) for single in single_discs(drive)]
+            require_preload(discs, drive, settings.crank_angle)
     stages = {STAGES[name] for name in settings.quantities}
     solved = _Batch(drives, settings, models)
     if nominal is not None and not nominal.suits(solved.model):

@@ -15,9 +15,9 @@ from ltca.compliance.response import ContactPressures
 from ltca.drive.parts import Drive, Friction
 from ltca.drive.units.quantities import ARCMIN, ARCSEC
 from ltca.equilibrium.balance import Equilibrium
+from ltca.equilibrium.output_angle import play_of_input, wheel_angle_of_input
 from ltca.equilibrium.reducer import Reducer, bearing_forces
 from ltca.errors import DriveError, did_you_mean, shortened, told_twice
-from ltca.geometry.coordinates import WHEEL_ANGLE
 
 Stage = Literal["full", "light", "backlash", "play"]
 
@@ -77,28 +77,30 @@ class SampleBatch:
     def efficiency(self) -> FloatArray:
         """1 − mean loss/mean input of each sample."""
         found = self.losses()
-        return np.asarray(1.0 - self.by_sample(found.total).mean(axis=1) / self.by_sample(found.driving).mean(axis=1))
+        driving = self.by_sample(found.driving).mean(axis=1)
+        through = np.where(self.by_sample(found.at_output).any(axis=1), driving, np.nan)
+        return np.asarray(1.0 - self.by_sample(found.total).mean(axis=1) / through)
 
     def power_loss(self) -> FloatArray:
         """Mean power of all losses of each sample, W; not a number without speed."""
         found = self.losses()
         return np.asarray(self.by_sample(found.watts(found.total)).mean(axis=1))
 
-    def _at_output(self, pose: FloatArray, torque: Sequence[float]) -> FloatArray:
+    def _at_output(self, found: Equilibrium, torque: Sequence[float]) -> FloatArray:
         """Deviation of the output at the torque of each drive, arcsec."""
-        wheel = self.by_sample(pose[:, WHEEL_ANGLE])
+        wheel = self.by_sample(wheel_angle_of_input(self.model, found))
         each = zip(self.drives, wheel, torque, strict=True)
         return np.array([drive.output_deviation(angle, load) for drive, angle, load in each]) * ARCSEC
 
     def transmission_error(self) -> FloatArray:
         """Transmission error at the torque of each drive, arcsec."""
-        return self._at_output(self.full.pose, [drive.load.torque for drive in self.drives])
+        return self._at_output(self.full, [drive.load.torque for drive in self.drives])
 
     def light_transmission_error(self) -> FloatArray:
         """Transmission error at the light torque, arcsec."""
         if self.light is None:
             raise ValueError("the light torque was not solved")
-        return self._at_output(self.light.pose, [drive.load.light_torque for drive in self.drives])
+        return self._at_output(self.light, [drive.load.light_torque for drive in self.drives])
 
     def backlashes(self) -> FloatArray:
         """Backlash of the wheel, disc held, arcmin."""
@@ -111,7 +113,7 @@ class SampleBatch:
         if self.play is None:
             raise ValueError("the free play was not asked for")
         output = np.array([abs(drive.output_per_wheel_angle) for drive in self.drives])
-        return np.asarray(output[:, None] * self.by_sample(self.play) * ARCMIN)
+        return np.asarray(output[:, None] * self.by_sample(play_of_input(self.model, self.play)) * ARCMIN)
 
     def loaded(self, load: FloatArray) -> FloatArray:
         """Mean number of loaded pairs over the positions."""

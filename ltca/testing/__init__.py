@@ -11,6 +11,7 @@ pin_drives          Reducers of all kinds with loose, sleeved or bending pins, o
 actual_parts        Actual places of all parts of a drive, computed from its definition independently of `ltca.geometry`
 ring_statics        The elastic ring of the wheel by statics: complementary energy with redundants, independently of `ltca.laws`
 yielding_pins       Places and energies of loose and bent pins by explicit coordinates, independently of `ltca.laws`
+first_stage_check   First stage and forces from outside: normal forces of teeth, moments by quadrature, hand rotations
 friction_check      Friction of a drive that turns: forces, work and moments, independently of `ltca.equilibrium.friction`
 balance_check       Check of an equilibrium by its potential energy, independently of the code that finds it
 field_changes       A plausible change of every leaf field of a drive, for the test of the contract

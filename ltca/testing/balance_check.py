@@ -16,7 +16,7 @@ flank) is no force.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import cast
 
 import numpy as np
@@ -28,6 +28,7 @@ from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.reducer import Reducer
 from ltca.laws.backed import BackedLaw
 from ltca.testing.actual_parts import ActualParts, DeviatedFlank
+from ltca.testing.first_stage_check import outside_on_wheel, teeth_on_cranks, teeth_on_supports, tooth_forces
 from ltca.testing.friction_check import FrictionCheck
 from ltca.testing.ring_statics import ring_by_statics
 from ltca.testing.yielding_pins import (
@@ -211,8 +212,13 @@ class PotentialEnergy:
         return np.asarray(total)
 
     def crank_moment(self, pose: FloatArray) -> float:
-        """Return the moment that holds the crank at a pose, shape (coordinates,): the slope of the stored energy by φ_C,
+        """Return the moment that holds all cranks at a pose, shape (coordinates,): the slope of the stored energy by φ_C,
         N·mm.
+        """
+        return float(self.crank_moments(pose).sum())
+
+    def crank_moments(self, pose: FloatArray) -> FloatArray:
+        """Return the moment that holds each crank at a pose, N·mm, shape (cranks,).
 
         Discs, cranks and wheel are fixed; the inner races move under them and the cages turn.
         """
@@ -221,15 +227,32 @@ class PotentialEnergy:
         discs = range(self.drive.disc.number_of_discs)
         before = [ActualParts(self.drive, self.crank_angle, disc).place for disc in discs]
         for side in (1.0, -1.0):
-            angle, total = self.crank_angle + side * step, 0.0
+            angle, total = self.crank_angle + side * step, np.zeros(self.drive.crank.number)
             for disc in discs:  # of rollers alone: the others see no difference
                 parts, moved = ActualParts(self.drive, angle, disc), pose.copy()
                 shift = parts.place - before[disc]
                 moved[self.own * disc] -= shift.real
                 moved[self.own * disc + 1] -= shift.imag
-                total += float(self._bearings(parts, disc, moved[None])[0])
+                total += self._each_bearing(parts, disc, moved[None])[:, 0]
             ends.append(total)
-        return (ends[0] - ends[1]) / (2.0 * step)
+        return np.asarray((ends[0] - ends[1]) / (2.0 * step))
+
+    def outside(self, pose: FloatArray, rubbed_at_cranks: FloatArray | float = 0.0) -> FloatArray:
+        """Return the work against forces of a first stage and from outside by the pose, N, shape (coordinates,)."""
+        drive, work = self.drive, np.zeros(pose.size)
+        if drive.first_stage is not None and drive.crank.support is not None:
+            pressed = teeth_on_cranks(drive, self.crank_moments(pose) + rubbed_at_cranks)
+            for disc, forces in enumerate(pressed):
+                first = self.own * disc + 3
+                work[first : first + 2 * drive.crank.number : 2] -= forces.real
+                work[first + 1 : first + 2 * drive.crank.number : 2] -= forces.imag
+        if drive.pin_wheel.support_stiffness is not None:
+            last, force = -6 if has_ring(drive) else -3, outside_on_wheel(drive, self.crank_angle)
+            if drive.first_stage is not None and drive.installation.held == "pin-wheel":
+                force -= tooth_forces(drive, self.crank_moments(pose) + rubbed_at_cranks)[0].sum()
+            work[last] -= force.real
+            work[last + 1] -= force.imag
+        return work
 
     def bearing_forces(self, pose: FloatArray) -> ComplexArray:
         """Return the forces of the crank bearings at a pose, shape (discs, cranks), N, as slopes of their energies."""
@@ -246,13 +269,16 @@ class PotentialEnergy:
 
     def _bearings(self, parts: ActualParts, disc: int, pose: FloatArray) -> FloatArray:
         """Energy of the rollers of all crank bearings of one disc."""
+        return np.asarray(self._each_bearing(parts, disc, pose).sum(axis=0))
+
+    def _each_bearing(self, parts: ActualParts, disc: int, pose: FloatArray) -> FloatArray:
+        """Energy of the rollers of each crank bearing of one disc, shape (cranks, poses)."""
         first = self.own * disc
         centre = parts.place + pose[:, first] + 1j * pose[:, first + 1]
         turn, cranks = np.exp(1j * pose[:, first + 2]), self._cranks(disc, pose)
-        total = np.zeros(pose.shape[0])
-        for crank, (bore, race) in enumerate(zip(parts.bores, parts.race_centres, strict=True)):
-            total += self._rollers(parts, (centre + bore * turn - race - cranks[:, crank])[:, None])
-        return total
+        pairs = enumerate(zip(parts.bores, parts.race_centres, strict=True))
+        shifts = [(centre + bore * turn - race - cranks[:, crank])[:, None] for crank, (bore, race) in pairs]
+        return np.stack([self._rollers(parts, shift) for shift in shifts])
 
     def _rollers(self, parts: ActualParts, shift: ComplexArray) -> FloatArray:
         """Energy of all rollers, each at the place of least energy on its ray."""
@@ -354,7 +380,7 @@ def friction_at(potential: PotentialEnergy, balanced: Equilibrium, position: int
     """Return the friction at that position of a drive with friction."""
     drive, pose, wheel, shaft = potential.drive, balanced.pose[position], potential.wheel_pins, potential.shaft_pins
     supported = drive.pin_wheel.support_stiffness is not None
-    return FrictionCheck(
+    found = FrictionCheck(
         drive=drive,
         crank_angle=potential.crank_angle,
         pose=pose,
@@ -364,7 +390,13 @@ def friction_at(potential: PotentialEnergy, balanced: Equilibrium, position: int
         shaft_place=shaft.bent + shaft.loose,
         parts=[take_positions(part, np.array([position])) for part in balanced.response.parts],
         bearings=potential.bearing_forces(pose),
+        teeth=None if drive.first_stage is None else teeth_on_supports(drive, potential.crank_moments(pose)),
+        outside=outside_on_wheel(drive, potential.crank_angle),
     )
+    if drive.first_stage is None or drive.installation.held == "pin-shaft":
+        return found
+    pressed, _ = tooth_forces(drive, potential.crank_moments(pose) + found.at_each_crank)
+    return replace(found, outside=found.outside - pressed.sum())
 
 
 def find_imbalance(
@@ -419,7 +451,9 @@ def find_imbalance(
     sizes = farthest * np.repeat([1e-2, 1e-1, 1.0], 4)
     here = np.zeros((1, size))
     # Separately, since the farthest pose determines the width of the pieces.
-    work = np.zeros(size) if rubbed is None else rubbed.work / lever
+    work = potential.outside(pose, 0.0 if rubbed is None else rubbed.at_each_crank) / lever
+    if rubbed is not None:
+        work = work + rubbed.work / lever
     value = potential.at(pose + np.concatenate([here, offsets]) / lever)
     value[1:] += offsets @ work
     away = sizes[:, None] * directions
@@ -469,7 +503,7 @@ def find_imbalance(
         output = drive.driving_sign * torque
         left = moment + output
         if drive.wheel_is_held:
-            stage = drive.installation.first_stage_ratio
+            stage = drive.first_stage_ratio
             reaction = 1.0 if drive.crank.number == 1 else 0.0 if stage is None else -1.0 / stage
             left += reaction * (potential.crank_moment(pose) + (0.0 if rubbed is None else rubbed.at_cranks))
         if abs(left) > 1e-3 * abs(output):

@@ -12,6 +12,8 @@ import numpy as np
 from numpy.random import Generator
 
 from ltca.drive.deviations import BoreErrors, OneDisc, OneEccentric
+from ltca.drive.members.first_stage import FirstStage
+from ltca.drive.members.operation import ExternalLoad, OuterForce, OuterPlace
 from ltca.drive.parts import Carrier, CarrierPosts, Clearance, CrankSupport, Drive, Installation
 from ltca.geometry.flank import FlankProfile
 from ltca.reading.physical_checks import is_sound
@@ -22,14 +24,14 @@ def crank_drive(seed: int) -> tuple[Drive, float]:
     """Return a reducer of any kind, two thirds with two to five cranks on the carrier, and a crank angle in rad, by a seed
     (not negative).
     """
-    random, of_carrier = np.random.default_rng((seed, 2)), np.random.default_rng((seed, 5))
+    random, beside, of_carrier = (np.random.default_rng((seed, which)) for which in (2, 3, 5))
     while True:
         number = int(random.integers(2**32))
         drive, angle = practical_drive(number)
         drive = replace(drive, ring=None)  # drawn again for what the drive has become
         if random.uniform() < 0.67:
             drive = _on_the_carrier(random, drive)
-        drive = with_carrier(of_carrier, _supported(random, drive))
+        drive = with_carrier(of_carrier, _pushed(beside, _geared(beside, _supported(random, drive))))
         if is_sound(drive):
             return with_ring(number, drive), angle
 
@@ -85,6 +87,38 @@ def _on_the_carrier(random: Generator, drive: Drive) -> Drive:
         clearance=clearance,
         installation=Installation(held=drive.installation.held, first_stage_ratio=stage),
     )  # fmt: skip
+
+
+def _geared(random: Generator, drive: Drive) -> Drive:
+    """The drive with teeth in half of its first stages: often straight ones without backlash that do not yield."""
+    ratio, distance = drive.installation.first_stage_ratio, drive.crank.circle_radius
+    if ratio is None or distance is None or random.uniform() < 0.5:
+        return drive
+    sun = 2 * int(random.integers(7, 20))
+    helix = float(random.choice([0.0, 0.0, 0.2, -0.3]))
+    reference = 2.0 * distance * float(np.cos(helix)) / (sun + ratio * sun)
+    teeth = FirstStage(
+        sun_teeth=sun,
+        planet_teeth=round(ratio * sun),
+        module=None if random.uniform() < 0.5 else reference * float(random.choice([1.0, 0.98, 1.02])),
+        helix_angle=helix,
+        backlash=float(random.choice([0.0, 0.01, 0.05])) * reference,
+        mesh_stiffness=float(random.choice([0.0, 1e5, 1e6])) or None,
+        plane=float(random.choice([0.0, 1.5])) * drive.disc.stack_length,
+    )
+    kept = None if random.uniform() < 0.5 else ratio
+    return replace(drive, first_stage=teeth, installation=replace(drive.installation, first_stage_ratio=kept))
+
+
+def _pushed(random: Generator, drive: Drive) -> Drive:
+    """The drive with an arm on the output, of a third of the forces of its torque, in a third of all."""
+    if random.uniform() < 0.67:
+        return drive
+    size = 0.3 * drive.load.torque / drive.pin_wheel.pin_circle_radius
+    force = OuterForce(x=size * float(random.choice([0.0, 1.0])), y=size * float(random.choice([0.0, -0.5])), z=size)
+    frame: Any = str(random.choice(["housing", "output"]))
+    own = ExternalLoad(force=force, at=OuterPlace(z=float(random.choice([0.0, 50.0]))), frame=frame)
+    return replace(drive, load=replace(drive.load, external=(own, ExternalLoad())[: int(random.integers(1, 3))]))
 
 
 def _plain(drive: Drive) -> Any:

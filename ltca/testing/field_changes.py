@@ -54,6 +54,11 @@ GOES_WITH = {
     "ring": "ring",
     "ring.material": "ring",
     "ring.bolts": "ring",
+    "first_stage": "first_stage",
+    "load.external.0": "load.external",
+    "load.external.0.force": "load.external",
+    "load.external.0.moment": "load.external",
+    "load.external.0.at": "load.external",
 }
 """Tables that fields of other tables belong to, in whose names they are refused."""
 _LEFT_OUT = {
@@ -62,6 +67,8 @@ _LEFT_OUT = {
     "pin_wheel.core_radius": 0.3,
     "crank_bearing.race_bore_radius": 1.0,
     "installation.first_stage_ratio": 2.0,
+    "first_stage.module": 1.42,
+    "first_stage.mesh_stiffness": 3e5,
     "crank.circle_radius": 6.0,
     "crank_bearing.dynamic_load_rating": 5e4,
     "crank_bearing.static_load_rating": 6e4,
@@ -87,6 +94,13 @@ _LEFT_OUT |= {
     if path.startswith("materials.disc.")
 }
 """Plausible values of fields that may be left out."""
+_FIRST_STAGE = {
+    "first_stage.sun_teeth": 20,
+    "first_stage.planet_teeth": 40,
+    "first_stage.helix_angle": 0.1,
+    "installation.first_stage_ratio": None,
+}
+_EXTERNAL = {f"load.external.0.{name}": 300.0 for name in ("force.x", "force.y", "force.z", "at.z")}
 _FROM_ZERO = {"mm": 1e-3, "rad": 0.3, "dimensionless": 0.5}
 _RELIEF = {"end_relief_length": 0.8, "end_relief_depth": 0.002}
 ROUND_OFF = 1e-6
@@ -111,6 +125,10 @@ _OF_LIFE |= dict.fromkeys(
     "ratings of the maker concern lives of bearings alone, and here none is told",
 )
 _EVERYWHERE = _NAME | _OF_LIFE
+_TILTING = dict.fromkeys(
+    [f"load.external.0.{name}" for name in ("force.z", "moment.x", "moment.y", "at.z")],
+    "what tilts the output or pushes it along the axis loads the main bearing alone, which here is not told",
+)
 _BODIES = dict.fromkeys(
     ("pin_wheel.core_radius", "crank_bearing.race_bore_radius"),
     "half-spaces have no bodies to support; said where given",
@@ -126,15 +144,16 @@ _SPRINGS = (
 _SHAFT_PIN = ("materials.shaft_pin.youngs_modulus", "materials.shaft_pin.poisson_ratio", "pin_shaft.elastic_contact")
 EXCEPTIONS: Mapping[str, Mapping[str, str]] = {
     "tables": _SPRINGS,
-    "direct": _SPRINGS | {"load.light_torque": "direct is walked at full load alone"},
+    "direct": _SPRINGS | _TILTING | {"load.light_torque": "direct is walked at full load alone"},
     "paper": _SPRINGS | {"load.light_torque": "the paper's iteration is walked at full load alone"},
     "hybrid": _EVERYWHERE,
     "fe": _EVERYWHERE,
     "curves": _NAME
     | _BODIES
+    | _TILTING
     | {"load.light_torque": "curves are those of full load"}
     | dict.fromkeys(_SHAFT_PIN, "curves tell no pressure of the holes, and in half-spaces nothing else sees it"),
-    "studies": _SPRINGS,
+    "studies": _SPRINGS | _TILTING,
     "full FE": _EVERYWHERE
     | {
         "load.light_torque": "a full solution is one of full load",
@@ -292,6 +311,10 @@ def _beside(drive: Drive, path: str) -> dict[str, Any]:
         if path == "friction.seat" and wheel.seat.kind == "fixed":
             needed |= _seat(drive, "pin_wheel", "slot") | {path: 0.02}
         return needed
+    if path.startswith("first_stage.") and drive.first_stage is None:
+        return _FIRST_STAGE
+    if path.startswith("load.external.") and not drive.load.external:
+        return _EXTERNAL | {"pin_wheel.support_stiffness": drive.pin_wheel.support_stiffness or 5e5}
     if path.startswith("duty.") and not drive.duty:
         entries: list[dict[str, float]] = [
             {"torque": 0.5 * drive.load.torque, "speed": 900.0, "share": 0.4},
@@ -334,6 +357,8 @@ def change_of(drive: Drive, path: str) -> tuple[Drive, dict[str, Any]]:
         # Tables of profiled parts are dear where radii differ: diameters are as drawn.
         drive = with_fields(drive, dict.fromkeys(DIAMETERS, ()))
     if needed := _beside(drive, path):
+        if path.startswith("first_stage.") and drive.crank.number == 1:  # refused as a whole
+            return drive, needed | {path: _LEFT_OUT.get(path) or _FIRST_STAGE.get(path, 0.1)}
         drive = with_fields(drive, needed)
     if path.endswith(".seat.kind"):
         return drive, _seat(drive, parent.removesuffix(".seat"), sensible_change(drive, path))

@@ -91,7 +91,11 @@ class FrictionCheck:
     parts : sequence of DiscResponse
         Contacts of each disc at this position alone: their loads, and the friction that is told of them.
     bearings : array of complex, shape (discs, cranks)
-        Force of each crank bearing, N.
+        Force of each crank bearing on its crank, N.
+    teeth : array of complex, shape (bearings, cranks), or None
+        What the bearings of each crank carry of the teeth of a first stage, N.
+    outside : complex
+        Force from outside on the wheel, N.
     """
 
     drive: Drive
@@ -103,6 +107,8 @@ class FrictionCheck:
     shaft_place: ComplexArray
     parts: Sequence[DiscResponse]
     bearings: ComplexArray
+    teeth: ComplexArray | None = None
+    outside: complex = 0j
 
     @cached_property
     def contacts(self) -> tuple[RubbedContacts, ...]:
@@ -133,16 +139,22 @@ class FrictionCheck:
     @property
     def at_cranks(self) -> float:
         """Moment of friction on all cranks, ccw positive, N·mm."""
+        return float(self.at_each_crank.sum())
+
+    @property
+    def at_each_crank(self) -> FloatArray:
+        """Moment of friction on each crank, N·mm, shape (cranks,)."""
         places, planes = self.drive.crank_supports, self.drive.disc.disc_planes
-        if places is None:  # held beside every disc
-            carried = np.abs(self.bearings).sum()
+        teeth = np.zeros((2, self.bearings.shape[1])) if self.teeth is None else self.teeth
+        if places is None:  # held beside every disc, and beside the planet
+            carried = np.abs(self.bearings).sum(axis=0) + np.abs(teeth).sum(axis=0)
         else:
             near, far = places
             share = (np.asarray(planes) - near) / (far - near)
-            carried = np.abs(share @ self.bearings).sum() + np.abs((1.0 - share) @ self.bearings).sum()
+            carried = np.abs(share @ self.bearings + teeth[1]) + np.abs((1.0 - share) @ self.bearings + teeth[0])
         friction = self._friction
         at_support = friction.support_bearing * friction.support_bearing_radius * carried
-        return float(self._motion * (self._rolling * np.abs(self.bearings).sum() + at_support))
+        return np.asarray(self._motion * (self._rolling * np.abs(self.bearings).sum(axis=0) + at_support))
 
     @property
     def lost(self) -> float:
@@ -190,7 +202,7 @@ class FrictionCheck:
         for part, found in zip(self.parts, self.contacts, strict=True):
             on_wheel += (found.rubbing[:pins] - part.pin_load[0] * found.into_disc[:pins]).sum()
         friction = self._friction
-        return float(friction.support_bearing * friction.support_bearing_radius * abs(on_wheel))
+        return float(friction.support_bearing * friction.support_bearing_radius * abs(on_wheel + self.outside))
 
     def _told(self, disc: int) -> ComplexArray:
         """Friction on the pins in the solution: the force that works by the place of the disc."""

@@ -6,7 +6,7 @@ clearance, equal radii, full torque or a hundredth of it.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -20,6 +20,7 @@ from ltca.drive.materials import Material
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Clearance, Drive, Installation, Ring, RingBolts
 from ltca.drive.units.quantities import ARCMIN
+from ltca.equilibrium.output_angle import play_of_input, wheel_angle_of_input
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
@@ -369,39 +370,40 @@ def _limit(discs: Sequence[ContactGeometry], angle: FloatArray) -> float:
     return ends[0] - ends[1]
 
 
-def compare_with_load(seed: int) -> list[Comparison]:
-    """Return the comparisons of the practical drive of a seed at two crank angles."""
-    drive, angle = practical_drive(seed)
+def compare_with_load(seed: int, draw: Callable[[int], tuple[Drive, float]] = practical_drive) -> list[Comparison]:
+    """Return the comparisons of the practical drive of a seed, or of one drawn otherwise, at two crank angles."""
+    drive, angle = draw(seed)
     return compare(drive, np.array([angle, angle + BESIDE]))
 
 
 def compare(drive: Drive, crank_angle: FloatArray) -> list[Comparison]:
     """Return the comparisons of a drive, as written, at crank angles φ_C, rad."""
     drive = warm_drive(drive)
+    drive = replace(drive, load=replace(drive.load, external=()))  # an arm takes the play of what yields on its side
     model = replace(HalfSpace().prepare(drive).model, friction=None)
     discs, scale = model.geometries, abs(drive.output_per_wheel_angle) * ARCMIN
-    found = free_play(discs, crank_angle)
+    found, before = free_play(discs, crank_angle), scale * float(play_of_input(model, np.zeros(())))
     answers, own = [], model.coordinates.own
     for row, angle in enumerate(crank_angle):
-        free = float(found.play[row]) * scale
+        free = float(found.play[row]) * scale + before
         if found.preloaded[row]:
             answers.append(Comparison(outcome="preloaded", free=free))
             continue
-        limit = _limit(discs, np.array([angle])) * scale
+        limit = _limit(discs, np.array([angle])) * scale + before
         for part in PARTS:
             torque = part * drive.load.torque * np.array([1.0, -1.0])
             try:
                 loaded = solve_at_output(model, [drive], np.full(2, angle), torque)
             except ConvergenceError:
                 continue
-            turned = abs(float(np.diff(loaded.pose[:, WHEEL_ANGLE])[0])) * scale
+            turned = abs(float(np.diff(wheel_angle_of_input(model, loaded))[0])) * scale
             overlap = np.max(
                 [
                     largest_overlap(disc, np.full(2, angle), loaded.pose[:, np.append(np.arange(3) + own * number, -1)])
                     for number, disc in enumerate(discs)
                 ]
             )
-            yielding = float(free_play(discs, np.array([angle]), overlap=float(overlap)).play[0]) * scale
+            yielding = float(free_play(discs, np.array([angle]), overlap=float(overlap)).play[0]) * scale + before
             outcome = "wrong"
             if abs(turned - free) <= max(0.005, 0.01 * turned):
                 outcome = "alike"

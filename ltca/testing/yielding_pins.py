@@ -317,11 +317,16 @@ def _unit_loads(
     return np.stack(moments), np.stack(shears)
 
 
-def crankshaft_deflections(drive: Drive) -> FloatArray:
-    """Return the deflections of a crankshaft in the planes of the discs by forces there, by quadrature of moments, mm/N."""
+def crankshaft_deflections(drive: Drive, beside: float | None = None, *, couple: bool = False) -> FloatArray:
+    """Return the deflections of a crankshaft in the planes of the discs by forces there, by quadrature of moments, mm/N.
+
+    With `beside`, mm, also by a force in that plane, or by a `couple` there as a pair of opposite forces times their distance,
+    and what these move: the last row and column.
+    """
     support = drive.crank.support
     assert support is not None
     (start, end), planes = support.positions, np.asarray(drive.disc.disc_planes)
+    planes = planes if beside is None else np.append(planes, beside)
     nodes, weights = np.polynomial.legendre.leggauss(6)
     marks = np.unique(np.concatenate([[start, end], planes]))
     half = 0.5 * np.diff(marks)
@@ -335,8 +340,13 @@ def crankshaft_deflections(drive: Drive) -> FloatArray:
         return np.asarray(left - share * np.maximum(at - end, 0.0))
 
     moments = np.stack([bending(force, share) for force, share in zip(planes, second, strict=True)])
+    if couple:
+        part = 1.0 / (end - start)
+        moments[-1] = part * (np.maximum(at - start, 0.0) - np.maximum(at - end, 0.0)) - (at > planes[-1])
     rigidity = drive.materials.crankshaft.youngs_modulus * np.pi * support.diameter**4 / 64.0
     reactions = np.stack([1.0 - second, second])
+    if couple:
+        reactions[:, -1] = -part, part
     return np.asarray(
         (moments * weight) @ moments.T / rigidity
         + reactions.T @ np.diag(1.0 / np.asarray(support.stiffness)) @ reactions

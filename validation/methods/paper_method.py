@@ -250,7 +250,8 @@ class HeldWheel:
     model: Reducer
 
     def balance(self, crank_angle: FloatArray, torque: float, start: FloatArray | None = None) -> Equilibrium:
-        """Return balanced positions at an output torque."""
+        """Return balanced positions at an output torque; DriveError for none."""
+        self.drive.require_torque("method paper, which measures forces by it", torque)
 
         def iterate(angle: FloatArray, moment: FloatArray, begin: FloatArray | None) -> Equilibrium:
             near = solve_equilibrium(self.tables, angle, START_TORQUE_RATIO * moment, begin)

@@ -16,9 +16,9 @@ from ltca.analysis.engines import Engine, HalfSpace
 from ltca.arrays import FloatArray
 from ltca.drive.parts import Drive
 from ltca.equilibrium.friction.sticking import StickingFriction
+from ltca.equilibrium.output_angle import wheel_angle_of_input
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.errors import ConvergenceError, DriveError
-from ltca.geometry.coordinates import WHEEL_ANGLE
 
 LEAST_TORQUE_RATIO = 1e-4
 """Smallest torque relative to the largest: at zero the discs would float."""
@@ -85,7 +85,7 @@ def locked_path(
     smooth = replace(model, friction=None)
     found = solve_at_output(smooth, [drive], angles, float(path[0]))
     state = StickingFriction.at_rest(friction, smooth, found)
-    wound = [found.pose[:, WHEEL_ANGLE]]
+    wound = [wheel_angle_of_input(model, found)]
     for before, value in pairwise(path):
         try:
             found = solve_at_output(replace(model, friction=state), [drive], angles, float(value), found.pose)
@@ -93,7 +93,7 @@ def locked_path(
             error.add(f"torque path from {before:g} to {value:g} N·mm")
             raise
         state = state.after(model, found)
-        wound.append(found.pose[:, WHEEL_ANGLE])
+        wound.append(wheel_angle_of_input(model, found))
     return np.asarray(drive.output_deviation(np.stack(wound, axis=1), path))
 
 
@@ -136,6 +136,7 @@ def hysteresis_loop(
     """
     if not 0.0 < lost_motion < amplitude:
         raise DriveError([f"lost_motion = {lost_motion:g}: must be greater than 0 and less than {amplitude:g}"])
+    drive.require_torque("loops, which go up to it")
     read = lost_motion / amplitude
     up = np.unique(np.concatenate([np.linspace(LEAST_TORQUE_RATIO**0.5, 1.0, points) ** 2, [read]]))
     once = np.concatenate([-up[::-1], up])

@@ -8,7 +8,7 @@ a radian of the crank it is a moment, which needs no speed. The efficiency is 1 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -18,9 +18,9 @@ from ltca.arrays import BoolArray, FloatArray
 from ltca.compliance.response import bearing_pushes
 from ltca.drive.parts import Drive, PinShaft, PinWheel
 from ltca.equilibrium.balance import Equilibrium
+from ltca.equilibrium.crank_moments import crank_moments
 from ltca.equilibrium.friction.slip import Slip
 from ltca.equilibrium.friction.turning import rubbing, seat_travel
-from ltca.equilibrium.output_torque import crank_moments
 from ltca.equilibrium.reducer import Reducer
 
 KINDS = ("pin", "seat", "hole", "roller", "support_bearing", "no_load")
@@ -69,6 +69,8 @@ class Losses:
         Energy put in at input and output by radian of the crank, N·mm; what comes out there is negative.
     driven_by_input : array of bool, shape (positions,)
         Which of them drives.
+    input_turns : array, shape (positions,)
+        Turns of the input by those of the cranks.
     crank_speed : array, shape (positions,)
         Of the cranks against the pin shaft, rad/s; not a number without `ltca.drive.parts.Load.speed`.
     """
@@ -80,6 +82,7 @@ class Losses:
     at_input: FloatArray
     at_output: FloatArray
     driven_by_input: BoolArray
+    input_turns: FloatArray
     crank_speed: FloatArray
 
     @property
@@ -94,13 +97,25 @@ class Losses:
 
     @property
     def efficiency(self) -> FloatArray:
-        """1 − loss/input at every position; not positive where a drive that is driven at its output locks itself."""
-        return np.asarray(1.0 - self.total / self.driving)
+        """1 − loss/input at every position; not positive where a drive that is driven at its output locks itself.
+
+        Not a number where nothing goes through: without a torque at the output all that is put in is lost.
+        """
+        through = np.where(self.at_output == 0.0, np.nan, self.driving)
+        return np.asarray(1.0 - self.total / through)
 
     @property
     def mean_efficiency(self) -> float:
-        """1 − mean loss/mean input."""
-        return float(1.0 - np.mean(self.total) / np.mean(self.driving))
+        """1 − mean loss/mean input; not a number where nothing goes through."""
+        through = np.nan if not np.any(self.at_output) else np.mean(self.driving)
+        return float(1.0 - np.mean(self.total) / through)
+
+    @property
+    def drag_torque(self) -> float:
+        """Mean torque that friction takes at the input of a drive without a torque at the output, N·mm; else not a number."""
+        if np.any(self.at_output):
+            return float("nan")
+        return float(np.mean(self.total / np.abs(self.input_turns)))
 
     def per_second(self, per_radian: FloatArray) -> FloatArray:
         """Return what happens in a second from what happens in a radian of the crank; not a number without speed.
@@ -155,9 +170,14 @@ def losses(model: Reducer, drives: Sequence[Drive], found: Equilibrium, torque: 
     shaft = _joint(force[..., pins:], slip[..., pins:], *map(by_position, zip(*on_shaft, strict=True)))
     pushes = [bearing_pushes(part.rollers, model.discs[0].geometry.placement.cranks) for part in parts]
     rolled = friction.rolling * np.abs(np.stack(pushes)).sum(axis=(0, 2))
-    at_cranks = np.abs(friction.of_cranks(pushes)).sum(axis=1) - rolled
+    on_bearings = None
+    if model.stage is not None:
+        smooth = crank_moments(replace(model, friction=None), angle, found.pose, found.response)
+        on_bearings = model.stage.on_bearings(smooth)
+    at_cranks = np.abs(friction.of_cranks(pushes, on_bearings)).sum(axis=1) - rolled
     ratio = drives[0].reduction_ratio  # that of all: their parts are as many
-    at_wheel = np.abs(friction.of_wheel(parts, ratio) / ratio)
+    beside = model.force_beside_pins(angle, found.pose, parts)
+    at_wheel = np.abs(friction.of_wheel(parts, ratio, beside) / ratio)
     input_turns = by_position([1.0 / drive.crank_turns_per_input for drive in drives])
     no_load = by_position([rubs.no_load_torque for rubs in coefficients])
     lost: dict[str, FloatArray] = dict.fromkeys(KINDS, np.zeros(angle.shape))
@@ -181,6 +201,7 @@ def losses(model: Reducer, drives: Sequence[Drive], found: Equilibrium, torque: 
         at_input=friction.motion * input_turns * moments,
         at_output=np.where(driven_by_input, -at_output, at_output),
         driven_by_input=driven_by_input,
+        input_turns=input_turns,
         crank_speed=by_position([np.nan if (speed := drive.crank_speed) is None else speed for drive in drives]),
     )
 

@@ -26,6 +26,7 @@ from ltca.contact.subsurface import LINE_SHEAR_DEPTH, line_contact_shear, line_c
 from ltca.drive.members.judgement import WHOLE, Check, Value, judge
 from ltca.drive.members.limits import Limit
 from ltca.drive.single_discs import single_discs
+from ltca.drive.yielding_parts import yielding_parts
 from ltca.errors import DriveError
 from ltca.geometry.play import preload_words
 from ltca.quantities import LIMITED, QUANTITIES
@@ -76,7 +77,7 @@ STIFF_PINS = 10.0
 def notes(analysis: LoadedAnalysis) -> list[str]:
     """Return what to know beside the checks, one sentence each: warnings, odd sizes, pins that dwarf the disc."""
     drive, shaft = analysis.drive, analysis.drive.pin_shaft
-    found = [*analysis.warnings, *odd_proportions(analysis.as_written)]
+    found = [*analysis.warnings, *odd_proportions(analysis.as_written), yielding_parts(drive).words]
     found += [words for words in (analysis.engine_words, analysis.hole_words) if words]
     if shaft is not None and shaft.stiffness is not None and analysis.engine.compliance == "half-space":
         disc = drive.materials.disc.youngs_modulus * drive.disc.thickness
@@ -270,7 +271,9 @@ def _of_friction(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) 
         return
     for quantity in ("mean_efficiency", "mean_efficiency_back", "moves_back", "power_loss"):
         value = summary[LIMITED[quantity].key]
-        yield Value(quantity=quantity, value=value, reason="there is no speed (load.speed)" if value is None else "")
+        through = "no torque goes through (load.torque = 0)" if "efficiency" in quantity else ""
+        reason = through if analysis.torque == 0.0 and through else "there is no speed (load.speed)"
+        yield Value(quantity=quantity, value=value, reason=reason if value is None else "")
     values = case_arrays(analysis)
     for quantity in ("pin_pv", "pin_seat_pv", "pin_shaft_pv", "hole_seat_pv"):
         if quantity not in values or not values[quantity].size:

@@ -19,12 +19,13 @@ from ltca.analysis.summary_rows import with_residual_part
 from ltca.analysis.verdict.proportions import odd_proportions
 from ltca.analysis.verdict.values import judge_analysis
 from ltca.arrays import FloatArray
-from ltca.commands.actions.run_table import lives_told, run_table
+from ltca.commands.actions.run_table import lives_told, run_table, whose_stiffness
 from ltca.drive.members.judgement import Check
 from ltca.drive.members.limits import Limits
 from ltca.drive.members.verdict_words import verdict_line
 from ltca.drive.parts import Drive
 from ltca.drive.unit_mistakes import unit_warnings
+from ltca.drive.yielding_parts import yielding_parts
 from ltca.errors import ConvergenceError, CycloError
 from ltca.output.files import whole_file, write_json
 from ltca.output.labelled import LabelledDataset
@@ -93,7 +94,8 @@ def solve_and_write(task: RunTask, out: Path) -> int:
         dataset = labelled_results(file.name, analyses, file.text)
         with whole_file(out / "results.nc") as part:
             write_netcdf(dataset, part)
-    write_json(out / "summary.json", {"drive": file.name, "cases": summaries})
+    whose = {name: yielding_parts(drive).content for name, drive in cases.items()}
+    write_json(out / "summary.json", {"drive": file.name, "cases": summaries, "torsional_stiffness_of": whose})
     files, fields = ["results.nc", "summary.json"], None
     if shown:
         from ltca.analysis.pressure_fields import build_pressure_dataset
@@ -113,7 +115,7 @@ def solve_and_write(task: RunTask, out: Path) -> int:
     lives = {name: _lives(analysis) for name, analysis in analyses.items()}
     print(_verdicts(checks, proportions))
     print(run_table(analyses, summaries, lives, loads if others else {}))
-    print("\n".join([*lives_told(lives), *sampling]))
+    print("\n".join([*whose_stiffness(analyses), *lives_told(lives), *sampling]))
     if task.page:
         told = [*sampling, *dict.fromkeys(f"warning: {one}" for each in proportions.values() for one in each)]
         with steps() as show:

@@ -8,14 +8,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from shutil import get_terminal_size
 
-import numpy as np
-
 from ltca.analysis.life.bearing_lives import BearingLives
 from ltca.analysis.life.life_text import life_summary
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.analysis.summary import refined_value
 from ltca.analysis.verdict.values import race_pressures
 from ltca.drive.units.quantities import ARCMIN
+from ltca.drive.yielding_parts import stiffness_notes, yielding_parts
 from ltca.quantities import printed, scalar_named
 
 Summaries = Mapping[str, Mapping[str, float | None]]
@@ -30,6 +29,12 @@ GROUPS: tuple[Group, ...] = (
     ("largest load [N]", (
         ("wheel pin", "max_pin_load"), ("roller", "max_roller_load"), ("shaft pin", "max_pin_shaft_load"),
         ("crank bearing", "max_bearing_load"), ("crank bearing, crank #", "max_bearing_load_crank_#"),
+        ("crank in carrier, first", "max_crank_support_load_first"),
+        ("crank in carrier, second", "max_crank_support_load_second"),
+        ("planet, tangential", "max_first_stage_tangential_force"),
+        ("planet, radial", "max_first_stage_radial_force"),
+        ("planet, axial", "max_first_stage_axial_force"),
+        ("main bearing, radial", "max_main_bearing_radial"), ("main bearing, axial", "max_main_bearing_axial"),
     )),
     ("parts that carry at once, mean", (
         ("wheel pins", "mean_loaded_pins"), ("rollers", "mean_loaded_rollers"), ("shaft pins", "mean_loaded_pin_shaft_pins"),
@@ -58,7 +63,17 @@ GROUPS: tuple[Group, ...] = (
 """Headings with the unit, and rows with the scalar of each; ``#`` stands for every disc or crank where there are several."""
 WHERE_NOT_ZERO = ("preloaded_part_of_turn", "interference")
 """Scalars that have a row where they are not zero."""
-WHERE_KNOWN = ("pin_shaft", "shaft_pin", "seat", "stress", "deflection", "ptp")
+WHERE_KNOWN = (
+    "crank_support",
+    "first_stage",
+    "main_bearing",
+    "pin_shaft",
+    "shaft_pin",
+    "seat",
+    "stress",
+    "deflection",
+    "ptp",
+)
 """Parts of names of scalars that not every drive, engine and run has: a single position has no range."""
 LOSSES: Group = (
     "efficiency and losses",
@@ -66,6 +81,7 @@ LOSSES: Group = (
         ("efficiency, mean", "mean_efficiency"),
         ("moves back (1) or not", "moves_back"),
         ("power lost [W]", "power_loss"),
+        ("drag at the input [N·mm]", "drag_torque"),
     ),
 )
 LIFE = (
@@ -86,8 +102,7 @@ def run_table(
     rows = [("torque, crank", [loads[name] for name in summaries])] if loads else []
     for heading, each in GROUPS:
         rows += _group(heading, [row for title, name in each for row in _rows(title, name, summaries)])
-    stiffness = [_number(_least_stiffness(analyses[name]), ".2f") for name in summaries]
-    rows += _group("stiffness of the cycloid stage [N·m/′]", [("from light torque, least", stiffness)])
+    rows += _group("stiffness of the cycloid stage [N·m/′]", _stiffness_rows(summaries))
     rows += _group(
         "life of the crank bearings, L10r",
         [row for title, name, digits in LIFE for row in _life(title, name, digits, lives)],
@@ -131,17 +146,26 @@ def _life(title: str, name: str, digits: str, lives: Lives) -> list[tuple[str, l
     return [] if all(value is None for value in values) else [(title, [_number(value, digits) for value in values])]
 
 
-def _least_stiffness(analysis: LoadedAnalysis) -> float | None:
-    """Torque from the light one on, by the wind-up that it takes, where that is most; N·m by minute of arc."""
-    known = analysis.balanced & analysis.balanced_light
-    wound = np.abs(analysis.transmission_error - analysis.transmission_error_light)[known]
-    if not (wound.size and np.all(wound > 0.0)):
-        return None
-    return float(abs(analysis.torque - analysis.drive.load.light_torque) / np.max(wound) / ARCMIN / 1e3)
+def _stiffness_rows(summaries: Summaries) -> list[tuple[str, list[str]]]:
+    """Stiffness of the cycloid stage, and of the reducer where its file describes more."""
+    rows = []
+    titles = {
+        "from light torque, least": "cycloid_stage_stiffness",
+        "reducer as described, least": "reducer_stiffness",
+    }
+    for title, name in titles.items():
+        values = [case.get(scalar_named(name).key) for case in summaries.values()]
+        rows.append((title, [_number(None if one is None else one / ARCMIN / 1e3, ".2f") for one in values]))
+    return rows[: 1 + (rows[0][1] != rows[1][1])]
 
 
 def _number(value: float | None, digits: str, unit: str = "") -> str:
     return "–" if value is None else printed(value, f"{{:{digits}}}", unit)
+
+
+def whose_stiffness(analyses: Mapping[str, LoadedAnalysis]) -> list[str]:
+    """Return what yields in the stiffness of every case and what is rigid because its file leaves it out, as lines."""
+    return stiffness_notes({name: yielding_parts(analysis.drive) for name, analysis in analyses.items()})
 
 
 def lives_told(lives: Lives) -> list[str]:

@@ -9,6 +9,7 @@ bearings         Bought crank bearings by name: ``crank_bearing.bearing = "K20x2
                  clearance class for ``clearance.bearing``
 operation        Installation and use: the fixed member, load, speed, duty, lubricant, friction and temperatures
 crank            Crankshafts: their eccentrics, the circle they stand on, their supports and their bearings
+first_stage      Teeth of a sun and of the planets on several cranks
 pins             Pins of the pin wheel and of the pin shaft: fixed, loose or sleeved, rigid or bending
 ring             The ring in which the wheel pins are seated: its size, material, flange and bolts
 carrier          Carrier: two flanges, tied by posts, between which shaft pins or cranks stand, and what twists between it

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import field
 from typing import Annotated, Literal
 
 from pydantic.dataclasses import dataclass
 
-from ltca.drive.deviations import STRICT, NonNegativeLength
+from ltca.drive.deviations import STRICT, NonNegativeLength, SignedLength
 from ltca.drive.units.quantities import grows, quantity
 
 REFERENCE_TEMPERATURE = 20.0
@@ -16,13 +17,84 @@ Coefficient = Annotated[float, quantity("dimensionless", ge=0.0, le=1.0)]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
+class OuterForce:
+    """Force from outside on the output, N.
+
+    Attributes
+    ----------
+    x : float
+        Along the crank at crank angle zero, N.
+    y : float
+        90° ahead of it, N.
+    z : float
+        Along the axis, N.
+    """
+
+    x: Annotated[float, quantity("N")] = 0.0
+    y: Annotated[float, quantity("N")] = 0.0
+    z: Annotated[float, quantity("N")] = 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
+class OuterMoment:
+    """Tilting moment from outside on the output, N·mm; the one about the axis is the torque.
+
+    Attributes
+    ----------
+    x : float
+        About x, N·mm.
+    y : float
+        About y, N·mm.
+    """
+
+    x: Annotated[float, quantity("N*mm")] = 0.0
+    y: Annotated[float, quantity("N*mm")] = 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
+class OuterPlace:
+    """Point of the axis at which a force from outside acts.
+
+    Attributes
+    ----------
+    z : float
+        On the axis of ``disc.planes``, mm.
+    """
+
+    z: Annotated[SignedLength, grows("planes")] = 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
+class ExternalLoad:
+    """An entry of ``[[load.external]]``: what an arm or a pulley does to the output; entries add up.
+
+    Attributes
+    ----------
+    force : OuterForce
+        Force on the output.
+    moment : OuterMoment
+        Tilting moment on the output, which the main bearing carries.
+    at : OuterPlace
+        Where the force acts.
+    frame : {"housing", "output"}
+        Frame of x and y: at rest with the held member, or turning with the output.
+    """
+
+    force: OuterForce = field(default_factory=OuterForce)
+    moment: OuterMoment = field(default_factory=OuterMoment)
+    at: Annotated[OuterPlace, grows("planes")] = field(default_factory=OuterPlace)
+    frame: Literal["housing", "output"] = "housing"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
 class Load:
     """Load on the output.
 
     Attributes
     ----------
     torque : float
-        Output torque T_out of all discs together, on the pin wheel or, where that is held, on the pin shaft, N·mm.
+        Output torque T_out of all discs together, on the pin wheel or, where that is held, on the pin shaft, N·mm. 0 needs a
+        drive without play at the output, whose parts hold each other.
     light_torque : float
         Light torque at which the transmission error is taken as the unloaded one, N·mm.
     direction : {"ccw", "cw"}
@@ -31,13 +103,16 @@ class Load:
         Speed of the input, revolutions per minute; without it powers and slip speeds are not given.
     driven_by : {"input", "output"}
         Side that moves the drive: "output" loads the same flank, with reversed motion.
+    external : tuple of ExternalLoad
+        Forces and moments from outside on the output, beside the torque.
     """
 
-    torque: Annotated[float, quantity("N*mm", gt=0.0)]
+    torque: Annotated[float, quantity("N*mm", ge=0.0)]
     light_torque: Annotated[float, quantity("N*mm", gt=0.0)] = 10_000.0
     direction: Literal["ccw", "cw"] = "ccw"
     speed: Annotated[float, quantity("rpm", gt=0.0)] | None = None
     driven_by: Literal["input", "output"] = "input"
+    external: tuple[ExternalLoad, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
@@ -102,7 +177,7 @@ class Installation:
     held : {"pin-shaft", "pin-wheel"}
         The fixed member; ``load.torque`` acts on the other one, which is the output.
     first_stage_ratio : float or None
-        z₂/z₁ of a spur stage between a central input and several cranks; left out, the cranks are driven from the carrier.
+        z₂/z₁ of a first stage between a central input and several cranks; left out, the cranks are driven from the carrier.
     """
 
     held: Literal["pin-shaft", "pin-wheel"] = "pin-shaft"

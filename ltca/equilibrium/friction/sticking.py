@@ -134,11 +134,13 @@ class StickingFriction:
             tangent=np.matmul(slip.by_pose.swapaxes(1, 2), change),
         )
 
-    def of_wheel(self, parts: Sequence[DiscResponse], reduction_ratio: float) -> FloatArray:
+    def of_wheel(
+        self, parts: Sequence[DiscResponse], reduction_ratio: float, external: ComplexArray | float = 0.0
+    ) -> FloatArray:
         """Return the moment by which the wheel's bearing rubs: none."""
         return np.zeros(parts[0].pin_load.shape[0])
 
-    def of_cranks(self, pushes: Sequence[ComplexArray]) -> FloatArray:
+    def of_cranks(self, pushes: Sequence[ComplexArray], on_bearings: ComplexArray | None = None) -> FloatArray:
         """Return the moment that rubbing takes at every crank: none."""
         return np.zeros(pushes[0].shape)
 

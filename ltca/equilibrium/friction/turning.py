@@ -168,22 +168,30 @@ class TurningFriction:
         force[:, DISC_ROTATION] -= self.motion * self.strength * self.rolling * push
         return Rubbing(tangential=tangential, force=force, tangent=tangent)
 
-    def of_wheel(self, parts: Sequence[DiscResponse], reduction_ratio: float) -> FloatArray:
+    def of_wheel(
+        self, parts: Sequence[DiscResponse], reduction_ratio: float, external: ComplexArray | float = 0.0
+    ) -> FloatArray:
         """Return the moment by which the wheel's bearing rubs, to be overcome, ccw positive, N·mm, shape (positions,).
 
-        The wheel turns against the shaft by 1/u of the crank; the contacts of each disc come with their friction.
+        The wheel turns against the shaft by 1/u of the crank; the contacts of each disc come with their friction, and
+        `external` is the force from outside on the wheel, N.
         """
         pins = parts[0].pin_load.shape[1]
-        load = np.abs(sum(part.pin_forces[:, :pins].sum(axis=1) for part in parts))
+        load = np.abs(sum(part.pin_forces[:, :pins].sum(axis=1) for part in parts) + external)
         return np.asarray(self.motion * self.strength * self.support * np.sign(reduction_ratio) * load)
 
-    def of_cranks(self, pushes: Sequence[ComplexArray]) -> FloatArray:
+    def of_cranks(self, pushes: Sequence[ComplexArray], on_bearings: ComplexArray | None = None) -> FloatArray:
         """Return the moment that rubbing takes at every crank, ccw positive, N·mm, shape (positions, cranks).
 
-        `pushes` are the forces of each crank on every disc, N, complex, shape (positions, cranks).
+        `pushes` are the forces of each crank on every disc, N, complex, shape (positions, cranks), and `on_bearings` what its
+        bearings carry besides, shape (positions, cranks, bearings), further bearings behind those of the discs.
         """
         forces = np.stack(pushes, axis=-1)
-        reactions = np.abs(np.matmul(forces, self.crank_bearings.T.astype(complex))).sum(axis=-1)
+        carried = np.matmul(forces, self.crank_bearings.T.astype(complex))
+        if on_bearings is not None:
+            more = np.zeros((*carried.shape[:-1], on_bearings.shape[-1] - carried.shape[-1]))
+            carried = on_bearings - np.concatenate((carried, more), axis=-1)
+        reactions = np.abs(carried).sum(axis=-1)
         rolled = np.abs(forces).sum(axis=-1)
         return np.asarray(self.motion * self.strength * (self.rolling * rolled + self.support * reactions))
 

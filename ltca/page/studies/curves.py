@@ -13,6 +13,7 @@ from ltca.analysis.torque_curve import TorqueCurve
 from ltca.analysis.transmission_error_orders import Spectrum
 from ltca.arrays import FloatArray
 from ltca.drive.units.quantities import ARCMIN, ARCSEC
+from ltca.drive.yielding_parts import stiffness_notes
 from ltca.figures.shared_axes import order_axes, pressure_axis, torque_axes
 from ltca.page.run_sections import lives_of_cases
 from ltca.page.study_page import Curves, Section
@@ -50,7 +51,8 @@ def torque_section(curves: Mapping[str, TorqueCurve]) -> Section:
     table = Table(name="torque_curve", caption="", columns=["", *heads], rows=rows)
     angles = {curve.crank_angle.size for curve in curves.values()}
     told = f"Means of {' or '.join(map(str, sorted(angles)))} crank angles; the table has the range over them."
-    return Section(heading="Torque curve", notes=[told], curves=[plot], tables=[table])
+    whose = stiffness_notes({name: curve.yielding for name, curve in curves.items()})
+    return Section(heading="Torque curve", notes=[told, *whose], curves=[plot], tables=[table])
 
 
 def _of(case: str, cases: Mapping[str, object]) -> str:
@@ -69,6 +71,9 @@ def _torque_rows(curve: TorqueCurve) -> dict[str, str]:
         f"{SCALARS['backlash_output'].verdict_title}, ′": curve.backlash * ARCMIN,
         f"lost motion at ±{100.0 * curve.lost_motion_part:g} % of the torque, ′": curve.lost_motion * ARCMIN,
         "torsional stiffness of the cycloid stage, 50 … 100 % of the torque, N·m/′": curve.stiffness / ARCMIN / 1e3,
+        "torsional stiffness of the reducer with what the file describes, N·m/′": curve.reducer_stiffness
+        / ARCMIN
+        / 1e3,
     }
     if curve.loop is not None:
         rows["width of the loop of friction there, ′"] = curve.loop.width * ARCMIN

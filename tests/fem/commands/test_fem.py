@@ -172,7 +172,7 @@ def test_pictures_without_gl(monkeypatch, tmp_path):
         (("paper", "--angle", "nan"), "--angle = 'nan': must be finite in rad"),
         (("paper", "--size", "0"), "--size = 0: must be greater than 0"),
         (("paper", "--size", "0.001"), "unknowns and need about"),
-        (("paper", "--torque", "-5"), "--torque = -5: must be greater than 0 N·mm"),
+        (("paper", "--torque", "-5"), "--torque = -5: must be at least 0 N·mm"),
         (("paper", "--case", "CS-9"), "case 'CS-9' is not defined"),
         (("nowhere.toml",), "no such file"),
     ],

@@ -217,5 +217,5 @@ def test_numbers_of_hundreds_of_digits_are_told_as_typed(field, tmp_path, capsys
 
 
 def test_a_torque_turned_round_says_what_turns_it():
-    with pytest.raises(CycloError, match=r"--torque = -5: must be greater than 0 N·mm \(load.direction turns it\)"):
+    with pytest.raises(CycloError, match=r"--torque = -5: must be at least 0 N·mm \(load.direction turns it\)"):
         parse("fem", "--torque=-5")

@@ -150,7 +150,7 @@ def test_torque_with_a_unit_is_that_torque(tmp_path):
         (["run", "paper", "--positions", "0"], "--positions = 0: must be from 1 to 1000000"),
         (["run", "paper", "--angles", "1.0", "x"], "--angles = 'x'"),
         (["run", "paper", "--angles", "nan"], "--angles = 'nan': must be finite"),
-        (["run", "paper", "--torque", "-5"], "--torque = -5: must be greater than 0 N·mm"),
+        (["run", "paper", "--torque", "-5"], "--torque = -5: must be at least 0 N·mm"),
         (["run", "paper", "--torque", "3 mm"], "must have the unit N·mm"),
         (["run", "paper", "--torque", "1e8", "--positions", "3"], "cannot be carried"),
         (["show", "paper", "--angle", "one"], "--angle = 'one'"),

@@ -74,6 +74,8 @@ LEFT_OUT = (
 OF_PARTS = (
     "ring",
     "carrier",
+    "first_stage",
+    "load.external",
     "crank.support",
     "materials.crankshaft",
     "materials.carrier",

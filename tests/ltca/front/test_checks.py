@@ -96,7 +96,7 @@ def test_temperatures_of_a_drive_count():
         ({"limits": {"max_pin_pressure_mid": "3 N"}}, "limits.max_pin_pressure_mid = '3 N': must have the unit MPa"),
         ({"limits": 5}, "limits = 5: must be limits by name"),
         ({"torque": "3 mm"}, "torque = '3 mm': must have the unit N·mm"),
-        ({"torque": 0}, "torque = 0: must be finite and greater than 0 N·mm"),
+        ({"torque": -1}, "torque = -1: must be finite and at least 0 N·mm"),
         ({"positions": 1}, "positions = 1: must be a whole number from 2 to 100000"),
         ({"advice": 1}, "advice = 1: must be true or false"),
         ({"compliance": "soft"}, "compliance = 'soft': is unknown"),

@@ -122,7 +122,7 @@ def test_error_arrays_are_read():
         ("number_of_teeth = 13", "number_of_teeth = 13.5", "disc.number_of_teeth = 13.5: must be a whole number"),
         ("number_of_teeth = 13", "number_of_teeth = 2", "disc.number_of_teeth = 2: must be greater than or equal to 3"),
         ('direction = "ccw"', 'direction = "left"', "load.direction = 'left': must be 'ccw' or 'cw'"),
-        ("torque = 377300.0", "torque = 0.0", "load.torque = 0.0: must be greater than 0 N·mm"),
+        ("torque = 377300.0", "torque = -1.0", "load.torque = -1.0: must be at least 0 N·mm"),
         ("stiffness = 1.0e6", "stiffness = '1 N'", "pin_shaft.stiffness = '1 N': must have the unit N/mm"),
         ("bearing = 0.0 ", "bearing = -0.01 ", "clearance.bearing = -0.01: must be at least 0 mm"),
         ("poisson_ratio = 0.3 }", "poisson_ratio = 0.5 }", "must be at least 0 and less than 0.5"),

@@ -69,6 +69,10 @@ def test_every_kind_of_reducer_is_drawn():
     assert any(drive.crank.number > 1 and drive.pin_shaft is not None for drive in drives)
     assert any(drive.crank.number > 1 and drive.crank.of for drive in drives)
     assert any(own.bore_errors for drive in drives for own in drive.disc.of)
+    teeth = [drive.first_stage for drive in drives if drive.first_stage is not None]
+    assert {one.module is None for one in teeth} == {one.helix_angle == 0.0 for one in teeth} == {True, False}
+    assert {one.backlash == 0.0 for one in teeth} == {one.mesh_stiffness is None for one in teeth} == {True, False}
+    assert {entry.frame for drive in drives for entry in drive.load.external} == {"housing", "output"}
 
 
 def test_preload_of_every_kind_is_drawn():

@@ -1,0 +1,98 @@
+"""What the bearings of cranks and output carry: forces of the discs, of the first stage and from outside."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ltca.analysis.loaded_analysis import LoadedAnalysis
+from ltca.arrays import ComplexArray, FloatArray
+from ltca.compliance.response import bearing_pushes
+from ltca.equilibrium.crank_moments import crank_moments
+from ltca.equilibrium.external_force import entries_of
+from ltca.equilibrium.first_stage import MeshForces
+from ltca.geometry.rotation import unit
+from ltca.laws.beam import support_parts
+
+
+def reaction_values(analysis: LoadedAnalysis) -> dict[str, Any]:
+    """Return what first stage, bearings of cranks and main bearing add to the arrays of a case."""
+    values: dict[str, Any] = {}
+    forces = mesh_forces(analysis)
+    if forces is not None:
+        values |= {
+            "first_stage_tangential_force": forces.tangential.T,
+            "first_stage_radial_force": forces.radial.T,
+            "first_stage_axial_force": forces.axial.T,
+            "first_stage_lag": analysis.crank_lag,
+        }
+    carried = crank_support_forces(analysis)
+    if carried is not None:
+        values["crank_support_load_first"], values["crank_support_load_second"] = np.abs(carried).transpose(2, 1, 0)
+    return values | _main_bearing(analysis)
+
+
+def mesh_forces(analysis: LoadedAnalysis) -> MeshForces | None:
+    """Return the forces of the sun on the planets (`ltca.equilibrium.first_stage`); None without teeth."""
+    full, stage = analysis.full, analysis.model.stage
+    if stage is None:
+        return None
+    return stage.forces(crank_moments(analysis.model, full.crank_angle, full.pose, full.response))
+
+
+def crank_support_forces(analysis: LoadedAnalysis) -> ComplexArray | None:
+    """Return the force of each crank on each of its two bearings in the fixed frame, N, shape (positions, cranks, 2).
+
+    None where the file says nothing of these (`Drive.crank_supports`).
+    """
+    drive, full, stage = analysis.drive, analysis.full, analysis.model.stage
+    if drive.crank_supports is None:
+        return None
+    parts = support_parts(drive.disc.disc_planes, drive.crank_supports)
+    pushes = np.stack([bearing_pushes(part.rollers, drive.crank.number) for part in full.response.parts], axis=-1)
+    carried = -np.matmul(pushes, parts.T.astype(complex))
+    if stage is not None:
+        carried = carried + stage.on_bearings(crank_moments(analysis.model, full.crank_angle, full.pose, full.response))
+    return np.asarray(carried)
+
+
+def _main_bearing(analysis: LoadedAnalysis) -> dict[str, FloatArray]:
+    """Force and moment of the housing on the output where forces from outside act on it, in the frame of the housing.
+
+    Moments are about the zero of the planes of the discs. Forces off that plane and along the axis tilt the output; nothing
+    yields in tilt, so they load the main bearing alone.
+    """
+    drive, full = analysis.drive, analysis.full
+    if not drive.load.external:
+        return {}
+    wheel = unit(full.crank_angle / drive.reduction_ratio)
+    into_housing = wheel.conjugate() if drive.wheel_is_held else np.ones(wheel.shape, dtype=complex)
+    output_turned = wheel.conjugate() if drive.wheel_is_held else wheel
+    force, moment = np.zeros(wheel.shape, dtype=complex), np.zeros(wheel.shape, dtype=complex)
+    axial = 0.0 * full.crank_angle
+    for frame, turned in (("housing", np.ones(wheel.shape, dtype=complex)), ("output", output_turned)):
+        for entry in entries_of(drive, frame):
+            pressed = complex(entry.force.x, entry.force.y)
+            force = force + pressed * turned
+            moment = moment + (complex(entry.moment.x, entry.moment.y) + 1j * entry.at.z * pressed) * turned
+            axial = axial + entry.force.z
+    pins = analysis.drive.pin_wheel.number_of_pins
+    sense = -1.0 if drive.wheel_is_held else 1.0
+    for plane, part in zip(drive.disc.disc_planes, full.response.parts, strict=True):
+        pressed_by_disc = sense * part.pin_forces[:, :pins].sum(axis=1) * into_housing
+        force, moment = force + pressed_by_disc, moment + 1j * plane * pressed_by_disc
+    teeth, stage = mesh_forces(analysis), drive.first_stage
+    if drive.wheel_is_held and teeth is not None and stage is not None and analysis.model.stage is not None:
+        outward, radius = analysis.model.stage.outward, float(np.max(analysis.model.stage.sun_radius))
+        pressed_by_sun = teeth.in_plane.sum(axis=1) * into_housing
+        tilted = (-1j * radius * outward * teeth.axial).sum(axis=1) * into_housing
+        force, axial = force + pressed_by_sun, axial + teeth.axial.sum(axis=1)
+        moment = moment + 1j * stage.plane * pressed_by_sun + tilted
+    return {
+        "main_bearing_x": -force.real,
+        "main_bearing_y": -force.imag,
+        "main_bearing_z": -axial,
+        "main_bearing_moment_x": -moment.real,
+        "main_bearing_moment_y": -moment.imag,
+    }

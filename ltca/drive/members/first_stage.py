@@ -1,0 +1,111 @@
+"""The first stage: a sun between the cranks and a planet on each of them."""
+
+from __future__ import annotations
+
+from math import atan2, cos, hypot, pi, sqrt, tan
+from typing import Annotated
+
+from pydantic import Field
+from pydantic.dataclasses import dataclass
+
+from ltca.drive.deviations import STRICT, NonNegativeLength, PositiveLength, SignedLength
+from ltca.drive.units.quantities import COUNT, grows, quantity
+
+Teeth = Annotated[int, Field(ge=5, le=1000), COUNT]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
+class FirstStage:
+    """Involute stage of a sun, which is the input, and of a planet on every one of several cranks.
+
+    Attributes
+    ----------
+    sun_teeth : int
+        Number of teeth z₁ of the sun.
+    planet_teeth : int
+        Number of teeth z₂ of each planet; z₂/z₁ is ``installation.first_stage_ratio``.
+    module : float or None
+        Normal module, mm; left out, the pitch circles of sun and planet are the reference circles of their teeth.
+    pressure_angle : float
+        Normal pressure angle at the reference circle, rad.
+    helix_angle : float
+        Helix angle at the reference circle, rad; positive where the planet is right-handed.
+    backlash : float
+        Circumferential backlash of sun and planet at their pitch circles, mm.
+    mesh_stiffness : float or None
+        Stiffness of one mesh along the line of action in the transverse plane (c_γ b of ISO 6336-1), N/mm; rigid when left out.
+    plane : float
+        Axial place of the middle of the planets on the axis of ``disc.planes``, mm.
+    """
+
+    sun_teeth: Teeth
+    planet_teeth: Teeth
+    module: Annotated[PositiveLength | None, grows("eccentric")] = None
+    pressure_angle: Annotated[float, quantity("rad", gt=0.0, lt=0.25 * pi)] = pi / 9.0
+    helix_angle: Annotated[float, quantity("rad", gt=-0.25 * pi, lt=0.25 * pi)] = 0.0
+    backlash: Annotated[NonNegativeLength, grows("eccentric")] = 0.0
+    mesh_stiffness: Annotated[float, quantity("N/mm", gt=0.0)] | None = None
+    plane: Annotated[SignedLength, grows("planes")] = 0.0
+
+    @property
+    def ratio(self) -> float:
+        """z₂/z₁: turns of the sun for one of a planet, both against the carrier, which turn in opposite senses."""
+        return self.planet_teeth / self.sun_teeth
+
+    @property
+    def transverse_pressure_angle(self) -> float:
+        """Pressure angle of the reference circle in the transverse plane, rad: tan α_t = tan α_n/cos β."""
+        return atan2(tan(self.pressure_angle), cos(self.helix_angle))
+
+    def reference_distance(self) -> float | None:
+        """Return the distance of the axes at which pitch circles are reference circles, mm; None without a module."""
+        teeth = self.sun_teeth + self.planet_teeth
+        return None if self.module is None else 0.5 * self.module * teeth / cos(self.helix_angle)
+
+    def mesh(self, distance: float) -> Mesh:
+        """Return the mesh of sun and planet at the distance of their axes, mm.
+
+        ValueError where their teeth do not reach each other.
+        """
+        alpha, reference = self.transverse_pressure_angle, self.reference_distance() or distance
+        cosine = cos(alpha) * reference / distance
+        if cosine > 1.0:
+            raise ValueError("base circles stand apart by more than the distance of the axes")
+        return Mesh(
+            pitch_radius=distance * self.planet_teeth / (self.sun_teeth + self.planet_teeth),
+            separating=tan(alpha) if self.module is None else sqrt(1.0 - cosine * cosine) / cosine,
+            axial=tan(self.helix_angle) * distance / reference,
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Mesh:
+    """Mesh of sun and planet at the distance of their axes.
+
+    Attributes
+    ----------
+    pitch_radius : float
+        Radius r_w of the pitch circle of the planet, mm.
+    separating : float
+        Radial by tangential force: tan α_wt, which is tan α_n/cos β where pitch circles are reference circles.
+    axial : float
+        Axial by tangential force: tan β_w, which is tan β there; positive where the planet is right-handed.
+    """
+
+    pitch_radius: float
+    separating: float
+    axial: float
+
+    @property
+    def base_radius(self) -> float:
+        """Radius of the base circle of the planet, r_w cos α_wt, mm."""
+        return self.pitch_radius / hypot(1.0, self.separating)
+
+    def backlash_angle(self, backlash: float) -> float:
+        """Return the angle by which the planet is free to turn, rad, by a circumferential backlash at the pitch circle, mm."""
+        return backlash / self.pitch_radius
+
+    @property
+    def working_angle(self) -> float:
+        """Working pressure angle α_wt, rad."""
+        return atan2(self.separating, 1.0)

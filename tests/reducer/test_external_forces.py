@@ -1,0 +1,145 @@
+"""Forces from outside on the output: where the main bearing yields, where it does not, what it carries."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ltca.analysis.loaded_analysis import analyse
+from ltca.analysis.reactions import reaction_values
+from ltca.analysis.summary import summarise
+from ltca.errors import DriveError
+from ltca.reading.changes import with_fields
+from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
+from ltca.reading.writing import drive_text
+
+ANGLES = np.array([0.31, 1.7, 4.4])
+PUSHED = {"load.external.0.force.x": 800.0, "load.external.0.force.y": -300.0}
+STIFF = 1e9
+
+
+@pytest.fixture(scope="module")
+def joint():
+    return load_drive("robot-joint").cases["nominal"]
+
+
+@pytest.fixture(scope="module")
+def paper():
+    return load_drive("paper").cases["CS-1"]
+
+
+def wheel(analysis):
+    return analysis.full.pose[:, analysis.model.coordinates.wheel_place] @ np.array([1.0, 1j])
+
+
+def test_an_arm_moves_the_wheel_by_its_spring(paper):
+    """Forces on a wheel whose bearing is a spring of 1e9 N/mm, stiff against all contacts: F/k beside what discs press."""
+    soft = with_fields(paper, {"pin_wheel.support_stiffness": STIFF})
+    plain, pushed = analyse(soft, ANGLES), analyse(with_fields(soft, PUSHED), ANGLES)
+    # contacts give way by 1e-6 mm of the wheel's way: 1e-3 of it
+    np.testing.assert_allclose(wheel(pushed) - wheel(plain), complex(800.0, -300.0) / STIFF, rtol=2e-3)
+
+
+@pytest.mark.parametrize("held", ["pin-shaft", "pin-wheel"])
+@pytest.mark.parametrize("frame", ["housing", "output"])
+def test_frames_turn_by_hand(paper, held, frame):
+    """u = 14: the housing, or the output, turns by φ_C/14 against the other; what acts on the shaft moves it, not the wheel."""
+    soft = with_fields(paper, {"pin_wheel.support_stiffness": STIFF, "installation.held": held})
+    plain = analyse(soft, ANGLES)
+    pushed = analyse(with_fields(soft, PUSHED | {"load.external.0.frame": frame}), ANGLES)
+    turned = np.exp(1j * ANGLES / 14.0)
+    by_hand = {
+        ("pin-shaft", "housing"): np.ones(3),
+        ("pin-shaft", "output"): turned,
+        ("pin-wheel", "housing"): -turned,
+        ("pin-wheel", "output"): -np.ones(3),
+    }[held, frame]
+    force = complex(800.0, -300.0) * by_hand
+    np.testing.assert_allclose(wheel(pushed) - wheel(plain), force / STIFF, rtol=0.0, atol=2e-3 * abs(force[0]) / STIFF)
+
+
+@pytest.mark.parametrize("held", ["pin-shaft", "pin-wheel"])
+def test_the_main_bearing_holds_all_of_it(joint, held):
+    """Forces and moments by cross products in three dimensions; of a rigid bearing nothing else changes, bit for bit."""
+    entries = PUSHED | {"load.external.0.force.z": 500.0, "load.external.0.at.z": 60.0, "load.external.0.moment.y": 7e3}
+    plain = with_fields(joint, {"installation.held": held})
+    drive = with_fields(plain, entries)
+    alone, found = analyse(plain, ANGLES), analyse(drive, ANGLES)
+    np.testing.assert_array_equal(found.full.pose, alone.full.pose)
+    told = reaction_values(found)
+    force, moment = np.zeros((3, 3)), np.zeros((3, 3))
+    given = np.array([800.0, -300.0, 500.0])
+    force += given
+    moment += np.cross([0.0, 0.0, 60.0], given) + np.array([0.0, 7e3, 0.0])
+    pins = drive.pin_wheel.number_of_pins
+    turned = np.exp(-1j * ANGLES / drive.reduction_ratio) if held == "pin-wheel" else np.ones(3)
+    sign = -1.0 if held == "pin-wheel" else 1.0  # discs push the wheel, and so the shaft the other way
+    for plane, part in zip(drive.disc.disc_planes, found.full.response.parts, strict=True):
+        pushed = sign * part.pin_forces[:, :pins].sum(axis=1) * turned
+        each = np.stack([pushed.real, pushed.imag, np.zeros(3)], axis=1)
+        force += each
+        moment += np.cross([0.0, 0.0, plane], each)
+    size = np.abs(force).max()
+    for axis, name in enumerate("xyz"):
+        np.testing.assert_allclose(told[f"main_bearing_{name}"], -force[:, axis], atol=1e-9 * size)
+    for axis, name in enumerate("xy"):
+        np.testing.assert_allclose(told[f"main_bearing_moment_{name}"], -moment[:, axis], atol=1e-9 * 60.0 * size)
+    summary = summarise(found)
+    assert summary["max_main_bearing_axial_N"] == pytest.approx(500.0, rel=1e-12)
+    assert summary["max_main_bearing_radial_N"] == pytest.approx(np.hypot(force[:, 0], force[:, 1]).max(), rel=1e-9)
+
+
+def test_planets_push_the_carrier(joint):
+    """The carrier of a held wheel is the output: what the sun presses on its planets passes through the main bearing."""
+    rv = load_drive("rv").cases["nominal"]
+    teeth = {"first_stage.sun_teeth": 20, "first_stage.planet_teeth": 40, "first_stage.helix_angle": 0.2}
+    drive = with_fields(rv, teeth | {"load.external.0.force.z": 100.0})
+    found = analyse(drive, ANGLES)
+    axial = -found.crank_torques.sum(axis=1) / 28.0 * np.tan(0.2)  # a right-handed planet
+    np.testing.assert_allclose(reaction_values(found)["main_bearing_z"], -(100.0 + axial), rtol=1e-12)
+
+
+def test_entries_add_up(paper):
+    soft = with_fields(paper, {"pin_wheel.support_stiffness": 3e5})
+    one = analyse(with_fields(soft, PUSHED), ANGLES)
+    two = {"load.external.0.force.x": 800.0, "load.external.1.force.y": -300.0}
+    parts = with_fields(with_fields(soft, {"load.external.0.force.x": 800.0}), {"load.external.1.force.y": -300.0})
+    np.testing.assert_array_equal(analyse(parts, ANGLES).full.pose, one.full.pose)
+    assert len(with_fields(soft, two).load.external) == 2
+
+
+def test_the_bearing_of_the_wheel_rubs_under_an_arm_as_well(paper):
+    """f times its load times its radius, by hand from the forces of discs and arm together."""
+    rubs = {"friction.support_bearing": 0.01, "friction.support_bearing_radius": 30.0}
+    drive = with_fields(paper, rubs | PUSHED)
+    found = analyse(drive, ANGLES)
+    pressed = found.full.response.parts[0].pin_forces[:, :14].sum(axis=1) + complex(800.0, -300.0)
+    at_crank = 0.01 * 30.0 * np.abs(found.bearing_radial + 1j * found.bearing_tangential)[:, 0, 0]
+    lost = found.losses.by_kind["support_bearing"]
+    np.testing.assert_allclose(lost, 0.01 * 30.0 * np.abs(pressed) / 14.0 + at_crank, rtol=1e-9)
+
+
+def test_files_keep_every_entry(paper):
+    drive = with_fields(paper, PUSHED | {"load.external.0.moment.x": 5.0, "load.external.0.frame": "output"})
+    assert parse_drive(drive_text(drive)).cases["nominal"] == replace(drive, case="nominal")
+    head, _, rest = shipped_drive("rv").partition("[clearance]")
+    written = f'{head}[[load.external]]\nforce = {{ x = "1 kN" }}\nat = {{ z = 40.0 }}\n\n[clearance]{rest}'
+    (entry,) = parse_drive(written).cases["nominal"].load.external
+    assert (entry.force.x, entry.at.z, entry.frame) == (1000.0, 40.0, "housing")
+
+
+@pytest.mark.parametrize(
+    ("fields", "message"),
+    [
+        ({"load.external.0.force.x": "3 mm"}, r"load\.external\.0\.force\.x = '3 mm': "),
+        ({"load.external.0.frame": "arm"}, r"load\.external\.0\.frame = 'arm': must be 'housing' or 'output'"),
+        ({"load.external.0.force.w": 1.0}, r"load\.external\.0\.force\.w: is not a field"),
+        ({"load.external.1.force.x": 1.0}, r"load\.external\.1: there is no entry 1; \[\[load\.external\]\] has 0"),
+    ],
+)
+def test_bad_input_is_one_clear_line(paper, fields, message):
+    with pytest.raises(DriveError, match=message) as caught:
+        with_fields(paper, fields)
+    assert all("\n" not in problem for problem in caught.value.problems)
