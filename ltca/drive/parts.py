@@ -30,6 +30,7 @@ from ltca.drive.materials import (
     contact_modulus as contact_modulus,
 )
 from ltca.drive.members.crank import Crank as Crank, CrankBearing as CrankBearing, CrankSupport as CrankSupport
+from ltca.drive.members.main_bearing import BearingRow as BearingRow, MainBearing as MainBearing
 from ltca.drive.members.operation import (
     Analysis as Analysis,
     Compliance as Compliance,
@@ -48,6 +49,7 @@ from ltca.drive.members.pins import (
     WheelPinBeam as WheelPinBeam,
     WheelPinSeat as WheelPinSeat,
 )
+from ltca.drive.members.preload import Preload as Preload
 from ltca.drive.names import Name
 from ltca.drive.units.quantities import COUNT, grows
 from ltca.errors import DriveError
@@ -162,6 +164,8 @@ class Drive:
         Roller bearing between crank and disc.
     pin_shaft : PinShaft or None
         Pin shaft, the carrier of the cranks, with its pins; drives with several cranks need none.
+    main_bearing : MainBearing or None
+        Bearing of the wheel on the pin shaft; rigid when left out.
     load : Load
         Torque and direction.
     installation : Installation
@@ -190,6 +194,7 @@ class Drive:
     disc: Disc
     crank_bearing: CrankBearing
     pin_shaft: PinShaft | None = None
+    main_bearing: Annotated[MainBearing | None, grows("wheel")] = None
     load: Load
     installation: Installation = field(default_factory=Installation)
     clearance: Annotated[Clearance, grows("disc")] = field(default_factory=Clearance)
@@ -293,6 +298,11 @@ class Drive:
     def flank_turn(self) -> float:
         """Angle of the flank against the holes in a drive of one disc, −Δz ζ/z_C, rad."""
         return -self.tooth_number_difference * self.disc.phase / self.disc.number_of_teeth
+
+    @property
+    def wheel_yields(self) -> bool:
+        """Whether the main bearing of the wheel yields."""
+        return self.pin_wheel.support_stiffness is not None or self.main_bearing is not None
 
     @property
     def number_of_holes(self) -> int:

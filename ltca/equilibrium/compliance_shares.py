@@ -51,12 +51,13 @@ def compliance_shares(model: Reducer, found: Equilibrium) -> dict[str, FloatArra
         push = bearing_pushes(up.rollers, shift.shape[1]) - bearing_pushes(down.rollers, shift.shape[1])
         work["crank_bearings"] -= (push.conjugate() * shift).real.sum(axis=1)
     if model.supports is not None:
+        stiffness = model.supports.respond(found.pose)[1]
         wheel, ring = np.zeros(size, dtype=bool), np.zeros(size, dtype=bool)
         wheel[model.coordinates.wheel_place] = True
         ring[model.coordinates.ring_place] = True
         for part, columns in (("cranks", ~(wheel | ring)), ("wheel_bearing", wheel), ("shaft_pins", ring)):
             held = np.where(columns, moved, 0.0)
-            work[part] += np.matmul(held[:, None, :], np.matmul(model.supports, held[..., None]))[:, 0, 0]
+            work[part] += np.matmul(held[:, None, :], np.matmul(stiffness, held[..., None]))[:, 0, 0]
     total = one[:, WHEEL_ANGLE, 0] * moved[:, WHEEL_ANGLE]
     work["geometry"] = total - sum(work[part] for part in PARTS[:-1])
     return {part: value / total for part, value in work.items()}

@@ -15,7 +15,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.arrays import ComplexArray, FloatArray, by_drive, has_rows, take_rows
+from ltca.arrays import ComplexArray, FloatArray, has_rows, take_rows
 from ltca.compliance.response import (
     ContactPressures,
     DiscModel,
@@ -29,7 +29,7 @@ from ltca.compliance.response import (
 from ltca.drive.parts import Drive
 from ltca.equilibrium.friction.turning import Rubbing, TurningFriction
 from ltca.equilibrium.shared_pins import SharedPins
-from ltca.equilibrium.supports import support_stiffness
+from ltca.equilibrium.supports import Supports
 from ltca.geometry.coordinates import WHEEL_ANGLE, Coordinates
 from ltca.geometry.pair_motion import KnownPins
 from ltca.geometry.pairs import ContactGeometry
@@ -94,8 +94,8 @@ class Reducer:
     ----------
     discs : tuple of DiscModel
         How the contacts of each disc yield, all by the same model.
-    supports : array, shape (coordinates, coordinates) or (positions, coordinates, coordinates), or None
-        Stiffness of the supports (`ltca.equilibrium.supports`), N/mm; None where nothing yields.
+    supports : Supports or None
+        Springs on coordinates; None where nothing yields.
     pins : SharedPins or None
         Pins that several discs bend.
     friction : JointFriction or None
@@ -103,7 +103,7 @@ class Reducer:
     """
 
     discs: tuple[DiscModel, ...]
-    supports: FloatArray | None = by_drive(2, default=None)
+    supports: Supports | None = None
     pins: SharedPins | None = None
     friction: JointFriction | None = None
     _by_position: bool | None = field(init=False, repr=False, compare=False, default=None)
@@ -113,7 +113,7 @@ class Reducer:
         """Return the reducer of a drive whose discs yield by these models."""
         return cls(
             discs=tuple(discs),
-            supports=support_stiffness(drive, discs[0].geometry),
+            supports=Supports.of_drive(drive, discs[0].geometry),
             pins=SharedPins.of_drive(drive),
             friction=TurningFriction.of_drive(drive),
         )
@@ -179,8 +179,9 @@ class Reducer:
         if settled is not None:
             tangent += settled.correction()
         if self.supports is not None:
-            force += np.matmul(self.supports, pose[..., None])[..., 0]
-            tangent += self.supports
+            held, stiffness = self.supports.respond(pose)
+            force += held
+            tangent += stiffness
         if self.friction is not None:
             force[:, WHEEL_ANGLE] += self.friction.of_wheel(parts, self.discs[0].geometry.placement.reduction_ratio)
         return Response(

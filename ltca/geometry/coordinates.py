@@ -56,10 +56,9 @@ class Coordinates:
     def of_drive(cls, drive: Drive) -> Coordinates:
         """Return the coordinates of a drive of any number of discs."""
         cranks = 0 if drive.crank.support is None else drive.crank.number
-        wheel = drive.pin_wheel.support_stiffness is not None
         beam = None if drive.pin_shaft is None else drive.pin_shaft.beam
         ring = beam is not None and beam.tip != "free"
-        return cls(discs=drive.disc.number_of_discs, cranks=cranks, wheel=wheel, ring=ring)
+        return cls(discs=drive.disc.number_of_discs, cranks=cranks, wheel=drive.wheel_yields, ring=ring)
 
     @property
     def own(self) -> int:

@@ -47,9 +47,7 @@ def shaft_flexibility(
     """
     start, span = supports[0], supports[1] - supports[0]
     place = np.asarray(planes, dtype=float) - start
-    far = place / span
-    # Parts of a force that each support carries.
-    parts = np.stack((1.0 - far, far))
+    parts = shaft_shares(planes, supports)
     ends = np.array([0.0, span])
 
     def cubes(at: FloatArray) -> FloatArray:
@@ -61,6 +59,12 @@ def shaft_flexibility(
     bent /= 12.0 * youngs_modulus * pi * diameter**4 / 64.0
     yielding = np.einsum("ez,es,e->zs", parts, parts, 1.0 / np.asarray(stiffness, dtype=float))
     return np.asarray(0.5 * (bent + bent.T) + yielding)
+
+
+def shaft_shares(planes: Sequence[float], supports: tuple[float, float]) -> FloatArray:
+    """Return the parts of a force at each plane that each of two supports carries, shape (2, planes)."""
+    far = (np.asarray(planes, dtype=float) - supports[0]) / (supports[1] - supports[0])
+    return np.stack((1.0 - far, far))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

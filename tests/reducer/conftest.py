@@ -36,7 +36,7 @@ def stored_energy(model, response, pose):
         ends = [disc.pin_law.energy(flank.approach, flank.effective_radius + side * step) for side in (1.0, -1.0)]
         slopes.append((ends[0] - ends[1]) / (2.0 * step))
     if isinstance(model, Reducer) and model.supports is not None:
-        total = total + 0.5 * np.einsum("bi,ij,bj->b", pose, model.supports, pose)
+        total = total + model.supports.energy(pose)
     if isinstance(model, Reducer) and model.pins is not None:
         shared = SharedTangent(model.pins.flexibility, response.parts, model.coordinates)
         force = shared.load.swapaxes(1, 2)[..., None] * shared.normal

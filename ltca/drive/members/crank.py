@@ -20,10 +20,8 @@ from ltca.drive.deviations import (
     SignedLength,
 )
 from ltca.drive.materials import LengthProfile
-from ltca.drive.units.quantities import COUNT, grows, quantity
-
-Stiffness = Annotated[float, quantity("N/mm", gt=0.0)]
-Force = Annotated[float, quantity("N", gt=0.0)]
+from ltca.drive.members.preload import Force, LoadConstant, Preload, Stiffness
+from ltca.drive.units.quantities import COUNT, grows
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
@@ -37,12 +35,27 @@ class CrankSupport:
     positions : tuple of float
         Axial places of the two bearings, on the axis of ``disc.planes``, mm.
     stiffness : tuple of float
-        Radial stiffness of each of the two bearings, N/mm.
+        Radial stiffness of each of the two bearings, N/mm: with ``preload`` that while both sides carry, otherwise that of
+        the side that carries. Left out with ``load_constant``.
+    clearance : float or None
+        Radial internal clearance of each of the two bearings, diametral as usual, mm; negative where they are tight.
+    preload : Preload or None
+        Preload of the two bearings: radial beside ``stiffness``, axial of the pair beside ``load_constant``.
+    contact_angle : float or None
+        Angle of the contact normals of two tapered roller bearings against the radial plane, rad; ``positions`` are then
+        their pressure centres.
+    load_constant : float or None
+        K of F = K δ^(10/9), axial force by axial displacement of each tapered roller bearing, N/mmⁿ, in place of
+        ``stiffness``; needs a preload.
     """
 
     diameter: PositiveLength
     positions: tuple[SignedLength, SignedLength]
-    stiffness: tuple[Stiffness, Stiffness]
+    stiffness: tuple[Stiffness, ...] = ()
+    clearance: SignedLength | None = None
+    preload: Preload | None = None
+    contact_angle: Angle | None = None
+    load_constant: LoadConstant | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)

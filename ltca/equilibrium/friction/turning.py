@@ -21,6 +21,7 @@ from ltca.drive.parts import Drive, PinShaft, PinWheel
 from ltca.equilibrium.friction.slip import Slip
 from ltca.geometry.coordinates import DISC_ROTATION
 from ltca.geometry.pairs import ContactGeometry
+from ltca.laws.beam import shaft_shares
 
 FADING_SLIP = 1e-4
 """Slip per crank angle, relative to the eccentricity, below which friction is reduced linearly to zero: at the pitch point the
@@ -190,9 +191,7 @@ class TurningFriction:
 
 def _bearing_loads(drive: Drive) -> FloatArray:
     """Load of the bearings of a crank by the forces of the discs: two supports in balance, or a bearing beside each disc."""
-    planes, support = np.array(drive.disc.disc_planes), drive.crank.support
+    support = drive.crank.support
     if support is None:
-        return np.eye(planes.size)
-    first, second = support.positions
-    part = (planes - first) / (second - first)
-    return np.stack([1.0 - part, part])
+        return np.eye(drive.disc.number_of_discs)
+    return shaft_shares(drive.disc.disc_planes, support.positions)
