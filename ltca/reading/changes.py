@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import fields, is_dataclass, replace
+from dataclasses import MISSING, fields, is_dataclass, replace
 from functools import cache
 from typing import Any
 
@@ -12,9 +12,11 @@ from pydantic import ValidationError
 from ltca.drive.declaration import REQUIRED
 from ltca.drive.deviations import BoreErrors, DiscClearance, OneDisc, OneEccentric
 from ltca.drive.fields import (
+    LISTED,
     field_kind,
     field_kinds,
     is_element,
+    listed_entries,
     missing_part,
     no_entry,
     not_a_field,
@@ -24,8 +26,9 @@ from ltca.drive.fields import (
 from ltca.drive.materials import PARTS
 from ltca.drive.members.bearings import named_bearing
 from ltca.drive.members.named_materials import LIKE, named_material, numbers_of
+from ltca.drive.members.preload import preload_table
 from ltca.drive.mistakes import describe_mistakes
-from ltca.drive.parts import Drive, Duty
+from ltca.drive.parts import BearingRow, Drive, Duty, MainBearing
 from ltca.errors import DriveError, shortened
 from ltca.reading.physical_checks import find_contradictions
 
@@ -128,6 +131,7 @@ def _without_names(values: Mapping[str, Any]) -> Mapping[str, Any]:
     """Changes with named materials and bearings as their properties, which properties given beside them replace."""
     readers = {f"materials.{part}": (_numbers_of_material, "a material") for part in PARTS}
     readers[BEARING] = (_numbers_of_bearing, "a bearing")
+    values = _without_preloads(values)
     named = readers.keys() & values.keys()
     if not named:
         return values
@@ -142,6 +146,17 @@ def _without_names(values: Mapping[str, Any]) -> Mapping[str, Any]:
         except DriveError as error:
             raise DriveError([f"{path} = {problem}" for problem in error.problems]) from error
     return found | {path: value for path, value in values.items() if path not in named}
+
+
+def _without_preloads(values: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Changes with every ``preload`` that is a number or a text as that of its force or its displacement."""
+    found: dict[str, Any] = {}
+    for path, value in values.items():
+        if value is not None and path.endswith(".preload") and field_kind(f"{path}.force") is not None:
+            found |= {f"{path}.{name}": each for name, each in preload_table(value).items()}
+        else:
+            found[path] = value
+    return found
 
 
 BEARING = "crank_bearing.bearing"
@@ -168,19 +183,27 @@ def _with_own(drive: Drive, own: Mapping[tuple[str, int], Mapping[str, Any]], pr
         "disc": [*(drive.disc.of or (OneDisc(),) * drive.disc.number_of_discs)],
         "crank": _eccentrics(drive),
     }
-    duty = [*drive.duty]
+    listed = {table: [*listed_entries(drive, table)] for table in LISTED}
     for (table, number), values in sorted(own.items()):
         part = table.partition(".")[0]
-        if table == "duty" and number == len(duty) and {*values} == {item.name for item in fields(Duty)}:
-            duty.append(_made(values, f"duty.{number}", problems))
-            continue
-        if table == "duty" and number < len(duty):
-            duty[number] = _replaced(duty[number], dict(values), f"duty.{number}.", problems)
-            continue
+        if table in LISTED and number <= len(entries := listed[table]):
+            tree: dict[str, Any] = {}
+            for name, value in values.items():
+                first, _, rest = name.partition(".")
+                if rest:
+                    tree.setdefault(first, {})[rest] = value
+                else:
+                    tree[first] = value
+            if number < len(entries):
+                entries[number] = _replaced(entries[number], tree, f"{table}.{number}.", problems)
+                continue
+            if _is_whole(table, tree):
+                entries.append(_made(table, tree, f"{table}.{number}", problems))
+                continue
         if (problem := no_entry(drive, table, number)) is not None:
             problems.append(f"{table}.{number}: {problem}")
             continue
-        tree: dict[str, Any] = {}
+        tree = {}
         for name, value in values.items():
             first, _, rest = name.partition(".")
             tree.setdefault(first, {})[rest] = value
@@ -192,7 +215,8 @@ def _with_own(drive: Drive, own: Mapping[tuple[str, int], Mapping[str, Any]], pr
         return drive
     return replace(
         drive,
-        duty=tuple(duty),
+        duty=tuple(listed["duty"]),
+        main_bearing=_with_rows(drive, listed["main_bearing.bearings"]),
         disc=replace(drive.disc, of=tuple(rows["disc"]) if any(key[0] == "disc.of" for key in own) else drive.disc.of),
         crank=replace(
             drive.crank, of=tuple(rows["crank"]) if any(key[0] == "crank.of" for key in own) else drive.crank.of
@@ -200,10 +224,26 @@ def _with_own(drive: Drive, own: Mapping[tuple[str, int], Mapping[str, Any]], pr
     )
 
 
-def _made(values: Mapping[str, Any], path: str, problems: list[str]) -> Any:
-    """A further entry of the duty; None with its mistakes in `problems`."""
+_ENTRY: Mapping[str, type[Any]] = {"duty": Duty, "main_bearing.bearings": BearingRow}
+
+
+def _with_rows(drive: Drive, rows: list[Any]) -> MainBearing | None:
+    """The main bearing with the entries of its rows."""
+    held = drive.main_bearing
+    if not rows or (held is not None and held.bearings == tuple(rows)):
+        return held
+    return replace(held or MainBearing(), bearings=tuple(rows))
+
+
+def _is_whole(table: str, values: Mapping[str, Any]) -> bool:
+    """Whether values make a further entry of a table: those without which there is none."""
+    return {item.name for item in fields(_ENTRY[table]) if item.default is MISSING} <= {*values}
+
+
+def _made(table: str, values: Mapping[str, Any], path: str, problems: list[str]) -> Any:
+    """A further entry of a table; None with its mistakes in `problems`."""
     try:
-        return Duty(**values)
+        return _ENTRY[table](**values)
     except ValidationError as error:
         problems += describe_mistakes(error.errors(), path.split("."))
         return None

@@ -26,6 +26,7 @@ from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.reducer import Reducer
 from ltca.laws.backed import BackedLaw
 from ltca.testing.actual_parts import ActualParts, DeviatedFlank
+from ltca.testing.bearing_springs import crank_springs, shaft_energy, wheel_spring
 from ltca.testing.friction_check import FrictionCheck
 from ltca.testing.yielding_pins import (
     EnergyLaw,
@@ -33,7 +34,7 @@ from ltca.testing.yielding_pins import (
     YieldingPins,
     beam_stiffness,
     contact_alone,
-    crankshaft_deflections,
+    crankshaft_bending,
     has_ring,
     ring_tips,
 )
@@ -142,19 +143,23 @@ class PotentialEnergy:
 
     def wheel_displacement(self, pose: FloatArray) -> ComplexArray:
         """Displacement of the wheel, mm."""
-        if self.drive.pin_wheel.support_stiffness is None:
+        if wheel_spring(self.drive) is None:
             return np.zeros(pose.shape[0], dtype=complex)
         last = -6 if has_ring(self.drive) else -3
         return np.asarray(pose[:, last] + 1j * pose[:, last + 1])
 
     def _supports(self, pose: FloatArray) -> FloatArray:
         """Energy of crankshafts on their bearings and of the wheel on its main bearing, N·mm."""
-        total = 0.5 * (self.drive.pin_wheel.support_stiffness or 0.0) * np.abs(self.wheel_displacement(pose)) ** 2
-        if self.drive.crank.support is not None:
-            holding = np.linalg.inv(crankshaft_deflections(self.drive))
-            discs = range(self.drive.disc.number_of_discs)
+        spring, total = wheel_spring(self.drive), np.zeros(pose.shape[0])
+        if spring is not None:
+            total = total + spring.energy(np.abs(self.wheel_displacement(pose)))
+        if (support := self.drive.crank.support) is not None:
+            (start, end), planes = support.positions, np.asarray(self.drive.disc.disc_planes)
+            second, discs = (planes - start) / (end - start), range(self.drive.disc.number_of_discs)
+            shares, bending = np.stack([1.0 - second, second]), crankshaft_bending(self.drive)
             moved = np.stack([self._cranks(disc, pose) for disc in discs], axis=1)
-            total = total + 0.5 * np.einsum("pdc,de,pec->p", moved.conj(), holding, moved).real
+            for crank in range(self.drive.crank.number):
+                total = total + shaft_energy(bending, shares, crank_springs(self.drive), moved[:, :, crank])
         return np.asarray(total)
 
     def crank_moment(self, pose: FloatArray) -> float:
@@ -283,7 +288,7 @@ def potential_of(drive: Drive, model: Reducer, balanced: Equilibrium, position: 
 def friction_at(potential: PotentialEnergy, balanced: Equilibrium, position: int) -> FrictionCheck:
     """Return the friction at that position of a drive with friction."""
     drive, pose, wheel, shaft = potential.drive, balanced.pose[position], potential.wheel_pins, potential.shaft_pins
-    supported = drive.pin_wheel.support_stiffness is not None
+    supported = drive.wheel_yields
     return FrictionCheck(
         drive=drive,
         crank_angle=potential.crank_angle,

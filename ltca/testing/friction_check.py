@@ -22,6 +22,7 @@ from ltca.compliance.response import DiscResponse
 from ltca.drive.parts import Drive, Friction, PinShaft, PinWheel
 from ltca.geometry.coordinates import X, Y
 from ltca.testing.actual_parts import ActualParts, DeviatedFlank
+from ltca.testing.bearing_springs import crank_springs, wheel_spring
 
 FADES = 1e-4
 """Slip by the crank angle, in eccentricities, below which a contact is next to the pitch point: any friction may be there."""
@@ -139,7 +140,9 @@ class FrictionCheck:
         else:
             near, far = support.positions
             share = (np.asarray(planes) - near) / (far - near)
-            carried = np.abs(share @ self.bearings).sum() + np.abs((1.0 - share) @ self.bearings).sum()
+            first, second = crank_springs(self.drive)
+            carried = np.maximum(np.abs(share @ self.bearings), second.sides_together).sum()
+            carried += np.maximum(np.abs((1.0 - share) @ self.bearings), first.sides_together).sum()
         friction = self._friction
         at_support = friction.support_bearing * friction.support_bearing_radius * carried
         return float(self._motion * (self._rolling * np.abs(self.bearings).sum() + at_support))
@@ -189,8 +192,9 @@ class FrictionCheck:
         pins, on_wheel = self.drive.pin_wheel.number_of_pins, 0j
         for part, found in zip(self.parts, self.contacts, strict=True):
             on_wheel += (found.rubbing[:pins] - part.pin_load[0] * found.into_disc[:pins]).sum()
-        friction = self._friction
-        return float(friction.support_bearing * friction.support_bearing_radius * abs(on_wheel))
+        friction, spring = self._friction, wheel_spring(self.drive)
+        load = max(abs(on_wheel), 0.0 if spring is None else spring.sides_together)
+        return float(friction.support_bearing * friction.support_bearing_radius * load)
 
     def _told(self, disc: int) -> ComplexArray:
         """Friction on the pins in the solution: the force that works by the place of the disc."""

@@ -269,8 +269,10 @@ def _unit_loads(
     return np.stack(moments), np.stack(shears)
 
 
-def crankshaft_deflections(drive: Drive) -> FloatArray:
-    """Return the deflections of a crankshaft in the planes of the discs by forces there, by quadrature of moments, mm/N."""
+def crankshaft_bending(drive: Drive) -> FloatArray:
+    """Return the deflections of a crankshaft on rigid bearings in the planes of the discs by forces there, by quadrature of
+    moments, mm/N.
+    """
     support = drive.crank.support
     assert support is not None
     (start, end), planes = support.positions, np.asarray(drive.disc.disc_planes)
@@ -288,8 +290,4 @@ def crankshaft_deflections(drive: Drive) -> FloatArray:
 
     moments = np.stack([bending(force, share) for force, share in zip(planes, second, strict=True)])
     rigidity = drive.materials.crankshaft.youngs_modulus * np.pi * support.diameter**4 / 64.0
-    reactions = np.stack([1.0 - second, second])
-    return np.asarray(
-        (moments * weight) @ moments.T / rigidity
-        + reactions.T @ np.diag(1.0 / np.asarray(support.stiffness)) @ reactions
-    )
+    return np.asarray((moments * weight) @ moments.T / rigidity)
