@@ -81,18 +81,44 @@ class ContactGeometry:
         Of a pose in which every member moves that can.
     tip_share : float or array, shape (positions, 1)
         Displacement of a shaft pin at the disc per displacement of its tip, where a ring ties the tips.
+    wheel_gap : float or array, shape (positions, 1)
+        Distance by which the wheel is free in its main bearing, mm.
+    crank_gaps, crank_shares : array, shape (2,) or (positions, 2)
+        Distance by which a crank is free in each of its two bearings, mm, and displacement of the crank in the plane of the
+        disc by one there.
     """
 
     placement: Placement
     profile: FlankProfile
     coordinates: Coordinates
     tip_share: float | FloatArray = by_drive(0, default=0.0)
+    wheel_gap: float | FloatArray = by_drive(0, default=0.0)
+    crank_gaps: FloatArray = by_drive(1, default_factory=lambda: np.zeros(2))
+    crank_shares: FloatArray = by_drive(1, default_factory=lambda: np.zeros(2))
 
     @classmethod
     def of_drive(cls, drive: Drive) -> ContactGeometry:
         """Return the contact geometry of a drive of one disc."""
         place, profile = Placement.of_drive(drive), FlankProfile.of_drive(drive)
-        return cls(placement=place, profile=profile, coordinates=Coordinates.of_drive(drive))
+        bearing, support = drive.main_bearing, drive.crank.support
+        gaps, shares = np.zeros(2), np.zeros(2)
+        if support is not None:
+            gaps = np.full(2, 0.5 * max(support.clearance or 0.0, 0.0))
+            far = (drive.disc.disc_planes[0] - support.positions[0]) / (support.positions[1] - support.positions[0])
+            shares = np.array([1.0 - far, far])
+        return cls(
+            placement=place,
+            profile=profile,
+            coordinates=Coordinates.of_drive(drive),
+            wheel_gap=0.0 if bearing is None else 0.5 * max(bearing.clearance or 0.0, 0.0),
+            crank_gaps=gaps,
+            crank_shares=shares,
+        )
+
+    @property
+    def has_loose_supports(self) -> bool:
+        """Whether wheel or cranks are free in their bearings."""
+        return bool(np.any(self.wheel_gap) or np.any(self.crank_gaps))
 
     @property
     def tips_by_ring(self) -> ComplexArray:
