@@ -265,7 +265,8 @@ class LoadedAnalysis:
             found["cranks yield"] = "crank.support", np.abs(self.crank_deflections)
         if coordinates.wheel:
             wheel = self.full.pose[:, coordinates.wheel_place]
-            found["the wheel moves"] = "pin_wheel.support_stiffness", np.hypot(wheel[:, 0], wheel[:, 1])
+            field = "pin_wheel.support_stiffness" if self.drive.main_bearing is None else "main_bearing"
+            found["the wheel moves"] = field, np.hypot(wheel[:, 0], wheel[:, 1])
         return found
 
     def _lost_play(self) -> str | None:

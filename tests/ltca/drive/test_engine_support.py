@@ -59,6 +59,7 @@ def test_every_problem_is_named_at_once(engine):
             "pin_shaft.beam.tip": "free",
             "pin_shaft.stiffness": None,
             "pin_wheel.support_stiffness": 5e5,
+            "main_bearing.clearance": 0.01,
             "pin_wheel.axis_offset.y": 0.01,
             "pin_wheel.pin_profile.crown_drop": 0.002,
             "crank_bearing.roller_length": 8.0,

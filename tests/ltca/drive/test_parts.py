@@ -69,7 +69,15 @@ LEFT_OUT = (
     "load.speed",
     *RATINGS,
 )
-OF_PARTS = ("crank.support", "materials.crankshaft", "materials.sleeve", "materials.wheel_seat", "duty", "lubricant")
+OF_PARTS = (
+    "crank.support",
+    "main_bearing",
+    "materials.crankshaft",
+    "materials.sleeve",
+    "materials.wheel_seat",
+    "duty",
+    "lubricant",
+)
 OF_PINS = ("pin_wheel.seat", "pin_wheel.beam", "pin_shaft.seat", "pin_shaft.beam")
 # What plane finite-element bodies are made of: flank, bore, holes and thickness of the disc; pins, rollers, race; materials.
 OF_THE_BODIES = [
