@@ -19,7 +19,9 @@ from ltca.drive.deviations import OneDisc, OneEccentric, Runout
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Clearance, Drive, Installation
 from ltca.drive.units.quantities import ARCMIN
+from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.output_torque import solve_at_output
+from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.flank import FlankProfile
@@ -307,6 +309,18 @@ def _limit(discs: Sequence[ContactGeometry], angle: FloatArray) -> float:
     return ends[0] - ends[1]
 
 
+def _pressed(model: Reducer, loaded: Equilibrium) -> float:
+    """Largest approach of any contact, and displacement of any bearing beyond its clearance, mm."""
+    contacts, held = loaded.response, 0.0
+    whole = contacts.rollers.inner_approach + contacts.rollers.outer_approach
+    for support in () if model.supports is None else model.supports.bearings:
+        yields = np.linalg.inv(support.stiffness).diagonal(axis1=-2, axis2=-1).max()
+        held = max(held, float(np.abs(support.reactions(loaded.pose)).max() * yields))
+    return held + max(
+        float(np.max(each, initial=0.0)) for each in (contacts.flank.approach, contacts.holes.approach, whole)
+    )
+
+
 def compare_with_load(seed: int) -> list[Comparison]:
     """Return the comparisons of the practical drive of a seed at two crank angles."""
     drive, angle = practical_drive(seed)
@@ -319,13 +333,14 @@ def compare(drive: Drive, crank_angle: FloatArray) -> list[Comparison]:
     model = replace(HalfSpace().prepare(drive).model, friction=None)
     discs, scale = model.geometries, abs(drive.output_per_wheel_angle) * ARCMIN
     found = free_play(discs, crank_angle)
-    answers, own = [], model.coordinates.own
+    answers, own, loose = [], model.coordinates.own, any(disc.has_loose_supports for disc in discs)
     for row, angle in enumerate(crank_angle):
         free = float(found.play[row]) * scale
         if found.preloaded[row]:
             answers.append(Comparison(outcome="preloaded", free=free))
             continue
-        limit = _limit(discs, np.array([angle])) * scale
+        # The bound knows rigid members alone.
+        limit = free if loose else _limit(discs, np.array([angle])) * scale
         for part in PARTS:
             torque = part * drive.load.torque * np.array([1.0, -1.0])
             try:
@@ -333,11 +348,17 @@ def compare(drive: Drive, crank_angle: FloatArray) -> list[Comparison]:
             except ConvergenceError:
                 continue
             turned = abs(float(np.diff(loaded.pose[:, WHEEL_ANGLE])[0])) * scale
-            overlap = np.max(
-                [
-                    largest_overlap(disc, np.full(2, angle), loaded.pose[:, np.append(np.arange(3) + own * number, -1)])
-                    for number, disc in enumerate(discs)
-                ]
+            overlap = (
+                _pressed(model, loaded)
+                if loose
+                else np.max(
+                    [
+                        largest_overlap(
+                            disc, np.full(2, angle), loaded.pose[:, np.append(np.arange(3) + own * number, -1)]
+                        )
+                        for number, disc in enumerate(discs)
+                    ]
+                )
             )
             yielding = float(free_play(discs, np.array([angle]), overlap=float(overlap)).play[0]) * scale
             outcome = "wrong"
