@@ -25,7 +25,7 @@ from ltca.equilibrium.neighbours import (
 from ltca.equilibrium.newton import ROUND_OFF_BOUND, Search
 from ltca.equilibrium.reducer import Reducer, complete
 from ltca.errors import ConvergenceError
-from ltca.geometry.coordinates import WHEEL_ANGLE
+from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.first_contact import turn_to_contact
 from ltca.geometry.pairs import ContactGeometry
 
@@ -80,7 +80,8 @@ def equilibrium_of_disc(model: Reducer, found: Equilibrium, disc: int) -> Equili
 
 
 def lever_arms(model: Reducer) -> FloatArray:
-    """Return the lengths that turn the residual into forces, mm: e z_C for the rotation of each disc, e z_P, 1 elsewhere.
+    """Return the lengths that turn the residual into forces, mm: e z_C for the rotation of each disc, e z_P, e for
+    twists of cranks, 1 elsewhere.
 
     Returns
     -------
@@ -96,6 +97,8 @@ def lever_arms(model: Reducer) -> FloatArray:
     for place, geometry, e in zip(coordinates.rotations, geometries, eccentricities, strict=False):
         wheel = e * geometry.placement.reduction_ratio
         arms[..., place], arms[..., WHEEL_ANGLE] = wheel - e, wheel
+        for twist in coordinates.twist_places:
+            arms[..., place - DISC_ROTATION + twist] = e
     if coordinates.ring:
         arms[..., coordinates.ring_place.stop - 1] = ring
     return arms

@@ -44,10 +44,9 @@ def crank_moments(model: Reducer, crank_angle: FloatArray, pose: FloatArray, res
     cranks, friction = model.discs[0].geometry.placement.cranks, model.friction
     pushes = [bearing_pushes(part.rollers, cranks) for part in response.parts]
     total = model.discs[0].geometry.placement.cage_speed * cage_moments(model, crank_angle, pose, response)
-    for disc, push in zip(model.discs, pushes, strict=True):
-        place = disc.geometry.placement
-        lever = place.race_centres(crank_angle) - place.crank_axes
-        total = total + (lever.conjugate() * push).imag
+    for number, (disc, push) in enumerate(zip(model.discs, pushes, strict=True)):
+        bores = disc.geometry.bores(crank_angle, pose[:, model.coordinates.columns(number)])
+        total = total + (bores.lever.conjugate() * push).imag
     return total if friction is None else total + friction.of_cranks(pushes)
 
 

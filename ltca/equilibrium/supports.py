@@ -1,8 +1,9 @@
 r"""What holds wheel and cranks: springs on coordinates, linear ones and those of bearings with clearance or preload.
 
 Every crank is a beam on two bearings (`ltca.laws.beam`); its stiffness ties x and y of the crank in the planes of the discs,
-alike in every direction. The wheel's main bearing holds its x and y. A ring that ties the tips of the shaft pins is held by
-what the pins resist when it moves all tips. Linear springs are one matrix.
+alike in every direction. Where it twists its stiffness in torsion ties the angles of its eccentrics against the splined planet.
+The wheel's main bearing holds its x and y. A ring that ties the tips of the shaft pins is held by what the pins resist when it
+moves all tips. Linear springs are one matrix.
 
 A bearing with clearance, or one of whose sides lifts off, is a spring in series with a displacement w along its reaction R
 (`ltca.laws.bearing_pair.SideLaw`). With the stiffness K of the shaft on its springs and the parts L of a force that each
@@ -26,7 +27,7 @@ from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import Coordinates
 from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.backed import shaft_pin_beam
-from ltca.laws.beam import shaft_flexibility, shaft_shares
+from ltca.laws.beam import shaft_flexibility, shaft_shares, torsion_flexibility
 from ltca.laws.bearing_pair import (
     BALL,
     ROLLER,
@@ -199,6 +200,10 @@ class Supports:
                 for direction in (0, 1):
                     x = starts + coordinates.crank(crank) + direction
                     matrix[np.ix_(x, x)] += shaft
+        twisted = crank_torsion(drive)
+        for twist in coordinates.twist_places if twisted is not None else ():
+            turns = coordinates.own * np.arange(coordinates.discs) + twist
+            matrix[np.ix_(turns, turns)] += twisted
         if isinstance(wheel, SideLaw):
             held, whole = np.array([[wheel.stiffness]]), np.ones((1, 1))
             bearings.append(BearingSupport.of_laws((coordinates.wheel_place.start,), held, whole, (wheel,)))
@@ -242,6 +247,21 @@ def crank_stiffness(drive: Drive) -> FloatArray | None:
     first, second = crank_bearing_stiffness(drive) if laws is None else (law.stiffness for law in laws)
     return np.asarray(
         np.linalg.inv(shaft_flexibility(planes, support.positions, (first, second), support.diameter, modulus))
+    )
+
+
+def crank_torsion(drive: Drive) -> FloatArray | None:
+    """Return the moments on a crank at the planes of the discs by twists there, N·mm/rad, shape (discs, discs).
+
+    Twists are those against the splined planet, which holds φ_C; None where cranks do not twist.
+    """
+    support, shaft = drive.crank.support, drive.materials.crankshaft
+    if support is None or not support.torsion:
+        return None
+    shear_modulus = shaft.youngs_modulus / (2.0 * (1.0 + shaft.poisson_ratio))
+    planes = drive.disc.disc_planes
+    return np.asarray(
+        np.linalg.inv(torsion_flexibility(planes, support.spline_plane or 0.0, support.diameter, shear_modulus))
     )
 
 

@@ -347,7 +347,13 @@ class ContactGeometry:
             x = coordinates.crank(crank)
             moved[:, crank] -= pose[:, x] + 1j * pose[:, x + 1]
             gradient[:, crank, x], gradient[:, crank, x + 1] = -1.0, -1j
-        return BoreMotion(displacement=moved, arm=arm, gradient=gradient)
+        lever, twists = place.race_centres(crank_angle) - place.crank_axes, coordinates.twist_places
+        if twists:
+            straight = lever
+            lever = straight * unit(pose[:, twists])
+            moved -= lever - straight
+            gradient[:, np.arange(len(twists)), twists] = -1j * lever
+        return BoreMotion(displacement=moved, arm=arm, gradient=gradient, lever=lever, twists=twists)
 
     def rollers(self, crank_angle: FloatArray) -> RollerRays:
         """Return the cage rays of the rollers (Eq. 48), which depend on the crank angle alone."""

@@ -86,6 +86,7 @@ def _crank_support(drive: Drive) -> Iterator[str]:
             )
         return
     yield from _crank_bearings(support)
+    yield from _spline(support, drive.disc.disc_planes)
     start, end = support.positions
     if end <= start:
         yield f"crank.support.positions holds {start:g} and {end:g} mm: must ascend"
@@ -127,6 +128,18 @@ def _crank_bearings(support: CrankSupport) -> Iterator[str]:
         if support.contact_angle is not None:
             yield from _contact_angle(f"{path}.contact_angle", support.contact_angle)
     yield from _loose_or_tight(path, support.clearance, support.preload)
+
+
+def _spline(support: CrankSupport, planes: tuple[float, ...]) -> Iterator[str]:
+    """Problems of the place where a twisting crank is held."""
+    path, place = "crank.support.spline_plane", support.spline_plane
+    if not support.torsion:
+        if place is not None:
+            yield f"{path} = {place:g} mm: must be left out without crank.support.torsion = true"
+    elif place is None:
+        yield f"{path}: must be given with crank.support.torsion = true: the shaft twists from there"
+    elif place in planes:
+        yield f"{path} = {place:g} mm: must be another place than that of a disc (disc.planes), whose eccentric is no spline"
 
 
 def _contact_angle(path: str, angle: float) -> Iterator[str]:

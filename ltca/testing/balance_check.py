@@ -26,7 +26,7 @@ from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.reducer import Reducer
 from ltca.laws.backed import BackedLaw
 from ltca.testing.actual_parts import ActualParts, DeviatedFlank
-from ltca.testing.bearing_springs import crank_springs, shaft_energy, wheel_spring
+from ltca.testing.bearing_springs import crank_springs, disc_coordinates, shaft_energy, shaft_torsion, wheel_spring
 from ltca.testing.friction_check import FrictionCheck
 from ltca.testing.yielding_pins import (
     EnergyLaw,
@@ -130,16 +130,31 @@ class PotentialEnergy:
 
     @property
     def own(self) -> int:
-        """Number of coordinates of each disc: three, and two for each crank on elastic supports."""
-        return 3 if self.drive.crank.support is None else 3 + 2 * self.drive.crank.number
+        """Number of coordinates of each disc: three, and two for each crank on elastic supports, three where it twists."""
+        return disc_coordinates(self.drive)
 
     def _cranks(self, disc: int, pose: FloatArray) -> ComplexArray:
         """Displacements of the cranks in the plane of a disc, shape (poses, cranks), mm."""
         first = self.own * disc + 3
-        yielding = pose[:, first : first + self.own - 3]
-        if yielding.shape[1] == 0:
-            return np.zeros((pose.shape[0], self.drive.crank.number), dtype=complex)
-        return np.asarray(yielding[:, ::2] + 1j * yielding[:, 1::2])
+        cranks, support = self.drive.crank.number, self.drive.crank.support
+        if support is None:
+            return np.zeros((pose.shape[0], cranks), dtype=complex)
+        yielding = pose[:, first : first + 2 * cranks]
+        moved = yielding[:, ::2] + 1j * yielding[:, 1::2]
+        return np.asarray(moved)
+
+    def _twists(self, disc: int, pose: FloatArray) -> FloatArray:
+        """Angles of the eccentrics of a disc ahead of their cranks, shape (poses, cranks), rad; zero without torsion."""
+        cranks, support = self.drive.crank.number, self.drive.crank.support
+        if support is None or not support.torsion:
+            return np.zeros((pose.shape[0], cranks))
+        first = self.own * disc + 3 + 2 * cranks
+        return pose[:, first : first + cranks]
+
+    def _races(self, parts: ActualParts, disc: int, pose: FloatArray) -> ComplexArray:
+        """Centres of the inner races of a disc on cranks that yield and twist, shape (poses, cranks), mm."""
+        turned = parts.eccentrics * (np.exp(1j * self._twists(disc, pose)) - 1.0)
+        return np.asarray(parts.race_centres + turned + self._cranks(disc, pose))
 
     def wheel_displacement(self, pose: FloatArray) -> ComplexArray:
         """Displacement of the wheel, mm."""
@@ -160,6 +175,8 @@ class PotentialEnergy:
             moved = np.stack([self._cranks(disc, pose) for disc in discs], axis=1)
             for crank in range(self.drive.crank.number):
                 total = total + shaft_energy(bending, shares, crank_springs(self.drive), moved[:, :, crank])
+            twisted = np.stack([self._twists(disc, pose) for disc in discs], axis=1)
+            total = total + shaft_torsion(self.drive, twisted)
         return np.asarray(total)
 
     def crank_moment(self, pose: FloatArray) -> float:
@@ -188,7 +205,7 @@ class PotentialEnergy:
         found = []
         for disc in range(self.drive.disc.number_of_discs):
             parts, centre, turn = self._place(disc, pose[None])
-            shift = centre + parts.bores * turn - parts.race_centres - self._cranks(disc, pose[None])
+            shift = centre + parts.bores * turn - self._races(parts, disc, pose[None])
             # Short against the approaches of a disc that carries next to nothing.
             step = 2e-6 * float(np.max(np.abs(shift))) + 1e-10
             around = shift[0, :, None, None] + step * np.array([[1.0], [-1.0], [1j], [-1j]])
@@ -200,10 +217,10 @@ class PotentialEnergy:
         """Energy of the rollers of all crank bearings of one disc."""
         first = self.own * disc
         centre = parts.place + pose[:, first] + 1j * pose[:, first + 1]
-        turn, cranks = np.exp(1j * pose[:, first + 2]), self._cranks(disc, pose)
+        turn, races = np.exp(1j * pose[:, first + 2]), self._races(parts, disc, pose)
         total = np.zeros(pose.shape[0])
-        for crank, (bore, race) in enumerate(zip(parts.bores, parts.race_centres, strict=True)):
-            total += self._rollers(parts, (centre + bore * turn - race - cranks[:, crank])[:, None])
+        for crank, bore in enumerate(parts.bores):
+            total += self._rollers(parts, (centre + bore * turn - races[:, crank])[:, None])
         return total
 
     def _rollers(self, parts: ActualParts, shift: ComplexArray) -> FloatArray:
@@ -324,6 +341,11 @@ def find_imbalance(
     lever = np.ones(size)
     lever[2 : potential.own * drive.disc.number_of_discs : potential.own] = wheel - drive.crank.eccentricity
     lever[-1] = wheel
+    support = drive.crank.support
+    if support is not None and support.torsion:
+        for disc in range(drive.disc.number_of_discs):
+            first = potential.own * disc + 3 + 2 * drive.crank.number
+            lever[first : first + drive.crank.number] = drive.crank.eccentricity
     if drive.pin_shaft is not None and has_ring(drive):
         lever[-2] = drive.pin_shaft.pin_circle_radius
     load = abs(moment) / wheel

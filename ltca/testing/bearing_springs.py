@@ -166,3 +166,30 @@ def _least(stiff: FloatArray, shares: FloatArray, springs: tuple[SidedSpring, ..
             return min(here, there)
         place, here = place + part * step, there
     return here
+
+
+def disc_coordinates(drive: Drive) -> int:
+    """Return the number of coordinates of each disc: three, two for each crank on elastic supports, three where it twists."""
+    support = drive.crank.support
+    return 3 if support is None else 3 + (3 if support.torsion else 2) * drive.crank.number
+
+
+def shaft_torsion(drive: Drive, twist: FloatArray) -> FloatArray:
+    """Return the energy of all cranks, N·mm, at twists of their eccentrics, shape (poses, discs, cranks), rad.
+
+    The shaft is a chain of pieces from the spline to one side and to the other, each GJ/2L times the square of its twist.
+    """
+    support, total = drive.crank.support, np.zeros(twist.shape[0])
+    if support is None or not support.torsion:
+        return total
+    material = drive.materials.crankshaft
+    rigidity = material.youngs_modulus / (2.0 + 2.0 * material.poisson_ratio) * np.pi * support.diameter**4 / 32.0
+    planes, held = np.asarray(drive.disc.disc_planes), support.spline_plane or 0.0
+    for side in (1.0, -1.0):
+        last, before = 0.0, np.zeros(twist.shape[::2])
+        for disc in np.argsort(side * (planes - held)):
+            away = side * (planes[disc] - held)
+            if away > 0.0:
+                total = total + 0.5 * rigidity / (away - last) * ((twist[:, disc] - before) ** 2).sum(axis=1)
+                last, before = away, twist[:, disc]
+    return np.asarray(total)

@@ -249,6 +249,9 @@ def _beside(drive: Drive, path: str) -> dict[str, Any]:
         support = _SUPPORT if drive.crank.support is None else {}
         tapered = {"contact_angle": 0.25, "load_constant": 5e6, "preload.force": 1e4, "stiffness": ()}
         return {**support, **{f"crank.support.{name}": value for name, value in tapered.items()}}
+    if path == "crank.support.spline_plane":
+        support = _SUPPORT if drive.crank.support is None else {}
+        return {**support, "crank.support.torsion": True, path: 40.0}
     if path.startswith(("crank.support.", "materials.crankshaft.")) and drive.crank.support is None:
         return _SUPPORT
     if path.startswith("crank.support.preload.") and drive.crank.support is not None:
@@ -328,6 +331,8 @@ def change_of(drive: Drive, path: str) -> tuple[Drive, dict[str, Any]]:
         drive = with_fields(drive, dict.fromkeys(DIAMETERS, ()))
     if needed := _beside(drive, path):
         drive = with_fields(drive, needed)
+    if path == "crank.support.torsion":
+        return drive, {path: True, "crank.support.spline_plane": 40.0}
     if path.endswith(".seat.kind"):
         return drive, _seat(drive, parent.removesuffix(".seat"), sensible_change(drive, path))
     if path in _LEFT_OUT and _is_left_out(drive, path):

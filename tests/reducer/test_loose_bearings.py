@@ -85,7 +85,7 @@ def test_no_clearance_and_no_field_are_one_drive(name):
 
 
 def test_the_loose_side_gives_way_by_the_clearance():
-    """A central crank whose bearings are free by 5 µm: its deflection is 5 µm, and what its load makes shaft and bearings yield."""
+    """A central crank whose bearings are free by 5 µm: 5 µm, and what its load makes shaft and bearings yield."""
     drive = with_fields(drive_of("paper"), {"crank.support.clearance": 0.01})
     found = analyse(drive, ANGLES)
     load = np.hypot(found.bearing_radial, found.bearing_tangential)

@@ -7,7 +7,7 @@ from dataclasses import field
 from math import pi
 from typing import Annotated
 
-from pydantic import Field
+from pydantic import Field, StrictBool
 from pydantic.dataclasses import dataclass
 
 from ltca.drive.deviations import (
@@ -47,6 +47,11 @@ class CrankSupport:
     load_constant : float or None
         K of F = K δ^(10/9), axial force by axial displacement of each tapered roller bearing, N/mmⁿ, in place of
         ``stiffness``; needs a preload.
+    torsion : bool
+        Whether the shaft twists between ``spline_plane`` and the eccentrics.
+    spline_plane : float or None
+        Axial place where the planet gear of the first stage, or whatever turns the crank, is fixed on the shaft, with
+        ``torsion`` alone, mm.
     """
 
     diameter: PositiveLength
@@ -56,6 +61,8 @@ class CrankSupport:
     preload: Preload | None = None
     contact_angle: Angle | None = None
     load_constant: LoadConstant | None = None
+    torsion: StrictBool = False
+    spline_plane: SignedLength | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)

@@ -176,8 +176,11 @@ class TurningFriction:
             raise AssertionError("friction follows loads by their slopes")
         # F ∂s_q/∂q is left out: approaches are short against the radii about which contacts turn.
         tangent = np.matmul(slip.by_pose.swapaxes(1, 2), sense[..., None] * part.slopes.by_pose)
-        push = np.abs(bearing_pushes(part.rollers, geometry.placement.cranks)).sum(axis=1)
-        force[:, DISC_ROTATION] -= self.motion * self.strength * self.rolling * push
+        rolled = self.motion * self.strength * self.rolling
+        push = np.abs(bearing_pushes(part.rollers, geometry.placement.cranks))
+        force[:, DISC_ROTATION] -= rolled * push.sum(axis=1)
+        if twists := geometry.coordinates_of(pose).twist_places:
+            force[:, twists] += rolled * push
         return Rubbing(tangential=tangential, force=force, tangent=tangent)
 
     def of_wheel(self, parts: Sequence[DiscResponse], reduction_ratio: float) -> FloatArray:
