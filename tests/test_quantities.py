@@ -24,6 +24,7 @@ from ltca.analysis.results import build_dataset
 from ltca.analysis.summary import summarise
 from ltca.analysis.verdict.values import find_values
 from ltca.quantities import LIMITED, QUANTITIES, REFINED, SCALARS, SCHEMA_VERSION, Quantity, scalar_named
+from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import parse_drive, shipped_drive
 from ltca.studies.quantities import STAGES
 
@@ -88,14 +89,16 @@ def test_scalars_have_the_unit_of_what_they_sum_up():
 
 @pytest.fixture(scope="module")
 def drives():
-    """The shipped drives, and one that rubs, is warm, stands on a soft bearing and has a hardened case."""
+    """The shipped drives, one that rubs, is warm, stands on a soft bearing and has a hardened case, and one with soft cranks."""
     files = {name: parse_drive(shipped_drive(name), name) for name in SHIPPED}
     text = re.sub(r"(?m)^(torque = .*)$", r"\1\nspeed = 1000.0", shipped_drive("sleeved")).replace(
         'disc = { like = "100Cr6",', 'disc = { like = "100Cr6", hardness_depth = 0.5,'
     )
     text = text.replace("[pin_wheel]\n", "[pin_wheel]\nsupport_stiffness = 1e6\n") + RUBBING
     files["rubbing"] = parse_drive(text, "rubbing")
-    return {name: next(iter(file.cases.values())) for name, file in files.items()}
+    found = {name: next(iter(file.cases.values())) for name, file in files.items()}
+    twisting = {"crank.support.torsion": True, "crank.support.spline_plane": 40.0}
+    return found | {"twisting": with_fields(found["rv"], twisting)}
 
 
 @pytest.mark.slow

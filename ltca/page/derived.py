@@ -171,13 +171,12 @@ def _supports(drive: Drive) -> Rows:
     """Elastic supports, and what they leave out."""
     rows, support, wheel = [], drive.crank.support, wheel_law(drive)
     if support is not None:
+        twist = f"held at {support.spline_plane:g} mm, they twist; tilt" if support.torsion else "torsion and tilt"
         first, second = (
             f"{value:g} N/mm at {at:g} mm"
             for value, at in zip(crank_bearing_stiffness(drive), support.positions, strict=True)
         )
-        rows.append(
-            ("crankshafts, as beams", f"⌀ {support.diameter:g} mm on {first}, {second}; torsion and tilt left out")
-        )
+        rows.append(("crankshafts, as beams", f"⌀ {support.diameter:g} mm on {first}, {second}; {twist} left out"))
         rows += [
             (f"bearing of a crank at {at:g} mm", told)
             for at, law in zip(support.positions, crank_laws(drive) or (), strict=False)
