@@ -28,9 +28,12 @@ from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.first_contact import turn_to_contact
 from ltca.geometry.pairs import ContactGeometry
+from ltca.geometry.play import loose_poses
 
 MAX_ITERATIONS = 100
 """Newton iterations after which a start is given up; ten are usual, and fifty where contacts alternate."""
+LOOSE_ITERATIONS = 40
+"""The same of wheel and cranks that float in their bearings: from where they stop without load a few are enough."""
 TORQUE_RATIO = 8.0
 """Ratio of successive torques of the continuation; reduced where a step fails, down to `LEAST_TORQUE_RATIO`."""
 MAX_TORQUE_STEPS = 7
@@ -151,7 +154,7 @@ def solve_equilibrium(
 def follow_equilibrium(model: Reducer, found: Equilibrium, wheel_moment: FloatArray, gaps: bool = True) -> Equilibrium:
     """Balance positions under other moments, N·mm, from what this model answered; `gaps` as for `solve_equilibrium`."""
     search = _search(model, found.crank_angle, wheel_moment, found.pose.copy())
-    return _completed(search, search.iterate(MAX_ITERATIONS, response=found.response), gaps)
+    return _completed(search, search.iterate(_most(search), response=found.response), gaps)
 
 
 def _search(model: Reducer, angle: FloatArray, moment: FloatArray, pose: FloatArray) -> Search:
@@ -163,6 +166,8 @@ def _completed(search: Search, left: NDArray[np.intp], gaps: bool) -> Equilibriu
     """Balance what Newton's method has left over by other means, and return all positions."""
     model, angle = search.model, search.angle
     creeping = search.follow_valley if search.symmetric else search.reduce_residual
+    if left.size and _is_loose(model):
+        left = _from_stops(search, left)
     left = np.array([row for row in left if not creeping(int(row))], dtype=np.intp)
     if left.size and not np.all(_below_round_off(search, left)):
         left = _follow_down(search, left)
@@ -194,7 +199,7 @@ def _solve_by_neighbours(
     first = np.arange(angle.size)
     if series == 1:
         first = leading_positions(model.discs[0].geometry, angle, moment)
-    left = search.iterate(MAX_ITERATIONS, first, take_positions(inner, first))
+    left = search.iterate(_most(search), first, take_positions(inner, first))
     rest = np.setdiff1d(np.arange(angle.size), first)
     if rest.size == 0:
         return left
@@ -205,7 +210,7 @@ def _solve_by_neighbours(
         pose[rest] = pose_between(angle[known], pose[known], angle[rest], model.coordinates)
         ratio = model.discs[0].geometry.placement.reduction_ratio
         begin = start_between(angle[known], Start.after(contacts), angle[rest], ratio)
-    return np.union1d(left, search.iterate(MAX_ITERATIONS, rest, begin))
+    return np.union1d(left, search.iterate(_most(search), rest, begin))
 
 
 def _solve_beside_leaders(search: Search, series: int) -> NDArray[np.intp]:
@@ -216,7 +221,7 @@ def _solve_beside_leaders(search: Search, series: int) -> NDArray[np.intp]:
     if leading.size < count:
         leaders = leading[0] + count * np.arange(series)
     pose[leaders] = _at_first_contact(model.take(leaders), angle[leaders], search.moment[leaders])
-    left = search.iterate(MAX_ITERATIONS, leaders)
+    left = search.iterate(_most(search), leaders)
     rest = np.setdiff1d(np.arange(angle.size), leaders)
     if rest.size == 0:
         return left
@@ -230,11 +235,11 @@ def _solve_beside_leaders(search: Search, series: int) -> NDArray[np.intp]:
         pose[beside] = pose_beside(angle[at], pose[at], angle[beside], model.coordinates)
         ratio = model.discs[0].geometry.placement.reduction_ratio
         begin = start_beside(angle[at], take_positions(Start.after(contacts), rows), angle[beside], ratio)
-        left = np.union1d(left, search.iterate(MAX_ITERATIONS, beside, begin))
+        left = np.union1d(left, search.iterate(_most(search), beside, begin))
     alone = rest[~led[rest // count]]
     if alone.size:
         pose[alone] = _at_first_contact(model.take(alone), angle[alone], search.moment[alone])
-        left = np.union1d(left, search.iterate(MAX_ITERATIONS, alone))
+        left = np.union1d(left, search.iterate(_most(search), alone))
     return left
 
 
@@ -254,6 +259,37 @@ def _part(search: Search, rows: NDArray[np.intp], factor: FloatArray, pose: Floa
     model = search.model.take(rows)
     moment, load = factor * search.moment[rows], factor * search.load[rows]
     return Search(model, search.angle[rows], moment, search.levers(rows), load, pose.copy())
+
+
+def _is_loose(model: Reducer) -> bool:
+    """Whether wheel or cranks of any drive are free in their bearings."""
+    return any(geometry.has_loose_supports for geometry in model.geometries)
+
+
+def _most(search: Search) -> int:
+    """Iterations after which a start is given up."""
+    return LOOSE_ITERATIONS if _is_loose(search.model) else MAX_ITERATIONS
+
+
+def _from_stops(search: Search, rows: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Solve positions from where the wheel stops without load, all that floats in its bearings taken along; return the others.
+
+    Under light loads wheel and cranks that are free within their clearances have a long way to go.
+    """
+    sense = np.where(search.moment[rows] < 0.0, -1.0, 1.0)
+    try:
+        pose = loose_poses(search.model.take(rows).geometries, search.angle[rows], sense)
+    except ConvergenceError:
+        return rows
+    part = _part(search, rows, np.ones(rows.size), pose)
+    lost = part.iterate(MAX_ITERATIONS)
+    search.iterations[rows] += part.iterations
+    if lost.size < rows.size:
+        kept, contacts = part.contacts()
+        search.pose[rows[kept]], search.residual[rows[kept]] = part.pose[kept], part.residual[kept]
+        search.slipped[rows[kept]] = False
+        search.keep(rows[kept], contacts, np.ones(kept.size, dtype=bool))
+    return rows[lost]
 
 
 def _follow_down(search: Search, rows: NDArray[np.intp]) -> NDArray[np.intp]:

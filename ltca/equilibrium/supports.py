@@ -160,7 +160,7 @@ class BearingSupport:
         direction = np.stack((ahead.real, ahead.imag), axis=-1)
         outer = direction[..., :, None] * direction[..., None, :]
         slope = across[..., None, None] * np.eye(2) + (along - across)[..., None, None] * outer
-        return length * ahead, slope
+        return np.asarray(length * ahead), np.asarray(slope)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -200,10 +200,10 @@ class Supports:
                 for direction in (0, 1):
                     x = starts + coordinates.crank(crank) + direction
                     matrix[np.ix_(x, x)] += shaft
-        twisted = crank_torsion(drive)
-        for twist in coordinates.twist_places if twisted is not None else ():
-            turns = coordinates.own * np.arange(coordinates.discs) + twist
-            matrix[np.ix_(turns, turns)] += twisted
+        if (twisted := crank_torsion(drive)) is not None:
+            for twist in coordinates.twist_places:
+                turns = coordinates.own * np.arange(coordinates.discs) + twist
+                matrix[np.ix_(turns, turns)] += twisted
         if isinstance(wheel, SideLaw):
             held, whole = np.array([[wheel.stiffness]]), np.ones((1, 1))
             bearings.append(BearingSupport.of_laws((coordinates.wheel_place.start,), held, whole, (wheel,)))

@@ -274,6 +274,21 @@ def rigid_poses(geometry: ContactGeometry, crank_angle: FloatArray, sense: int) 
     return pose
 
 
+def loose_poses(discs: Sequence[ContactGeometry], crank_angle: FloatArray, sense: FloatArray) -> FloatArray:
+    """Return the poses of all members with wheel and cranks loose in their bearings, the wheel turned as far as it goes.
+
+    Poses have the coordinates of the whole drive, shape (positions, coordinates); `sense` is +1 or −1 by position. Raises as
+    `rigid_poses` where nothing stops the wheel.
+    """
+    programme, coordinates = _JoinedProgramme(discs, crank_angle, np.zeros(crank_angle.size)), discs[0].coordinates
+    whole = replace(coordinates, discs=len(discs))
+    pose, _ = programme.farthest(sense)
+    found = np.zeros((crank_angle.size, whole.size))
+    for number, each in enumerate(programme.maps):
+        found[:, whole.columns(number)] = np.matmul(each, pose[..., None])[..., 0]
+    return found
+
+
 def _reach(geometry: ContactGeometry) -> FloatArray:
     """Lever of the rotations, e z_P, mm; of a batch one for each position."""
     return np.asarray(geometry.placement.eccentricity.max(axis=-1) * geometry.placement.reduction_ratio)
@@ -447,8 +462,8 @@ class _JoinedProgramme(_Programme):
         around = 2.0 * np.pi * np.arange(SIDES) / SIDES
         sides = np.stack((np.cos(around), np.sin(around)), axis=-1)
         for number in range(count):
-            own = slice(self.circles + 2 * number, self.circles + 2 * number + 2)
-            circle[:, number, own], corner[:, number, :, own] = -ahead[:, number], -sides
+            both = slice(self.circles + 2 * number, self.circles + 2 * number + 2)
+            circle[:, number, both], corner[:, number, :, both] = -ahead[:, number], -sides
         arcs_slope.append(circle)
         gap.append((scale[..., None] - np.einsum("bcj,sj->bcs", place, sides)).reshape(rows.size, -1))
         slope.append(corner.reshape(rows.size, -1, self.size))

@@ -85,7 +85,7 @@ def _crank_support(drive: Drive) -> Iterator[str]:
                 "thermal_expansion beside [temperature]"
             )
         return
-    yield from _crank_bearings(support)
+    yield from _crank_bearings(support, drive.crank.eccentricity)
     yield from _spline(support, drive.disc.disc_planes)
     start, end = support.positions
     if end <= start:
@@ -107,7 +107,7 @@ def _crank_support(drive: Drive) -> Iterator[str]:
             return
 
 
-def _crank_bearings(support: CrankSupport) -> Iterator[str]:
+def _crank_bearings(support: CrankSupport, eccentricity: float) -> Iterator[str]:
     """Problems of the two bearings of a crank: how their stiffness, clearance and preload are given."""
     path = "crank.support"
     tapered = {"contact_angle": support.contact_angle, "load_constant": support.load_constant}
@@ -127,7 +127,7 @@ def _crank_bearings(support: CrankSupport) -> Iterator[str]:
             yield f"{path}.preload: must be given with {path}.load_constant, whose stiffness is that at a preload"
         if support.contact_angle is not None:
             yield from _contact_angle(f"{path}.contact_angle", support.contact_angle)
-    yield from _loose_or_tight(path, support.clearance, support.preload)
+    yield from _loose_or_tight(path, support.clearance, support.preload, eccentricity)
 
 
 def _spline(support: CrankSupport, planes: tuple[float, ...]) -> Iterator[str]:
@@ -147,8 +147,15 @@ def _contact_angle(path: str, angle: float) -> Iterator[str]:
         yield f"{path} = {angle:g} rad: must be greater than 0 and less than {0.5 * pi:.6g} rad"
 
 
-def _loose_or_tight(path: str, clearance: float | None, preload: Preload | None) -> Iterator[str]:
+def _loose_or_tight(path: str, clearance: float | None, preload: Preload | None, eccentricity: float) -> Iterator[str]:
     """Problems of clearance and preload of one bearing."""
+    most = 0.5 * eccentricity
+    for name, value in (
+        ("clearance", clearance),
+        ("preload.displacement", None if preload is None else preload.displacement),
+    ):
+        if value is not None and abs(value) > most:
+            yield f"{path}.{name} = {value:g} mm: must be at most {most:g} mm in size, half the eccentricity"
     if preload is None:
         return
     if clearance is not None:
@@ -177,7 +184,7 @@ def _main_bearing(drive: Drive) -> Iterator[str]:
     ):
         if value is not None:
             yield f"{path}.{name} = {value:g} {unit}: must be left out: {why}"
-    yield from _loose_or_tight(path, bearing.clearance, bearing.preload)
+    yield from _loose_or_tight(path, bearing.clearance, bearing.preload, drive.crank.eccentricity)
     if not bearing.bearings:
         if radial is None and alias is None:
             yield f"{path}.radial_stiffness: must be given, or {path}.bearings; left out with the whole table it is rigid"

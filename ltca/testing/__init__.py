@@ -10,6 +10,7 @@ crank_drives        Reducers of all kinds: one or several cranks, with and witho
 pin_drives          Reducers of all kinds with loose, sleeved or bending pins, or with friction
 actual_parts        Actual places of all parts of a drive, computed from its definition independently of `ltca.geometry`
 yielding_pins       Places and energies of loose and bent pins by explicit coordinates, independently of `ltca.laws`
+bearing_springs     Bearings as one-sided springs, and shafts on them, independently of `ltca.equilibrium.supports`
 friction_check      Friction of a drive that turns: forces, work and moments, independently of `ltca.equilibrium.friction`
 balance_check       Check of an equilibrium by its potential energy, independently of the code that finds it
 field_changes       A plausible change of every leaf field of a drive, for the test of the contract

@@ -129,7 +129,7 @@ def shaft_energy(
     """
     # A disc in the plane of a bearing bends nothing: a flexibility too small to matter.
     floor = 1e-9 / max(2.0 * spring.side for spring in springs)
-    stiff = np.linalg.inv(bending + floor * np.eye(bending.shape[0]))
+    stiff = np.asarray(np.linalg.inv(bending + floor * np.eye(bending.shape[0])), dtype=float)
     return np.array([_least(stiff, shares, springs, row) for row in moved])
 
 

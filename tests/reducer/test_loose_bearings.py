@@ -128,9 +128,9 @@ def test_preloaded_bearings_drag():
     ("name", "words"),
     [
         ("paper", {"main_bearing.radial_stiffness": 5e5, "main_bearing.clearance": 0.03}),
-        pytest.param("robot-joint", {"crank.support.clearance": 0.02}, marks=pytest.mark.nightly),
-        pytest.param("rv", LOOSE, marks=pytest.mark.nightly),
-        pytest.param("sleeved", LOOSE, marks=pytest.mark.nightly),
+        pytest.param("robot-joint", {"crank.support.clearance": 0.02}, marks=pytest.mark.slow),
+        pytest.param("rv", LOOSE, marks=pytest.mark.slow),
+        pytest.param("sleeved", LOOSE, marks=pytest.mark.slow),
     ],
 )
 def test_loads_of_a_millionth_turn_as_far_as_the_play(name, words):

@@ -8,8 +8,10 @@ named_materials  Materials by name: ``materials.disc = "PA12"`` stands for numbe
 bearings         Bought crank bearings by name: ``crank_bearing.bearing = "K20x26x12"`` stands for races and rollers, a
                  clearance class for ``clearance.bearing``
 operation        Installation and use: the fixed member, load, speed, duty, lubricant, friction and temperatures
+preload          Preload of bearings, and the quantities that say how bearings yield
 crank            Crankshafts: their eccentrics, the circle they stand on, their supports and their bearings
 pins             Pins of the pin wheel and of the pin shaft: fixed, loose or sleeved, rigid or bending
+main_bearing     The main bearing: stiffness, clearance or preload, rows of rolling elements
 temperatures     A drive at its temperatures: every length multiplied by 1 + α ΔT of its part
 limits           ``[limits]`` of a drive file: bounds on results, by the names of the summary, each with its source
 judgement        Limits of values, from the drive file or its materials, with safety and verdict

@@ -80,7 +80,7 @@ _TABLE: tuple[tuple[str, tuple[str, ...], Fraction | int, Fraction | int], ...] 
     ("angle", ("arcsec", "″", '"'), _DEGREE / 3600, 0),
     ("stiffness", ("N/mm",), 1, 0),
     ("stiffness", ("N/µm", "N/um"), 1000, 0),
-    ("load-deflection constant", ("N/mmⁿ", "N/mm^n"), 1, 0),
+    ("load deflection constant", ("N/mmⁿ", "N/mm^n"), 1, 0),
     ("speed", ("rpm", "rev/min"), 1, 0),
     ("speed", ("Hz", "rev/s"), 60, 0),
     ("speed", ("rad/s",), 30 / PI, 0),
@@ -230,7 +230,7 @@ RANGES = {
     "torque": (1e-9, 1e15),
     "angle": (1e-12, 1e6),
     "stiffness": (1e-9, 1e18),
-    "load-deflection constant": (1e-9, 1e18),
+    "load deflection constant": (1e-9, 1e18),
     "torsional stiffness": (1e-9, 1e24),
     "ratio": (1e-9, 1e9),
 }
