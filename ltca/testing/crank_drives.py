@@ -109,7 +109,7 @@ def _supported(random: Generator, drive: Drive) -> Drive:
 
 
 def _on_bearings(random: Generator, drive: Drive) -> Drive:
-    """The drive whose supports have clearance or preload, or are rows of rolling elements, some of them."""
+    """The drive whose supports have clearance or preload, are rows of rolling elements or twist, some of them."""
     support, wheel = drive.crank.support, drive.pin_wheel
     loose = float(random.choice([0.0, 0.004, 0.01, 0.03, -0.003, -0.01])) * min(1.0, drive.crank.eccentricity)
     preload = random.choice([Preload(force=20.0), Preload(force=2e3), Preload(displacement=0.001)])  # type: ignore[arg-type]
@@ -145,4 +145,7 @@ def _on_bearings(random: Generator, drive: Drive) -> Drive:
             bearing = MainBearing(bearings=tuple(rows), preload=preload, arrangement=str(random.choice(["O", "X"])))  # type: ignore[arg-type]
         if kind != "alias":
             wheel = replace(wheel, support_stiffness=None)
+    if support is not None and random.uniform() < 0.3:  # splined beyond the discs, or between them
+        spline = float(random.choice([-1.0, 0.013, 1.0, 1.0])) * drive.disc.stack_length
+        support = replace(support, torsion=True, spline_plane=spline)
     return replace(drive, crank=replace(drive.crank, support=support), pin_wheel=wheel, main_bearing=bearing)

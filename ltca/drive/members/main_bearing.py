@@ -55,9 +55,9 @@ class MainBearing:
         Radial stiffness, N/mm; ``pin_wheel.support_stiffness`` is another name of it. With ``preload`` that of the bearing
         while both sides carry, otherwise that of the side that carries.
     tilt_stiffness : float or None
-        Stiffness against tilt, N·mm/rad.
+        Stiffness against tilt, N·mm/rad; refused, the wheel does not tilt in the model yet.
     axial_stiffness : float or None
-        Axial stiffness, N/mm.
+        Axial stiffness, N/mm; refused, nothing presses the wheel along its axis in the model yet.
     clearance : float or None
         Radial internal clearance, diametral as usual: the wheel is free within half of it, mm; negative where it is tight.
     preload : Preload or None
