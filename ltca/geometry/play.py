@@ -53,6 +53,10 @@ SHRINK_AFTER = 12
 """Programmes after which steps are shortened."""
 MAX_PIVOTS = 400
 """Pivots of one programme of four unknowns; of more in proportion."""
+LEAST_PIVOT = 1e-8
+"""Least pivot of a programme of many unknowns: unit normals beside unit normals."""
+LOST = 1e-30
+"""Determinant of the unit normals of a corner of many unknowns below which it is none."""
 KEPT_INVERSE = 20
 """Pivots of a programme of many unknowns for which the inverse of its basis is updated."""
 KEPT_PROGRAMMES = 8
@@ -532,6 +536,9 @@ def _farthest(
         each = np.arange(going.size)[:, None]
         fresh = not many or pivots % KEPT_INVERSE == 0
         if fresh:
+            if many:  # rounding may have led to rows that depend on each other: those start again
+                lost = np.abs(np.linalg.det(matrix[each, basis])) < LOST
+                basis[lost] = first[going[lost]]
             inverse = np.linalg.inv(matrix[each, basis])
         point = np.matmul(inverse, limit[each, basis][..., None])
         beyond = np.matmul(matrix, point)[..., 0] - limit
@@ -550,7 +557,7 @@ def _farthest(
             over = over[over]
         price = np.matmul(objective[:, None], inverse)[:, 0]
         share = np.matmul(matrix[each, entering[:, None]], inverse)[:, 0]
-        rises = share > 1e-11
+        rises = share > (LEAST_PIVOT if many else 1e-11)
         ratio = np.where(rises, np.maximum(price, 0.0) / np.where(rises, share, 1.0), np.inf)
         leaving, changed = np.argmin(ratio, axis=1)[over], each[over, 0]
         basis[changed, leaving] = entering[over]
@@ -561,11 +568,38 @@ def _farthest(
             inverse[changed, :, leaving] = column
         pivots += 1
     else:
-        raise ConvergenceError("a linear programme of the play takes too many pivots", [float(going.size)])
+        if not many:
+            raise ConvergenceError("a linear programme of the play takes too many pivots", [float(going.size)])
+        stopping[going] = _by_library(objective, matrix, limit)
     if many:
         each = np.arange(rows)[:, None]
         answer = np.linalg.solve(whole[0][each, stopping], whole[1][each, stopping][..., None])[..., 0]
     return answer[:, :size], answer[:, size], stopping - fixed
+
+
+def _by_library(objective: FloatArray, matrix: FloatArray, limit: FloatArray) -> Rows:
+    """Return the corners of programmes on which the simplex method above goes in circles, solved one by one."""
+    from scipy.optimize import linprog
+
+    found = np.zeros((objective.shape[0], objective.shape[1]), dtype=np.intp)
+    for row, (price, normals, room) in enumerate(zip(objective, matrix, limit, strict=True)):
+        solved = linprog(-price, A_ub=normals, b_ub=room, bounds=(None, None), method="highs-ds")
+        if not solved.success:
+            raise ConvergenceError(f"a linear programme of the play is not solved: {solved.message}")
+        # The constraints that hold the corner: first those that price it, then by their slack, each independent of the others.
+        order, chosen = np.lexsort((solved.slack, solved.ineqlin.marginals)), list[int]()
+        basis = np.zeros((0, price.size))
+        for candidate in order:
+            rest = normals[candidate] - basis.T @ (basis @ normals[candidate])
+            if (size := float(np.linalg.norm(rest))) > 1e-6 and solved.slack[candidate] < 1e-9:
+                basis = np.vstack([basis, rest / size])
+                chosen.append(int(candidate))
+            if len(chosen) == price.size:
+                break
+        if len(chosen) < price.size:
+            raise ConvergenceError("a linear programme of the play has no corner")
+        found[row] = chosen
+    return found
 
 
 def _as_good_as_first(matrix: FloatArray, objective: FloatArray, first: Rows, start: Rows) -> Rows:
