@@ -425,9 +425,10 @@ _DECLARED = (
         "external moment that holds the roller cages of the crank, a part of the balance of all forces; ccw positive",
     ),
     Quantity(
-        "crank_deflection_radial", "crank", "mm", "crank at the disc, along its eccentricity; torsion and tilt left out"
+        "crank_deflection_radial", "crank", "mm", "crank at the disc, along its eccentricity; tilt left out"
     ),
     Quantity("crank_deflection_tangential", "crank", "mm", "crank at the disc, 90° ahead of its eccentricity"),
+    Quantity("crank_twist", "crank", "rad", "eccentric ahead of the splined planet, by torsion of the crank; ccw positive"),
     _scalar("mm", Scalar("max_crank_deflection_crank_#", "deflection of crank #, largest", digits=".4f")),
     Quantity(
         "ring_displacement_radial", "seat", "mm",

@@ -96,7 +96,7 @@ def test_scalars_have_the_unit_of_what_they_sum_up():
 @pytest.fixture(scope="module")
 def drives():
     """The shipped drives; one that rubs, is warm, has an elastic ring and carrier, a soft bearing and a hardened case; one with
-    teeth and an arm.
+    teeth and an arm; one with cranks that twist.
     """
     files = {name: parse_drive(shipped_drive(name), name) for name in SHIPPED}
     text = re.sub(r"(?m)^(torque = .*)$", r"\1\nspeed = 1000.0", shipped_drive("sleeved")).replace(
@@ -106,7 +106,8 @@ def drives():
     files["rubbing"] = parse_drive(text, "rubbing")
     found = {name: next(iter(file.cases.values())) for name, file in files.items()}
     teeth = {"first_stage.sun_teeth": 20, "first_stage.planet_teeth": 40, "load.external.0.force.x": 100.0}
-    return found | {"geared": with_fields(found["rv"], teeth)}
+    twisting = {"crank.support.torsion": True, "crank.support.spline_plane": 40.0}
+    return found | {"geared": with_fields(found["rv"], teeth), "twisting": with_fields(found["rv"], twisting)}
 
 
 @pytest.mark.slow

@@ -253,7 +253,7 @@ class LoadedAnalysis:
     def stage_wind_up(self) -> FloatArray:
         """The same of the cycloid stage alone, cranks held, rad."""
         wound = self.full.pose[:, WHEEL_ANGLE] - self.light.pose[:, WHEEL_ANGLE]
-        return np.abs(self.drive.output_deviation(wound, self.torque - self.drive.load.light_torque))
+        return np.asarray(np.abs(self.drive.output_deviation(wound, self.torque - self.drive.load.light_torque)))
 
     def stiffness_from_light(self, wound: FloatArray) -> float:
         """Return the torque from the light one on by the wind-up that it takes, where that is most, N·mm/rad.
@@ -318,7 +318,8 @@ class LoadedAnalysis:
             found["the ring of the wheel yields"] = "ring", np.abs(ring)
         if coordinates.wheel:
             wheel = self.full.pose[:, coordinates.wheel_place]
-            found["the wheel moves"] = "pin_wheel.support_stiffness", np.hypot(wheel[:, 0], wheel[:, 1])
+            field = "pin_wheel.support_stiffness" if self.drive.main_bearing is None else "main_bearing"
+            found["the wheel moves"] = field, np.hypot(wheel[:, 0], wheel[:, 1])
         if self.model.flange is not None:
             x, y, turned = self.full.pose[:, coordinates.ring_place].T
             radius = loaded_circle(self.drive)

@@ -73,6 +73,9 @@ def _supports(analysis: LoadedAnalysis) -> dict[str, Any]:
     if coordinates.cranks:
         yielding = np.moveaxis(analysis.crank_deflections, 0, 2)
         values["crank_deflection_radial"], values["crank_deflection_tangential"] = yielding.real, yielding.imag
+    if coordinates.twists:
+        places = [coordinates.columns(disc)[list(coordinates.twist_places)] for disc in range(coordinates.discs)]
+        values["crank_twist"] = np.moveaxis(pose[:, np.stack(places)], 0, 2)
     return values
 
 

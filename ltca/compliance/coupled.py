@@ -36,7 +36,7 @@ from ltca.compliance.response import (
     KindPressures,
     PairSlopes,
     Start,
-    bearing_bend,
+    add_bearing_bend,
     resultant,
     split_shifts,
 )
@@ -46,7 +46,6 @@ from ltca.contact.tracked_grid import ContactKind
 from ltca.drive.hole_contact import shaft_pins_yield
 from ltca.drive.parts import Drive
 from ltca.errors import ConvergenceError, DriveError
-from ltca.geometry.coordinates import DISC_ROTATION
 from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.backed import back_shaft_pins, shaft_pin_stiffness, tip_share
 from ltca.laws.contact_law import ContactLaw
@@ -379,7 +378,7 @@ class _Batch:
             outer_direction=self.outward,
             tangent=np.zeros((*free.shape, 2, 2)),
         )
-        tangent[:, DISC_ROTATION, DISC_ROTATION] += bearing_bend(state, bodies.bores)
+        add_bearing_bend(tangent, state, bodies.bores)
         flank = replace(bodies.flank, approach=approach[:, :pins])
         holes = replace(bodies.holes, approach=approach[:, pins + rollers :])
         warm_start = np.empty(near.shape[0], dtype=object)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.compliance.rollers import RollerState
-from ltca.geometry.coordinates import DISC_PLACE
+from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION
 from ltca.geometry.pair_motion import BoreMotion, FlankMotion, KnownPins, PairMotion
 from ltca.geometry.pairs import ContactGeometry
 
@@ -300,7 +300,11 @@ def bearing_pushes(rollers: RollerState, cranks: int) -> ComplexArray:
     return np.asarray(each.reshape(each.shape[0], cranks, -1).sum(axis=2))
 
 
-def bearing_bend(rollers: RollerState, bores: BoreMotion) -> FloatArray:
-    """Return what the bearings' forces add to the tangent because bores off the centre turn with the disc, N·mm."""
-    push = bearing_pushes(rollers, bores.arm.shape[1])
-    return np.asarray((push.conjugate() * bores.arm).real.sum(axis=1))
+def add_bearing_bend(tangent: FloatArray, rollers: RollerState, bores: BoreMotion) -> None:
+    """Add to the tangent what the bearings' forces add because bores off the centre turn with the disc, and eccentrics with
+    their twist, N·mm.
+    """
+    push = bearing_pushes(rollers, bores.arm.shape[1]).conjugate()
+    tangent[:, DISC_ROTATION, DISC_ROTATION] += (push * bores.arm).real.sum(axis=1)
+    if bores.twists:
+        tangent[:, bores.twists, bores.twists] -= (push * bores.lever).real

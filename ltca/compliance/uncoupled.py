@@ -21,13 +21,12 @@ from ltca.compliance.response import (
     KindPressures,
     PairSlopes,
     Start,
-    bearing_bend,
+    add_bearing_bend,
     resultant,
     split_shifts,
 )
 from ltca.compliance.rollers import Law, RollerLaws, RollerState, balance_rollers
 from ltca.contact.tracked_grid import ContactKind, ContactKinds
-from ltca.geometry.coordinates import DISC_ROTATION
 from ltca.geometry.pair_motion import BoreMotion, FlankMotion, PairMotion
 from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.contact_law import ContactLaw
@@ -157,7 +156,7 @@ def _roller_tangent(rollers: RollerState, bores: BoreMotion) -> FloatArray:
     stiffness = np.einsum("bcri->bci", rollers.tangent.reshape(positions, cranks, -1, 4)).reshape(-1, cranks, 2, 2)
     moved = np.stack((bores.gradient.real, bores.gradient.imag), axis=2)
     tangent = np.matmul(moved.swapaxes(2, 3), np.matmul(stiffness, moved)).sum(axis=1)
-    tangent[:, DISC_ROTATION, DISC_ROTATION] += bearing_bend(rollers, bores)
+    add_bearing_bend(tangent, rollers, bores)
     return np.asarray(tangent)
 
 

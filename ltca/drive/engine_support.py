@@ -92,6 +92,7 @@ REFUSALS = (
     Refusal("crank_bearing.roller_profile", _PLANE, _TWO_DIMENSIONS, _HYBRID, accepts=attrgetter("is_cylinder")),
     Refusal("pin_shaft.seat", _FIXED, "pins are fixed in the model"),
     Refusal("pin_shaft.beam", _FIXED, "pins do not bend in the model", "give pin_shaft.stiffness in its place"),
+    Refusal("main_bearing", _RIGID, "the axis of the wheel is fixed in the model"),
     Refusal("carrier.stiffness_torsion", _RIGID, "the carrier is rigid in the model"),
     Refusal("carrier.flange", _RIGID, "the carrier is rigid in the model"),
     Refusal("carrier.posts", _RIGID, "the carrier is rigid in the model"),
@@ -188,16 +189,23 @@ def _default(part: Any, name: str) -> Any:
 
 def _contents(path: str, table: Any, declared: str) -> str:
     """Fields of a table with their values where they differ from the default; all names where none does."""
-    told = {item.name: getattr(table, item.name) for item in fields(table)}
-    changed = {name: value for name, value in told.items() if value != _default(table, name)}
-    if not changed:
-        return ", ".join(f"{path}.{name}" for name in told)
-    return ", ".join(
-        _contents(f"{path}.{name}", value, f"{declared}.{name}")
-        if is_dataclass(value)
-        else f"{path}.{name} = {_shown(value)}{_unit(f'{declared}.{name}')}"
-        for name, value in changed.items()
-    )
+    changed = ", ".join(_changes(path, table, declared))
+    return changed or ", ".join(f"{path}.{item.name}" for item in fields(table))
+
+
+def _changes(path: str, table: Any, declared: str) -> Iterator[str]:
+    """Fields of a table that differ from their defaults, those of tables and entries in it as well."""
+    for item in fields(table):
+        value, own, name = getattr(table, item.name), f"{path}.{item.name}", f"{declared}.{item.name}"
+        if value == _default(table, item.name):
+            continue
+        if is_dataclass(value):
+            yield from _changes(own, value, name)
+        elif isinstance(value, tuple) and value and is_dataclass(value[0]):
+            for number, entry in enumerate(value):
+                yield from _changes(f"{own}.{number}", entry, f"{name}.{ANY}")
+        else:
+            yield f"{own} = {_shown(value)}{_unit(name)}"
 
 
 def _shown(value: Any) -> str:

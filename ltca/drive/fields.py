@@ -3,7 +3,8 @@
 Values per disc stand in ``disc.of`` and ``crank.of``: ``disc.of.1.runout.amount`` is that of disc 1, and where it is left out,
 it reads as the common field ``disc.runout.amount``. Eccentrics of several cranks are counted disc after disc: ``crank.of.N`` is
 that of disc N // cranks on crank N % cranks, in whatever order the file has them. ``duty.N`` and ``load.external.N`` are
-entries N of ``[[duty]]`` and ``[[load.external]]``, counted from 0 in the order of the file.
+entries N of ``[[duty]]`` and ``[[load.external]]``, counted from 0 in the order of the file, ``main_bearing.bearings.N``
+likewise.
 """
 
 from __future__ import annotations
@@ -12,7 +13,6 @@ import re
 from collections.abc import Iterable
 from dataclasses import replace
 from functools import cache, lru_cache
-from operator import attrgetter
 from typing import Any
 
 from ltca.drive.declaration import ANY as ANY, INDICES, LEFT_OUT, Field, declared_fields, naming_fields
@@ -29,9 +29,9 @@ OWN = {
     "crank.eccentricity_error": "crank.of.N.eccentricity_error",
 }
 """Common fields and tables, and those of single discs that replace them."""
-_NUMBERED = re.compile(r"^((?:disc|crank)\.of|duty|load\.external)\.([0-9]{1,6})\.")
-LISTS = {"duty": attrgetter("duty"), "load.external": attrgetter("load.external")}
-"""Tables whose entries are counted from 0 in the order of the file, and the entries of a drive."""
+_NUMBERED = re.compile(r"^((?:disc|crank)\.of|duty|load\.external|main_bearing\.bearings)\.([0-9]{1,6})\.")
+LISTED = ("duty", "load.external", "main_bearing.bearings")
+"""Tables whose entries are counted from 0 in the order of the file."""
 
 
 @cache
@@ -117,8 +117,8 @@ def with_whose(path: str, owner: str) -> str:
 
 
 def _counting(drive: Drive, table: str) -> str:
-    """Meaning and range of N in ``disc.of.N``, ``crank.of.N``, ``duty.N`` or ``load.external.N``."""
-    if table in LISTS:
+    """Meaning and range of N in ``disc.of.N`` and ``crank.of.N``, and in an entry of `LISTED`."""
+    if table in LISTED:
         return f"N of {table}.N is the entry, counted from 0"
     last, cranks = _entries(drive, table.partition(".")[0]) - 1, drive.crank.number
     means = f"disc · {cranks} + crank" if table == "crank.of" and cranks > 1 else "the disc"
@@ -230,19 +230,29 @@ def absence(drive: Drive, path: str) -> str | None:
 
 
 def no_entry(drive: Drive, table: str, number: int) -> str | None:
-    """Return the message for an entry of ``disc.of``, ``crank.of``, ``duty`` or ``load.external`` that the drive is without;
-    None where it has it.
+    """Return the message for an entry of ``disc.of``, ``crank.of`` or one of `LISTED` that the drive is without; None where
+    it has it.
     """
     discs, cranks = drive.disc.number_of_discs, drive.crank.number
-    listed = len(LISTS[table](drive)) if table in LISTS else None
-    if number < (_entries(drive, table.partition(".")[0]) if listed is None else listed):
+    entries = len(listed_entries(drive, table)) if table in LISTED else _entries(drive, table.partition(".")[0])
+    if number < entries:
         return None
-    if listed is not None:
-        return f"there is no entry {number}; [[{table}]] has {listed}, counted from 0"
+    if table in LISTED:
+        told = table if table == "main_bearing.bearings" else f"[[{table}]]"
+        return f"there is no entry {number}; {told} has {entries}, counted from 0"
     if table == "crank.of" and cranks > 1:
         sizes = f"disc.number_of_discs = {discs}, crank.number = {cranks}"
         return f"there is no eccentric {number}; {sizes}: {_counting(drive, table)}"
     return f"there is no disc {number}; disc.number_of_discs = {discs}: {_counting(drive, table)}"
+
+
+def listed_entries(drive: Drive, table: str) -> tuple[Any, ...]:
+    """Return the entries of one of `LISTED`; none without the table they stand in."""
+    if table == "duty":
+        return drive.duty
+    if table == "load.external":
+        return drive.load.external
+    return () if drive.main_bearing is None else drive.main_bearing.bearings
 
 
 def _of_disc(drive: Drive, path: str) -> tuple[Drive, str]:
@@ -253,7 +263,7 @@ def _of_disc(drive: Drive, path: str) -> tuple[Drive, str]:
     table, number, name = found
     if (problem := no_entry(drive, table, number)) is not None:
         raise DriveError([f"{path}: {problem}"])
-    if table in LISTS:
+    if table in LISTED:
         return drive, path
     disc, crank = divmod(number, drive.crank.number) if table == "crank.of" else (number, 0)
     single = single_discs(drive)[disc]
@@ -314,11 +324,17 @@ def read_field(drive: Drive, path: str) -> Any:
         return values[int(last)]
     count = element_count(drive, path)
     drive, path = _of_disc(drive, path)
-    if (place := numbered(path)) is not None and place[0] in LISTS:
-        return attrgetter(place[2])(LISTS[place[0]](drive)[place[1]])
+    value: Any
+    if (place := numbered(path)) is not None and place[0] in LISTED:
+        value = listed_entries(drive, place[0])[place[1]]
+        for name in place[2].split("."):
+            value = None if value is None else getattr(value, name)
+        if value is None:
+            raise DriveError([f"{path}: is left out in this drive"])
+        return value
     if place is not None:
         return _own_value(drive, place[1], place[2], count)
-    value: Any = drive if drive.friction is not None else replace(drive, friction=Friction())
+    value = drive if drive.friction is not None else replace(drive, friction=Friction())
     for name in (_FOLLOWS.get(path) or path).split("."):
         value = getattr(value, name)
     if value is None:

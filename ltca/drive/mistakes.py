@@ -8,7 +8,7 @@ from functools import cache
 from typing import Any
 
 from ltca.drive.declaration import naming_fields
-from ltca.drive.fields import field_kind, field_kinds
+from ltca.drive.fields import LISTED, field_kind, field_kinds
 from ltca.errors import did_you_mean, nearest, printable, shortened
 
 
@@ -75,7 +75,7 @@ def _sentence(place: tuple[str, ...], path: str, detail: Any, known: Sequence[st
             return f"{path}: is not a field of {where}{did_you_mean(place[-1], siblings)}"
         case "dataclass_type" | "dataclass_exact_type" | "model_type" | "dict_type":
             return f"{path} = {shortened(detail['input'])}: must be a table"
-        case "tuple_type" if path in ("duty", "load.external"):
+        case "tuple_type" if path in LISTED:
             return f"{path} = {shortened(detail['input'])}: must be an array of tables, written [[{path}]]"
         case "tuple_type":
             return f"{path} = {shortened(detail['input'])}: must be an array of numbers{_unit_of(_path(place))}"
@@ -106,7 +106,7 @@ def fields_of(table: str) -> tuple[str, ...]:
     >>> fields_of("clearance")
     ('bearing', 'pin_hole')
     """
-    table = re.sub(r"(\.of|^duty|^load\.external)\.[0-9]+\b", r"\1.N", table)
+    table = re.sub(r"(\.of|^duty|^load\.external|\.bearings)\.[0-9]+\b", r"\1.N", table)
     head = f"{table}." if table else ""
     paths = (*field_kinds(), *naming_fields())
     return tuple(dict.fromkeys(path[len(head) :].partition(".")[0] for path in paths if path.startswith(head)))

@@ -32,6 +32,7 @@ from ltca.drive.materials import (
 from ltca.drive.members.carrier import Carrier as Carrier, CarrierPosts as CarrierPosts
 from ltca.drive.members.crank import Crank as Crank, CrankBearing as CrankBearing, CrankSupport as CrankSupport
 from ltca.drive.members.first_stage import FirstStage as FirstStage
+from ltca.drive.members.main_bearing import BearingRow as BearingRow, MainBearing as MainBearing
 from ltca.drive.members.operation import (
     Analysis as Analysis,
     Compliance as Compliance,
@@ -51,6 +52,7 @@ from ltca.drive.members.pins import (
     WheelPinBeam as WheelPinBeam,
     WheelPinSeat as WheelPinSeat,
 )
+from ltca.drive.members.preload import Preload as Preload
 from ltca.drive.members.ring import Ring as Ring, RingBolts as RingBolts
 from ltca.drive.names import Name
 from ltca.drive.units.quantities import COUNT, grows
@@ -172,6 +174,8 @@ class Drive:
         How the carrier of shaft pins and cranks gives way; rigid in one piece when left out.
     first_stage : FirstStage or None
         Teeth between a central input and several cranks; ``installation.first_stage_ratio`` alone gives its ratio.
+    main_bearing : MainBearing or None
+        Bearing of the wheel on the pin shaft; rigid when left out.
     load : Load
         Torque and direction.
     installation : Installation
@@ -203,6 +207,7 @@ class Drive:
     ring: Ring | None = None
     carrier: Carrier | None = None
     first_stage: FirstStage | None = None
+    main_bearing: Annotated[MainBearing | None, grows("wheel")] = None
     load: Load
     installation: Installation = field(default_factory=Installation)
     clearance: Annotated[Clearance, grows("disc")] = field(default_factory=Clearance)
@@ -360,6 +365,11 @@ class Drive:
     def flank_turn(self) -> float:
         """Angle of the flank against the holes in a drive of one disc, −Δz ζ/z_C, rad."""
         return -self.tooth_number_difference * self.disc.phase / self.disc.number_of_teeth
+
+    @property
+    def wheel_yields(self) -> bool:
+        """Whether the main bearing of the wheel yields."""
+        return self.pin_wheel.support_stiffness is not None or self.main_bearing is not None
 
     @property
     def number_of_holes(self) -> int:

@@ -25,12 +25,15 @@ from ltca.equilibrium.neighbours import (
 from ltca.equilibrium.newton import ROUND_OFF_BOUND, Search
 from ltca.equilibrium.reducer import Reducer, complete
 from ltca.errors import ConvergenceError
-from ltca.geometry.coordinates import WHEEL_ANGLE
+from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.first_contact import turn_to_contact
 from ltca.geometry.pairs import ContactGeometry
+from ltca.geometry.play import loose_poses
 
 MAX_ITERATIONS = 100
 """Newton iterations after which a start is given up; ten are usual, and fifty where contacts alternate."""
+LOOSE_ITERATIONS = 40
+"""The same of wheel and cranks that float in their bearings: from where they stop without load a few are enough."""
 TORQUE_RATIO = 8.0
 """Ratio of successive torques of the continuation; reduced where a step fails, down to `LEAST_TORQUE_RATIO`."""
 MAX_TORQUE_STEPS = 7
@@ -80,7 +83,8 @@ def equilibrium_of_disc(model: Reducer, found: Equilibrium, disc: int) -> Equili
 
 
 def lever_arms(model: Reducer) -> FloatArray:
-    """Return the lengths that turn the residual into forces, mm: e z_C for the rotation of each disc, e z_P, 1 elsewhere.
+    """Return the lengths that turn the residual into forces, mm: e z_C for the rotation of each disc, e z_P, e for
+    twists of cranks, 1 elsewhere.
 
     Returns
     -------
@@ -98,6 +102,8 @@ def lever_arms(model: Reducer) -> FloatArray:
     for place, geometry, e in zip(coordinates.rotations, geometries, eccentricities, strict=False):
         wheel = e * geometry.placement.reduction_ratio
         arms[..., place], arms[..., WHEEL_ANGLE] = wheel - e, wheel
+        for twist in coordinates.twist_places:
+            arms[..., place - DISC_ROTATION + twist] = e
     if coordinates.ring:
         arms[..., coordinates.ring_place.stop - 1] = ring
     return arms
@@ -162,7 +168,7 @@ def follow_equilibrium(
     `solve_equilibrium`.
     """
     search = _search(model, found.crank_angle, wheel_moment, found.pose.copy(), reference)
-    return _completed(search, search.iterate(MAX_ITERATIONS, response=found.response), gaps)
+    return _completed(search, search.iterate(_most(search), response=found.response), gaps)
 
 
 def _search(
@@ -177,6 +183,8 @@ def _completed(search: Search, left: NDArray[np.intp], gaps: bool) -> Equilibriu
     """Balance what Newton's method has left over by other means, and return all positions."""
     model, angle = search.model, search.angle
     creeping = search.follow_valley if search.symmetric else search.reduce_residual
+    if left.size and _is_loose(model):
+        left = _from_stops(search, left)
     left = np.array([row for row in left if not creeping(int(row))], dtype=np.intp)
     if left.size and not np.all(_below_round_off(search, left)):
         left = _follow_down(search, left)
@@ -208,7 +216,7 @@ def _solve_by_neighbours(
     first = np.arange(angle.size)
     if series == 1:
         first = leading_positions(model.discs[0].geometry, angle, moment)
-    left = search.iterate(MAX_ITERATIONS, first, take_positions(inner, first))
+    left = search.iterate(_most(search), first, take_positions(inner, first))
     rest = np.setdiff1d(np.arange(angle.size), first, assume_unique=True)
     if rest.size == 0:
         return left
@@ -219,7 +227,7 @@ def _solve_by_neighbours(
         pose[rest] = pose_between(angle[known], pose[known], angle[rest], model.coordinates)
         ratio = model.discs[0].geometry.placement.reduction_ratio
         begin = start_between(angle[known], Start.after(contacts), angle[rest], ratio)
-    return np.sort(np.concatenate([left, search.iterate(MAX_ITERATIONS, rest, begin)]))
+    return np.sort(np.concatenate([left, search.iterate(_most(search), rest, begin)]))
 
 
 def _solve_beside_leaders(search: Search, series: int) -> NDArray[np.intp]:
@@ -230,7 +238,7 @@ def _solve_beside_leaders(search: Search, series: int) -> NDArray[np.intp]:
     if leading.size < count:
         leaders = leading[0] + count * np.arange(series)
     pose[leaders] = _at_first_contact(model.take(leaders), angle[leaders], search.moment[leaders])
-    left = search.iterate(MAX_ITERATIONS, leaders)
+    left = search.iterate(_most(search), leaders)
     rest = np.setdiff1d(np.arange(angle.size), leaders, assume_unique=True)
     if rest.size == 0:
         return left
@@ -244,11 +252,11 @@ def _solve_beside_leaders(search: Search, series: int) -> NDArray[np.intp]:
         pose[beside] = pose_beside(angle[at], pose[at], angle[beside], model.coordinates)
         ratio = model.discs[0].geometry.placement.reduction_ratio
         begin = start_beside(angle[at], take_positions(Start.after(contacts), rows), angle[beside], ratio)
-        left = np.concatenate([left, search.iterate(MAX_ITERATIONS, beside, begin)])
+        left = np.concatenate([left, search.iterate(_most(search), beside, begin)])
     alone = rest[~led[rest // count]]
     if alone.size:
         pose[alone] = _at_first_contact(model.take(alone), angle[alone], search.moment[alone])
-        left = np.concatenate([left, search.iterate(MAX_ITERATIONS, alone)])
+        left = np.concatenate([left, search.iterate(_most(search), alone)])
     return np.sort(left)
 
 
@@ -270,6 +278,37 @@ def _part(search: Search, rows: NDArray[np.intp], factor: FloatArray, pose: Floa
     model = search.model.take(rows)
     moment, load = factor * search.moment[rows], factor * search.load[rows]
     return Search(model, search.angle[rows], moment, search.levers(rows), load, pose.copy())
+
+
+def _is_loose(model: Reducer) -> bool:
+    """Whether wheel or cranks of any drive are free in their bearings."""
+    return any(geometry.has_loose_supports for geometry in model.geometries)
+
+
+def _most(search: Search) -> int:
+    """Iterations after which a start is given up."""
+    return LOOSE_ITERATIONS if _is_loose(search.model) else MAX_ITERATIONS
+
+
+def _from_stops(search: Search, rows: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Solve positions from where the wheel stops without load, all that floats in its bearings taken along; return the others.
+
+    Under light loads wheel and cranks that are free within their clearances have a long way to go.
+    """
+    sense = np.where(search.moment[rows] < 0.0, -1.0, 1.0)
+    try:
+        pose = loose_poses(search.model.take(rows).geometries, search.angle[rows], sense)
+    except ConvergenceError:
+        return rows
+    part = _part(search, rows, np.ones(rows.size), pose)
+    lost = part.iterate(MAX_ITERATIONS)
+    search.iterations[rows] += part.iterations
+    if lost.size < rows.size:
+        kept, contacts = part.contacts()
+        search.pose[rows[kept]], search.residual[rows[kept]] = part.pose[kept], part.residual[kept]
+        search.slipped[rows[kept]] = False
+        search.keep(rows[kept], contacts, np.ones(kept.size, dtype=bool))
+    return rows[lost]
 
 
 def _follow_down(search: Search, rows: NDArray[np.intp]) -> NDArray[np.intp]:

@@ -59,18 +59,21 @@ def compliance_shares(model: Reducer, found: Equilibrium, behind: float = 0.0) -
         work["ring"] = _of_ring(model, found.crank_angle, poses, ends)
         work["pins"] -= work["ring"]
     if model.supports is not None:
+        carried = model.carried_beside_discs(found.crank_angle, found.pose, response.parts)
+        stiffness = model.supports.respond(found.pose, carried)[1]
         wheel, ring = np.zeros(size, dtype=bool), np.zeros(size, dtype=bool)
         wheel[model.coordinates.wheel_place] = True
         ring[model.coordinates.ring_place] = True
-        work["wheel_bearing"] += _stored(model.supports, np.where(wheel, moved, 0.0))
         if model.flange is None:
-            work["cranks"] += _stored(model.supports, np.where(wheel | ring, 0.0, moved))
-            work["shaft_pins"] += _stored(model.supports, np.where(ring, moved, 0.0))
+            work["wheel_bearing"] += _stored(stiffness, np.where(wheel, moved, 0.0))
+            work["cranks"] += _stored(stiffness, np.where(wheel | ring, 0.0, moved))
+            work["shaft_pins"] += _stored(stiffness, np.where(ring, moved, 0.0))
         else:
-            work["cranks"] += _stored(model.supports, np.where(wheel | ring, 0.0, _against_flanges(model, moved)))
+            work["wheel_bearing"] += _stored(stiffness, np.where(wheel, moved, 0.0))
+            work["cranks"] += _stored(stiffness, np.where(wheel | ring, 0.0, _against_flanges(model, moved)))
             work["carrier"] += _stored(model.flange, moved[:, model.coordinates.ring_place])
             if model.discs[0].geometry.tips_by_ring.size:  # what is left are the tips of the shaft pins
-                held = _stored(model.supports, np.where(wheel, 0.0, moved))
+                held = _stored(stiffness, np.where(wheel, 0.0, moved))
                 work["shaft_pins"] += held - work["cranks"] - work["carrier"]
     twisted = behind * one[:, WHEEL_ANGLE, 0] ** 2
     work["carrier"] += twisted

@@ -31,10 +31,9 @@ def moments_of_parts(
     cranks, friction = model.discs[0].geometry.placement.cranks, model.friction
     pushes = [bearing_pushes(part.rollers, cranks) for part in parts]
     total = model.discs[0].geometry.placement.cage_speed * cage_moments(model, crank_angle, pose, parts)
-    for disc, push in zip(model.discs, pushes, strict=True):
-        place = disc.geometry.placement
-        lever = place.race_centres(crank_angle) - place.crank_axes
-        total = total + (lever.conjugate() * push).imag
+    for number, (disc, push) in enumerate(zip(model.discs, pushes, strict=True)):
+        bores = disc.geometry.bores(crank_angle, pose[:, model.coordinates.columns(number)])
+        total = total + (bores.lever.conjugate() * push).imag
     if friction is None:
         return total
     on_bearings = None if model.stage is None else model.stage.on_bearings(total)

@@ -10,7 +10,9 @@ profile shift :math:`\tan\alpha_{wt} = \tan\alpha_n/\cos\beta`. The axial force 
 couple :math:`F_a r_w`.
 
 Where cranks yield these forces act on the shafts beside those of the discs. In the coordinates of the crank at the discs a
-force elsewhere on the shaft is what holds the planes of the discs still under it.
+force elsewhere on the shaft is what holds the planes of the discs still under it. What the bearings of a crank carry of it
+meanwhile acts on what they stand in, the far flange of a carrier, and on the displacement that a clearance or preload leaves
+them (`ltca.equilibrium.supports`). By virtual work the same matrices give displacement and slope of the crank at the planet.
 
 The teeth of the sun stand still while the input is held. Cranks turn together, so the crank lags behind its ideal angle by the
 mean over all cranks of what the mesh yields, :math:`T/c r_b^2`, of what the crank gives way at the planet, and of half the
@@ -25,6 +27,7 @@ import numpy as np
 
 from ltca.arrays import ComplexArray, FloatArray, by_drive
 from ltca.drive.parts import Drive
+from ltca.equilibrium.supports import crank_springs
 from ltca.geometry.coordinates import Coordinates
 from ltca.geometry.placement import BatchScalar
 from ltca.laws.beam import shaft_flexibility, support_parts
@@ -77,16 +80,20 @@ class StageMesh:
         u.
     outward : array of complex, shape (cranks,)
         Directions from the sun to the cranks.
-    bending : array, shape (discs, 2)
-        Forces at the discs that move the crank there as a unit force and a unit couple at the planet do, and, by reciprocity,
-        displacement and slope at the planet by displacements at the discs; zero where cranks are rigid.
+    by_pose : array of complex, shape (cranks, 2, coordinates)
+        Displacement and slope of every crank at the planet by the coordinates, without forces there and with its bearings where
+        they stand.
+    by_bearings : array, shape (2, 2)
+        Displacement and slope at the planet by one displacement in each of the two bearings, the planes of the discs standing
+        still, and the part of force and couple there that each bearing then carries; zero where the file says nothing of
+        these.
     own : array, shape (2, 2)
         Displacement and slope at the planet by a unit force and couple there while the planes of the discs stand still, mm/N.
     on_supports : array, shape (supports, 2)
         Part of that force and couple that each bearing of the crank carries; of rigid cranks one at the planet carries the
         force, behind those beside the discs.
     yields : bool
-        Whether cranks yield.
+        Whether cranks yield, or the far flange in which they stand.
     carried : bool
         Whether the carrier is the output, which the main bearing holds against what the sun presses on its planets.
     """
@@ -100,7 +107,8 @@ class StageMesh:
     plane: BatchScalar = by_drive(0)
     reduction_ratio: float
     outward: ComplexArray = by_drive(1)
-    bending: FloatArray = by_drive(2)
+    by_pose: ComplexArray = by_drive(3)
+    by_bearings: FloatArray = by_drive(2)
     own: FloatArray = by_drive(2)
     on_supports: FloatArray = by_drive(2)
     yields: bool
@@ -112,20 +120,30 @@ class StageMesh:
         stage, distance = drive.first_stage, drive.crank.circle_radius
         if stage is None or distance is None:
             return None
-        mesh, places = stage.mesh(distance), np.array(drive.crank.places)
+        mesh, places, coordinates = stage.mesh(distance), np.array(drive.crank.places), Coordinates.of_drive(drive)
         stiffness, support, discs = stage.mesh_stiffness, drive.crank.support, drive.disc.number_of_discs
-        bending: FloatArray = np.zeros((discs, 2))
-        own: FloatArray = np.zeros((2, 2))
+        planes, bearings, shaft = drive.disc.disc_planes, drive.crank_supports, drive.materials.crankshaft
+        bending, own, by_bearings = np.zeros((discs, 2)), np.zeros((2, 2)), np.zeros((2, 2))
         on_supports: FloatArray = np.eye(discs + 1, 2, -discs)
         if support is not None:
-            planes = drive.disc.disc_planes
             whole = shaft_flexibility(
-                [*planes, stage.plane], support.positions, support.stiffness, support.diameter,
-                drive.materials.crankshaft.youngs_modulus, [stage.plane],
+                [*planes, stage.plane], support.positions, crank_springs(drive), support.diameter, shaft.youngs_modulus,
+                [stage.plane],
             )  # fmt: skip
             bending = np.asarray(np.linalg.solve(whole[:discs, :discs], whole[:discs, discs:]), dtype=float)
             own = whole[discs:, discs:] - whole[discs:, :discs] @ bending
-            on_supports = support_parts([stage.plane], support.positions, [stage.plane])
+        if bearings is not None:
+            on_supports = support_parts([stage.plane], bearings, [stage.plane])
+            by_bearings = on_supports - support_parts(planes, bearings) @ bending
+        by_pose = np.zeros((drive.crank.number, 2, coordinates.size), dtype=complex)
+        for crank in range(coordinates.cranks):
+            x = coordinates.own * np.arange(discs) + coordinates.crank(crank)
+            by_pose[crank][:, x], by_pose[crank][:, x + 1] = bending.T, 1j * bending.T
+        on_posts = drive.carrier is not None and drive.carrier.posts is not None
+        if on_posts:
+            axes = drive.crank.axis_offset.place + places
+            seats = np.stack((np.ones_like(axes), np.full_like(axes, 1j), 1j * axes), axis=-1)
+            by_pose[..., coordinates.ring_place] = by_bearings[1, :, None] * seats[:, None]
         return cls(
             pitch_radius=mesh.pitch_radius,
             separating=mesh.separating,
@@ -136,10 +154,11 @@ class StageMesh:
             plane=stage.plane,
             reduction_ratio=drive.reduction_ratio,
             outward=places / np.abs(places),
-            bending=bending,
+            by_pose=by_pose,
+            by_bearings=by_bearings,
             own=own,
             on_supports=on_supports,
-            yields=support is not None,
+            yields=support is not None or on_posts,
             carried=drive.wheel_is_held,
         )
 
@@ -174,45 +193,46 @@ class StageMesh:
         both = np.stack((forces.in_plane, forces.couple), axis=-1)
         return np.asarray(np.matmul(both, np.swapaxes(self.on_supports, -1, -2)))
 
-    def on_cranks(self, moments: FloatArray) -> tuple[ComplexArray, ComplexArray]:
-        """Return the forces of the teeth in the coordinates of the cranks, N, shape (positions, discs, cranks), and their
-        derivatives by the moment of their own crank, 1/mm.
+    def on_planets(self, moments: FloatArray) -> tuple[ComplexArray, ComplexArray]:
+        """Return force and couple of the teeth on every planet, N and N·mm, shape (positions, cranks, 2), and their derivatives
+        by the moment of their own crank.
         """
-        sense = np.sign(moments)
         forces = self.forces(moments)
-        slope = self._slope(sense)
-        found = [
-            np.einsum("...dk,...ck->...dc", self.bending, np.stack(parts, axis=-1))
-            for parts in ((forces.in_plane, forces.couple), slope)
-        ]
-        return np.asarray(found[0]), np.asarray(found[1])
+        both = np.stack((forces.in_plane, forces.couple), axis=-1)
+        return both, np.stack(self._slope(np.sign(moments)), axis=-1)
+
+    def beside_discs(self, on_planets: ComplexArray) -> ComplexArray:
+        """Return what the two bearings of every crank carry of forces and couples on the planets while the planes of the discs
+        stand still, N, shape (positions, cranks, 2).
+        """
+        return np.asarray(np.matmul(on_planets, np.swapaxes(self.by_bearings, -1, -2)))
+
+    def on_coordinates(self, on_planets: ComplexArray) -> FloatArray:
+        """Return the work of forces and couples on the planets by the coordinates, shape (positions, coordinates)."""
+        return np.asarray((self.by_pose.conjugate() * on_planets[..., None]).real.sum(axis=(-3, -2)))
 
     def _slope(self, sense: FloatArray) -> tuple[ComplexArray, ComplexArray]:
         """Derivatives of force and couple by the moments of the cranks, whose senses are given."""
         in_plane = (self.separating * sense - 1j) / self.pitch_radius * self.outward
         return np.asarray(in_plane), np.asarray(-self.axial * self.outward * np.ones(sense.shape))
 
-    def crank_lag(self, moments: FloatArray, displaced: ComplexArray) -> FloatArray:
+    def displaced(self, moments: FloatArray, pose: FloatArray, given: ComplexArray | None) -> ComplexArray:
+        """Return displacement and slope of every crank at its planet in the fixed frame, mm and rad, shape (positions, cranks,
+        2), at moments that hold the cranks; `given` are the displacements in their bearings, mm, shape (positions, cranks, 2).
+        """
+        moved = np.matmul(self.by_pose, pose[:, None, :, None])[..., 0]
+        if given is not None:
+            moved = moved + np.matmul(given, self.by_bearings)
+        return np.asarray(moved + np.matmul(self.on_planets(moments)[0], np.swapaxes(self.own, -1, -2)))
+
+    def crank_lag(self, moments: FloatArray, displaced: ComplexArray | None = None) -> FloatArray:
         """Return the angle of the cranks less the one that the held sun gives rigid teeth without play, rad, shape (positions,).
 
-        `displaced` are the displacements of the cranks at the discs in the fixed frame, mm, shape (positions, discs, cranks);
-        without cranks where these are rigid.
+        `displaced` is that of the cranks at their planets; None where nothing there yields.
         """
         each = self.twist * moments
-        if self.yields:
-            forces = self.forces(moments)
-            both = np.stack((forces.in_plane, forces.couple), axis=-1)
-            moved = np.einsum("...dk,...dc->...ck", self.bending, displaced)
-            moved = moved + np.matmul(both, np.swapaxes(self.own, -1, -2))
-            slope = np.stack(self._slope(np.sign(moments)), axis=-1)
-            each = each + (slope.conjugate() * moved).real.sum(axis=-1)
+        if displaced is not None:
+            each = each + (self.on_planets(moments)[1].conjugate() * displaced).real.sum(axis=-1)
         total = moments.sum(axis=1)
         free = np.sign(total)[:, None] * self.half_free
         return np.asarray(-(each.mean(axis=1) + np.broadcast_to(free, (total.size, 1))[:, 0]))
-
-
-def displaced_cranks(coordinates: Coordinates, pose: FloatArray) -> ComplexArray:
-    """Return the displacements of the cranks at every disc in the fixed frame, mm, shape (positions, discs, cranks)."""
-    each = pose[:, : coordinates.discs * coordinates.own].reshape(-1, coordinates.discs, coordinates.own)
-    first = coordinates.crank(0)
-    return np.asarray(each[..., first::2] + 1j * each[..., first + 1 :: 2])

@@ -12,7 +12,6 @@ import numpy as np
 from ltca.arrays import FloatArray
 from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.crank_moments import crank_moments
-from ltca.equilibrium.first_stage import displaced_cranks
 from ltca.equilibrium.reducer import Reducer
 from ltca.geometry.coordinates import WHEEL_ANGLE
 
@@ -22,7 +21,13 @@ def crank_lag(model: Reducer, found: Equilibrium) -> FloatArray:
     if model.stage is None:
         return np.zeros(found.crank_angle.shape)
     moments = crank_moments(model, found.crank_angle, found.pose, found.response)
-    return model.stage.crank_lag(moments, displaced_cranks(model.coordinates, found.pose))
+    displaced = None
+    if model.stage.yields:
+        carried, given = model.stage.beside_discs(model.stage.on_planets(moments)[0]), None
+        if model.supports is not None:
+            given = model.supports.given(found.pose, carried)
+        displaced = model.stage.displaced(moments, found.pose, given)
+    return model.stage.crank_lag(moments, displaced)
 
 
 def wheel_angle_of_input(model: Reducer, found: Equilibrium) -> FloatArray:

@@ -33,7 +33,7 @@ from ltca.equilibrium.external_force import ExternalForce
 from ltca.equilibrium.first_stage import StageMesh
 from ltca.equilibrium.friction.turning import Rubbing, TurningFriction
 from ltca.equilibrium.pin_displacements import PinDisplacements
-from ltca.equilibrium.supports import support_stiffness
+from ltca.equilibrium.supports import Supports
 from ltca.geometry.coordinates import WHEEL_ANGLE, Coordinates
 from ltca.geometry.pair_motion import KnownPins
 from ltca.geometry.pairs import ContactGeometry
@@ -102,8 +102,8 @@ class Reducer:
     ----------
     discs : tuple of DiscModel
         How the contacts of each disc yield, all by the same model.
-    supports : array, shape (coordinates, coordinates) or (positions, coordinates, coordinates), or None
-        Stiffness of the supports (`ltca.equilibrium.supports`), N/mm; None where nothing yields.
+    supports : Supports or None
+        Springs on coordinates; None where nothing yields.
     pins : PinDisplacements or None
         What displaces pins: beams under several discs, the ring of the wheel.
     flange : array, shape (3, 3) or (positions, 3, 3), or None
@@ -117,7 +117,7 @@ class Reducer:
     """
 
     discs: tuple[DiscModel, ...]
-    supports: FloatArray | None = by_drive(2, default=None)
+    supports: Supports | None = None
     pins: PinDisplacements | None = None
     flange: FloatArray | None = by_drive(2, default=None)
     friction: JointFriction | None = None
@@ -130,7 +130,7 @@ class Reducer:
         """Return the reducer of a drive whose discs yield by these models."""
         return cls(
             discs=tuple(discs),
-            supports=support_stiffness(drive, discs[0].geometry),
+            supports=Supports.of_drive(drive, discs[0].geometry),
             pins=PinDisplacements.of_drive(drive),
             flange=far_flange_stiffness(drive),
             friction=TurningFriction.of_drive(drive),
@@ -221,11 +221,13 @@ class Reducer:
         if settled is not None:
             force += settled.force
             tangent += settled.tangent
+        beside_discs: tuple[ComplexArray, FloatArray] | tuple[()] = ()
         if self.stage is not None and self._teeth_press:
-            self._press_teeth(self.stage, crank_angle, pose, parts, force, tangent)
+            beside_discs = self._press_teeth(self.stage, crank_angle, pose, parts, force, tangent)
         if self.supports is not None:
-            force += np.matmul(self.supports, pose[..., None])[..., 0]
-            tangent += self.supports
+            held, stiffness = self.supports.respond(pose, *beside_discs)
+            force += held
+            tangent += stiffness
         if self.external is not None and coordinates.wheel:
             pressed = self.external.on_wheel(crank_angle)
             force[:, coordinates.wheel_place] -= np.stack((pressed.real, pressed.imag), axis=-1)
@@ -262,6 +264,16 @@ class Reducer:
             total = total + self.stage.on_wheel(moments_of_parts(self, crank_angle, pose, parts))[0]
         return total
 
+    def carried_beside_discs(
+        self, crank_angle: FloatArray, pose: FloatArray, parts: Sequence[DiscResponse]
+    ) -> ComplexArray | None:
+        """Return what the two bearings of every crank carry of the forces of a first stage while the planes of the discs stand
+        still, N, shape (positions, cranks, 2); None without these forces.
+        """
+        if self.stage is None or not self.stage.yields:
+            return None
+        return self.stage.beside_discs(self.stage.on_planets(moments_of_parts(self, crank_angle, pose, parts))[0])
+
     def _press_teeth(
         self,
         stage: StageMesh,
@@ -270,38 +282,52 @@ class Reducer:
         parts: Sequence[DiscResponse],
         force: FloatArray,
         tangent: FloatArray,
-    ) -> None:
-        """Take the forces of the first stage from the coordinates of cranks and wheel, in place, before any but contacts press.
+    ) -> tuple[ComplexArray, FloatArray] | tuple[()]:
+        """Take the forces of the first stage from the coordinates of cranks, flange and wheel, in place, before any but contacts
+        press, and return what the bearings of the cranks carry of them while the discs stand still, with its derivatives.
 
-        Where cranks are rigid, the derivatives of what the planets press on the main bearing are left out.
+        Where cranks are rigid, the derivatives of what the planets press on main bearing and flange are left out.
         """
-        coordinates, places = self.coordinates, self.discs[0].geometry.placement
+        coordinates = self.coordinates
         moments = moments_of_parts(self, crank_angle, pose, parts)
+        slopes = self._moment_slopes(crank_angle, pose, parts, tangent)
         on_wheel, by_moments = stage.on_wheel(moments)
         if coordinates.wheel:
             force[:, coordinates.wheel_place] -= np.stack((on_wheel.real, on_wheel.imag), axis=-1)
+            moved = np.einsum("pc,pcj->pj", by_moments, slopes)
+            tangent[:, coordinates.wheel_place] -= np.stack((moved.real, moved.imag), axis=1)
         if not stage.yields:
-            return
-        columns = coordinates.own * np.arange(coordinates.discs)[:, None] + coordinates.crank(0)
-        x = columns + 2 * np.arange(coordinates.cranks)
-        slopes = np.zeros((*moments.shape, coordinates.size))
+            return ()
+        pressed, by_moment = stage.on_planets(moments)
+        force -= stage.on_coordinates(pressed)
+        work = (stage.by_pose.conjugate() * by_moment[..., None]).real.sum(axis=-2)
+        tangent -= np.matmul(work.swapaxes(-1, -2), slopes)
+        carried, changes = stage.beside_discs(pressed), stage.beside_discs(by_moment)
+        both = np.stack((changes.real, changes.imag), axis=-1).reshape(*moments.shape, -1, 1)
+        return carried, both * slopes[:, :, None]
+
+    def _moment_slopes(
+        self, crank_angle: FloatArray, pose: FloatArray, parts: Sequence[DiscResponse], tangent: FloatArray
+    ) -> FloatArray:
+        """Derivatives of the moments that hold the cranks by the pose, shape (positions, cranks, coordinates), from the tangent
+        of the contacts; zero where cranks are rigid, whose forces it does not have.
+        """
+        coordinates, cage = self.coordinates, np.asarray(self.discs[0].geometry.placement.cage_speed)
+        slopes = np.zeros((crank_angle.size, self.discs[0].geometry.placement.cranks, coordinates.size))
+        if not coordinates.cranks:
+            return slopes
         for number, (disc, part) in enumerate(zip(self.discs, parts, strict=True)):
-            own, place = coordinates.columns(number), disc.geometry.placement
+            own = coordinates.columns(number)
             bores = disc.geometry.bores(crank_angle, pose[:, own])
-            cage = np.asarray(places.cage_speed)
-            arm = place.race_centres(crank_angle) - place.crank_axes + cage * bores.displacement
-            changes = tangent[:, x[number]] + 1j * tangent[:, x[number] + 1]
+            x = own[coordinates.crank(0) + 2 * np.arange(coordinates.cranks)]
+            arm = bores.lever + cage * bores.displacement
+            changes = tangent[:, x] + 1j * tangent[:, x + 1]
             slopes += (arm.conjugate()[..., None] * changes).imag
             push = bearing_pushes(part.rollers, coordinates.cranks)
             slopes[..., own] += cage[..., None] * (bores.gradient.conjugate() * push[..., None]).imag
-        pressed, by_moment = stage.on_cranks(moments)
-        changed = by_moment[..., None] * slopes[:, None]
-        for shift, part_of in ((0, np.real), (1, np.imag)):
-            force[:, x + shift] -= part_of(pressed)
-            tangent[:, x + shift] -= part_of(changed)
-        if coordinates.wheel:
-            moved = np.einsum("pc,pcj->pj", by_moments, slopes)
-            tangent[:, coordinates.wheel_place] -= np.stack((moved.real, moved.imag), axis=1)
+            for crank, twist in enumerate(bores.twists):
+                slopes[:, crank, own[twist]] -= (bores.lever[:, crank].conjugate() * push[:, crank]).real
+        return slopes
 
     def _unmoved(self, positions: int) -> ComplexArray:
         """Pins that stand where they stand without load, shape (positions, discs, pairs)."""

@@ -1,85 +1,439 @@
-"""Springs on coordinates: crankshafts on their bearings, and the wheel on its own.
+r"""What holds wheel and cranks: springs on coordinates, linear ones and those of bearings with clearance or preload.
 
 Every crank is a beam on two bearings (`ltca.laws.beam`); its stiffness ties x and y of the crank in the planes of the discs,
-alike in every direction. The wheel's main bearing holds its x and y. A ring that ties the tips of the shaft pins is held by
-what the pins resist when it moves all tips; as the far flange of a carrier it is held by the posts as well
-(`ltca.laws.carrier`), and the far bearings of the cranks stand in it: a crank bends by its displacement relative to the straight
-line between its bearings.
+alike in every direction. Where it twists its stiffness in torsion ties the angles of its eccentrics against the splined planet.
+The wheel's main bearing holds its x and y. A ring that ties the tips of the shaft pins is held by what the pins resist when it
+moves all tips; as the far flange of a carrier it is held by the posts as well (`ltca.laws.carrier`), and the far bearings of the
+cranks stand in it: a crank bends by its displacement relative to the straight line between its bearings. Linear springs are one
+matrix.
+
+A bearing with clearance, or one of whose sides lifts off, is a spring in series with a displacement w along its reaction R
+(`ltca.laws.bearing_pair.SideLaw`). With the stiffness K of the shaft on its springs and the parts L of a force that each
+bearing carries, the stored energy is
+
+.. math:: U(u) = \min_w \tfrac12 (u - Lw)^T K (u - Lw) + \sum \psi(w), \qquad f = K (u - Lw), \quad R = L^T f,
+
+which is convex and smooth: the force is unique even where a shaft floats in its clearances and w is not. What presses a shaft
+beside the discs, such as the teeth of a first stage, adds to R what the bearings carry of it while the discs stand still.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from math import tan
+
 import numpy as np
 
-from ltca.arrays import FloatArray
-from ltca.drive.parts import Drive
+from ltca.arrays import ComplexArray, FloatArray, by_drive
+from ltca.drive.parts import Drive, Preload
+from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import Coordinates
 from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.backed import shaft_pin_beam
-from ltca.laws.beam import shaft_flexibility
+from ltca.laws.beam import shaft_flexibility, support_parts, torsion_flexibility
+from ltca.laws.bearing_pair import (
+    BALL,
+    ROLLER,
+    RollingRow,
+    SideLaw,
+    axial_stiffness,
+    facing_of,
+)
 from ltca.laws.carrier import far_flange_stiffness
+
+MAX_ITERATIONS = 80
+SETTLED = 1e-13
+"""Largest change of a displacement in a bearing, relative to the displacements."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BearingSupport:
+    """A shaft, or the wheel, on bearings with clearance or preload.
+
+    Attributes
+    ----------
+    by_pose : array, shape (2·planes, coordinates)
+        x and y in each plane in turn, relative to what its bearings stand in, by the coordinates.
+    stiffness : array, shape (planes, planes)
+        K of forces in the planes on springs alone, N/mm.
+    shares : array, shape (planes, bearings)
+        L, part of a force in each plane that each bearing carries.
+    gap, lift_off, beyond : array, shape (bearings,)
+        Of `SideLaw`, mm, N and mm/N.
+
+    All may have the positions in front.
+    """
+
+    by_pose: FloatArray = by_drive(2)
+    stiffness: FloatArray = by_drive(2)
+    shares: FloatArray = by_drive(2)
+    gap: FloatArray = by_drive(1)
+    lift_off: FloatArray = by_drive(1)
+    beyond: FloatArray = by_drive(1)
+
+    @classmethod
+    def of_laws(
+        cls, by_pose: FloatArray, stiffness: FloatArray, shares: FloatArray, laws: tuple[SideLaw, ...]
+    ) -> BearingSupport:
+        """Return the support with the laws of its bearings."""
+        gap, lift_off, beyond = (
+            np.array([getattr(law, name) for law in laws]) for name in ("gap", "lift_off", "beyond")
+        )
+        return cls(by_pose=by_pose, stiffness=stiffness, shares=shares, gap=gap, lift_off=lift_off, beyond=beyond)
+
+    def respond(
+        self, pose: FloatArray, beside: ComplexArray | None = None, slopes: FloatArray | None = None
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return generalised force and tangent, shapes (positions, coordinates) and (positions, coordinates, coordinates).
+
+        `beside` is what each bearing carries of forces beside the planes while these stand still, N, shape (positions,
+        bearings), and `slopes` its derivatives by the pose, x and y of every bearing in turn, shape (positions, 2·bearings,
+        coordinates). These forces act on the planes elsewhere.
+        """
+        displaced = self._displaced(pose)
+        given, by_given = self._settle(displaced, beside)
+        force = self._forces(displaced, given)
+        lost = _both(np.matmul(self.stiffness, self.shares))
+        tangent = _both(self.stiffness) - np.matmul(lost, np.matmul(by_given, lost.swapaxes(-1, -2)))
+        tangent = 0.5 * (tangent + tangent.swapaxes(-1, -2))
+        found = np.matmul(tangent, self.by_pose)
+        if slopes is not None:
+            found = found - np.matmul(lost, np.matmul(by_given, slopes))
+        back = self.by_pose.swapaxes(-1, -2)
+        both = np.stack((force.real, force.imag), axis=-1).reshape(pose.shape[0], -1, 1)
+        return np.matmul(back, both)[..., 0], np.matmul(back, found)
+
+    def energy(self, pose: FloatArray) -> FloatArray:
+        """Return the stored energy, N·mm, shape (positions,)."""
+        displaced = self._displaced(pose)
+        given, _ = self._settle(displaced)
+        rest = displaced - _times(self.shares, given)
+        size = np.abs(given)
+        lifted = np.where(self.beyond > 0.0, size, 0.0)
+        softer = lifted * (self.lift_off + 0.5 * lifted / np.where(self.beyond > 0.0, self.beyond, 1.0))
+        return np.asarray(0.5 * (rest.conj() * _times(self.stiffness, rest)).real.sum(axis=1) + softer.sum(axis=1))
+
+    def reactions(self, pose: FloatArray, beside: ComplexArray | None = None) -> ComplexArray:
+        """Return the force of each bearing on shaft or wheel, x + iy, N, shape (positions, bearings); `beside` as for
+        `respond`.
+        """
+        displaced = self._displaced(pose)
+        given, _ = self._settle(displaced, beside)
+        carried = _times(self.shares.swapaxes(-1, -2), self._forces(displaced, given))
+        return -carried if beside is None else -(carried + beside)
+
+    def given(self, pose: FloatArray, beside: ComplexArray | None = None) -> ComplexArray:
+        """Return the displacement w in each bearing, x + iy, mm, shape (positions, bearings); `beside` as for `respond`."""
+        return self._settle(self._displaced(pose), beside)[0]
+
+    def _displaced(self, pose: FloatArray) -> ComplexArray:
+        both = np.matmul(self.by_pose, pose[..., None])[..., 0]
+        return np.asarray(both[:, ::2] + 1j * both[:, 1::2])
+
+    def _forces(self, displaced: ComplexArray, given: ComplexArray) -> ComplexArray:
+        return _times(self.stiffness, displaced - _times(self.shares, given))
+
+    def _settle(self, displaced: ComplexArray, beside: ComplexArray | None = None) -> tuple[ComplexArray, FloatArray]:
+        """w of every bearing, mm, complex, and its derivative by Lᵀ K u, real and imaginary parts in turn.
+
+        Bearing by bearing w is a function of what its reaction is without it (`_given`); several are brought together by
+        Newton's method on these functions, which are piecewise smooth, with a sweep bearing by bearing before every step:
+        sweeps alone never raise the energy, and find the right pieces.
+        """
+        lost = np.matmul(self.stiffness, self.shares)
+        matrix = np.matmul(self.shares.swapaxes(-1, -2), lost)
+        push = _times(lost.swapaxes(-1, -2), displaced)
+        if beside is not None:
+            push = push + beside
+        count = push.shape[1]
+        matrix = np.broadcast_to(matrix, (push.shape[0], count, count))
+        own = matrix[:, np.arange(count), np.arange(count)]
+        coupled = matrix - own[..., None] * np.eye(count)
+        size = np.max(np.abs(displaced), axis=1, initial=0.0)[:, None]
+        given = np.zeros(push.shape, dtype=complex)
+        if count == 1:
+            given, slope = self._given(push, own)
+            return given, _blocks(slope)
+        for _ in range(MAX_ITERATIONS):
+            for bearing in range(count):
+                given[:, bearing] = self._given(push - _times(coupled, given), own)[0][:, bearing]
+            found, slope = self._given(push - _times(coupled, given), own)
+            blocks = _blocks(slope)
+            left = found - given
+            system = np.eye(2 * count) + np.matmul(blocks, _both(coupled))
+            # A shaft that floats has no one w: the least change serves.
+            solved = np.linalg.pinv(system, rcond=1e-11)
+            if np.all(np.abs(left) <= SETTLED * size):
+                return given, np.matmul(solved, blocks)
+            step = np.matmul(solved, np.stack((left.real, left.imag), axis=-1).reshape(-1, 2 * count, 1))[..., 0]
+            given = given + step[:, ::2] + 1j * step[:, 1::2]
+        raise ConvergenceError(
+            "the clearances of the bearings of a shaft do not settle; change in mm", [float(np.max(np.abs(left)))]
+        )
+
+    def _given(self, push: ComplexArray, own: FloatArray) -> tuple[ComplexArray, FloatArray]:
+        """w by what each reaction is without it and the stiffness `own` against it, and its derivative, shape (…, 2, 2)."""
+        size = np.abs(push)
+        ahead = np.divide(push, size, out=np.ones_like(push), where=size > 0.0)
+        stiff = np.where(own > 0.0, own, 1.0)
+        free = size <= stiff * self.gap
+        lifted = size > self.lift_off
+        softer = self.beyond / (1.0 + stiff * self.beyond)
+        length = np.where(free, size / stiff, self.gap) + np.where(lifted, size - self.lift_off, 0.0) * softer
+        along = np.where(free & (self.gap > 0.0), 1.0 / stiff, 0.0) + np.where(lifted, softer, 0.0)
+        across = np.divide(length, size, out=along.copy(), where=size > 0.0)
+        direction = np.stack((ahead.real, ahead.imag), axis=-1)
+        outer = direction[..., :, None] * direction[..., None, :]
+        slope = across[..., None, None] * np.eye(2) + (along - across)[..., None, None] * outer
+        return np.asarray(length * ahead), np.asarray(slope)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Supports:
+    """Springs on coordinates.
+
+    Attributes
+    ----------
+    matrix : array, shape (coordinates, coordinates) or (positions, coordinates, coordinates)
+        Stiffness of the linear ones, N/mm.
+    bearings : tuple of BearingSupport
+        Those with clearance or preload, of the cranks before that of the wheel.
+    cranks : int
+        Cranks that stand on such bearings.
+    """
+
+    matrix: FloatArray = by_drive(2)
+    bearings: tuple[BearingSupport, ...] = ()
+    cranks: int = 0
+
+    @classmethod
+    def of_drive(cls, drive: Drive, geometry: ContactGeometry) -> Supports | None:
+        """Return the supports of a drive; None where nothing yields.
+
+        The contact geometry of one disc is for the tips of shaft pins that a ring ties.
+        """
+        coordinates = Coordinates.of_drive(drive)
+        shaft, wheel, laws = crank_stiffness(drive), wheel_law(drive), crank_laws(drive)
+        if shaft is None and wheel is None and not coordinates.ring:
+            return None
+        matrix, bearings = np.zeros((coordinates.size, coordinates.size)), []
+        flange = far_flange_stiffness(drive)
+        for crank in range(0 if shaft is None else coordinates.cranks):
+            by_pose = _bent_by_pose(drive, geometry, crank)
+            if laws is None:
+                matrix += by_pose.T @ _both(np.asarray(shaft)) @ by_pose
+            else:
+                bearings.append(BearingSupport.of_laws(by_pose, np.asarray(shaft), _crank_shares(drive), laws))
+        if (twisted := crank_torsion(drive)) is not None:
+            for twist in coordinates.twist_places:
+                turns = coordinates.own * np.arange(coordinates.discs) + twist
+                matrix[np.ix_(turns, turns)] += twisted
+        of_wheel = np.eye(coordinates.size)[coordinates.wheel_place]
+        if isinstance(wheel, SideLaw):
+            held, whole = np.array([[wheel.stiffness]]), np.ones((1, 1))
+            bearings.append(BearingSupport.of_laws(of_wheel, held, whole, (wheel,)))
+        elif wheel is not None:
+            matrix += wheel * of_wheel.T @ of_wheel
+        if flange is not None:
+            matrix[coordinates.ring_place, coordinates.ring_place] += flange
+        if geometry.tips_by_ring.size and coordinates.ring:
+            matrix[coordinates.ring_place, coordinates.ring_place] += _ring_stiffness(drive, geometry)
+        cranks = 0 if shaft is None or laws is None else coordinates.cranks
+        return cls(matrix=matrix, bearings=tuple(bearings), cranks=cranks)
+
+    def respond(
+        self, pose: FloatArray, beside: ComplexArray | None = None, slopes: FloatArray | None = None
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return generalised force and tangent at poses, shapes (positions, coordinates) and (…, coordinates, coordinates).
+
+        `beside` and `slopes` are those of `BearingSupport.respond` for every crank, on axis 1.
+        """
+        force, tangent = np.matmul(self.matrix, pose[..., None])[..., 0], self.matrix
+        for number, support in enumerate(self.bearings):
+            of_crank = beside is not None and number < self.cranks
+            pushed, stiff = support.respond(
+                pose,
+                beside[:, number] if of_crank and beside is not None else None,
+                slopes[:, number] if of_crank and slopes is not None else None,
+            )
+            force, tangent = force + pushed, tangent + stiff
+        return force, tangent
+
+    def given(self, pose: FloatArray, beside: ComplexArray) -> ComplexArray | None:
+        """Return the displacement in the two bearings of every crank, x + iy, mm, shape (positions, cranks, 2); None where these
+        are springs alone. `beside` as for `respond`.
+        """
+        if not self.cranks:
+            return None
+        each = enumerate(self.bearings[: self.cranks])
+        return np.stack([support.given(pose, beside[:, number]) for number, support in each], axis=1)
+
+    def energy(self, pose: FloatArray) -> FloatArray:
+        """Return the energy stored at poses, N·mm, shape (positions,)."""
+        total: FloatArray = 0.5 * (pose * np.matmul(self.matrix, pose[..., None])[..., 0]).sum(axis=1)
+        for support in self.bearings:
+            total = total + support.energy(pose)
+        return total
 
 
 def crank_stiffness(drive: Drive) -> FloatArray | None:
     """Return the forces on a crank at the planes of the discs by displacements there, N/mm, shape (discs, discs).
 
-    None where cranks are rigid.
+    None where cranks are rigid. Bearings are without clearance, and both sides of preloaded ones carry.
     """
     support = drive.crank.support
     if support is None:
         return None
     modulus = drive.materials.crankshaft.youngs_modulus
+    planes, springs = drive.disc.disc_planes, crank_springs(drive)
+    return np.asarray(np.linalg.inv(shaft_flexibility(planes, support.positions, springs, support.diameter, modulus)))
+
+
+def crank_torsion(drive: Drive) -> FloatArray | None:
+    """Return the moments on a crank at the planes of the discs by twists there, N·mm/rad, shape (discs, discs).
+
+    Twists are those against the splined planet, which holds φ_C; None where cranks do not twist.
+    """
+    support, shaft = drive.crank.support, drive.materials.crankshaft
+    if support is None or not support.torsion:
+        return None
+    shear_modulus = shaft.youngs_modulus / (2.0 * (1.0 + shaft.poisson_ratio))
     planes = drive.disc.disc_planes
     return np.asarray(
-        np.linalg.inv(shaft_flexibility(planes, support.positions, support.stiffness, support.diameter, modulus))
+        np.linalg.inv(torsion_flexibility(planes, support.spline_plane or 0.0, support.diameter, shear_modulus))
     )
 
 
-def support_stiffness(drive: Drive, geometry: ContactGeometry) -> FloatArray | None:
-    """Return the stiffness matrix of all supports by the coordinates of a drive, N/mm; None where nothing yields.
+def crank_bearing_stiffness(drive: Drive) -> tuple[float, float]:
+    """Return the radial stiffness of the two bearings of a crank as given, or of tapered rollers at their preload, N/mm."""
+    support = drive.crank.support
+    if support is None:
+        raise AssertionError("cranks are rigid")
+    if support.load_constant is None:
+        first, second = support.stiffness
+        return first, second
+    preload = support.preload or Preload()
+    axial = axial_stiffness(support.load_constant, ROLLER, force=preload.force, displacement=preload.displacement)
+    radial = RollingRow.of_axial(axial, support.contact_angle or 0.0).radial
+    return radial, radial
 
-    The contact geometry of one disc is for the tips of shaft pins that a ring ties.
+
+def crank_springs(drive: Drive) -> tuple[float, float]:
+    """Return the stiffness of the two bearings of a crank without clearance, both sides of preloaded ones carrying, N/mm."""
+    laws = crank_laws(drive)
+    first, second = crank_bearing_stiffness(drive) if laws is None else (law.stiffness for law in laws)
+    return first, second
+
+
+def crank_laws(drive: Drive) -> tuple[SideLaw, ...] | None:
+    """Return the laws of the two bearings of a crank; None where they are springs alone."""
+    support = drive.crank.support
+    if support is None or (support.clearance is None and support.preload is None):
+        return None
+    found = []
+    for stiffness in crank_bearing_stiffness(drive):
+        if support.preload is None:
+            found.append(SideLaw.of_clearance(stiffness, support.clearance or 0.0))
+        elif support.load_constant is None:
+            found.append(SideLaw.of_preload(stiffness, support.preload.force, support.preload.displacement))
+        else:
+            angle = support.contact_angle or 0.0
+            found.append(_lifting(stiffness, _lift_off(ROLLER, 0.0, support.load_constant, angle, support.preload)))
+    return tuple(found)
+
+
+def wheel_rows(drive: Drive) -> tuple[RollingRow, ...]:
+    """Return the rows of the main bearing about their preload; empty where it is given by its stiffness."""
+    bearing = drive.main_bearing
+    rows = () if bearing is None else bearing.bearings
+    if bearing is None or not rows:
+        return ()
+    middle = sum(row.plane for row in rows) / len(rows)
+    found = []
+    for row in rows:
+        if not row.contact_angle:
+            found.append(RollingRow(radial=row.radial_stiffness or 0.0, axial=0.0, pressure_centre=row.plane))
+            continue
+        stiffness, preload = row.axial_stiffness, row.preload or bearing.preload or Preload()
+        if stiffness is None:
+            stiffness = axial_stiffness(
+                row.load_constant or 0.0, _power(row.kind), force=preload.force, displacement=preload.displacement
+            )
+        facing = facing_of(bearing.arrangement, row.plane, middle)
+        found.append(
+            RollingRow.of_axial(
+                stiffness, row.contact_angle, plane=row.plane, pitch_radius=row.pitch_radius or 0.0, facing=facing
+            )
+        )
+    return tuple(found)
+
+
+def wheel_law(drive: Drive) -> SideLaw | float | None:
+    """Return how the main bearing holds the wheel radially, tilt held: its stiffness, N/mm, or its law with clearance or
+    preload; None where it is rigid.
+    """
+    bearing = drive.main_bearing
+    if bearing is None:
+        return drive.pin_wheel.support_stiffness
+    rows = wheel_rows(drive)
+    stiffness = (
+        sum(row.radial for row in rows) if rows else bearing.radial_stiffness or drive.pin_wheel.support_stiffness
+    )
+    if stiffness is None:
+        raise AssertionError("a main bearing has a stiffness")
+    if bearing.clearance is not None:
+        return SideLaw.of_clearance(stiffness, bearing.clearance)
+    if not rows:
+        held = bearing.preload
+        return stiffness if held is None else SideLaw.of_preload(stiffness, held.force, held.displacement)
+    reaches = [
+        _lift_off(_power(given.kind), row.axial, given.load_constant, given.contact_angle, preload)
+        for row, given in zip(rows, bearing.bearings, strict=True)
+        if given.contact_angle and (preload := given.preload or bearing.preload) is not None
+    ]
+    return _lifting(stiffness, min(reaches)) if reaches else stiffness
+
+
+def _power(kind: str) -> float:
+    return BALL if kind in ("angular-contact ball", "deep groove") else ROLLER
+
+
+def _lift_off(power: float, axial: float, load_constant: float | None, contact_angle: float, preload: Preload) -> float:
+    """Radial displacement at which the elements opposite to the load lift off, mm: their normal approach by cos α."""
+    pressed = preload.displacement
+    if pressed is None:
+        force = preload.force or 0.0
+        pressed = power * force / axial if load_constant is None else (force / load_constant) ** (1.0 / power)
+    return float(pressed * tan(contact_angle))
+
+
+def _lifting(stiffness: float, reach: float) -> SideLaw:
+    """Law of preloaded rows of a radial stiffness whose unloaded side lifts off at a displacement, mm."""
+    return SideLaw(stiffness=stiffness, lift_off=stiffness * reach, beyond=1.0 / stiffness)
+
+
+def _crank_shares(drive: Drive) -> FloatArray:
+    """Part of a force at each disc that each of the two bearings of a crank carries, shape (discs, 2)."""
+    support = drive.crank.support
+    if support is None:
+        raise AssertionError("cranks are rigid")
+    return support_parts(drive.disc.disc_planes, support.positions).T
+
+
+def _bent_by_pose(drive: Drive, geometry: ContactGeometry, crank: int) -> FloatArray:
+    """x and y of a crank at each disc in turn relative to the straight line between its bearings, by the coordinates of the
+    drive, shape (2·discs, coordinates).
     """
     coordinates = Coordinates.of_drive(drive)
-    shaft, wheel = crank_stiffness(drive), drive.pin_wheel.support_stiffness
-    if shaft is None and wheel is None and not coordinates.ring:
-        return None
-    matrix = np.zeros((coordinates.size, coordinates.size))
-    flange = far_flange_stiffness(drive)
-    if shaft is not None:
-        starts = coordinates.own * np.arange(coordinates.discs)
-        for crank in range(coordinates.cranks):
-            for direction in (0, 1):
-                places = starts + coordinates.crank(crank) + direction
-                matrix[np.ix_(places, places)] += shaft
-                if flange is not None:
-                    seats = np.outer(_seat_shares(drive), _seat_by_flange(geometry, crank, direction))
-                    ring = np.arange(coordinates.size)[coordinates.ring_place]
-                    matrix[np.ix_(places, ring)] -= shaft @ seats
-                    matrix[np.ix_(ring, places)] -= seats.T @ shaft
-                    matrix[np.ix_(ring, ring)] += seats.T @ shaft @ seats
-    if wheel is not None:
-        places = np.arange(coordinates.size)[coordinates.wheel_place]
-        matrix[places, places] += wheel
-    if flange is not None:
-        matrix[coordinates.ring_place, coordinates.ring_place] += flange
-    if geometry.tips_by_ring.size and coordinates.ring:
-        matrix[coordinates.ring_place, coordinates.ring_place] += _ring_stiffness(drive, geometry)
-    return matrix
-
-
-def _seat_shares(drive: Drive) -> FloatArray:
-    """Displacement of a straight crank in the plane of each disc by its bearing in the far flange."""
-    if drive.crank_supports is None:
-        raise AssertionError("cranks stand in a flange")
-    near, far = drive.crank_supports
-    return (np.asarray(drive.disc.disc_planes) - near) / (far - near)
-
-
-def _seat_by_flange(geometry: ContactGeometry, crank: int, direction: int) -> FloatArray:
-    """x or y of the bearing of a crank in the far flange by x, y and rotation of the flange, shape (3,)."""
-    by_ring = geometry.seats_by_ring[..., crank, :]
-    return np.asarray(by_ring.imag if direction else by_ring.real)
+    found = np.zeros((coordinates.discs, 2, coordinates.size))
+    places = coordinates.own * np.arange(coordinates.discs) + coordinates.crank(crank)
+    for direction in (0, 1):
+        found[np.arange(coordinates.discs), direction, places + direction] = 1.0
+    if drive.carrier is not None and drive.carrier.posts is not None:
+        far, seat = _crank_shares(drive)[:, 1, None], geometry.seats_by_ring[..., crank, :]
+        found[:, 0, coordinates.ring_place] -= far * seat.real
+        found[:, 1, coordinates.ring_place] -= far * seat.imag
+    return found.reshape(2 * coordinates.discs, coordinates.size)
 
 
 def _ring_stiffness(drive: Drive, geometry: ContactGeometry) -> FloatArray:
@@ -89,3 +443,27 @@ def _ring_stiffness(drive: Drive, geometry: ContactGeometry) -> FloatArray:
         raise AssertionError("a ring ties beams")
     tips = geometry.tips_by_ring
     return np.asarray(beam.tip_stiffness * (tips.conjugate().T @ tips).real)
+
+
+def _times(matrix: FloatArray, values: ComplexArray) -> ComplexArray:
+    """A real matrix, of one drive or by position, times complex columns of every position."""
+    return np.asarray(
+        np.matmul(matrix, values.real[..., None])[..., 0] + 1j * np.matmul(matrix, values.imag[..., None])[..., 0]
+    )
+
+
+def _both(matrix: FloatArray) -> FloatArray:
+    """A matrix of planes as one of x and y of every plane in turn."""
+    rows, columns = matrix.shape[-2:]
+    found = np.zeros((*matrix.shape[:-2], rows, 2, columns, 2))
+    found[..., 0, :, 0] = found[..., 1, :, 1] = matrix
+    return found.reshape(*matrix.shape[:-2], 2 * rows, 2 * columns)
+
+
+def _blocks(slope: FloatArray) -> FloatArray:
+    """Blocks (positions, bearings, 2, 2) as block diagonal matrices."""
+    positions, count = slope.shape[:2]
+    found = np.zeros((positions, count, 2, count, 2))
+    for bearing in range(count):
+        found[:, bearing, :, bearing] = slope[:, bearing]
+    return found.reshape(positions, 2 * count, 2 * count)

@@ -2,7 +2,8 @@
 
 A pose of one disc at a held crank angle is q = (x, y, disc rotation, …, wheel angle): x and y in mm are the displacement of
 the disc from its nominal place in the fixed frame, the angles in rad; the wheel angle is its deviation from φ_C/u. Between
-them stand x and y of each crank in the plane of the disc, if cranks yield; x and y of the wheel, if its bearing yields; and
+them stand x and y of each crank in the plane of the disc, if cranks yield, and the angle by which each eccentric is ahead of
+the crank, if they twist; x and y of the wheel, if its bearing yields; and
 x, y and rotation of the ring that ties the tips of the shaft pins, or of the far flange of the carrier, if there is one. The
 poses of several discs follow each other, with one wheel.
 """
@@ -45,27 +46,31 @@ class Coordinates:
         Whether the wheel's bearing yields.
     ring : bool
         Whether a ring ties the tips of the shaft pins and floats, or is the far flange of a carrier on posts.
+    twists : bool
+        Whether cranks yield in torsion.
     """
 
     discs: int = 1
     cranks: int = 0
     wheel: bool = False
     ring: bool = False
+    twists: bool = False
 
     @classmethod
     def of_drive(cls, drive: Drive) -> Coordinates:
         """Return the coordinates of a drive of any number of discs."""
-        cranks = 0 if drive.crank.support is None else drive.crank.number
-        wheel = drive.pin_wheel.support_stiffness is not None
+        support = drive.crank.support
+        cranks, twists = (0, False) if support is None else (drive.crank.number, support.torsion)
         beam = None if drive.pin_shaft is None else drive.pin_shaft.beam
         posts = None if drive.carrier is None else drive.carrier.posts
         ring = posts is not None or (beam is not None and beam.tip != "free")
-        return cls(discs=drive.disc.number_of_discs, cranks=cranks, wheel=wheel, ring=ring)
+        wheel = drive.wheel_yields
+        return cls(discs=drive.disc.number_of_discs, cranks=cranks, wheel=wheel, ring=ring, twists=twists)
 
     @property
     def own(self) -> int:
-        """Number of coordinates of each disc: x, y, rotation, and x and y of every crank there."""
-        return DISC_ROTATION + 1 + 2 * self.cranks
+        """Number of coordinates of each disc: x, y, rotation, x and y of every crank there, and the twist of every crank."""
+        return DISC_ROTATION + 1 + (2 + self.twists) * self.cranks
 
     @property
     def shared(self) -> int:
@@ -93,6 +98,11 @@ class Coordinates:
         return DISC_ROTATION + 1 + 2 * crank
 
     @property
+    def twist_places(self) -> tuple[int, ...]:
+        """Places of the twist of every crank in the pose of one disc; none where cranks do not twist."""
+        return tuple(range(self.own - self.cranks, self.own)) if self.twists else ()
+
+    @property
     def wheel_place(self) -> slice:
         """x and y of the wheel; empty where its bearing does not yield."""
         first = self.size - self.shared
@@ -118,7 +128,7 @@ class Coordinates:
     @property
     def displacements(self) -> Columns:
         """Places of every x that is followed by its y: discs, cranks, wheel, ring."""
-        one = np.r_[X, DISC_ROTATION + 1 : self.own : 2]
+        one = np.r_[X, DISC_ROTATION + 1 : self.crank(self.cranks) : 2]
         each = (self.own * np.arange(self.discs)[:, None] + one).ravel()
         shared = [self.size - self.shared] if self.wheel else []
         return np.append(each, [*shared, self.ring_place.start] if self.ring else shared).astype(np.intp)

@@ -147,14 +147,20 @@ class BoreMotion:
         Bore centre from inner-race centre in the fixed frame, mm.
     arm : array of complex, shape (positions, cranks)
         Bore centre from the centre of the disc in the fixed frame, mm: zero for a central crank. The second derivative of
-        `displacement` by the rotation of the disc is −`arm`, and there is no other.
+        `displacement` by the rotation of the disc is −`arm`.
     gradient : array of complex, shape (positions, cranks, coordinates)
         ∂ displacement/∂q, in mm/mm and mm/rad.
+    lever : array of complex, shape (positions, cranks)
+        Centre of the twisted inner race from the axis of its crank, mm: the second derivative by the twist. There is no other.
+    twists : tuple of int
+        Places of the twist of every crank in the pose; none where cranks do not twist.
     """
 
     displacement: ComplexArray
     arm: ComplexArray
     gradient: ComplexArray
+    lever: ComplexArray
+    twists: tuple[int, ...] = ()
 
     def each(self, values: ComplexArray, rollers: int) -> ComplexArray:
         """Return values of the bores, shape (positions, cranks, …), as those of all their rollers, (positions, rollers, …)."""

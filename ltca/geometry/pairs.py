@@ -84,6 +84,11 @@ class ContactGeometry:
     seat_share : float or array, shape (positions, 1)
         Displacement of a crank's axis at the disc per displacement of its bearing in the far flange of the carrier, as long as
         the crank stays straight; 0 where no flange moves.
+    wheel_gap : float or array, shape (positions, 1)
+        Distance by which the wheel is free in its main bearing, mm.
+    crank_gaps, crank_shares : array, shape (2,) or (positions, 2)
+        Distance by which a crank is free in each of its two bearings, mm, and displacement of the crank in the plane of the
+        disc by one there.
     """
 
     placement: Placement
@@ -91,16 +96,37 @@ class ContactGeometry:
     coordinates: Coordinates
     tip_share: float | FloatArray = by_drive(0, default=0.0)
     seat_share: float | FloatArray = by_drive(0, default=0.0)
+    wheel_gap: float | FloatArray = by_drive(0, default=0.0)
+    crank_gaps: FloatArray = by_drive(1, default_factory=lambda: np.zeros(2))
+    crank_shares: FloatArray = by_drive(1, default_factory=lambda: np.zeros(2))
 
     @classmethod
     def of_drive(cls, drive: Drive) -> ContactGeometry:
         """Return the contact geometry of a drive of one disc."""
         place, profile = Placement.of_drive(drive), FlankProfile.of_drive(drive)
-        coordinates, share = Coordinates.of_drive(drive), 0.0
-        if drive.carrier is not None and drive.carrier.posts is not None and drive.crank_supports is not None:
+        bearing, support = drive.main_bearing, drive.crank.support
+        gaps, shares, seat_share = np.zeros(2), np.zeros(2), 0.0
+        if drive.crank_supports is not None:
             near, far = drive.crank_supports
             share = (drive.disc.disc_planes[0] - near) / (far - near)
-        return cls(placement=place, profile=profile, coordinates=coordinates, seat_share=share)
+            if support is not None:
+                gaps, shares = np.full(2, 0.5 * max(support.clearance or 0.0, 0.0)), np.array([1.0 - share, share])
+            if drive.carrier is not None and drive.carrier.posts is not None:
+                seat_share = share
+        return cls(
+            placement=place,
+            profile=profile,
+            coordinates=Coordinates.of_drive(drive),
+            seat_share=seat_share,
+            wheel_gap=0.0 if bearing is None else 0.5 * max(bearing.clearance or 0.0, 0.0),
+            crank_gaps=gaps,
+            crank_shares=shares,
+        )
+
+    @property
+    def has_loose_supports(self) -> bool:
+        """Whether wheel or cranks are free in their bearings."""
+        return bool(np.any(self.wheel_gap) or np.any(self.crank_gaps))
 
     @property
     def tips_by_ring(self) -> ComplexArray:
@@ -343,7 +369,13 @@ class ContactGeometry:
             by_ring = self.cranks_by_ring
             moved = moved - _moved(pose[:, coordinates.ring_place], by_ring)
             gradient[..., coordinates.ring_place] = -by_ring
-        return BoreMotion(displacement=moved, arm=arm, gradient=gradient)
+        lever, twists = place.race_centres(crank_angle) - place.crank_axes, coordinates.twist_places
+        if twists:
+            straight = lever
+            lever = straight * unit(pose[:, twists])
+            moved -= lever - straight
+            gradient[:, np.arange(len(twists)), twists] = -1j * lever
+        return BoreMotion(displacement=moved, arm=arm, gradient=gradient, lever=lever, twists=twists)
 
     def rollers(self, crank_angle: FloatArray) -> RollerRays:
         """Return the cage rays of the rollers (Eq. 48), which depend on the crank angle alone."""

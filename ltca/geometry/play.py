@@ -10,7 +10,9 @@ pose give the next programme. Corners of flanks are reached as by Newton's metho
 farthest pose may lie where an arc and the turning have one tangent, which is no corner: arcs are convex, so their tangents at
 earlier poses remain bounds. The programmes are solved by the dual simplex method, all positions at once.
 
-The wheel is common to all discs: the play is the intersection of the ranges of its angle for all of them. Where parts overlap
+The wheel is common to all discs: the play is the intersection of the ranges of its angle for all of them. Where wheel or
+cranks have clearance in their bearings, their displacements are common to all discs as well: then one programme has them all,
+with a circle for every bearing (`_JoinedProgramme`). Where parts overlap
 in every pose the drive is preloaded: parts keep the overlap of the pose in which it is least, and the play is what the other
 parts leave, none where the overlapping ones hold the wheel. Displacements beyond that are those of the loaded analysis.
 """
@@ -42,7 +44,7 @@ PENALTY = 1e6
 KEPT_GAP = 5e-11
 """Overlap beyond the allowed one at which a pose is accepted, mm; thousands of times the round-off of drives of a metre."""
 TIE_BREAK = 1e-8
-"""Small costs, all different, of the coordinates of the disc, so that no two corners of a programme are equally good."""
+"""Small costs, all different, of the coordinates of the discs, so that no two corners of a programme are equally good."""
 MAX_STEP = 0.25
 """Largest step of a programme by the smaller of pin radius and eccentricity: gaps are nearly linear within it."""
 MAX_PROGRAMMES = 60
@@ -50,11 +52,21 @@ MAX_PROGRAMMES = 60
 SHRINK_AFTER = 12
 """Programmes after which steps are shortened."""
 MAX_PIVOTS = 400
-"""Pivots of one programme."""
+"""Pivots of one programme of four unknowns; of more in proportion."""
+LEAST_PIVOT = 1e-8
+"""Least pivot of a programme of many unknowns: unit normals beside unit normals."""
+LOST = 1e-30
+"""Determinant of the unit normals of a corner of many unknowns below which it is none."""
+KEPT_INVERSE = 20
+"""Pivots of a programme of many unknowns for which the inverse of its basis is updated."""
 KEPT_PROGRAMMES = 8
 """Number of last programmes of which the tangents of arcs are kept."""
 DEGENERATE = 1e-9
 """Determinant of the unit normals of a corner below which no programme is started from it."""
+SIDES = 16
+"""Sides of the polygon about the circle of a bearing, beside its tangents."""
+CIRCLE = 0.01
+"""Length by which the displacement in a bearing without clearance is counted, mm; it moves nothing."""
 GATHER_BELOW = 0.7
 """Fraction of a batch that still pivots below which those rows are gathered."""
 GOLDEN = 0.5 * (5.0**0.5 - 1.0)
@@ -195,14 +207,20 @@ def free_play(discs: Sequence[ContactGeometry], crank_angle: FloatArray, *, over
     rows, sense = np.tile(np.arange(angle.size), 2), np.repeat([1.0, -1.0], angle.size)
     forward, backward = np.full(angle.size, np.inf), np.full(angle.size, -np.inf)
     preloaded, room = np.zeros(angle.size, dtype=bool), np.broadcast_to(np.asarray(overlap, dtype=float), angle.shape)
-    for disc in discs:
-        pose, left = _Programme(take_rows(disc, rows), angle[rows], room[rows]).farthest(sense)
+    loose = any(disc.has_loose_supports for disc in discs)
+    for group in [tuple(discs)] if loose else [(disc,) for disc in discs]:
+        programme = _programme([take_rows(disc, rows) for disc in group], angle[rows], room[rows], loose)
+        pose, left = programme.farthest(sense)
         turned = pose[:, WHEEL_ANGLE].reshape(2, -1)
         pressed = np.flatnonzero(np.any(left.reshape(2, -1) > CLOSED, axis=0))
         if pressed.size:
-            turned[:, pressed] = _beside_preload(
-                take_rows(disc, pressed), angle[pressed], room[pressed], pose.reshape(2, -1, RIGID)[:, pressed]
+            beside = _programme(
+                [take_rows(disc, np.tile(pressed, 2)) for disc in group],
+                np.tile(angle[pressed], 2),
+                np.tile(room[pressed], 2),
+                loose,
             )
+            turned[:, pressed] = _beside_preload(beside, pose.reshape(2, -1, pose.shape[1])[:, pressed])
             preloaded[pressed] = True
         forward, backward = np.minimum(forward, turned[0]), np.maximum(backward, turned[1])
     # Discs may each be free without any angle common to all.
@@ -212,17 +230,21 @@ def free_play(discs: Sequence[ContactGeometry], crank_angle: FloatArray, *, over
     return Play(forward=np.where(shut, middle, forward), backward=np.where(shut, middle, backward), preloaded=preloaded)
 
 
-def _beside_preload(disc: ContactGeometry, angle: FloatArray, room: FloatArray, poses: FloatArray) -> FloatArray:
-    """Return the farthest wheel angles of a disc that is pressed in every pose, forward and backward, shape (2, positions).
+def _programme(discs: Sequence[ContactGeometry], angle: FloatArray, room: FloatArray, loose: bool) -> _Programme:
+    """The programme of one disc, or of all with wheel and cranks loose in their bearings."""
+    return _JoinedProgramme(discs, angle, room) if loose else _Programme(discs[0], angle, room)
+
+
+def _beside_preload(programme: _Programme, poses: FloatArray) -> FloatArray:
+    """Return the farthest wheel angles of parts that are pressed in every pose, forward and backward, shape (2, positions).
 
     Rollers that are too thick press a disc and leave its flank as free as before: pairs keep the overlap of the mean of the two
-    poses of least overlap, and the wheel turns as far as the other pairs allow.
+    poses of least overlap, and the wheel turns as far as the other pairs allow. The programme has every position twice.
     """
-    rows, sense = np.tile(np.arange(angle.size), 2), np.repeat([1.0, -1.0], angle.size)
-    programme = _Programme(take_rows(disc, rows), angle[rows], room[rows])
-    gap, _, _ = programme.gaps(np.arange(rows.size), np.tile(poses.mean(axis=0), (2, 1)))
+    rows = np.arange(programme.angle.size)
+    gap, _, _ = programme.gaps(rows, np.tile(poses.mean(axis=0), (2, 1)))
     programme.room = programme.room + RELIEF + np.maximum(-gap, 0.0)
-    pose, _ = programme.farthest(sense)
+    pose, _ = programme.farthest(np.repeat([1.0, -1.0], rows.size // 2))
     return np.asarray(pose[:, WHEEL_ANGLE].reshape(2, -1))
 
 
@@ -266,6 +288,21 @@ def rigid_poses(geometry: ContactGeometry, crank_angle: FloatArray, sense: int) 
     return pose
 
 
+def loose_poses(discs: Sequence[ContactGeometry], crank_angle: FloatArray, sense: FloatArray) -> FloatArray:
+    """Return the poses of all members with wheel and cranks loose in their bearings, the wheel turned as far as it goes.
+
+    Poses have the coordinates of the whole drive, shape (positions, coordinates); `sense` is +1 or −1 by position. Raises as
+    `rigid_poses` where nothing stops the wheel.
+    """
+    programme, coordinates = _JoinedProgramme(discs, crank_angle, np.zeros(crank_angle.size)), discs[0].coordinates
+    whole = replace(coordinates, discs=len(discs))
+    pose, _ = programme.farthest(sense)
+    found = np.zeros((crank_angle.size, whole.size))
+    for number, each in enumerate(programme.maps):
+        found[:, whole.columns(number)] = np.matmul(each, pose[..., None])[..., 0]
+    return found
+
+
 def _reach(geometry: ContactGeometry) -> FloatArray:
     """Lever of the rotations, e z_P, mm; of a batch one for each position."""
     return np.asarray(geometry.placement.eccentricity.max(axis=-1) * geometry.placement.reduction_ratio)
@@ -283,12 +320,19 @@ class _Programme:
         self.lever[:, [DISC_ROTATION, WHEEL_ANGLE]] = np.reshape(_reach(geometry), (-1, 1))
         smallest = np.minimum(place.wheel_pin_radii.min(axis=-1), place.eccentricity.min(axis=-1))
         self.bound = np.broadcast_to(MAX_STEP * smallest, angle.shape)
-        self.pitch = np.pi / place.reduction_ratio
+        self.pitch, self.size = np.pi / place.reduction_ratio, RIGID
         motion = geometry.flank(angle, np.zeros((angle.size, RIGID)))
         self.known, self.parameter = KnownPins.of(motion), motion.parameter
 
     def gaps(self, rows: Rows, pose: FloatArray) -> tuple[FloatArray, FloatArray, int]:
-        """Exact gaps of all pairs, mm, their derivatives by scaled coordinates, and the number of arcs, which come first."""
+        """Exact gaps of all pairs with the room, mm, their derivatives by scaled coordinates, and the number of arcs, which
+        come first.
+        """
+        gap, slope, arcs = self.gaps_of(rows, pose)
+        return gap + self.room[rows], slope / self.lever[rows, None], arcs
+
+    def gaps_of(self, rows: Rows, pose: FloatArray) -> tuple[FloatArray, FloatArray, int]:
+        """Exact gaps of all pairs of the disc, mm, their derivatives by the pose, and the number of arcs."""
         geometry, angle = take_rows(self.geometry, rows), self.angle[rows]
         rays, bores = geometry.rollers(angle), geometry.bores(angle, pose)
         # A roller that rests on the inner race overlaps the bore by |s n − d| less the bore play.
@@ -300,15 +344,15 @@ class _Programme:
         turned = pose[:, WHEEL_ANGLE, None] - pose[:, DISC_ROTATION, None]
         flank = geometry.flank(angle, pose, self.parameter[rows] + turned, known=take_positions(self.known, rows))
         gap = np.concatenate([rays.bore_play - length, -holes.approach, -flank.approach], axis=1)
-        slope = np.concatenate([moved.real, -holes.gradient, -flank.gradient], axis=1) / self.lever[rows, None]
-        return gap + self.room[rows], slope, gap.shape[1] - flank.approach.shape[1]
+        slope = np.concatenate([moved.real, -holes.gradient, -flank.gradient], axis=1)
+        return gap, slope, gap.shape[1] - flank.approach.shape[1]
 
     def farthest(self, sense: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the poses of the farthest wheel angles in these senses, and the overlap of parts there, mm."""
-        size = self.angle.size
-        pose, left, bound = np.zeros((size, RIGID)), np.zeros(size), self.bound.copy()
+        size, count = self.angle.size, self.size
+        pose, left, bound = np.zeros((size, count)), np.zeros(size), self.bound.copy()
         going = np.arange(size)
-        tangents, pairs = np.zeros((size, 0, RIGID + 1)), np.zeros((size, 0), dtype=np.intp)
+        tangents, pairs = np.zeros((size, 0, count + 1)), np.zeros((size, 0), dtype=np.intp)
         start: Rows | None = None
         history: list[float] = []
         for turn in range(MAX_PROGRAMMES):
@@ -317,12 +361,12 @@ class _Programme:
             overlap = np.maximum(-gap.min(axis=1), 0.0)
             # −slope · d ≤ gap + t; tangents of earlier poses are relative to the origin.
             before = tangents[going]
-            room = before[..., RIGID] + np.einsum("bij,bj->bi", before[..., :RIGID], place)
+            room = before[..., count] + np.einsum("bij,bj->bi", before[..., :count], place)
             # A disc that turns far moves its holes on arcs as well: a tangent that the exact gap violates is dropped.
             holds = room >= np.take_along_axis(gap, pairs[going], axis=1) - KEPT_GAP
             before, room = np.where(holds[..., None], before, 0.0), np.where(holds, room, 0.0)
             step, least, active = _farthest(
-                np.concatenate([-slope, -before[..., :RIGID]], axis=1),
+                np.concatenate([-slope, -before[..., :count]], axis=1),
                 np.concatenate([gap, room], axis=1),
                 sense[going],
                 bound[going],
@@ -340,11 +384,11 @@ class _Programme:
             if not stay.any():
                 return pose, left
             chosen_arcs = np.where(active < arcs, np.maximum(active, -1), -1)
-            drop = max(tangents.shape[1] - (KEPT_PROGRAMMES - 1) * (RIGID + 1), 0)
-            tangents = np.concatenate([tangents[:, drop:], np.zeros((size, RIGID + 1, RIGID + 1))], axis=1)
-            pairs = np.concatenate([pairs[:, drop:], np.zeros((size, RIGID + 1), dtype=np.intp)], axis=1)
-            tangents[going, -(RIGID + 1) :] = _tangents_of(slope, gap, place, chosen_arcs)
-            pairs[going, -(RIGID + 1) :] = np.maximum(chosen_arcs, 0)
+            drop = max(tangents.shape[1] - (KEPT_PROGRAMMES - 1) * (count + 1), 0)
+            tangents = np.concatenate([tangents[:, drop:], np.zeros((size, count + 1, count + 1))], axis=1)
+            pairs = np.concatenate([pairs[:, drop:], np.zeros((size, count + 1), dtype=np.intp)], axis=1)
+            tangents[going, -(count + 1) :] = _tangents_of(slope, gap, place, chosen_arcs)
+            pairs[going, -(count + 1) :] = np.maximum(chosen_arcs, 0)
             if turn >= SHRINK_AFTER:
                 bound[going] = 0.7 * np.minimum(bound[going], np.abs(step).max(axis=1))
             # The active constraints of this programme start the next one; the oldest tangents are dropped.
@@ -363,6 +407,83 @@ class _Programme:
             f"{left[going[0]]:.3g} mm; steps in mm",
             history,
         )
+
+
+class _JoinedProgramme(_Programme):
+    """The gaps of all discs, with wheel and cranks free within circles in their bearings.
+
+    Its poses are x, y and rotation of disc after disc, the displacements in each bearing that is loose anywhere, crank after
+    crank, those of the wheel, by the radius of their circles, and the angle of the wheel.
+    """
+
+    def __init__(self, discs: Sequence[ContactGeometry], angle: FloatArray, room: FloatArray) -> None:
+        super().__init__(discs[0], angle, room)
+        self.discs, first = tuple(_Programme(disc, angle, room) for disc in discs), discs[0]
+        cranks = first.coordinates.cranks if np.any(first.crank_gaps) else 0
+        wheel = bool(np.any(first.wheel_gap))
+        gaps = np.broadcast_to(first.crank_gaps, (angle.size, 2))
+        radii = [np.tile(gaps, (1, cranks))] + wheel * [np.broadcast_to(first.wheel_gap, (angle.size, 1))]
+        self.radii = np.concatenate(radii, axis=1)
+        """Of the circles, mm, shape (positions, circles)."""
+        self.circles = 3 * len(discs)
+        """First coordinate of the circles."""
+        self.size = self.circles + 2 * self.radii.shape[1] + 1
+        # Displacements in a bearing are counted by the radius of its circle; a circle of none moves nothing.
+        self.scale = np.where(self.radii > 0.0, self.radii, CIRCLE)
+        reach = self.lever[:, WHEEL_ANGLE]
+        self.lever = np.ones((angle.size, self.size))
+        self.lever[:, np.r_[2 : self.circles : 3, -1]] = reach[:, None]
+        self.maps = [self._map(disc, number, cranks, wheel) for number, disc in enumerate(discs)]
+
+    def _map(self, disc: ContactGeometry, number: int, cranks: int, wheel: bool) -> FloatArray:
+        """Pose of one disc, with cranks and wheel, by the joined pose, shape (positions, coordinates, joined)."""
+        coordinates, positions = replace(disc.coordinates, discs=1), self.angle.size
+        found = np.zeros((positions, coordinates.size, self.size))
+        found[:, [0, 1, 2], [3 * number, 3 * number + 1, 3 * number + 2]] = 1.0
+        shares = np.broadcast_to(disc.crank_shares, (positions, 2))
+        part = self.radii / self.scale
+        for crank in range(cranks):
+            for bearing in (0, 1):
+                circle = 2 * crank + bearing
+                for axis in (0, 1):
+                    x, own = coordinates.crank(crank) + axis, self.circles + 2 * circle + axis
+                    found[:, x, own] = shares[:, bearing] * part[:, circle]
+        if wheel:
+            for axis in (0, 1):
+                found[:, coordinates.wheel_place.start + axis, self.size - 3 + axis] = part[:, -1]
+        found[:, -1, -1] = 1.0
+        return found
+
+    def gaps(self, rows: Rows, pose: FloatArray) -> tuple[FloatArray, FloatArray, int]:
+        """Gaps of all discs and of the circles: arcs first, then flanks and a polygon about each circle."""
+        arcs_gap, arcs_slope, gap, slope = [], [], [], []
+        lever = self.lever[rows, None]
+        for programme, each in zip(self.discs, self.maps, strict=True):
+            own = each[rows]
+            found, slopes, arcs = programme.gaps_of(rows, np.matmul(own, pose[..., None])[..., 0])
+            slopes = np.matmul(slopes, own) / lever
+            arcs_gap.append(found[:, :arcs])
+            arcs_slope.append(slopes[:, :arcs])
+            gap.append(found[:, arcs:])
+            slope.append(slopes[:, arcs:])
+        place = pose[:, self.circles : -1].reshape(rows.size, -1, 2)
+        distance, scale = np.hypot(place[..., 0], place[..., 1]), self.scale[rows]
+        count = distance.shape[1]
+        arcs_gap.append(scale - distance)
+        ahead = place / np.where(distance > 0.0, distance, 1.0)[..., None]
+        circle = np.zeros((rows.size, count, self.size))
+        corner = np.zeros((rows.size, count, SIDES, self.size))
+        around = 2.0 * np.pi * np.arange(SIDES) / SIDES
+        sides = np.stack((np.cos(around), np.sin(around)), axis=-1)
+        for number in range(count):
+            both = slice(self.circles + 2 * number, self.circles + 2 * number + 2)
+            circle[:, number, both], corner[:, number, :, both] = -ahead[:, number], -sides
+        arcs_slope.append(circle)
+        gap.append((scale[..., None] - np.einsum("bcj,sj->bcs", place, sides)).reshape(rows.size, -1))
+        slope.append(corner.reshape(rows.size, -1, self.size))
+        arcs = sum(each.shape[1] for each in arcs_gap)
+        joined = np.concatenate([*arcs_gap, *gap], axis=1) + self.room[rows]
+        return joined, np.concatenate([*arcs_slope, *slope], axis=1), arcs
 
 
 def _tangents_of(slope: FloatArray, gap: FloatArray, place: FloatArray, chosen: Rows) -> FloatArray:
@@ -409,7 +530,7 @@ def _farthest(
     matrix[:, 2 * size, size] = -1.0
     matrix[:, fixed:, :size], matrix[:, fixed:, size] = normal, -1.0
     limit = np.concatenate([np.repeat(bound[:, None], 2 * size, axis=1), np.zeros((rows, 1)), room], axis=1)
-    objective = np.tile(np.array([1.0, 1.7, 2.3, 3.1, 0.0]) * TIE_BREAK, (rows, 1))
+    objective = np.tile(np.r_[1.0, 1.7, 2.3, 3.1 + 0.73 * np.arange(size - 3), 0.0] * TIE_BREAK, (rows, 1))
     objective[:, size - 1] += sense
     objective[:, size] = -PENALTY
     # Without pairs the optimum is the corner of the bounds in the direction of the objective, without overlap.
@@ -418,30 +539,77 @@ def _farthest(
     basis = _as_good_as_first(matrix, objective, first, first if start is None else start + fixed)
     answer, stopping = np.zeros((rows, size + 1)), basis.copy()
     # Rows that have reached their optimum stay in the batch until gathering the others pays.
-    going = np.arange(rows)
-    for _ in range(MAX_PIVOTS):
+    going, whole, pivots, many = np.arange(rows), (matrix, limit), 0, size > RIGID
+    inverse = np.zeros((rows, size + 1, size + 1))
+    most = MAX_PIVOTS * size // RIGID
+    while pivots < most:
         each = np.arange(going.size)[:, None]
-        inverse = np.linalg.inv(matrix[each, basis])
+        fresh = not many or pivots % KEPT_INVERSE == 0
+        if fresh:
+            if many:  # rounding may have led to rows that depend on each other: those start again
+                lost = np.abs(np.linalg.det(matrix[each, basis])) < LOST
+                basis[lost] = first[going[lost]]
+            inverse = np.linalg.inv(matrix[each, basis])
         point = np.matmul(inverse, limit[each, basis][..., None])
         beyond = np.matmul(matrix, point)[..., 0] - limit
         beyond[each, basis] = 0.0
         entering = np.argmax(beyond, axis=1)
         over = beyond[each[:, 0], entering] > 1e-13
         answer[going], stopping[going] = point[..., 0], basis
-        if not over.any():
+        if not over.any() and fresh:
             break
+        if not over.any():
+            pivots += KEPT_INVERSE - pivots % KEPT_INVERSE
+            continue
         if over.mean() < GATHER_BELOW:
             going, matrix, limit, objective = going[over], matrix[over], limit[over], objective[over]
             basis, inverse, entering, each = basis[over], inverse[over], entering[over], each[: over.sum()]
             over = over[over]
         price = np.matmul(objective[:, None], inverse)[:, 0]
         share = np.matmul(matrix[each, entering[:, None]], inverse)[:, 0]
-        rises = share > 1e-11
+        rises = share > (LEAST_PIVOT if many else 1e-11)
         ratio = np.where(rises, np.maximum(price, 0.0) / np.where(rises, share, 1.0), np.inf)
-        basis[each[over, 0], np.argmin(ratio, axis=1)[over]] = entering[over]
+        leaving, changed = np.argmin(ratio, axis=1)[over], each[over, 0]
+        basis[changed, leaving] = entering[over]
+        if many:  # the inverse of a basis with one row replaced
+            along = share[changed]
+            column = inverse[changed, :, leaving] / along[np.arange(changed.size), leaving][:, None]
+            inverse[changed] -= column[:, :, None] * along[:, None, :]
+            inverse[changed, :, leaving] = column
+        pivots += 1
     else:
-        raise ConvergenceError("a linear programme of the play takes too many pivots", [float(going.size)])
+        if not many:
+            raise ConvergenceError("a linear programme of the play takes too many pivots", [float(going.size)])
+        stopping[going] = _by_library(objective, matrix, limit)
+    if many:
+        each = np.arange(rows)[:, None]
+        answer = np.linalg.solve(whole[0][each, stopping], whole[1][each, stopping][..., None])[..., 0]
     return answer[:, :size], answer[:, size], stopping - fixed
+
+
+def _by_library(objective: FloatArray, matrix: FloatArray, limit: FloatArray) -> Rows:
+    """Return the corners of programmes on which the simplex method above goes in circles, solved one by one."""
+    from scipy.optimize import linprog
+
+    found = np.zeros((objective.shape[0], objective.shape[1]), dtype=np.intp)
+    for row, (price, normals, room) in enumerate(zip(objective, matrix, limit, strict=True)):
+        solved = linprog(-price, A_ub=normals, b_ub=room, bounds=(None, None), method="highs-ds")
+        if not solved.success:
+            raise ConvergenceError(f"a linear programme of the play is not solved: {solved.message}")
+        # The constraints that hold the corner: first those that price it, then by their slack, each independent of the others.
+        order, chosen = np.lexsort((solved.slack, solved.ineqlin.marginals)), list[int]()
+        basis = np.zeros((0, price.size))
+        for candidate in order:
+            rest = normals[candidate] - basis.T @ (basis @ normals[candidate])
+            if (size := float(np.linalg.norm(rest))) > 1e-6 and solved.slack[candidate] < 1e-9:
+                basis = np.vstack([basis, rest / size])
+                chosen.append(int(candidate))
+            if len(chosen) == price.size:
+                break
+        if len(chosen) < price.size:
+            raise ConvergenceError("a linear programme of the play has no corner")
+        found[row] = chosen
+    return found
 
 
 def _as_good_as_first(matrix: FloatArray, objective: FloatArray, first: Rows, start: Rows) -> Rows:

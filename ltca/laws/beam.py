@@ -1,7 +1,7 @@
 r"""Round shafts and pins as beams: their deflections at the planes of the discs under the forces of the discs.
 
-A crankshaft on two elastic supports: bending alone (Euler–Bernoulli; shear and torsion are left out). The deflection at z under
-a unit force at s on a beam whose supports at 0 and L stand still is the fundamental solution :math:`|z-s|^3/12EI`, that of the
+A crankshaft on two elastic supports bends (Euler–Bernoulli; shear is left out) and twists. The deflection at z under a unit
+force at s on a beam whose supports at 0 and L stand still is the fundamental solution :math:`|z-s|^3/12EI`, that of the
 two reactions, and the rigid motion that brings the supports back to zero; elastic supports add their displacement along the
 straight line between them. Overhanging ends are included.
 
@@ -81,6 +81,26 @@ def _cubes(at: FloatArray, slope: BoolArray, place: FloatArray, turned: BoolArra
     once = 3.0 * apart * size
     by_z, by_s = np.broadcast_arrays(slope[:, None], turned)
     return np.where(by_z & by_s, -6.0 * size, np.where(by_z, once, np.where(by_s, -once, size**3)))
+
+
+def torsion_flexibility(planes: Sequence[float], held: float, diameter: float, shear_modulus: float) -> FloatArray:
+    """Return twists of a round shaft at planes under unit moments at these planes, rad/(N·mm), shape (planes, planes).
+
+    It is held against turning at an axial place, mm: moments on its other side twist nothing. Planes and diameter in mm, the
+    shear modulus in MPa.
+
+    Examples
+    --------
+    L/GJ at the end of a shaft, and half of it in the middle:
+
+    >>> found = torsion_flexibility([10.0, 20.0], 0.0, 10.0, 8e4) * 8e4 * pi * 10.0**4 / 32.0
+    >>> found.round(9).tolist()
+    [[10.0, 10.0], [10.0, 20.0]]
+    """
+    away = np.asarray(planes, dtype=float) - held
+    same_side = np.sign(away[:, None]) == np.sign(away)
+    common = np.where(same_side, np.minimum(np.abs(away[:, None]), np.abs(away)), 0.0)
+    return np.asarray(common / (shear_modulus * pi * diameter**4 / 32.0))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

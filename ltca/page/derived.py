@@ -14,11 +14,13 @@ from ltca.drive.parts import Drive, PinShaft, PinWheel
 from ltca.drive.single_discs import equal_parts, single_discs
 from ltca.drive.units.quantities import ARCMIN
 from ltca.equilibrium.first_stage import StageMesh
+from ltca.equilibrium.supports import crank_bearing_stiffness, crank_laws, wheel_law, wheel_rows
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.first_contact import backlash
 from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.placement import position_angles
 from ltca.geometry.play import play_over_a_turn, preload_words
+from ltca.laws.bearing_pair import SideLaw, bearing_matrix
 from ltca.laws.carrier import far_flange_stiffness
 from ltca.quantities import SCALARS
 
@@ -204,16 +206,33 @@ def _outside(drive: Drive) -> Rows:
 
 def _supports(drive: Drive) -> Rows:
     """Elastic supports, and what they leave out."""
-    rows, support, wheel = [], drive.crank.support, drive.pin_wheel.support_stiffness
+    rows, support, wheel = [], drive.crank.support, wheel_law(drive)
     if support is not None:
+        twist = f"held at {support.spline_plane:g} mm, they twist; tilt" if support.torsion else "torsion and tilt"
         first, second = (
-            f"{value:g} N/mm at {at:g} mm" for at, value in zip(support.positions, support.stiffness, strict=True)
+            f"{value:g} N/mm at {at:g} mm"
+            for value, at in zip(crank_bearing_stiffness(drive), support.positions, strict=True)
         )
-        rows.append(
-            ("crankshafts, as beams", f"⌀ {support.diameter:g} mm on {first}, {second}; torsion and tilt left out")
-        )
+        rows.append(("crankshafts, as beams", f"⌀ {support.diameter:g} mm on {first}, {second}; {twist} left out"))
+        rows += [
+            (f"bearing of a crank at {at:g} mm", told)
+            for at, law in zip(support.positions, crank_laws(drive) or (), strict=False)
+            if (told := _side_words(law))
+        ]
     if wheel is not None:
-        rows.append(("main bearing of the wheel", f"{wheel:g} N/mm, radial; tilt and the ring's own bending left out"))
+        stiffness = wheel.stiffness if isinstance(wheel, SideLaw) else wheel
+        told = _side_words(wheel) if isinstance(wheel, SideLaw) else ""
+        held = f"{stiffness:.6g} N/mm, radial{f', {told}' if told else ''}"
+        rows.append(("main bearing of the wheel", f"{held}; tilt left out"))
+    if found := wheel_rows(drive):
+        matrix = bearing_matrix(found)
+        rows.append(
+            (
+                "rows of the main bearing",
+                f"axial {matrix[2, 2]:.4g} N/mm, tilt {matrix[3, 3]:.4g} N·mm/rad about the zero of disc.planes, pressure "
+                f"centres at {', '.join(f'{row.pressure_centre:.4g}' for row in found)} mm",
+            )
+        )
     return [*rows, *_carrier(drive)]
 
 
@@ -232,6 +251,13 @@ def _carrier(drive: Drive) -> Rows:
         what = "output" if drive.wheel_is_held else "housing"
         rows.append((f"near flange against the {what}", f"{carrier.stiffness_torsion / ARCMIN / 1e3:.4g} N·m/′"))
     return rows
+
+
+def _side_words(law: SideLaw) -> str:
+    """What clearance or preload does, in words; empty for a spring alone."""
+    if law.gap:
+        return f"free within {law.gap:.4g} mm"
+    return f"both sides carry up to {law.lift_off:.4g} N, half as stiff beyond" if law.lift_off else ""
 
 
 THIN_WALL = 0.1

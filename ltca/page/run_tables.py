@@ -36,7 +36,7 @@ ORDER_TOLERANCE = 1e-9
 
 def summary_tables(drives: Mapping[str, Drive], summaries: Summaries) -> dict[str, Table]:
     """Return the scalars of the cases side by side, by `GROUPS`; those that have a row."""
-    yields = any(drive.crank.support or drive.pin_wheel.support_stiffness or drive.carrier for drive in drives.values())
+    yields = any(drive.crank.support or drive.wheel_yields or drive.carrier for drive in drives.values())
     whole = {name: with_residual_part(case) for name, case in summaries.items()}
     captions = {"transmission": "Transmission error and backlash", "rest": "What else is known of the answer"}
     rows: dict[str, list[list[Cell]]] = {name: [] for name in GROUPS}

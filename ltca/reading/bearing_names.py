@@ -19,7 +19,7 @@ from ltca.drive.members.bearings import (
     named_bearings,
     spelled,
 )
-from ltca.drive.members.crank import Force
+from ltca.drive.members.preload import Force
 from ltca.drive.mistakes import describe_mistakes
 from ltca.errors import DriveError, shortened
 

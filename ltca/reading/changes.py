@@ -12,10 +12,11 @@ from pydantic import TypeAdapter, ValidationError
 from ltca.drive.declaration import ANY, REQUIRED
 from ltca.drive.deviations import BoreErrors, DiscClearance, OneDisc, OneEccentric
 from ltca.drive.fields import (
-    LISTS,
+    LISTED,
     field_kind,
     field_kinds,
     is_element,
+    listed_entries,
     missing_part,
     no_entry,
     not_a_field,
@@ -25,8 +26,9 @@ from ltca.drive.fields import (
 from ltca.drive.materials import PARTS
 from ltca.drive.members.bearings import named_bearing
 from ltca.drive.members.named_materials import LIKE, named_material, numbers_of
+from ltca.drive.members.preload import preload_table
 from ltca.drive.mistakes import describe_mistakes
-from ltca.drive.parts import Drive, Duty, ExternalLoad
+from ltca.drive.parts import BearingRow, Drive, Duty, ExternalLoad, MainBearing
 from ltca.errors import DriveError, shortened
 from ltca.reading.physical_checks import find_contradictions
 
@@ -127,6 +129,7 @@ def _without_names(values: Mapping[str, Any]) -> Mapping[str, Any]:
     readers = {f"materials.{part}": (_numbers_of_material, "a material") for part in PARTS}
     readers["ring.material"] = (_numbers_of_material, "a material")
     readers[BEARING] = (_numbers_of_bearing, "a bearing")
+    values = _without_preloads(values)
     named = readers.keys() & values.keys()
     if not named:
         return values
@@ -141,6 +144,17 @@ def _without_names(values: Mapping[str, Any]) -> Mapping[str, Any]:
         except DriveError as error:
             raise DriveError([f"{path} = {problem}" for problem in error.problems]) from error
     return found | {path: value for path, value in values.items() if path not in named}
+
+
+def _without_preloads(values: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Changes with every ``preload`` that is a number or a text as that of its force or its displacement."""
+    found: dict[str, Any] = {}
+    for path, value in values.items():
+        if value is not None and path.endswith(".preload") and field_kind(f"{path}.force") is not None:
+            found |= {f"{path}.{name}": each for name, each in preload_table(value).items()}
+        else:
+            found[path] = value
+    return found
 
 
 BEARING = "crank_bearing.bearing"
@@ -167,14 +181,14 @@ def _with_own(drive: Drive, own: Mapping[tuple[str, int], Mapping[str, Any]], pr
         "disc": [*(drive.disc.of or (OneDisc(),) * drive.disc.number_of_discs)],
         "crank": _eccentrics(drive),
     }
-    lists = {name: [*entries(drive)] for name, entries in LISTS.items()}
+    listed = {table: [*listed_entries(drive, table)] for table in LISTED}
     for (table, number), values in sorted(own.items()):
         part = table.partition(".")[0]
-        entries = lists.get(table, [])
-        if table in _ENTRIES and number == len(entries) and _required_of(table) <= {*values}:
+        entries = listed.get(table, [])
+        if table in LISTED and number == len(entries) and _required_of(table) <= {*values}:
             entries.append(_made(table, _nested(values), number, problems))
             continue
-        if table in _ENTRIES and number < len(entries):
+        if table in LISTED and number < len(entries):
             entries[number] = _replaced(entries[number], _nested(values), f"{table}.{number}.", problems)
             continue
         if (problem := no_entry(drive, table, number)) is not None:
@@ -192,8 +206,9 @@ def _with_own(drive: Drive, own: Mapping[tuple[str, int], Mapping[str, Any]], pr
         return drive
     return replace(
         drive,
-        duty=tuple(lists["duty"]),
-        load=replace(drive.load, external=tuple(lists["load.external"])),
+        duty=tuple(listed["duty"]),
+        load=replace(drive.load, external=tuple(listed["load.external"])),
+        main_bearing=_with_rows(drive, listed["main_bearing.bearings"]),
         disc=replace(drive.disc, of=tuple(rows["disc"]) if any(key[0] == "disc.of" for key in own) else drive.disc.of),
         crank=replace(
             drive.crank, of=tuple(rows["crank"]) if any(key[0] == "crank.of" for key in own) else drive.crank.of
@@ -201,8 +216,20 @@ def _with_own(drive: Drive, own: Mapping[tuple[str, int], Mapping[str, Any]], pr
     )
 
 
-_ENTRIES: dict[str, TypeAdapter[Any]] = {"duty": TypeAdapter(Duty), "load.external": TypeAdapter(ExternalLoad)}
+_ENTRIES: dict[str, TypeAdapter[Any]] = {
+    "duty": TypeAdapter(Duty),
+    "load.external": TypeAdapter(ExternalLoad),
+    "main_bearing.bearings": TypeAdapter(BearingRow),
+}
 """What makes an entry of a list of the drive file."""
+
+
+def _with_rows(drive: Drive, rows: list[Any]) -> MainBearing | None:
+    """The main bearing with the entries of its rows."""
+    held = drive.main_bearing
+    if not rows or (held is not None and held.bearings == tuple(rows)):
+        return held
+    return replace(held or MainBearing(), bearings=tuple(rows))
 
 
 def _required_of(table: str) -> set[str]:

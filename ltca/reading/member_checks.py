@@ -10,7 +10,7 @@ from math import cos, degrees, fsum, pi, sin
 from ltca.drive.fields import ANY, OWN
 from ltca.drive.members.pins import PinShaft, PinWheel, ShaftPinBeam, WheelPinBeam
 from ltca.drive.mistakes import entry_words
-from ltca.drive.parts import Drive, Material
+from ltca.drive.parts import BearingRow, CrankSupport, Drive, MainBearing, Material, Preload
 from ltca.drive.ring_shape import ring_mesh_problems, seat_radius
 from ltca.reading.disc_checks import deviation_bound, part_errors
 
@@ -65,7 +65,14 @@ def _installation(drive: Drive) -> Iterator[str]:
                 )
         if drive.materials.shaft_pin != Material():
             yield "materials.shaft_pin: must be left out without a pin shaft"
-    parts = (*_first_stage(drive), *_crank_support(drive), *_race_bore(drive), *_ring(drive), *_carrier(drive))
+    parts = (
+        *_first_stage(drive),
+        *_crank_support(drive),
+        *_main_bearing(drive),
+        *_race_bore(drive),
+        *_ring(drive),
+        *_carrier(drive),
+    )
     yield from (*parts, *find_pin_problems(drive), *_duty(drive))
 
 
@@ -184,6 +191,8 @@ def _crank_support(drive: Drive) -> Iterator[str]:
                 "thermal_expansion beside [temperature]"
             )
         return
+    yield from _crank_bearings(support, drive.crank.eccentricity)
+    yield from _spline(support, drive.disc.disc_planes)
     start, end = support.positions
     if end <= start:
         yield f"crank.support.positions holds {start:g} and {end:g} mm: must ascend"
@@ -250,6 +259,146 @@ def _carrier(drive: Drive) -> Iterator[str]:
             'pin_shaft.beam.tip = "free": must be "tied-clamped" or "tied-pinned" beside carrier.posts, whose far flange holds '
             "the tips of the shaft pins"
         )
+
+
+def _crank_bearings(support: CrankSupport, eccentricity: float) -> Iterator[str]:
+    """Problems of the two bearings of a crank: how their stiffness, clearance and preload are given."""
+    path = "crank.support"
+    tapered = {"contact_angle": support.contact_angle, "load_constant": support.load_constant}
+    if not any(value is not None for value in tapered.values()):
+        if len(support.stiffness) != 2:
+            yield f"{path}.stiffness has {len(support.stiffness)} values: must have 2, one for each bearing"
+    else:
+        if support.stiffness:
+            yield (
+                f"{path}.stiffness: must be left out beside {path}.contact_angle and {path}.load_constant, from which the "
+                "stiffness of tapered rollers follows"
+            )
+        for name, value in tapered.items():
+            if value is None:
+                yield f"{path}.{name}: must be given with tapered rollers, beside {path}.contact_angle and {path}.load_constant"
+        if support.preload is None:
+            yield f"{path}.preload: must be given with {path}.load_constant, whose stiffness is that at a preload"
+        if support.contact_angle is not None:
+            yield from _contact_angle(f"{path}.contact_angle", support.contact_angle)
+    yield from _loose_or_tight(path, support.clearance, support.preload, eccentricity)
+
+
+def _spline(support: CrankSupport, planes: tuple[float, ...]) -> Iterator[str]:
+    """Problems of the place where a twisting crank is held."""
+    path, place = "crank.support.spline_plane", support.spline_plane
+    if not support.torsion:
+        if place is not None:
+            yield f"{path} = {place:g} mm: must be left out without crank.support.torsion = true"
+    elif place is None:
+        yield f"{path}: must be given with crank.support.torsion = true: the shaft twists from there"
+    elif place in planes:
+        yield f"{path} = {place:g} mm: must be another place than that of a disc (disc.planes), whose eccentric is no spline"
+
+
+def _contact_angle(path: str, angle: float) -> Iterator[str]:
+    if not 0.0 < angle < 0.5 * pi:
+        yield f"{path} = {angle:g} rad: must be greater than 0 and less than {0.5 * pi:.6g} rad"
+
+
+def _loose_or_tight(path: str, clearance: float | None, preload: Preload | None, eccentricity: float) -> Iterator[str]:
+    """Problems of clearance and preload of one bearing."""
+    most = 0.5 * eccentricity
+    for name, value in (
+        ("clearance", clearance),
+        ("preload.displacement", None if preload is None else preload.displacement),
+    ):
+        if value is not None and abs(value) > most:
+            yield f"{path}.{name} = {value:g} mm: must be at most {most:g} mm in size, half the eccentricity"
+    if preload is None:
+        return
+    if clearance is not None:
+        yield f"{path}.clearance = {clearance:g} mm: must be left out beside {path}.preload: a bearing is loose or tight"
+    yield from _one_preload(f"{path}.preload", preload)
+
+
+def _one_preload(path: str, preload: Preload) -> Iterator[str]:
+    if (preload.force is None) == (preload.displacement is None):
+        yield f"{path}: must be either a force (N) or a displacement (mm)"
+
+
+def _main_bearing(drive: Drive) -> Iterator[str]:
+    bearing, alias = drive.main_bearing, drive.pin_wheel.support_stiffness
+    if bearing is None:
+        return
+    path, radial = "main_bearing", bearing.radial_stiffness
+    if alias is not None and radial is not None:
+        yield (
+            f"{path}.radial_stiffness = {radial:g} N/mm and pin_wheel.support_stiffness = {alias:g} N/mm: are two names of one "
+            "stiffness; give one of them"
+        )
+    for name, value, unit, why in (
+        ("tilt_stiffness", bearing.tilt_stiffness, "N·mm/rad", "the wheel does not tilt in the model yet"),
+        ("axial_stiffness", bearing.axial_stiffness, "N/mm", "nothing presses the wheel along its axis in the model"),
+    ):
+        if value is not None:
+            yield f"{path}.{name} = {value:g} {unit}: must be left out: {why}"
+    yield from _loose_or_tight(path, bearing.clearance, bearing.preload, drive.crank.eccentricity)
+    if not bearing.bearings:
+        if radial is None and alias is None:
+            yield f"{path}.radial_stiffness: must be given, or {path}.bearings; left out with the whole table it is rigid"
+        if bearing.arrangement != "O":
+            yield f'{path}.arrangement = "{bearing.arrangement}": must be left out without {path}.bearings'
+        return
+    for name, value in (("main_bearing.radial_stiffness", radial), ("pin_wheel.support_stiffness", alias)):
+        if value is not None:
+            yield f"{name} = {value:g} N/mm: must be left out beside {path}.bearings, from which it follows"
+    used = False
+    for number, row in enumerate(bearing.bearings):
+        yield from _bearing_row(f"{path}.bearings.{number}", row, bearing)
+        used = used or (bool(row.contact_angle) and row.preload is None)
+    if bearing.preload is not None and not used:
+        yield f"{path}.preload: must be left out where no row of {path}.bearings takes it (contact_angle, no preload of its own)"
+    placed = [row for row in bearing.bearings if row.contact_angle]
+    if len(placed) > 1 and len({row.plane for row in placed}) == 1:
+        yield (
+            f"{path}.bearings: plane = {placed[0].plane:g} mm of all rows: rows with contact angles must stand in different "
+            "planes"
+        )
+    if bearing.arrangement != "O" and len(placed) < 2:
+        yield f'{path}.arrangement = "{bearing.arrangement}": must be left out without two rows with contact angles'
+
+
+def _bearing_row(path: str, row: BearingRow, bearing: MainBearing) -> Iterator[str]:
+    """Problems of one row of the main bearing."""
+    preload = row.preload or bearing.preload
+    if row.preload is not None:
+        yield from _one_preload(f"{path}.preload", row.preload)
+        if bearing.clearance is not None:
+            yield f"{path}.preload: must be left out beside main_bearing.clearance: a bearing is loose or tight"
+    if row.contact_angle == 0.0:
+        if row.kind in ("angular-contact ball", "tapered roller"):
+            yield f'{path}.contact_angle: must be given with kind = "{row.kind}"'
+            return
+        if row.radial_stiffness is None:
+            yield f"{path}.radial_stiffness: must be given without a contact angle"
+        for name in ("axial_stiffness", "load_constant", "pitch_radius"):
+            value = getattr(row, name)
+            if value is not None:
+                yield f"{path}.{name} = {value:g}: must be left out without a contact angle"
+        if row.preload is not None:
+            yield f"{path}.preload: must be left out without a contact angle; give main_bearing.clearance, negative where tight"
+        return
+    if row.kind == "cylindrical":
+        yield f'{path}.contact_angle = {row.contact_angle:g} rad: must be left out with kind = "cylindrical"'
+        return
+    yield from _contact_angle(f"{path}.contact_angle", row.contact_angle)
+    if row.radial_stiffness is not None:
+        yield (
+            f"{path}.radial_stiffness = {row.radial_stiffness:g} N/mm: must be left out with a contact angle, from which it "
+            "follows"
+        )
+    if row.pitch_radius is None:
+        yield f"{path}.pitch_radius: must be given with a contact angle, it places the pressure centre"
+    if (row.axial_stiffness is None) == (row.load_constant is None):
+        yield f"{path}: must have either axial_stiffness or load_constant"
+    if row.load_constant is not None and preload is None:
+        yield f"{path}.load_constant = {row.load_constant:g} N/mmⁿ: needs a preload, {path}.preload or main_bearing.preload"
 
 
 def _per_disc(drive: Drive) -> Iterator[str]:

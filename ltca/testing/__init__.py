@@ -12,6 +12,7 @@ actual_parts        Actual places of all parts of a drive, computed from its def
 ring_statics        The elastic ring of the wheel by statics: complementary energy with redundants, independently of `ltca.laws`
 yielding_pins       Places and energies of loose and bent pins by explicit coordinates, independently of `ltca.laws`
 first_stage_check   First stage and forces from outside: normal forces of teeth, moments by quadrature, hand rotations
+bearing_springs     Bearings as one-sided springs, and shafts on them, independently of `ltca.equilibrium.supports`
 friction_check      Friction of a drive that turns: forces, work and moments, independently of `ltca.equilibrium.friction`
 balance_check       Check of an equilibrium by its potential energy, independently of the code that finds it
 field_changes       A plausible change of every leaf field of a drive, for the test of the contract

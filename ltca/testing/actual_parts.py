@@ -54,10 +54,10 @@ class ActualParts:
     disc: int = 0
 
     @cached_property
-    def race_centres(self) -> ComplexArray:
-        """Centres of inner races and cages: at the actual eccentricities from the actual crank axes, mm."""
+    def eccentrics(self) -> ComplexArray:
+        """Centres of inner races and cages from the actual crank axes, at the actual eccentricities, mm."""
         crank = self.drive.crank
-        centres = []
+        arms = []
         for number in range(crank.number):
             error, ahead = crank.eccentricity_error, 0.0
             for place, own in enumerate(crank.of):
@@ -65,13 +65,18 @@ class ActualParts:
                     error = error if own.eccentricity_error is None else own.eccentricity_error
                     ahead = own.phase_error
             phase = self.crank_angle + disc_phase(self.drive, self.disc) + ahead
-            x = crank.axis_offset.x + (crank.eccentricity + error) * np.cos(phase)
-            y = crank.axis_offset.y + (crank.eccentricity + error) * np.sin(phase)
-            if crank.circle_radius is not None:
-                on_circle = crank.angle + 2.0 * np.pi * number / crank.number
-                x, y = x + crank.circle_radius * np.cos(on_circle), y + crank.circle_radius * np.sin(on_circle)
-            centres.append(complex(x, y))
-        return np.array(centres)
+            arms.append(complex(np.cos(phase), np.sin(phase)) * (crank.eccentricity + error))
+        return np.array(arms)
+
+    @cached_property
+    def race_centres(self) -> ComplexArray:
+        """Centres of inner races and cages, mm."""
+        crank = self.drive.crank
+        axes = np.full(crank.number, complex(crank.axis_offset.x, crank.axis_offset.y))
+        if crank.circle_radius is not None:
+            on_circle = crank.angle + 2.0 * np.pi * np.arange(crank.number) / crank.number
+            axes = axes + crank.circle_radius * np.exp(1j * on_circle)
+        return np.asarray(axes + self.eccentrics)
 
     @cached_property
     def place(self) -> complex:

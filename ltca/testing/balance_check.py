@@ -28,7 +28,14 @@ from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.reducer import Reducer
 from ltca.laws.backed import BackedLaw
 from ltca.testing.actual_parts import ActualParts, DeviatedFlank
-from ltca.testing.first_stage_check import outside_on_wheel, teeth_on_cranks, teeth_on_supports, tooth_forces
+from ltca.testing.bearing_springs import (
+    crank_springs,
+    disc_coordinates,
+    shaft_energy,
+    shaft_torsion,
+    wheel_spring,
+)
+from ltca.testing.first_stage_check import outside_on_wheel, teeth_on_shafts, teeth_on_supports, tooth_forces
 from ltca.testing.friction_check import FrictionCheck
 from ltca.testing.ring_statics import ring_by_statics
 from ltca.testing.yielding_pins import (
@@ -37,7 +44,7 @@ from ltca.testing.yielding_pins import (
     YieldingPins,
     beam_stiffness,
     contact_alone,
-    crankshaft_deflections,
+    crankshaft_bending,
     has_ring,
     post_forces,
     ring_tips,
@@ -69,6 +76,8 @@ class PotentialEnergy:
         Where forces hold them.
     ring : array of complex, shape (z_P,)
         Displacements of the seats of the wheel pins by the elastic ring, in the turning wheel, mm.
+    pulls : array of complex, shape (2, cranks), or None
+        What the bearings of each crank carry of the teeth of a first stage while the discs stand still, N.
     """
 
     drive: Drive
@@ -80,6 +89,7 @@ class PotentialEnergy:
     wheel_pins: YieldingPins
     shaft_pins: YieldingPins
     ring: ComplexArray
+    pulls: ComplexArray | None = None
 
     def at(self, pose: FloatArray) -> FloatArray:
         """Return Π of poses, shape (poses, coordinates), with the effective radii of the first of them, N·mm.
@@ -161,16 +171,38 @@ class PotentialEnergy:
 
     @property
     def own(self) -> int:
-        """Number of coordinates of each disc: three, and two for each crank on elastic supports."""
-        return 3 if self.drive.crank.support is None else 3 + 2 * self.drive.crank.number
+        """Number of coordinates of each disc: three, and two for each crank on elastic supports, three where it twists."""
+        return disc_coordinates(self.drive)
 
     def _cranks(self, disc: int, pose: FloatArray) -> ComplexArray:
         """Displacements of the cranks in the plane of a disc, shape (poses, cranks), mm."""
         first = self.own * disc + 3
-        yielding = pose[:, first : first + self.own - 3]
-        if yielding.shape[1] == 0:
+        cranks, support = self.drive.crank.number, self.drive.crank.support
+        if support is None:
             return self._lines(disc, pose)
+        yielding = pose[:, first : first + 2 * cranks]
         return np.asarray(yielding[:, ::2] + 1j * yielding[:, 1::2])
+
+    def _twists(self, disc: int, pose: FloatArray) -> FloatArray:
+        """Angles of the eccentrics of a disc ahead of their cranks, shape (poses, cranks), rad; zero without torsion."""
+        cranks, support = self.drive.crank.number, self.drive.crank.support
+        if support is None or not support.torsion:
+            return np.zeros((pose.shape[0], cranks))
+        first = self.own * disc + 3 + 2 * cranks
+        return pose[:, first : first + cranks]
+
+    def _races(self, parts: ActualParts, disc: int, pose: FloatArray) -> ComplexArray:
+        """Centres of the inner races of a disc on cranks that yield and twist, shape (poses, cranks), mm."""
+        turned = parts.eccentrics * (np.exp(1j * self._twists(disc, pose)) - 1.0)
+        return np.asarray(parts.race_centres + turned + self._cranks(disc, pose))
+
+    @property
+    def _crank_places(self) -> ComplexArray:
+        """Axes of the cranks, mm."""
+        crank = self.drive.crank
+        angle = crank.angle + 2.0 * np.pi * np.arange(crank.number) / crank.number
+        circle = (crank.circle_radius or 0.0) * np.exp(1j * angle)
+        return np.asarray(complex(crank.axis_offset.x, crank.axis_offset.y) + circle)
 
     def _lines(self, disc: int, pose: FloatArray) -> ComplexArray:
         """Displacements of the straight lines between the bearings of the cranks in a disc, shape (poses, cranks)."""
@@ -186,26 +218,34 @@ class PotentialEnergy:
                 beam = None if drive.pin_shaft is None else drive.pin_shaft.beam
                 length = drive.disc.stack_length if beam is None or beam.span is None else beam.span
             near, far = -0.5 * length - 0.5 * thick[0], 0.5 * length + 0.5 * thick[1]
-        angle = crank.angle + 2.0 * np.pi * np.arange(crank.number) / crank.number
-        place = complex(crank.axis_offset.x, crank.axis_offset.y) + (crank.circle_radius or 0.0) * np.exp(1j * angle)
-        seat = pose[:, -4, None] + 1j * pose[:, -3, None] + 1j * pose[:, -2, None] * place
+        seat = pose[:, -4, None] + 1j * pose[:, -3, None] + 1j * pose[:, -2, None] * self._crank_places
         return np.asarray((drive.disc.disc_planes[disc] - near) / (far - near) * seat)
 
     def wheel_displacement(self, pose: FloatArray) -> ComplexArray:
         """Displacement of the wheel, mm."""
-        if self.drive.pin_wheel.support_stiffness is None:
+        if wheel_spring(self.drive) is None:
             return np.zeros(pose.shape[0], dtype=complex)
         last = -6 if has_ring(self.drive) else -3
         return np.asarray(pose[:, last] + 1j * pose[:, last + 1])
 
     def _supports(self, pose: FloatArray) -> FloatArray:
-        """Energy of crankshafts on their bearings, of the wheel on its main bearing and of the posts of the carrier, N·mm."""
-        total = 0.5 * (self.drive.pin_wheel.support_stiffness or 0.0) * np.abs(self.wheel_displacement(pose)) ** 2
-        if self.drive.crank.support is not None:
-            holding = np.linalg.inv(crankshaft_deflections(self.drive))
-            discs = range(self.drive.disc.number_of_discs)
+        """Energy of crankshafts on their bearings, less the work of teeth there, of the wheel on its main bearing and of the
+        posts of the carrier, N·mm.
+        """
+        spring, total = wheel_spring(self.drive), np.zeros(pose.shape[0])
+        if spring is not None:
+            total = total + spring.energy(np.abs(self.wheel_displacement(pose)))
+        if (support := self.drive.crank.support) is not None:
+            (start, end), planes = support.positions, np.asarray(self.drive.disc.disc_planes)
+            second, discs = (planes - start) / (end - start), range(self.drive.disc.number_of_discs)
+            shares, springs = np.stack([1.0 - second, second]), crank_springs(self.drive)
+            bending = crankshaft_bending(self.drive)
             moved = np.stack([self._cranks(disc, pose) - self._lines(disc, pose) for disc in discs], axis=1)
-            total = total + 0.5 * np.einsum("pdc,de,pec->p", moved.conj(), holding, moved).real
+            for crank in range(self.drive.crank.number):
+                pull = np.zeros(2, dtype=complex) if self.pulls is None else self.pulls[:, crank]
+                total = total + shaft_energy(bending, shares, springs, moved[:, :, crank], pull)
+            twisted = np.stack([self._twists(disc, pose) for disc in discs], axis=1)
+            total = total + shaft_torsion(self.drive, twisted)
         if self.drive.carrier is not None and self.drive.carrier.posts is not None:
             flange = pose[:, -4:-1]
             total = total + 0.5 * np.einsum("pi,ij,pj->p", flange, post_forces(self.drive), flange)
@@ -240,13 +280,18 @@ class PotentialEnergy:
     def outside(self, pose: FloatArray, rubbed_at_cranks: FloatArray | float = 0.0) -> FloatArray:
         """Return the work against forces of a first stage and from outside by the pose, N, shape (coordinates,)."""
         drive, work = self.drive, np.zeros(pose.size)
-        if drive.first_stage is not None and drive.crank.support is not None:
-            pressed = teeth_on_cranks(drive, self.crank_moments(pose) + rubbed_at_cranks)
-            for disc, forces in enumerate(pressed):
+        if drive.first_stage is not None:
+            moments, posts = self.crank_moments(pose) + rubbed_at_cranks, drive.carrier and drive.carrier.posts
+            pressed, carried = teeth_on_shafts(drive, moments)
+            for disc, forces in enumerate(pressed if drive.crank.support is not None else ()):
                 first = self.own * disc + 3
                 work[first : first + 2 * drive.crank.number : 2] -= forces.real
                 work[first + 1 : first + 2 * drive.crank.number : 2] -= forces.imag
-        if drive.pin_wheel.support_stiffness is not None:
+            if posts:
+                seated = carried[1]
+                turning = (np.conj(1j * self._crank_places) * seated).real.sum()
+                work[-4:-1] -= seated.real.sum(), seated.imag.sum(), turning
+        if wheel_spring(drive) is not None:
             last, force = -6 if has_ring(drive) else -3, outside_on_wheel(drive, self.crank_angle)
             if drive.first_stage is not None and drive.installation.held == "pin-wheel":
                 force -= tooth_forces(drive, self.crank_moments(pose) + rubbed_at_cranks)[0].sum()
@@ -259,7 +304,7 @@ class PotentialEnergy:
         found = []
         for disc in range(self.drive.disc.number_of_discs):
             parts, centre, turn = self._place(disc, pose[None])
-            shift = centre + parts.bores * turn - parts.race_centres - self._cranks(disc, pose[None])
+            shift = centre + parts.bores * turn - self._races(parts, disc, pose[None])
             # Short against the approaches of a disc that carries next to nothing.
             step = 2e-6 * float(np.max(np.abs(shift))) + 1e-10
             around = shift[0, :, None, None] + step * np.array([[1.0], [-1.0], [1j], [-1j]])
@@ -275,9 +320,8 @@ class PotentialEnergy:
         """Energy of the rollers of each crank bearing of one disc, shape (cranks, poses)."""
         first = self.own * disc
         centre = parts.place + pose[:, first] + 1j * pose[:, first + 1]
-        turn, cranks = np.exp(1j * pose[:, first + 2]), self._cranks(disc, pose)
-        pairs = enumerate(zip(parts.bores, parts.race_centres, strict=True))
-        shifts = [(centre + bore * turn - race - cranks[:, crank])[:, None] for crank, (bore, race) in pairs]
+        turn, races = np.exp(1j * pose[:, first + 2]), self._races(parts, disc, pose)
+        shifts = [(centre + bore * turn - races[:, crank])[:, None] for crank, bore in enumerate(parts.bores)]
         return np.stack([self._rollers(parts, shift) for shift in shifts])
 
     def _rollers(self, parts: ActualParts, shift: ComplexArray) -> FloatArray:
@@ -379,7 +423,7 @@ def potential_of(drive: Drive, model: Reducer, balanced: Equilibrium, position: 
 def friction_at(potential: PotentialEnergy, balanced: Equilibrium, position: int) -> FrictionCheck:
     """Return the friction at that position of a drive with friction."""
     drive, pose, wheel, shaft = potential.drive, balanced.pose[position], potential.wheel_pins, potential.shaft_pins
-    supported = drive.pin_wheel.support_stiffness is not None
+    supported = drive.wheel_yields
     found = FrictionCheck(
         drive=drive,
         crank_angle=potential.crank_angle,
@@ -421,6 +465,11 @@ def find_imbalance(
     lever = np.ones(size)
     lever[2 : potential.own * drive.disc.number_of_discs : potential.own] = wheel - drive.crank.eccentricity
     lever[-1] = wheel
+    support = drive.crank.support
+    if support is not None and support.torsion:
+        for disc in range(drive.disc.number_of_discs):
+            first = potential.own * disc + 3 + 2 * drive.crank.number
+            lever[first : first + drive.crank.number] = drive.crank.eccentricity
     if has_ring(drive):
         pins = drive.pin_shaft
         lever[-2] = (drive.crank.circle_radius or 1.0) if pins is None else pins.pin_circle_radius
@@ -451,7 +500,11 @@ def find_imbalance(
     sizes = farthest * np.repeat([1e-2, 1e-1, 1.0], 4)
     here = np.zeros((1, size))
     # Separately, since the farthest pose determines the width of the pieces.
-    work = potential.outside(pose, 0.0 if rubbed is None else rubbed.at_each_crank) / lever
+    rubbed_at_cranks = 0.0 if rubbed is None else rubbed.at_each_crank
+    work = potential.outside(pose, rubbed_at_cranks) / lever
+    if drive.first_stage is not None:
+        pulls = teeth_on_shafts(drive, potential.crank_moments(pose) + rubbed_at_cranks)[1]
+        potential = replace(potential, pulls=pulls)
     if rubbed is not None:
         work = work + rubbed.work / lever
     value = potential.at(pose + np.concatenate([here, offsets]) / lever)

@@ -14,7 +14,17 @@ from numpy.random import Generator
 from ltca.drive.deviations import BoreErrors, OneDisc, OneEccentric
 from ltca.drive.members.first_stage import FirstStage
 from ltca.drive.members.operation import ExternalLoad, OuterForce, OuterPlace
-from ltca.drive.parts import Carrier, CarrierPosts, Clearance, CrankSupport, Drive, Installation
+from ltca.drive.parts import (
+    BearingRow,
+    Carrier,
+    CarrierPosts,
+    Clearance,
+    CrankSupport,
+    Drive,
+    Installation,
+    MainBearing,
+    Preload,
+)
 from ltca.geometry.flank import FlankProfile
 from ltca.reading.physical_checks import is_sound
 from ltca.testing.practical_drives import practical_drive, with_ring
@@ -140,7 +150,51 @@ def _supported(random: Generator, drive: Drive) -> Drive:
         crank = replace(crank, support=shaft)
     if random.uniform() < 0.3:
         wheel = replace(wheel, support_stiffness=float(random.choice([3e5, 1e6])))
-    return replace(drive, crank=crank, pin_wheel=wheel)
+    drive = replace(drive, crank=crank, pin_wheel=wheel)
+    return _on_bearings(np.random.default_rng(random.integers(2**32)), drive)
+
+
+def _on_bearings(random: Generator, drive: Drive) -> Drive:
+    """The drive whose supports have clearance or preload, are rows of rolling elements or twist, some of them."""
+    support, wheel = drive.crank.support, drive.pin_wheel
+    loose = float(random.choice([0.0, 0.004, 0.01, 0.03, -0.003, -0.01])) * min(1.0, drive.crank.eccentricity)
+    preload = random.choice([Preload(force=20.0), Preload(force=2e3), Preload(displacement=0.001)])  # type: ignore[arg-type]
+    if support is not None and random.uniform() < 0.5:
+        kind = random.choice(["loose", "loose", "preloaded", "tapered"])
+        if kind == "loose":
+            support = replace(support, clearance=loose)
+        elif kind == "preloaded":
+            support = replace(support, preload=preload)
+        else:
+            support = replace(support, stiffness=(), contact_angle=0.25, load_constant=2e5, preload=preload)
+    bearing = None
+    if wheel.support_stiffness is not None and random.uniform() < 0.7:
+        kind = random.choice(["loose", "loose", "preloaded", "rows", "alias"])
+        stiffness = wheel.support_stiffness
+        if kind == "loose":
+            bearing = MainBearing(radial_stiffness=stiffness, clearance=loose)
+        elif kind == "preloaded":
+            bearing = MainBearing(radial_stiffness=stiffness, preload=preload)
+        elif kind == "alias":
+            bearing = MainBearing(clearance=loose)
+        else:
+            rows = (
+                BearingRow(
+                    plane=side * drive.disc.stack_length,
+                    kind="angular-contact ball",
+                    contact_angle=0.6,
+                    pitch_radius=wheel.pin_circle_radius,
+                    load_constant=2e6,
+                )
+                for side in (-1.0, 1.0)
+            )
+            bearing = MainBearing(bearings=tuple(rows), preload=preload, arrangement=str(random.choice(["O", "X"])))  # type: ignore[arg-type]
+        if kind != "alias":
+            wheel = replace(wheel, support_stiffness=None)
+    if support is not None and random.uniform() < 0.3:  # splined beyond the discs, or between them
+        spline = float(random.choice([-1.0, 0.013, 1.0, 1.0])) * drive.disc.stack_length
+        support = replace(support, torsion=True, spline_plane=spline)
+    return replace(drive, crank=replace(drive.crank, support=support), pin_wheel=wheel, main_bearing=bearing)
 
 
 def with_carrier(random: Generator, drive: Drive) -> Drive:

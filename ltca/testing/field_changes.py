@@ -42,6 +42,18 @@ _SUPPORT = {
     "crank.support.positions": (-10.0, 12.0),
     "crank.support.stiffness": (2e5, 3e5),
 }
+_ROWS = {
+    f"main_bearing.bearings.{number}.{name}": value
+    for number, plane in enumerate((-15.0, 15.0))
+    for name, value in {
+        "plane": plane,
+        "kind": "angular-contact ball",
+        "contact_angle": 0.6,
+        "pitch_radius": 40.0,
+        "load_constant": 2e7,
+    }.items()
+} | {"main_bearing.preload.force": 2e3}
+"""Two angular-contact bearings in O arrangement."""
 GOES_WITH = {
     "materials.crankshaft": "crank.support",
     # Posts need shaft pins that are beams, which some engines refuse first.
@@ -66,6 +78,17 @@ _LEFT_OUT = {
     "pin_wheel.support_stiffness": 5e5,
     "pin_wheel.core_radius": 0.3,
     "crank_bearing.race_bore_radius": 1.0,
+    "main_bearing.radial_stiffness": 5e5,
+    "main_bearing.tilt_stiffness": 1e9,
+    "main_bearing.axial_stiffness": 5e5,
+    "main_bearing.clearance": 0.02,
+    "main_bearing.preload.force": 20.0,
+    "main_bearing.preload.displacement": 1e-4,
+    "crank.support.clearance": 0.01,
+    "crank.support.preload.force": 50.0,
+    "crank.support.preload.displacement": 2e-4,
+    "main_bearing.bearings.0.preload.force": 1e3,
+    "main_bearing.bearings.0.preload.displacement": 2e-3,
     "installation.first_stage_ratio": 2.0,
     "first_stage.module": 1.42,
     "first_stage.mesh_stiffness": 3e5,
@@ -112,6 +135,10 @@ _NAME = {
     "analysis.compliance": "chooses the engine where none is named; here one is",
     "disc.planes": "axial places have no effect where neither pins nor cranks bend",
     "disc.gap": "axial places have no effect where neither pins nor cranks bend",
+    **dict.fromkeys(
+        ("main_bearing.arrangement", "main_bearing.bearings.0.plane", "main_bearing.bearings.0.pitch_radius"),
+        "places the pressure centres, which concern tilts alone: they are told, and the wheel does not tilt yet",
+    ),
     "materials.crankshaft.poisson_ratio": "a shaft without shear and torsion bends by its modulus alone",
 }
 _NAME |= {f"materials.{part}.{name}": "moves no load: results are judged by it" for part in PARTS for name in JUDGED_BY}
@@ -294,8 +321,19 @@ def _beside(drive: Drive, path: str) -> dict[str, Any]:
     wheel, shaft, name = drive.pin_wheel, drive.pin_shaft, path.rpartition(".")[2]
     if path.endswith(".thermal_expansion") or path.startswith("temperature."):
         return _warmth(drive, path)
+    if path in ("crank.support.contact_angle", "crank.support.load_constant"):
+        support = _SUPPORT if drive.crank.support is None else {}
+        tapered = {"contact_angle": 0.25, "load_constant": 5e6, "preload.force": 1e4, "stiffness": ()}
+        return {**support, **{f"crank.support.{name}": value for name, value in tapered.items()}}
+    if path == "crank.support.spline_plane":
+        support = _SUPPORT if drive.crank.support is None else {}
+        return {**support, "crank.support.torsion": True, path: 40.0}
     if path.startswith(("crank.support.", "materials.crankshaft.")) and drive.crank.support is None:
         return _SUPPORT
+    if path.startswith("crank.support.preload.") and drive.crank.support is not None:
+        return {}
+    if path.startswith("main_bearing.") and drive.main_bearing is None:
+        return _of_main_bearing(path)
     kinds = {
         "pin_wheel.seat.radius": "slot",
         "pin_wheel.seat.pin_radius": "sleeve",
@@ -335,6 +373,23 @@ def _beside(drive: Drive, path: str) -> dict[str, Any]:
     return {}
 
 
+def _of_main_bearing(path: str) -> dict[str, Any]:
+    """A main bearing in which a field of it has an effect: rows of its own, or its stiffness."""
+    name = path.removeprefix("main_bearing.")
+    if name == "bearings.0.radial_stiffness":
+        return {
+            "main_bearing.bearings.0.plane": 0.0,
+            "main_bearing.bearings.0.kind": "cylindrical",
+            "main_bearing.bearings.0.radial_stiffness": 5e5,
+        }
+    if name == "bearings.0.axial_stiffness":
+        rows = {one: value for one, value in _ROWS.items() if not one.endswith("load_constant")}
+        return rows | {f"main_bearing.bearings.{number}.axial_stiffness": 5e5 for number in (0, 1)}
+    if name == "arrangement" or name.startswith("bearings."):
+        return _ROWS
+    return {} if name == "radial_stiffness" else {"main_bearing.radial_stiffness": 5e5}
+
+
 def is_refused_by_name(path: str, told: str) -> bool:
     """Tell whether a message names a field, its table, or the table that a material belongs to."""
     table = path.rpartition(".")[0]
@@ -360,6 +415,8 @@ def change_of(drive: Drive, path: str) -> tuple[Drive, dict[str, Any]]:
         if path.startswith("first_stage.") and drive.crank.number == 1:  # refused as a whole
             return drive, needed | {path: _LEFT_OUT.get(path) or _FIRST_STAGE.get(path, 0.1)}
         drive = with_fields(drive, needed)
+    if path == "crank.support.torsion":
+        return drive, {path: True, "crank.support.spline_plane": 40.0}
     if path.endswith(".seat.kind"):
         return drive, _seat(drive, parent.removesuffix(".seat"), sensible_change(drive, path))
     if path in _LEFT_OUT and _is_left_out(drive, path):

@@ -10,7 +10,8 @@ import numpy as np
 
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.drive.parts import Drive
-from ltca.testing.yielding_pins import crankshaft_deflections
+from ltca.testing.bearing_springs import crank_springs, softened
+from ltca.testing.yielding_pins import crankshaft_bending
 
 
 def tooth_forces(drive: Drive, moments: FloatArray) -> tuple[ComplexArray, FloatArray]:
@@ -36,34 +37,42 @@ def tooth_forces(drive: Drive, moments: FloatArray) -> tuple[ComplexArray, Float
     return in_plane, np.asarray(-np.sign(moments) * normal * np.sin(base_helix))
 
 
-def teeth_on_cranks(drive: Drive, moments: FloatArray) -> ComplexArray:
-    """Return the forces at the discs that move the cranks there as the teeth do, N, shape (discs, cranks)."""
-    stage, support, distance = drive.first_stage, drive.crank.support, drive.crank.circle_radius
+def teeth_on_shafts(drive: Drive, moments: FloatArray) -> tuple[ComplexArray, ComplexArray]:
+    """Return the forces at the discs that move the cranks there as the teeth do, shape (discs, cranks), and what the two bearings
+    of each crank carry of the teeth while these planes stand still, shape (2, cranks), N; zero where bearings are not told.
+    """
+    stage, distance, discs = drive.first_stage, drive.crank.circle_radius, drive.disc.number_of_discs
     assert stage is not None
-    assert support is not None
     assert distance is not None
     in_plane, axial = tooth_forces(drive, moments)
     pitch = distance * stage.planet_teeth / (stage.sun_teeth + stage.planet_teeth)
-    outward = np.array(drive.crank.places) / distance
     # A force along z at −r outward bends the shaft like opposite radial forces, the outer one of them at greater z.
-    couple = axial * pitch * outward
-    by_force, by_couple = (crankshaft_deflections(drive, stage.plane, couple=which)[:-1, -1] for which in (False, True))
-    moved = np.outer(by_force, in_plane) + np.outer(by_couple, couple)
-    return np.asarray(np.linalg.solve(crankshaft_deflections(drive), moved))
+    both = np.stack((in_plane, axial * pitch * np.array(drive.crank.places) / distance))
+    held: FloatArray = np.zeros((discs, 2))
+    if drive.crank.support is not None:
+        columns = [crankshaft_bending(drive, stage.plane, couple=which)[:-1, -1] for which in (False, True)]
+        held = np.asarray(
+            np.linalg.solve(softened(crankshaft_bending(drive), crank_springs(drive)), np.stack(columns, axis=1))
+        )
+    if drive.crank_supports is None:
+        return held @ both, np.zeros((2, drive.crank.number), dtype=complex)
+    start, end = drive.crank_supports
+    second = (np.asarray(drive.disc.disc_planes) - start) / (end - start)
+    return held @ both, teeth_on_supports(drive, moments) - np.stack([1.0 - second, second]) @ held @ both
 
 
 def teeth_on_supports(drive: Drive, moments: FloatArray) -> ComplexArray:
     """Return what the bearings of each crank carry of the teeth, by lever arms, N, shape (bearings, cranks).
 
-    Of rigid cranks the force of each planet is carried beside it.
+    Of cranks without told bearings the force of each planet is carried beside it.
     """
-    stage, support, distance = drive.first_stage, drive.crank.support, drive.crank.circle_radius
+    stage, supports, distance = drive.first_stage, drive.crank_supports, drive.crank.circle_radius
     assert stage is not None
     assert distance is not None
     in_plane, axial = tooth_forces(drive, moments)
-    if support is None:
+    if supports is None:
         return np.asarray(in_plane[None])
-    start, end = support.positions
+    start, end = supports
     pitch = distance * stage.planet_teeth / (stage.sun_teeth + stage.planet_teeth)
     tilted = axial * pitch * np.array(drive.crank.places) / distance
     far = (in_plane * (stage.plane - start) + tilted) / (end - start)

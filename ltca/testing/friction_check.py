@@ -22,6 +22,7 @@ from ltca.compliance.response import DiscResponse
 from ltca.drive.parts import Drive, Friction, PinShaft, PinWheel
 from ltca.geometry.coordinates import X, Y
 from ltca.testing.actual_parts import ActualParts, DeviatedFlank
+from ltca.testing.bearing_springs import SidedSpring, crank_springs, disc_coordinates, wheel_spring
 
 FADES = 1e-4
 """Slip by the crank angle, in eccentricities, below which a contact is next to the pitch point: any friction may be there."""
@@ -119,7 +120,7 @@ class FrictionCheck:
     def work(self) -> FloatArray:
         """Work against friction by the pose, N and N·mm, shape (coordinates,)."""
         drive, pins = self.drive, self.drive.pin_wheel.number_of_pins
-        own = 3 if drive.crank.support is None else 3 + 2 * drive.crank.number
+        own = disc_coordinates(drive)
         work = np.zeros(self.pose.size)
         for disc, found in enumerate(self.contacts):
             # On the disc the force is the opposite; the pins of the shaft stand still.
@@ -127,7 +128,11 @@ class FrictionCheck:
             work[first : first + 2] += total.real, total.imag
             work[first + 2] += (np.conj(force) * 1j * (found.point - self._centre(disc))).real.sum()
             # The crank drags the disc along, rollers between them.
-            work[first + 2] -= self._motion * self._rolling * np.abs(self.bearings[disc]).sum()
+            rolled = self._motion * self._rolling * np.abs(self.bearings[disc])
+            work[first + 2] -= rolled.sum()
+            if drive.crank.support is not None and drive.crank.support.torsion:
+                twists = first + 3 + 2 * drive.crank.number
+                work[twists : twists + drive.crank.number] += rolled
             rubbed = force[:pins]
             work[-1] -= (np.conj(rubbed) * 1j * (found.point[:pins] - self._axis(disc))).real.sum()
             if self.wheel_column is not None:
@@ -151,7 +156,9 @@ class FrictionCheck:
         else:
             near, far = places
             share = (np.asarray(planes) - near) / (far - near)
-            carried = np.abs(share @ self.bearings + teeth[1]) + np.abs((1.0 - share) @ self.bearings + teeth[0])
+            first, second = crank_springs(self.drive) if self.drive.crank.support is not None else (None, None)
+            carried = _at_least(share @ self.bearings + teeth[1], second)
+            carried = carried + _at_least((1.0 - share) @ self.bearings + teeth[0], first)
         friction = self._friction
         at_support = friction.support_bearing * friction.support_bearing_radius * carried
         return np.asarray(self._motion * (self._rolling * np.abs(self.bearings).sum(axis=0) + at_support))
@@ -201,8 +208,9 @@ class FrictionCheck:
         pins, on_wheel = self.drive.pin_wheel.number_of_pins, 0j
         for part, found in zip(self.parts, self.contacts, strict=True):
             on_wheel += (found.rubbing[:pins] - part.pin_load[0] * found.into_disc[:pins]).sum()
-        friction = self._friction
-        return float(friction.support_bearing * friction.support_bearing_radius * abs(on_wheel + self.outside))
+        friction, spring = self._friction, wheel_spring(self.drive)
+        load = max(abs(on_wheel + self.outside), 0.0 if spring is None else spring.sides_together)
+        return float(friction.support_bearing * friction.support_bearing_radius * load)
 
     def _told(self, disc: int) -> ComplexArray:
         """Friction on the pins in the solution: the force that works by the place of the disc."""
@@ -212,7 +220,7 @@ class FrictionCheck:
         return np.asarray(told * (along[:, X] + 1j * along[:, Y]))
 
     def _centre(self, disc: int) -> complex:
-        own = 3 if self.drive.crank.support is None else 3 + 2 * self.drive.crank.number
+        own = disc_coordinates(self.drive)
         place = ActualParts(self.drive, self.crank_angle, disc).place
         return place + complex(self.pose[own * disc], self.pose[own * disc + 1])
 
@@ -223,7 +231,7 @@ class FrictionCheck:
         drive, friction, part = self.drive, self._friction, self.parts[disc]
         parts = ActualParts(drive, self.crank_angle, disc)
         ahead, behind = (ActualParts(drive, self.crank_angle + side * TURNED, disc) for side in (1.0, -1.0))
-        own = 3 if drive.crank.support is None else 3 + 2 * drive.crank.number
+        own = disc_coordinates(drive)
         centre, axis, turn = self._centre(disc), self._axis(disc), np.exp(1j * self.pose[own * disc + 2])
         places, radii = parts.wheel_pins
         pin = axis + places * np.exp(1j * self.pose[-1]) + self.wheel_place[disc]
@@ -262,3 +270,8 @@ class FrictionCheck:
         loaded = self.parts[disc].pin_load[0] > 0.0
         into = np.where(loaded, slope, 0.0) / np.where(loaded, np.abs(slope), 1.0)
         return np.asarray(into), np.where(loaded, approach[0], 0.0)
+
+
+def _at_least(carried: ComplexArray, spring: SidedSpring | None) -> FloatArray:
+    """Loads of bearings, N: those of both sides of preloaded ones where these are more."""
+    return np.maximum(np.abs(carried), 0.0 if spring is None else spring.sides_together)

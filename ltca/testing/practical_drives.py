@@ -20,8 +20,10 @@ from ltca.drive.materials import Material
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Clearance, Drive, Installation, Ring, RingBolts
 from ltca.drive.units.quantities import ARCMIN
+from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.output_angle import play_of_input, wheel_angle_of_input
 from ltca.equilibrium.output_torque import solve_at_output
+from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.flank import FlankProfile
@@ -370,6 +372,20 @@ def _limit(discs: Sequence[ContactGeometry], angle: FloatArray) -> float:
     return ends[0] - ends[1]
 
 
+def _pressed(model: Reducer, loaded: Equilibrium) -> float:
+    """Largest approach of any contact, and displacement of any bearing beyond its clearance, mm."""
+    contacts, held = loaded.response, 0.0
+    whole = contacts.rollers.inner_approach + contacts.rollers.outer_approach
+    carried = model.carried_beside_discs(loaded.crank_angle, loaded.pose, contacts.parts)
+    for number, support in enumerate(() if model.supports is None else model.supports.bearings):
+        of_teeth = None if carried is None or number >= carried.shape[1] else carried[:, number]
+        yields = np.linalg.inv(support.stiffness).diagonal(axis1=-2, axis2=-1).max()
+        held = max(held, float(np.abs(support.reactions(loaded.pose, of_teeth)).max() * yields))
+    return held + max(
+        float(np.max(each, initial=0.0)) for each in (contacts.flank.approach, contacts.holes.approach, whole)
+    )
+
+
 def compare_with_load(seed: int, draw: Callable[[int], tuple[Drive, float]] = practical_drive) -> list[Comparison]:
     """Return the comparisons of the practical drive of a seed, or of one drawn otherwise, at two crank angles."""
     drive, angle = draw(seed)
@@ -383,25 +399,32 @@ def compare(drive: Drive, crank_angle: FloatArray) -> list[Comparison]:
     model = replace(HalfSpace().prepare(drive).model, friction=None)
     discs, scale = model.geometries, abs(drive.output_per_wheel_angle) * ARCMIN
     found, before = free_play(discs, crank_angle), scale * float(play_of_input(model, np.zeros(())))
-    answers, own = [], model.coordinates.own
+    answers, own, loose = [], model.coordinates.own, any(disc.has_loose_supports for disc in discs)
     for row, angle in enumerate(crank_angle):
         free = float(found.play[row]) * scale + before
         if found.preloaded[row]:
             answers.append(Comparison(outcome="preloaded", free=free))
             continue
-        limit = _limit(discs, np.array([angle])) * scale + before
-        for part in PARTS:
+        # The bound knows rigid members alone.
+        limit = free if loose else _limit(discs, np.array([angle])) * scale + before
+        for part in (*PARTS, 1e-3) if loose else PARTS:  # what floats in clearances is balanced under more alone
             torque = part * drive.load.torque * np.array([1.0, -1.0])
             try:
                 loaded = solve_at_output(model, [drive], np.full(2, angle), torque)
             except ConvergenceError:
                 continue
             turned = abs(float(np.diff(wheel_angle_of_input(model, loaded))[0])) * scale
-            overlap = np.max(
-                [
-                    largest_overlap(disc, np.full(2, angle), loaded.pose[:, np.append(np.arange(3) + own * number, -1)])
-                    for number, disc in enumerate(discs)
-                ]
+            overlap = (
+                _pressed(model, loaded)
+                if loose
+                else np.max(
+                    [
+                        largest_overlap(
+                            disc, np.full(2, angle), loaded.pose[:, np.append(np.arange(3) + own * number, -1)]
+                        )
+                        for number, disc in enumerate(discs)
+                    ]
+                )
             )
             yielding = float(free_play(discs, np.array([angle]), overlap=float(overlap)).play[0]) * scale + before
             outcome = "wrong"

@@ -317,8 +317,9 @@ def _unit_loads(
     return np.stack(moments), np.stack(shears)
 
 
-def crankshaft_deflections(drive: Drive, beside: float | None = None, *, couple: bool = False) -> FloatArray:
-    """Return the deflections of a crankshaft in the planes of the discs by forces there, by quadrature of moments, mm/N.
+def crankshaft_bending(drive: Drive, beside: float | None = None, *, couple: bool = False) -> FloatArray:
+    """Return the deflections of a crankshaft on rigid bearings in the planes of the discs by forces there, by quadrature of
+    moments, mm/N.
 
     With `beside`, mm, also by a force in that plane, or by a `couple` there as a pair of opposite forces times their distance,
     and what these move: the last row and column.
@@ -344,10 +345,4 @@ def crankshaft_deflections(drive: Drive, beside: float | None = None, *, couple:
         part = 1.0 / (end - start)
         moments[-1] = part * (np.maximum(at - start, 0.0) - np.maximum(at - end, 0.0)) - (at > planes[-1])
     rigidity = drive.materials.crankshaft.youngs_modulus * np.pi * support.diameter**4 / 64.0
-    reactions = np.stack([1.0 - second, second])
-    if couple:
-        reactions[:, -1] = -part, part
-    return np.asarray(
-        (moments * weight) @ moments.T / rigidity
-        + reactions.T @ np.diag(1.0 / np.asarray(support.stiffness)) @ reactions
-    )
+    return np.asarray((moments * weight) @ moments.T / rigidity)

@@ -36,7 +36,7 @@ def stored_energy(model, response, pose, angle=0.0):
         ends = [disc.pin_law.energy(flank.approach, flank.effective_radius + side * step) for side in (1.0, -1.0)]
         slopes.append((ends[0] - ends[1]) / (2.0 * step))
     if isinstance(model, Reducer) and model.supports is not None:
-        total = total + 0.5 * np.einsum("bi,ij,bj->b", pose, model.supports, pose)
+        total = total + model.supports.energy(pose)
     if isinstance(model, Reducer) and model.pins is not None:
         ratio = model.discs[0].geometry.placement.reduction_ratio
         turned = np.exp(1j * (angle / ratio + pose[:, WHEEL_ANGLE]))

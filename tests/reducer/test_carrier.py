@@ -23,7 +23,7 @@ from ltca.drive.parts import (
     ShaftPinBeam,
 )
 from ltca.equilibrium.output_torque import solve_at_output
-from ltca.equilibrium.supports import support_stiffness
+from ltca.equilibrium.supports import Supports
 from ltca.errors import DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.laws.backed import own_flexibility, shaft_pin_beam
@@ -171,7 +171,7 @@ def test_the_supports_are_symmetric_and_hold_what_they_move():
     are none of the frame."""
     drive = kind("overhung")
     model = HalfSpace().prepare(drive).model
-    matrix = support_stiffness(drive, model.discs[0].geometry)
+    matrix = Supports.of_drive(drive, model.discs[0].geometry).matrix
     np.testing.assert_allclose(matrix, matrix.T, rtol=0.0, atol=1e-12 * np.abs(matrix).max())
     values = np.linalg.eigvalsh(matrix)
     # Discs and wheel angle are held by contacts alone: three for each disc, and the wheel.

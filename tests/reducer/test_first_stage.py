@@ -18,7 +18,7 @@ from ltca.drive.parts import Material
 from ltca.drive.units.quantities import ARCMIN
 from ltca.drive.yielding_parts import yielding_parts
 from ltca.equilibrium.crank_moments import crank_moments
-from ltca.equilibrium.first_stage import StageMesh, displaced_cranks
+from ltca.equilibrium.first_stage import StageMesh
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.errors import DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
@@ -197,7 +197,7 @@ def test_virtual_work_with_bending_cranks(geared, stored):
         moments = crank_moments(model, angle, at.pose, at.response)
         forces = stage.forces(moments)
         both = np.stack((forces.in_plane, forces.couple), axis=-1)
-        moved = np.einsum("dk,pdc->pck", stage.bending, displaced_cranks(model.coordinates, at.pose)) + both @ stage.own
+        moved = stage.displaced(moments, at.pose, None)
         energy, slopes = stored(model, at.response, at.pose)
         energy = energy + 0.5 * np.einsum("pck,kl,pcl->p", both.conj(), stage.own, both).real
         return at, moments, both, moved, energy, slopes

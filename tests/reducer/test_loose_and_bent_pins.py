@@ -20,7 +20,7 @@ from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.pin_displacements import PinDisplacements
 from ltca.equilibrium.reducer import Reducer
-from ltca.equilibrium.supports import support_stiffness
+from ltca.equilibrium.supports import Supports
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, X, Y
 from ltca.geometry.flank import FlankProfile
@@ -260,7 +260,7 @@ def test_bodies_that_feel_nothing_are_half_spaces(joint, name):
         for single in single_discs(drive)
     ]
     model = Reducer(
-        discs=tuple(discs), supports=support_stiffness(drive, discs[0].geometry), pins=PinDisplacements.of_drive(drive)
+        discs=tuple(discs), supports=Supports.of_drive(drive, discs[0].geometry), pins=PinDisplacements.of_drive(drive)
     )
     found = solve_at_output(model, [drive], ANGLES[:2], drive.load.torque)
     expected = analyse(drive, ANGLES[:2]).full

@@ -324,7 +324,7 @@ def test_shares_of_the_compliance(rv, name):
     found = analyse(drive, ANGLES)
     shares, step = found.compliance_shares, 1e-4
     np.testing.assert_allclose(sum(shares.values()), 1.0, rtol=1e-12)
-    tangent, whole = found.full.response.tangent, found.model.supports
+    tangent, whole = found.full.response.tangent, found.model.supports.matrix
     columns = np.zeros(tangent.shape[1], dtype=bool)
     columns[found.model.coordinates.wheel_place] = True
 

@@ -18,7 +18,8 @@ from pydantic import Field, TypeAdapter
 from pydantic.dataclasses import dataclass
 
 from ltca.drive.deviations import STRICT, PositiveLength
-from ltca.drive.members.crank import CrankBearing, Force
+from ltca.drive.members.crank import CrankBearing
+from ltca.drive.members.preload import Force
 from ltca.drive.units.quantities import COUNT
 from ltca.errors import DriveError, shortened
 

@@ -7,7 +7,7 @@ from dataclasses import field
 from math import pi
 from typing import Annotated
 
-from pydantic import Field
+from pydantic import Field, StrictBool
 from pydantic.dataclasses import dataclass
 
 from ltca.drive.deviations import (
@@ -20,10 +20,9 @@ from ltca.drive.deviations import (
     SignedLength,
 )
 from ltca.drive.materials import LengthProfile
-from ltca.drive.units.quantities import COUNT, grows, quantity
+from ltca.drive.members.preload import Force, LoadConstant, Preload, Stiffness
+from ltca.drive.units.quantities import COUNT, grows
 
-Stiffness = Annotated[float, quantity("N/mm", gt=0.0)]
-Force = Annotated[float, quantity("N", gt=0.0)]
 LARGEST_DEFAULT_RACE_BORE = 10.0
 """Fixed bore of the inner race where a drive gives none, mm: at most `DEFAULT_RACE_BORE_SHARE` of the race."""
 DEFAULT_RACE_BORE_SHARE = 0.6
@@ -41,12 +40,34 @@ class CrankSupport:
     positions : tuple of float
         Axial places of the two bearings, on the axis of ``disc.planes``, mm.
     stiffness : tuple of float
-        Radial stiffness of each of the two bearings, N/mm.
+        Radial stiffness of each of the two bearings, N/mm: with ``preload`` that while both sides carry, otherwise that of
+        the side that carries. Left out with ``load_constant``.
+    clearance : float or None
+        Radial internal clearance of each of the two bearings, diametral as usual, mm; negative where they are tight.
+    preload : Preload or None
+        Preload of the two bearings: radial beside ``stiffness``, axial of the pair beside ``load_constant``.
+    contact_angle : float or None
+        Angle of the contact normals of two tapered roller bearings against the radial plane, rad; ``positions`` are then
+        their pressure centres.
+    load_constant : float or None
+        K of F = K δ^(10/9), axial force by axial displacement of each tapered roller bearing, N/mmⁿ, in place of
+        ``stiffness``; needs a preload.
+    torsion : bool
+        Whether the shaft twists between ``spline_plane`` and the eccentrics.
+    spline_plane : float or None
+        Axial place where the planet gear of the first stage, or whatever turns the crank, is fixed on the shaft, with
+        ``torsion`` alone, mm.
     """
 
     diameter: PositiveLength
     positions: tuple[SignedLength, SignedLength]
-    stiffness: tuple[Stiffness, Stiffness]
+    stiffness: tuple[Stiffness, ...] = ()
+    clearance: SignedLength | None = None
+    preload: Preload | None = None
+    contact_angle: Angle | None = None
+    load_constant: LoadConstant | None = None
+    torsion: StrictBool = False
+    spline_plane: SignedLength | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)

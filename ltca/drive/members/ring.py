@@ -10,7 +10,7 @@ from pydantic.dataclasses import dataclass
 
 from ltca.drive.deviations import STRICT, PositiveLength
 from ltca.drive.materials import Material
-from ltca.drive.members.crank import Stiffness
+from ltca.drive.members.preload import Stiffness
 from ltca.drive.units.quantities import COUNT, grows
 
 

@@ -22,7 +22,7 @@ LONGEST = 80
 """Largest number of characters of a text that is parsed; no quantity needs more."""
 
 _NUMBER = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
-_UNIT = r"1/K|[%′″'\"’]|°C?|[A-Za-zµμ][A-Za-zµμ ·⋅*/²³23]*"
+_UNIT = r"1/K|[%′″'\"’]|°C?|[A-Za-zµμ][A-Za-zµμ ·⋅*/²³ⁿ^23]*"
 _QUANTITY = re.compile(rf"({_NUMBER})(?: ?({_UNIT}))?")
 _DECIMAL_COMMA = re.compile(r"[+-]?[0-9]+,[0-9]+(?:[eE][+-]?[0-9]+)?(.*)")
 _GROUPS = re.compile(r"[+-]?[0-9]{1,3}(?:[ _'’\u00a0\u2009\u202f,][0-9]{3})+(?:\.[0-9]*)?(.*)")
@@ -80,6 +80,7 @@ _TABLE: tuple[tuple[str, tuple[str, ...], Fraction | int, Fraction | int], ...] 
     ("angle", ("arcsec", "″", '"'), _DEGREE / 3600, 0),
     ("stiffness", ("N/mm",), 1, 0),
     ("stiffness", ("N/µm", "N/um"), 1000, 0),
+    ("load deflection constant", ("N/mmⁿ", "N/mm^n"), 1, 0),
     ("speed", ("rpm", "rev/min"), 1, 0),
     ("speed", ("Hz", "rev/s"), 60, 0),
     ("speed", ("rad/s",), 30 / PI, 0),
@@ -175,6 +176,18 @@ def read_quantity(text: str, unit: str) -> float:
         return math.copysign(math.inf, exact)
 
 
+def read_text_unit(text: str) -> str:
+    """Return the unit of a quantity given as text, in the spelling of `UNITS`; empty without one.
+
+    Examples
+    --------
+    >>> read_text_unit("5 µm"), read_text_unit("5")
+    ('µm', '')
+    """
+    match = _QUANTITY.fullmatch(text) if len(text) <= LONGEST else None
+    return _plain((match.group(2) if match else "") or "")
+
+
 def _plain(name: str) -> str:
     """A unit with one sign for those that look alike: the two micro signs, raised dots and minute marks."""
     return name.replace("\u03bc", "\u00b5").replace("\u22c5", "·").replace("\u2019", "'")
@@ -217,6 +230,7 @@ RANGES = {
     "torque": (1e-9, 1e15),
     "angle": (1e-12, 1e6),
     "stiffness": (1e-9, 1e18),
+    "load deflection constant": (1e-9, 1e18),
     "torsional stiffness": (1e-9, 1e24),
     "ratio": (1e-9, 1e9),
 }

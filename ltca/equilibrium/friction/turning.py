@@ -5,7 +5,8 @@ it: the generalised force :math:`Q = \sum \mu F \sigma s_q` with the sense σ of
 where that takes less: loose in a slot with the smaller of both coefficients, under a sleeve of bore r_i and outside R with
 :math:`\min(\mu, \mu_{seat} r_i/R)`, to first order in μ (the total forces on a free pin pass through both its contacts).
 Crank bearings roll with the moment :math:`f |F_b| (r_i + r_{BR})` between crank and disc; the bearings of cranks and wheel rub
-with f times their load at a radius of their own.
+with f times their load at a radius of their own. The two sides of a preloaded bearing carry twice its preload together until
+one of them lifts off, and the load from then on.
 """
 
 from __future__ import annotations
@@ -19,8 +20,11 @@ from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.response import DiscResponse, bearing_pushes
 from ltca.drive.parts import Drive, PinShaft, PinWheel
 from ltca.equilibrium.friction.slip import Slip
+from ltca.equilibrium.supports import crank_laws, wheel_law
 from ltca.geometry.coordinates import DISC_ROTATION
 from ltca.geometry.pairs import ContactGeometry
+from ltca.laws.beam import support_parts
+from ltca.laws.bearing_pair import SideLaw
 
 FADING_SLIP = 1e-4
 """Slip per crank angle, relative to the eccentricity, below which friction is reduced linearly to zero: at the pitch point the
@@ -88,6 +92,10 @@ class TurningFriction:
         f of the bearings of cranks and wheel times their radius, mm.
     crank_bearings : array, shape (bearings, discs)
         Load of each bearing of a crank by the forces of the discs on it.
+    wheel_lift_off : float
+        Load of the main bearing at which its unloaded side lifts off, N: below, its two preloaded sides carry as much together.
+    crank_lift_off : array, shape (bearings,)
+        The same of the bearings of a crank, N.
     motion : int
         +1 where the crank turns counter-clockwise, −1 clockwise.
     strength : float
@@ -99,6 +107,8 @@ class TurningFriction:
     rolling: float
     support: float
     crank_bearings: FloatArray
+    wheel_lift_off: float
+    crank_lift_off: FloatArray
     motion: int
     strength: float = 1.0
 
@@ -114,6 +124,8 @@ class TurningFriction:
             rolling=found.roller * (bearing.inner_race_radius + bearing.roller_radius),
             support=found.support_bearing * found.support_bearing_radius,
             crank_bearings=_bearing_loads(drive),
+            wheel_lift_off=wheel.lift_off if isinstance(wheel := wheel_law(drive), SideLaw) else 0.0,
+            crank_lift_off=np.array([law.lift_off for law in crank_laws(drive) or ()] or [0.0]),
             motion=drive.motion_sign,
         )
 
@@ -164,8 +176,11 @@ class TurningFriction:
             raise AssertionError("friction follows loads by their slopes")
         # F ∂s_q/∂q is left out: approaches are short against the radii about which contacts turn.
         tangent = np.matmul(slip.by_pose.swapaxes(1, 2), sense[..., None] * part.slopes.by_pose)
-        push = np.abs(bearing_pushes(part.rollers, geometry.placement.cranks)).sum(axis=1)
-        force[:, DISC_ROTATION] -= self.motion * self.strength * self.rolling * push
+        rolled = self.motion * self.strength * self.rolling
+        push = np.abs(bearing_pushes(part.rollers, geometry.placement.cranks))
+        force[:, DISC_ROTATION] -= rolled * push.sum(axis=1)
+        if twists := geometry.coordinates_of(pose).twist_places:
+            force[:, twists] += rolled * push
         return Rubbing(tangential=tangential, force=force, tangent=tangent)
 
     def of_wheel(
@@ -178,6 +193,7 @@ class TurningFriction:
         """
         pins = parts[0].pin_load.shape[1]
         load = np.abs(sum(part.pin_forces[:, :pins].sum(axis=1) for part in parts) + external)
+        load = np.maximum(load, self.wheel_lift_off)
         return np.asarray(self.motion * self.strength * self.support * np.sign(reduction_ratio) * load)
 
     def of_cranks(self, pushes: Sequence[ComplexArray], on_bearings: ComplexArray | None = None) -> FloatArray:
@@ -191,16 +207,12 @@ class TurningFriction:
         if on_bearings is not None:
             more = np.zeros((*carried.shape[:-1], on_bearings.shape[-1] - carried.shape[-1]))
             carried = on_bearings - np.concatenate((carried, more), axis=-1)
-        reactions = np.abs(carried).sum(axis=-1)
+        reactions = np.maximum(np.abs(carried), self.crank_lift_off).sum(axis=-1)
         rolled = np.abs(forces).sum(axis=-1)
         return np.asarray(self.motion * self.strength * (self.rolling * rolled + self.support * reactions))
 
 
 def _bearing_loads(drive: Drive) -> FloatArray:
     """Load of the bearings of a crank by the forces of the discs: two supports in balance, or a bearing beside each disc."""
-    planes, support = np.array(drive.disc.disc_planes), drive.crank_supports
-    if support is None:
-        return np.eye(planes.size)
-    first, second = support
-    part = (planes - first) / (second - first)
-    return np.stack([1.0 - part, part])
+    support = drive.crank_supports
+    return np.eye(drive.disc.number_of_discs) if support is None else support_parts(drive.disc.disc_planes, support)

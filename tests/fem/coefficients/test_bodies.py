@@ -336,6 +336,7 @@ TABLES_LEFT_OUT = (
     "ring.bolts",
     "first_stage",
     *(f"load.external.0{part}" for part in ("", ".force", ".moment", ".at")),
+    "main_bearing",
     "crank.support",
     "pin_wheel.seat",
     "pin_wheel.beam",
@@ -366,7 +367,7 @@ def changed_pair(drive, path):
     # one tooth more, as many as pins, makes no flank
     change = {path: 12}
     table, _, name = path.rpartition(".")
-    if path in LEFT_OUT or table in TABLES_LEFT_OUT or name in OF_MATERIALS:
+    if path in LEFT_OUT or table.startswith(TABLES_LEFT_OUT) or name in OF_MATERIALS:
         drive, change = change_of(drive, path)
     elif path != "disc.number_of_teeth":
         change = {path: sensible_change(drive, path)}

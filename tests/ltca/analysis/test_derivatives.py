@@ -96,6 +96,17 @@ def test_carrier():
 
 
 @pytest.mark.slow
+def test_loose_bearings(paper_cases):
+    """A clearance is a gap in series with the bearing, and its stiffness that of a shaft on two of them."""
+    bearings = {
+        "main_bearing.radial_stiffness": 5e5, "main_bearing.clearance": 0.02, "crank.support.diameter": 20.0,
+        "crank.support.positions": (-20.0, 22.0), "crank.support.stiffness": (3e5, 4e5), "crank.support.clearance": 0.01,
+    }  # fmt: skip
+    drive = with_fields(paper_cases["CS-3"], bearings)
+    agree(drive, {"main_bearing.clearance": 2e-5, "crank.support.clearance": 2e-5})
+
+
+@pytest.mark.slow
 def test_no_offsets_at_all(vary):
     agree(
         vary(disc={"equidistant_offset": 0.0, "shifting_offset": 0.0}, clearance={"bearing": 0.02, "pin_hole": 0.05}),

@@ -77,6 +77,7 @@ OF_PARTS = (
     "first_stage",
     "load.external",
     "crank.support",
+    "main_bearing",
     "materials.crankshaft",
     "materials.carrier",
     "materials.sleeve",

@@ -141,6 +141,24 @@ def test_a_ring_lies_on_the_circle_of_each_sample():
     np.testing.assert_allclose(solved(drives, ("max_pin_load",), angles=few)[:, 0], alone, rtol=1e-7)
 
 
+def test_samples_of_loose_bearings_are_those_alone():
+    """Main bearing and crank bearings from tight to loose, as one batch with the plays, and each drive alone."""
+    base, few = load_drive("paper").cases["CS-2"], ANGLES[:1]
+    bearings = {
+        "main_bearing.radial_stiffness": 5e5, "crank.support.diameter": 20.0,
+        "crank.support.positions": (-20.0, 20.0), "crank.support.stiffness": (3e5, 4e5),
+    }  # fmt: skip
+    drives = [
+        with_fields(base, bearings | {"main_bearing.clearance": clearance, "crank.support.clearance": clearance})
+        for clearance in (-0.004, 0.0, 0.01, 0.02)
+    ]
+    alone = [analyse(drive, few).full.response.pin_load.max() for drive in drives]
+    np.testing.assert_allclose(solved(drives, ("max_pin_load",), angles=few)[:, 0], alone, rtol=1e-7)
+    plays = solved(drives, ("max_backlash_output",), angles=few)[:, 0]
+    np.testing.assert_allclose(plays[0], plays[1], rtol=1e-6)  # tight ones add none
+    assert np.all(np.diff(plays[1:]) > 0.0)
+
+
 @pytest.mark.slow
 def test_samples_of_other_coordinates_start_from_first_contact():
     """A nominal solution without the wheel's displacement, or of other numbers of parts, was started from."""

@@ -1,0 +1,251 @@
+"""Springs on coordinates: energy, force and tangent, clearance and preload against one-sided springs found by minimising."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ltca.arrays import stack_drives
+from ltca.drive.parts import Preload
+from ltca.drive.single_discs import single_discs
+from ltca.equilibrium.supports import Supports, crank_laws, wheel_law, wheel_rows
+from ltca.errors import DriveError
+from ltca.geometry.coordinates import Coordinates
+from ltca.geometry.pairs import ContactGeometry
+from ltca.laws.bearing_pair import SideLaw, bearing_matrix
+from ltca.reading.changes import with_fields
+from ltca.reading.drive_file import build_drive, load_drive, parse_drive, parse_toml, shipped_drive
+from ltca.reading.writing import drive_text
+from ltca.testing.bearing_springs import crank_springs, shaft_energy, wheel_spring
+from ltca.testing.yielding_pins import crankshaft_bending
+
+ROWS = {
+    f"main_bearing.bearings.{number}.{name}": value
+    for number, plane in enumerate((-25.0, 35.0))
+    for name, value in {
+        "plane": plane, "kind": "tapered roller", "contact_angle": 0.35, "pitch_radius": 60.0, "load_constant": 8e5,
+    }.items()
+}  # fmt: skip
+KINDS = {
+    "linear": {"pin_wheel.support_stiffness": 1e6},
+    "loose": {"crank.support.clearance": 0.01, "main_bearing.radial_stiffness": 1e6, "main_bearing.clearance": 0.02},
+    "no clearance": {"crank.support.clearance": 0.0, "main_bearing.radial_stiffness": 1e6, "main_bearing.clearance": 0.0},
+    "tight": {"crank.support.clearance": -0.004, "main_bearing.radial_stiffness": 1e6, "main_bearing.clearance": -0.01},
+    "preloaded": {
+        "crank.support.preload": "300 N", "main_bearing.radial_stiffness": 1e6, "main_bearing.preload": "2 µm",
+    },
+    "rows": {
+        "crank.support.contact_angle": 0.25, "crank.support.load_constant": 2e5, "crank.support.stiffness": (),
+        "crank.support.preload": 400.0, "main_bearing.preload": "1 kN", **ROWS,
+    },
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def rv():
+    return parse_drive(shipped_drive("rv"), "rv").cases["nominal"]
+
+
+@pytest.fixture(scope="module")
+def drives(rv):
+    """The made-up RV reducer on bearings of every kind."""
+    return {name: with_fields(rv, words) for name, words in KINDS.items()}
+
+
+def supports_of(drive):
+    return Supports.of_drive(drive, ContactGeometry.of_drive(single_discs(drive)[0]))
+
+
+def poses(drive, size=0.01, seed=0, count=12):
+    """Displacements of some µm up to a hundredth of a millimetre, many a support within its clearance among them."""
+    random = np.random.default_rng(seed)
+    shape = (count, Coordinates.of_drive(drive).size)
+    return random.normal(size=shape) * size * 10.0 ** random.uniform(-2.0, 0.3, (count, 1))
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_force_is_the_slope_of_the_energy_and_tangent_that_of_the_force(drives, name):
+    held, at = supports_of(drives[name]), poses(drives[name])
+    force, tangent = held.respond(at)
+    tangent, step = np.broadcast_to(tangent, (*at.shape, at.shape[1])), 1e-7
+    np.testing.assert_array_equal(tangent, tangent.swapaxes(1, 2))
+    assert np.linalg.eigvalsh(tangent).min() > -1e-9 * np.abs(tangent).max()  # the energy is convex
+    for column in range(at.shape[1]):
+        ends = [at + side * step * (np.arange(at.shape[1]) == column) for side in (1.0, -1.0)]
+        slope = (held.energy(ends[0]) - held.energy(ends[1])) / (2.0 * step)
+        # energies of some N·mm over 0.2 nm: 1e-15 · 1e2 / 1e-7, and what a kink within the step leaves out, k · step
+        np.testing.assert_allclose(slope, force[:, column], rtol=1e-6, atol=0.2)
+        bent = (held.respond(ends[0])[0] - held.respond(ends[1])[0]) / (2.0 * step)
+        off = np.abs(bent - tangent[:, :, column]).max(axis=1) > 1e-4 * np.abs(tangent).max()
+        assert off.sum() <= 1, name  # a pose whose support lifts off within the step
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_energy_is_the_least_of_one_sided_springs(drives, name):
+    """Displacements at the bearings found by minimising the energies of the sides, rows summed over their elements."""
+    drive = drives[name]
+    held, at, coordinates = supports_of(drive), poses(drive), Coordinates.of_drive(drive)
+    (start, end), planes = drive.crank.support.positions, np.array(drive.disc.disc_planes)
+    second = (planes - start) / (end - start)
+    wheel = at[:, coordinates.wheel_place]
+    expected = wheel_spring(drive).energy(np.hypot(wheel[:, 0], wheel[:, 1]))
+    for crank in range(3):
+        x = coordinates.crank(crank) + coordinates.own * np.arange(2)
+        moved = at[:, x] + 1j * at[:, x + 1]
+        shares = np.stack([1.0 - second, second])
+        expected = expected + shaft_energy(crankshaft_bending(drive), shares, crank_springs(drive), moved)
+    # the minimum closes to 1e-16 of it; the check adds 1e-9 of the springs' flexibility to the shaft's
+    np.testing.assert_allclose(held.energy(at), expected, rtol=1e-8, atol=1e-12)
+
+
+def test_nothing_resists_within_the_clearance(drives):
+    """All of a crank moved by less than 5 µm, the wheel by less than 10 µm: no force, no stiffness; a micron beyond 1e6 N/mm."""
+    drive = drives["loose"]
+    held, coordinates = supports_of(drive), Coordinates.of_drive(drive)
+    at = np.zeros((1, coordinates.size))
+    for crank in range(3):
+        at[:, coordinates.crank(crank) + coordinates.own * np.arange(2)] = 0.0049
+    at[:, coordinates.wheel_place] = 0.0099 * np.array([0.6, -0.8])
+    force, tangent = held.respond(at)
+    # round-off of 1e6 N/mm times 1e-2 mm
+    np.testing.assert_allclose(force, 0.0, atol=1e-9)
+    np.testing.assert_allclose(tangent, 0.0, atol=1e-5)
+    at[:, coordinates.wheel_place] = 0.011 * np.array([0.6, -0.8])
+    np.testing.assert_allclose(held.respond(at)[0][0, coordinates.wheel_place], [600.0, -800.0], rtol=1e-9)
+
+
+def test_no_clearance_is_a_spring(drives, rv):
+    plain = with_fields(rv, {"main_bearing.radial_stiffness": 1e6})
+    at = poses(plain)
+    (force, tangent), (bare, matrix) = supports_of(drives["no clearance"]).respond(at), supports_of(plain).respond(at)
+    np.testing.assert_allclose(force, bare, rtol=0.0, atol=1e-12 * np.abs(bare).max())
+    np.testing.assert_allclose(tangent, np.broadcast_to(matrix, tangent.shape), rtol=0.0, atol=1e-12 * matrix.max())
+
+
+def test_the_alias_is_the_same_stiffness(rv):
+    one, other = (
+        with_fields(rv, {path: 1e6}) for path in ("main_bearing.radial_stiffness", "pin_wheel.support_stiffness")
+    )
+    np.testing.assert_array_equal(supports_of(one).matrix, supports_of(other).matrix)
+    assert not supports_of(one).bearings
+    both = with_fields(rv, {"pin_wheel.support_stiffness": 1e6, "main_bearing.clearance": 0.01})
+    assert wheel_law(both) == SideLaw.of_clearance(1e6, 0.01)
+
+
+def test_from_loose_to_tight_without_a_jump(rv):
+    """Forces at a pose over the clearance: no two neighbours differ by more than the stiffness of both sides times the step."""
+    at, found = poses(rv, count=6), []
+    clearances = np.linspace(0.02, -0.02, 41)
+    for clearance in clearances:
+        fields = {"crank.support.clearance": float(clearance), "main_bearing.radial_stiffness": 1e6}
+        drive = with_fields(rv, fields | {"main_bearing.clearance": float(clearance)})
+        wide = np.pad(at, ((0, 0), (0, Coordinates.of_drive(drive).size - at.shape[1])), constant_values=0.003)
+        found.append(supports_of(drive).respond(wide)[0])
+    step = np.abs(np.diff(found, axis=0)).max()
+    # radial step 0.5 µm, sides of 4e5 N/mm of a crank whose planes see one bearing with up to 1.1; the wheel of 1e6 N/mm
+    assert step < 1.2 * 1e6 * 0.5 * abs(clearances[1] - clearances[0])
+
+
+def test_supports_of_different_drives_are_one_batch(drives):
+    loose = drives["loose"]
+    wide = with_fields(loose, {"crank.support.clearance": 0.02, "main_bearing.clearance": 0.0})
+    at = poses(loose, count=8)
+    together = stack_drives([supports_of(loose), supports_of(wide)], 4)
+    alone = [supports_of(loose).respond(at[:4]), supports_of(wide).respond(at[4:])]
+    for whole, parts in zip(together.respond(at), zip(*alone, strict=True), strict=True):
+        np.testing.assert_allclose(whole, np.concatenate(parts), rtol=1e-12, atol=1e-9)
+
+
+def test_rows_by_hand(drives):
+    """1 kN on 8e5 δ^(10/9): δ = 2.43 µm, k = (10/9) F/δ; radial cot²α/2 of both rows, the rows lift off at δ tan α."""
+    pressed = (1000.0 / 8e5) ** 0.9
+    axial = 10.0 / 9.0 * 1000.0 / pressed
+    law = wheel_law(drives["rows"])
+    assert law.stiffness == pytest.approx(axial / np.tan(0.35) ** 2, rel=1e-12)
+    assert law.lift_off == pytest.approx(law.stiffness * pressed * np.tan(0.35), rel=1e-12)
+    assert [row.pressure_centre for row in wheel_rows(drives["rows"])] == pytest.approx(
+        [-25.0 - 60.0 * np.tan(0.35), 35.0 + 60.0 * np.tan(0.35)], rel=1e-12
+    )
+    assert bearing_matrix(wheel_rows(drives["rows"]))[2, 2] == pytest.approx(2.0 * axial, rel=1e-12)
+    of_crank = (400.0 / 2e5) ** 0.9
+    assert crank_laws(drives["rows"])[0].stiffness == pytest.approx(
+        10.0 / 9.0 * 400.0 / of_crank / (2.0 * np.tan(0.25) ** 2), rel=1e-12
+    )
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (
+            {"main_bearing.radial_stiffness": 1e6, "pin_wheel.support_stiffness": 2e6},
+            r"^main_bearing\.radial_stiffness = 1e\+06 N/mm and pin_wheel\.support_stiffness = 2e\+06 N/mm: are two names",
+        ),
+        (
+            {"main_bearing.radial_stiffness": 1e6, "main_bearing.tilt_stiffness": 1e9},
+            r"main_bearing\.tilt_stiffness = 1e\+09 N·mm/rad: must be left out: the wheel does not tilt",
+        ),
+        (
+            {"main_bearing.radial_stiffness": 1e6, "main_bearing.axial_stiffness": 1e6},
+            r"main_bearing\.axial_stiffness = 1e\+06 N/mm: must be left out: nothing presses",
+        ),
+        ({"main_bearing.clearance": 0.01}, r"main_bearing\.radial_stiffness: must be given"),
+        (
+            {"main_bearing.radial_stiffness": 1e6, "main_bearing.clearance": 0.01, "main_bearing.preload": 100.0},
+            r"main_bearing\.clearance = 0\.01 mm: must be left out beside main_bearing\.preload",
+        ),
+        (
+            {"main_bearing.radial_stiffness": 1e6, "main_bearing.preload": {"force": 1.0, "displacement": 0.001}},
+            r"main_bearing\.preload: must be either a force",
+        ),
+        ({"main_bearing.radial_stiffness": 1e6, "main_bearing.preload": "5 MPa"}, r"main_bearing\.preload\.force .* unit N"),
+        ({"main_bearing.radial_stiffness": 1e6, **ROWS}, r"main_bearing\.radial_stiffness = 1e\+06 N/mm: must be left out"),
+        (ROWS, r"main_bearing\.bearings\.0\.load_constant = 800000 N/mmⁿ: needs a preload"),
+        (ROWS | {"main_bearing.bearings.1.kind": "cylindrical"}, r"main_bearing\.bearings\.1\.contact_angle = 0\.35 rad"),
+        (ROWS | {"main_bearing.bearings.1.plane": -25.0}, r"must stand in different planes"),
+        (ROWS | {"main_bearing.bearings.3.plane": 0.0}, r"main_bearing\.bearings\.3: there is no entry 3"),
+        ({"crank.support.stiffness": ()}, r"crank\.support\.stiffness has 0 values: must have 2"),
+        (
+            {"crank.support.contact_angle": 0.2},
+            r"crank\.support\.stiffness: must be left out beside crank\.support\.contact_angle",
+        ),
+        (
+            {"crank.support.contact_angle": 0.2, "crank.support.load_constant": 1e5, "crank.support.stiffness": ()},
+            r"crank\.support\.preload: must be given with",
+        ),
+    ],
+)  # fmt: skip
+def test_bad_input_is_one_clear_line(rv, words, message):
+    with pytest.raises(DriveError) as caught:
+        with_fields(rv, words)
+    problems = caught.value.problems
+    assert not any("\n" in problem for problem in problems)
+    assert any(re.search(message, problem) for problem in problems), problems
+
+
+def test_a_preload_reads_as_written():
+    """A number is a force; a text says by its unit which of both it is; what is written reads back."""
+    text = shipped_drive("rv") + '\n[main_bearing]\nradial_stiffness = "1 N/µm"\npreload = "5 µm"\n'
+    drive = build_drive(parse_toml(text, "rv") | {"name": "rv"})
+    assert drive.main_bearing.preload == Preload(displacement=0.005)
+    assert parse_drive(drive_text(drive)).cases["nominal"] == drive
+    assert with_fields(
+        drive, {"main_bearing": {"preload": {"displacement": None, "force": "2 kN"}}}
+    ).main_bearing.preload == Preload(force=2000.0)
+
+
+def test_limits_of_stiff_bearings(rv):
+    """Ten times as stiff, a tenth of the displacement beyond the clearance under the same force."""
+    for factor in (1.0, 10.0):
+        drive = with_fields(rv, {"main_bearing.radial_stiffness": factor * 1e6, "main_bearing.clearance": 0.02})
+        at = np.zeros((1, Coordinates.of_drive(drive).size))
+        at[0, Coordinates.of_drive(drive).wheel_place.start] = 0.01 + 1e-3 / factor
+        assert supports_of(drive).respond(at)[0].max() == pytest.approx(1000.0, rel=1e-9)
+
+
+def test_the_paper_drive_has_no_supports():
+    drive = load_drive("paper").cases["CS-1"]
+    assert supports_of(drive) is None
+    assert supports_of(replace(drive, pin_wheel=replace(drive.pin_wheel, support_stiffness=1e6))) is not None
