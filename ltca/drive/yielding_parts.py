@@ -15,7 +15,7 @@ class YieldingParts:
     Attributes
     ----------
     cycloid_stage : tuple of str
-        What yields between held cranks and the output.
+        What yields between held cranks, at their splines, and the output.
     reducer : tuple of str
         The same and what yields between the input and the cranks.
     rigid : tuple of str
@@ -69,10 +69,6 @@ def _always(_: Drive) -> bool:
     return True
 
 
-def _never(_: Drive) -> bool:
-    return False
-
-
 def _has_shaft_pins(drive: Drive) -> bool:
     return drive.pin_shaft is not None
 
@@ -84,18 +80,25 @@ _STAGE = (
     _Part("shaft pins and holes", "", _has_shaft_pins, _always),
     _Part("crankshafts and their bearings", "crank.support", _always, lambda drive: drive.crank.support is not None),
     _Part(
-        "main bearing", "pin_wheel.support_stiffness", _always,
-        lambda drive: drive.pin_wheel.support_stiffness is not None,
+        "torsion of the crankshafts", "crank.support.torsion", _always,
+        lambda drive: drive.crank.support is not None and drive.crank.support.torsion,
     ),
-    _Part("ring that carries the wheel pins", "", _always, _never),
-    _Part("carrier", "", _always, _never),
+    _Part("main bearing", "main_bearing", _always, lambda drive: drive.wheel_yields),
+    _Part("ring that carries the wheel pins", "ring", _always, lambda drive: drive.ring is not None),
+    _Part(
+        "flanges and posts of the carrier", "carrier.posts", _always,
+        lambda drive: drive.carrier is not None and drive.carrier.posts is not None,
+    ),
+    _Part(
+        "torsion of the carrier", "carrier.stiffness_torsion", _always,
+        lambda drive: drive.carrier is not None and drive.carrier.stiffness_torsion is not None,
+    ),
 )  # fmt: skip
 _BEFORE = (
     _Part(
         "first stage", "first_stage.mesh_stiffness", lambda drive: drive.first_stage_ratio is not None,
         lambda drive: drive.first_stage is not None and drive.first_stage.mesh_stiffness is not None,
     ),
-    _Part("torsion of the crankshafts", "", _always, _never),
 )  # fmt: skip
 
 
@@ -108,8 +111,8 @@ def yielding_parts(drive: Drive) -> YieldingParts:
     >>> found = yielding_parts(load_drive("rv").cases["nominal"])
     >>> found.cycloid_stage
     ('flanks and wheel pins', 'crank bearings', 'crankshafts and their bearings')
-    >>> found.rigid[1]
-    'main bearing (pin_wheel.support_stiffness)'
+    >>> found.rigid[1:3]
+    ('torsion of the crankshafts (crank.support.torsion)', 'main bearing (main_bearing)')
     """
     stage = tuple(part.name for part in _STAGE if part.there(drive) and part.yields(drive))
     before = tuple(part.name for part in _BEFORE if part.there(drive) and part.yields(drive))

@@ -137,6 +137,11 @@ def _first_stage(drive: Drive) -> Iterator[str]:
         return
     if given is not None and abs(given - stage.ratio) > ROUNDING * stage.ratio:
         yield f"installation.first_stage_ratio = {given:g}: must be {stage.ratio:.12g}, {teeth}, or be left out"
+    if crank.support is not None and (crank.support.clearance or 0.0) > 0.0:
+        yield (
+            f"crank.support.clearance = {crank.support.clearance:g} mm: must be at most 0 beside first_stage: cranks that float "
+            "in their bearings leave the planets no place in the mesh"
+        )
     if crank.circle_radius is None:
         return
     distance, reference = crank.circle_radius, stage.reference_distance()

@@ -101,8 +101,9 @@ def _on_the_carrier(random: Generator, drive: Drive) -> Drive:
 
 def _geared(random: Generator, drive: Drive) -> Drive:
     """The drive with teeth in half of its first stages: often straight ones without backlash that do not yield."""
-    ratio, distance = drive.installation.first_stage_ratio, drive.crank.circle_radius
-    if ratio is None or distance is None or random.uniform() < 0.5:
+    ratio, distance, support = drive.installation.first_stage_ratio, drive.crank.circle_radius, drive.crank.support
+    floats = support is not None and (support.clearance or 0.0) > 0.0
+    if ratio is None or distance is None or random.uniform() < 0.5 or floats:
         return drive
     sun = 2 * int(random.integers(7, 20))
     helix = float(random.choice([0.0, 0.0, 0.2, -0.3]))

@@ -377,8 +377,9 @@ def _pressed(model: Reducer, loaded: Equilibrium) -> float:
     contacts, held = loaded.response, 0.0
     whole = contacts.rollers.inner_approach + contacts.rollers.outer_approach
     carried = model.carried_beside_discs(loaded.crank_angle, loaded.pose, contacts.parts)
-    for number, support in enumerate(() if model.supports is None else model.supports.bearings):
-        of_teeth = None if carried is None or number >= carried.shape[1] else carried[:, number]
+    bearings, cranks = ((), 0) if model.supports is None else (model.supports.bearings, model.supports.cranks)
+    for number, support in enumerate(bearings):
+        of_teeth = None if carried is None or number >= cranks else carried[:, number]
         yields = np.linalg.inv(support.stiffness).diagonal(axis1=-2, axis2=-1).max()
         held = max(held, float(np.abs(support.reactions(loaded.pose, of_teeth)).max() * yields))
     return held + max(
