@@ -331,6 +331,7 @@ def _odd_stiffnesses(drive: Drive) -> Iterator[str]:
     given: dict[str, float | None] = {
         "pin_shaft.stiffness": None if shaft is None else shaft.stiffness,
         "pin_wheel.support_stiffness": drive.pin_wheel.support_stiffness,
+        "main_bearing.radial_stiffness": None if drive.main_bearing is None else drive.main_bearing.radial_stiffness,
     }
     if support is not None:
         given |= {f"crank.support.stiffness[{number}]": one for number, one in enumerate(support.stiffness)}
