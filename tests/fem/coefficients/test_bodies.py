@@ -334,6 +334,8 @@ TABLES_LEFT_OUT = (
     "ring",
     "ring.material",
     "ring.bolts",
+    "carrier",
+    "carrier.posts",
     "first_stage",
     *(f"load.external.0{part}" for part in ("", ".force", ".moment", ".at")),
     "main_bearing",
