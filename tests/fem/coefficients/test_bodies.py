@@ -334,6 +334,8 @@ TABLES_LEFT_OUT = (
     "ring",
     "ring.material",
     "ring.bolts",
+    "carrier",
+    "carrier.posts",
     "crank.support",
     "pin_wheel.seat",
     "pin_wheel.beam",

@@ -10,6 +10,7 @@ import pytest
 
 import ltca
 import ltca.compliance.coefficient_files
+from ltca.analysis.engines import PlaneStrain
 from ltca.analysis.loaded_analysis import analyse
 from ltca.commands.compliance_arguments import find_coefficients_of
 from ltca.drive.materials import elastic_alone
@@ -286,6 +287,6 @@ def test_coefficients_of_a_warm_drive_are_asked_for_its_warm_bodies(monkeypatch)
         ltca.compliance.coefficient_files, "find_case_coefficients", lambda cases, *_, **__: asked.update(cases)
     )
     drive = with_fields(PAPER, EXPANSION | warmth(30.0, 50.0, 40.0))
-    find_coefficients_of({"warm": drive}, argparse.Namespace(compliance="fe", coefficients=None))
+    find_coefficients_of({"warm": drive}, PlaneStrain(), argparse.Namespace(compliance="fe", coefficients=None))
     assert asked["warm"] == warm_drive(drive)
     assert asked["warm"].shape_fingerprint() != PAPER.shape_fingerprint()
