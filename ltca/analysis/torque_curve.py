@@ -2,10 +2,9 @@
 
 The crank is held, the output is loaded one way and the other. Without friction the curve has no loop; towards vanishing torque
 its branches end at the two stops of the free play (`ltca.geometry.play`), which is the backlash. The stiffness is that of
-the cycloid stage: flanks, pins, crank bearings and, where the file has them, beams, supports and carrier; the ring that carries
-the wheel pins and a first stage yield on top of it. With friction the curve is what the bodies
-yield, and the loop about it is told beside it (`ltca.analysis.friction.hysteresis`). Torques and angles are those of the output,
-whichever member that is.
+the cycloid stage: flanks, pins, crank bearings and, where the file has them, beams, supports, ring and carrier;
+what the file leaves out, and a first stage, yield besides. With friction the curve is what the bodies yield, and the loop about
+it is told beside it (`ltca.analysis.friction.hysteresis`). Torques and angles are those of the output, whichever member that is.
 """
 
 from __future__ import annotations
@@ -164,7 +163,8 @@ def torsional_stiffness(drive: Drive, crank_angle: FloatArray, *, engine: Engine
     model = replace((HalfSpace() if engine is None else engine).prepare(drive).model, friction=None)
     loads = sense * rated * np.tile(parts, angles.size)
     found = solve_at_output(model, [drive], np.repeat(angles, parts.size), loads)
-    output = drive.output_per_wheel_angle * found.pose[:, WHEEL_ANGLE].reshape(angles.size, parts.size)
+    wheel = found.pose[:, WHEEL_ANGLE].reshape(angles.size, parts.size)
+    output = drive.output_deviation(wheel, sense * rated * parts)
     return np.asarray((1.0 - STIFF_FROM) * rated / np.diff(output, axis=1)[:, [0, 2]])
 
 
