@@ -177,7 +177,8 @@ def _supports(drive: Drive) -> Rows:
             ("crankshafts, as beams", f"⌀ {support.diameter:g} mm on {first}, {second}; torsion and tilt left out")
         )
     if wheel is not None:
-        rows.append(("main bearing of the wheel", f"{wheel:g} N/mm, radial; tilt and the ring's own bending left out"))
+        left_out = "tilt and the ring's own bending" if drive.ring is None else "tilt"
+        rows.append(("main bearing of the wheel", f"{wheel:g} N/mm, radial; {left_out} left out"))
     return [*rows, *_carrier(drive)]
 
 
