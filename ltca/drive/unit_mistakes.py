@@ -332,6 +332,8 @@ def _odd_stiffnesses(drive: Drive) -> Iterator[str]:
         "pin_shaft.stiffness": None if shaft is None else shaft.stiffness,
         "pin_wheel.support_stiffness": drive.pin_wheel.support_stiffness,
     }
+    if drive.ring is not None and drive.ring.bolts is not None:
+        given["ring.bolts.stiffness"] = drive.ring.bolts.stiffness
     if support is not None:
         given |= {f"crank.support.stiffness[{number}]": one for number, one in enumerate(support.stiffness)}
     for path, value in given.items():

@@ -341,11 +341,13 @@ class DisplacedPins:
         if ring is not None:
             # Row by row of a matrix with an empty seat in the place of all shaft pins.
             seats = ring.shape[-2]
-            whole = np.zeros((*ring.shape[:-4], 2 * seats + 2, 2 * seats + 2))
-            whole[..., :-2, :-2] = ring.reshape(*ring.shape[:-4], 2 * seats, 2 * seats)
+            own = ring[rows[:, 0, 0]] if ring.ndim > 4 else ring
+            whole = np.zeros((*own.shape[:-4], 2 * seats + 2, 2 * seats + 2))
+            whole[..., :-2, :-2] = own.reshape(*own.shape[:-4], 2 * seats, 2 * seats)
             seat = (2 * np.minimum(pair, seats)[..., None] + np.arange(2)).reshape(*pair.shape[:-1], count)
             if ring.ndim > 4:
-                found = found + whole[rows[..., None], seat[..., :, None], seat[..., None, :]]
+                row = np.arange(own.shape[0])[:, None, None, None]
+                found = found + whole[row, seat[..., :, None], seat[..., None, :]]
             else:
                 found = found + np.take(whole, seat[..., :, None] * whole.shape[-1] + seat[..., None, :])
         return found
