@@ -54,7 +54,7 @@ def walk_along(walk, folder, more):
                 path,
                 id=path.stem,
                 marks=[pytest.mark.slow, *([pytest.mark.nightly] if path.stem == "joint-99" else [])],
-            )  # fmt: skip
+            )
             for path in WALKS
         ),
         *(pytest.param({}, path, id=f"{path.stem}-as-typed", marks=pytest.mark.nightly) for path in WALKS),
