@@ -114,8 +114,12 @@ class PinDisplacements:
         ConvergenceError
             When they do not settle.
         """
+
+        def at(moved: ComplexArray) -> DisplacedPins:
+            return DisplacedPins(self, respond(moved), coordinates, turned, moved)
+
         history: list[float] = []
-        system = DisplacedPins(self, respond(shifts), coordinates, turned, shifts)
+        system = at(shifts)
         for _ in range(PLAIN_ITERATIONS):
             size = system.size
             history.append(float(np.max(size, initial=0.0)))
@@ -124,8 +128,7 @@ class PinDisplacements:
                 return system
             step, fraction = system.step, np.ones(size.shape)
             for _ in range(10):
-                trial = system.shifts + fraction[:, None, None] * step
-                there = DisplacedPins(self, respond(trial), coordinates, turned, trial)
+                there = at(system.shifts + fraction[:, None, None] * step)
                 worse = (there.size > size) & (there.size > SHIFT_TOLERANCE + 1e-11 * most)
                 if not worse.any():
                     break
@@ -137,10 +140,6 @@ class PinDisplacements:
                 and float(np.max(system.size)) >= 0.5 * history[-1]
             ):
                 return system  # round-off
-
-        def at(moved: ComplexArray) -> DisplacedPins:
-            return DisplacedPins(self, respond(moved), coordinates, turned, moved)
-
         return _settled_by_energy(system, at, history, roughly)
 
 
