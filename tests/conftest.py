@@ -219,7 +219,7 @@ def coarse_derivations(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 
     code_hash("ltca", "fem")  # by the usual cache, where it is kept
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    monkeypatch.setattr(coefficient_files, "_derivation", lambda: derive)
+    monkeypatch.setattr(coefficient_files, "derivation", lambda: derive)
     monkeypatch.setattr(coefficient_files, "MAX_DERIVATIONS", 1)
 
 

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ltca.analysis import loaded_analysis
-from ltca.analysis.engines import Engine, describe_engine
+from ltca.analysis.engines import Engine, describe_engine, lent_words
 from ltca.analysis.half_space_errors import half_space_words
 from ltca.analysis.life.bearing_lives import BearingLives, lives_over, passages_of_duty
 from ltca.analysis.life.life_text import life_content, life_lines
@@ -218,7 +218,11 @@ def curve_lines(found: DriveCurves, title: str) -> list[str]:
     return [
         f"{title}, {drive.load_words()}, {describe_engine(found.engine)}: torque curve at {curve.crank_angle.size} crank "
         "angles over one mesh",
-        *(f"  {words}" for words in [half_space_words(found.engine, drive)] if words),
+        *(
+            f"  {words}"
+            for words in [half_space_words(found.engine, drive) or lent_words(found.engine, drive)]
+            if words
+        ),
         f"  {floating:<40}  {_range(curve.backlash * ARCMIN)}′",
         f"  lost motion at ±{100.0 * curve.lost_motion_part:g} % of the rated torque   {_range(curve.lost_motion * ARCMIN)}′",
         *of_loop,

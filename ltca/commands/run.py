@@ -109,7 +109,7 @@ def execute(arguments: argparse.Namespace) -> int:
     file = load_drive(arguments.drive)
     cases = file.select(arguments.case)
     settle_compliance(arguments, cases.values())
-    tell_unit_mistakes(cases.values(), arguments.torque)
+    tell_unit_mistakes(cases.values(), arguments.torque, (file.limits[name] for name in cases))
     out = arguments.out or default_folder(file.name, "run")
     require_folder(out)
     import numpy as np

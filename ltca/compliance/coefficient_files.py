@@ -40,7 +40,7 @@ INSTEAD = "CYCLO_TEMPORARY_CACHE"
 LEAST_CACHE_ROOM = 1 << 20
 """Least free space of a folder that is used as cache, bytes."""
 MAX_DERIVATIONS = 2
-"""Most derivations at the same time: one takes 1.1 GB for a disc like the paper's, 3.5 GB with 75 teeth."""
+"""Most derivations at the same time: one takes 1.0 GB for a disc like the paper's, 3.1 GB with 99 teeth."""
 SECONDS, SECONDS_PER_TOOTH, SECONDS_PER_HOLE, SECONDS_PER_BORE = 0.8, 0.28, 0.45, 0.5
 """Time of a derivation on one core, s: the mesh is fine along the boundaries and the rest follows its size."""
 GIGABYTES, GIGABYTES_PER_TOOTH, MUCH = 0.55, 0.026, 2.0

@@ -114,8 +114,12 @@ class PinDisplacements:
         ConvergenceError
             When they do not settle.
         """
+
+        def at(moved: ComplexArray) -> DisplacedPins:
+            return DisplacedPins(self, respond(moved), coordinates, turned, moved)
+
         history: list[float] = []
-        system = DisplacedPins(self, respond(shifts), coordinates, turned, shifts)
+        system = at(shifts)
         for _ in range(PLAIN_ITERATIONS):
             size = system.size
             history.append(float(np.max(size, initial=0.0)))
@@ -124,8 +128,7 @@ class PinDisplacements:
                 return system
             step, fraction = system.step, np.ones(size.shape)
             for _ in range(10):
-                trial = system.shifts + fraction[:, None, None] * step
-                there = DisplacedPins(self, respond(trial), coordinates, turned, trial)
+                there = at(system.shifts + fraction[:, None, None] * step)
                 worse = (there.size > size) & (there.size > SHIFT_TOLERANCE + 1e-11 * most)
                 if not worse.any():
                     break
@@ -137,10 +140,6 @@ class PinDisplacements:
                 and float(np.max(system.size)) >= 0.5 * history[-1]
             ):
                 return system  # round-off
-
-        def at(moved: ComplexArray) -> DisplacedPins:
-            return DisplacedPins(self, respond(moved), coordinates, turned, moved)
-
         return _settled_by_energy(system, at, history, roughly)
 
 
@@ -341,11 +340,13 @@ class DisplacedPins:
         if ring is not None:
             # Row by row of a matrix with an empty seat in the place of all shaft pins.
             seats = ring.shape[-2]
-            whole = np.zeros((*ring.shape[:-4], 2 * seats + 2, 2 * seats + 2))
-            whole[..., :-2, :-2] = ring.reshape(*ring.shape[:-4], 2 * seats, 2 * seats)
+            own = ring[rows[:, 0, 0]] if ring.ndim > 4 else ring
+            whole = np.zeros((*own.shape[:-4], 2 * seats + 2, 2 * seats + 2))
+            whole[..., :-2, :-2] = own.reshape(*own.shape[:-4], 2 * seats, 2 * seats)
             seat = (2 * np.minimum(pair, seats)[..., None] + np.arange(2)).reshape(*pair.shape[:-1], count)
             if ring.ndim > 4:
-                found = found + whole[rows[..., None], seat[..., :, None], seat[..., None, :]]
+                row = np.arange(own.shape[0])[:, None, None, None]
+                found = found + whole[row, seat[..., :, None], seat[..., None, :]]
             else:
                 found = found + np.take(whole, seat[..., :, None] * whole.shape[-1] + seat[..., None, :])
         return found

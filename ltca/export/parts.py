@@ -401,29 +401,24 @@ def _pin_wheel(drive: Drive, case: str, _: int, compensation: float) -> Part:
 
 def _pin_shaft(drive: Drive, case: str, _: int, compensation: float) -> Part:
     bodies = _pins_of_shaft(drive, Placement.of_drive(single_discs(drive)[0]))
-    if not bodies:
-        raise DriveError(["--part pin-shaft: there is no pin_shaft in this drive"])
-    lift = -min(body.bottom for body in bodies)
-    return Part(
-        name="pin-shaft",
-        drive=drive.name,
-        case=case,
-        frame=OWN_FRAME["pin-shaft"],
-        compensation=compensation,
-        bodies=tuple(_compensated(body, compensation, lift) for body in bodies),
-    )
+    return _of_bodies(drive, case, "pin-shaft", "pin_shaft", bodies, compensation)
 
 
 def _carrier(drive: Drive, case: str, _: int, compensation: float) -> Part:
     bodies = _carrier_bodies(drive, Placement.of_drive(single_discs(drive)[0]))
+    return _of_bodies(drive, case, "carrier", "carrier.posts", bodies, compensation)
+
+
+def _of_bodies(drive: Drive, case: str, name: str, table: str, bodies: Sequence[Body], compensation: float) -> Part:
+    """A part of round bodies on the carrier's side, its lowest face at z = 0; DriveError where the drive has no such table."""
     if not bodies:
-        raise DriveError(["--part carrier: there is no carrier.posts in this drive"])
+        raise DriveError([f"--part {name}: there is no {table} in this drive"])
     lift = -min(body.bottom for body in bodies)
     return Part(
-        name="carrier",
+        name=name,
         drive=drive.name,
         case=case,
-        frame=OWN_FRAME["carrier"],
+        frame=OWN_FRAME[name],
         compensation=compensation,
         bodies=tuple(_compensated(body, compensation, lift) for body in bodies),
     )

@@ -223,7 +223,8 @@ def _supports(drive: Drive) -> Rows:
         stiffness = wheel.stiffness if isinstance(wheel, SideLaw) else wheel
         told = _side_words(wheel) if isinstance(wheel, SideLaw) else ""
         held = f"{stiffness:.6g} N/mm, radial{f', {told}' if told else ''}"
-        rows.append(("main bearing of the wheel", f"{held}; tilt left out"))
+        left_out = "tilt and the ring's own bending" if drive.ring is None else "tilt"
+        rows.append(("main bearing of the wheel", f"{held}; {left_out} left out"))
     if found := wheel_rows(drive):
         matrix = bearing_matrix(found)
         rows.append(

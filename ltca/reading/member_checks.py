@@ -254,10 +254,11 @@ def _carrier(drive: Drive) -> Iterator[str]:
     if shaft is None:
         return
     if shaft.beam is None:
-        stiffness = "" if shaft.stiffness is None else f" = {shaft.stiffness:g} N/mm"
+        beams = 'pins between two flanges are beams (pin_shaft.beam with tip = "tied-clamped" or "tied-pinned")'
         yield (
-            f"pin_shaft.stiffness{stiffness}: must be left out beside carrier.posts; pins between two flanges are beams "
-            '(pin_shaft.beam with tip = "tied-clamped" or "tied-pinned")'
+            f"pin_shaft.beam: must be given beside carrier.posts; {beams}"
+            if shaft.stiffness is None
+            else f"pin_shaft.stiffness = {shaft.stiffness:g} N/mm: must be left out beside carrier.posts; {beams}"
         )
     elif shaft.beam.tip == "free":
         yield (

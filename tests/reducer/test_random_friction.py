@@ -197,6 +197,7 @@ def flipped(forces):
     return forces
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "change", [flipped, *(pytest.param(partial(np.multiply, part), marks=pytest.mark.slow) for part in (1.02, 0.0))]
 )
@@ -213,16 +214,19 @@ def rebalanced(rubbing, **changes):
     return find_imbalance(drive, other, solve_at_output(other, [drive], found.crank_angle, torque), torque=torque)
 
 
+@pytest.mark.slow
 def test_the_check_sees_the_coefficient_of_another_joint(rubbing):
     friction = rubbing[1].friction
     assert any("wheel pin" in problem for problem in rebalanced(rubbing, pin=friction.hole))
     assert any("shaft pin" in problem for problem in rebalanced(rubbing, hole=friction.pin))
 
 
+@pytest.mark.slow
 def test_the_check_sees_the_other_motion(rubbing):
     assert any("instead of" in problem for problem in rebalanced(rubbing, motion=-rubbing[1].friction.motion))
 
 
+@pytest.mark.slow
 def test_the_check_sees_a_pose_that_friction_does_not_hold(rubbing):
     """Told forces that are right do not help where they do not balance."""
     drive, model, found = rubbing
@@ -231,7 +235,8 @@ def test_the_check_sees_a_pose_that_friction_does_not_hold(rubbing):
     assert any("slope" in problem for problem in find_imbalance(drive, model, replace(smooth, response=own)))
 
 
-@pytest.mark.parametrize("name", ["rolling", pytest.param("support", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["rolling", "support"])
 def test_the_check_sees_bearings_that_rub_not(rubbing, name):
     """Ten times the resistance of bearings, so that it is more than what the check leaves: a thousandth of the load."""
     drive, model, found = rubbing

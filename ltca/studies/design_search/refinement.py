@@ -33,7 +33,7 @@ MAX_COARSE_SOLUTIONS = 6
 MAX_FINE_SOLUTIONS: dict[Compliance, int] = {"half-space": 2, "hybrid": 4}
 """Solutions over those of a check: sizes come from half-spaces, which may be far from what bodies do."""
 LEAST_FINE_SOLUTIONS, DEAR_DERIVATIONS = 2, 100.0
-"""Fine solutions that are made at least, and the time of derivations (s) from which no more are: of 99 teeth one takes 90 s."""
+"""Fine solutions that are made at least, and the time of derivations (s) from which no more are: of 99 teeth one takes 35 s."""
 MAX_SIZE_STEP = 0.2
 """Largest change of a size between two solutions (ln)."""
 DIFFERENCE = 1e-5

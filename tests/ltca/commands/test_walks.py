@@ -49,7 +49,12 @@ def walk_along(walk, folder, more):
     ("more", "path"),
     [
         *(
-            pytest.param(SHORT if path.stem == "rv" else WITHOUT_ADVICE, path, id=path.stem, marks=pytest.mark.slow)
+            pytest.param(
+                SHORT if path.stem == "rv" else WITHOUT_ADVICE,
+                path,
+                id=path.stem,
+                marks=[pytest.mark.slow, *([pytest.mark.nightly] if path.stem == "joint-99" else [])],
+            )
             for path in WALKS
         ),
         *(pytest.param({}, path, id=f"{path.stem}-as-typed", marks=pytest.mark.nightly) for path in WALKS),
