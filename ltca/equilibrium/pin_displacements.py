@@ -134,12 +134,8 @@ class PinDisplacements:
                     break
                 fraction = np.where(worse, 0.5 * fraction, fraction)
             system = there
-            if (
-                len(history) > 2
-                and history[-1] < 1e-11 * (1.0 + most)
-                and float(np.max(system.size)) >= 0.5 * history[-1]
-            ):
-                return system  # round-off
+            if len(history) > 2 and _is_round_off(float(np.max(system.size)), history[-1], most):
+                return system
         return _settled_by_energy(system, at, history, roughly)
 
 
@@ -157,7 +153,8 @@ def _settled_by_energy(
     for _ in range(MAX_ITERATIONS):
         most = float(np.max(np.abs(system.shifts), initial=0.0))
         history.append(float(np.max(system.size, initial=0.0)))
-        if history[-1] <= SHIFT_TOLERANCE + 1e-12 * most or (roughly and np.all(system.size <= system.rough)):
+        settled = history[-1] <= SHIFT_TOLERANCE + 1e-12 * most or _is_round_off(history[-1], history[-2], most)
+        if settled or (roughly and np.all(system.size <= system.rough)):
             return system
         way, step = system.aim - known, system.step
         steep = np.abs(_along(way, system.left))
@@ -172,6 +169,11 @@ def _settled_by_energy(
             there = at(system.shifts + fraction[:, None, None] * step)
         known, system = known + fraction[:, None, None] * way, there
     raise ConvergenceError("the displacements of the pins do not settle; largest change in mm", history)
+
+
+def _is_round_off(left: float, before: float, most: float) -> bool:
+    """Whether what is left of displacements, mm, no longer falls because it is nothing but round-off of forces and gaps."""
+    return before < 1e-11 * (1.0 + most) and left >= 0.5 * before
 
 
 def _along(way: ComplexArray, left: ComplexArray) -> FloatArray:

@@ -49,7 +49,8 @@ class SidedSpring:
             return 2.0 * self.side * distance, 2.0 * self.side
         ahead, behind = self.pressed + distance, self.pressed - distance
         force = self.side * (max(ahead, 0.0) - (max(behind, 0.0) if self.pressed > 0.0 else 0.0))
-        return force, self.side * ((ahead > 0.0) + (behind > 0.0 and self.pressed > 0.0))
+        sides = int(ahead > 0.0) + int(behind > 0.0 and self.pressed > 0.0)  # of numpy's truths True + True is True
+        return force, self.side * sides
 
     @property
     def sides_together(self) -> float:
