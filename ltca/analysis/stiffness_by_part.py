@@ -21,6 +21,7 @@ from ltca.errors import ConvergenceError
 
 TITLE = "what the torsional stiffness is made of"
 HEADS = ("stiffness, N·m/′", "wind-up, ′", "lost motion, ′", "backlash, ′")
+FORMS = ("{:.4g}", "{:.3f}", "{:.3f}", "{:.3f}")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -119,14 +120,14 @@ class StiffnessByPart:
     def lines(self) -> list[str]:
         """The same as lines for the terminal."""
         wide = max(map(len, self.rows))
-        heads = "  ".join(HEADS)
-        widths = [len(head) for head in HEADS]
-        table = [
-            f"  {name:<{wide}}  "
-            + "  ".join(f"{value:>{width}.4g}" for value, width in zip(read.printed, widths, strict=True))
-            for name, read in self.rows.items()
-        ]
-        return [TITLE, f"  {'':<{wide}}  {heads}", *table, *(f"  {note}" for note in self.notes)]
+        table = []
+        for name, read in self.rows.items():
+            cells = (form.format(value) for form, value in zip(FORMS, read.printed, strict=True))
+            table.append(
+                f"  {name:<{wide}}  "
+                + "  ".join(f"{cell:>{len(head)}}" for cell, head in zip(cells, HEADS, strict=True))
+            )
+        return [TITLE, f"  {'':<{wide}}  " + "  ".join(HEADS), *table, *(f"  {note}" for note in self.notes)]
 
 
 def stiffness_by_part(

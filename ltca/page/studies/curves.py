@@ -9,7 +9,7 @@ import numpy as np
 
 from ltca.analysis.life.bearing_lives import BearingLives
 from ltca.analysis.pressure_safety import PressureSafety
-from ltca.analysis.stiffness_by_part import HEADS, StiffnessByPart
+from ltca.analysis.stiffness_by_part import FORMS, HEADS, StiffnessByPart
 from ltca.analysis.torque_curve import TorqueCurve
 from ltca.analysis.transmission_error_orders import Spectrum
 from ltca.arrays import FloatArray
@@ -91,9 +91,7 @@ def parts_section(parts: Mapping[str, StiffnessByPart]) -> list[Section]:
             name=f"stiffness_by_part_{case}" if len(parts) > 1 else "stiffness_by_part",
             caption=_of(case, parts),
             columns=["", *HEADS],
-            rows=[
-                [word(name), *(number(value, "{:.4g}") for value in read.printed)] for name, read in found.rows.items()
-            ],
+            rows=[[word(name), *map(number, read.printed, FORMS)] for name, read in found.rows.items()],
         )
         for case, found in parts.items()
     ]
