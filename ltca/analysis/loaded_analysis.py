@@ -32,7 +32,6 @@ from ltca.drive.units.quantities import ARCMIN
 from ltca.drive.units.table import range_of
 from ltca.equilibrium.balance import Equilibrium, equilibrium_of_disc
 from ltca.equilibrium.compliance_shares import PARTS, compliance_shares
-from ltca.equilibrium.crank_moments import cage_moments, crank_moments
 from ltca.equilibrium.output_angle import crank_lag, wheel_angle_of_input
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.partial_balance import (
@@ -150,12 +149,12 @@ class LoadedAnalysis:
         found = self.losses
         if found is not None and self.drive.crank.number == 1:
             return found.input_torque[:, None]
-        return crank_moments(self.model, self.full.crank_angle, self.full.pose, self.full.response)
+        return self.model.crank_moments(self.full.crank_angle, self.full.pose, self.full.response.parts)
 
     @property
     def cage_moments(self) -> FloatArray:
         """External moment that holds the roller cages of each crank, ccw positive, shape (positions, cranks), N·mm."""
-        return cage_moments(self.model, self.full.crank_angle, self.full.pose, self.full.response.parts)
+        return self.model.cage_moments(self.full.crank_angle, self.full.pose, self.full.response.parts)
 
     @property
     def losses(self) -> Losses | None:

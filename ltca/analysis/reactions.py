@@ -9,7 +9,6 @@ import numpy as np
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.response import bearing_pushes
-from ltca.equilibrium.crank_moments import crank_moments
 from ltca.equilibrium.external_force import entries_of
 from ltca.equilibrium.first_stage import MeshForces
 from ltca.geometry.rotation import unit
@@ -38,7 +37,7 @@ def mesh_forces(analysis: LoadedAnalysis) -> MeshForces | None:
     full, stage = analysis.full, analysis.model.stage
     if stage is None:
         return None
-    return stage.forces(crank_moments(analysis.model, full.crank_angle, full.pose, full.response))
+    return stage.forces(analysis.model.crank_moments(full.crank_angle, full.pose, full.response.parts))
 
 
 def crank_support_forces(analysis: LoadedAnalysis) -> ComplexArray | None:
@@ -53,7 +52,9 @@ def crank_support_forces(analysis: LoadedAnalysis) -> ComplexArray | None:
     pushes = np.stack([bearing_pushes(part.rollers, drive.crank.number) for part in full.response.parts], axis=-1)
     carried = -np.matmul(pushes, parts.T.astype(complex))
     if stage is not None:
-        carried = carried + stage.on_bearings(crank_moments(analysis.model, full.crank_angle, full.pose, full.response))
+        carried = carried + stage.on_bearings(
+            analysis.model.crank_moments(full.crank_angle, full.pose, full.response.parts)
+        )
     return np.asarray(carried)
 
 

@@ -10,7 +10,6 @@ pin_displacements  Pins displaced by beams under several discs and by the ring o
 friction         Friction of the joints: what slips, and the forces that follow
 first_stage      First stage: forces of the sun on the planets of the cranks, and what its teeth add to the angle of the output
 external_force   Forces and moments from outside on the output
-crank_moments    Moments that hold cranks and their roller cages, from the forces of the contacts
 supports         Springs on coordinates: crankshafts on their bearings, and the wheel on its own
 newton           Damped Newton iteration for the pose in which a batch of positions balances
 neighbours       Which positions of many are balanced first, and the poses of those between them: seen from the crank they

@@ -1,6 +1,6 @@
 r"""First stage: forces of the sun on the planets of the cranks, and what its teeth add to the angle of the output.
 
-A planet holds its crank with the moment T (`ltca.equilibrium.crank_moments`). At the pitch point, which lies r_w from the axis
+A planet holds its crank with the moment T (`Reducer.crank_moments`). At the pitch point, which lies r_w from the axis
 of the crank towards the sun, the tooth of the sun pushes with
 
 .. math:: F_t = T/r_w, \quad F_r = |F_t| \tan\alpha_{wt}, \quad F_a = -F_t \tan\beta_w

@@ -11,7 +11,6 @@ import numpy as np
 
 from ltca.arrays import FloatArray
 from ltca.equilibrium.balance import Equilibrium
-from ltca.equilibrium.crank_moments import crank_moments
 from ltca.equilibrium.reducer import Reducer
 from ltca.geometry.coordinates import WHEEL_ANGLE
 
@@ -20,7 +19,7 @@ def crank_lag(model: Reducer, found: Equilibrium) -> FloatArray:
     """Return the angle of the cranks less the one that the held input gives them, rad, shape (positions,)."""
     if model.stage is None:
         return np.zeros(found.crank_angle.shape)
-    moments = crank_moments(model, found.crank_angle, found.pose, found.response)
+    moments = model.crank_moments(found.crank_angle, found.pose, found.response.parts)
     displaced = None
     if model.stage.yields:
         carried, given = model.stage.beside_discs(model.stage.on_planets(moments)[0]), None

@@ -23,7 +23,6 @@ from ltca.arrays import FloatArray, put_positions, take_positions
 from ltca.compliance.response import Response, Start
 from ltca.drive.parts import Drive
 from ltca.equilibrium.balance import Equilibrium, follow_equilibrium, solve_equilibrium
-from ltca.equilibrium.crank_moments import crank_moments
 from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError
 
@@ -42,7 +41,7 @@ def input_moment(
 
     `input_per_crank_moment` is that of the drive of each position.
     """
-    return np.asarray(input_per_crank_moment * crank_moments(model, crank_angle, pose, response).sum(axis=1))
+    return np.asarray(input_per_crank_moment * model.crank_moments(crank_angle, pose, response.parts).sum(axis=1))
 
 
 FIRST_FRICTION_STEP, LEAST_FRICTION_STEP = 0.25, 0.01

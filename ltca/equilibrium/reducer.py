@@ -28,7 +28,6 @@ from ltca.compliance.response import (
     split_shifts,
 )
 from ltca.drive.parts import Drive
-from ltca.equilibrium.crank_moments import moments_of_parts
 from ltca.equilibrium.external_force import ExternalForce
 from ltca.equilibrium.first_stage import StageMesh
 from ltca.equilibrium.friction.turning import Rubbing, TurningFriction
@@ -251,6 +250,37 @@ class Reducer:
             left=None if settled is None else settled.left,
         )
 
+    def crank_moments(self, crank_angle: FloatArray, pose: FloatArray, parts: Sequence[DiscResponse]) -> FloatArray:
+        """Return the external moment that holds each crank by virtual work, ccw positive, N·mm, shape (positions, cranks).
+
+        It is ∂U/∂φ_C of the contacts: the moment of every bearing's force about the crank axis, which is that of the forces on
+        the crank alone, and that of its cages (`cage_moments`) times `cage_speed`, the part of the crank's angle by which they
+        turn. Friction at the crank adds its own.
+        """
+        cranks = self.discs[0].geometry.placement.cranks
+        pushes = [bearing_pushes(part.rollers, cranks) for part in parts]
+        total = self.discs[0].geometry.placement.cage_speed * self.cage_moments(crank_angle, pose, parts)
+        for number, (disc, push) in enumerate(zip(self.discs, pushes, strict=True)):
+            bores = disc.geometry.bores(crank_angle, pose[:, self.coordinates.columns(number)])
+            total = total + (bores.lever.conjugate() * push).imag
+        if self.friction is None:
+            return total
+        on_bearings = None if self.stage is None else self.stage.on_bearings(total)
+        return total + self.friction.of_cranks(pushes, on_bearings)
+
+    def cage_moments(self, crank_angle: FloatArray, pose: FloatArray, parts: Sequence[DiscResponse]) -> FloatArray:
+        """Return the external moment that holds the cages of each crank at their angle, ccw positive, N·mm, (positions, cranks).
+
+        Cage and inner race are concentric and the race pushes its rollers along its radii, the bore along its own: what holds
+        the cage is the moment of the bearing's force at the displaced centre of the bore, the sum over all discs.
+        """
+        cranks = self.discs[0].geometry.placement.cranks
+        total = np.zeros((crank_angle.size, cranks))
+        for number, (disc, part) in enumerate(zip(self.discs, parts, strict=True)):
+            bores = disc.geometry.bores(crank_angle, pose[:, self.coordinates.columns(number)])
+            total += (bores.displacement.conjugate() * bearing_pushes(part.rollers, cranks)).imag
+        return total
+
     def force_beside_pins(
         self, crank_angle: FloatArray, pose: FloatArray, parts: Sequence[DiscResponse]
     ) -> ComplexArray:
@@ -261,7 +291,7 @@ class Reducer:
         if self.external is not None:
             total = total + self.external.on_wheel(crank_angle)
         if self.stage is not None and self.stage.carried:
-            total = total + self.stage.on_wheel(moments_of_parts(self, crank_angle, pose, parts))[0]
+            total = total + self.stage.on_wheel(self.crank_moments(crank_angle, pose, parts))[0]
         return total
 
     def carried_beside_discs(
@@ -272,7 +302,7 @@ class Reducer:
         """
         if self.stage is None or not self.stage.yields:
             return None
-        return self.stage.beside_discs(self.stage.on_planets(moments_of_parts(self, crank_angle, pose, parts))[0])
+        return self.stage.beside_discs(self.stage.on_planets(self.crank_moments(crank_angle, pose, parts))[0])
 
     def _press_teeth(
         self,
@@ -289,7 +319,7 @@ class Reducer:
         Where cranks are rigid, the derivatives of what the planets press on main bearing and flange are left out.
         """
         coordinates = self.coordinates
-        moments = moments_of_parts(self, crank_angle, pose, parts)
+        moments = self.crank_moments(crank_angle, pose, parts)
         slopes = self._moment_slopes(crank_angle, pose, parts, tangent)
         on_wheel, by_moments = stage.on_wheel(moments)
         if coordinates.wheel:

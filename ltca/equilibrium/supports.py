@@ -50,6 +50,8 @@ SETTLED = 1e-13
 class BearingSupport:
     """A shaft, or the wheel, on bearings with clearance or preload.
 
+    All arrays may have the positions in front.
+
     Attributes
     ----------
     by_pose : array, shape (2·planes, coordinates)
@@ -60,8 +62,6 @@ class BearingSupport:
         L, part of a force in each plane that each bearing carries.
     gap, lift_off, beyond : array, shape (bearings,)
         Of `SideLaw`, mm, N and mm/N.
-
-    All may have the positions in front.
     """
 
     by_pose: FloatArray = by_drive(2)

@@ -9,7 +9,7 @@ import pytest
 
 from ltca.analysis.engines import HalfSpace
 from ltca.equilibrium.balance import lever_arms
-from ltca.equilibrium.output_torque import crank_moments, solve_at_output
+from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.pin_displacements import DisplacedPins
 from ltca.equilibrium.reducer import Reducer
 from ltca.geometry.coordinates import WHEEL_ANGLE
@@ -56,7 +56,7 @@ def work_left_over(drive, angle):
     """T_C + T_W (1/u + w′) − U′ + Σ ∂U/∂ρ ρ′ by the torque; T_C of all cranks with their cages, U with the supports' energy."""
     model = HalfSpace().prepare(drive).model
     centre = solve_at_output(model, [drive], angle, drive.load.torque)
-    crank = crank_moments(model, angle, centre.pose, centre.response).sum(axis=1)
+    crank = model.crank_moments(angle, centre.pose, centre.response.parts).sum(axis=1)
     slope = stored_energy(model, centre.response, centre.pose, angle)[1]
 
     def left(step):

@@ -17,7 +17,6 @@ from ltca.drive.members.first_stage import FirstStage
 from ltca.drive.parts import Material
 from ltca.drive.units.quantities import ARCMIN
 from ltca.drive.yielding_parts import yielding_parts
-from ltca.equilibrium.crank_moments import crank_moments
 from ltca.equilibrium.first_stage import StageMesh
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.errors import DriveError
@@ -194,7 +193,7 @@ def test_virtual_work_with_bending_cranks(geared, stored):
 
     def state(angle, start):
         at = solve_at_output(model, [geared], angle, geared.load.torque, start)
-        moments = crank_moments(model, angle, at.pose, at.response)
+        moments = model.crank_moments(angle, at.pose, at.response.parts)
         forces = stage.forces(moments)
         both = np.stack((forces.in_plane, forces.couple), axis=-1)
         moved = stage.displaced(moments, at.pose, None)

@@ -17,7 +17,7 @@ from ltca.drive.members.pins import ShaftPinSeat, WheelPinSeat
 from ltca.drive.parts import Friction
 from ltca.equilibrium.friction.slip import Slip
 from ltca.equilibrium.friction.turning import rubbing
-from ltca.equilibrium.output_torque import crank_moments, solve_at_output
+from ltca.equilibrium.output_torque import solve_at_output
 from ltca.errors import DriveError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.placement import position_angles
@@ -111,7 +111,7 @@ def test_virtual_work_at_every_position(name, stored):
     model = HalfSpace().prepare(drive).model
     torque = drive.load.torque
     centre = solve_at_output(model, [drive], ANGLES, torque)
-    crank = crank_moments(model, ANGLES, centre.pose, centre.response).sum(axis=1)
+    crank = model.crank_moments(ANGLES, centre.pose, centre.response.parts).sum(axis=1)
     slope = stored(model, centre.response, centre.pose)[1]
 
     def left(step):
@@ -181,7 +181,7 @@ def test_loss_at_the_pins_is_that_about_the_pitch_point(paper):
     found = solve_at_output(model, [drive], angle, torque)
     back = replace(model, friction=model.friction.reversed())
     other = solve_at_output(back, [drive], angle, torque)
-    crank = [crank_moments(model if at is found else back, angle, at.pose, at.response)[:, 0] for at in (found, other)]
+    crank = [one.crank_moments(angle, at.pose, at.response.parts)[:, 0] for one, at in ((model, found), (back, other))]
     place, flank, u = model.discs[0].geometry.placement, plain.response.flank, paper.reduction_ratio
     outward = flank.gradient[..., 0] + 1j * flank.gradient[..., 1]
     turned = np.exp(1j * (angle / u + plain.pose[:, WHEEL_ANGLE]))[:, None]

@@ -9,7 +9,7 @@ from ltca.analysis.engines import HalfSpace
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.torque_curve import torque_curve
 from ltca.equilibrium.balance import solve_equilibrium
-from ltca.equilibrium.output_torque import crank_moments, solve_at_output
+from ltca.equilibrium.output_torque import solve_at_output
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.placement import position_angles
 from ltca.reading.changes import with_fields
@@ -41,7 +41,7 @@ def test_held_wheel_is_the_same_drive_described_otherwise(paper, direction):
     assert (held.transmission_ratio, free.transmission_ratio) == (-13.0, 14.0)
     # in the mean the housing bears T_out z_P/z_C; at a position what output and crank put on it
     model = HalfSpace().prepare(held).model
-    crank = crank_moments(model, ANGLES, found.full.pose, found.full.response).sum(axis=1)
+    crank = model.crank_moments(ANGLES, found.full.pose, found.full.response.parts).sum(axis=1)
     output = held.driving_sign * held.load.torque
     np.testing.assert_allclose(found.full.wheel_moment + crank + output, 0.0, atol=1e-8 * held.load.torque)
     np.testing.assert_array_equal(np.sign(found.full.wheel_moment), -held.driving_sign)
@@ -81,7 +81,7 @@ def test_virtual_work_at_every_position(joint, discs, held, stored):
     model = HalfSpace().prepare(drive).model
     angle = 2.0 * np.pi * np.arange(5) / 5.0 + 0.05
     centre = solve_at_output(model, [drive], angle, drive.load.torque)
-    crank = crank_moments(model, angle, centre.pose, centre.response).sum(axis=1)
+    crank = model.crank_moments(angle, centre.pose, centre.response.parts).sum(axis=1)
     slope = stored(model, centre.response, centre.pose)[1]
 
     def left(step):

@@ -11,7 +11,7 @@ from ltca.analysis.engines import HalfSpace
 from ltca.analysis.loaded_analysis import analyse
 from ltca.drive.members.main_bearing import MainBearing
 from ltca.drive.members.temperatures import warm_drive
-from ltca.equilibrium.output_torque import crank_moments, solve_at_output
+from ltca.equilibrium.output_torque import solve_at_output
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.play import free_play
 from ltca.reading.changes import with_fields
@@ -117,8 +117,8 @@ def test_preloaded_bearings_drag():
     drive = with_fields(drive_of("rv"), rubbing | {"crank.support.preload": 2e4})
     model, found = balanced(drive, ANGLES[:1])
     alone = replace(model, friction=replace(model.friction, crank_lift_off=np.zeros(2)))
-    of = [crank_moments(one, ANGLES[:1], found.pose, found.response) for one in (model, alone)]
-    smooth = crank_moments(replace(model, friction=None), ANGLES[:1], found.pose, found.response)
+    of = [one.crank_moments(ANGLES[:1], found.pose, found.response.parts) for one in (model, alone)]
+    smooth = replace(model, friction=None).crank_moments(ANGLES[:1], found.pose, found.response.parts)
     # six bearings of three cranks at 40 kN, none of which lifts off
     np.testing.assert_allclose(of[0] - smooth, 0.003 * 12.0 * 2.0 * 4e4, rtol=1e-12)
     assert np.all(of[1] - smooth < of[0] - smooth)

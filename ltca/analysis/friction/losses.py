@@ -18,7 +18,6 @@ from ltca.arrays import BoolArray, FloatArray
 from ltca.compliance.response import bearing_pushes
 from ltca.drive.parts import Drive, PinShaft, PinWheel
 from ltca.equilibrium.balance import Equilibrium
-from ltca.equilibrium.crank_moments import crank_moments
 from ltca.equilibrium.friction.slip import Slip
 from ltca.equilibrium.friction.turning import rubbing, seat_travel
 from ltca.equilibrium.reducer import Reducer
@@ -172,7 +171,7 @@ def losses(model: Reducer, drives: Sequence[Drive], found: Equilibrium, torque: 
     rolled = friction.rolling * np.abs(np.stack(pushes)).sum(axis=(0, 2))
     on_bearings = None
     if model.stage is not None:
-        smooth = crank_moments(replace(model, friction=None), angle, found.pose, found.response)
+        smooth = replace(model, friction=None).crank_moments(angle, found.pose, found.response.parts)
         on_bearings = model.stage.on_bearings(smooth)
     at_cranks = np.abs(friction.of_cranks(pushes, on_bearings)).sum(axis=1) - rolled
     ratio = drives[0].reduction_ratio  # that of all: their parts are as many
@@ -189,7 +188,7 @@ def losses(model: Reducer, drives: Sequence[Drive], found: Equilibrium, torque: 
     lost["no_load"] = no_load * np.abs(input_turns)
     # Cranks that are turned in the carrier are the input, seen from there.
     part = by_position([drive.input_per_crank_moment or 1.0 for drive in drives])
-    moments = part * crank_moments(model, angle, found.pose, found.response).sum(axis=1)
+    moments = part * model.crank_moments(angle, found.pose, found.response.parts).sum(axis=1)
     moments += friction.motion * np.sign(input_turns) * no_load
     at_output = np.broadcast_to(torque / np.abs(ratio), angle.shape)
     driven_by_input = by_position([friction.motion == drive.driving_sign for drive in drives])

@@ -22,6 +22,7 @@ from ltca.analysis.results import build_dataset
 from ltca.analysis.torque_curve import TorqueCurve
 from ltca.analysis.transmission_error_orders import Order, Spectrum
 from ltca.drive.units.quantities import ARCSEC
+from ltca.drive.yielding_parts import yielding_parts
 from ltca.figures import curve_figures
 from ltca.figures.drive_picture import drive_figure
 from ltca.figures.house_style import STYLE
@@ -205,6 +206,7 @@ def test_words_of_curves_stand_apart(tmp_path):
     curve = TorqueCurve(
         crank_angle=angle, torque=torque, wheel_angle=wound, output_angle=wound, backlash=np.full(4, 3.6e-3),
         lost_motion=np.full(4, 3.7e-3), stiffness=np.full((4, 2), 6e8),
+            reducer_stiffness=np.full((4, 2), 4e8), yielding=yielding_parts(next(iter(load_drive("paper").cases.values()))),
     )  # fmt: skip
     values = np.array([0.975, 1.0, 1.742, 1.95, 2.0, 2.925, 4.0, 4.065, 6.0, 39.0, 78.0, 273.0])
     orders = tuple(Order(value=float(value), name="flank and holes, |7 z_C − 7 z_PS|") for value in values)
