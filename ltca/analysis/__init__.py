@@ -25,6 +25,7 @@ pressure_fields            Pressure over every loaded contact at chosen crank an
                            found, as one dataset
 torque_curve               Torque against wind-up over both directions, and what is read from it: backlash, lost
                            motion, torsional stiffness
+stiffness_by_part          Torsional stiffness with and without each part that a file describes
 transmission_error_orders  Orders of the transmission error by name, fitted together
 life                       Rating life and static safety of the crank bearings from the loads of their rollers
 drive_curves               Curves of one drive: torque curve, orders, lives and pressure over turns

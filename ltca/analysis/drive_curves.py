@@ -16,6 +16,7 @@ from ltca.analysis.life.bearing_lives import BearingLives, lives_over, passages_
 from ltca.analysis.life.life_text import life_content, life_lines
 from ltca.analysis.memory_need import positions_together
 from ltca.analysis.pressure_safety import PressureOfTurns, PressureSafety
+from ltca.analysis.stiffness_by_part import StiffnessByPart, stiffness_by_part
 from ltca.analysis.torque_curve import TorqueCurve, curve_content, torque_curve
 from ltca.analysis.transmission_error_orders import Order, Spectrum, fit_orders, known_orders, least_turns
 from ltca.arrays import FloatArray
@@ -48,12 +49,15 @@ class CurveSettings(NamedTuple):
         Of the crank, turns a minute: of a central one against the held member, of several against the carrier.
     lost_motion : float
         Part of the rated torque at which lost motion is read.
+    parts : bool
+        Whether the stiffness is told with and without each part that the file describes.
     """
 
     pressure: float | None
     load_rating: float | None
     speed: float | None
     lost_motion: float
+    parts: bool = False
 
 
 @dataclass(frozen=True, kw_only=True, repr=False, eq=False)
@@ -84,6 +88,8 @@ class DriveCurves:
         At mid-width in that turn, MPa.
     safety : PressureSafety
         Over all positions; its position is one of that turn.
+    parts : StiffnessByPart or None
+        The stiffness with and without each part, where it was asked for.
     """
 
     drive: Drive
@@ -97,6 +103,7 @@ class DriveCurves:
     crank_angle: FloatArray
     pressure: FloatArray
     safety: PressureSafety
+    parts: StiffnessByPart | None = None
 
     @property
     def content(self) -> dict[str, Any]:
@@ -166,6 +173,9 @@ def solve_curves(
     settings = settings._replace(speed=_crank_speed(drive, settings))
     angles = mesh * np.arange(ANGLES) / ANGLES
     curve = torque_curve(drive, angles, engine=engine, lost_motion=settings.lost_motion)
+    parts = None
+    if settings.parts:
+        parts = stiffness_by_part(drive, angles, engine=engine, lost_motion=settings.lost_motion)
     each = positions_per_turn(drive)
     angle = 2.0 * np.pi * np.arange(turns * each) / each
     # Of the light torque nothing is told here: at the whole one it is not solved again.
@@ -197,6 +207,7 @@ def solve_curves(
         crank_angle=angle[turn : turn + each],
         pressure=pressures.worst,
         safety=pressures.safety(float("inf") if settings.pressure is None else settings.pressure),
+        parts=parts,
     )
 
 
@@ -229,6 +240,7 @@ def curve_lines(found: DriveCurves, title: str) -> list[str]:
         f"  stiffness of the cycloid stage, 50…100 %  {_range(curve.stiffness / ARCMIN / 1e3)} N m/′",
         f"  of the reducer with what is described     {_range(curve.reducer_stiffness / ARCMIN / 1e3)} N m/′",
         f"  {curve.yielding.words}",
+        *([] if found.parts is None else found.parts.lines),
         f"orders of the transmission error {over}",
         *(f"  {order.value:>9.4f}  {order.name:<32}{size * ARCSEC:>9.4f}″" for order, size in strongest),
         f"  unexplained, rms{'':<29}{spectrum.residual * ARCSEC:>9.4f}″",
@@ -262,6 +274,7 @@ def curve_contents(found: DriveCurves) -> dict[str, Any]:
     drive, curve, spectrum, safety = found.drive, found.curve, found.spectrum, found.safety
     return {
         "torque_curve": curve_content(curve, drive),
+        "stiffness_by_part": None if found.parts is None else found.parts.content,
         "transmission_error_orders": {
             "turns": found.turns,
             "positions": found.positions,

@@ -100,7 +100,8 @@ def torque_curve(
     crank_angle : array, shape (angles,)
         φ_C, rad.
     points : int
-        Torques of each direction, evenly spaced in their square root (dense where the curve bends).
+        Torques of each direction, evenly spaced in their square root (dense where the curve bends); 0 for those alone at which
+        lost motion and stiffness are read.
     engine : Engine, optional
         How bodies yield; half-spaces by default.
     lost_motion : float
@@ -123,11 +124,9 @@ def torque_curve(
         )
     angles = np.atleast_1d(np.asarray(crank_angle, dtype=float))
     rated = drive.require_torque("torque curves, which go up to it").load.torque
-    parts = np.unique(
-        np.concatenate(
-            [np.linspace(LEAST_TORQUE_RATIO**0.5, 1.0, points) ** 2, [LEAST_TORQUE_RATIO, lost_motion, STIFF_FROM]]
-        )
-    )
+    along = np.linspace(LEAST_TORQUE_RATIO**0.5, 1.0, points) ** 2
+    least = [LEAST_TORQUE_RATIO] if points else []
+    parts = np.unique(np.concatenate([along, least, [lost_motion, STIFF_FROM, 1.0]]))
     torque = rated * np.concatenate([-parts[::-1], parts])
     held = np.repeat(angles, torque.size)
     # A torque that turns the output ccw opposes a crank driving ccw with the wheel as output; the pin shaft turns the

@@ -27,6 +27,10 @@ from ltca.reading.arguments import (
 SUMMARY = "torque curve and lost motion, orders of the transmission error, bearing life, pressure safety"
 EXAMPLES = (
     ("cyclo curves my.toml", "torque curve, orders, bearing lives; curves.json"),
+    (
+        "cyclo curves my.toml --parts",
+        "what the torsional stiffness is made of: each part that yields left out, and alone",
+    ),
     ("cyclo curves my.toml --speed '1500 rpm' --load-rating '40 kN'", "lives at a speed and a maker's load rating"),
 )
 MANY_POSITIONS = 20_000
@@ -56,6 +60,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
         type=quantity_argument("--lost-motion", "dimensionless", ge=0.001, le=0.5),
         default=0.03,
         help="part of the rated torque at which lost motion is read, as '3%%' or 0.03; default 3%%",
+    )
+    parser.add_argument(
+        "--parts",
+        action="store_true",
+        help="what the torsional stiffness is made of: with and without each part that the file describes (ring, carrier, "
+        "bearings, shafts, first stage)",
     )
     parser.add_argument(
         "--speed",
@@ -96,7 +106,7 @@ def execute(arguments: argparse.Namespace) -> int:
     from ltca.analysis.memory_need import require_room_for_parts
     from ltca.commands.actions.curves import solve_and_write, tell_of_turns
 
-    asked = (arguments.pressure_limit, arguments.load_rating, arguments.speed, arguments.lost_motion)
+    asked = (arguments.pressure_limit, arguments.load_rating, arguments.speed, arguments.lost_motion, arguments.parts)
     settings = CurveSettings(*asked)
     engine = lending_between(file.cases.values(), compliance_of(arguments, cases.values()))
     for drive in cases.values():

@@ -28,6 +28,7 @@ def curves(
     limits: Mapping[str, Any] | None = None,
     pressure_limit: float | str | None = None,
     lost_motion: float | str = 0.03,
+    parts: bool = False,
     speed: float | str | None = None,
     load_rating: float | str | None = None,
     compliance: str | Engine | None = None,
@@ -51,6 +52,8 @@ def curves(
         Permissible flank pressure, MPa; that of the limits or of the materials by default.
     lost_motion : float or str
         Part of the rated torque at which lost motion is read, 0.03 or ``"3 %"``.
+    parts : bool
+        Whether the stiffness is told with and without each part that the file describes, too.
     speed : float or str, optional
         Of the crank, turns a minute, for lives in hours: of a central crank against the held member, of several cranks
         against the carrier; by default from ``load.speed``. Not with ``[[duty]]``.
@@ -66,7 +69,7 @@ def curves(
     Returns
     -------
     DriveCurves
-        ``curve``, ``spectrum``, ``lives``, ``safety``; ``content`` has all of it as in ``curves.json``.
+        ``curve``, ``spectrum``, ``lives``, ``safety``, ``parts``; ``content`` has all of it as in ``curves.json``.
 
     Raises
     ------
@@ -96,6 +99,7 @@ def curves(
         load_rating=_given(load_rating, "N", "load_rating", gt=0.0),
         speed=_given(speed, "rpm", "speed", gt=0.0),
         lost_motion=parse_quantity(lost_motion, "dimensionless", "lost_motion", ge=0.001, le=0.5),
+        parts=parts,
     )
     engine = engine_given(one, compliance, coefficients=coefficients, hole_near_field=hole_near_field)
     if isinstance(drive, DriveFile):

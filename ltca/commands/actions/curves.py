@@ -27,6 +27,7 @@ from ltca.page.studies.curves import (
     TurnOfPressure,
     life_section,
     orders_section,
+    parts_section,
     pressure_section,
     torque_section,
 )
@@ -93,6 +94,7 @@ def _sections(every: Mapping[str, DriveCurves]) -> list[Section]:
     }
     return [
         torque_section({name: found.curve for name, found in every.items()}),
+        *parts_section({name: found.parts for name, found in every.items() if found.parts is not None}),
         orders_section(
             {name: found.spectrum for name, found in every.items()},
             [f"over {found.turns} turns, {found.positions} positions" for found in every.values()],

@@ -9,6 +9,7 @@ import numpy as np
 
 from ltca.analysis.life.bearing_lives import BearingLives
 from ltca.analysis.pressure_safety import PressureSafety
+from ltca.analysis.stiffness_by_part import FORMS, HEADS, StiffnessByPart
 from ltca.analysis.torque_curve import TorqueCurve
 from ltca.analysis.transmission_error_orders import Spectrum
 from ltca.arrays import FloatArray
@@ -79,6 +80,23 @@ def _torque_rows(curve: TorqueCurve) -> dict[str, str]:
         rows["width of the loop of friction there, ′"] = curve.loop.width * ARCMIN
         rows["energy lost in a loop at the torque, J"] = curve.loop.energy / 1e3
     return {title: _range(values) for title, values in rows.items()}
+
+
+def parts_section(parts: Mapping[str, StiffnessByPart]) -> list[Section]:
+    """Return the section on the stiffness with and without each part, a table for each case; none where it was not asked for."""
+    if not parts:
+        return []
+    tables = [
+        Table(
+            name=f"stiffness_by_part_{case}" if len(parts) > 1 else "stiffness_by_part",
+            caption=_of(case, parts),
+            columns=["", *HEADS],
+            rows=[[word(name), *map(number, read.printed, FORMS)] for name, read in found.rows.items()],
+        )
+        for case, found in parts.items()
+    ]
+    notes = dict.fromkeys(f"{note[0].upper()}{note[1:]}." for found in parts.values() for note in found.notes)
+    return [Section(heading="Stiffness by part", notes=[*notes], tables=tables)]
 
 
 def orders_section(spectra: Mapping[str, Spectrum], over: Sequence[str]) -> Section:

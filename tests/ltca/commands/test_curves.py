@@ -270,6 +270,39 @@ def test_all_cases_are_there(monkeypatch, tmp_path, capsys, paper_cases):
     assert two["cases"] == {name: kept["cases"][name] for name in ("CS-4", "CS-2")}
 
 
+@pytest.mark.slow
+def test_parts_are_printed_kept_and_shown(monkeypatch, tmp_path, capsys):
+    """Of a case whose carrier twists and of one that leaves it out; asked for, and not."""
+    source = tmp_path / "mine.toml"
+    cases = '\n[[case]]\nname = "twists"\ncarrier.stiffness_torsion = "400 N·m/arcmin"\n[[case]]\nname = "stiff"\n'
+    source.write_text(shipped_drive("rv").partition("\n[tolerances]")[0] + cases, encoding="utf-8")
+    make_coarse(monkeypatch)
+    words = ["curves", str(source), "--turns", "1", "--compliance", "half-space", "--out", str(tmp_path / "out")]
+    assert main([*words, "--parts"]) == 0
+    kept = json.loads((tmp_path / "out" / "curves.json").read_text(encoding="utf-8"))["cases"]
+    text, page = capsys.readouterr().out, (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    twists, stiff = (kept[name]["stiffness_by_part"] for name in ("twists", "stiff"))
+    assert [*stiff["without"]] == ["crankshafts and their bearings"]
+    assert [*twists["without"]] == [*stiff["without"], "torsion of the carrier"]
+    # without its twist the first case is the second
+    assert twists["without"]["torsion of the carrier"] == stiff["whole"]
+    assert twists["contacts_alone"] == stiff["without"]["crankshafts and their bearings"]
+    for name, found in (
+        ("everything that is described", twists["whole"]),
+        ("contacts alone", twists["contacts_alone"]),
+    ):
+        printed = [float(word) for word in re.search(rf"^  {name} +(.*)$", text, flags=re.M).group(1).split()]
+        angles = [found[f"{angle}_rad"] * ARCMIN for angle in ("wind_up", "lost_motion", "backlash")]
+        # four digits, and a thousandth of an arc minute
+        assert printed[0] == pytest.approx(found["stiffness_N_mm_per_rad"] / ARCMIN / 1e3, rel=6e-4)
+        assert printed[1:] == pytest.approx(angles, abs=6e-4)
+    assert "Stiffness by part" in page
+    assert main(words) == 0
+    assert "Stiffness by part" not in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    kept = json.loads((tmp_path / "out" / "curves.json").read_text(encoding="utf-8"))["cases"]
+    assert all(case["stiffness_by_part"] is None for case in kept.values())
+
+
 def test_speed_of_a_drive_whose_housing_is_held(monkeypatch, tmp_path):
     """--speed is that of the crank against what is held; against the disc, which turns back, it is z_P/z_C as much."""
     make_coarse(monkeypatch)
