@@ -13,14 +13,17 @@ from ltca.compliance.pressures import pressures_of_law
 from ltca.compliance.response import KindPressures
 from ltca.compliance.rollers import RollerLaws
 from ltca.compliance.uncoupled import PairLaws, UncoupledContacts
+from ltca.contact.length_profile import generator_profile, lead_relief
 from ltca.contact.tracked_grid import ContactKind, ContactKinds
-from ltca.drive.parts import Drive, Material, contact_modulus
+from ltca.drive.parts import Drive, LengthProfile, Material, contact_modulus
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.pair_motion import FlankMotion
 from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.backed import back_shaft_pins, back_wheel_pins, shaft_pin_stiffness, tip_share
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.generator_law import law_for_profile
+from ltca.laws.sliced_line import SlicedLine, slice_heights
+from ltca.laws.sliced_spring import SlicedSpring
 from ltca.laws.spring import SpringLaw
 
 SAMPLES_PER_LOBE = 180
@@ -74,6 +77,8 @@ class HalfSpaceCompliance(UncoupledContacts[ContactLaw]):
                 on_ladder=in_batch,
             )
 
+        if drive.contact.slices > 1:
+            return cls.in_slices(drive, geometry)
         on_flank = law_for_profile(
             drive.pin_wheel.pin_profile,
             length=drive.disc.thickness,
@@ -92,6 +97,40 @@ class HalfSpaceCompliance(UncoupledContacts[ContactLaw]):
                 outer_radius=outer_radius,
             ),
             hole_law=back_shaft_pins(drive, SpringLaw(stiffness=shaft_pin_stiffness(drive)), place.shaft_pin_plays),
+            kinds=ContactKinds.of_drive(drive),
+        )
+
+    @classmethod
+    def in_slices(cls, drive: Drive, geometry: ContactGeometry) -> HalfSpaceCompliance:
+        """Return the model with contacts in slices."""
+        parts, bearing, place, slices = drive.materials, drive.crank_bearing, geometry.placement, drive.contact.slices
+
+        def line(length: float, modulus: float, relief: FloatArray | float) -> SlicedLine:
+            z = slice_heights(length, slices)
+            return SlicedLine(length=length, contact_modulus=modulus, slices=slices, relief=np.zeros(z.shape) + relief)
+
+        def profile(given: LengthProfile, length: float, radius: float) -> FloatArray | float:
+            found = generator_profile(given, length, radius)
+            return 0.0 if found is None else found.relief(slice_heights(length, slices))
+
+        wide, long = drive.disc.thickness, drive.roller_length
+        of_pin = profile(drive.pin_wheel.pin_profile, wide, drive.pin_wheel.pin_radius)
+        of_roller = profile(bearing.roller_profile, long, bearing.roller_radius)
+        flank = line(
+            wide,
+            contact_modulus(parts.disc, drive.flank_pin),
+            of_pin + lead_relief(drive.disc, slice_heights(wide, slices)),
+        )
+        return cls(
+            geometry=geometry,
+            pin_law=flank,
+            roller_laws=RollerLaws(
+                inner=line(long, contact_modulus(parts.inner_race, parts.roller), of_roller),
+                outer=line(long, contact_modulus(parts.disc, parts.roller), of_roller),
+                inner_radius=place.inner_effective_radii,
+                outer_radius=place.outer_effective_radii,
+            ),
+            hole_law=SlicedSpring(stiffness=shaft_pin_stiffness(drive), length=wide, slices=slices),
             kinds=ContactKinds.of_drive(drive),
         )
 

@@ -16,8 +16,9 @@ from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.compliance.rollers import RollerState
 from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION
-from ltca.geometry.pair_motion import BoreMotion, FlankMotion, KnownPins, PairMotion
+from ltca.geometry.pair_motion import BoreMotion, FlankMotion, KnownPins, PairMotion, PairTilt
 from ltca.geometry.pairs import ContactGeometry
+from ltca.laws.sliced_line import SlicedContact
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -61,6 +62,22 @@ class FollowingPins:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class LeaningPairs:
+    """Pairs of one kind in slices.
+
+    Attributes
+    ----------
+    tilt : PairTilt
+        How they tilt.
+    contact : SlicedContact
+        What they carry.
+    """
+
+    tilt: PairTilt
+    contact: SlicedContact
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class DiscResponse:
     """Contacts of one disc in a batch of positions at given poses.
 
@@ -91,6 +108,8 @@ class DiscResponse:
         Where they were given.
     friction : array, shape (positions, pairs), or None
         Forces of wheel pins and shaft pins along their tangents, N; None without friction.
+    leaning_pins, leaning_holes : LeaningPairs or None
+        Wheel pins and shaft pins in slices; None in the plane.
     """
 
     force: FloatArray
@@ -106,6 +125,8 @@ class DiscResponse:
     follow: FollowingPins | None = None
     slopes: PairSlopes | None = None
     friction: FloatArray | None = None
+    leaning_pins: LeaningPairs | None = None
+    leaning_holes: LeaningPairs | None = None
 
     @property
     def pin_forces(self) -> ComplexArray:

@@ -63,7 +63,10 @@ class RollerState:
     outer_direction : array of complex, shape (positions, rollers)
         Unit vector from the bore centre to the roller, the direction of the load on the disc.
     tangent : array, shape (positions, rollers, 2, 2)
-        Second derivative of the eliminated energy by the displacement (x, y) of the bore, N/mm.
+        Second derivative of the eliminated energy by the displacement (x, y) of the bore, N/mm; of leaning rollers
+        (`ltca.compliance.leaning_rollers`) by its displacement and its lean, shape (positions, rollers, 4, 4).
+    inner_moment, outer_moment : array, shape (positions, rollers), or None
+        Of leaning rollers about mid-length, N·mm; that on the disc acts along the ray.
     """
 
     share: FloatArray
@@ -73,6 +76,8 @@ class RollerState:
     outer_load: FloatArray
     outer_direction: ComplexArray
     tangent: FloatArray
+    inner_moment: FloatArray | None = None
+    outer_moment: FloatArray | None = None
 
 
 def balance_rollers(

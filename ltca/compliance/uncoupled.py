@@ -8,17 +8,19 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import ClassVar, Generic
+from typing import Any, ClassVar, Generic
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ltca.arrays import ComplexArray, FloatArray
+from ltca.compliance.leaning_rollers import balance_leaning_rollers
 from ltca.compliance.pressures import elastic_hole_pressures
 from ltca.compliance.response import (
     ContactPressures,
     DiscResponse,
     KindPressures,
+    LeaningPairs,
     PairSlopes,
     Start,
     add_bearing_bend,
@@ -27,7 +29,8 @@ from ltca.compliance.response import (
 )
 from ltca.compliance.rollers import Law, RollerLaws, RollerState, balance_rollers
 from ltca.contact.tracked_grid import ContactKind, ContactKinds
-from ltca.geometry.pair_motion import BoreMotion, FlankMotion, PairMotion
+from ltca.geometry.coordinates import Coordinates
+from ltca.geometry.pair_motion import BoreMotion, FlankMotion, PairMotion, dot
 from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.contact_law import ContactLaw
 
@@ -108,6 +111,8 @@ class UncoupledContacts(ABC, Generic[Law]):
         )
         flank = geometry.flank(crank_angle, pose, places, moved[0], known)
         laws = self.laws(flank, warm)
+        if geometry.coordinates_of(pose).leans:
+            return self._respond_in_slices(crank_angle, pose, flank, laws, shifts)
         pin_load, pin_stiffness = laws.pins.load_and_stiffness(flank.approach, flank.effective_radius)
         holes = geometry.holes(crank_angle, pose, moved[1])
         hole_load, hole_stiffness = self.hole_law.load_and_stiffness(
@@ -129,6 +134,58 @@ class UncoupledContacts(ABC, Generic[Law]):
             warm_start=self.warm_start(laws, crank_angle.size),
             shifts=shifts,
             slopes=None if shifts is None else _slopes(flank, pin_stiffness, holes, hole_stiffness),
+        )
+
+    def _respond_in_slices(
+        self,
+        crank_angle: FloatArray,
+        pose: FloatArray,
+        flank: FlankMotion,
+        laws: PairLaws[Any],
+        shifts: ComplexArray | None,
+    ) -> DiscResponse:
+        """The same of contacts in slices, which tilt."""
+        geometry, place = self.geometry, self.geometry.placement
+        coordinates = geometry.coordinates_of(pose)
+        holes = geometry.holes(crank_angle, pose, split_shifts(shifts, geometry)[1])
+        bores, rays = geometry.bores(crank_angle, pose), geometry.rollers(crank_angle)
+        pairs = []
+        for motion, tilt, law, radius in (
+            (flank, geometry.flank_tilt(crank_angle, pose, flank), laws.pins, flank.effective_radius),
+            (holes, geometry.hole_tilt(pose, holes), self.hole_law, place.hole_effective_radii),
+        ):
+            contact = law.respond(motion.approach, tilt.tilt, radius)
+            pairs.append((motion, LeaningPairs(tilt=tilt, contact=contact)))
+        displacement = bores.each(bores.displacement, rays.direction.shape[1])
+        along = [dot(rays.direction, lean) for lean in (np.asarray(place.crank_lean), geometry.lean(pose))]
+        rollers = balance_leaning_rollers(rays, displacement, laws.rollers, *along)
+        tangent = _leaning_roller_tangent(rollers, bores, coordinates)
+        pins, of_holes = (pair.contact.load for _, pair in pairs)
+        force = resultant(flank, pins, holes, of_holes, rollers, bores)
+        if rollers.outer_moment is not None:
+            pressed = (rollers.outer_moment * rays.direction).sum(axis=1)
+            force[:, coordinates.lean_place] -= np.stack((pressed.real, pressed.imag), axis=-1)
+        for motion, pair in pairs:
+            found, leaning = pair.contact, pair.tilt
+            force += np.einsum("bi,bij->bj", found.moment, leaning.gradient)
+            tangent += _pair_tangent(motion, found.load, found.by_approach)
+            mixed = np.matmul(motion.gradient.swapaxes(1, 2), found.by_tilt[..., None] * leaning.gradient)
+            tangent += mixed + mixed.swapaxes(1, 2)
+            turning = found.moment_by_tilt[..., None] * leaning.gradient
+            tangent += np.matmul(leaning.gradient.swapaxes(1, 2), turning)
+            tangent += motion.bend_leans(found.moment, coordinates)
+        return DiscResponse(
+            force=force,
+            tangent=tangent,
+            flank=flank,
+            holes=holes,
+            rollers=rollers,
+            pin_load=pins,
+            hole_load=of_holes,
+            warm_start=self.warm_start(laws, crank_angle.size),
+            shifts=shifts,
+            leaning_pins=pairs[0][1],
+            leaning_holes=pairs[1][1],
         )
 
     def pressures(self, response: DiscResponse) -> ContactPressures:
@@ -155,6 +212,17 @@ def _roller_tangent(rollers: RollerState, bores: BoreMotion) -> FloatArray:
     positions, cranks = bores.arm.shape
     stiffness = np.einsum("bcri->bci", rollers.tangent.reshape(positions, cranks, -1, 4)).reshape(-1, cranks, 2, 2)
     moved = np.stack((bores.gradient.real, bores.gradient.imag), axis=2)
+    tangent = np.matmul(moved.swapaxes(2, 3), np.matmul(stiffness, moved)).sum(axis=1)
+    add_bearing_bend(tangent, rollers, bores)
+    return np.asarray(tangent)
+
+
+def _leaning_roller_tangent(rollers: RollerState, bores: BoreMotion, coordinates: Coordinates) -> FloatArray:
+    positions, cranks = bores.arm.shape
+    stiffness = rollers.tangent.reshape(positions, cranks, -1, 4, 4).sum(axis=2)
+    moved = np.zeros((positions, cranks, 4, coordinates.size))
+    moved[:, :, 0], moved[:, :, 1] = bores.gradient.real, bores.gradient.imag
+    moved[:, :, 2:, coordinates.lean_place] = np.eye(2)
     tangent = np.matmul(moved.swapaxes(2, 3), np.matmul(stiffness, moved)).sum(axis=1)
     add_bearing_bend(tangent, rollers, bores)
     return np.asarray(tangent)

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ltca.arrays import FloatArray
-from ltca.drive.parts import LengthProfile
+from ltca.drive.parts import Disc, LengthProfile
 
 
 class Relief(Protocol):
@@ -164,3 +164,15 @@ def generator_profile(profile: LengthProfile, length: float, radius: float) -> S
     if profile.end_relief_length > 0.0 and profile.end_relief_depth > 0.0:
         parts.append(EndRelief(length=length, relief_length=profile.end_relief_length, depth=profile.end_relief_depth))
     return SummedProfile(length=length, parts=tuple(parts))
+
+
+def lead_relief(disc: Disc, z: FloatArray) -> FloatArray:
+    """Return by how much the flank falls short at heights above the middle of the disc, mm; negative where metal is left."""
+    length = disc.thickness
+    total = -disc.lead_slope * z
+    if disc.lead_crown_drop > 0.0:
+        total = total + disc.lead_crown_drop * (2.0 * z / length) ** 2
+    if disc.lead_relief_length > 0.0 and disc.lead_relief_depth > 0.0:
+        ends = EndRelief(length=length, relief_length=disc.lead_relief_length, depth=disc.lead_relief_depth)
+        total = total + ends.relief(z)
+    return np.asarray(total)

@@ -35,11 +35,15 @@ class PlacementErrors:
         Counter-clockwise, at a right angle to that radius, mm.
     diameter : tuple of float
         Actual less nominal diameter, mm.
+    inclination_x, inclination_y : tuple of float
+        Rotation of the part's axis about the x and y axes of the body that carries it, rad.
     """
 
     radial: Errors = ()
     tangential: Errors = ()
     diameter: Errors = ()
+    inclination_x: tuple[Angle, ...] = ()
+    inclination_y: tuple[Angle, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)

@@ -54,6 +54,7 @@ from ltca.drive.members.pins import (
 )
 from ltca.drive.members.preload import Preload as Preload
 from ltca.drive.members.ring import Ring as Ring, RingBolts as RingBolts
+from ltca.drive.members.width import Contact as Contact, Inclination as Inclination
 from ltca.drive.names import Name
 from ltca.drive.units.quantities import COUNT, grows
 from ltca.errors import DriveError
@@ -91,6 +92,14 @@ class Disc:
         Deviation of the flank along its normal.
     runout : Runout
         Centre of the flank against the bore.
+    lead_crown_drop : float
+        Drop of the crowned flank at its two ends, mm.
+    lead_relief_length, lead_relief_depth : float
+        Length of the relieved flank at each end, and drop at the very end, mm.
+    lead_slope : float
+        Slope of the flank along its width, mm/mm; positive leaves metal at positive z.
+    axial_play : float or None
+        Distance by which the disc is free along the axis, mm, for the check of its tilt.
     of : tuple of OneDisc
         Values per disc, one entry for every disc; left out where all discs are alike.
     """
@@ -106,6 +115,11 @@ class Disc:
     hole_errors: Annotated[PlacementErrors, grows("disc")] = field(default_factory=PlacementErrors)
     profile_errors: Annotated[ProfileErrors, grows("disc")] = field(default_factory=ProfileErrors)
     runout: Annotated[Runout, grows("disc")] = field(default_factory=Runout)
+    lead_crown_drop: Annotated[NonNegativeLength, grows("disc")] = 0.0
+    lead_relief_length: Annotated[NonNegativeLength, grows("disc")] = 0.0
+    lead_relief_depth: Annotated[NonNegativeLength, grows("disc")] = 0.0
+    lead_slope: Angle = 0.0
+    axial_play: Annotated[NonNegativeLength | None, grows("disc")] = None
     of: tuple[OneDisc, ...] = ()
 
     @property
@@ -194,6 +208,8 @@ class Drive:
         Temperatures of the parts; lengths of a file are those at 20 °C.
     analysis : Analysis
         Engine of an analysis that does not name one; no property of the drive.
+    contact : Contact
+        Slices along the width of the contacts.
     case : str
         Name of the case in the file, for names of results; neither compared nor hashed.
     """
@@ -217,6 +233,7 @@ class Drive:
     lubricant: Lubricant | None = None
     temperature: Temperature | None = None
     analysis: Analysis = field(default_factory=Analysis)
+    contact: Contact = field(default_factory=Contact)
     case: Name = field(default="nominal", compare=False)
 
     @property

@@ -3,9 +3,12 @@
 A pose of one disc at a held crank angle is q = (x, y, disc rotation, …, wheel angle): x and y in mm are the displacement of
 the disc from its nominal place in the fixed frame, the angles in rad; the wheel angle is its deviation from φ_C/u. Between
 them stand x and y of each crank in the plane of the disc, if cranks yield, and the angle by which each eccentric is ahead of
-the crank, if they twist; x and y of the wheel, if its bearing yields; and
+the crank, if they twist; the lean of the disc, if contacts have slices; x and y of the wheel, if its bearing yields; and
 x, y and rotation of the ring that ties the tips of the shaft pins, or of the far flange of the carrier, if there is one. The
 poses of several discs follow each other, with one wheel.
+
+A lean is what x and y of a part change by along its axis, dx/dz and dy/dz about the middle of the disc: with the rotation vector ω of a
+small tilt it is (ω_y, −ω_x). As an arrow of the plane it turns as displacements do.
 """
 
 from __future__ import annotations
@@ -48,6 +51,8 @@ class Coordinates:
         Whether a ring ties the tips of the shaft pins and floats, or is the far flange of a carrier on posts.
     twists : bool
         Whether cranks yield in torsion.
+    leans : bool
+        Whether discs lean.
     """
 
     discs: int = 1
@@ -55,6 +60,7 @@ class Coordinates:
     wheel: bool = False
     ring: bool = False
     twists: bool = False
+    leans: bool = False
 
     @classmethod
     def of_drive(cls, drive: Drive) -> Coordinates:
@@ -65,12 +71,13 @@ class Coordinates:
         posts = None if drive.carrier is None else drive.carrier.posts
         ring = posts is not None or (beam is not None and beam.tip != "free")
         wheel = drive.wheel_yields
-        return cls(discs=drive.disc.number_of_discs, cranks=cranks, wheel=wheel, ring=ring, twists=twists)
+        discs, leans = drive.disc.number_of_discs, drive.contact.slices > 1
+        return cls(discs=discs, cranks=cranks, wheel=wheel, ring=ring, twists=twists, leans=leans)
 
     @property
     def own(self) -> int:
-        """Number of coordinates of each disc: x, y, rotation, x and y of every crank there, and the twist of every crank."""
-        return DISC_ROTATION + 1 + (2 + self.twists) * self.cranks
+        """Number of coordinates of each disc: x, y, rotation, x and y of every crank there, the twist of every crank, its lean."""
+        return DISC_ROTATION + 1 + (2 + self.twists) * self.cranks + 2 * self.leans
 
     @property
     def shared(self) -> int:
@@ -100,7 +107,13 @@ class Coordinates:
     @property
     def twist_places(self) -> tuple[int, ...]:
         """Places of the twist of every crank in the pose of one disc; none where cranks do not twist."""
-        return tuple(range(self.own - self.cranks, self.own)) if self.twists else ()
+        first = self.crank(self.cranks)
+        return tuple(range(first, first + self.cranks)) if self.twists else ()
+
+    @property
+    def lean_place(self) -> slice:
+        """Lean of a disc in its pose; empty where it does not lean."""
+        return slice(self.own - 2 * self.leans, self.own)
 
     @property
     def wheel_place(self) -> slice:
@@ -127,8 +140,8 @@ class Coordinates:
 
     @property
     def displacements(self) -> Columns:
-        """Places of every x that is followed by its y: discs, cranks, wheel, ring."""
-        one = np.r_[X, DISC_ROTATION + 1 : self.crank(self.cranks) : 2]
+        """Places of every x that is followed by its y: discs, cranks, leans, wheel, ring."""
+        one = np.r_[X, DISC_ROTATION + 1 : self.crank(self.cranks) : 2, self.lean_place.start : self.own : 2]
         each = (self.own * np.arange(self.discs)[:, None] + one).ravel()
         shared = [self.size - self.shared] if self.wheel else []
         return np.append(each, [*shared, self.ring_place.start] if self.ring else shared).astype(np.intp)

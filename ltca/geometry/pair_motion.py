@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ltca.arrays import BoolArray, ComplexArray, FloatArray
-from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
+from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION, WHEEL_ANGLE, Coordinates
 
 MARGIN = 1e-6
 """Gap below which a pin is never left out, mm: far above the round-off of places, far below any play."""
@@ -71,6 +71,59 @@ class PairMotion:
         total[..., DISC_ROTATION, DISC_ROTATION] += (load * along[..., DISC_ROTATION]).sum(axis=-1)
         return np.asarray(total)
 
+    def leaning(self, lean: ComplexArray, coordinates: Coordinates, turns: dict[int, ComplexArray]) -> PairTilt:
+        """Return the tilt of the pairs.
+
+        Parameters
+        ----------
+        lean : array of complex, shape (positions, pairs)
+            Lean of the disc at the pair less that of the other part, rad.
+        coordinates : Coordinates
+            Of the pose.
+        turns : dict of int to array of complex, shape (positions, pairs)
+            How leans that stand on a body turn with it, by its angle's place in the pose.
+        """
+        normal = self.gradient[..., 0] + 1j * self.gradient[..., 1]
+        across = dot(self.along[..., 0] + 1j * self.along[..., 1], lean)
+        gradient = self._bent_by(across)
+        gradient[..., coordinates.lean_place] = self.gradient[..., DISC_PLACE]
+        for place, turn in turns.items():
+            gradient[..., place] += dot(normal, turn)
+        return PairTilt(tilt=dot(normal, lean), gradient=gradient)
+
+    def _bent_by(self, across: FloatArray) -> FloatArray:
+        """Σ λ_a ∂²δ/∂a∂q over a = x, y, from Σ λ_a s_a: pins in holes."""
+        return (across * self.bending)[..., None] * self.along
+
+    def bend_leans(self, moment: FloatArray, coordinates: Coordinates) -> FloatArray:
+        """Return Σ M ∂²θ/∂q² over the pairs, but for third derivatives of the approach, which are of the order of the lean.
+
+        Moments M are in N·mm, shape (positions, pairs); the answer has the shape (positions, coordinates, coordinates).
+        """
+        total = np.zeros((moment.shape[0], coordinates.size, coordinates.size))
+        first = coordinates.lean_place.start
+        for lean, place in ((first, 0), (first + 1, 1)):
+            row = (moment[..., None] * self._bent_by(self.along[..., place])).sum(axis=1)
+            total[:, lean] += row
+            total[:, :, lean] += row
+        return total
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PairTilt:
+    """Tilt of pairs, by which their surfaces approach more the higher they are.
+
+    Attributes
+    ----------
+    tilt : array, shape (positions, pairs)
+        θ of the approach δ + θ z at the height z about the middle of the disc, rad.
+    gradient : array, shape (positions, pairs, coordinates)
+        ∂θ/∂q, 1/mm and 1.
+    """
+
+    tilt: FloatArray
+    gradient: FloatArray
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FlankMotion(PairMotion):
@@ -96,6 +149,12 @@ class FlankMotion(PairMotion):
     point: ComplexArray
     turning: ComplexArray
     left_out: BoolArray
+
+    def _bent_by(self, across: FloatArray) -> FloatArray:
+        """As for holes, of pins on the flank."""
+        found = -(across * self.bending)[..., None] * self.along
+        found[..., DISC_ROTATION] -= across
+        return found
 
     @staticmethod
     def _sum(load: FloatArray, bending: FloatArray, along: FloatArray) -> FloatArray:

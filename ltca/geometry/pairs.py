@@ -21,6 +21,7 @@ from ltca.geometry.pair_motion import (
     FlankMotion,
     KnownPins,
     PairMotion,
+    PairTilt,
     RollerRays,
     cross,
     dot,
@@ -352,6 +353,26 @@ class ContactGeometry:
             along[..., coordinates.ring_place] = cross(by_ring, direction[..., None])
         approach = distance - (place.hole_radii - place.shaft_pin_radii + place.shaft_pin_plays)
         return PairMotion(approach=approach, gradient=gradient, along=along, bending=1.0 / distance)
+
+    def lean(self, pose: FloatArray) -> ComplexArray:
+        """Return the lean of the disc, rad, shape (positions, 1)."""
+        place = self.coordinates_of(pose).lean_place
+        return np.asarray(pose[:, place.start : place.start + 1] + 1j * pose[:, place.start + 1 : place.stop])
+
+    def flank_tilt(self, crank_angle: FloatArray, pose: FloatArray, flank: FlankMotion) -> PairTilt:
+        """Return the tilt of wheel pins and flank; arguments as for `flank`."""
+        place, coordinates = self.placement, self.coordinates_of(pose)
+        turned = unit(place.wheel_rotation(crank_angle)[:, None] + pose[:, WHEEL_ANGLE, None])
+        own = place.wheel_pin_leans * turned
+        lean = self.lean(pose) - place.wheel_lean - own
+        return flank.leaning(lean, coordinates, {WHEEL_ANGLE: -1j * own})
+
+    def hole_tilt(self, pose: FloatArray, holes: PairMotion) -> PairTilt:
+        """Return the tilt of shaft pins and holes; arguments as for `holes`."""
+        place = self.placement
+        own = place.hole_leans * unit(pose[:, DISC_ROTATION, None])
+        lean = self.lean(pose) + own - place.shaft_pin_leans
+        return holes.leaning(lean, self.coordinates_of(pose), {DISC_ROTATION: 1j * own})
 
     def bores(self, crank_angle: FloatArray, pose: FloatArray) -> BoreMotion:
         """Return the displacements of the bores; arguments as for `flank`."""

@@ -47,7 +47,7 @@ def _of_shaft(drive: Drive) -> dict[str, Any]:
         nowhere, nothing = np.zeros(0, dtype=complex), np.zeros(0)
         return {
             "hole_centres": nowhere, "hole_radii": nothing, "shaft_pin_centres": nowhere, "shaft_pin_radii": nothing,
-            "shaft_pin_plays": nothing,
+            "shaft_pin_plays": nothing, "hole_leans": nowhere, "shaft_pin_leans": nowhere,
         }  # fmt: skip
     return {
         "hole_centres": _circle(shaft.pin_circle_radius, count, drive.disc.hole_errors),
@@ -55,7 +55,14 @@ def _of_shaft(drive: Drive) -> dict[str, Any]:
         "shaft_pin_centres": _circle(shaft.pin_circle_radius, count, shaft.pin_errors),
         "shaft_pin_radii": shaft.pin_radius + 0.5 * _filled(shaft.pin_errors.diameter, count),
         "shaft_pin_plays": np.full(count, shaft.seat_play),
+        "hole_leans": _leans(drive.disc.hole_errors, count),
+        "shaft_pin_leans": shaft.inclination.lean + _leans(shaft.pin_errors, count),
     }
+
+
+def _leans(errors: PlacementErrors, count: int) -> ComplexArray:
+    """Lean of the parts of a circle in the frame of the body that carries them (`ltca.geometry.coordinates`)."""
+    return np.asarray(_filled(errors.inclination_y, count) - 1j * _filled(errors.inclination_x, count))
 
 
 def _wheel_pin_plays(drive: Drive) -> FloatArray:
@@ -116,6 +123,10 @@ class Placement:
         In the disc frame, mm.
     wheel_axis : complex
         Place of the wheel's axis in the fixed frame, mm.
+    wheel_pin_leans, hole_leans, shaft_pin_leans : array of complex, shape (z_P,) or (z_PS,)
+        Lean of each part in the frame of wheel, disc or fixed, rad; that of the wheel's axis is apart.
+    wheel_lean, crank_lean : complex
+        Lean of the wheel's axis and of the cranks' in the fixed frame, rad.
     cage_speed : float
         Cage angle by crank angle, r_i/(r_i + r_o) with the nominal r_o.
     reduction_ratio : float
@@ -139,6 +150,11 @@ class Placement:
     crank_axes: ComplexArray = by_drive(1)
     bore_centres: ComplexArray = by_drive(1)
     wheel_axis: complex | ComplexArray = by_drive(0)
+    wheel_pin_leans: ComplexArray = by_drive(1)
+    hole_leans: ComplexArray = by_drive(1)
+    shaft_pin_leans: ComplexArray = by_drive(1)
+    wheel_lean: complex | ComplexArray = by_drive(0)
+    crank_lean: complex | ComplexArray = by_drive(0)
     cage_speed: BatchScalar = by_drive(0)
     reduction_ratio: float
 
@@ -168,6 +184,9 @@ class Placement:
             crank_axes=crank.axis_offset.place + np.array(crank.places),
             bore_centres=_bore_centres(drive),
             wheel_axis=wheel.axis_offset.place,
+            wheel_pin_leans=_leans(wheel.pin_errors, wheel.number_of_pins),
+            wheel_lean=wheel.inclination.lean,
+            crank_lean=crank.inclination.lean,
             cage_speed=bearing.inner_race_radius / (bearing.inner_race_radius + bearing.outer_race_radius),
             reduction_ratio=drive.reduction_ratio,
         )

@@ -32,7 +32,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ltca.arrays import FloatArray
+from ltca.arrays import FloatArray, by_drive
 from ltca.contact.influence import lagged_influence
 from ltca.errors import ConvergenceError
 from ltca.laws.slenderness_curve import SlendernessCurve, quintic_spline_pieces
@@ -52,6 +52,12 @@ NARROWEST, WIDEST = 1e-4, 40.0
 SMOOTHING = 1.0
 _KNOTS = 81
 TABLE = Path(__file__).with_name("sliced_line.json")
+
+
+def slice_heights(length: float, slices: int) -> FloatArray:
+    """Return z of the points of the slices of a line of a length in mm, shape (slices, points)."""
+    middle = (np.arange(slices) - 0.5 * (slices - 1)) * length / slices
+    return np.asarray(middle[:, None] + 0.5 * length / slices * np.polynomial.legendre.leggauss(POINTS)[0])
 
 
 @cache
@@ -130,6 +136,8 @@ class SlicedLine:
         E*, MPa.
     slices : int
         n, at least 3.
+    relief : array, shape (slices, points)
+        h, mm: by how much lead and profile fall short at the points (`slice_heights`).
     ends : array, shape (6, pieces), optional
         By how much end slices are softer, ε over ln(b/l); default `softer_ends`.
     """
@@ -137,13 +145,8 @@ class SlicedLine:
     length: float
     contact_modulus: float
     slices: int
+    relief: FloatArray = by_drive(2)
     ends: FloatArray = field(default_factory=softer_ends)
-
-    @property
-    def heights(self) -> FloatArray:
-        """z of the points of the slices, mm, shape (slices, points)."""
-        middle = (np.arange(self.slices) - 0.5 * (self.slices - 1)) * self.length / self.slices
-        return np.asarray(middle[:, None] + 0.5 * self.length / self.slices * np.polynomial.legendre.leggauss(POINTS)[0])
 
     @property
     def _weights(self) -> FloatArray:
@@ -154,7 +157,6 @@ class SlicedLine:
         approach: FloatArray,
         tilt: FloatArray,
         effective_radius: FloatArray,
-        relief: FloatArray | float = 0.0,
         start: FloatArray | None = None,
     ) -> SlicedContact:
         """Return loads, moments and their derivatives.
@@ -163,8 +165,6 @@ class SlicedLine:
         ----------
         approach, tilt, effective_radius : array, shape (…)
             δ in the middle, mm; θ, rad, positive presses positive z; ρ, mm.
-        relief : array, shape (…, slices, points), optional
-            h, mm: by how much lead and profile fall short at the points (`heights`).
         start : array, shape (…, slices), optional
             Loads of the slices nearby, N.
 
@@ -173,9 +173,10 @@ class SlicedLine:
         ConvergenceError
             When loads do not settle.
         """
-        delta, theta, radius = np.broadcast_arrays(*(np.asarray(each, dtype=float) for each in (approach, tilt, effective_radius)))
-        shape, z = delta.shape, self.heights
-        free = (delta[..., None, None] + theta[..., None, None] * z - relief).reshape(-1, *z.shape)
+        given = (np.asarray(each, dtype=float) for each in (approach, tilt, effective_radius))
+        delta, theta, radius = np.broadcast_arrays(*given)
+        shape, z = delta.shape, slice_heights(self.length, self.slices)
+        free = (delta[..., None, None] + theta[..., None, None] * z - self.relief).reshape(-1, *z.shape)
         closed = np.flatnonzero((free > 0.0).any(axis=(1, 2)))
         free, radius = free[closed], radius.reshape(-1)[closed]
         begin = None if start is None else start.reshape(-1, self.slices)[closed]
@@ -200,9 +201,7 @@ class SlicedLine:
         slope[pressed] = 0.5 * np.pi * self.contact_modulus * (1.0 - first / w) / w
         return load, slope
 
-    def _coupling(
-        self, load: FloatArray, effective_radius: FloatArray
-    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def _coupling(self, load: FloatArray, effective_radius: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """V, u and their derivative, shapes (contacts,), (contacts, slices) and (contacts, slices, slices)."""
         n, size = self.slices, self.length / self.slices
         total, square = load.sum(axis=1), (load**2).sum(axis=1)
@@ -219,16 +218,22 @@ class SlicedLine:
         bends = np.diff(np.eye(n), 2, axis=0)
         wide = np.exp(2.0 * place)
         part = wide / (1.0 + wide)
-        for each, factor in ((matrix, part), (first, 2.0 * part * (1.0 - part)), (second, 4.0 * part * (1.0 - part) * (1.0 - 2.0 * part))):
+        for each, factor in (
+            (matrix, part),
+            (first, 2.0 * part * (1.0 - part)),
+            (second, 4.0 * part * (1.0 - part) * (1.0 - 2.0 * part)),
+        ):
             each += SMOOTHING * factor[:, None, None] * (bends.T @ bends)
         scale = 1.0 / (np.pi * self.contact_modulus * size)
         pressed, by_width, bend = (np.matmul(each, load[..., None])[..., 0] for each in (matrix, first, second))
         energy, slope, curved = (0.5 * (load * each).sum(axis=1) for each in (pressed, by_width, bend))
         given = pressed + slope[:, None] * grow
         outer = by_width[:, :, None] * grow[:, None, :]
-        grown = np.eye(n) / square[:, None, None] + (
-            0.5 / total**2
-        )[:, None, None] - 2.0 * load[:, :, None] * load[:, None, :] / (square**2)[:, None, None]
+        grown = (
+            np.eye(n) / square[:, None, None]
+            + (0.5 / total**2)[:, None, None]
+            - 2.0 * load[:, :, None] * load[:, None, :] / (square**2)[:, None, None]
+        )
         hessian = matrix + outer + outer.swapaxes(1, 2)
         hessian += curved[:, None, None] * grow[:, :, None] * grow[:, None, :] + slope[:, None, None] * grown
         return scale * energy, scale * given, scale * hessian
@@ -249,11 +254,9 @@ class SlicedLine:
         inside = (held == place)[:, None]
         return np.stack((value, np.where(inside, first, 0.0), np.where(inside, second, 0.0)))
 
-    def _closed(
-        self, free: FloatArray, radius: FloatArray, start: FloatArray | None
-    ) -> tuple[FloatArray, ...]:
+    def _closed(self, free: FloatArray, radius: FloatArray, start: FloatArray | None) -> tuple[FloatArray, ...]:
         """The arrays of `SlicedContact` in its order, of contacts with something pressed together."""
-        weights, z, n = self._weights, self.heights, self.slices
+        weights, z, n = self._weights, slice_heights(self.length, self.slices), self.slices
         load = self._line_load(free, radius)[0] @ weights if start is None else start.copy()
         bad = ~(load.sum(axis=1) > 0.0)
         if bad.any():
@@ -287,7 +290,9 @@ class SlicedLine:
             if not going.size:
                 break
         else:
-            raise ConvergenceError("the slices of a line contact do not settle; last change by the largest load", history)
+            raise ConvergenceError(
+                "the slices of a line contact do not settle; last change by the largest load", history
+            )
         energy, pressed_in, by_load = self._coupling(load, radius)
         local = free - pressed_in[..., None]
         line, slope = self._line_load(local, radius)

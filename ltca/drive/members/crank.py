@@ -21,6 +21,7 @@ from ltca.drive.deviations import (
 )
 from ltca.drive.materials import LengthProfile
 from ltca.drive.members.preload import Force, LoadConstant, Preload, Stiffness
+from ltca.drive.members.width import Inclination
 from ltca.drive.units.quantities import COUNT, grows
 
 LARGEST_DEFAULT_RACE_BORE = 10.0
@@ -88,6 +89,8 @@ class Crank:
         Bending shaft and elastic bearings of the cranks; rigid when left out.
     eccentricity_error : float
         Actual less design eccentricity, mm.
+    inclination : Inclination
+        Of the axes that the cranks turn about.
     axis_offset : AxisOffset
         Crank axis, or the centre of the crank circle, against the centre of the pin shaft.
     of : tuple of OneEccentric
@@ -101,6 +104,7 @@ class Crank:
     support: Annotated[CrankSupport | None, grows("eccentric")] = None
     eccentricity_error: Annotated[SignedLength, grows("eccentric", upon="crank.eccentricity")] = 0.0
     axis_offset: Annotated[AxisOffset, grows("carrier")] = field(default_factory=AxisOffset)
+    inclination: Inclination = field(default_factory=Inclination)
     of: tuple[OneEccentric, ...] = ()
 
     @property

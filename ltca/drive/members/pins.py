@@ -11,6 +11,7 @@ from pydantic.dataclasses import dataclass
 from ltca.drive.deviations import STRICT, AxisOffset, PlacementErrors, PositiveLength
 from ltca.drive.materials import LengthProfile
 from ltca.drive.members.preload import Stiffness
+from ltca.drive.members.width import Inclination
 from ltca.drive.units.quantities import COUNT, grows
 
 LARGEST_DEFAULT_CORE = 2.0
@@ -121,6 +122,8 @@ class PinWheel:
     axis_offset : AxisOffset
         Axis that the wheel turns about, relative to the centre of the pin shaft; a pin circle eccentric to that axis is given
         by ``pin_wheel.pin_errors``.
+    inclination : Inclination
+        Of the axis that the wheel turns about, and of all wheel pins with it.
     support_stiffness : float or None
         Radial stiffness of the wheel's main bearing, N/mm; rigid when left out.
     seat : WheelPinSeat
@@ -138,6 +141,7 @@ class PinWheel:
         default_factory=PlacementErrors
     )
     axis_offset: Annotated[AxisOffset, grows("wheel")] = field(default_factory=AxisOffset)
+    inclination: Inclination = field(default_factory=Inclination)
     support_stiffness: Stiffness | None = None
     seat: WheelPinSeat = field(default_factory=WheelPinSeat)
     beam: WheelPinBeam | None = None
@@ -187,6 +191,8 @@ class PinShaft:
         when false. Without effect on half-spaces, where the springs include everything that yields.
     pin_errors : PlacementErrors
         Errors of the shaft pins.
+    inclination : Inclination
+        Of all shaft pins.
     seat : ShaftPinSeat
         Seat of the shaft pins, with or without sleeves.
     beam : ShaftPinBeam or None
@@ -207,6 +213,7 @@ class PinShaft:
             diameter=grows("shaft_sleeve"),
         ),
     ] = field(default_factory=PlacementErrors)
+    inclination: Inclination = field(default_factory=Inclination)
     seat: ShaftPinSeat = field(default_factory=ShaftPinSeat)
     beam: ShaftPinBeam | None = None
 

@@ -1,0 +1,160 @@
+"""Rollers of a crank bearing in slices: each takes the place and the lean at which its two contacts balance in force and moment.
+
+A roller stands on its cage ray n at the distance s and leans by ψ along it. The race leans by :math:`\\lambda_c` and the bore by
+:math:`\\lambda`, so that the two contacts tilt by :math:`\\theta_i = \\lambda_c \\cdot n - \\psi` and
+:math:`\\theta_o = \\psi - \\lambda \\cdot n`: between the ray and the normal in the bore nothing is lost but the square of their
+angle. s and ψ are where the energy of both contacts is least.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ltca.arrays import ComplexArray, FloatArray
+from ltca.compliance.rollers import RollerLaws, RollerState
+from ltca.errors import ConvergenceError
+from ltca.geometry.pair_motion import RollerRays
+from ltca.laws.sliced_line import SlicedContact, SlicedLine
+
+MAX_ITERATIONS = 80
+SETTLED = 1e-10
+"""Largest force and moment (by half the length) left over, by the larger load of the two contacts."""
+
+
+def balance_leaning_rollers(
+    rays: RollerRays,
+    displacement: ComplexArray,
+    laws: RollerLaws[SlicedLine],
+    race_lean: FloatArray,
+    bore_lean: FloatArray,
+) -> RollerState:
+    """Place every roller so that its contacts balance; arguments as for `ltca.compliance.rollers.balance_rollers`.
+
+    `race_lean` and `bore_lean` are the leans of race and bore along the rays, rad, shape (positions, rollers).
+    """
+    shape = rays.direction.shape
+    half = 0.5 * laws.outer.length
+    total = rays.outermost - rays.touching_distance(displacement)
+    pressed = total + half * np.abs(race_lean - bore_lean) > 0.0
+    rows, numbers = np.nonzero(pressed)
+
+    def each(values: FloatArray | ComplexArray) -> FloatArray | ComplexArray:
+        return np.broadcast_to(values, shape)[rows, numbers]
+
+    ray, moved, outermost, play = (each(one) for one in (rays.direction, displacement, rays.outermost, rays.bore_play))
+    inner_radius, outer_radius = each(laws.inner_radius), each(laws.outer_radius)
+    at_race, at_bore, overlap = each(race_lean), each(bore_lean), each(total)
+
+    def contacts(inward: FloatArray, lean: FloatArray) -> tuple[SlicedContact, SlicedContact, ComplexArray, FloatArray]:
+        arm = (outermost - inward) * ray - moved
+        length = np.abs(arm)
+        along = ray.real * moved.real + ray.imag * moved.imag
+        lowest = outermost - overlap
+        # |s n − d| less the bore play as a product, as for rollers that do not lean.
+        outer = (overlap - inward) * (outermost - inward + lowest - 2.0 * along) / (length + play)
+        first = laws.inner.respond(inward, at_race - lean, inner_radius)
+        second = laws.outer.respond(outer, lean - at_bore, outer_radius)
+        return first, second, arm / length, length
+
+    inward, lean = 0.5 * overlap, 0.5 * (at_race + at_bore)
+    inner, outer, outward, length = contacts(inward, lean)
+    history: list[float] = []
+    for _ in range(MAX_ITERATIONS):
+        cosine = outward.real * ray.real + outward.imag * ray.imag
+        force, moment = inner.load - outer.load * cosine, outer.moment - inner.moment
+        size = np.maximum(np.maximum(inner.load, outer.load), 1e-300)
+        left = np.maximum(np.abs(force), np.abs(moment) / half) / size
+        history.append(float(np.max(left, initial=0.0)))
+        if history[-1] <= SETTLED:
+            break
+        stiff, mixed, turning = _own_stiffness(inner, outer, cosine, length)
+        # A roller that touches at one end alone turns about that end freely.
+        turning = turning + 1e-9 * half**2 * stiff
+        determinant = stiff * turning - mixed**2
+        step = -(turning * force - mixed * moment) / determinant
+        turn = -(stiff * moment - mixed * force) / determinant
+        energy = inner.energy + outer.energy
+        fraction = np.ones(step.shape)
+        for _ in range(30):
+            there = contacts(inward + fraction * step, lean + fraction * turn)
+            rise = there[0].energy + there[1].energy - energy
+            worse = rise > 1e-13 * energy
+            if not worse.any():
+                break
+            fraction = np.where(worse, 0.5 * fraction, fraction)
+        inward, lean = inward + fraction * step, lean + fraction * turn
+        inner, outer, outward, length = there
+    else:
+        raise ConvergenceError("leaning rollers do not balance between the races; force left over by the load", history)
+    cosine = outward.real * ray.real + outward.imag * ray.imag
+    found = {
+        "share": np.divide(inward, overlap, out=np.full(overlap.shape, 0.5), where=overlap > 0.0),
+        "inner_approach": inward,
+        "outer_approach": np.abs((outermost - inward) * ray - moved) - play,
+        "inner_load": inner.load,
+        "outer_load": outer.load,
+        "outer_direction": outward,
+        "tangent": _eliminated(ray, outward, cosine, length, inner, outer, half),
+        "outer_moment": outer.moment,
+        "inner_moment": inner.moment,
+    }
+    arm = rays.outermost * rays.direction - displacement
+    rest = np.abs(arm)
+    free = {
+        "share": np.full(shape, 0.5), "outer_approach": rest - rays.bore_play, "outer_direction": arm / rest,
+        "tangent": np.zeros((*shape, 4, 4)),
+    }  # fmt: skip
+    whole = {}
+    for name, values in found.items():
+        full = free.get(name, np.zeros(shape))
+        full[rows, numbers] = values
+        whole[name] = full
+    return RollerState(**whole)
+
+
+def _own_stiffness(
+    inner: SlicedContact, outer: SlicedContact, cosine: FloatArray, length: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Second derivatives of the energy by place inward and lean."""
+    bend = outer.load * (1.0 - cosine**2) / length
+    stiff = inner.by_approach + outer.by_approach * cosine**2 + bend
+    mixed = -(inner.by_tilt + outer.by_tilt * cosine)
+    return stiff, mixed, inner.moment_by_tilt + outer.moment_by_tilt
+
+
+def _eliminated(
+    ray: ComplexArray,
+    outward: ComplexArray,
+    cosine: FloatArray,
+    length: FloatArray,
+    inner: SlicedContact,
+    outer: SlicedContact,
+    half: float,
+) -> FloatArray:
+    """Second derivative of the eliminated energy by displacement (x, y) and lean (x, y) of the bore, shape (rollers, 4, 4)."""
+    slant = ray.imag * outward.real - ray.real * outward.imag
+    bend = outer.load / length
+    normal = np.stack((outward.real, outward.imag), axis=-1)
+    across = np.stack((-outward.imag, outward.real), axis=-1)
+    n = np.stack((ray.real, ray.imag), axis=-1)
+    k, x, m = (each[:, None] for each in (outer.by_approach, outer.by_tilt, outer.moment_by_tilt))
+    # By place outward and lean of the roller, for displacement and lean of the bore.
+    by_place = np.concatenate(
+        (-k * cosine[:, None] * normal - (bend * slant)[:, None] * across, -x * cosine[:, None] * n), axis=1
+    )
+    by_lean = np.concatenate((-x * normal, -m * n), axis=1)
+    direct = np.zeros((ray.size, 4, 4))
+    direct[:, :2, :2] = (
+        k[..., None] * normal[:, :, None] * normal[:, None] + bend[:, None, None] * across[:, :, None] * across[:, None]
+    )
+    direct[:, :2, 2:] = x[..., None] * normal[:, :, None] * n[:, None]
+    direct[:, 2:, :2] = direct[:, :2, 2:].swapaxes(1, 2)
+    direct[:, 2:, 2:] = m[..., None] * n[:, :, None] * n[:, None]
+    stiff, mixed, turning = _own_stiffness(inner, outer, cosine, length)
+    turning = turning + 1e-9 * half**2 * stiff
+    own = np.empty((ray.size, 2, 2))
+    own[:, 0, 0], own[:, 1, 1] = stiff, turning
+    own[:, 0, 1] = own[:, 1, 0] = -mixed
+    own[stiff <= 0.0] = np.eye(2)
+    both = np.stack((by_place, by_lean), axis=1)
+    return np.asarray(direct - np.matmul(both.swapaxes(1, 2), np.linalg.solve(own, both)))
