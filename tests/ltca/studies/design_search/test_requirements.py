@@ -55,7 +55,10 @@ def test_texts_carry_units():
             "life = 100 h: cannot be rated with materials.disc.youngs_modulus = 3039",
         ),
         ("[ring]\ninner_radius = 60.0", "ring.inner_radius: must be left out of requirements: the ring follows"),
-        ("[ring]\nbolts = { number = 2, stiffness = 1e6 }", "ring.bolts.number = 2: must be greater than or equal to 3"),
+        (
+            "[ring]\nbolts = { number = 2, stiffness = 1e6 }",
+            "ring.bolts.number = 2: must be greater than or equal to 3",
+        ),
         ('[ring]\nflange = "one-side"', 'ring.flange = "one-side": must be "free" or "built-in"'),
         ("[ring]\nwidth = 33.0", "ring.width = 33 mm: must be at most length = 32 mm"),
         ("[ring]\n[shop]\nhousing_wall = 0.0", "shop.housing_wall = 0 mm: must be greater than 0 beside [ring]"),

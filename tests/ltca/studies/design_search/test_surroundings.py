@@ -74,7 +74,7 @@ def test_what_is_left_out_follows_the_sizes_that_are_searched():
 
 
 def test_seats_lead_their_pins_and_leave_room_for_teeth():
-    """A disc reaches e + e beyond R − r; the wall of a seat ends 45° from the radius at the least depth, by the law of cosines."""
+    """A disc reaches 2e beyond R − r; the wall of a seat ends 45° from the radius at the least depth, by the law of cosines."""
     corner = math.hypot(50.0 + 2.0 * math.cos(0.25 * math.pi), 2.0 * math.sin(0.25 * math.pi))
     assert seat_depth(50.0, 2.0, 0.5) == pytest.approx(corner - 50.0, rel=1e-12)
     assert inner_radius(50.0, 2.0, 0.5) == 50.0
@@ -85,8 +85,7 @@ def test_seats_lead_their_pins_and_leave_room_for_teeth():
 
 
 def test_candidates_are_solved_with_all_of_it():
-    """Every part that yields makes the output softer, and the play of the teeth adds to the backlash: play/r_w of the planet by z_P
-    at the output."""
+    """Every part that yields makes the output softer; play/r_w of the planets adds to the backlash by their ratio."""
     reached = {}
     for name, text in (("plain", RV), ("stage", RV + "[first_stage]\nbacklash = 0.03\n"), ("all", RV + SURROUNDED)):
         requirements = parse_requirements(text)
