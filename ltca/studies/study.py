@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -21,7 +21,7 @@ from ltca.output.provenance import code_hash
 from ltca.reading.changes import with_fields
 from ltca.studies.batch_analysis import BatchSettings, Nominal, analyse_samples, solve_nominal
 from ltca.studies.designs import Design, ToleranceDesign
-from ltca.studies.shapes import coefficients_identity, shapes_of
+from ltca.studies.shapes import coefficients_identity, rings_of, shapes_of
 from ltca.studies.yields import Judged
 
 BATCH_POSITIONS = 2048
@@ -146,6 +146,16 @@ class Study:
 
     def shapes(self, numbers: Sequence[int]) -> dict[str, Drive]:
         """Return a drive of every distinct shape in batches of these numbers, by fingerprint; unsound samples have none."""
+        return self._distinct(numbers, shapes_of)
+
+    def rings(self, numbers: Sequence[int]) -> dict[str, Drive]:
+        """Return a drive of every distinct ring of finite elements in batches of these numbers, by fingerprint."""
+        return self._distinct(numbers, rings_of) if self.engine.rings or "ring.model" in self.design.names else {}
+
+    def _distinct(
+        self, numbers: Sequence[int], shapes_of: Callable[[Iterable[Drive], Engine], dict[str, Drive]]
+    ) -> dict[str, Drive]:
+        """What a function finds in all samples of batches of these numbers."""
         if not numbers:
             return {}
         if isinstance(self.design, ToleranceDesign):
