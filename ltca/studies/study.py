@@ -14,6 +14,7 @@ import numpy as np
 from ltca.analysis.engines import Engine, HalfSpace
 from ltca.arrays import FloatArray
 from ltca.drive.fields import whose, with_whose
+from ltca.drive.members.limits import Limits
 from ltca.drive.parts import Drive
 from ltca.errors import CycloError
 from ltca.geometry.placement import position_angles
@@ -59,6 +60,8 @@ class Study:
         Limits that samples are judged by; no part of the fingerprint, as they change no result.
     not_judged : dict of str to str
         Other limits of the drive file, with the reason.
+    limits : dict of str to Limit
+        All of the drive file, which are pointed out where they look like numbers in another unit.
     batch_positions : int
         Positions solved together; 0 for what suits the engine.
     """
@@ -74,6 +77,7 @@ class Study:
     drive_file: str = ""
     judged: tuple[Judged, ...] = ()
     not_judged: dict[str, str] = field(default_factory=dict)
+    limits: Limits = field(default_factory=dict)
     batch_positions: int = 0
 
     def __post_init__(self) -> None:
