@@ -139,9 +139,9 @@ def _first_stage(drive: Drive) -> Iterator[str]:
         yield f"installation.first_stage_ratio = {given:g}: must be {stage.ratio:.12g}, {teeth}, or be left out"
     if crank.support is not None and (crank.support.clearance or 0.0) > 0.0:
         yield (
-            f"crank.support.clearance = {crank.support.clearance:g} mm: must be at most 0 beside first_stage: cranks that "
-            "float in their bearings leave the planets no place in the mesh; give crank.support.preload or a clearance of 0 or less, or "
-            "installation.first_stage_ratio in place of the teeth"
+            f"crank.support.clearance = {crank.support.clearance:g} mm: must be at most 0 beside first_stage: cranks that float "
+            "in their bearings leave the planets no place in the mesh; give crank.support.preload or a clearance of 0 or less, "
+            "or installation.first_stage_ratio in place of the teeth"
         )
     if crank.circle_radius is None:
         return

@@ -154,10 +154,10 @@ def _prepared(problem: Problem, engine: Engine, arguments: argparse.Namespace) -
     find_beforehand(engine, shapes_of([problem.drive]), tell)
     find_rings_beforehand(rings_of([problem.drive], search), tell)
     if varies_ring(problem, search):
-        each, many = expected_ring_seconds(problem.drive), most_candidates(problem, arguments.generations)
+        one, many = expected_ring_seconds(problem.drive), most_candidates(problem, arguments.generations)
         tell(
             f"candidates reshape the ring of finite elements by more than {SHARED_BODY:.1%} of its height: up to {many} are "
-            f'derived, {told_seconds(many * each)} in all, and kept; ring.model = "beam" takes none'
+            f'derived, {told_seconds(many * one)} in all, and kept; ring.model = "beam" takes none'
         )
     return search
 
