@@ -93,6 +93,10 @@ class Engine(Protocol):
         """Return the engine on which what is derived for some drives serves others of nearly their bodies."""
         ...
 
+    def lending_rings(self, drives: Iterable[Drive]) -> Engine:
+        """Return the engine on which rings of finite elements of some drives serve others of nearly their rings."""
+        ...
+
     def prepare(self, drive: Drive) -> PreparedEngine:
         """Return the engine built for a drive."""
         ...
@@ -163,7 +167,7 @@ class HalfSpace:
     contacts : {"tables", "grids"}, optional
         What the paper's iteration runs on, tables by default; the other methods have their own.
     rings : tuple of Drive
-        Drives whose rings of finite elements also serve drives of nearly their rings, see `lending`.
+        Drives whose rings of finite elements also serve drives of nearly their rings, see `lending_rings`.
 
     Raises
     ------
@@ -203,7 +207,11 @@ class HalfSpace:
         return self
 
     def lending(self, drives: Iterable[Drive]) -> HalfSpace:
-        """Return an engine on which drives of nearly the rings of these are served by them; half-spaces need no coefficients."""
+        """Return the engine itself: half-spaces need no coefficients."""
+        return self
+
+    def lending_rings(self, drives: Iterable[Drive]) -> HalfSpace:
+        """Return an engine on which drives of nearly the rings of finite elements of these are served by them."""
         return replace(self, rings=_lent_rings(drives))
 
     def prepare(self, drive: Drive) -> PreparedEngine:
@@ -242,7 +250,7 @@ class CoupledEngine:
     lenders : tuple of Drive
         Drives of one disc whose coefficients also serve drives of nearly their bodies (`nearly_same_body`), see `lending`.
     rings : tuple of Drive
-        Drives whose rings of finite elements also serve drives of nearly their rings.
+        Drives whose rings of finite elements also serve drives of nearly their rings, see `lending_rings`.
 
     Raises
     ------
@@ -298,17 +306,20 @@ class CoupledEngine:
         return self.with_coefficients_of(self.bodies_of(singles)).lent_to(singles)
 
     def lending(self, drives: Iterable[Drive]) -> Self:
-        """Return an engine on which drives of nearly the bodies of these are served by their coefficients, and rings likewise.
+        """Return an engine on which drives of nearly the bodies of these are served by their coefficients.
 
         Of drives that have nearly the same body themselves the first one lends.
         """
         lenders: dict[str, Drive] = {}
-        drives = list(drives)
         for drive in drives:
             for single in single_discs(warm_drive(drive)):
                 if not any(nearly_same_body(body, single) for body in lenders.values()):
                     lenders[single.shape_fingerprint()] = single
-        return replace(self, lenders=tuple(lenders.values()), rings=_lent_rings(drives))
+        return replace(self, lenders=tuple(lenders.values()))
+
+    def lending_rings(self, drives: Iterable[Drive]) -> Self:
+        """Return an engine on which drives of nearly the rings of finite elements of these are served by them."""
+        return replace(self, rings=_lent_rings(drives))
 
     def bodies_of(self, singles: Sequence[Drive]) -> list[Drive]:
         """Return the drives whose coefficients serve warm drives of one disc: lenders that have nearly their bodies."""
@@ -427,7 +438,7 @@ def lending_between(cases: Iterable[Drive], engine: Engine) -> Engine:
     several = list(cases)
     if len(several) < 2 or not isinstance(engine, CoupledEngine) or engine.lenders or engine.coefficients is not None:
         return engine
-    return replace(engine.lending(several), rings=())  # a ring takes seconds
+    return engine.lending(several)
 
 
 def lent_words(engine: Engine, drive: Drive) -> str:

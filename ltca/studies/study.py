@@ -82,7 +82,8 @@ class Study:
 
     def __post_init__(self) -> None:
         """Let the coefficients of the cases serve samples of nearly their bodies."""
-        object.__setattr__(self, "engine", self.engine.lending(drive for _, drive in self.cases))
+        drives = [drive for _, drive in self.cases]
+        object.__setattr__(self, "engine", self.engine.lending(drives).lending_rings(drives))
 
     @property
     def settings(self) -> BatchSettings:

@@ -123,7 +123,7 @@ def _prepared(problem: Problem, engine: Engine, arguments: argparse.Namespace) -
     Where candidates reshape the bodies and nobody named the engine, on the command line or in the drive file, they are solved on
     half-spaces.
     """
-    search = engine.lending([problem.drive])
+    search = engine.lending([problem.drive]).lending_rings([problem.drive])
     warning = sampling_warning(problem.drive, position_angles(arguments.positions), refined=False)
     if warning is not None:
         tell(f"warning: {warning}")
@@ -145,7 +145,7 @@ def _prepared(problem: Problem, engine: Engine, arguments: argparse.Namespace) -
                 f"derived, {each} each, {told_seconds(most * seconds)} in all, and kept; --quick solves all on half-spaces"
             )
         else:
-            search = HalfSpace().lending([problem.drive])
+            search = HalfSpace().lending_rings([problem.drive])
             tell(
                 f"candidates reshape the bodies by more than {SHARED_BODY:.1%}: they are solved on half-spaces, the drive as it "
                 f"is and the optimum on {engine.compliance} ({each} each); --compliance {engine.compliance} derives the "

@@ -137,10 +137,10 @@ def test_scatter_within_the_bound_derives_one_ring(file, derived):
 def test_rings_are_part_of_what_a_study_is(joint):
     """A study is resumed with the rings that it began with; without finite elements nothing of it changes."""
     plain = with_fields(joint, {"ring.model": "beam"})
-    assert shapes.coefficients_identity(HalfSpace().lending([plain])) == "none"
-    assert ring_fingerprint(joint) in shapes.coefficients_identity(HalfSpace().lending([joint]))
-    assert Hybrid().lending([joint]).rings == (joint,)
-    assert HalfSpace().lending([plain]) == HalfSpace()
+    assert shapes.coefficients_identity(HalfSpace().lending_rings([plain])) == "none"
+    assert ring_fingerprint(joint) in shapes.coefficients_identity(HalfSpace().lending_rings([joint]))
+    assert Hybrid().lending_rings([joint]).rings == (joint,)
+    assert HalfSpace().lending_rings([plain]) == HalfSpace()
 
 
 def test_a_search_tells_of_rings_that_candidates_need(file, derived, monkeypatch, tmp_path, capsys):
