@@ -679,7 +679,7 @@ _DECLARED = (
     # what requirements of a design bound
     _asked("outer_diameter", "mm", "outer diameter"),
     _asked("length", "mm", "length"),
-    _asked("stiffness", "N mm/rad", "torsional stiffness of the cycloid stage"),
+    _asked("stiffness", "N mm/rad", "torsional stiffness of the reducer as described"),
     _asked("lost_motion", "arcmin", "lost motion"),
     _asked("disc_share", "1", "torque of the least loaded disc by an even share"),
     _asked("pin_gap", "mm", "gap between wheel pins"),
@@ -690,6 +690,7 @@ _DECLARED = (
     _asked("pin_size", "mm", "radius of the wheel pins beyond the least on their circle"),
     _asked("pin_slenderness", "mm", "length to which wheel pins come, beyond that of the stack"),
     _asked("flank_clearance", "mm", "least gap of the flank by its offsets"),
+    _asked("ring_seat", "mm", "depth of the seats of the wheel pins in the ring beyond the least that leads them"),
     _asked("equidistant_offset", "mm", "equidistant offset of the flank"),
     _asked("bearing_clearance", "mm", "clearance of the crank bearing"),
     _asked("pin_hole_clearance", "mm", "clearance of the holes"),

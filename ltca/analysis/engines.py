@@ -24,6 +24,7 @@ from ltca.compliance.response import Start
 from ltca.drive.engine_support import require
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Compliance, Drive
+from ltca.drive.ring_shape import has_ring_of_elements, nearly_same_ring, ring_fingerprint
 from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.output_torque import solve_at_output
@@ -79,12 +80,21 @@ class Engine(Protocol):
         """Whether its models can be stacked to that of several drives."""
         ...
 
+    @property
+    def rings(self) -> tuple[Drive, ...]:
+        """Drives whose rings of finite elements serve drives of nearly their rings."""
+        ...
+
     def with_coefficients(self, drive: Drive) -> Engine:
         """Return the engine with what it has to read or derive for a drive already in it."""
         ...
 
     def lending(self, drives: Iterable[Drive]) -> Engine:
         """Return the engine on which what is derived for some drives serves others of nearly their bodies."""
+        ...
+
+    def lending_rings(self, drives: Iterable[Drive]) -> Engine:
+        """Return the engine on which rings of finite elements of some drives serve others of nearly their rings."""
         ...
 
     def prepare(self, drive: Drive) -> PreparedEngine:
@@ -127,9 +137,12 @@ class _FromTables:
         return solve_at_output(self.model, [self.drive], crank_angle, torque, near.pose, Start.after(near.response))
 
 
-def _on_tables(drive: Drive, singles: Sequence[Drive], *, in_batch: bool = False) -> Reducer:
+def _on_tables(
+    drive: Drive, singles: Sequence[Drive], rings: tuple[Drive, ...] = (), *, in_batch: bool = False
+) -> Reducer:
     """Return the model of a warm drive on tabulated laws."""
-    return Reducer.of_drive(drive, [HalfSpaceCompliance.of_drive(single, in_batch=in_batch) for single in singles])
+    discs = [HalfSpaceCompliance.of_drive(single, in_batch=in_batch) for single in singles]
+    return Reducer.of_drive(drive, discs, ring_lender(drive, rings))
 
 
 def _method(name: str) -> Callable[[Drive, Reducer, Reducer], PreparedEngine]:
@@ -153,6 +166,8 @@ class HalfSpace:
         (`validation.methods.paper_method`), started from our solution at 95 % of the torque.
     contacts : {"tables", "grids"}, optional
         What the paper's iteration runs on, tables by default; the other methods have their own.
+    rings : tuple of Drive
+        Drives whose rings of finite elements also serve drives of nearly their rings, see `lending_rings`.
 
     Raises
     ------
@@ -165,6 +180,7 @@ class HalfSpace:
 
     method: Method = "tables"
     contacts: Contacts | None = None
+    rings: tuple[Drive, ...] = field(default=(), repr=False)
 
     def __post_init__(self) -> None:
         """Check the names; fill in the contacts of the method."""
@@ -194,13 +210,17 @@ class HalfSpace:
         """Return the engine itself: half-spaces need no coefficients."""
         return self
 
+    def lending_rings(self, drives: Iterable[Drive]) -> HalfSpace:
+        """Return an engine on which drives of nearly the rings of finite elements of these are served by them."""
+        return replace(self, rings=_lent_rings(drives))
+
     def prepare(self, drive: Drive) -> PreparedEngine:
         """Return the engine built for a drive."""
         drive = warm_drive(drive)
         if self.method != "tables":
             require(drive, self.method)
         singles = single_discs(drive)
-        tables = model = _on_tables(drive, singles)
+        tables = model = _on_tables(drive, singles, self.rings)
         if self.contacts == "grids":
             grids = tuple(GridCompliance.of_drive(single) for single in singles)
             model = replace(tables, discs=grids, friction=None)
@@ -213,7 +233,7 @@ class HalfSpace:
     def model(self, drive: Drive, *, in_batch: bool = False) -> Reducer:
         """Return the tables of a drive."""
         drive = warm_drive(drive)
-        return _on_tables(drive, single_discs(drive), in_batch=in_batch)
+        return _on_tables(drive, single_discs(drive), self.rings, in_batch=in_batch)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -229,6 +249,8 @@ class CoupledEngine:
         Whether hole walls yield like a Hertz contact.
     lenders : tuple of Drive
         Drives of one disc whose coefficients also serve drives of nearly their bodies (`nearly_same_body`), see `lending`.
+    rings : tuple of Drive
+        Drives whose rings of finite elements also serve drives of nearly their rings, see `lending_rings`.
 
     Raises
     ------
@@ -242,6 +264,7 @@ class CoupledEngine:
     coefficients: Given = field(default=None, repr=False)
     hole_near_field: bool = True
     lenders: tuple[Drive, ...] = field(default=(), repr=False)
+    rings: tuple[Drive, ...] = field(default=(), repr=False)
 
     def __post_init__(self) -> None:
         """Check the options; files become a tuple of paths, which nobody changes."""
@@ -294,6 +317,10 @@ class CoupledEngine:
                     lenders[single.shape_fingerprint()] = single
         return replace(self, lenders=tuple(lenders.values()))
 
+    def lending_rings(self, drives: Iterable[Drive]) -> Self:
+        """Return an engine on which drives of nearly the rings of finite elements of these are served by them."""
+        return replace(self, rings=_lent_rings(drives))
+
     def bodies_of(self, singles: Sequence[Drive]) -> list[Drive]:
         """Return the drives whose coefficients serve warm drives of one disc: lenders that have nearly their bodies."""
         exact = {body.shape_fingerprint(): body for body in self.lenders}
@@ -344,13 +371,14 @@ class CoupledEngine:
             CoupledCompliance.of_drive(single, own, near_field, hole_near_field=self.hole_near_field)
             for single, own in zip(singles, each, strict=True)
         ]
-        return Reducer.of_drive(drive, discs)
+        return Reducer.of_drive(drive, discs, ring_lender(drive, self.rings))
 
     def prepare(self, drive: Drive) -> PreparedEngine:
         """Return the engine built for a drive; finds or derives its coefficients."""
         drive = warm_drive(drive)
         singles = single_discs(drive)
-        return _FromTables(drive=drive, tables=_on_tables(drive, singles), model=self._model(drive, singles))
+        tables = _on_tables(drive, singles, self.rings)
+        return _FromTables(drive=drive, tables=tables, model=self._model(drive, singles))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -382,6 +410,24 @@ def nearly_same_body(first: Drive, second: Drive) -> bool:
         if abs(other[name] - value) > bound:
             return False
     return True
+
+
+def ring_lender(drive: Drive, rings: Iterable[Drive]) -> Drive | None:
+    """Return the first of some drives whose ring of finite elements serves that of a warm drive; None for its own."""
+    if not has_ring_of_elements(drive):
+        return None
+    own = ring_fingerprint(drive)
+    near = [one for one in rings if nearly_same_ring(one, drive, SHARED_BODY)]
+    return None if any(ring_fingerprint(one) == own for one in near) else next(iter(near), None)
+
+
+def _lent_rings(drives: Iterable[Drive]) -> tuple[Drive, ...]:
+    """Drives of distinct rings of finite elements: of such that are nearly the same the first."""
+    found: list[Drive] = []
+    for drive in map(warm_drive, drives):
+        if has_ring_of_elements(drive) and not any(nearly_same_ring(one, drive, SHARED_BODY) for one in found):
+            found.append(drive)
+    return tuple(found)
 
 
 def lending_between(cases: Iterable[Drive], engine: Engine) -> Engine:

@@ -8,14 +8,18 @@ from pathlib import Path
 from ltca.drive.parts import Drive
 from ltca.output.resources import require_room
 
-# The paper's drive, CS-1, half-space: 24 kB at the most and 2 kB in results.nc for each position of its 39 pairs
-# (3,600 to 14,400 positions); hybrid and fe take 34 kB. Analyses of all cases are held together, their working memory once.
-MEMORY_PER_PAIR = 900.0
+MEMORY_PER_PAIR, SEVERAL_DISCS, DISPLACED_PINS = 1300.0, 2.0, 1.65
+"""Memory for one pair of contacts at one position of a drive of one disc, bytes, and its factors with several discs and where
+pins are displaced, whose forces and slopes are solved together. At the most: by position and pair 0.6 kB (half-space) and 1.3 kB
+(hybrid) for the paper's drive, 1.6 and 2.6 kB for the joint, 2.3 and 4.1 kB for it on a ring, 4.3 kB with friction. Analyses of
+all cases are held together, their working memory once."""
 DISC_PER_PAIR = 60.0
+"""Of results.nc, 2 kB for each position of the paper's drive."""
 
 
-MEMORY_PER_PART = 2e8
-"""Memory for one part of an analysis that is solved part by part, bytes: all turns of the paper's drive are one part."""
+MEMORY_PER_PART, PART_PER_PAIR = 2e8, 900.0
+"""Memory for one part of an analysis that is solved part by part, and for a pair of it, bytes: all turns of the paper's drive
+are one part."""
 
 
 KEPT_PER_POSITION = 1e3
@@ -24,7 +28,20 @@ KEPT_PER_POSITION = 1e3
 
 def positions_together(drive: Drive) -> int:
     """Return how many positions of a drive are solved at once where an analysis is solved part by part."""
-    return max(1, int(MEMORY_PER_PART / (MEMORY_PER_PAIR * pairs_of(drive))))
+    each = PART_PER_PAIR * (DISPLACED_PINS if _displaces_pins(drive) else 1.0)
+    return max(1, int(MEMORY_PER_PART / (each * pairs_of(drive))))
+
+
+def memory_per_position(drive: Drive) -> float:
+    """Return the memory for one position of an analysis at the most, bytes."""
+    several = SEVERAL_DISCS if drive.disc.number_of_discs > 1 else 1.0
+    return MEMORY_PER_PAIR * pairs_of(drive) * several * (DISPLACED_PINS if _displaces_pins(drive) else 1.0)
+
+
+def _displaces_pins(drive: Drive) -> bool:
+    """Whether something displaces pins under the forces of others: a ring, or beams between discs."""
+    beams = [part.beam for part in (drive.pin_wheel, drive.pin_shaft) if part is not None]
+    return drive.ring is not None or (drive.disc.number_of_discs > 1 and any(beam is not None for beam in beams))
 
 
 def pairs_of(drive: Drive) -> int:
@@ -78,7 +95,6 @@ def require_room_for(drives: Iterable[Drive], positions: int, folder: Path, opti
     PlaceError
         With the numbers.
     """
-    pairs = sum(map(pairs_of, drives))
-    require_room(
-        DISC_PER_PAIR * pairs * positions, memory=MEMORY_PER_PAIR * pairs * positions, folder=folder, option=option
-    )
+    cases = list(drives)
+    kept = DISC_PER_PAIR * sum(map(pairs_of, cases)) * positions
+    require_room(kept, memory=sum(map(memory_per_position, cases)) * positions, folder=folder, option=option)

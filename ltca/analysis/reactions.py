@@ -59,13 +59,14 @@ def crank_support_forces(analysis: LoadedAnalysis) -> ComplexArray | None:
 
 
 def _main_bearing(analysis: LoadedAnalysis) -> dict[str, FloatArray]:
-    """Force and moment of the housing on the output where forces from outside act on it, in the frame of the housing.
+    """Force and moment of the housing on the output where its main bearing is described or forces from outside act on it, in the
+    frame of the housing.
 
     Moments are about the zero of the planes of the discs. Forces off that plane and along the axis tilt the output; nothing
     yields in tilt, so they load the main bearing alone.
     """
     drive, full = analysis.drive, analysis.full
-    if not drive.load.external:
+    if not (drive.load.external or drive.wheel_yields):
         return {}
     wheel = unit(full.crank_angle / drive.reduction_ratio)
     into_housing = wheel.conjugate() if drive.wheel_is_held else np.ones(wheel.shape, dtype=complex)

@@ -279,7 +279,7 @@ def _of_friction(analysis: LoadedAnalysis, arrays: Mapping[str, FloatArray]) -> 
 
 
 def _of_main_bearing(arrays: Mapping[str, FloatArray]) -> dict[str, float]:
-    """Largest loads of the main bearing; nothing without forces from outside."""
+    """Largest loads of the main bearing; nothing where the file says nothing of it."""
     if "main_bearing_x" not in arrays:
         return {}
     return {

@@ -170,7 +170,7 @@ def torque_curve(
 
 
 def torsional_stiffness(drive: Drive, crank_angle: FloatArray, *, engine: Engine | None = None) -> FloatArray:
-    """Return the `TorqueCurve.stiffness` alone, which takes a third of the time: small torques are the dear ones.
+    """Return the `TorqueCurve.reducer_stiffness` alone, which takes a third of the time: small torques are the dear ones.
 
     Parameters are those of `torque_curve`; shape (angles, 2), N·mm/rad.
     """
@@ -180,7 +180,7 @@ def torsional_stiffness(drive: Drive, crank_angle: FloatArray, *, engine: Engine
     model = replace((HalfSpace() if engine is None else engine).prepare(drive).model, friction=None)
     loads = sense * rated * np.tile(parts, angles.size)
     found = solve_at_output(model, [drive], np.repeat(angles, parts.size), loads)
-    wheel = found.pose[:, WHEEL_ANGLE].reshape(angles.size, parts.size)
+    wheel = wheel_angle_of_input(model, found).reshape(angles.size, parts.size)
     output = drive.output_deviation(wheel, sense * rated * parts)
     return np.asarray((1.0 - STIFF_FROM) * rated / np.diff(output, axis=1)[:, [0, 2]])
 

@@ -45,18 +45,20 @@ class FollowingPins:
     ----------
     shifts : array of complex, shape (positions, discs, pairs)
         mm.
-    by_pose : array of complex, shape (positions, discs, pairs, coordinates)
-        mm by mm and rad.
+    by_pose : array of complex, shape (positions, discs, pairs, coordinates), or None
+        mm by mm and rad; None where balanced positions are kept, of which it would be a quarter of the memory.
     pose : array, shape (positions, coordinates)
         q.
     """
 
     shifts: ComplexArray
-    by_pose: ComplexArray
+    by_pose: ComplexArray | None
     pose: FloatArray
 
     def at(self, pose: FloatArray) -> ComplexArray:
         """Return the displacements to expect at other poses of the same positions."""
+        if self.by_pose is None:
+            return self.shifts
         moved: ComplexArray = np.einsum("bdpq,bq->bdp", self.by_pose, pose - self.pose)
         return self.shifts + moved
 
@@ -164,6 +166,12 @@ class Response(DiscResponse):
     def of_disc(cls, part: DiscResponse) -> Response:
         """Return the contacts of one disc as those of a reducer that has no other."""
         return cls(**{item.name: getattr(part, item.name) for item in fields(DiscResponse)}, parts=(part,))
+
+    @property
+    def kept(self) -> Response:
+        """The response of balanced positions without what the search alone asks for, which is two fifths of one on a ring."""
+        follow = None if self.follow is None else replace(self.follow, by_pose=None)
+        return replace(self, follow=follow, parts=tuple(replace(part, slopes=None) for part in self.parts))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -32,16 +32,21 @@ DERIVATION = "ring"
 HARMONICS = 4000
 """Of the pressure on a seat; the rest of the sum is below 1e-6 of it."""
 
+SECONDS_PER_PIN = 0.05
+"""Time of a derivation on one core, s: 0.7 s for 14 pins, 1.8 s for 40."""
+
 _KNOWN: dict[str, FloatArray] = {}
 """Flexibilities of the rings that this process has read, by fingerprint."""
 MAX_KNOWN = 16
 
 
-def ring_flexibility(drive: Drive) -> FloatArray | None:
+def ring_flexibility(drive: Drive, lender: Drive | None = None) -> FloatArray | None:
     """Return displacements of the seats of the wheel pins of a drive under unit forces there; None where the ring is rigid.
 
     Shape (z_P, 2, z_P, 2) by seat and component in the wheel, mm/N. Forces act at the centres of the seats, evenly spaced: errors
-    of single seats are far too small to matter here.
+    of single seats are far too small to matter here. A ring of finite elements has the shape of that of the `lender`, if one is
+    given, a drive of nearly the same ring (`ltca.drive.ring_shape.nearly_same_ring`); modulus, width and stiffness of the bolts
+    are its own.
 
     Raises
     ------
@@ -50,17 +55,18 @@ def ring_flexibility(drive: Drive) -> FloatArray | None:
     """
     if not has_ring_of_elements(drive):
         return beam_flexibility(drive)
-    found = _of_elements(drive)
+    found = _of_elements(drive, drive if lender is None else lender)
     # What is left of a stiff wall may be negative; with the law of the slot, which is in series, it is the ring's own again.
     return found - _of_slot(drive) if drive.pin_wheel.seat.kind == "slot" else found
 
 
-def _of_elements(drive: Drive) -> FloatArray:
-    """The flexibility of a plane ring of a drive at its seats, bolts included, mm/N."""
-    ring, wheel = drive.ring, drive.pin_wheel
+def _of_elements(drive: Drive, lender: Drive) -> FloatArray:
+    """The flexibility of a plane ring of a drive at its seats, bolts included, with the shape of that of the lender, mm/N."""
+    ring, own, wheel = lender.ring, drive.ring, lender.pin_wheel
     assert ring is not None
-    unit = 1.0 / (ring.material.youngs_modulus * ring.width)
-    among, pins = unit * _known(drive), wheel.number_of_pins
+    assert own is not None
+    unit = 1.0 / (own.material.youngs_modulus * own.width)
+    among, pins = unit * _known(lender), wheel.number_of_pins
     seats = 2.0 * pi * np.arange(pins) / pins
     places, radii = seats, np.full(pins, wheel.pin_circle_radius)
     if ring.flange == "built-in":
@@ -72,7 +78,23 @@ def _of_elements(drive: Drive) -> FloatArray:
     places = np.concatenate((seats, bolts))
     radii = np.concatenate((radii, np.full(bolts.size, ring.bolts.circle_radius)))
     modes = rigid_motions(places, radii).reshape(-1, 3)
-    return on_bolts(among.reshape(2 * places.size, -1), modes, pins, ring.bolts.stiffness)
+    assert own.bolts is not None  # nearly the same ring has as many
+    return on_bolts(among.reshape(2 * places.size, -1), modes, pins, own.bolts.stiffness)
+
+
+def has_ring(drive: Drive) -> bool:
+    """Tell whether the plane ring of a drive is there without being derived."""
+    return ring_fingerprint(drive) in _KNOWN or kept_file(file_name(drive)).exists()
+
+
+def expected_ring_seconds(drive: Drive) -> float:
+    """Return about how long the derivation of the ring of a drive takes on one core, s."""
+    return SECONDS_PER_PIN * drive.pin_wheel.number_of_pins
+
+
+def derive_beforehand(drive: Drive) -> None:
+    """Derive the plane ring of a drive, so that it is found; CycloError where that cannot be."""
+    _known(drive)
 
 
 def _known(drive: Drive) -> FloatArray:

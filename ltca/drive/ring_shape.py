@@ -108,6 +108,29 @@ def ring_shape(drive: Drive) -> dict[str, float]:
     return {name: float(f"{value:.12g}") for name, value in shape.items()}
 
 
+def nearly_same_ring(first: Drive, second: Drive, bound: float) -> bool:
+    """Tell whether plane rings of two drives differ so little that one may serve the other: as parts of the pin circle, which
+    alone scales a ring, radii by at most `bound` of the radial height, seats by `bound` of their radius; numbers are equal.
+    """
+    one, other = ring_shape(first), ring_shape(second)
+    if not one or one.keys() != other.keys():
+        return False
+    scale = one["pin_wheel.pin_circle_radius"] / other["pin_wheel.pin_circle_radius"]
+    height = one["ring.outer_radius"] - one["ring.inner_radius"]
+    for name, value in one.items():
+        if name == "pin_wheel.pin_circle_radius":
+            continue
+        length = name.endswith("_radius")
+        far = abs(other[name] * (scale if length else 1.0) - value)
+        if name == "ring.material.poisson_ratio" or name == "seat_radius":
+            most = bound * value
+        else:
+            most = bound * height if length else 0.0
+        if far > most:
+            return False
+    return True
+
+
 def ring_fingerprint(drive: Drive) -> str:
     """Return a hash of `ring_shape` (hex, 16 digits), the key of a file of the ring's flexibility."""
     return fingerprint_of(ring_shape(drive))

@@ -335,6 +335,11 @@ def _odd_stiffnesses(drive: Drive) -> Iterator[str]:
     }
     if drive.ring is not None and drive.ring.bolts is not None:
         given["ring.bolts.stiffness"] = drive.ring.bolts.stiffness
+    if drive.first_stage is not None:
+        given["first_stage.mesh_stiffness"] = drive.first_stage.mesh_stiffness
+    for number, row in enumerate(() if drive.main_bearing is None else drive.main_bearing.bearings):
+        path = f"main_bearing.bearings.{number}"
+        given |= {f"{path}.radial_stiffness": row.radial_stiffness, f"{path}.axial_stiffness": row.axial_stiffness}
     if support is not None:
         given |= {f"crank.support.stiffness[{number}]": one for number, one in enumerate(support.stiffness)}
     for path, value in given.items():
@@ -394,6 +399,7 @@ def _odd_lengths(drive: Drive) -> Iterator[str]:
         "disc.shifting_offset": drive.disc.shifting_offset,
         "clearance.bearing": drive.clearance.bearing,
         "clearance.pin_hole": drive.clearance.pin_hole,
+        **_plays(drive),
     }
     finest = min(FINEST, FINE * drive.pin_wheel.pin_radius)
     for path, value in fine.items():
@@ -402,6 +408,18 @@ def _odd_lengths(drive: Drive) -> Iterator[str]:
                 f"{path} = {value:g} mm is {1000.0 * value:g} µm, finer than machines hold; did you mean "
                 f'"{value:g} m", {1000.0 * value:g} mm?'
             )
+
+
+def _plays(drive: Drive) -> dict[str, float]:
+    """Clearances, preloads by displacement and backlash of what holds the contacts, by path, mm."""
+    found = {} if drive.first_stage is None else {"first_stage.backlash": drive.first_stage.backlash}
+    bearing, support = drive.main_bearing, drive.crank.support
+    held = [(path, one) for path, one in (("main_bearing", bearing), ("crank.support", support)) if one is not None]
+    found |= {f"{path}.clearance": one.clearance or 0.0 for path, one in held}
+    preloads = [(f"{path}.preload", one.preload) for path, one in held]
+    for number, row in enumerate(() if bearing is None else bearing.bearings):
+        preloads.append((f"main_bearing.bearings.{number}.preload", row.preload))
+    return found | {f"{path}.displacement": one.displacement or 0.0 for path, one in preloads if one is not None}
 
 
 def _lengths_beside(drive: Drive) -> Iterator[tuple[str, float, float, str]]:
@@ -421,6 +439,16 @@ def _lengths_beside(drive: Drive) -> Iterator[tuple[str, float, float, str]]:
     if support is not None:
         inner = 2.0 * bearing.inner_race_radius
         yield "crank.support.diameter", support.diameter, inner, "the diameter of the inner race on it"
+    ring = drive.ring
+    if ring is not None:
+        yield "ring.outer_radius", ring.outer_radius, half_circle, "half the pin circle radius"
+        yield "ring.width", ring.width, stack, "the thickness of all discs"
+        if ring.bolts is not None:
+            yield "ring.bolts.circle_radius", ring.bolts.circle_radius, half_circle, "half the pin circle radius"
+    for number, row in enumerate(() if drive.main_bearing is None else drive.main_bearing.bearings):
+        if row.pitch_radius is not None:
+            path = f"main_bearing.bearings.{number}.pitch_radius"
+            yield path, row.pitch_radius, half_circle, "half the pin circle radius"
     posts = None if drive.carrier is None else drive.carrier.posts
     if posts is not None:
         yield "carrier.posts.radius", posts.radius, half_circle, "half the pin circle radius"

@@ -100,7 +100,7 @@ def _against_flanges(model: Reducer, moved: FloatArray) -> FloatArray:
     coordinates = model.coordinates
     bent = moved.copy()
     for number, disc in enumerate(model.discs):
-        by_flange = np.einsum("...cj,bj->bc", disc.geometry.cranks_by_ring, moved[:, coordinates.ring_place])
+        by_flange = np.matmul(disc.geometry.cranks_by_ring, moved[:, coordinates.ring_place, None])[..., 0]
         for crank in range(coordinates.cranks):
             x = coordinates.own * number + coordinates.crank(crank)
             bent[:, x] -= by_flange[:, crank].real

@@ -58,9 +58,12 @@ class PinDisplacements:
     ring: FloatArray | None = by_drive(4, default=None)
 
     @classmethod
-    def of_drive(cls, drive: Drive) -> PinDisplacements | None:
-        """Return what displaces the pins of a drive; None where they stand still but for what each disc alone bends."""
-        beams, ring = _beams(drive), ring_flexibility(drive)
+    def of_drive(cls, drive: Drive, lender: Drive | None = None) -> PinDisplacements | None:
+        """Return what displaces the pins of a drive; None where they stand still but for what each disc alone bends.
+
+        A ring of finite elements takes the shape of that of the `lender`, if one is given (`ring_flexibility`).
+        """
+        beams, ring = _beams(drive), ring_flexibility(drive, lender)
         if ring is None and not beams.any():
             return None
         return cls(beams=beams, ring=ring)

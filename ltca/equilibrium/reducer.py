@@ -125,12 +125,12 @@ class Reducer:
     _by_position: bool | None = field(init=False, repr=False, compare=False, default=None)
 
     @classmethod
-    def of_drive(cls, drive: Drive, discs: Sequence[DiscModel]) -> Reducer:
-        """Return the reducer of a drive whose discs yield by these models."""
+    def of_drive(cls, drive: Drive, discs: Sequence[DiscModel], ring_lender: Drive | None = None) -> Reducer:
+        """Return the reducer of a drive whose discs yield by these models; a ring of finite elements may be that of a lender."""
         return cls(
             discs=tuple(discs),
             supports=Supports.of_drive(drive, discs[0].geometry),
-            pins=PinDisplacements.of_drive(drive),
+            pins=PinDisplacements.of_drive(drive, ring_lender),
             flange=far_flange_stiffness(drive),
             friction=TurningFriction.of_drive(drive),
             stage=StageMesh.of_drive(drive),

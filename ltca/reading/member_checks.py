@@ -140,7 +140,8 @@ def _first_stage(drive: Drive) -> Iterator[str]:
     if crank.support is not None and (crank.support.clearance or 0.0) > 0.0:
         yield (
             f"crank.support.clearance = {crank.support.clearance:g} mm: must be at most 0 beside first_stage: cranks that float "
-            "in their bearings leave the planets no place in the mesh"
+            "in their bearings leave the planets no place in the mesh; give crank.support.preload or a clearance of 0 or less, "
+            "or installation.first_stage_ratio in place of the teeth"
         )
     if crank.circle_radius is None:
         return

@@ -27,7 +27,7 @@ from ltca.quantities import SCALARS
 from ltca.reading.changes import with_fields
 from ltca.studies.batch_analysis import BatchSettings, analyse_samples
 from ltca.studies.quantities import check_quantities, quantities_for
-from ltca.studies.shapes import shapes_of
+from ltca.studies.shapes import rings_of, shapes_of
 
 Analysis = Callable[[Sequence[Drive]], FloatArray]
 """Quantities of drives, shape (drives, quantities), not a number where one fails."""
@@ -313,12 +313,21 @@ def most_candidates(problem: Problem, generations: int) -> int:
 
 def varies_shape(problem: Problem, engine: Engine) -> bool:
     """Tell whether candidates differ so much in shape or material that an engine has coefficients for each."""
-    ends = [
+    ends = _ends(problem)
+    return len(shapes_of([problem.drive, *ends], engine)) > len(shapes_of([problem.drive], engine))
+
+
+def varies_ring(problem: Problem, engine: Engine) -> bool:
+    """Tell whether candidates differ so much in the shape of a ring of finite elements that each has its own."""
+    return len(rings_of([problem.drive, *_ends(problem)], engine)) > 1
+
+
+def _ends(problem: Problem) -> list[Drive]:
+    return [
         with_fields(problem.drive, {variable.path: value}, check=False)
         for variable in problem.variables
         for value in (variable.low, variable.high)
     ]
-    return len(shapes_of([problem.drive, *ends], engine)) > len(shapes_of([problem.drive], engine))
 
 
 def _simplex(place: FloatArray) -> FloatArray:

@@ -18,7 +18,7 @@ from ltca.studies.batch_analysis import analyse_samples
 from ltca.studies.execution.storage import StudyFolder
 from ltca.studies.execution.workers import Workers, solve_batches
 from ltca.studies.sensitivity import rank
-from ltca.studies.shapes import find_beforehand
+from ltca.studies.shapes import find_beforehand, find_rings_beforehand
 from ltca.studies.study import Study
 from ltca.studies.study_results import PERCENTILES, QuantitySummary, read_failures, read_quantity, summarise_quantity
 from ltca.studies.yields import Yield, find_yield
@@ -73,6 +73,12 @@ def run_study(
     sample has influence coefficients, or workers die again and again.
     """
     left = folder.prepare(study, resume, told, replace=replace)
+    if study.engine.rings:
+        told(
+            f"samples whose ring differs from that of the drive by at most {SHARED_BODY:.1%} of its height and of its seats take "
+            "its finite elements (single loads within some 0.3 % of the largest)"
+        )
+        find_rings_beforehand(study.rings(left), told)
     if not study.engine.batches:
         told(
             f"samples whose bodies differ from those of the drive by at most {SHARED_BODY:.1%} in every number take its "

@@ -10,14 +10,14 @@ import hashlib
 from collections import OrderedDict
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, nullcontext, suppress
-from dataclasses import fields
+from dataclasses import fields, replace
 from importlib.metadata import entry_points
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ltca.analysis.engines import CoupledEngine, Engine
+from ltca.analysis.engines import CoupledEngine, Engine, ring_lender
 from ltca.compliance.coefficient_files import (
     GROUP,
     cache_folder,
@@ -29,8 +29,10 @@ from ltca.compliance.coefficient_files import (
 )
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.compliance.near_field import NEAR_FIELDS
+from ltca.compliance.ring import derive_beforehand, expected_ring_seconds, has_ring
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Drive
+from ltca.drive.ring_shape import has_ring_of_elements, ring_fingerprint
 from ltca.drive.single_discs import single_discs
 from ltca.errors import CycloError
 from ltca.output.locks import held
@@ -62,7 +64,7 @@ def with_kept_coefficients(engine: Engine, drive: Drive) -> Engine:
         if len(_ENGINES) > MAX_KEPT_SHAPES:
             _ENGINES.popitem(last=False)
     _ENGINES.move_to_end(key)
-    return _ENGINES[key].lent_to(singles)
+    return replace(_ENGINES[key].lent_to(singles), rings=engine.rings)
 
 
 def _given(engine: Engine) -> Any:
@@ -95,6 +97,40 @@ def shapes_of(drives: Iterable[Drive], engine: Engine | None = None) -> dict[str
         for body in engine.bodies_of(singles) if isinstance(engine, CoupledEngine) else singles:
             found.setdefault(body.shape_fingerprint(), body)
     return found
+
+
+def rings_of(drives: Iterable[Drive], engine: Engine) -> dict[str, Drive]:
+    """Return the first drive of every distinct ring of finite elements that an engine needs, by fingerprint of the ring."""
+    found: dict[str, Drive] = {}
+    for drive in drives:
+        if has_ring_of_elements(drive):
+            own = warm_drive(drive)
+            ring = ring_lender(own, engine.rings) or own
+            found.setdefault(ring_fingerprint(ring), ring)
+    return found
+
+
+def find_rings_beforehand(rings: Mapping[str, Drive], told: Callable[[str], None]) -> None:
+    """Derive the rings that a study will need in this process, so that its workers find them, and say so.
+
+    Raises `CycloError` when none can be derived; one that alone cannot is left to its samples, which say why.
+    """
+    missing = [drive for drive in rings.values() if not has_ring(drive)]
+    if not missing:
+        return
+    seconds = sum(map(expected_ring_seconds, missing))
+    told(
+        f"{len(missing)} shape{'s' * (len(missing) > 1)} of the ring by finite elements: derived first, "
+        f"{told_seconds(seconds)} in all, and kept"
+    )
+    failures = []
+    for drive in missing:
+        try:
+            derive_beforehand(drive)
+        except CycloError as error:
+            failures.append(error)
+    if len(failures) == len(rings):
+        raise failures[0]
 
 
 def find_beforehand(engine: Engine, shapes: Mapping[str, Drive], told: Callable[[str], None]) -> None:
@@ -137,6 +173,12 @@ def find_beforehand(engine: Engine, shapes: Mapping[str, Drive], told: Callable[
 
 def coefficients_identity(engine: Engine) -> str:
     """Return what tells the coefficients of an engine from others: hash of what was given or of what derives them."""
+    ring = "".join(f" ring {ring_fingerprint(drive)}" for drive in engine.rings)
+    ring += f" derived {code_hash('fem')}" if ring else ""
+    return _coefficients_identity(engine) + ring
+
+
+def _coefficients_identity(engine: Engine) -> str:
     given = _given(engine)
     if engine.batches:
         return "none"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -14,6 +14,7 @@ import numpy as np
 from ltca.analysis.engines import Engine, HalfSpace
 from ltca.arrays import FloatArray
 from ltca.drive.fields import whose, with_whose
+from ltca.drive.members.limits import Limits
 from ltca.drive.parts import Drive
 from ltca.errors import CycloError
 from ltca.geometry.placement import position_angles
@@ -21,7 +22,7 @@ from ltca.output.provenance import code_hash
 from ltca.reading.changes import with_fields
 from ltca.studies.batch_analysis import BatchSettings, Nominal, analyse_samples, solve_nominal
 from ltca.studies.designs import Design, ToleranceDesign
-from ltca.studies.shapes import coefficients_identity, shapes_of
+from ltca.studies.shapes import coefficients_identity, rings_of, shapes_of
 from ltca.studies.yields import Judged
 
 BATCH_POSITIONS = 2048
@@ -59,6 +60,8 @@ class Study:
         Limits that samples are judged by; no part of the fingerprint, as they change no result.
     not_judged : dict of str to str
         Other limits of the drive file, with the reason.
+    limits : dict of str to Limit
+        All of the drive file, which are pointed out where they look like numbers in another unit.
     batch_positions : int
         Positions solved together; 0 for what suits the engine.
     """
@@ -74,11 +77,13 @@ class Study:
     drive_file: str = ""
     judged: tuple[Judged, ...] = ()
     not_judged: dict[str, str] = field(default_factory=dict)
+    limits: Limits = field(default_factory=dict)
     batch_positions: int = 0
 
     def __post_init__(self) -> None:
         """Let the coefficients of the cases serve samples of nearly their bodies."""
-        object.__setattr__(self, "engine", self.engine.lending(drive for _, drive in self.cases))
+        drives = [drive for _, drive in self.cases]
+        object.__setattr__(self, "engine", self.engine.lending(drives).lending_rings(drives))
 
     @property
     def settings(self) -> BatchSettings:
@@ -146,6 +151,16 @@ class Study:
 
     def shapes(self, numbers: Sequence[int]) -> dict[str, Drive]:
         """Return a drive of every distinct shape in batches of these numbers, by fingerprint; unsound samples have none."""
+        return self._distinct(numbers, shapes_of)
+
+    def rings(self, numbers: Sequence[int]) -> dict[str, Drive]:
+        """Return a drive of every distinct ring of finite elements in batches of these numbers, by fingerprint."""
+        return self._distinct(numbers, rings_of) if self.engine.rings or "ring.model" in self.design.names else {}
+
+    def _distinct(
+        self, numbers: Sequence[int], shapes_of: Callable[[Iterable[Drive], Engine], dict[str, Drive]]
+    ) -> dict[str, Drive]:
+        """What a function finds in all samples of batches of these numbers."""
         if not numbers:
             return {}
         if isinstance(self.design, ToleranceDesign):

@@ -84,4 +84,5 @@ def tolerance_study(
         drive_file=file.text,
         judged=judged,
         not_judged=not_judged,
+        limits=file.limits.get(name, {}),
     )

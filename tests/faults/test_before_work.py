@@ -4,14 +4,20 @@ from __future__ import annotations
 
 import re
 import time
+import tracemalloc
 
 import pytest
 
+from ltca.analysis.loaded_analysis import analyse
+from ltca.analysis.memory_need import memory_per_position
 from ltca.commands.program import main
 from ltca.errors import PlaceError
+from ltca.geometry.placement import position_angles
 from ltca.output import progress as progress_module, resources
 from ltca.output.progress import progress, steps
 from ltca.output.resources import require_room
+from ltca.reading.changes import with_fields
+from ltca.reading.drive_file import load_drive
 
 
 @pytest.mark.parametrize(
@@ -34,6 +40,30 @@ def test_memory_that_is_not_there(words, free, option, tmp_path, capsys, monkeyp
     assert option in said
     assert said.count("\n") == 1
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("ring", [None, {"inner_radius": 60.0, "outer_radius": 90.0, "width": 50.0}])
+def test_memory_is_told_before(ring):
+    """A ring couples all pins: displacements, slopes and their blocks were not counted, nor several discs.
+
+    The estimate is that of the dearest engine; half-spaces take a third of it at least, all told.
+    """
+    drive = load_drive("robot-joint").cases["nominal"]
+    drive = drive if ring is None else with_fields(drive, {"ring": ring})
+    positions = position_angles(40)
+    analyse(drive, positions[:4])  # what is made once
+    tracemalloc.start()
+    try:
+        analysis = analyse(drive, positions)
+        _, peak = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert 0.3 < peak / (memory_per_position(drive) * positions.size) < 1.0
+    # What only the search asks for is not kept.
+    response = analysis.full.response
+    assert all(part.slopes is None for part in response.parts)
+    assert (response.follow is None) == (ring is None)
+    assert response.follow is None or response.follow.by_pose is None
 
 
 def test_room_on_the_disc(tmp_path, monkeypatch):

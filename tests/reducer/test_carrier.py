@@ -12,6 +12,7 @@ from ltca.analysis.friction.hysteresis import locked_path
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.summary import summarise
 from ltca.analysis.torque_curve import torque_curve
+from ltca.arrays import stack_drives
 from ltca.compliance.response import bearing_pushes
 from ltca.drive.parts import (
     Carrier,
@@ -22,6 +23,7 @@ from ltca.drive.parts import (
     Material,
     ShaftPinBeam,
 )
+from ltca.equilibrium.compliance_shares import compliance_shares
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.supports import Supports
 from ltca.errors import DriveError
@@ -277,6 +279,21 @@ def test_scattered_carriers_are_solved_together():
     alone = np.concatenate([analyse_samples([drive], settings).values for drive in drives])
     np.testing.assert_allclose(together, alone, rtol=1e-9)
     assert np.ptp(together[:, 0]) > 1e-3 * np.abs(together[0, 0])
+
+
+def test_shares_of_a_batch_are_those_of_each_drive():
+    """Cranks on circles of their own were refused by an index that the sum had lost."""
+    base = kind("cranks")
+    circle = base.crank.circle_radius
+    drives = {f"{part}": with_fields(base, {"crank.circle_radius": part * circle}) for part in (1.0, 1.02)}
+    model = stack_drives([HalfSpace().model(drive, in_batch=True) for drive in drives.values()], ANGLES.size)
+    both = list(drives.values())
+    torques = np.repeat([drive.load.torque for drive in both], ANGLES.size)
+    found = compliance_shares(model, solve_at_output(model, both, np.tile(ANGLES, 2), torques))
+    for number, drive in enumerate(both):
+        for part, shares in analyse(drive, ANGLES).compliance_shares.items():
+            own = found[part][number * ANGLES.size : (number + 1) * ANGLES.size]
+            np.testing.assert_allclose(own, shares, atol=1e-6)  # of finite steps from poses balanced to 1e-9
 
 
 def test_a_warm_carrier_grows():

@@ -91,6 +91,22 @@ def test_the_main_bearing_holds_all_of_it(joint, held):
     assert summary["max_main_bearing_radial_N"] == pytest.approx(np.hypot(force[:, 0], force[:, 1]).max(), rel=1e-9)
 
 
+@pytest.mark.parametrize("held", ["pin-shaft", "pin-wheel"])
+@pytest.mark.parametrize("given", ["main_bearing.radial_stiffness", "pin_wheel.support_stiffness"])
+def test_a_main_bearing_tells_what_it_carries_of_the_drive_alone(paper, held, given):
+    """Its force was told beside forces from outside only. It is that of its spring, k u, from the other side of the balance."""
+    drive = with_fields(paper, {"installation.held": held, given: 2e5})
+    found = analyse(drive, ANGLES)
+    told = reaction_values(found)
+    force = told["main_bearing_x"] + 1j * told["main_bearing_y"]
+    turned = -1.0 if held == "pin-shaft" else np.exp(-1j * ANGLES / drive.reduction_ratio)
+    by_spring = 2e5 * wheel(found) * turned
+    np.testing.assert_allclose(force, by_spring, atol=1e-6 * np.abs(by_spring).max())  # the balance of the wheel
+    assert np.abs(by_spring).min() > 1.0
+    assert summarise(found)["max_main_bearing_radial_N"] == pytest.approx(np.abs(force).max(), rel=1e-12)
+    assert "main_bearing_x" not in reaction_values(analyse(paper, ANGLES[:1]))
+
+
 def test_planets_push_the_carrier(joint):
     """The carrier of a held wheel is the output: what the sun presses on its planets passes through the main bearing."""
     rv = load_drive("rv").cases["nominal"]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -50,7 +50,12 @@ class ComparedPosition:
 def compare_case(
     drive: Drive, positions: Sequence[FullPosition], coefficients: DiscCoefficients
 ) -> list[ComparedPosition]:
-    """Answer the positions of one case with all models and compare them disc by disc, in the order of `positions`."""
+    """Answer the positions of one case with all models and compare them disc by disc, in the order of `positions`.
+
+    A ring of the wheel is of finite elements in all of them, as in the full solution, whatever ``ring.model`` says.
+    """
+    if drive.ring is not None:
+        drive = replace(drive, ring=replace(drive.ring, model="fe"))
     angles = list(dict.fromkeys(position.crank_angle for position in positions))
     analyses = {model: analyse(drive, np.array(angles), engine=engine_of(model, coefficients)) for model in MODELS}
     of_discs = coefficients if isinstance(coefficients, tuple) else (coefficients,)

@@ -3,7 +3,8 @@
 Every input is changed by a little, with what belongs to it, and the drive is solved again, on half-spaces: elasticities
 d ln v/d ln x of all values come from one solution for each input. What a change would have to be follows from a power law,
 so the change is approximate; nothing is said of changes beyond `MAX_FACTOR`, nor of such that make no drive or that would fail
-another check, so that no two pieces of advice contradict each other. Of counts it is the next whole number; those of wheel pins
+another check, so that no two pieces of advice contradict each other. A ring of finite elements is a beam here: its shape is
+derived for each drive. Of counts it is the next whole number; those of wheel pins
 and teeth are the ratio, and no advice. Nor is a Young's modulus: another one is another material, with a strength of its own.
 """
 
@@ -23,6 +24,7 @@ from ltca.drive.fields import field_kinds, read_field
 from ltca.drive.members.bearings import NAMED_SIZES, bought_size
 from ltca.drive.members.judgement import Check, Value, judged_by
 from ltca.drive.parts import Drive
+from ltca.drive.ring_shape import has_ring_of_elements
 from ltca.drive.units.table import label
 from ltca.errors import ConvergenceError, CycloError
 from ltca.geometry.play import TurnPlay, play_over_a_turn
@@ -112,6 +114,8 @@ def advise(
             wanted[check.value.quantity] = check
     if not wanted:
         return {}
+    if has_ring_of_elements(drive):
+        drive = with_fields(drive, {"ring.model": "beam"})
     trials = _Trials(drive, crank_angle, torque, wanted)
     base = trials.base
     found: dict[str, list[Driver]] = {quantity: [] for quantity in wanted}
@@ -318,11 +322,14 @@ def _inputs(drive: Drive, torque: float) -> list[_Input]:
     wide = drive.roller_length
     thickness = drive.disc.thickness
     hole = {"pin_shaft.hole_radius": grown} if shaft else {}
+    ring = {} if drive.ring is None else {"ring.inner_radius": grown, "ring.outer_radius": grown}
+    if drive.ring is not None and drive.ring.bolts is not None:
+        ring["ring.bolts.circle_radius"] = grown
     chosen = [
         field("disc.thickness", {"crank_bearing.roller_length": lambda value, more: value * (1.0 + more / thickness)}),
         field("crank_bearing.roller_length") if wide < 0.98 * thickness else None,
         field("crank_bearing.roller_radius", {"crank_bearing.inner_race_radius": shrunk}),
-        field("pin_wheel.pin_circle_radius"),
+        field("pin_wheel.pin_circle_radius", ring),
         field("pin_wheel.pin_radius"),
         count("crank_bearing.number_of_rollers"),
         count("pin_shaft.number_of_pins") if shaft else None,
@@ -336,6 +343,17 @@ def _inputs(drive: Drive, torque: float) -> list[_Input]:
         field("clearance.pin_hole"),
         field("pin_wheel.beam.diameter"),
         field("pin_shaft.beam.diameter"),
+        field("ring.outer_radius"),
+        field("ring.width"),
+        field("ring.bolts.stiffness"),
+        field("carrier.posts.size"),
+        field("carrier.stiffness_torsion"),
+        field("main_bearing.radial_stiffness"),
+        field("main_bearing.clearance"),
+        field("crank.support.diameter"),
+        field("crank.support.clearance"),
+        field("first_stage.backlash"),
+        field("first_stage.mesh_stiffness"),
         field("load.speed"),
         *(field(f"friction.{name}") for name in ("pin", "seat", "hole", "roller", "support_bearing", "no_load_torque")),
     ]
@@ -347,14 +365,18 @@ def _inputs(drive: Drive, torque: float) -> list[_Input]:
 
 
 def _all_sizes(drive: Drive) -> _Input:
-    """Every length of pins, disc, bearing and eccentricity alike; clearances, offsets and deviations stay."""
+    """Every length of pins, disc, bearing, eccentricity and of what holds them alike; clearances, offsets and deviations stay."""
     paths = (
         "crank.eccentricity", "pin_wheel.pin_circle_radius", "pin_wheel.pin_radius", "disc.thickness",
         "crank_bearing.inner_race_radius", "crank_bearing.outer_race_radius", "crank_bearing.roller_radius",
         "crank_bearing.roller_length", "crank.circle_radius", "pin_shaft.pin_circle_radius", "pin_shaft.pin_radius",
         "pin_shaft.hole_radius", "pin_wheel.beam.span", "pin_wheel.beam.diameter", "pin_shaft.beam.span",
         "pin_shaft.beam.diameter", "pin_wheel.seat.radius", "pin_wheel.seat.pin_radius", "pin_wheel.seat.bore_radius",
-        "pin_shaft.seat.pin_radius", "pin_shaft.seat.bore_radius", "disc.planes",
+        "pin_shaft.seat.pin_radius", "pin_shaft.seat.bore_radius",
+        "disc.planes" if drive.disc.planes else "disc.gap", "ring.inner_radius",
+        "ring.outer_radius", "ring.width", "ring.bolts.circle_radius", "carrier.posts.radius", "carrier.posts.size",
+        "carrier.posts.length", "carrier.flange", "crank.support.diameter", "crank.support.positions",
+        "crank.support.spline_plane", "first_stage.module", "first_stage.plane",
     )  # fmt: skip
 
     def changed(factor: float) -> dict[str, Any]:

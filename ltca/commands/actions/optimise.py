@@ -14,6 +14,7 @@ from ltca.analysis.extremes import sampling_warning
 from ltca.analysis.time_need import TOLD_FROM
 from ltca.commands.actions.study import tell
 from ltca.compliance.coefficient_files import expected_seconds, told_seconds
+from ltca.compliance.ring import expected_ring_seconds
 from ltca.drive.fields import read_field, whose, with_whose
 from ltca.drive.parts import Drive
 from ltca.errors import DriveError, did_you_mean, shortened, told_twice
@@ -37,10 +38,11 @@ from ltca.studies.optimiser import (
     optimise,
     parse_bound,
     parse_variable,
+    varies_ring,
     varies_shape,
 )
 from ltca.studies.quantities import STAGES, with_what_varies
-from ltca.studies.shapes import find_beforehand, shapes_of
+from ltca.studies.shapes import find_beforehand, find_rings_beforehand, rings_of, shapes_of
 from ltca.studies.study_results import field_column, quantity_column
 
 FRONT = "front"
@@ -121,7 +123,7 @@ def _prepared(problem: Problem, engine: Engine, arguments: argparse.Namespace) -
     Where candidates reshape the bodies and nobody named the engine, on the command line or in the drive file, they are solved on
     half-spaces.
     """
-    search = engine.lending([problem.drive])
+    search = engine.lending([problem.drive]).lending_rings([problem.drive])
     warning = sampling_warning(problem.drive, position_angles(arguments.positions), refined=False)
     if warning is not None:
         tell(f"warning: {warning}")
@@ -143,13 +145,20 @@ def _prepared(problem: Problem, engine: Engine, arguments: argparse.Namespace) -
                 f"derived, {each} each, {told_seconds(most * seconds)} in all, and kept; --quick solves all on half-spaces"
             )
         else:
-            search = HalfSpace()
+            search = HalfSpace().lending_rings([problem.drive])
             tell(
                 f"candidates reshape the bodies by more than {SHARED_BODY:.1%}: they are solved on half-spaces, the drive as it "
                 f"is and the optimum on {engine.compliance} ({each} each); --compliance {engine.compliance} derives the "
                 "coefficients of every candidate"
             )
     find_beforehand(engine, shapes_of([problem.drive]), tell)
+    find_rings_beforehand(rings_of([problem.drive], search), tell)
+    if varies_ring(problem, search):
+        one, many = expected_ring_seconds(problem.drive), most_candidates(problem, arguments.generations)
+        tell(
+            f"candidates reshape the ring of finite elements by more than {SHARED_BODY:.1%} of its height: up to {many} are "
+            f'derived, {told_seconds(many * one)} in all, and kept; ring.model = "beam" takes none'
+        )
     return search
 
 

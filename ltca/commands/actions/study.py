@@ -70,7 +70,7 @@ def _solve_and_write(study: Study, folder: StudyFolder, workers: Workers, argume
     warning = sampling_warning(study.cases[0][1], position_angles(study.positions), refined=False)
     if warning is not None:
         tell(f"warning: {warning}")
-    tell_unit_mistakes(drive for _, drive in study.cases)
+    tell_unit_mistakes((drive for _, drive in study.cases), limits=[study.limits])
     with progress("samples", study.design.samples) as bar:
 
         def advance(samples: int, rate: float) -> None:

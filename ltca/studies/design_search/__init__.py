@@ -5,6 +5,7 @@ Modules in the order data passes:
 ============  ==================================================================================================
 requirements  What is asked: ratio, torque, room, life, stiffness, backlash, efficiency, materials, and what a shop has
 stock         Diameters and lengths that pins and rollers come in, eccentricities that grinders offer
+surroundings  Ring, carrier, main bearing, first stage and forces from outside, as far as they do not follow what is searched
 sizes         Sizes of many candidates at once, and the drive of one
 closed_forms  What candidates reach by closed forms: pressures, loads, life, stiffness, play, losses
 demands       What is demanded of a candidate, each as a margin: by the requirements, by the parts, by limits and materials

@@ -20,6 +20,7 @@ from ltca.drive.parts import contact_modulus
 from ltca.drive.units.quantities import ARCMIN
 from ltca.studies.design_search.requirements import CLEARANCES, Requirements
 from ltca.studies.design_search.sizes import Sizes, stack_length
+from ltca.studies.design_search.surroundings import seat_depth
 
 PIN_PHASES = 4
 """Phases of the pins within a pitch at which loads are evaluated."""
@@ -102,6 +103,7 @@ def shape_values(sizes: Sizes, setting: Setting) -> dict[str, FloatArray]:
         "bearing_proportion": pitch - sizes.roller_radius / ROLLER_BY_PITCH,
     }
     found |= {name: getattr(sizes, name) for name in CLEARANCES}
+    found["ring_seat"] = seat_depth(sizes.pin_circle, sizes.pin_radius, sizes.eccentricity)
     if asked.kind == "rv":
         circle = sizes.hole_circle
         between = 2.0 * (circle * np.sin(np.pi / asked.number_of_cranks) - bore)

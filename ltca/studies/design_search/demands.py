@@ -12,19 +12,17 @@ from math import log
 from typing import Literal
 
 import numpy as np
-from pydantic import TypeAdapter
 
 from ltca.analysis.life.ratings import not_rated
 from ltca.analysis.verdict.values import DEMANDED
 from ltca.arrays import FloatArray
 from ltca.drive.members.judgement import Value, judge
 from ltca.drive.members.limits import Limit, Limits
-from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import ARCMIN
 from ltca.drive.units.table import label
 from ltca.quantities import LIMITED, SCALARS, Scalar
 from ltca.studies.design_search.requirements import Requirements
-from ltca.studies.design_search.sizes import Sizes, drive_table
+from ltca.studies.design_search.sizes import prototype
 
 Kind = Literal["requirement", "limit", "material", "shape", "clearance", "share"]
 
@@ -46,7 +44,7 @@ OF_MATERIALS = (
 )  # fmt: skip
 OF_SHAPE = (
     "undercut_margin", "pin_hollow_margin", "pin_gap", "pin_size", "pin_slenderness", "wall", "cage_room",
-    "bearing_proportion", "race", "roller_room", "flank_clearance",
+    "bearing_proportion", "race", "roller_room", "flank_clearance", "ring_seat",
 )  # fmt: skip
 
 
@@ -208,6 +206,8 @@ def find_demands(requirements: Requirements) -> tuple[Demand, ...]:
     # A flank that is asked to press stays as it was asked.
     least["flank_clearance"] = min(0.0, shop.range_of("equidistant_offset")[0] - shop.range_of("shifting_offset")[1])
     for name in OF_SHAPE:
+        if name == "ring_seat" and asked.ring is None:
+            continue
         add(
             name,
             name,
@@ -224,15 +224,6 @@ def _is_of(quantity: str, requirements: Requirements) -> bool:
     if quantity.startswith("shaft_pin_"):
         return asked.kind == "discs" and asked.shop.shaft_pin_stiffness is None
     return quantity != "pin_shaft_pressure_mid" or asked.kind == "discs"
-
-
-def prototype(requirements: Requirements) -> Drive:
-    """Return a drive of arbitrary sizes, for values that depend on materials alone."""
-    row = dict.fromkeys(Sizes.__dataclass_fields__, 1.0) | {
-        "pins": 20.0, "discs": float(requirements.asked.numbers_of_discs[0]), "rollers": 10.0, "holes": 8.0, "bore": 9.0,
-        "torque": requirements.asked.torque, **requirements.asked.shop.tightest,
-    }  # fmt: skip
-    return TypeAdapter(Drive).validate_python(drive_table(row, requirements, "prototype"))
 
 
 def margins(demands: Sequence[Demand], values: Mapping[str, FloatArray]) -> FloatArray:

@@ -15,6 +15,7 @@ from pydantic_core import PydanticCustomError
 from ltca.drive.deviations import STRICT, NonNegativeLength, PositiveLength
 from ltca.drive.materials import PARTS, STEEL, Materials
 from ltca.drive.members.limits import Limits, parse_limits
+from ltca.drive.members.main_bearing import MainBearing
 from ltca.drive.members.named_materials import with_named_materials
 from ltca.drive.members.operation import Friction, Lubricant, Temperature
 from ltca.drive.mistakes import describe_mistakes
@@ -23,6 +24,14 @@ from ltca.drive.units.quantities import COUNT, QuantityCheck, check_count, quant
 from ltca.errors import DriveError, did_you_mean, shortened
 from ltca.reading.toml_text import parse_toml, read_text
 from ltca.studies.design_search.stock import Stock, build_stock, first_mistakes, stock_table
+from ltca.studies.design_search.surroundings import (
+    TABLES,
+    WantedCarrier,
+    WantedLoad,
+    WantedRing,
+    WantedStage,
+    without_following,
+)
 
 NO_FILE = "no such file; docs/how-to/design.md says what a requirement file holds, examples/requirements has ten"
 STOCK = ("eccentricities", "wheel_pins", "shaft_pins", "rollers")
@@ -173,8 +182,12 @@ class Asked:
         What designs are ranked by: volume of the cylinder around them, or one of its sizes.
     shop : Shop
         What can be made.
-    friction, temperature, lubricant : dataclass or None
+    friction, temperature, lubricant, main_bearing : dataclass or None
         As in a drive file.
+    ring, carrier, first_stage : dataclass or None
+        What else holds the contacts; sizes that are left out of them follow those that are searched.
+    load : WantedLoad
+        Forces from outside.
     """
 
     name: Name = "design"
@@ -198,6 +211,11 @@ class Asked:
     friction: Friction | None = None
     temperature: Temperature | None = None
     lubricant: Lubricant | None = None
+    ring: WantedRing | None = None
+    carrier: WantedCarrier | None = None
+    main_bearing: MainBearing | None = None
+    first_stage: WantedStage | None = None
+    load: WantedLoad = field(default_factory=WantedLoad)
 
     @property
     def numbers_of_discs(self) -> tuple[int, ...]:
@@ -258,6 +276,7 @@ def parse_requirements(
     limits = parse_limits(table.pop("limits", {}), problems)
     material_table = table.pop("materials", {})
     materials = _materials(material_table, problems)
+    table = without_following(with_named_materials(table, problems), problems)
     stock = _stock(table, folder or Path(), problems)
     asked: Asked | None = None
     try:
@@ -271,9 +290,15 @@ def parse_requirements(
         problems += _contradictions(asked, materials, limits, keys)
     if problems or asked is None or stock is None or materials is None:
         raise DriveError(problems, source)
-    return Requirements(
+    found = Requirements(
         asked=asked, stock=stock, materials=materials, material_table=dict(material_table), limits=limits, text=text
     )
+    # Drives of candidates are made of requirements: what none of them can have is found on two of them.
+    from ltca.studies.design_search.sizes import problems_of_any_size
+
+    if problems := problems_of_any_size(found):
+        raise DriveError(problems, source)
+    return found
 
 
 FIELDS: dict[str, tuple[str, ...]] = {
@@ -282,12 +307,14 @@ FIELDS: dict[str, tuple[str, ...]] = {
     "friction": tuple(Friction.__dataclass_fields__),
     "temperature": tuple(Temperature.__dataclass_fields__),
     "lubricant": tuple(Lubricant.__dataclass_fields__),
+    **TABLES,
 }
 """Names of fields, by table."""
 
 
 def _table_of(place: tuple[int | str, ...]) -> str:
-    return str(place[0]) if len(place) > 1 and place[0] in FIELDS else ""
+    above = [str(part) for part in place[:-1] if not isinstance(part, int)]
+    return next((name for end in range(len(above), 0, -1) if (name := ".".join(above[:end])) in FIELDS), "")
 
 
 def _materials(table: Any, problems: list[str]) -> Materials | None:
@@ -355,6 +382,15 @@ def _contradictions(asked: Asked, materials: Materials, limits: Limits, shop: tu
             f"shop.housing_wall = {asked.shop.housing_wall:g} mm: must be less than half of outer_diameter = "
             f"{asked.outer_diameter:g} mm, or nothing is left inside"
         )
+    if asked.ring is not None:
+        if asked.shop.housing_wall == 0.0:
+            found.append(
+                "shop.housing_wall = 0 mm: must be greater than 0 beside [ring], which is the wall outside the wheel pins"
+            )
+        if asked.ring.width is not None and asked.ring.width > asked.length:
+            found.append(f"ring.width = {asked.ring.width:g} mm: must be at most length = {asked.length:g} mm")
+    if asked.kind == "discs" and asked.first_stage is not None:
+        found.append('first_stage: must be left out with kind = "discs", whose one crank is the input itself')
     if asked.kind == "rv" and asked.shop.shaft_pin_stiffness is not None:
         found.append('shop.shaft_pin_stiffness: must be left out with kind = "rv", which has no shaft pins')
     if asked.kind == "rv" and "pin_hole_clearance" in shop:

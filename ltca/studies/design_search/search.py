@@ -15,7 +15,9 @@ from math import ceil, exp, floor, log10
 import numpy as np
 
 from ltca.compliance.coefficient_files import expected_seconds, has_coefficients, told_seconds
+from ltca.compliance.ring import expected_ring_seconds
 from ltca.drive.parts import Compliance
+from ltca.drive.ring_shape import has_ring_of_elements
 from ltca.studies.design_search.demands import TIGHTENED, Demand, find_demands
 from ltca.studies.design_search.enumeration import MAX_ROOM_FACTOR, Enumeration, enumerate_candidates, size_of
 from ltca.studies.design_search.refinement import Refined, Task, finish, refine
@@ -266,9 +268,11 @@ def find_designs(
 
 
 def _derivation(requirements: Requirements, refined: Refined) -> float:
-    """About how long the coefficients of a candidate take, s."""
-    bodies = shapes_of([drive_of(refined.row, requirements)]).values()
-    return sum(expected_seconds([body for body in bodies if not has_coefficients(body)]))
+    """About how long the coefficients of a candidate take, s, with those of a ring of finite elements."""
+    drive = drive_of(refined.row, requirements)
+    bodies = shapes_of([drive]).values()
+    ring = expected_ring_seconds(drive) if has_ring_of_elements(drive) else 0.0
+    return sum(expected_seconds([body for body in bodies if not has_coefficients(body)])) + ring
 
 
 def _broken_by_bodies(demands: tuple[Demand, ...], missed: list[Refined]) -> list[Relaxation]:

@@ -8,12 +8,15 @@ from math import log, sqrt
 from typing import Any
 
 import numpy as np
+from pydantic import TypeAdapter
 
 from ltca.arrays import FloatArray
-from ltca.drive.materials import Material
+from ltca.drive.materials import PARTS, Material
 from ltca.drive.parts import Drive
 from ltca.reading.drive_file import build_drive
+from ltca.reading.member_checks import find_member_problems
 from ltca.studies.design_search.requirements import Requirements
+from ltca.studies.design_search.surroundings import carrier_table, ring_table, stage_of
 
 LIGHT = 0.03
 """Light torque as a part of the whole."""
@@ -130,16 +133,13 @@ def drive_table(row: dict[str, float], requirements: Requirements, name: str) ->
     turned = row["pins"] - (1.0 if held else 0.0)
     if several:
         turned = row["stage"] * row["pins"] + (1.0 if held else 0.0)
+    # Parts that are given where the drive has none are refused by the drive (`problems_of_any_size`).
     materials = {
-        part: getattr(requirements.materials, part)
-        for part in ("disc", "wheel_pin", "roller", "inner_race", "shaft_pin")
-        if not (several and part == "shaft_pin")
+        part: own
+        for part in PARTS
+        if (own := getattr(requirements.materials, part)) != Material()
+        or part in ("disc", "wheel_pin", "roller", "inner_race", *(() if several else ("shaft_pin",)))
     }
-    expands = asked.temperature is not None
-    if shop.crank_support_stiffness is not None or (expands and requirements.materials.crankshaft != Material()):
-        materials["crankshaft"] = requirements.materials.crankshaft
-    if expands:
-        materials["wheel_seat"] = requirements.materials.wheel_seat
     table: dict[str, Any] = {
         "name": name,
         "installation": {"held": asked.held},
@@ -170,7 +170,10 @@ def drive_table(row: dict[str, float], requirements: Requirements, name: str) ->
     if discs > 1:
         table["disc"]["planes"] = tuple(pitch * (disc - 0.5 * (discs - 1)) for disc in range(discs))
     if several:
-        table["installation"]["first_stage_ratio"] = row["stage"]
+        if asked.first_stage is None:
+            table["installation"]["first_stage_ratio"] = row["stage"]
+        else:
+            table["first_stage"] = stage_of(asked.first_stage, row)
         table["crank"] |= {"number": asked.number_of_cranks, "circle_radius": row["hole_circle"]}
         if shop.crank_support_stiffness is not None:
             half = 0.5 * stack + shop.disc_gap + 0.5 * inner
@@ -192,7 +195,13 @@ def drive_table(row: dict[str, float], requirements: Requirements, name: str) ->
             table["pin_shaft"]["beam"] = {"span": span, "tip": "tied-clamped"}
         else:
             table["pin_shaft"]["stiffness"] = shop.shaft_pin_stiffness
-    for key in ("friction", "temperature", "lubricant"):
+    if asked.ring is not None:
+        table["ring"] = ring_table(asked.ring, row, shop.housing_wall, stack + shop.flanges)
+    if asked.carrier is not None:
+        table["carrier"] = carrier_table(asked.carrier, row)
+    if asked.load.external:
+        table["load"]["external"] = asked.load.external
+    for key in ("friction", "temperature", "lubricant", "main_bearing"):
         if getattr(asked, key) is not None:
             table[key] = getattr(asked, key)
     return table
@@ -201,3 +210,19 @@ def drive_table(row: dict[str, float], requirements: Requirements, name: str) ->
 def drive_of(row: dict[str, float], requirements: Requirements, name: str | None = None) -> Drive:
     """Return the drive of one candidate (a row of `Sizes.row`), fully checked; `DriveError` where it cannot be built."""
     return build_drive(drive_table(row, requirements, name or requirements.asked.name))
+
+
+def prototype(requirements: Requirements, scale: float = 1.0) -> Drive:
+    """Return a drive of arbitrary sizes, times a scale, for what does not depend on them; nothing of it is checked."""
+    row = dict.fromkeys(Sizes.__dataclass_fields__, scale) | {
+        "pins": 20.0, "discs": float(requirements.asked.numbers_of_discs[0]), "rollers": 10.0, "holes": 8.0,
+        "pin_circle": 10.0 * scale, "eccentricity": 0.4 * scale, "bore": 9.0 * scale, "stage": 2.0, "sun": 20.0, "planet": 40.0,
+        "torque": requirements.asked.torque, **requirements.asked.shop.tightest,
+    }  # fmt: skip
+    return TypeAdapter(Drive).validate_python(drive_table(row, requirements, "prototype"))
+
+
+def problems_of_any_size(requirements: Requirements) -> list[str]:
+    """Return what is wrong with the members of a drive whatever its sizes are: sentences that do not change with them."""
+    small, large = (list(find_member_problems(prototype(requirements, scale))) for scale in (1.0, 50.0))
+    return [told for told in small if told in large]

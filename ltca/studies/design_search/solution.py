@@ -82,7 +82,7 @@ def solve_coarsely(
     take longer than all else.
     """
     try:
-        drive = drive_of(row, requirements)
+        drive = _on_beam(drive_of(row, requirements))
         positions = COARSE_POSITIONS if drive.disc.number_of_discs == 1 else COARSE_POSITIONS // 2
         analysis = analyse(drive, position_angles(positions) + OFFSET, engine=HalfSpace())
         by_forces = _lives_by_forces(row, analysis, requirements)
@@ -101,6 +101,11 @@ def solve_coarsely(
         return Solution(values=found, life_factor=life_factor)
     except CycloError as error:
         return Solution(values={}, message=" ".join(str(error).split()))
+
+
+def _on_beam(drive: Drive) -> Drive:
+    """A drive whose ring, if it has one, is a beam: finite elements are derived for each shape."""
+    return drive if drive.ring is None else replace(drive, ring=replace(drive.ring, model="beam"))
 
 
 def least_disc_share(analysis: LoadedAnalysis) -> float:
@@ -145,7 +150,7 @@ def own_values(
         if drive.friction is not None:
             points = CURVE_POINTS if coarse else LOOP_POINTS
             lost = hysteresis_loop(warm, angles, lost_motion=LOST_MOTION, points=points, engine=engine).lost_motion
-        found |= {"stiffness": float(curve.stiffness.min()), "lost_motion": float(lost.max()) * ARCMIN}
+        found |= {"stiffness": float(curve.reducer_stiffness.min()), "lost_motion": float(lost.max()) * ARCMIN}
     return found
 
 

@@ -13,7 +13,7 @@ from ltca.analysis.engines import Hybrid
 from ltca.analysis.half_width_guard import displacement_warning
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.summary import summarise
-from ltca.analysis.verdict.advice import Driver, _all_sizes, _without_contradictions, advise
+from ltca.analysis.verdict.advice import Driver, _all_sizes, _inputs, _without_contradictions, advise
 from ltca.analysis.verdict.drive_check import _at_once
 from ltca.analysis.verdict.geometry import pin_hollow_margin, roller_gap, undercut_margin, walls
 from ltca.analysis.verdict.pin_stress import pin_stress, worst_cycle
@@ -581,6 +581,32 @@ def check_of(quantity, value, limit, sense="max"):
 
 def driver_of(name, elasticity, factor):
     return Driver(input=name, elasticity=elasticity, change="" if factor is None else f"× {factor}", factor=factor)
+
+
+def test_what_holds_the_contacts_goes_with_the_sizes(monkeypatch):
+    """A larger pin circle left the ring where it was, all sizes left ring, posts, module and supports, and each trial derived a
+    ring of finite elements anew."""
+    monkeypatch.setattr("ltca.compliance.ring.derivation", lambda name: pytest.fail("a ring is derived"))
+    rv = load_drive("rv").cases["nominal"]
+    circle = rv.crank.circle_radius
+    changes = {
+        "ring.inner_radius": 80.0, "ring.outer_radius": 110.0, "ring.width": 60.0, "ring.model": "fe",
+        "ring.bolts": {"number": 12, "circle_radius": 97.0, "stiffness": 1e6},
+        "carrier.posts": {"number": 6, "radius": circle, "size": 16.0}, "carrier.flange": (10.0, 8.0),
+    }  # fmt: skip
+    drive = with_fields(rv, changes)
+    drivers = advise(drive, [check_of("pin_pressure_mid", 1200.0, 1000.0)], np.array([0.1, 0.5]))["pin_pressure_mid"]
+    found = {driver.input: driver.elasticity for driver in drivers}
+    assert found["all sizes"] < -1.0
+    assert found["ring.outer_radius"] > 0.0  # a stiffer ring spreads the load less
+    each = {one.name: one for one in _inputs(drive, 1.0)}
+    larger = with_fields(drive, each["pin_wheel.pin_circle_radius"].changed(81.0 / 80.0))
+    assert (larger.ring.inner_radius, larger.ring.outer_radius, larger.ring.bolts.circle_radius) == (81.0, 111.0, 98.0)
+    double = with_fields(drive, each["all sizes"].changed(2.0))
+    ring, posts, support = double.ring, double.carrier.posts, double.crank.support
+    assert (ring.inner_radius, ring.outer_radius, ring.width, ring.bolts.circle_radius) == (160.0, 220.0, 120.0, 194.0)
+    assert (posts.radius, posts.size, double.carrier.flange) == (2.0 * circle, 32.0, (20.0, 16.0))
+    assert (support.diameter, support.positions) == (40.0, (-44.0, 44.0))
 
 
 def test_no_advice_fails_another_check():

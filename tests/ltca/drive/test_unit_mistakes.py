@@ -136,6 +136,18 @@ def test_what_no_drive_has_is_pointed_out_in_one_line(vary, changes, told):
     assert re.search(told, found)
 
 
+BOLTS = {"number": 12, "circle_radius": 75.0, "stiffness": 1e6}
+RINGED = {"ring.inner_radius": 60.0, "ring.outer_radius": 90.0, "ring.width": 30.0}
+ROWS = {
+    f"main_bearing.bearings.{number}.{name}": value
+    for number, plane in enumerate((-30.0, 30.0))
+    for name, value in (
+        ("plane", plane), ("kind", "tapered roller"), ("contact_angle", 0.5), ("pitch_radius", 95.0), ("axial_stiffness", 5e5),
+    )
+}  # fmt: skip
+TEETH = {"first_stage.sun_teeth": 20, "first_stage.planet_teeth": 40}
+
+
 @pytest.mark.parametrize(
     ("shipped", "changes", "told"),
     [
@@ -179,6 +191,46 @@ def test_what_no_drive_has_is_pointed_out_in_one_line(vary, changes, told):
         ("robot-joint", {"pin_shaft.stiffness": 100.0}, r'^pin_shaft.stiffness = 100 N/mm .* mean "100 N/µm"'),
         ("rv", {"crank.support.stiffness": (400.0, 4e5)}, r'^crank.support.stiffness\[0\] = 400 N/mm .* "400 N/µm"'),
         ("rv", {"pin_wheel.support_stiffness": 1000.0}, r'^pin_wheel.support_stiffness = 1000 N/mm .* "1000 N/µm"'),
+        (
+            "robot-joint",
+            RINGED | {"ring.width": 0.03},
+            r'^ring.width = .* the thickness of all discs .* mean "0.03 m", 30 mm\?$',
+        ),
+        ("robot-joint", RINGED | {"ring.width": 30e3}, r'^ring.width = 30000 mm .* mean "30000 µm", 30 mm\?$'),
+        ("robot-joint", RINGED | {"ring.outer_radius": 90e3}, r'^ring.outer_radius = .* mean "90000 µm", 90 mm\?$'),
+        (
+            "robot-joint",
+            RINGED | {"ring.bolts": BOLTS | {"circle_radius": 75e3}},
+            r"^ring.bolts.circle_radius = 75000 mm",
+        ),
+        (
+            "robot-joint",
+            RINGED | {"ring.bolts": BOLTS | {"stiffness": 500.0}},
+            r'^ring.bolts.stiffness = .* "500 N/µm"',
+        ),
+        (
+            "rv",
+            ROWS | {"main_bearing.bearings.0.pitch_radius": 0.09},
+            r'^main_bearing.bearings.0.pitch_radius = .* "0.09 m"',
+        ),
+        (
+            "rv",
+            ROWS | {"main_bearing.bearings.0.axial_stiffness": 500.0},
+            r'^main_bearing.bearings.0.axial_stiff.* "500 N/µm"',
+        ),
+        ("rv", {"main_bearing.radial_stiffness": 1000.0}, r'^main_bearing.radial_stiffness = 1000 N/mm .* "1000 N/µm"'),
+        (
+            "rv",
+            {"main_bearing.radial_stiffness": 1e6, "main_bearing.clearance": 2e-5},
+            r"^main_bearing.clearance = .* finer",
+        ),
+        ("rv", {"crank.support.clearance": 1e-5}, r'^crank.support.clearance = .* finer .* mean "1e-05 m", 0.01 mm\?$'),
+        (
+            "rv",
+            TEETH | {"first_stage.backlash": 3e-5},
+            r'^first_stage.backlash = .* finer .* mean "3e-05 m", 0.03 mm\?$',
+        ),
+        ("rv", TEETH | {"first_stage.mesh_stiffness": 200.0}, r'^first_stage.mesh_stiffness = 200 N/mm .* "200 N/µm"'),
         (
             "robot-joint",
             {"crank_bearing.dynamic_load_rating": 13.1},

@@ -8,9 +8,10 @@ from math import comb
 import numpy as np
 import pytest
 
+from ltca.commands.program import main
 from ltca.drive.members.limits import Limit, parse_limits
 from ltca.reading.changes import with_fields
-from ltca.reading.drive_file import load_drive
+from ltca.reading.drive_file import load_drive, shipped_drive
 from ltca.studies.designs import ToleranceDesign
 from ltca.studies.sensitivity import is_chance
 from ltca.studies.tolerance_study import tolerance_study
@@ -85,6 +86,36 @@ def test_limits_of_file_and_materials_are_judged_where_studies_know_the_quantity
     assert bounds["max_pin_shaft_pressure_mid"] == drive.materials.disc.allowable_pressure
     assert set(left) == {"min_wall", "min_mean_efficiency"}
     assert "friction" in left["min_mean_efficiency"]
+
+
+def test_limits_are_told_in_the_unit_of_their_quantity(tmp_path, capsys):
+    """A limit of 1.5, meant in GPa, was pointed out by `check` and judged every sample in silence here; angles and forces carry
+    units of their own."""
+    drive = load_drive("robot-joint").cases["nominal"]
+    texts = {"max_pin_pressure_mid": "1.4 GPa", "max_backlash_output": "0.05 deg", "max_pin_load": "1.5 kN"}
+    bounds = {one.quantity: one.bound for one in limits_of(drive, parse_limits(texts, []))[0]}
+    assert bounds["max_pin_pressure_mid"] == "≤ 1400 MPa"
+    assert bounds["max_backlash_output"] == "≤ 3′"  # 0.05 degrees
+    assert bounds["max_pin_load"] == "≤ 1500 N"
+    path = tmp_path / "joint.toml"
+    text = shipped_drive("robot-joint").replace("[limits]\n", "[limits]\nmax_pin_pressure_mid = 1.5\n", 1)
+    path.write_text(text, encoding="utf-8")
+    small = [
+        "--samples",
+        "2",
+        "--positions",
+        "2",
+        "--quantities",
+        "max_pin_pressure_mid",
+        "--no-figures",
+        "--no-page",
+        "--quick",
+    ]
+    assert main(["tolerance", str(path), *small, "--out", str(tmp_path / "out")]) == 0
+    told = capsys.readouterr()
+    assert "warning: limits.max_pin_pressure_mid = 1.5 MPa is 1/" in told.err
+    assert 'did you mean "1.5 GPa" (1500 MPa)?' in told.err
+    assert "≤ 1.5 MPa" in told.out
 
 
 def test_races_of_different_strength_are_judged_apart(paper):
