@@ -19,6 +19,8 @@ from ltca.laws.sliced_line import SlicedContact, SlicedLine
 MAX_ITERATIONS = 80
 SETTLED = 1e-10
 """Largest force and moment (by half the length) left over, by the larger load of the two contacts."""
+ROUND_OFF = 1e-7
+"""What is left that may be due to what the slices leave over."""
 
 
 def balance_leaning_rollers(
@@ -65,12 +67,13 @@ def balance_leaning_rollers(
         size = np.maximum(np.maximum(inner.load, outer.load), 1e-300)
         left = np.maximum(np.abs(force), np.abs(moment) / half) / size
         history.append(float(np.max(left, initial=0.0)))
-        if history[-1] <= SETTLED:
+        if history[-1] <= SETTLED or (len(history) > 1 and history[-2] < ROUND_OFF and history[-1] >= 0.5 * history[-2]):
             break
         stiff, mixed, turning = _own_stiffness(inner, outer, cosine, length)
         # A roller that touches at one end alone turns about that end freely.
         turning = turning + 1e-9 * half**2 * stiff
         determinant = stiff * turning - mixed**2
+        determinant = np.where(stiff > 0.0, determinant, 1.0)
         step = -(turning * force - mixed * moment) / determinant
         turn = -(stiff * moment - mixed * force) / determinant
         energy = inner.energy + outer.energy

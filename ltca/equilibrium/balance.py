@@ -84,7 +84,7 @@ def equilibrium_of_disc(model: Reducer, found: Equilibrium, disc: int) -> Equili
 
 def lever_arms(model: Reducer) -> FloatArray:
     """Return the lengths that turn the residual into forces, mm: e z_C for the rotation of each disc, e z_P, e for
-    twists of cranks, 1 elsewhere.
+    twists of cranks, half the thickness for leans, 1 elsewhere.
 
     Returns
     -------
@@ -104,6 +104,8 @@ def lever_arms(model: Reducer) -> FloatArray:
         arms[..., place], arms[..., WHEEL_ANGLE] = wheel - e, wheel
         for twist in coordinates.twist_places:
             arms[..., place - DISC_ROTATION + twist] = e
+        for lean in range(*coordinates.lean_place.indices(coordinates.own)):
+            arms[..., place - DISC_ROTATION + lean] = np.squeeze(geometry.half_width)
     if coordinates.ring:
         arms[..., coordinates.ring_place.stop - 1] = ring
     return arms

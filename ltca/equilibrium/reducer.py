@@ -451,7 +451,7 @@ def _split_start(start: Start, count: int) -> list[Start]:
 
 def _beside(values: Sequence[Any]) -> Any:
     """Put arrays (positions, pairs, …), or dataclasses of them, of the discs side by side."""
-    if len(values) == 1:
+    if len(values) == 1 or values[0] is None:
         return values[0]
     if not is_dataclass(values[0]):
         return np.concatenate(values, axis=1)

@@ -80,6 +80,8 @@ class ContactGeometry:
         Places of the parts, and the flank.
     coordinates : Coordinates
         Of a pose in which every member moves that can.
+    half_width : float or array, shape (positions, 1)
+        Half the thickness of the disc, mm: what leans are measured by.
     tip_share : float or array, shape (positions, 1)
         Displacement of a shaft pin at the disc per displacement of its tip, where a ring ties the tips.
     seat_share : float or array, shape (positions, 1)
@@ -95,6 +97,7 @@ class ContactGeometry:
     placement: Placement
     profile: FlankProfile
     coordinates: Coordinates
+    half_width: float | FloatArray = by_drive(0, default=1.0)
     tip_share: float | FloatArray = by_drive(0, default=0.0)
     seat_share: float | FloatArray = by_drive(0, default=0.0)
     wheel_gap: float | FloatArray = by_drive(0, default=0.0)
@@ -118,6 +121,7 @@ class ContactGeometry:
             placement=place,
             profile=profile,
             coordinates=Coordinates.of_drive(drive),
+            half_width=0.5 * drive.disc.thickness,
             seat_share=seat_share,
             wheel_gap=0.0 if bearing is None else 0.5 * max(bearing.clearance or 0.0, 0.0),
             crank_gaps=gaps,
