@@ -42,7 +42,7 @@ def test_random_drives_quick():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("first", "count"), [(3, 13), pytest.param(16, 40, marks=pytest.mark.nightly)])
+@pytest.mark.parametrize(("first", "count"), [(3, 8), pytest.param(11, 45, marks=pytest.mark.nightly)])
 def test_random_drives(first, count):
     """50 beside five hundred practical ones."""
     check_seeds(first, count)
