@@ -62,7 +62,10 @@ def balanced(drive):
     return model, solve_at_output(model, [drive], ANGLES, drive.load.torque)
 
 
-@pytest.mark.parametrize("name", [*KINDS, pytest.param("ring", marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(name, marks=[] if name == "teeth, posts" else pytest.mark.slow) for name in (*KINDS, "ring")],
+)
 def test_the_independent_check_confirms_it(rv, name):
     drive = with_fields(rv, KINDS.get(name, KINDS["all"]))
     drive = ringed(drive) if name == "ring" else drive
@@ -109,6 +112,7 @@ def test_preload_beyond_reach_is_the_spring_it_stands_for(rv):
     np.testing.assert_allclose(angles[1], angles[0], rtol=1e-8)
 
 
+@pytest.mark.slow
 def test_shares_add_up_with_everything(rv):
     found = analyse(with_fields(ringed(rv), KINDS["all"]), ANGLES)
     shares = found.compliance_shares

@@ -240,6 +240,7 @@ def test_a_carrier_that_twists_turns_the_output_alone(name, held, stage):
     assert [told[key] for key in keys] == pytest.approx([before[key] for key in keys], rel=1e-9)
 
 
+@pytest.mark.slow
 def test_stiffness_and_lost_motion_take_the_twist_in():
     """Springs in a row: 1/k adds up, lost motion grows by its torques, backlash does not."""
     drive = nominal("rv")

@@ -63,6 +63,10 @@ def independent(drive, model, found):
 
 def test_drives_that_rub_quick():
     confirm(0)
+
+
+@pytest.mark.slow
+def test_a_drive_that_rubs_the_other_way():
     confirm(1, reverse=True)
 
 
@@ -74,6 +78,7 @@ def test_a_hundred_drives_that_rub(first, count):
         confirm(seed, told=seed % 3 == 0)
 
 
+@pytest.mark.slow
 def test_every_kind_of_friction_is_drawn():
     drives = [friction_drive(seed)[0] for seed in range(60)]
     rubs = [drive.friction for drive in drives]

@@ -158,9 +158,8 @@ def made_outside(drive, angle, engine=None):
 @pytest.mark.parametrize(
     "name",
     [
-        "free",
         "one disc, shaft held",
-        *(pytest.param(name, marks=pytest.mark.slow) for name in ("bolted", "rv", "built-in")),
+        *(pytest.param(name, marks=pytest.mark.slow) for name in ("free", "bolted", "rv", "built-in")),
     ],
 )
 def test_fixed_point_made_outside(name):

@@ -92,6 +92,7 @@ def test_parts_that_only_just_touch_are_refused(paper):
         analyse(with_fields(paper, exact), ANGLES, 0.0)
 
 
+@pytest.mark.slow
 def test_drag_is_what_friction_takes(paper):
     """All that is put in is lost: mean moment of the input by virtual work over a turn against Σ μF slip, and no efficiency."""
     drive = with_fields(paper, TIGHT | RUBS | {"load.torque": 0.0})

@@ -153,6 +153,7 @@ VARIABLES = (
 )
 
 
+@pytest.mark.slow
 def test_optimum_of_a_parabola(drive):
     problem = Problem(drive=drive, variables=VARIABLES, aims=("max_pin_load",), limits=())
     found = search(problem, lambda drives: quadratic(drives)[:, :1], seed=1)
@@ -240,7 +241,7 @@ def test_optimum_of_the_drive_beats_it_within_the_limit(drive):
     limits = (parse_bound("max_pin_pressure_mid <= 1500 MPa"), parse_bound("min_backlash_wheel >= 8 arcmin"))
     problem = Problem(drive=drive, variables=VARIABLES, aims=("ptp_transmission_error",), limits=limits)
     analysis = batch_analysis(problem, 13)
-    found = search(problem, analysis, generations=6)
+    found = search(problem, analysis, generations=3)
     best = found.values[found.best]
     assert best[0] < 0.9 * found.start[0]
     assert best[1] <= 1500.0
