@@ -64,7 +64,11 @@ def balanced(drive):
 
 @pytest.mark.parametrize(
     "name",
-    [pytest.param(name, marks=[] if name == "teeth, posts" else pytest.mark.slow) for name in (*KINDS, "ring")],
+    [
+        "teeth, posts",
+        *(pytest.param(name, marks=pytest.mark.slow) for name in ("all", "ring", "teeth, posts, lifting")),
+        *(pytest.param(name, marks=pytest.mark.nightly) for name in ("all, loose wheel", "loose cranks, posts")),
+    ],
 )
 def test_the_independent_check_confirms_it(rv, name):
     drive = with_fields(rv, KINDS.get(name, KINDS["all"]))

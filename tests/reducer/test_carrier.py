@@ -208,11 +208,11 @@ INSTALLED = [
         for words in (
             ("paper", "pin-wheel", None),
             ("rv", "pin-wheel", 2.0),
-            ("rv", "pin-wheel", None),
-            ("rv", "pin-shaft", 2.0),
             ("rv", "pin-shaft", None),
         )
     ),
+    pytest.param("rv", "pin-wheel", None, marks=pytest.mark.nightly),
+    pytest.param("rv", "pin-shaft", 2.0, marks=pytest.mark.nightly),
 ]
 
 

@@ -49,7 +49,11 @@ def balanced(drive, angles=ANGLES):
 @pytest.mark.parametrize("words", [LOOSE, TIGHT], ids=["loose", "tight"])
 @pytest.mark.parametrize(
     "name",
-    ["paper", *(pytest.param(name, marks=pytest.mark.slow) for name in ("rv", "robot-joint", "plastic", "sleeved"))],
+    [
+        "paper",
+        *(pytest.param(name, marks=pytest.mark.slow) for name in ("rv", "robot-joint", "plastic")),
+        pytest.param("sleeved", marks=pytest.mark.nightly),
+    ],
 )
 def test_the_potential_is_least(name, words):
     """Energies of one-sided springs, minimised by themselves, and places from the definition alone."""

@@ -53,7 +53,7 @@ def walk_along(walk, folder, more):
                 SHORT if path.stem == "rv" else WITHOUT_ADVICE,
                 path,
                 id=path.stem,
-                marks=[pytest.mark.slow, *([pytest.mark.nightly] if path.stem == "joint-99" else [])],
+                marks=[pytest.mark.slow, *([] if path.stem == "rv" else [pytest.mark.nightly])],
             )
             for path in WALKS
         ),

@@ -183,7 +183,7 @@ def test_limit_is_kept_and_met(drive):
 @pytest.mark.slow
 def test_pareto_front_is_the_line_between_the_optima(drive):
     problem = Problem(drive=drive, variables=VARIABLES, aims=("max_pin_load", "max_roller_load"), limits=())
-    found = search(problem, quadratic, seed=1, generations=45)
+    found = search(problem, quadratic, seed=1, generations=30)
     points = found.variables[found.front] - np.array([0.12, 0.07])
     line = np.array([0.08, 0.03]) / np.hypot(0.08, 0.03)
     across = points @ np.array([-line[1], line[0]])
