@@ -90,7 +90,7 @@ def test_the_independent_check_confirms_rigid_cranks_on_posts(rv):
     assert find_imbalance(drive, model, found, torque=drive.load.torque) == []
 
 
-@pytest.mark.parametrize(("bearing", "plane"), [(0, -31.0), (1, 31.0)])
+@pytest.mark.parametrize(("bearing", "plane"), [(0, -31.0), pytest.param(1, 31.0, marks=pytest.mark.slow)])
 def test_the_independent_check_misses_no_bearing(rv, bearing, plane, monkeypatch):
     """What the bearing next to the planets carries of their teeth left out of the check: more than the thousandth that passes."""
     drive = with_fields(rv, KINDS["teeth, posts, lifting"] | {"first_stage.plane": plane})
@@ -139,6 +139,7 @@ def light_part(drive):
     return 1.0 - drive.load.light_torque / drive.load.torque
 
 
+@pytest.mark.slow
 def test_play_has_teeth_and_the_loose_main_bearing(rv):
     """The input held, both ways, against loads of a millionth."""
     found = compare(with_fields(rv, TEETH | LOOSE), ANGLES[:1])

@@ -79,8 +79,8 @@ def kind(name):
     return ringed("rv")
 
 
-QUICK = ("free", "bolted", "built-in", "one disc, shaft held")
-SLOW = ("bolted, slots and beams", "one disc, wheel held", "rv")
+QUICK = ("built-in", "one disc, shaft held")
+SLOW = ("free", "bolted", "bolted, slots and beams", "one disc, wheel held", "rv")
 NIGHTLY = ("free, sleeves and beams", "plastic ring")
 """Dear ones: seats, beams and soft rings are of every full run by energies alone."""
 BY_ENERGIES = [*QUICK, *(pytest.param(name, marks=pytest.mark.slow) for name in (*SLOW, *NIGHTLY))]

@@ -186,6 +186,7 @@ def test_tangent_is_the_slope_of_the_force(joint, discs):
         )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("discs", [2, pytest.param(3, marks=pytest.mark.slow)])
 def test_order_of_the_discs_is_a_matter_of_names(joint, discs):
     """Discs in another order: the same loads under other numbers."""
