@@ -22,11 +22,11 @@ def check_seeds(first, count, draw=practical_drive):
 
 
 def test_practical_drives_quick():
-    check_seeds(0, 2)
+    check_seeds(0, 1)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("first", "count"), [(2, 30), pytest.param(32, 468, marks=pytest.mark.nightly)])
+@pytest.mark.parametrize(("first", "count"), [(1, 11), pytest.param(12, 488, marks=pytest.mark.nightly)])
 def test_five_hundred_practical_drives(first, count):
     """``benchmarks/random_drives.py --practical`` runs 10,000."""
     check_seeds(first, count)
@@ -37,14 +37,14 @@ def test_preloaded_drives_quick():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("first", "count"), [(1, 7), pytest.param(8, 32, marks=pytest.mark.nightly)])
+@pytest.mark.parametrize(("first", "count"), [(1, 3), pytest.param(4, 36, marks=pytest.mark.nightly)])
 def test_forty_preloaded_drives(first, count):
     """``benchmarks/random_drives.py --preloaded`` runs thousands."""
     check_seeds(first, count, preloaded_drive)
 
 
 def test_reducers_of_all_kinds_quick():
-    check_seeds(0, 2, crank_drive)
+    check_seeds(0, 1, crank_drive)
 
 
 @pytest.mark.slow
@@ -60,12 +60,13 @@ def test_displacements_of_a_soft_ring_end_at_their_round_off():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("first", "count"), [(2, 14), pytest.param(16, 184, marks=pytest.mark.nightly)])
+@pytest.mark.parametrize(("first", "count"), [(1, 6), pytest.param(7, 193, marks=pytest.mark.nightly)])
 def test_two_hundred_reducers_of_all_kinds(first, count):
     """``benchmarks/random_drives.py --cranks`` runs thousands."""
     check_seeds(first, count, crank_drive)
 
 
+@pytest.mark.slow
 def test_every_kind_of_reducer_is_drawn():
     drives = [crank_drive(seed)[0] for seed in range(100)]
     assert {drive.crank.number for drive in drives} == {1, 2, 3, 4, 5}
@@ -81,6 +82,7 @@ def test_every_kind_of_reducer_is_drawn():
     assert {entry.frame for drive in drives for entry in drive.load.external} == {"housing", "output"}
 
 
+@pytest.mark.slow
 def test_preload_of_every_kind_is_drawn():
     found = [drawn_interference(preloaded_drive(seed)[0]) for seed in range(40)]
     for kind in ("pins", "rollers", "holes"):
@@ -88,6 +90,7 @@ def test_preload_of_every_kind_is_drawn():
     assert all(max(overlaps.pins, overlaps.rollers, overlaps.holes) > 0.0 for overlaps in found)
 
 
+@pytest.mark.slow
 def test_zeros_and_equalities_are_drawn():
     """They are what people type, and what a generator of real numbers never meets."""
     drives = [practical_drive(seed)[0] for seed in range(120)]
