@@ -7,6 +7,7 @@ import pytest
 
 from ltca.analysis.engines import HalfSpace
 from ltca.equilibrium.output_torque import solve_at_output
+from ltca.errors import ConvergenceError
 from ltca.geometry.interference import drawn_interference
 from ltca.testing.balance_check import find_imbalance
 from ltca.testing.crank_drives import crank_drive
@@ -106,3 +107,15 @@ def test_zeros_and_equalities_are_drawn():
     assert {drive.materials.disc.youngs_modulus for drive in drives} == {206e3, 70e3, 2.6e3}
     assert min(drive.pin_wheel.number_of_pins for drive in drives) <= 8
     assert max(drive.pin_wheel.number_of_pins for drive in drives) >= 100
+
+
+@pytest.mark.slow
+def test_a_ridge_is_no_balance():
+    """At 1e-5 of its torque seed 280 was told to balance 3.4° on, between all pins, under 2.7 MN: long steps ended on a ridge."""
+    drive, angle = practical_drive(280)
+    model = HalfSpace().prepare(drive).model
+    try:
+        found = solve_at_output(model, [drive], np.array([angle]), -1e-5 * drive.load.torque)
+    except ConvergenceError:
+        return
+    assert np.linalg.eigvalsh(found.response.tangent[0])[0] >= 0.0
