@@ -26,6 +26,7 @@ for _variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
 import numpy as np
 import pytest
 
+from ltca.analysis import summary
 from ltca.drive.parts import Drive
 from ltca.errors import DriveError
 from ltca.laws import profiled_line_contact
@@ -206,6 +207,12 @@ _COARSE_TABLE = cache(partial(profiled_line_contact.profiled_table.__wrapped__, 
 def coarse_tables(monkeypatch: pytest.MonkeyPatch) -> None:
     """Tables of profiled contacts in tenths of a second: good to a per cent, and the same for all who ask."""
     monkeypatch.setattr(profiled_line_contact, "profiled_table", _COARSE_TABLE)
+
+
+@pytest.fixture
+def positions_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Summaries without extremes between the positions, most of the time of small runs, for tests that read none."""
+    monkeypatch.setattr(summary, "_refined", lambda analyses: [{} for _ in analyses])
 
 
 @pytest.fixture

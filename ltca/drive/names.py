@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import unicodedata
+from functools import lru_cache
 from typing import Annotated, Any
 
 from pydantic import BeforeValidator
@@ -43,6 +44,7 @@ def is_seen(text: str) -> bool:
     return True
 
 
+@lru_cache(maxsize=1024)  # searches build hundreds of thousands of drives of one name
 def names_a_file(name: str) -> bool:
     """Tell whether a text can be the name of a drive or a case; quotes, dollars and angle brackets can.
 

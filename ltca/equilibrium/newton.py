@@ -38,6 +38,8 @@ MAX_REDUCTION_STEPS = 60
 RESTART_PERTURBATIONS = (0.0, *(0.02,) * 4, *(0.1,) * 4, *(0.4,) * 4)
 """Relative random perturbations of the pose tried at restarts with friction: a disc that carries next to nothing may be caught
 between contacts on which friction does not let it rest, and carries nothing right beside."""
+RIDGE = 1e-9
+"""Largest negative stiffness of a mode at a minimum by the stiffest: that of round-off."""
 FIRST_VALLEY_STEP = 1e-5
 """First step along a soft mode relative to the smallest pin radius; each step is at most four times the last."""
 LEAST_PIVOT_RATIO = 1e-6
@@ -245,6 +247,9 @@ class Search:
                 soft = soft if soft @ last >= 0.0 else -soft
                 self.residual[row] = np.max(np.abs(gradient))
                 if self.residual[row] <= self.accepted(rows, tangent)[0]:
+                    # A ridge balances as well: steps this long may have left the valley.
+                    if self.symmetric and values[0] < -RIDGE * values[-1]:
+                        return False
                     self.pose[rows] = pose
                     self.keep(rows, response, np.ones(1, dtype=bool))
                     return True

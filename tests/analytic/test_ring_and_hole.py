@@ -133,7 +133,7 @@ def test_recovered_stress_converges(pressed_rings):
     assert errors[-1] < 1e-3
 
 
-@pytest.mark.parametrize("radius", [1.0, 3.0])
+@pytest.mark.parametrize("radius", [1.0, pytest.param(3.0, marks=pytest.mark.nightly)])
 @pytest.mark.slow
 def test_kirsch_hole(radius):
     """The exact tractions of the infinite plate act on a ring about the hole."""

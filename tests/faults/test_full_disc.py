@@ -74,7 +74,9 @@ WRITERS = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("suffix", WRITERS)
+@pytest.mark.parametrize(
+    "suffix", [pytest.param(suffix, marks=pytest.mark.slow if suffix in (".svg", ".pdf") else ()) for suffix in WRITERS]
+)
 def test_every_writer_on_a_full_disc(suffix, tmp_path):
     path = tmp_path / f"file{suffix}"
 

@@ -62,7 +62,14 @@ def balanced(drive):
     return model, solve_at_output(model, [drive], ANGLES, drive.load.torque)
 
 
-@pytest.mark.parametrize("name", [*KINDS, pytest.param("ring", marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "teeth, posts",
+        *(pytest.param(name, marks=pytest.mark.slow) for name in ("all", "ring", "teeth, posts, lifting")),
+        *(pytest.param(name, marks=pytest.mark.nightly) for name in ("all, loose wheel", "loose cranks, posts")),
+    ],
+)
 def test_the_independent_check_confirms_it(rv, name):
     drive = with_fields(rv, KINDS.get(name, KINDS["all"]))
     drive = ringed(drive) if name == "ring" else drive
@@ -83,7 +90,7 @@ def test_the_independent_check_confirms_rigid_cranks_on_posts(rv):
     assert find_imbalance(drive, model, found, torque=drive.load.torque) == []
 
 
-@pytest.mark.parametrize(("bearing", "plane"), [(0, -31.0), (1, 31.0)])
+@pytest.mark.parametrize(("bearing", "plane"), [(0, -31.0), pytest.param(1, 31.0, marks=pytest.mark.slow)])
 def test_the_independent_check_misses_no_bearing(rv, bearing, plane, monkeypatch):
     """What the bearing next to the planets carries of their teeth left out of the check: more than the thousandth that passes."""
     drive = with_fields(rv, KINDS["teeth, posts, lifting"] | {"first_stage.plane": plane})
@@ -109,6 +116,7 @@ def test_preload_beyond_reach_is_the_spring_it_stands_for(rv):
     np.testing.assert_allclose(angles[1], angles[0], rtol=1e-8)
 
 
+@pytest.mark.slow
 def test_shares_add_up_with_everything(rv):
     found = analyse(with_fields(ringed(rv), KINDS["all"]), ANGLES)
     shares = found.compliance_shares
@@ -131,6 +139,7 @@ def light_part(drive):
     return 1.0 - drive.load.light_torque / drive.load.torque
 
 
+@pytest.mark.slow
 def test_play_has_teeth_and_the_loose_main_bearing(rv):
     """The input held, both ways, against loads of a millionth."""
     found = compare(with_fields(rv, TEETH | LOOSE), ANGLES[:1])

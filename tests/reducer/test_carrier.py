@@ -210,11 +210,11 @@ INSTALLED = [
         for words in (
             ("paper", "pin-wheel", None),
             ("rv", "pin-wheel", 2.0),
-            ("rv", "pin-wheel", None),
-            ("rv", "pin-shaft", 2.0),
             ("rv", "pin-shaft", None),
         )
     ),
+    pytest.param("rv", "pin-wheel", None, marks=pytest.mark.nightly),
+    pytest.param("rv", "pin-shaft", 2.0, marks=pytest.mark.nightly),
 ]
 
 
@@ -242,6 +242,7 @@ def test_a_carrier_that_twists_turns_the_output_alone(name, held, stage):
     assert [told[key] for key in keys] == pytest.approx([before[key] for key in keys], rel=1e-9)
 
 
+@pytest.mark.slow
 def test_stiffness_and_lost_motion_take_the_twist_in():
     """Springs in a row: 1/k adds up, lost motion grows by its torques, backlash does not."""
     drive = nominal("rv")

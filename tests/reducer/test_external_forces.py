@@ -60,7 +60,7 @@ def test_frames_turn_by_hand(paper, held, frame):
     np.testing.assert_allclose(wheel(pushed) - wheel(plain), force / STIFF, rtol=0.0, atol=2e-3 * abs(force[0]) / STIFF)
 
 
-@pytest.mark.parametrize("held", ["pin-shaft", "pin-wheel"])
+@pytest.mark.parametrize("held", ["pin-shaft", pytest.param("pin-wheel", marks=pytest.mark.slow)])
 def test_the_main_bearing_holds_all_of_it(joint, held):
     """Forces and moments by cross products in three dimensions; of a rigid bearing nothing else changes, bit for bit."""
     entries = PUSHED | {"load.external.0.force.z": 500.0, "load.external.0.at.z": 60.0, "load.external.0.moment.y": 7e3}

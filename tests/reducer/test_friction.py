@@ -295,6 +295,7 @@ def test_free_pins_roll_on_the_flank(paper):
     np.testing.assert_array_equal(data["pin_seat_pv"], pv)
 
 
+@pytest.mark.slow
 def test_powers_need_a_speed(paper):
     drive = replace(paper, friction=Friction(pin=0.05, hole=0.05, no_load_torque=50.0))
     without = summarise(analyse(drive, ANGLES))

@@ -251,7 +251,9 @@ def force_of(model, single, part, found, number, pin, on_wheel, coordinates):
     return on_shaft_pin
 
 
-@pytest.mark.parametrize("name", ["sleeves", pytest.param("tied-clamped", marks=pytest.mark.slow), ALL])
+@pytest.mark.parametrize(
+    "name", [*(pytest.param(name, marks=pytest.mark.nightly) for name in ("sleeves", "tied-clamped")), ALL]
+)
 def test_bodies_that_feel_nothing_are_half_spaces(joint, name):
     """Coefficients without coupling: the coupled model, its matrix of slopes too, gives what the tables give."""
     drive = kind(joint, name)

@@ -49,7 +49,11 @@ def balanced(drive, angles=ANGLES):
 @pytest.mark.parametrize("words", [LOOSE, TIGHT], ids=["loose", "tight"])
 @pytest.mark.parametrize(
     "name",
-    ["rv", *(pytest.param(name, marks=pytest.mark.slow) for name in ("paper", "robot-joint", "plastic", "sleeved"))],
+    [
+        "paper",
+        *(pytest.param(name, marks=pytest.mark.slow) for name in ("rv", "robot-joint", "plastic")),
+        pytest.param("sleeved", marks=pytest.mark.nightly),
+    ],
 )
 def test_the_potential_is_least(name, words):
     """Energies of one-sided springs, minimised by themselves, and places from the definition alone."""
@@ -67,7 +71,7 @@ def test_virtual_work_at_every_position(words, unbalanced_work):
     np.testing.assert_allclose(unbalanced_work(drive, ANGLES + 0.05), 0.0, atol=1e-7)
 
 
-@pytest.mark.parametrize("words", [LOOSE, TIGHT], ids=["loose", "tight"])
+@pytest.mark.parametrize("words", [LOOSE, pytest.param(TIGHT, marks=pytest.mark.slow)], ids=["loose", "tight"])
 def test_tangent_is_the_slope_of_the_force(words, tangent_and_slope):
     scaled, slope = tangent_and_slope(with_fields(drive_of("rv"), words), ANGLES[:1])
     # differences of second order over 1e-7 mm: round-off of loads of 1e4 N by the step, and contacts that just open

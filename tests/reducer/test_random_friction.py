@@ -63,17 +63,22 @@ def independent(drive, model, found):
 
 def test_drives_that_rub_quick():
     confirm(0)
+
+
+@pytest.mark.slow
+def test_a_drive_that_rubs_the_other_way():
     confirm(1, reverse=True)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("first", "count"), [(0, 6), pytest.param(6, 94, marks=pytest.mark.nightly)])
+@pytest.mark.parametrize(("first", "count"), [(0, 3), pytest.param(3, 97, marks=pytest.mark.nightly)])
 def test_a_hundred_drives_that_rub(first, count):
     """Half of them driven by their outputs; ``benchmarks/random_drives.py --friction`` runs a thousand both ways."""
     for seed in range(first, first + count):
         confirm(seed, told=seed % 3 == 0)
 
 
+@pytest.mark.slow
 def test_every_kind_of_friction_is_drawn():
     drives = [friction_drive(seed)[0] for seed in range(60)]
     rubs = [drive.friction for drive in drives]
@@ -171,16 +176,21 @@ def test_a_drive_that_jams_is_told_at_which_coefficient():
 
 @pytest.fixture(scope="module")
 def rubbing():
-    """One with everything: pin shaft, friction on both kinds of pins, in seats, rollers and bearings; the wheel held."""
-    for seed in range(1000):
-        drive, _ = friction_drive(seed)
-        rubs = drive.friction
-        everything = drive.pin_shaft is not None and drive.pin_wheel.seat.kind != "fixed" and drive.wheel_is_held
-        if everything and len({rubs.pin, rubs.hole, 0.0}) == 3 and rubs.seat * rubs.roller * rubs.support_bearing > 0.0:
-            found = answer(seed)
-            assert find_imbalance(found[0], found[1], found[2], torque=found[0].load.torque) == []
-            return found
-    raise AssertionError("no such drive")
+    """One with everything: pin shaft, friction on both kinds of pins, in seats, rollers and bearings; the wheel held.
+
+    On a rigid ring: on its own, of plastic, it takes ninety steps to balance instead of seven.
+    """
+    drive, angle = friction_drive(81)
+    drive, rubs = replace(drive, ring=None), drive.friction
+    assert drive.pin_shaft is not None
+    assert drive.pin_wheel.seat.kind != "fixed"
+    assert drive.wheel_is_held
+    assert len({rubs.pin, rubs.hole, 0.0}) == 3
+    assert rubs.seat * rubs.roller * rubs.support_bearing > 0.0
+    model, torque = HalfSpace().prepare(drive).model, drive.load.torque
+    found = solve_at_output(model, [drive], np.array([angle]), torque)
+    assert find_imbalance(drive, model, found, torque=torque) == []
+    return drive, model, found
 
 
 def spoilt(found, change):

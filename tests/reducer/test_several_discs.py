@@ -186,6 +186,7 @@ def test_tangent_is_the_slope_of_the_force(joint, discs):
         )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("discs", [2, pytest.param(3, marks=pytest.mark.slow)])
 def test_order_of_the_discs_is_a_matter_of_names(joint, discs):
     """Discs in another order: the same loads under other numbers."""
@@ -262,7 +263,7 @@ def in_other_units(table, length, stress):
     return changed("", table)
 
 
-@pytest.mark.parametrize("discs", [2, pytest.param(3, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("discs", [2, pytest.param(3, marks=pytest.mark.nightly)])
 @pytest.mark.parametrize(("length", "stress"), [pytest.param(25.4, 1.0, marks=pytest.mark.slow), (1e-2, 1e-3)])
 def test_units_are_a_matter_of_names(discs, length, stress):
     """In inches or GPa a reducer has the same loads in its units, whichever member is held."""

@@ -44,7 +44,10 @@ def drives(paper):
     }
 
 
-@pytest.mark.parametrize("name", ["paper", "held", "plastic", "two discs", "cranks"])
+@pytest.mark.parametrize(
+    "name",
+    ["paper", "held", "plastic", *(pytest.param(name, marks=pytest.mark.slow) for name in ("two discs", "cranks"))],
+)
 def test_tight_drives_are_answered_without_a_torque(paper, name):
     """Loads are those of preload: what they are under ever smaller torques of either sense comes down to them, in first order."""
     drive = drives(paper)[name]
@@ -92,6 +95,7 @@ def test_parts_that_only_just_touch_are_refused(paper):
         analyse(with_fields(paper, exact), ANGLES, 0.0)
 
 
+@pytest.mark.slow
 def test_drag_is_what_friction_takes(paper):
     """All that is put in is lost: mean moment of the input by virtual work over a turn against Σ μF slip, and no efficiency."""
     drive = with_fields(paper, TIGHT | RUBS | {"load.torque": 0.0})
@@ -105,7 +109,7 @@ def test_drag_is_what_friction_takes(paper):
     assert summary["preloaded_part_of_turn"] == 1.0
 
 
-@pytest.mark.parametrize("torque", [20e3, 400e3])
+@pytest.mark.parametrize("torque", [20e3, pytest.param(400e3, marks=pytest.mark.slow)])
 def test_from_loose_to_tight_nothing_jumps(paper, torque):
     """Pins from 10 µm too thin to 10 µm too thick, 2 µm a step: loads and angle follow, their second differences are small."""
     found, angles = [], []

@@ -163,7 +163,7 @@ def test_slots_yield_like_a_plate_under_the_even_harmonics():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("half_arc", [0.5 * np.pi, np.pi / 3.0])
+@pytest.mark.parametrize("half_arc", [pytest.param(0.5 * np.pi, marks=pytest.mark.nightly), np.pi / 3.0])
 def test_slots_yield_like_a_plate_of_finite_elements(half_arc):
     from scipy.interpolate import CloughTocher2DInterpolator
     from scipy.sparse.linalg import spsolve

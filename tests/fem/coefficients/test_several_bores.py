@@ -61,7 +61,10 @@ class Derived:
     disc: DerivedDisc
 
 
-@pytest.fixture(scope="module", params=[pytest.param(kind, marks=pytest.mark.slow) for kind in ("no holes", "holes")])
+@pytest.fixture(
+    scope="module",
+    params=[pytest.param("no holes", marks=pytest.mark.slow), pytest.param("holes", marks=pytest.mark.nightly)],
+)
 def derived(request):
     drive = with_fields(parse_drive(shipped_drive("rv"), "rv").cases["nominal"], SMALL)
     if request.param == "holes":

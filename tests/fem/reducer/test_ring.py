@@ -88,7 +88,12 @@ def test_two_discs_share_the_ring():
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    "more", [{}, {"flange": "built-in"}, {"bolts": {"number": 8, "circle_radius": 101.0, "stiffness": 5e5}}]
+    "more",
+    [
+        {},
+        pytest.param({"flange": "built-in"}, marks=pytest.mark.nightly),
+        {"bolts": {"number": 8, "circle_radius": 101.0, "stiffness": 5e5}},
+    ],
 )
 def test_the_ring_of_the_analysis_is_that_of_the_full_solution(more):
     """Bolts as springs in the mesh against bolts joined to its flexibility; means over the ring's symmetry against none."""

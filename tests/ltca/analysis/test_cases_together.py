@@ -61,7 +61,13 @@ def cases_of_other_kinds():
     }
 
 
-@pytest.mark.parametrize("cases", [cases_of_the_paper, cases_held_at_the_wheel, cases_of_other_kinds])
+@pytest.mark.parametrize(
+    "cases",
+    [
+        cases_of_the_paper,
+        *(pytest.param(one, marks=pytest.mark.slow) for one in (cases_held_at_the_wheel, cases_of_other_kinds)),
+    ],
+)
 def test_cases_together_are_those_alone(cases):
     drives = cases()
     found = dict(analyse_cases(drives, ANGLES))
@@ -70,6 +76,7 @@ def test_cases_together_are_those_alone(cases):
         assert_same(found[name], analyse(drive, ANGLES))
 
 
+@pytest.mark.slow
 def test_cases_from_poses_of_a_drive_near_by_are_those_from_first_contact():
     """Whatever the search starts from it ends at a residual of 1e-9 of the load; drives with other coordinates start anew."""
     drives = {**cases_held_at_the_wheel(), "more pins": shipped("rv")}
@@ -120,6 +127,7 @@ def test_a_torque_that_cannot_be_carried_is_refused_by_its_case():
         list(analyse_cases({"sound": drive, "heavy": with_fields(drive, {"load.torque": 1e8})}, ANGLES))
 
 
+@pytest.mark.slow
 def test_engines_that_take_no_batch_go_case_by_case():
     drives = {"a": load_drive("paper").cases["CS-1"], "b": load_drive("paper").cases["CS-2"]}
     for name, found in analyse_cases(drives, ANGLES[:1], engine=HalfSpace(method="direct")):

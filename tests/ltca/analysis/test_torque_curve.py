@@ -152,6 +152,7 @@ def test_parts_of_the_rated_torque():
     assert LEAST_TORQUE_RATIO <= 1e-3
 
 
+@pytest.mark.slow
 def test_both_senses_mirror_each_other(paper_cases):
     """At φ_C = 0 the drive, rollers included, is its own mirror image."""
     found = torque_curve(paper_cases["CS-6"], np.array([0.0]), points=4)

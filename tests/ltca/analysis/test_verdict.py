@@ -482,6 +482,7 @@ def bent():
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("positions_alone")
 def test_bending_of_pins_is_judged_by_fatigue(bent):
     """It was judged by the yield strength, 'safety 1.85', though pins bend every turn."""
     summary = summarise(bent)

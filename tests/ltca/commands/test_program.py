@@ -266,6 +266,7 @@ def test_init_with_a_name_that_toml_must_escape(tmp_path):
     assert load_drive(path).name == 'my "best" drive'
 
 
+@pytest.mark.slow
 def test_show_prints_the_derived_geometry_and_draws(tmp_path, capsys):
     assert main(["show", "paper", "--angle", "-0.4", "--case", "CS-2", "--out", str(tmp_path)]) == 0
     told = capsys.readouterr().out
@@ -334,6 +335,7 @@ REFUSED = (
 )
 
 
+@pytest.mark.slow
 def test_arguments_and_drive_are_read_before_what_takes_seconds_to_import(tmp_path):
     """A wrong --case or --contacts was told after two seconds of imports."""
     code = (

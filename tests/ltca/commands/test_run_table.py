@@ -90,6 +90,7 @@ def test_a_drive_without_shaft_pins_has_no_row_of_them():
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("positions_alone")
 def test_loose_and_bent_pins_have_rows_of_their_own():
     drive = parse_drive(shipped_drive("sleeved"), "sleeved").cases["nominal"]
     analyses, summaries, lives = solved(drive, positions=2)

@@ -28,6 +28,7 @@ def test_degrees_as_radians_are_pointed_out(command, tmp_path, capsys):
     assert (out.err + out.out).count("phases") >= 1
 
 
+@pytest.mark.slow
 def test_run_tells_them_before_it_works_and_once(tmp_path, capsys):
     """A stiffness in N/µm took half a minute of searching before a word was said of it."""
     path = tmp_path / "drive.toml"

@@ -26,7 +26,7 @@ def edited(text, path, value):
 
 
 SHORT = {"check": ["--quick", "--positions", "24"], "run": ["--quick", "--positions", "24"]}
-"""Words that make a walk a short one; two of three go without advice, which takes most of the time of a check."""
+"""Words that make a walk a short one; two of three go without advice and extremes between positions, which take most of it."""
 WITHOUT_ADVICE = SHORT | {"check": [*SHORT["check"], "--no-advice"]}
 
 
@@ -53,15 +53,17 @@ def walk_along(walk, folder, more):
                 SHORT if path.stem == "rv" else WITHOUT_ADVICE,
                 path,
                 id=path.stem,
-                marks=[pytest.mark.slow, *([pytest.mark.nightly] if path.stem == "joint-99" else [])],
+                marks=[pytest.mark.slow, *([] if path.stem == "rv" else [pytest.mark.nightly])],
             )
             for path in WALKS
         ),
         *(pytest.param({}, path, id=f"{path.stem}-as-typed", marks=pytest.mark.nightly) for path in WALKS),
     ],
 )
-def test_a_walk_ends_with_verdict_page_and_cad(more, path, tmp_path, monkeypatch, capsys):
+def test_a_walk_ends_with_verdict_page_and_cad(more, path, tmp_path, monkeypatch, capsys, request):
     """Nothing that the user did not write is refused, nothing fails: exit status 0 throughout, of `check` too."""
+    if more == WITHOUT_ADVICE:
+        request.getfixturevalue("positions_alone")
     monkeypatch.chdir(tmp_path)
     walk = tomllib.loads(path.read_text(encoding="utf-8"))
     walk_along(walk, tmp_path, more)

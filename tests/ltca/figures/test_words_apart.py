@@ -249,7 +249,13 @@ def test_words_of_studies_stand_apart(kind):
         assert figure.get_figheight() * 130.0 < 2200.0, name
 
 
-@pytest.mark.parametrize("aims", [("ptp_transmission_error",), ("ptp_transmission_error", "max_pin_pressure_mid")])
+@pytest.mark.parametrize(
+    "aims",
+    [
+        pytest.param(("ptp_transmission_error",), marks=pytest.mark.slow),
+        ("ptp_transmission_error", "max_pin_pressure_mid"),
+    ],
+)
 def test_words_of_optima_stand_apart(aims):
     """Limits made the title leave the canvas; angles were told in rad, lengths without a unit."""
     paths = ("disc.equidistant_offset", "disc.runout.angle", "crank.eccentricity_error")

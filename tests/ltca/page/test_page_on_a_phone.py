@@ -73,6 +73,7 @@ def hundred():
     )
 
 
+@pytest.mark.usefixtures("positions_alone")
 @pytest.mark.parametrize("kind", ["paper", "hundred"])
 def test_a_phone_misses_nothing(kind, paper_run, run_of, chromium, tmp_path):
     run, dataset = paper_run if kind == "paper" else run_of(hundred(), positions=5)

@@ -92,6 +92,7 @@ def test_a_page_is_made_from_results_read_back(page, paper_run, tmp_path):
     assert all(np.array_equal(again[name], numbers[name]) for name in again)
 
 
+@pytest.mark.slow
 def test_results_of_a_later_schema_are_refused(paper_run, tmp_path):
     path = tmp_path / "results.nc"
     paper_run[1].assign_attrs(schema_version=SCHEMA_VERSION + 1).to_netcdf(path, engine="h5netcdf")

@@ -93,6 +93,7 @@ def drive_of(kind):
     "kind",
     ["paper", "rv", *(pytest.param(kind, marks=pytest.mark.nightly) for kind in ("robot-joint", "sleeved", "plastic"))],
 )
+@pytest.mark.usefixtures("positions_alone")
 def test_arrows_are_the_values_of_the_dataset(kind, run_of, chromium, tmp_path):
     run, dataset = run_of(drive_of(kind), positions=3)
     if kind == "paper":  # beside itself: both arrows are alike

@@ -104,7 +104,7 @@ def test_swapped_fields_are_both_named(part, smaller, larger):
     "drive", ["paper", *(pytest.param(name, marks=pytest.mark.slow) for name in ("rv", "robot-joint"))]
 )
 @pytest.mark.parametrize(
-    "offset", [pytest.param(-100.0, marks=pytest.mark.slow), -60.0, pytest.param(-20.0, marks=pytest.mark.slow)]
+    "offset", [pytest.param(-100.0, marks=pytest.mark.nightly), -60.0, pytest.param(-20.0, marks=pytest.mark.nightly)]
 )
 def test_a_shifting_offset_far_below_zero_is_named_itself(drive, offset):
     """It blamed the pin circle; of -60 mm the robot joint's generating circle is a point, which was a division by zero."""

@@ -153,6 +153,7 @@ VARIABLES = (
 )
 
 
+@pytest.mark.slow
 def test_optimum_of_a_parabola(drive):
     problem = Problem(drive=drive, variables=VARIABLES, aims=("max_pin_load",), limits=())
     found = search(problem, lambda drives: quadratic(drives)[:, :1], seed=1)
@@ -182,7 +183,7 @@ def test_limit_is_kept_and_met(drive):
 @pytest.mark.slow
 def test_pareto_front_is_the_line_between_the_optima(drive):
     problem = Problem(drive=drive, variables=VARIABLES, aims=("max_pin_load", "max_roller_load"), limits=())
-    found = search(problem, quadratic, seed=1, generations=45)
+    found = search(problem, quadratic, seed=1, generations=30)
     points = found.variables[found.front] - np.array([0.12, 0.07])
     line = np.array([0.08, 0.03]) / np.hypot(0.08, 0.03)
     across = points @ np.array([-line[1], line[0]])
@@ -240,7 +241,7 @@ def test_optimum_of_the_drive_beats_it_within_the_limit(drive):
     limits = (parse_bound("max_pin_pressure_mid <= 1500 MPa"), parse_bound("min_backlash_wheel >= 8 arcmin"))
     problem = Problem(drive=drive, variables=VARIABLES, aims=("ptp_transmission_error",), limits=limits)
     analysis = batch_analysis(problem, 13)
-    found = search(problem, analysis, generations=6)
+    found = search(problem, analysis, generations=3)
     best = found.values[found.best]
     assert best[0] < 0.9 * found.start[0]
     assert best[1] <= 1500.0

@@ -7,6 +7,7 @@ import pytest
 
 from ltca.analysis.engines import HalfSpace
 from ltca.equilibrium.output_torque import solve_at_output
+from ltca.errors import ConvergenceError
 from ltca.geometry.interference import drawn_interference
 from ltca.testing.balance_check import find_imbalance
 from ltca.testing.crank_drives import crank_drive
@@ -22,11 +23,11 @@ def check_seeds(first, count, draw=practical_drive):
 
 
 def test_practical_drives_quick():
-    check_seeds(0, 2)
+    check_seeds(0, 1)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("first", "count"), [(2, 30), pytest.param(32, 468, marks=pytest.mark.nightly)])
+@pytest.mark.parametrize(("first", "count"), [(1, 11), pytest.param(12, 488, marks=pytest.mark.nightly)])
 def test_five_hundred_practical_drives(first, count):
     """``benchmarks/random_drives.py --practical`` runs 10,000."""
     check_seeds(first, count)
@@ -37,14 +38,14 @@ def test_preloaded_drives_quick():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("first", "count"), [(1, 7), pytest.param(8, 32, marks=pytest.mark.nightly)])
+@pytest.mark.parametrize(("first", "count"), [(1, 3), pytest.param(4, 36, marks=pytest.mark.nightly)])
 def test_forty_preloaded_drives(first, count):
     """``benchmarks/random_drives.py --preloaded`` runs thousands."""
     check_seeds(first, count, preloaded_drive)
 
 
 def test_reducers_of_all_kinds_quick():
-    check_seeds(0, 2, crank_drive)
+    check_seeds(0, 1, crank_drive)
 
 
 @pytest.mark.slow
@@ -60,12 +61,13 @@ def test_displacements_of_a_soft_ring_end_at_their_round_off():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("first", "count"), [(2, 14), pytest.param(16, 184, marks=pytest.mark.nightly)])
+@pytest.mark.parametrize(("first", "count"), [(1, 6), pytest.param(7, 193, marks=pytest.mark.nightly)])
 def test_two_hundred_reducers_of_all_kinds(first, count):
     """``benchmarks/random_drives.py --cranks`` runs thousands."""
     check_seeds(first, count, crank_drive)
 
 
+@pytest.mark.slow
 def test_every_kind_of_reducer_is_drawn():
     drives = [crank_drive(seed)[0] for seed in range(100)]
     assert {drive.crank.number for drive in drives} == {1, 2, 3, 4, 5}
@@ -81,6 +83,7 @@ def test_every_kind_of_reducer_is_drawn():
     assert {entry.frame for drive in drives for entry in drive.load.external} == {"housing", "output"}
 
 
+@pytest.mark.slow
 def test_preload_of_every_kind_is_drawn():
     found = [drawn_interference(preloaded_drive(seed)[0]) for seed in range(40)]
     for kind in ("pins", "rollers", "holes"):
@@ -88,6 +91,7 @@ def test_preload_of_every_kind_is_drawn():
     assert all(max(overlaps.pins, overlaps.rollers, overlaps.holes) > 0.0 for overlaps in found)
 
 
+@pytest.mark.slow
 def test_zeros_and_equalities_are_drawn():
     """They are what people type, and what a generator of real numbers never meets."""
     drives = [practical_drive(seed)[0] for seed in range(120)]
@@ -103,3 +107,15 @@ def test_zeros_and_equalities_are_drawn():
     assert {drive.materials.disc.youngs_modulus for drive in drives} == {206e3, 70e3, 2.6e3}
     assert min(drive.pin_wheel.number_of_pins for drive in drives) <= 8
     assert max(drive.pin_wheel.number_of_pins for drive in drives) >= 100
+
+
+@pytest.mark.slow
+def test_a_ridge_is_no_balance():
+    """At 1e-5 of its torque seed 280 was told to balance 3.4° on, between all pins, under 2.7 MN: long steps ended on a ridge."""
+    drive, angle = practical_drive(280)
+    model = HalfSpace().prepare(drive).model
+    try:
+        found = solve_at_output(model, [drive], np.array([angle]), -1e-5 * drive.load.torque)
+    except ConvergenceError:
+        return
+    assert np.linalg.eigvalsh(found.response.tangent[0])[0] >= 0.0

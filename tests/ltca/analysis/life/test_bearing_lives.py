@@ -88,6 +88,7 @@ def test_what_turns_to_what_in_the_analysis(papers):
     assert in_disc[-1] - in_disc[0] > np.radians(340.0)  # goes round in the disc
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("even")
 def test_on_a_carrier_neither_race_stands(rvs):
     """Between the means with 4 and 4.5 of all loads, clear of both, on either race of all six bearings."""
@@ -194,6 +195,7 @@ def with_duty(drive, *entries):
     return with_fields(drive, {f"duty.{n}.{name}": v for n, entry in enumerate(entries) for name, v in entry.items()})
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("even")
 def test_a_duty_of_the_load_itself_is_the_load(paper_cases, papers):
     plain = bearing_lives(papers, speed=1500.0).shortest

@@ -65,6 +65,7 @@ def test_a_second_disc_that_carries_nothing_is_refused(requirements):
     assert refused_words(SimpleNamespace(tried=(replace(refused, broken={}),), designs=())) == ""
 
 
+@pytest.mark.slow
 def test_shares_by_closed_forms_are_on_the_safe_side_and_even_on_stiff_pins(requirements):
     """Linear bodies take every disc as in mesh; clearances of the loaded model share out more evenly. Stiff pins leave halves."""
     setting = Setting.of(requirements)
