@@ -8,6 +8,8 @@ angle. s and ψ are where the energy of both contacts is least.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ltca.arrays import ComplexArray, FloatArray
@@ -23,16 +25,36 @@ ROUND_OFF = 1e-7
 """What is left that may be due to what the slices leave over."""
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RollerStart:
+    """Rollers of a neighbouring solution.
+
+    Attributes
+    ----------
+    inward, lean : array, shape (positions, rollers)
+        Place inward from where the roller rests in the bore alone, as a part of the overlap, and lean, rad.
+    inner, outer : array, shape (positions, rollers, slices)
+        Loads of the slices, N.
+    """
+
+    inward: FloatArray
+    lean: FloatArray
+    inner: FloatArray
+    outer: FloatArray
+
+
 def balance_leaning_rollers(
     rays: RollerRays,
     displacement: ComplexArray,
     laws: RollerLaws[SlicedLine],
     race_lean: FloatArray,
     bore_lean: FloatArray,
+    start: RollerStart | None = None,
 ) -> RollerState:
     """Place every roller so that its contacts balance; arguments as for `ltca.compliance.rollers.balance_rollers`.
 
-    `race_lean` and `bore_lean` are the leans of race and bore along the rays, rad, shape (positions, rollers).
+    `race_lean` and `bore_lean` are the leans of race and bore along the rays, rad, shape (positions, rollers); `start` is what
+    stood nearby.
     """
     shape = rays.direction.shape
     half = 0.5 * laws.outer.length
@@ -47,19 +69,27 @@ def balance_leaning_rollers(
     inner_radius, outer_radius = each(laws.inner_radius), each(laws.outer_radius)
     at_race, at_bore, overlap = each(race_lean), each(bore_lean), each(total)
 
-    def contacts(inward: FloatArray, lean: FloatArray) -> tuple[SlicedContact, SlicedContact, ComplexArray, FloatArray]:
+    def contacts(
+        inward: FloatArray, lean: FloatArray, near: tuple[FloatArray | None, FloatArray | None]
+    ) -> tuple[SlicedContact, SlicedContact, ComplexArray, FloatArray]:
         arm = (outermost - inward) * ray - moved
         length = np.abs(arm)
         along = ray.real * moved.real + ray.imag * moved.imag
         lowest = outermost - overlap
         # |s n − d| less the bore play as a product, as for rollers that do not lean.
         outer = (overlap - inward) * (outermost - inward + lowest - 2.0 * along) / (length + play)
-        first = laws.inner.respond(inward, at_race - lean, inner_radius)
-        second = laws.outer.respond(outer, lean - at_bore, outer_radius)
+        first = laws.inner.respond(inward, at_race - lean, inner_radius, near[0])
+        second = laws.outer.respond(outer, lean - at_bore, outer_radius, near[1])
         return first, second, arm / length, length
 
     inward, lean = 0.5 * overlap, 0.5 * (at_race + at_bore)
-    inner, outer, outward, length = contacts(inward, lean)
+    near: tuple[FloatArray | None, FloatArray | None] = (None, None)
+    if start is not None:
+        known = start.inner[rows, numbers].sum(axis=1) > 0.0
+        inward = np.where(known, start.inward[rows, numbers] * overlap, inward)
+        lean = np.where(known, start.lean[rows, numbers], lean)
+        near = start.inner[rows, numbers], start.outer[rows, numbers]
+    inner, outer, outward, length = contacts(inward, lean, near)
     history: list[float] = []
     for _ in range(MAX_ITERATIONS):
         cosine = outward.real * ray.real + outward.imag * ray.imag
@@ -67,7 +97,9 @@ def balance_leaning_rollers(
         size = np.maximum(np.maximum(inner.load, outer.load), 1e-300)
         left = np.maximum(np.abs(force), np.abs(moment) / half) / size
         history.append(float(np.max(left, initial=0.0)))
-        if history[-1] <= SETTLED or (len(history) > 1 and history[-2] < ROUND_OFF and history[-1] >= 0.5 * history[-2]):
+        if history[-1] <= SETTLED or (
+            len(history) > 1 and history[-2] < ROUND_OFF and history[-1] >= 0.5 * history[-2]
+        ):
             break
         stiff, mixed, turning = _own_stiffness(inner, outer, cosine, length)
         # A roller that touches at one end alone turns about that end freely.
@@ -79,7 +111,7 @@ def balance_leaning_rollers(
         energy = inner.energy + outer.energy
         fraction = np.ones(step.shape)
         for _ in range(30):
-            there = contacts(inward + fraction * step, lean + fraction * turn)
+            there = contacts(inward + fraction * step, lean + fraction * turn, (inner.slice_load, outer.slice_load))
             rise = there[0].energy + there[1].energy - energy
             worse = rise > 1e-13 * energy
             if not worse.any():
@@ -100,16 +132,20 @@ def balance_leaning_rollers(
         "tangent": _eliminated(ray, outward, cosine, length, inner, outer, half),
         "outer_moment": outer.moment,
         "inner_moment": inner.moment,
+        "lean": lean,
+        "inner_slices": inner.slice_load,
+        "outer_slices": outer.slice_load,
     }
     arm = rays.outermost * rays.direction - displacement
     rest = np.abs(arm)
     free = {
         "share": np.full(shape, 0.5), "outer_approach": rest - rays.bore_play, "outer_direction": arm / rest,
         "tangent": np.zeros((*shape, 4, 4)),
+        "inner_slices": np.zeros((*shape, laws.inner.slices)), "outer_slices": np.zeros((*shape, laws.outer.slices)),
     }  # fmt: skip
     whole = {}
     for name, values in found.items():
-        full = free.get(name, np.zeros(shape))
+        full = free[name] if name in free else np.zeros(shape)
         full[rows, numbers] = values
         whole[name] = full
     return RollerState(**whole)

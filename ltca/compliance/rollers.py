@@ -67,6 +67,10 @@ class RollerState:
         (`ltca.compliance.leaning_rollers`) by its displacement and its lean, shape (positions, rollers, 4, 4).
     inner_moment, outer_moment : array, shape (positions, rollers), or None
         Of leaning rollers about mid-length, N·mm; that on the disc acts along the ray.
+    lean : array, shape (positions, rollers), or None
+        Of leaning rollers along their rays, rad.
+    inner_slices, outer_slices : array, shape (positions, rollers, slices), or None
+        Loads of the slices of leaning rollers, N.
     """
 
     share: FloatArray
@@ -78,6 +82,9 @@ class RollerState:
     tangent: FloatArray
     inner_moment: FloatArray | None = None
     outer_moment: FloatArray | None = None
+    lean: FloatArray | None = None
+    inner_slices: FloatArray | None = None
+    outer_slices: FloatArray | None = None
 
 
 def balance_rollers(

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.arrays import ComplexArray, FloatArray
-from ltca.compliance.leaning_rollers import balance_leaning_rollers
+from ltca.compliance.leaning_rollers import RollerStart, balance_leaning_rollers
 from ltca.compliance.pressures import elastic_hole_pressures
 from ltca.compliance.response import (
     ContactPressures,
@@ -112,7 +112,7 @@ class UncoupledContacts(ABC, Generic[Law]):
         flank = geometry.flank(crank_angle, pose, places, moved[0], known)
         laws = self.laws(flank, warm)
         if geometry.coordinates_of(pose).leans:
-            return self._respond_in_slices(crank_angle, pose, flank, laws, shifts)
+            return self._respond_in_slices(crank_angle, pose, flank, laws, shifts, warm)
         pin_load, pin_stiffness = laws.pins.load_and_stiffness(flank.approach, flank.effective_radius)
         holes = geometry.holes(crank_angle, pose, moved[1])
         hole_load, hole_stiffness = self.hole_law.load_and_stiffness(
@@ -143,8 +143,12 @@ class UncoupledContacts(ABC, Generic[Law]):
         flank: FlankMotion,
         laws: PairLaws[Any],
         shifts: ComplexArray | None,
+        warm: NDArray[np.object_] | None,
     ) -> DiscResponse:
         """The same of contacts in slices, which tilt."""
+        near = None
+        if warm is not None and all(each is not None for each in warm):
+            near = [np.stack(parts) for parts in zip(*warm, strict=True)]
         geometry, place = self.geometry, self.geometry.placement
         coordinates = geometry.coordinates_of(pose)
         holes = geometry.holes(crank_angle, pose, split_shifts(shifts, geometry)[1])
@@ -154,11 +158,13 @@ class UncoupledContacts(ABC, Generic[Law]):
             (flank, geometry.flank_tilt(crank_angle, pose, flank), laws.pins, flank.effective_radius),
             (holes, geometry.hole_tilt(pose, holes), self.hole_law, place.hole_effective_radii),
         ):
-            contact = law.respond(motion.approach, tilt.tilt, radius)
+            begin = () if near is None or motion is holes else (near[0],)
+            contact = law.respond(motion.approach, tilt.tilt, radius, *begin)
             pairs.append((motion, LeaningPairs(tilt=tilt, contact=contact)))
         displacement = bores.each(bores.displacement, rays.direction.shape[1])
         along = [dot(rays.direction, lean) for lean in (np.asarray(place.crank_lean), geometry.lean(pose))]
-        rollers = balance_leaning_rollers(rays, displacement, laws.rollers, *along)
+        begin = None if near is None else RollerStart(inward=near[1], lean=near[2], inner=near[3], outer=near[4])
+        rollers = balance_leaning_rollers(rays, displacement, laws.rollers, *along, begin)
         tangent = _leaning_roller_tangent(rollers, bores, coordinates)
         pins, of_holes = (pair.contact.load for _, pair in pairs)
         force = resultant(flank, pins, holes, of_holes, rollers, bores)
@@ -182,7 +188,7 @@ class UncoupledContacts(ABC, Generic[Law]):
             rollers=rollers,
             pin_load=pins,
             hole_load=of_holes,
-            warm_start=self.warm_start(laws, crank_angle.size),
+            warm_start=_rows_of(pairs[0][1].contact.slice_load, rollers),
             shifts=shifts,
             leaning_pins=pairs[0][1],
             leaning_holes=pairs[1][1],
@@ -215,6 +221,14 @@ def _roller_tangent(rollers: RollerState, bores: BoreMotion) -> FloatArray:
     tangent = np.matmul(moved.swapaxes(2, 3), np.matmul(stiffness, moved)).sum(axis=1)
     add_bearing_bend(tangent, rollers, bores)
     return np.asarray(tangent)
+
+
+def _rows_of(pins: FloatArray, rollers: RollerState) -> NDArray[np.object_]:
+    """What contacts in slices want to find again, row by row."""
+    found = np.empty(pins.shape[0], dtype=object)
+    each = (pins, rollers.share, rollers.lean, rollers.inner_slices, rollers.outer_slices)
+    found[:] = list(zip(*(values for values in each if values is not None), strict=True))
+    return found
 
 
 def _leaning_roller_tangent(rollers: RollerState, bores: BoreMotion, coordinates: Coordinates) -> FloatArray:

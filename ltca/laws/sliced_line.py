@@ -45,8 +45,10 @@ strip, 1/4 − ln(b/2) of the semi-ellipse."""
 DATUM = 4.0
 """Datum of the plane law by the length of the line; what it is makes no difference but to slices that carry unevenly."""
 MAX_ITERATIONS = 60
-SETTLED = 1e-11
-"""Largest last change of a slice's load by the largest: the convergence is quadratic."""
+SETTLED = 1e-12
+"""What is left over of a slice's load, by the largest."""
+ROUND_OFF = 1e-9
+"""What round-off of approaches may leave over."""
 NARROWEST, WIDEST = 1e-4, 40.0
 """Half-width by the length of a slice at the ends of the tables."""
 SMOOTHING = 1.0
@@ -264,38 +266,44 @@ class SlicedLine:
         history: list[float] = []
         going, before, fraction = np.arange(radius.size), np.full(radius.size, np.inf), np.ones(radius.size)
         way = np.zeros(load.shape)
+        # Of the last evaluation: V, u, ∂u/∂F, q and its slope, and the approach that q is of.
+        shapes = ((), (n,), (n, n), z.shape, z.shape, z.shape)
+        last = tuple(np.zeros((radius.size, *shape)) for shape in shapes)
         for _ in range(MAX_ITERATIONS):
             now, here = load[going], radius[going]
-            _, pressed_in, by_load = self._coupling(now, here)
-            line, slope = self._line_load(free[going] - pressed_in[..., None], here)
+            energy, pressed_in, by_load = self._coupling(now, here)
+            local = free[going] - pressed_in[..., None]
+            line, slope = self._line_load(local, here)
             left = line @ weights - now
             size = np.max(np.abs(left), axis=1)
-            worse = (size > before[going]) & (fraction[going] > 1e-3)
+            largest = np.max(now, axis=1)
+            history.append(float(np.max(size / largest, initial=0.0)))
+            done = size <= SETTLED * largest
+            # Nothing but round-off of approaches is left where steps no longer help.
+            done |= (size <= ROUND_OFF * largest) & (size >= 0.5 * before[going])
+            for whole, part in zip(last, (energy, pressed_in, by_load, line, slope, local), strict=True):
+                whole[going[done]] = part[done]
+            worse = (size > before[going]) & (fraction[going] > 1e-3) & ~done
             # Back to a part of the last step where it made things worse.
             back = going[worse]
             fraction[back] *= 0.4
             load[back] = np.maximum(load[back] - (1.5 * fraction[back])[:, None] * way[back], 1e-3 * load[back])
-            on = ~worse
-            stiff = slope[on] @ weights
-            step = np.linalg.solve(np.eye(n) + stiff[..., None] * by_load[on], left[on][..., None])[..., 0]
+            on = ~worse & ~done
             ahead = going[on]
-            before[ahead], fraction[ahead] = size[on], 1.0
-            moved = np.maximum(load[ahead] + step, 0.1 * load[ahead])
-            way[ahead] = moved - load[ahead]
-            load[ahead] = moved
-            change = np.full(going.size, np.inf)
-            change[on] = np.max(np.abs(step), axis=1) / np.max(np.abs(now[on]), axis=1)
-            history.append(float(np.max(change, initial=0.0)))
-            going = going[change > SETTLED]
+            if ahead.size:
+                stiff = slope[on] @ weights
+                system = np.eye(n) + stiff[..., None] * by_load[on]
+                step = np.linalg.solve(system, left[on][..., None])[..., 0]
+                before[ahead], fraction[ahead] = size[on], 1.0
+                moved = np.maximum(load[ahead] + step, 0.1 * load[ahead])
+                way[ahead] = moved - load[ahead]
+                load[ahead] = moved
+            going = going[~done]
             if not going.size:
                 break
         else:
-            raise ConvergenceError(
-                "the slices of a line contact do not settle; last change by the largest load", history
-            )
-        energy, pressed_in, by_load = self._coupling(load, radius)
-        local = free - pressed_in[..., None]
-        line, slope = self._line_load(local, radius)
+            raise ConvergenceError("the slices of a line contact do not settle; load left over by the largest", history)
+        energy, pressed_in, by_load, line, slope, local = last
         by_point = slope * weights
         stiff, leaning, turning = by_point.sum(axis=2), (by_point * z).sum(axis=2), (by_point * z**2).sum(axis=(1, 2))
         system = np.eye(n) + stiff[..., None] * by_load
