@@ -110,10 +110,10 @@ def balance_leaning_rollers(
         turn = -(stiff * moment - mixed * force) / determinant
         energy = inner.energy + outer.energy
         fraction = np.ones(step.shape)
-        for _ in range(30):
+        for _ in range(12):
             there = contacts(inward + fraction * step, lean + fraction * turn, (inner.slice_load, outer.slice_load))
             rise = there[0].energy + there[1].energy - energy
-            worse = rise > 1e-13 * energy
+            worse = rise > 1e-10 * energy
             if not worse.any():
                 break
             fraction = np.where(worse, 0.5 * fraction, fraction)
