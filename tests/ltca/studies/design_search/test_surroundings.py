@@ -9,7 +9,7 @@ import pytest
 from ltca.commands.program import main
 from ltca.studies.design_search.closed_forms import Setting, shape_values
 from ltca.studies.design_search.demands import find_demands
-from ltca.studies.design_search.requirements import parse_requirements
+from ltca.studies.design_search.requirement_file import parse_requirements
 from ltca.studies.design_search.sizes import Sizes, drive_of
 from ltca.studies.design_search.solution import solve_coarsely
 from ltca.studies.design_search.surroundings import inner_radius, seat_depth
