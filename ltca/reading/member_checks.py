@@ -24,6 +24,8 @@ MOST_WORKING_ANGLE = pi / 4.0
 """Largest working pressure angle: teeth cut at 20° and shifted as far as they go have some 30°."""
 BELONGS = {"radius": "slot", "pin_radius": "sleeve", "bore_radius": "sleeve"}
 """Fields of a seat, and the kind of seat they belong to."""
+LARGEST_BOLT_CIRCLE = 1.5
+"""Bolt circle by the outer radius of the ring, with room for lugs."""
 
 
 def find_member_problems(drive: Drive) -> Iterator[str]:
@@ -124,6 +126,11 @@ def _ring(drive: Drive) -> Iterator[str]:
         )
     if not inner <= bolts.circle_radius:
         yield f"ring.bolts.circle_radius = {bolts.circle_radius:g} mm: must be at least ring.inner_radius = {inner:g} mm"
+    if bolts.circle_radius > LARGEST_BOLT_CIRCLE * outer:
+        yield (
+            f"ring.bolts.circle_radius = {bolts.circle_radius:g} mm: must be at most {LARGEST_BOLT_CIRCLE * outer:g} mm, "
+            f"{LARGEST_BOLT_CIRCLE:g} times ring.outer_radius: bolts stand in the ring, or in lugs on it"
+        )
 
 
 def _first_stage(drive: Drive) -> Iterator[str]:

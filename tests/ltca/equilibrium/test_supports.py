@@ -8,9 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from ltca.analysis.engines import HalfSpace
 from ltca.arrays import stack_drives
 from ltca.drive.parts import Preload
 from ltca.drive.single_discs import single_discs
+from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.supports import Supports, crank_laws, wheel_law, wheel_rows
 from ltca.errors import DriveError
 from ltca.geometry.coordinates import Coordinates
@@ -259,3 +261,18 @@ def test_both_sides_of_the_checks_spring_carry_until_one_lifts_off(distance):
     spring = SidedSpring(side=5e5, pressed=0.004)
     assert spring.slopes(distance) == (pytest.approx(1e3), 1e6)
     assert spring.slopes(6.0 * distance)[1] == 5e5
+
+
+def test_stiff_supports_end_at_rigid_ones():
+    """Their stiffness counted as round-off of approaches: from 1e11 N/mm on loads stayed 1e-5 away. Now k tells alone."""
+    drive = load_drive("rv").cases["nominal"]
+    angle = np.array([0.0, 1.2])
+    rigid = with_fields(drive, {"pin_wheel.support_stiffness": None})
+    expected = solve_at_output(HalfSpace().prepare(rigid).model, [rigid], angle, drive.load.torque).response.pin_load
+    apart = []
+    for stiffness in (1e10, 1e12, 1e15):
+        stiff = with_fields(drive, {"pin_wheel.support_stiffness": stiffness})
+        found = solve_at_output(HalfSpace().prepare(stiff).model, [stiff], angle, drive.load.torque).response.pin_load
+        apart.append(np.max(np.abs(found - expected)) / expected.max())
+    assert apart[1] < 0.02 * apart[0]  # as 1/k
+    assert apart[2] < 1e-8  # the balance ends at 1e-9 of the load
