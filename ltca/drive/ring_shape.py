@@ -19,8 +19,8 @@ SHARPEST_CORNER = radians(25.0)
 LEAST_METAL = 0.1
 """Least metal between two seats whose mouths are narrower than they, by the radius of a seat."""
 DEEP_SEATS = 0.085
-"""Depth of the seats as a part of the radial height from which a free ring yields by more than 10 % more than its beam: 3.3 % at
-0.05 and 92 % at 0.25 under cosine rows of forces, and between them with the power 2.07 of the depth."""
+"""Depth of the seats as a part of the radial height from which a free ring yields by some 10 % more than its beam: cosine rows of
+forces have 3.3 % at 0.05 and 92 % at 0.25, which a power of the depth joins."""
 BOLT_PATCH = 0.1
 """Radius of the patch that a bolt holds, by the radial height of the ring outside the seats."""
 
@@ -59,7 +59,7 @@ def deep_seats_warning(drive: Drive) -> str | None:
     height = ring.outer_radius - ring.inner_radius
     return (
         f"the seats of the wheel pins are {part * height:.4g} mm deep, {part:.2g} of the radial height of the ring "
-        f"({height:.4g} mm): a beam (ring.model) has no seats cut into it, from {DEEP_SEATS:g} on it is too stiff by more than 10 %; "
+        f"({height:.4g} mm): a beam has no seats cut into it, and from {DEEP_SEATS:g} on it is too stiff by 10 % and more; "
         'ring.model = "fe" has them'
     )
 
