@@ -59,8 +59,8 @@ def deep_seats_warning(drive: Drive) -> str | None:
     height = ring.outer_radius - ring.inner_radius
     return (
         f"the seats of the wheel pins are {part * height:.4g} mm deep, {part:.2g} of the radial height of the ring "
-        f"({height:.4g} mm): a beam has no seats cut into it, and from {DEEP_SEATS:g} on it is too stiff by 10 % and more; "
-        'ring.model = "fe" has them'
+        f"({height:.4g} mm): a beam has no seats cut into it, and from {DEEP_SEATS:g} on the ring is too stiff by 10 % "
+        'and more, the drive by less; ring.model = "fe" has them'
     )
 
 

@@ -119,8 +119,12 @@ def test_documented_table_to_its_digits(tmp_path, monkeypatch):
     """As `cyclo curves --parts` has it, on the default engine: the column of half-spaces, backlash and lost motion as well."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     drive = load_drive(FILE).cases["pins 5 mm"]
+    plane = stiffness_by_part(with_fields(drive, {"ring.model": "fe"}), ANGLES, lost_motion=0.5).whole
     hybrid = stiffness_by_part(drive, ANGLES, engine=Hybrid().with_coefficients(drive)).rows
     simple = stiffness_by_part(drive, ANGLES, lost_motion=0.5).rows
+    (lower,) = re.findall(r'model = "fe"` the stiffness is ([0-9]) % lower', PAGE.read_text(encoding="utf-8"))
+    whole = simple["everything that is described"]
+    assert 100.0 * (1.0 - plane.stiffness / whole.stiffness) == pytest.approx(float(lower), abs=0.5)
     for name, cells in documented().items():
         stiff, wound, lost, play = hybrid[name].printed
         # half a unit of the last digit that is printed
