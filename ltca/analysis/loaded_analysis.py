@@ -26,6 +26,7 @@ from ltca.drive.hole_contact import hole_words
 from ltca.drive.members.named_materials import strength_warning
 from ltca.drive.members.temperatures import temperature_words, warm_drive
 from ltca.drive.parts import Drive, Temperature
+from ltca.drive.ring_shape import deep_seats_warning
 from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import names_unit_mistakes, unit_warnings
 from ltca.drive.units.quantities import ARCMIN
@@ -279,7 +280,7 @@ class LoadedAnalysis:
         """What to know of drive and answer before they are used, one sentence each."""
         units = unit_warnings(self.as_written, self.torque)
         found = [*units, preload_warning(self.drive), self._lost_play()]
-        found.append(strength_warning(self.drive.materials))
+        found += [strength_warning(self.drive.materials), deep_seats_warning(self.drive)]
         if not units and self.drive.load.light_torque > self.torque > 0.0:
             found.append(
                 f"load.light_torque = {self.drive.load.light_torque:g} N·mm is more than the torque of {self.torque:g} N·mm "
