@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.arrays import FloatArray, put_positions, take_positions
-from ltca.compliance.response import Response, Start
+from ltca.compliance.response import Start
 from ltca.drive.parts import Drive
 from ltca.equilibrium.balance import Equilibrium, follow_equilibrium, solve_equilibrium
 from ltca.equilibrium.reducer import Reducer

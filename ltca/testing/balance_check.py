@@ -560,7 +560,9 @@ def find_imbalance(
             stage = drive.first_stage_ratio
             reaction = 1.0 if drive.crank.number == 1 else 0.0 if stage is None else -1.0 / stage
             left += reaction * (potential.crank_moment(pose) + (0.0 if rubbed is None else rubbed.at_cranks))
-            if wheel_spring(drive) is not None:  # forces on the shaft at its axis are held at that of the displaced wheel
+            if (
+                wheel_spring(drive) is not None
+            ):  # forces on the shaft at its axis are held at that of the displaced wheel
                 last = -6 if has_ring(drive) else -3
                 left -= pose[last] * outside[last + 1] - pose[last + 1] * outside[last]
         if abs(left) > 1e-3 * abs(output):
