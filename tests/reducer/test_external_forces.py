@@ -10,8 +10,11 @@ import pytest
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.reactions import reaction_values
 from ltca.analysis.summary import summarise
+from ltca.analysis.torque_curve import torque_curve
 from ltca.drive.parts import Material
+from ltca.drive.units.quantities import ARCMIN
 from ltca.errors import DriveError
+from ltca.page.studies.curves import torque_section
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
 from ltca.reading.writing import drive_text
@@ -159,6 +162,42 @@ def test_the_bearing_of_the_wheel_rubs_under_an_arm_as_well(paper):
     at_crank = 0.01 * 30.0 * np.abs(found.bearing_radial + 1j * found.bearing_tangential)[:, 0, 0]
     lost = found.losses.by_kind["support_bearing"]
     np.testing.assert_allclose(lost, 0.01 * 30.0 * np.abs(pressed) / 14.0 + at_crank, rtol=1e-9)
+
+
+@pytest.mark.parametrize("held", ["pin-shaft", pytest.param("pin-wheel", marks=pytest.mark.slow)])
+def test_an_arm_takes_its_part_of_the_play(paper, held):
+    """Lost motion stood below the backlash: the curve was of a wheel that an arm holds aside, its backlash of one that floats.
+
+    Towards vanishing torque the arm alone displaces the wheel, by half the clearance and F/k: the play is that of a rigid drive
+    whose wheel stands off axis by as much. What 1e-6 of the torque yields is some 3e-5′.
+    """
+    clearance, stiffness, force = 0.03, 2e5, 2000.0
+    pushed = {"load.external.0.force.x": force, "load.external.0.frame": "housing" if held == "pin-shaft" else "output"}
+    bearing = {"main_bearing.radial_stiffness": stiffness, "main_bearing.clearance": clearance}
+    drive, angles = with_fields(paper, {"installation.held": held} | bearing | pushed), np.array([0.35, 1.7])
+    found = torque_curve(drive, angles, points=0)
+    aside = (0.5 * clearance + force / stiffness) * (1.0 if held == "pin-shaft" else -1.0)
+    off_axis = with_fields(paper, {"installation.held": held, "pin_wheel.axis_offset.x": aside})
+    by_hand = torque_curve(off_axis, angles, points=0).backlash
+    np.testing.assert_allclose(found.backlash, by_hand, rtol=0.0, atol=1e-4 / ARCMIN)
+    assert np.all(found.lost_motion > found.backlash)
+    assert found.displaced
+    free = torque_curve(with_fields(paper, {"installation.held": held} | bearing), angles, points=0)
+    assert np.all(free.backlash > found.backlash + 1.0 / ARCMIN)
+    # a rigid bearing does not let it through, and a moment or a force along the axis displaces nothing
+    rigid = torque_curve(with_fields(paper, {"installation.held": held} | pushed), angles, points=0)
+    axial = {"installation.held": held, "load.external.0.force.z": force}
+    for curve in (rigid, torque_curve(with_fields(paper, axial | bearing), angles, points=0)):
+        assert not curve.displaced
+
+
+def test_screen_and_page_say_that_an_arm_takes_play(paper):
+    arm = {"main_bearing.radial_stiffness": 2e5, "main_bearing.clearance": 0.03, "load.external.0.force.x": 2e3}
+    curve = torque_curve(with_fields(paper, arm), np.array([0.35]), points=0)
+    told = "acklash is what the forces from outside leave of the play"
+    assert any(told in note for note in torque_section({"": curve}).notes)
+    plain = torque_curve(paper, np.array([0.35]), points=0)
+    assert not any(told in note for note in torque_section({"": plain}).notes)
 
 
 def test_files_keep_every_entry(paper):
