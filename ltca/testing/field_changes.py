@@ -121,6 +121,7 @@ _FIRST_STAGE = {
     "first_stage.sun_teeth": 20,
     "first_stage.planet_teeth": 40,
     "first_stage.helix_angle": 0.1,
+    "first_stage.plane": 40.0,
     "installation.first_stage_ratio": None,
 }
 _EXTERNAL = {f"load.external.0.{name}": 300.0 for name in ("force.x", "force.y", "force.z", "at.z")}

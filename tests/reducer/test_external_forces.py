@@ -81,7 +81,12 @@ def test_an_arm_does_work_on_what_it_moves(paper, held, frame, unbalanced_work):
 def test_the_sun_does_work_on_what_it_moves(unbalanced_work):
     """What it presses on the planets displaces the carrier on its main bearing, and has a moment about the wheel's axis."""
     rv = load_drive("rv").cases["nominal"]
-    teeth = {"first_stage.sun_teeth": 20, "first_stage.planet_teeth": 40, "main_bearing.radial_stiffness": 2e5}
+    teeth = {
+        "first_stage.sun_teeth": 20,
+        "first_stage.planet_teeth": 40,
+        "first_stage.plane": 40.0,
+        "main_bearing.radial_stiffness": 2e5,
+    }
     drive = replace(with_fields(rv, teeth | PUSHED), crank=replace(rv.crank, support=None))
     drive = replace(drive, materials=replace(drive.materials, crankshaft=Material()))
     np.testing.assert_allclose(unbalanced_work(drive, ANGLES), 0.0, atol=1e-7)
@@ -137,7 +142,12 @@ def test_a_main_bearing_tells_what_it_carries_of_the_drive_alone(paper, held, gi
 def test_planets_push_the_carrier(joint):
     """The carrier of a held wheel is the output: what the sun presses on its planets passes through the main bearing."""
     rv = load_drive("rv").cases["nominal"]
-    teeth = {"first_stage.sun_teeth": 20, "first_stage.planet_teeth": 40, "first_stage.helix_angle": 0.2}
+    teeth = {
+        "first_stage.sun_teeth": 20,
+        "first_stage.planet_teeth": 40,
+        "first_stage.plane": 40.0,
+        "first_stage.helix_angle": 0.2,
+    }
     drive = with_fields(rv, teeth | {"load.external.0.force.z": 100.0})
     found = analyse(drive, ANGLES)
     axial = -found.crank_torques.sum(axis=1) / 28.0 * np.tan(0.2)  # a right-handed planet

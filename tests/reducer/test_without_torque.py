@@ -35,7 +35,12 @@ def drives(paper):
     joint, rv = (load_drive(files("ltca.drives") / f"{name}.toml").cases["nominal"] for name in ("robot-joint", "rv"))
     soft = with_fields(paper, TIGHT | {"materials.disc.youngs_modulus": 2500.0, "load.light_torque": 1e3})
     tight = {"disc.equidistant_offset": -0.005, "disc.shifting_offset": 0.0}
-    teeth = {"first_stage.sun_teeth": 20, "first_stage.planet_teeth": 40, "first_stage.mesh_stiffness": 3e5}
+    teeth = {
+        "first_stage.sun_teeth": 20,
+        "first_stage.planet_teeth": 40,
+        "first_stage.plane": 40.0,
+        "first_stage.mesh_stiffness": 3e5,
+    }
     closed = {"clearance.bearing": 0.0, "clearance.pin_hole": 0.0}
     return {
         "paper": with_fields(paper, TIGHT),
