@@ -137,7 +137,7 @@ class StageMesh:
         for crank in range(coordinates.cranks):
             x = coordinates.own * np.arange(discs) + coordinates.crank(crank)
             by_pose[crank][:, x], by_pose[crank][:, x + 1] = bending.T, 1j * bending.T
-        on_posts = drive.carrier is not None and drive.carrier.posts is not None
+        on_posts = drive.posts is not None
         if on_posts:
             axes = drive.crank.axis_offset.place + places
             seats = np.stack((np.ones_like(axes), np.full_like(axes, 1j), 1j * axes), axis=-1)

@@ -281,7 +281,7 @@ def _pins(drive: Drive) -> Rows:
         return rows
     rows += _seat(shaft, "shaft pins", "the holes")
     if shaft.beam is not None:
-        ring = "a ring" if drive.carrier is None or drive.carrier.posts is None else "the far flange"
+        ring = "a ring" if drive.posts is None else "the far flange"
         tips = {"free": "free", "tied-clamped": f"clamped in {ring}", "tied-pinned": f"pinned in {ring}"}[
             shaft.beam.tip
         ]

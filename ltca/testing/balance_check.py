@@ -246,7 +246,7 @@ class PotentialEnergy:
                 total = total + shaft_energy(bending, shares, springs, moved[:, :, crank], pull)
             twisted = np.stack([self._twists(disc, pose) for disc in discs], axis=1)
             total = total + shaft_torsion(self.drive, twisted)
-        if self.drive.carrier is not None and self.drive.carrier.posts is not None:
+        if self.drive.posts is not None:
             flange = pose[:, -4:-1]
             total = total + 0.5 * np.einsum("pi,ij,pj->p", flange, post_forces(self.drive), flange)
         return np.asarray(total)

@@ -158,7 +158,7 @@ def _mechanical(drive: Drive) -> Materials:
     materials = drive.materials
     if drive.pin_wheel.seat.kind != "slot":
         materials = replace(materials, wheel_seat=Material())
-    if drive.carrier is None or drive.carrier.posts is None:
+    if drive.posts is None:
         materials = replace(materials, carrier=Material())
     return materials if drive.crank.support is not None else replace(materials, crankshaft=Material())
 
