@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -22,6 +23,7 @@ from ltca.reading.writing import drive_text
 ANGLES = np.array([0.31, 1.7, 4.4])
 PUSHED = {"load.external.0.force.x": 800.0, "load.external.0.force.y": -300.0}
 STIFF = 1e9
+WHOLE = Path(__file__).parents[2] / "examples" / "drives" / "whole_reducer.toml"
 
 
 @pytest.fixture(scope="module")
@@ -32,6 +34,11 @@ def joint():
 @pytest.fixture(scope="module")
 def paper():
     return load_drive("paper").cases["CS-1"]
+
+
+@pytest.fixture(scope="module")
+def whole():
+    return load_drive(WHOLE).cases["pins 4 mm"]
 
 
 def wheel(analysis):
@@ -199,6 +206,17 @@ def test_an_arm_takes_its_part_of_the_play(paper, held):
     axial = {"installation.held": held, "load.external.0.force.z": force}
     for curve in (rigid, torque_curve(with_fields(paper, axial | bearing), angles, points=0)):
         assert not curve.displaced
+
+
+@pytest.mark.nightly
+def test_the_gap_is_found_where_a_millionth_of_the_torque_is_round_off(whole):
+    """A load of 0.02 N beside an arm of 2.9 kN on a preloaded bearing is no balance: the least torque of the curve is taken."""
+    drive = with_fields(whole, {"load.external.0.force.x": 2870.0})
+    pushed, free = (torque_curve(one, np.array([0.35]), points=0) for one in (drive, whole))
+    near = torque_curve(with_fields(whole, {"load.external.0.force.x": 2800.0}), np.array([0.35]), points=0)
+    assert 0.8 * free.backlash[0] < pushed.backlash[0] < free.backlash[0]
+    # the arm moves the wheel by 7 µm more for each kN: 0.1′ of play for 2.9 kN, 0.002′ for the difference
+    assert pushed.backlash[0] == pytest.approx(near.backlash[0], abs=0.005 / ARCMIN)
 
 
 def test_screen_and_page_say_that_an_arm_takes_play(paper):
