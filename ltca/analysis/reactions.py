@@ -90,7 +90,7 @@ def _main_bearing(analysis: LoadedAnalysis) -> dict[str, FloatArray]:
         pressed_by_sun = teeth.in_plane.sum(axis=1) * into_housing
         tilted = (-1j * radius * outward * teeth.axial).sum(axis=1) * into_housing
         force, axial = force + pressed_by_sun, axial + teeth.axial.sum(axis=1)
-        moment = moment + 1j * stage.plane * pressed_by_sun + tilted
+        moment = moment + 1j * (stage.plane or 0.0) * pressed_by_sun + tilted
     return {
         "main_bearing_x": -force.real,
         "main_bearing_y": -force.imag,

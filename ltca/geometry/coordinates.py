@@ -3,9 +3,8 @@
 A pose of one disc at a held crank angle is q = (x, y, disc rotation, …, wheel angle): x and y in mm are the displacement of
 the disc from its nominal place in the fixed frame, the angles in rad; the wheel angle is its deviation from φ_C/u. Between
 them stand x and y of each crank in the plane of the disc, if cranks yield, and the angle by which each eccentric is ahead of
-the crank, if they twist; x and y of the wheel, if its bearing yields; and
-x, y and rotation of the ring that ties the tips of the shaft pins, or of the far flange of the carrier, if there is one. The
-poses of several discs follow each other, with one wheel.
+the crank, if they twist; x and y of the wheel, if its bearing yields; and x, y and rotation of the ring that ties the tips of the
+shaft pins, or of the far flange of the carrier, if there is one. The poses of several discs follow each other, with one wheel.
 """
 
 from __future__ import annotations
@@ -62,8 +61,7 @@ class Coordinates:
         support = drive.crank.support
         cranks, twists = (0, False) if support is None else (drive.crank.number, support.torsion)
         beam = None if drive.pin_shaft is None else drive.pin_shaft.beam
-        posts = None if drive.carrier is None else drive.carrier.posts
-        ring = posts is not None or (beam is not None and beam.tip != "free")
+        ring = drive.posts is not None or (beam is not None and beam.tip != "free")
         wheel = drive.wheel_yields
         return cls(discs=drive.disc.number_of_discs, cranks=cranks, wheel=wheel, ring=ring, twists=twists)
 

@@ -176,12 +176,13 @@ def _teeth(drive: Drive) -> Rows:
     if stage is None or distance is None:
         return []
     mesh, give = stage.mesh(distance), stage.mesh_stiffness
+    planets = "" if stage.plane is None else f", planets at {stage.plane:g} mm"
     yields = "rigid" if give is None else f"{give:g} N/mm along the line of action"
     return [
         (
             "first stage",
             f"{stage.sun_teeth} and {stage.planet_teeth} teeth, helix angle {degrees(stage.helix_angle):g}°, pitch circles ⌀ "
-            f"{2.0 * (distance - mesh.pitch_radius):.6g} and {2.0 * mesh.pitch_radius:.6g} mm, planets at {stage.plane:g} mm",
+            f"{2.0 * (distance - mesh.pitch_radius):.6g} and {2.0 * mesh.pitch_radius:.6g} mm{planets}",
         ),
         (
             "forces of a planet",
@@ -280,7 +281,7 @@ def _pins(drive: Drive) -> Rows:
         return rows
     rows += _seat(shaft, "shaft pins", "the holes")
     if shaft.beam is not None:
-        ring = "a ring" if drive.carrier is None or drive.carrier.posts is None else "the far flange"
+        ring = "a ring" if drive.posts is None else "the far flange"
         tips = {"free": "free", "tied-clamped": f"clamped in {ring}", "tied-pinned": f"pinned in {ring}"}[
             shaft.beam.tip
         ]

@@ -8,6 +8,7 @@ from itertools import pairwise
 from math import cos, degrees, fsum, pi, sin
 
 from ltca.drive.fields import ANY, OWN
+from ltca.drive.members.first_stage import FirstStage
 from ltca.drive.members.pins import PinShaft, PinWheel, ShaftPinBeam, WheelPinBeam
 from ltca.drive.mistakes import entry_words
 from ltca.drive.parts import BearingRow, CrankSupport, Drive, MainBearing, Material, Preload
@@ -144,6 +145,7 @@ def _first_stage(drive: Drive) -> Iterator[str]:
         return
     if given is not None and abs(given - stage.ratio) > ROUNDING * stage.ratio:
         yield f"installation.first_stage_ratio = {given:g}: must be {stage.ratio:.12g}, {teeth}, or be left out"
+    yield from _planets_plane(drive, stage)
     if crank.support is not None and (crank.support.clearance or 0.0) > 0.0:
         yield (
             f"crank.support.clearance = {crank.support.clearance:g} mm: must be at most 0 beside first_stage: cranks that float "
@@ -179,6 +181,23 @@ def _first_stage(drive: Drive) -> Iterator[str]:
         most = 0.5 * pi / stage.planet_teeth * mesh.pitch_radius
         yield (
             f"first_stage.backlash = {stage.backlash:g} mm: must be less than {most:.4g} mm, a quarter of the pitch of the teeth"
+        )
+
+
+def _planets_plane(drive: Drive, stage: FirstStage) -> Iterator[str]:
+    """Problems of the place of the planets along the axis, that where twisting cranks are held."""
+    path, support = "first_stage.plane", drive.crank.support
+    beside = "crank.support" if support is not None else "carrier.posts" if drive.crank_supports is not None else None
+    if beside is None and drive.wheel_is_held and (drive.wheel_yields or drive.load.external):
+        own = "main_bearing" if drive.main_bearing is not None else "pin_wheel.support_stiffness"
+        beside = own if drive.wheel_yields else "load.external"
+    if stage.plane is None:
+        if beside is not None:
+            yield f"{path}: must be given with {beside}, mm on the axis of disc.planes: the forces of the teeth act there"
+    elif support is not None and support.torsion and support.spline_plane not in (None, stage.plane):
+        yield (
+            f"{path} = {stage.plane:g} mm: must be crank.support.spline_plane = {support.spline_plane:g} mm, where the planets "
+            "are fixed on the cranks"
         )
 
 

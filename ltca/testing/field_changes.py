@@ -121,6 +121,7 @@ _FIRST_STAGE = {
     "first_stage.sun_teeth": 20,
     "first_stage.planet_teeth": 40,
     "first_stage.helix_angle": 0.1,
+    "first_stage.plane": 40.0,
     "installation.first_stage_ratio": None,
 }
 _EXTERNAL = {f"load.external.0.{name}": 300.0 for name in ("force.x", "force.y", "force.z", "at.z")}
@@ -302,7 +303,7 @@ def _carrier(drive: Drive, path: str, span: float) -> dict[str, Any]:
     if path == "carrier.stiffness_torsion":
         return {} if drive.carrier is not None else {path: 1e8}
     given: dict[str, Any] = {}
-    if drive.carrier is None or drive.carrier.posts is None:
+    if drive.posts is None:
         circle = drive.crank.circle_radius if drive.pin_shaft is None else drive.pin_shaft.pin_circle_radius
         radius = 0.9 * (circle or 0.0)
         given = {"carrier.posts.number": 4, "carrier.posts.radius": radius, "carrier.posts.size": 0.3 * radius}

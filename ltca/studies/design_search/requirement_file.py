@@ -164,6 +164,15 @@ def _contradictions(asked: Asked, materials: Materials, limits: Limits, shop: tu
             found.append(f"ring.width = {asked.ring.width:g} mm: must be at most length = {asked.length:g} mm")
     if asked.kind == "discs" and asked.first_stage is not None:
         found.append('first_stage: must be left out with kind = "discs", whose one crank is the input itself')
+    if asked.kind == "rv" and asked.first_stage is not None and asked.first_stage.plane is None:
+        acts = {
+            "shop.crank_support_stiffness": asked.shop.crank_support_stiffness is not None,
+            "carrier.posts": asked.carrier is not None and asked.carrier.posts is not None,
+            "main_bearing": asked.main_bearing is not None,
+            "load.external": asked.load is not None and bool(asked.load.external),
+        }
+        if beside := next((name for name, given in acts.items() if given), None):
+            found.append(f"first_stage.plane: must be given with {beside}, in mm: the forces of the teeth act there")
     if asked.kind == "rv" and asked.shop.shaft_pin_stiffness is not None:
         found.append('shop.shaft_pin_stiffness: must be left out with kind = "rv", which has no shaft pins')
     if asked.kind == "rv" and "pin_hole_clearance" in shop:

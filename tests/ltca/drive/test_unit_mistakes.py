@@ -145,7 +145,7 @@ ROWS = {
         ("plane", plane), ("kind", "tapered roller"), ("contact_angle", 0.5), ("pitch_radius", 95.0), ("axial_stiffness", 5e5),
     )
 }  # fmt: skip
-TEETH = {"first_stage.sun_teeth": 20, "first_stage.planet_teeth": 40}
+TEETH = {"first_stage.sun_teeth": 20, "first_stage.planet_teeth": 40, "first_stage.plane": 40.0}
 
 
 @pytest.mark.parametrize(
