@@ -10,6 +10,9 @@ from ltca.drive.deviations import STRICT, Angle, PositiveLength, SignedLength
 from ltca.drive.members.preload import LoadConstant, Preload, Stiffness
 from ltca.drive.units.quantities import quantity
 
+BALL, ROLLER = 1.5, 10.0 / 9.0
+"""Powers of the approach by which balls (Hertz) and rollers (Lundberg) press."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
 class BearingRow:
@@ -43,6 +46,11 @@ class BearingRow:
     load_constant: LoadConstant | None = None
     radial_stiffness: Stiffness | None = None
     preload: Preload | None = None
+
+    @property
+    def power(self) -> float:
+        """n of F = K δⁿ."""
+        return BALL if self.kind in ("angular-contact ball", "deep groove") else ROLLER
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
