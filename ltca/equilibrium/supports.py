@@ -20,6 +20,7 @@ beside the discs, such as the teeth of a first stage, adds to R what the bearing
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import isfinite
 
 import numpy as np
 
@@ -388,7 +389,7 @@ def wheel_law(drive: Drive) -> SideLaw | float | None:
     if not rows:
         held = bearing.preload
         return stiffness if held is None else SideLaw.of_preload(stiffness, held.force, held.displacement)
-    return SideLaw.of_rows(rows) if any(row.normal_load for row in rows) else stiffness
+    return SideLaw.of_rows(rows) if any(isfinite(row.reach) for row in rows) else stiffness
 
 
 def _row(

@@ -20,7 +20,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import cos, inf, sin, tan
+from math import cos, inf, isfinite, sin, tan
 
 import numpy as np
 
@@ -170,17 +170,24 @@ class SideLaw:
 
     @classmethod
     def of_rows(cls, rows: Sequence[RollingRow]) -> SideLaw:
-        """Return the law of rows side by side of which preloaded ones lift off on one side, where at least one is preloaded.
+        """Return the law of rows side by side, of which at least one is preloaded.
+
+        Preloaded ones lift off on one side and are half as stiff from there, others keep their stiffness. Rows with reaches δ_i
+        of their own lift off together at the mean of these by the stiffness: force and stiffness are right before the first
+        and beyond the last of them.
 
         Examples
         --------
-        >>> SideLaw.of_rows([RollingRow(radial=1e5, axial=0.0, pressure_centre=0.0, reach=0.005, normal_load=800.0)])
-        SideLaw(stiffness=100000.0, gap=0.0, lift_off=500.0, beyond=1e-05, preload_load=800.0)
+        >>> loaded = RollingRow(radial=1e5, axial=0.0, pressure_centre=0.0, reach=0.005, normal_load=800.0)
+        >>> law = SideLaw.of_rows([loaded, RollingRow(radial=5e4, axial=0.0, pressure_centre=0.0)])
+        >>> print(f"{law.lift_off:g} N, {1.0 / (1.0 / law.stiffness + law.beyond):g} N/mm beyond")
+        750 N, 100000 N/mm beyond
         """
-        stiffness, reach = sum(row.radial for row in rows), min(row.reach for row in rows)
+        stiffness, lifting = sum(row.radial for row in rows), [row for row in rows if isfinite(row.reach)]
+        both = sum(row.radial for row in lifting)
         return cls(
             stiffness=stiffness,
-            lift_off=stiffness * reach,
-            beyond=1.0 / stiffness,
-            preload_load=sum(row.normal_load for row in rows),
+            lift_off=stiffness * sum(row.radial * row.reach for row in lifting) / both,
+            beyond=1.0 / (stiffness - 0.5 * both) - 1.0 / stiffness,
+            preload_load=sum(row.normal_load for row in lifting),
         )

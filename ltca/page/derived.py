@@ -258,7 +258,8 @@ def _side_words(law: SideLaw) -> str:
     """What clearance or preload does, in words; empty for a spring alone."""
     if law.gap:
         return f"free within {law.gap:.4g} mm"
-    return f"both sides carry up to {law.lift_off:.4g} N, half as stiff beyond" if law.lift_off else ""
+    beyond = 1.0 / (1.0 / law.stiffness + law.beyond)
+    return f"both sides carry up to {law.lift_off:.4g} N, {beyond:.4g} N/mm beyond" if law.lift_off else ""
 
 
 THIN_WALL = 0.1

@@ -19,7 +19,13 @@ from ltca.laws.bearing_pair import SideLaw, bearing_matrix
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import build_drive, load_drive, parse_drive, parse_toml, shipped_drive
 from ltca.reading.writing import drive_text
-from ltca.testing.bearing_springs import SidedSpring, crank_springs, shaft_energy, wheel_spring
+from ltca.testing.bearing_springs import (
+    SidedSpring,
+    crank_springs,
+    shaft_energy,
+    wheel_rows as element_rows,
+    wheel_spring,
+)
 from ltca.testing.yielding_pins import crankshaft_bending
 
 ROWS = {
@@ -40,6 +46,11 @@ KINDS = {
     "rows": {
         "crank.support.contact_angle": 0.25, "crank.support.load_constant": 2e5, "crank.support.stiffness": (),
         "crank.support.preload": 400.0, "main_bearing.preload": "1 kN", **ROWS,
+    },
+    "rows not alike": {
+        "main_bearing.preload": "1 kN", **ROWS, "main_bearing.bearings.1.contact_angle": 0.6,
+        "main_bearing.bearings.1.load_constant": 3e6, "main_bearing.bearings.2.plane": 0.0,
+        "main_bearing.bearings.2.kind": "cylindrical", "main_bearing.bearings.2.radial_stiffness": 5e5,
     },
 }  # fmt: skip
 
@@ -159,6 +170,98 @@ def test_supports_of_different_drives_are_one_batch(drives):
     alone = [supports_of(loose).respond(at[:4]), supports_of(wide).respond(at[4:])]
     for whole, parts in zip(together.respond(at), zip(*alone, strict=True), strict=True):
         np.testing.assert_allclose(whole, np.concatenate(parts), rtol=1e-12, atol=1e-9)
+
+
+def main_bearing(rv, rows, preload=None):
+    """The law of a main bearing of rows, and its preloaded rows as sums over elements, facing each other."""
+    changes = {
+        f"main_bearing.bearings.{number}.{name}": value
+        for number, row in enumerate(rows)
+        for name, value in row.items()
+    }
+    drive = with_fields(rv, changes | ({} if preload is None else {"main_bearing.preload": preload}))
+    elements, beside = element_rows(drive)
+    return wheel_law(drive), [replace(row, facing=1 - 2 * number) for number, row in enumerate(elements)], beside
+
+
+def row_of(angle, plane, **fields):
+    ball = {"kind": "angular-contact ball", "pitch_radius": 60.0, "contact_angle": np.radians(angle)}
+    return ball | {"plane": plane} | fields
+
+
+def force_of(law, displacement):
+    """Radial force of a law by its displacement."""
+    ends = displacement - law.lift_off / law.stiffness
+    return law.stiffness * displacement if ends <= 0.0 else law.lift_off + ends / (1.0 / law.stiffness + law.beyond)
+
+
+CYLINDER = {"kind": "cylindrical", "plane": 0.0, "radial_stiffness": 4e5}
+ALIKE = [row_of(25.0, plane, load_constant=2e6) for plane in (-30.0, 30.0)]
+UNLIKE = [row_of(25.0, -30.0, load_constant=2e6), row_of(35.0, 30.0, load_constant=4e6)]
+
+
+@pytest.mark.parametrize(
+    ("rows", "law_beyond", "elements_beyond"),
+    [
+        # elements lift off one after the other: at most 4 % of balls, 2 % of rollers softer up to the lift-off of the law;
+        # beyond it balls stiffen (√δ), which one side alone leaves out: up to 18 % at twice the displacement, rollers 8 %
+        (ALIKE, 0.04, 0.18),
+        (UNLIKE, 0.04, 0.18),
+        ([*UNLIKE, CYLINDER], 0.04, 0.18),
+        ([row | {"kind": "tapered roller"} for row in ALIKE], 0.02, 0.08),
+        ([*(row | {"kind": "tapered roller"} for row in ALIKE), CYLINDER], 0.02, 0.08),
+    ],
+    ids=["balls alike", "balls not alike", "balls beside rollers", "tapered", "tapered beside rollers"],
+)
+def test_law_of_rows_is_the_sum_over_elements(rv, rows, law_beyond, elements_beyond):
+    law, elements, beside = main_bearing(rv, rows, preload=2e3)
+
+    def summed(radial):
+        return sum(row.forces(radial)[0] for row in elements) + beside * radial
+
+    reach, step = law.lift_off / law.stiffness, 1e-4 * law.lift_off / law.stiffness
+    # at rest: central differences of second order, 1e-8 of it; loads to round-off, and no axial force is left
+    assert (summed(step) - summed(-step)) / (2.0 * step) == pytest.approx(law.stiffness, rel=1e-7)
+    assert sum(row.forces()[1] for row in elements) == pytest.approx(0.0, abs=1e-8)
+    assert law.preload_load == pytest.approx(sum(row.loads()[0].sum() for row in elements), rel=1e-12)
+    for part in (0.25, 0.5, 0.75, 1.0):
+        assert summed(part * reach) == pytest.approx(force_of(law, part * reach), rel=law_beyond)
+    assert 0.0 < summed(2.0 * reach) / force_of(law, 2.0 * reach) - 1.0 < elements_beyond
+
+
+def test_half_of_linear_elements_carry_beyond_lift_off(rv):
+    """The factor ½: of elements without stiffening half press under a large displacement, and rows beside them as before."""
+    law, elements, beside = main_bearing(rv, [*UNLIKE, CYLINDER], preload=2e3)
+    linear = [
+        replace(row, power=1.0, load_constant=row.power * row.load_constant * row.pressed ** (row.power - 1.0))
+        for row in elements
+    ]
+    far, step = 1e4 * law.lift_off / law.stiffness, 1.0 * law.lift_off / law.stiffness
+    slope = sum(row.forces(far + step)[0] - row.forces(far)[0] for row in linear) / step + beside
+    # displaced 1e4 times as far as the lift-off, a no element of 120 stands between carrying and not; the two at 90° carry the preload alone
+    assert 1.0 / (1.0 / law.stiffness + law.beyond) == pytest.approx(slope, rel=0.02)
+
+
+def test_a_row_beside_a_preloaded_pair_keeps_its_stiffness(rv):
+    """45°, 1e5 N/mm axially are 5e4 radially: 1e5 of a pair, 5e4 beyond lift-off at δ = 1.5·500/1e5 = 7.5 µm; 3e4 of cylindrical
+    rollers beside it on both sides of it.
+    """
+    pair = [row_of(45.0, plane, axial_stiffness=1e5) for plane in (-30.0, 30.0)]
+    law = main_bearing(rv, [*pair, CYLINDER | {"radial_stiffness": 3e4}], preload=500.0)[0]
+    assert law.stiffness == pytest.approx(1.3e5, rel=1e-12)
+    assert law.lift_off == pytest.approx(1.3e5 * 0.0075, rel=1e-12)
+    assert 1.0 / (1.0 / law.stiffness + law.beyond) == pytest.approx(0.8e5, rel=1e-12)
+
+
+def test_rows_that_are_not_alike_lift_off_on_the_average(rv):
+    """45°, 1e5 and 2e5 N/mm axially under 500 N: 5e4 and 1e5 radially, free from 7.5 and 3.75 µm. One after the other at 20 µm:
+    1.5e5·0.02 − 2.5e4·(0.02 − 0.0075) − 5e4·(0.02 − 0.00375) = 1875 N.
+    """
+    rows = [row_of(45.0, plane, axial_stiffness=stiff) for plane, stiff in ((-30.0, 1e5), (30.0, 2e5))]
+    law = main_bearing(rv, rows, preload=500.0)[0]
+    assert law.lift_off == pytest.approx(1.5e5 * 0.005, rel=1e-12)
+    assert force_of(law, 0.020) == pytest.approx(1875.0, rel=1e-12)
+    assert force_of(law, 0.00375) == pytest.approx(1.5e5 * 0.00375, rel=1e-12)
 
 
 def test_rows_by_hand(drives):
