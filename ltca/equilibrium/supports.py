@@ -20,7 +20,7 @@ beside the discs, such as the teeth of a first stage, adds to R what the bearing
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import isfinite
+from math import isfinite, nan
 
 import numpy as np
 
@@ -349,7 +349,8 @@ def wheel_rows(drive: Drive) -> tuple[RollingRow, ...]:
     rows = () if bearing is None else bearing.bearings
     if bearing is None or not rows:
         return ()
-    middle = sum(row.plane for row in rows) / len(rows)
+    placed = [row.plane for row in rows if row.contact_angle]
+    middle = sum(placed) / max(len(placed), 1)
     found = []
     for row in rows:
         if not row.contact_angle:
@@ -364,7 +365,7 @@ def wheel_rows(drive: Drive) -> tuple[RollingRow, ...]:
                 row.load_constant,
                 row.preload or bearing.preload,
                 plane=row.plane,
-                pitch_radius=row.pitch_radius or 0.0,
+                pitch_radius=nan if row.pitch_radius is None else row.pitch_radius,
                 facing=facing,
             )
         )

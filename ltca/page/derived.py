@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import degrees, pi, sin
+from math import degrees, isnan, pi, sin
 
 import numpy as np
 
@@ -227,13 +227,12 @@ def _supports(drive: Drive) -> Rows:
         rows.append(("main bearing of the wheel", f"{held}; {left_out} left out"))
     if found := wheel_rows(drive):
         matrix = bearing_matrix(found)
-        rows.append(
-            (
-                "rows of the main bearing",
-                f"axial {matrix[2, 2]:.4g} N/mm, tilt {matrix[3, 3]:.4g} N·mm/rad about the zero of disc.planes, pressure "
-                f"centres at {', '.join(f'{row.pressure_centre:.4g}' for row in found)} mm",
-            )
+        tilt = (
+            f", tilt {matrix[3, 3]:.4g} N·mm/rad about the zero of disc.planes, pressure "
+            f"centres at {', '.join(f'{row.pressure_centre:.4g}' for row in found)} mm"
         )
+        told = "" if isnan(matrix[3, 3]) else tilt
+        rows.append(("rows of the main bearing", f"axial {matrix[2, 2]:.4g} N/mm{told}"))
     return [*rows, *_carrier(drive)]
 
 

@@ -27,7 +27,7 @@ class BearingRow:
     contact_angle : float
         Angle of the contact normals against the radial plane, rad; 0 for cylindrical rollers.
     pitch_radius : float or None
-        Radius of the circle of the contacts, mm, with a contact angle: it places the pressure centre.
+        Radius of the circle of the contacts, mm, with a contact angle: it places the pressure centre, which concerns tilt alone.
     axial_stiffness : float or None
         Axial stiffness of the row at its preload, N/mm, with a contact angle.
     load_constant : float or None
