@@ -11,6 +11,7 @@ from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.response import bearing_pushes
 from ltca.equilibrium.external_force import entries_of
 from ltca.equilibrium.first_stage import MeshForces
+from ltca.equilibrium.supports import wheel_axial_stiffness
 from ltca.geometry.rotation import unit
 from ltca.laws.beam import support_parts
 
@@ -63,7 +64,8 @@ def _main_bearing(analysis: LoadedAnalysis) -> dict[str, FloatArray]:
     frame of the housing.
 
     Moments are about the zero of the planes of the discs. Forces off that plane and along the axis tilt the output; nothing
-    yields in tilt, so they load the main bearing alone.
+    yields in tilt, so they load the main bearing alone. Where its axial stiffness is known it yields
+    along the axis.
     """
     drive, full = analysis.drive, analysis.full
     if not (drive.load.external or drive.wheel_yields):
@@ -91,7 +93,9 @@ def _main_bearing(analysis: LoadedAnalysis) -> dict[str, FloatArray]:
         tilted = (-1j * radius * outward * teeth.axial).sum(axis=1) * into_housing
         force, axial = force + pressed_by_sun, axial + teeth.axial.sum(axis=1)
         moment = moment + 1j * stage.plane * pressed_by_sun + tilted
-    return {
+    stiffness = wheel_axial_stiffness(drive)
+    displaced = {} if stiffness is None else {"main_bearing_axial_displacement": axial / stiffness}
+    return displaced | {
         "main_bearing_x": -force.real,
         "main_bearing_y": -force.imag,
         "main_bearing_z": -axial,

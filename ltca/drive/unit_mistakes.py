@@ -356,6 +356,8 @@ def _odd_stiffnesses(drive: Drive) -> Iterator[str]:
         "pin_wheel.support_stiffness": drive.pin_wheel.support_stiffness,
         "main_bearing.radial_stiffness": None if drive.main_bearing is None else drive.main_bearing.radial_stiffness,
     }
+    if drive.main_bearing is not None:
+        given["main_bearing.axial_stiffness"] = drive.main_bearing.axial_stiffness
     if drive.ring is not None and drive.ring.bolts is not None:
         given["ring.bolts.stiffness"] = drive.ring.bolts.stiffness
     if drive.first_stage is not None:

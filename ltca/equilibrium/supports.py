@@ -393,6 +393,18 @@ def wheel_law(drive: Drive) -> SideLaw | float | None:
     return SideLaw.of_rows(rows) if any(isfinite(row.reach) for row in rows) else stiffness
 
 
+def wheel_axial_stiffness(drive: Drive) -> float | None:
+    """Return the axial stiffness of the main bearing, N/mm, of rows k_zz of all of them about their preload.
+
+    None where it is not known: of rows with clearance just one carries along the axis, beyond an axial play.
+    """
+    bearing = drive.main_bearing
+    if bearing is None or not bearing.bearings:
+        return None if bearing is None else bearing.axial_stiffness
+    found = sum(row.axial for row in wheel_rows(drive))
+    return found if found and bearing.clearance is None else None
+
+
 def _row(
     power: float,
     contact_angle: float,

@@ -342,12 +342,11 @@ def _main_bearing(drive: Drive) -> Iterator[str]:
             f"{path}.radial_stiffness = {radial:g} N/mm and pin_wheel.support_stiffness = {alias:g} N/mm: are two names of one "
             "stiffness; give one of them"
         )
-    for name, value, unit, why in (
-        ("tilt_stiffness", bearing.tilt_stiffness, "N·mm/rad", "the wheel does not tilt in the model yet"),
-        ("axial_stiffness", bearing.axial_stiffness, "N/mm", "nothing presses the wheel along its axis in the model"),
-    ):
-        if value is not None:
-            yield f"{path}.{name} = {value:g} {unit}: must be left out: {why}"
+    if bearing.tilt_stiffness is not None:
+        yield (
+            f"{path}.tilt_stiffness = {bearing.tilt_stiffness:g} N·mm/rad: must be left out: the wheel does not tilt in "
+            "the model yet"
+        )
     yield from _loose_or_tight(path, bearing.clearance, bearing.preload, drive.crank.eccentricity)
     if not bearing.bearings:
         if radial is None and alias is None:
@@ -355,7 +354,11 @@ def _main_bearing(drive: Drive) -> Iterator[str]:
         if bearing.arrangement != "O":
             yield f'{path}.arrangement = "{bearing.arrangement}": must be left out without {path}.bearings'
         return
-    for name, value in (("main_bearing.radial_stiffness", radial), ("pin_wheel.support_stiffness", alias)):
+    for name, value in (
+        ("main_bearing.radial_stiffness", radial),
+        ("pin_wheel.support_stiffness", alias),
+        ("main_bearing.axial_stiffness", bearing.axial_stiffness),
+    ):
         if value is not None:
             yield f"{name} = {value:g} N/mm: must be left out beside {path}.bearings, from which it follows"
     used, wrong = False, list[str]()

@@ -107,6 +107,34 @@ def test_a_main_bearing_tells_what_it_carries_of_the_drive_alone(paper, held, gi
     assert "main_bearing_x" not in reaction_values(analyse(paper, ANGLES[:1]))
 
 
+@pytest.mark.parametrize("held", ["pin-shaft", "pin-wheel"])
+def test_the_output_moves_along_the_axis(paper, held):
+    """−500 N by 2e5 N/mm are −2.5 µm; by two rows of 45° of 1e5 N/mm each the same, whatever preload; of rows with clearance it
+    is not known. No contact feels it.
+    """
+    rows = {
+        f"main_bearing.bearings.{number}.{name}": value
+        for number, plane in enumerate((-30.0, 30.0))
+        for name, value in {
+            "plane": plane, "kind": "tapered roller", "contact_angle": np.pi / 4.0, "axial_stiffness": 1e5
+        }.items()
+    }  # fmt: skip
+    plain = with_fields(paper, {"installation.held": held, "main_bearing.radial_stiffness": 1e5})
+    pushed = {"load.external.0.force.z": -500.0}
+    by_rows = {"main_bearing.radial_stiffness": None, **rows, **pushed}
+    name, alone = "main_bearing_axial_displacement", analyse(plain, ANGLES)
+    for changes in (pushed | {"main_bearing.axial_stiffness": 2e5}, by_rows, by_rows | {"main_bearing.preload": 1e9}):
+        found = analyse(with_fields(plain, changes), ANGLES)
+        np.testing.assert_allclose(reaction_values(found)[name], -0.0025, rtol=1e-12)
+        assert summarise(found)[f"max_{name}_mm"] == pytest.approx(0.0025, rel=1e-12)
+        # 1e5 N/mm radially in another way
+        np.testing.assert_allclose(found.full.pose, alone.full.pose, rtol=0.0, atol=1e-11)
+    for changes in (pushed, by_rows | {"main_bearing.clearance": 0.0}):
+        found = analyse(with_fields(plain, changes), ANGLES[:1])
+        assert name not in reaction_values(found)
+        assert f"max_{name}_mm" not in summarise(found)
+
+
 def test_planets_push_the_carrier(joint):
     """The carrier of a held wheel is the output: what the sun presses on its planets passes through the main bearing."""
     rv = load_drive("rv").cases["nominal"]

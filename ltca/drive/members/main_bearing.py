@@ -65,7 +65,7 @@ class MainBearing:
     tilt_stiffness : float or None
         Stiffness against tilt, N·mm/rad; refused, the wheel does not tilt in the model yet.
     axial_stiffness : float or None
-        Axial stiffness, N/mm; refused, nothing presses the wheel along its axis in the model yet.
+        Axial stiffness, N/mm; it tells how far forces along the axis displace the output, which moves no contact.
     clearance : float or None
         Radial internal clearance, diametral as usual: the wheel is free within half of it, mm; negative where it is tight.
     preload : Preload or None
