@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from ltca.analysis.loaded_analysis import analyse
-from ltca.analysis.reactions import reaction_values
+from ltca.analysis.reactions import reaction_values, relieved_rows_warning
 from ltca.analysis.summary import summarise
 from ltca.errors import DriveError
 from ltca.reading.changes import with_fields
@@ -133,6 +133,32 @@ def test_the_output_moves_along_the_axis(paper, held):
         found = analyse(with_fields(plain, changes), ANGLES[:1])
         assert name not in reaction_values(found)
         assert f"max_{name}_mm" not in summarise(found)
+
+
+def test_axial_forces_beyond_the_preload_are_told(paper):
+    """Rows keep the stiffness that they have at their preload."""
+    rows = {
+        f"main_bearing.bearings.{number}.{name}": value
+        for number, plane in enumerate((-30.0, 30.0))
+        for name, value in {
+            "plane": plane, "kind": "tapered roller", "contact_angle": 0.5, "axial_stiffness": 1e5
+        }.items()
+    } | {"main_bearing.preload": 1e3}  # fmt: skip
+    found = [
+        relieved_rows_warning(analyse(with_fields(paper, rows | {"load.external.0.force.z": force}), ANGLES[:1]))
+        for force in (900.0, -1100.0)
+    ]
+    assert found[0] is None
+    assert "1100 N on rows of main_bearing.preload = 1000 N; one row is relieved" in found[1]
+    # helical planets: tapered crank bearings of 20 N
+    teeth = {"first_stage.sun_teeth": 20, "first_stage.planet_teeth": 40, "first_stage.helix_angle": 0.3}
+    tapered = {"contact_angle": 0.25, "load_constant": 2e5, "stiffness": ()}
+    drive = with_fields(
+        load_drive("rv").cases["nominal"],
+        teeth | {f"crank.support.{k}": v for k, v in tapered.items()} | {"crank.support.preload": 20.0},
+    )
+    told = relieved_rows_warning(analyse(drive, ANGLES[:1]))
+    assert "N on rows of crank.support.preload = 20 N" in told
 
 
 def test_planets_push_the_carrier(joint):
