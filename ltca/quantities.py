@@ -473,6 +473,10 @@ _DECLARED = (
     Quantity(
         "main_bearing_moment_y", "drive", "N mm", "moment of the main bearing on the output about the zero of disc.planes"
     ),
+    Quantity(
+        "main_bearing_axial_displacement", "drive", "mm", "displacement of the output along the axis on its main bearing",
+        (Scalar("max_{}", "displacement of the output along the axis, largest", how="largest amount", digits=".4f"),),
+    ),
     _scalar("N", Scalar("max_main_bearing_radial", "radial load of the main bearing, largest")),
     _scalar("N", Scalar("max_main_bearing_axial", "axial load of the main bearing, largest")),
     _scalar("N mm", Scalar("max_main_bearing_moment", "tilting moment of the main bearing, largest", digits=".0f")),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import degrees, pi, sin
+from math import degrees, isnan, pi, sin
 
 import numpy as np
 
@@ -228,13 +228,12 @@ def _supports(drive: Drive) -> Rows:
         rows.append(("main bearing of the wheel", f"{held}; {left_out} left out"))
     if found := wheel_rows(drive):
         matrix = bearing_matrix(found)
-        rows.append(
-            (
-                "rows of the main bearing",
-                f"axial {matrix[2, 2]:.4g} N/mm, tilt {matrix[3, 3]:.4g} N·mm/rad about the zero of disc.planes, pressure "
-                f"centres at {', '.join(f'{row.pressure_centre:.4g}' for row in found)} mm",
-            )
+        tilt = (
+            f", tilt {matrix[3, 3]:.4g} N·mm/rad about the zero of disc.planes, pressure "
+            f"centres at {', '.join(f'{row.pressure_centre:.4g}' for row in found)} mm"
         )
+        told = "" if isnan(matrix[3, 3]) else tilt
+        rows.append(("rows of the main bearing", f"axial {matrix[2, 2]:.4g} N/mm{told}"))
     return [*rows, *_carrier(drive)]
 
 
@@ -259,7 +258,8 @@ def _side_words(law: SideLaw) -> str:
     """What clearance or preload does, in words; empty for a spring alone."""
     if law.gap:
         return f"free within {law.gap:.4g} mm"
-    return f"both sides carry up to {law.lift_off:.4g} N, half as stiff beyond" if law.lift_off else ""
+    beyond = 1.0 / (1.0 / law.stiffness + law.beyond)
+    return f"both sides carry up to {law.lift_off:.4g} N, {beyond:.4g} N/mm beyond" if law.lift_off else ""
 
 
 THIN_WALL = 0.1

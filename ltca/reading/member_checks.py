@@ -13,6 +13,7 @@ from ltca.drive.members.pins import PinShaft, PinWheel, ShaftPinBeam, WheelPinBe
 from ltca.drive.mistakes import entry_words
 from ltca.drive.parts import BearingRow, CrankSupport, Drive, MainBearing, Material, Preload
 from ltca.drive.ring_shape import ring_mesh_problems, seat_radius
+from ltca.laws.bearing_pair import axial_preload
 from ltca.reading.disc_checks import deviation_bound, part_errors
 
 SHARE_ROUNDING = 1e-9
@@ -23,6 +24,8 @@ MOST_OF_BODY = 0.95
 """Largest rigid core of a pin, or fixed bore of a race, by its radius: thinner walls the default meshes do not resolve."""
 MOST_WORKING_ANGLE = pi / 4.0
 """Largest working pressure angle: teeth cut at 20° and shifted as far as they go have some 30°."""
+UNBALANCED = 0.01
+"""Largest difference of the axial preloads of two rows, by the larger: displacements are written to two or three figures."""
 BELONGS = {"radius": "slot", "pin_radius": "sleeve", "bore_radius": "sleeve"}
 """Fields of a seat, and the kind of seat they belong to."""
 LARGEST_BOLT_CIRCLE = 1.5
@@ -365,12 +368,11 @@ def _main_bearing(drive: Drive) -> Iterator[str]:
             f"{path}.radial_stiffness = {radial:g} N/mm and pin_wheel.support_stiffness = {alias:g} N/mm: are two names of one "
             "stiffness; give one of them"
         )
-    for name, value, unit, why in (
-        ("tilt_stiffness", bearing.tilt_stiffness, "N·mm/rad", "the wheel does not tilt in the model yet"),
-        ("axial_stiffness", bearing.axial_stiffness, "N/mm", "nothing presses the wheel along its axis in the model"),
-    ):
-        if value is not None:
-            yield f"{path}.{name} = {value:g} {unit}: must be left out: {why}"
+    if bearing.tilt_stiffness is not None:
+        yield (
+            f"{path}.tilt_stiffness = {bearing.tilt_stiffness:g} N·mm/rad: must be left out: the wheel does not tilt in "
+            "the model yet"
+        )
     yield from _loose_or_tight(path, bearing.clearance, bearing.preload, drive.crank.eccentricity)
     if not bearing.bearings:
         if radial is None and alias is None:
@@ -378,23 +380,71 @@ def _main_bearing(drive: Drive) -> Iterator[str]:
         if bearing.arrangement != "O":
             yield f'{path}.arrangement = "{bearing.arrangement}": must be left out without {path}.bearings'
         return
-    for name, value in (("main_bearing.radial_stiffness", radial), ("pin_wheel.support_stiffness", alias)):
+    for name, value in (
+        ("main_bearing.radial_stiffness", radial),
+        ("pin_wheel.support_stiffness", alias),
+        ("main_bearing.axial_stiffness", bearing.axial_stiffness),
+    ):
         if value is not None:
             yield f"{name} = {value:g} N/mm: must be left out beside {path}.bearings, from which it follows"
-    used = False
+    used, wrong = False, list[str]()
     for number, row in enumerate(bearing.bearings):
-        yield from _bearing_row(f"{path}.bearings.{number}", row, bearing)
+        wrong += _bearing_row(f"{path}.bearings.{number}", row, bearing)
         used = used or (bool(row.contact_angle) and row.preload is None)
+    yield from wrong or _row_preloads(bearing)
     if bearing.preload is not None and not used:
         yield f"{path}.preload: must be left out where no row of {path}.bearings takes it (contact_angle, no preload of its own)"
     placed = [row for row in bearing.bearings if row.contact_angle]
-    if len(placed) > 1 and len({row.plane for row in placed}) == 1:
+    if len(placed) > 2:
+        yield (
+            f"{path}.bearings has {len(placed)} rows with contact angles: must have at most 2, which face each other by "
+            f"{path}.arrangement; rows that face alike are one row of their load constants together"
+        )
+    elif len(placed) > 1 and len({row.plane for row in placed}) == 1:
         yield (
             f"{path}.bearings: plane = {placed[0].plane:g} mm of all rows: rows with contact angles must stand in different "
             "planes"
         )
     if bearing.arrangement != "O" and len(placed) < 2:
         yield f'{path}.arrangement = "{bearing.arrangement}": must be left out without two rows with contact angles'
+
+
+def _row_preloads(bearing: MainBearing) -> Iterator[str]:
+    """Problems of axial preloads that are in no balance, of rows that are sound each by itself."""
+    rows, forces = [], []
+    for number, row in enumerate(bearing.bearings):
+        if row.contact_angle:
+            preload = row.preload or bearing.preload
+            rows.append((f"main_bearing.bearings.{number}", row.preload))
+            if preload is None:
+                forces.append(0.0)
+                continue
+            force, _ = axial_preload(
+                row.power,
+                row.axial_stiffness,
+                row.load_constant,
+                force=preload.force,
+                displacement=preload.displacement,
+            )
+            forces.append(force)
+    if len(rows) == 1 and forces[0]:
+        ((path, own),) = rows
+        given = "main_bearing.preload" if own is None else f"{path}.preload"
+        yield (
+            f"{given}: must be left out with one row with a contact angle ({path}), which has none to "
+            "press against; give axial_stiffness in place of load_constant"
+        )
+    if len(rows) != 2:
+        return
+    ((first, _), (second, _)), (one, other) = rows, forces
+    if not all(forces) and any(forces):
+        given, left_out = (first, second) if one else (second, first)
+        yield f"{left_out}.preload: must be given beside {given}.preload: rows that face each other press with one force"
+    elif abs(one - other) > UNBALANCED * max(one, other):
+        yield (
+            f"{first} and {second}: axial preloads of {one:.4g} and {other:.4g} N must be equal to {100.0 * UNBALANCED:g} %: "
+            "rows that face each other press with one force; main_bearing.preload is that of both"
+        )
 
 
 def _bearing_row(path: str, row: BearingRow, bearing: MainBearing) -> Iterator[str]:
@@ -426,8 +476,6 @@ def _bearing_row(path: str, row: BearingRow, bearing: MainBearing) -> Iterator[s
             f"{path}.radial_stiffness = {row.radial_stiffness:g} N/mm: must be left out with a contact angle, from which it "
             "follows"
         )
-    if row.pitch_radius is None:
-        yield f"{path}.pitch_radius: must be given with a contact angle, it places the pressure centre"
     if (row.axial_stiffness is None) == (row.load_constant is None):
         yield f"{path}: must have either axial_stiffness or load_constant"
     if row.load_constant is not None and preload is None:

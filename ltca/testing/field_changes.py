@@ -87,8 +87,8 @@ _LEFT_OUT = {
     "crank.support.clearance": 0.01,
     "crank.support.preload.force": 50.0,
     "crank.support.preload.displacement": 2e-4,
-    "main_bearing.bearings.0.preload.force": 1e3,
-    "main_bearing.bearings.0.preload.displacement": 2e-3,
+    "main_bearing.bearings.0.preload.force": 2.01e3,
+    "main_bearing.bearings.0.preload.displacement": 2.157e-3,
     "installation.first_stage_ratio": 2.0,
     "first_stage.module": 1.42,
     "first_stage.mesh_stiffness": 3e5,
@@ -154,7 +154,10 @@ _OF_LIFE |= dict.fromkeys(
 )
 _EVERYWHERE = _NAME | _OF_LIFE
 _TILTING = dict.fromkeys(
-    [f"load.external.0.{name}" for name in ("force.z", "moment.x", "moment.y", "at.z")],
+    [
+        "main_bearing.axial_stiffness",
+        *(f"load.external.0.{name}" for name in ("force.z", "moment.x", "moment.y", "at.z")),
+    ],
     "what tilts the output or pushes it along the axis loads the main bearing alone, which here is not told",
 )
 _BODIES = dict.fromkeys(
@@ -386,6 +389,8 @@ def _of_main_bearing(path: str) -> dict[str, Any]:
     if name == "bearings.0.axial_stiffness":
         rows = {one: value for one, value in _ROWS.items() if not one.endswith("load_constant")}
         return rows | {f"main_bearing.bearings.{number}.axial_stiffness": 5e5 for number in (0, 1)}
+    if name == "axial_stiffness":
+        return _EXTERNAL | {"main_bearing.radial_stiffness": 5e5, path: 4e5}
     if name == "arrangement" or name.startswith("bearings."):
         return _ROWS
     return {} if name == "radial_stiffness" else {"main_bearing.radial_stiffness": 5e5}

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from ltca.analysis.loaded_analysis import analyse
-from ltca.analysis.reactions import reaction_values
+from ltca.analysis.reactions import reaction_values, relieved_rows_warning
 from ltca.analysis.summary import summarise
 from ltca.analysis.torque_curve import torque_curve
 from ltca.drive.parts import Material
@@ -144,6 +144,60 @@ def test_a_main_bearing_tells_what_it_carries_of_the_drive_alone(paper, held, gi
     assert np.abs(by_spring).min() > 1.0
     assert summarise(found)["max_main_bearing_radial_N"] == pytest.approx(np.abs(force).max(), rel=1e-12)
     assert "main_bearing_x" not in reaction_values(analyse(paper, ANGLES[:1]))
+
+
+@pytest.mark.parametrize("held", ["pin-shaft", "pin-wheel"])
+def test_the_output_moves_along_the_axis(paper, held):
+    """−500 N by 2e5 N/mm are −2.5 µm; by two rows of 45° of 1e5 N/mm each the same, whatever preload; of rows with clearance it
+    is not known. No contact feels it.
+    """
+    rows = {
+        f"main_bearing.bearings.{number}.{name}": value
+        for number, plane in enumerate((-30.0, 30.0))
+        for name, value in {
+            "plane": plane, "kind": "tapered roller", "contact_angle": np.pi / 4.0, "axial_stiffness": 1e5
+        }.items()
+    }  # fmt: skip
+    plain = with_fields(paper, {"installation.held": held, "main_bearing.radial_stiffness": 1e5})
+    pushed = {"load.external.0.force.z": -500.0}
+    by_rows = {"main_bearing.radial_stiffness": None, **rows, **pushed}
+    name, alone = "main_bearing_axial_displacement", analyse(plain, ANGLES)
+    for changes in (pushed | {"main_bearing.axial_stiffness": 2e5}, by_rows, by_rows | {"main_bearing.preload": 1e9}):
+        found = analyse(with_fields(plain, changes), ANGLES)
+        np.testing.assert_allclose(reaction_values(found)[name], -0.0025, rtol=1e-12)
+        assert summarise(found)[f"max_{name}_mm"] == pytest.approx(0.0025, rel=1e-12)
+        # 1e5 N/mm radially in another way
+        np.testing.assert_allclose(found.full.pose, alone.full.pose, rtol=0.0, atol=1e-11)
+    for changes in (pushed, by_rows | {"main_bearing.clearance": 0.0}):
+        found = analyse(with_fields(plain, changes), ANGLES[:1])
+        assert name not in reaction_values(found)
+        assert f"max_{name}_mm" not in summarise(found)
+
+
+def test_axial_forces_beyond_the_preload_are_told(paper):
+    """Rows keep the stiffness that they have at their preload."""
+    rows = {
+        f"main_bearing.bearings.{number}.{name}": value
+        for number, plane in enumerate((-30.0, 30.0))
+        for name, value in {
+            "plane": plane, "kind": "tapered roller", "contact_angle": 0.5, "axial_stiffness": 1e5
+        }.items()
+    } | {"main_bearing.preload": 1e3}  # fmt: skip
+    found = [
+        relieved_rows_warning(analyse(with_fields(paper, rows | {"load.external.0.force.z": force}), ANGLES[:1]))
+        for force in (900.0, -1100.0)
+    ]
+    assert found[0] is None
+    assert "1100 N on rows of main_bearing.preload = 1000 N; one row is relieved" in found[1]
+    # helical planets: tapered crank bearings of 20 N
+    teeth = {"first_stage.sun_teeth": 20, "first_stage.planet_teeth": 40, "first_stage.helix_angle": 0.3}
+    tapered = {"contact_angle": 0.25, "load_constant": 2e5, "stiffness": ()}
+    drive = with_fields(
+        load_drive("rv").cases["nominal"],
+        teeth | {f"crank.support.{k}": v for k, v in tapered.items()} | {"crank.support.preload": 20.0},
+    )
+    told = relieved_rows_warning(analyse(drive, ANGLES[:1]))
+    assert "N on rows of crank.support.preload = 20 N" in told
 
 
 def test_planets_push_the_carrier(joint):
