@@ -191,6 +191,7 @@ def test_axial_forces_beyond_the_preload_are_told(paper):
     assert "1100 N on rows of main_bearing.preload = 1000 N; one row is relieved" in found[1]
     # helical planets: tapered crank bearings of 20 N
     teeth = {"first_stage.sun_teeth": 20, "first_stage.planet_teeth": 40, "first_stage.helix_angle": 0.3}
+    teeth["first_stage.plane"] = 40.0
     tapered = {"contact_angle": 0.25, "load_constant": 2e5, "stiffness": ()}
     drive = with_fields(
         load_drive("rv").cases["nominal"],

@@ -206,11 +206,6 @@ TEETH = {"first_stage.sun_teeth": 20, "first_stage.planet_teeth": 40, "first_sta
         ("robot-joint", RINGED | {"ring.outer_radius": 90e3}, r'^ring.outer_radius = .* mean "90000 µm", 90 mm\?$'),
         (
             "robot-joint",
-            RINGED | {"ring.bolts": BOLTS | {"circle_radius": 75e3}},
-            r"^ring.bolts.circle_radius = 75000 mm",
-        ),
-        (
-            "robot-joint",
             RINGED | {"ring.bolts": BOLTS | {"stiffness": 500.0}},
             r'^ring.bolts.stiffness = .* "500 N/µm"',
         ),
