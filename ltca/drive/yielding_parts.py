@@ -130,7 +130,7 @@ def _without_twist_of_carrier(drive: Drive) -> Drive:
 
 def _with_rigid_teeth(drive: Drive) -> Drive:
     assert drive.first_stage is not None
-    return replace(drive, first_stage=replace(drive.first_stage, mesh_stiffness=None, backlash=0.0))
+    return replace(drive, first_stage=replace(drive.first_stage, mesh_stiffness=None))
 
 
 _STAGE = (

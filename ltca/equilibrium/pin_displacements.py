@@ -293,7 +293,7 @@ class DisplacedPins:
         added, tangent = np.zeros((positions, size)), np.zeros((positions, size, size))
         # By the coordinates, and by what is left of the displacements.
         change = np.zeros((size + 1, *self.force.shape), dtype=complex)
-        unbalanced = np.zeros(positions)
+        unbalanced, stiffest, stepped = (np.zeros(positions) for _ in range(3))
         for rows, disc, pair in self._groups():
             stiffness, flexibility = self._stiffness(rows, disc, pair), self._flexibility(rows, disc, pair)
             by_pose, own = self._by_pose(rows, disc, pair), rows[:, 0, 0]
@@ -307,13 +307,17 @@ class DisplacedPins:
             force[..., :-1] += by_pose
             change[:, rows, disc, pair] = np.moveaxis(_vectors_of(force), -1, 0)
             unbalanced[own] = np.max(np.abs(force[..., -1]), axis=(1, 2), initial=0.0)
+            stepped[own] = np.max(np.abs(moved[..., -1]), axis=(1, 2), initial=0.0)
+            stiffest[own] = np.abs(stiffness).reshape(own.size, -1).max(axis=1)
+        # What is left by a step that moves no contact is round-off of a soft part.
+        most = np.max(np.abs(self.shifts), axis=(1, 2), initial=0.0)
         *by_pose_of_all, by_left = (self.held.under(each) for each in change)
         return Settled(
             force=added,
             tangent=0.5 * (tangent + tangent.swapaxes(1, 2)) if self.rubs is None else tangent,
             onward=self.shifts - self.left - by_left,
             by_pose=-np.stack(by_pose_of_all, axis=-1),
-            left=unbalanced,
+            left=np.where(stepped <= SHIFT_TOLERANCE + 1e-12 * most, unbalanced, stiffest * self.size),
         )
 
     @staticmethod

@@ -25,7 +25,7 @@ from math import isfinite, nan
 import numpy as np
 
 from ltca.arrays import ComplexArray, FloatArray, by_drive
-from ltca.drive.members.main_bearing import ROLLER
+from ltca.drive.members.main_bearing import ROLLER, axial_preload
 from ltca.drive.parts import CrankSupport, Drive, Preload
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import Coordinates
@@ -35,7 +35,6 @@ from ltca.laws.beam import shaft_flexibility, support_parts, torsion_flexibility
 from ltca.laws.bearing_pair import (
     RollingRow,
     SideLaw,
-    axial_preload,
     facing_of,
 )
 from ltca.laws.carrier import far_flange_stiffness

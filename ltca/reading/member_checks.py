@@ -9,11 +9,11 @@ from math import cos, degrees, fsum, pi, sin
 
 from ltca.drive.fields import ANY, OWN
 from ltca.drive.members.first_stage import FirstStage
+from ltca.drive.members.main_bearing import axial_preload
 from ltca.drive.members.pins import PinShaft, PinWheel, ShaftPinBeam, WheelPinBeam
 from ltca.drive.mistakes import entry_words
 from ltca.drive.parts import BearingRow, CrankSupport, Drive, MainBearing, Material, Preload
 from ltca.drive.ring_shape import ring_mesh_problems, seat_radius
-from ltca.laws.bearing_pair import axial_preload
 from ltca.reading.disc_checks import deviation_bound, part_errors
 
 SHARE_ROUNDING = 1e-9

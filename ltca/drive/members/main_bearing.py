@@ -83,3 +83,24 @@ class MainBearing:
     preload: Preload | None = None
     arrangement: Literal["O", "X"] = "O"
     bearings: tuple[BearingRow, ...] = ()
+
+
+def axial_preload(
+    power: float, axial: float | None, load_constant: float | None, *, force: float | None, displacement: float | None
+) -> tuple[float, float]:
+    """Return the force, N, and the displacement, mm, of an axial preload by the one of them that is given: F = K δⁿ by the load
+    constant, F = k δ/n by the axial stiffness k = dF/dδ at the preload.
+
+    Examples
+    --------
+    >>> print("%.1f N, %.4f mm" % axial_preload(1.5, None, 1e6, force=None, displacement=0.01))
+    1000.0 N, 0.0100 mm
+    >>> print("%.1f N, %.4f mm" % axial_preload(1.5, 1.5e5, None, force=1e3, displacement=None))
+    1000.0 N, 0.0100 mm
+    """
+    if load_constant is None:
+        secant = (axial or 0.0) / power
+        return (force, force / secant) if force is not None else (secant * (displacement or 0.0), displacement or 0.0)
+    if force is not None:
+        return force, (force / load_constant) ** (1.0 / power)
+    return load_constant * (displacement or 0.0) ** power, displacement or 0.0

@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ltca.drive.members.main_bearing import BALL, ROLLER
+from ltca.drive.members.main_bearing import BALL, ROLLER, axial_preload
 from ltca.laws.bearing_pair import (
     RollingRow,
     SideLaw,
-    axial_preload,
     bearing_matrix,
     facing_of,
 )
