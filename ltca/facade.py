@@ -15,6 +15,7 @@ from ltca.analysis import loaded_analysis
 from ltca.analysis.engines import Engine
 from ltca.analysis.extremes import sampling_warning
 from ltca.analysis.loaded_analysis import LoadedAnalysis
+from ltca.analysis.reactions import relieved_rows_warning
 from ltca.analysis.results import build_dataset
 from ltca.analysis.summary import refined_value, summarise
 from ltca.compliance.coefficients import InfluenceCoefficients
@@ -89,8 +90,8 @@ class AnalysisResult:
     @property
     def warnings(self) -> list[str]:
         """What to know of drive, positions and answer before they are used, one sentence each, as `cyclo run` prints it."""
-        sampled = sampling_warning(self.drive, self.loaded.full.crank_angle)
-        return [*self.loaded.warnings, *([] if sampled is None else [sampled])]
+        found = (sampling_warning(self.drive, self.loaded.full.crank_angle), relieved_rows_warning(self.loaded))
+        return [*self.loaded.warnings, *(warning for warning in found if warning is not None)]
 
     def pressure(
         self,

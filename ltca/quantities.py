@@ -252,6 +252,11 @@ def _anywhere(title: str) -> tuple[Scalar, ...]:
     return (Scalar("max_{}", f"largest {title} anywhere (end cell a hundredth)", refined=True),)
 
 
+_TIP_RING = (
+    "displacement of the ring that ties the tips of the shaft pins, or of the far flange of the carrier; not of [ring], the "
+    "ring of the wheel (ring_displacement_radial)"
+)
+
 _DECLARED = (
     # shape and assembly
     _of_design("carried_torque", "1", "part of the torque that is carried", FROM_0_TO_1),
@@ -407,9 +412,9 @@ _DECLARED = (
     _checked("shaft_pin_bending_amplitude", "MPa", "bending of shaft pins, fatigue"),
     _checked("shaft_pin_shear_stress", "MPa", "shear of shaft pins, largest (static)"),
     # supports
-    Quantity("ring_x", "drive", "mm", "displacement of the ring that ties the tips of the shaft pins, or of the far flange"),
-    Quantity("ring_y", "drive", "mm", "displacement of the ring that ties the tips of the shaft pins, or of the far flange"),
-    Quantity("ring_rotation", "drive", "rad", "rotation of that ring or flange, ccw positive"),
+    Quantity("ring_x", "drive", "mm", _TIP_RING),
+    Quantity("ring_y", "drive", "mm", _TIP_RING),
+    Quantity("ring_rotation", "drive", "rad", "rotation of that ring or flange, not of [ring]; ccw positive"),
     Quantity(
         "crank_torque", "crankshaft", "N mm",
         "external moment that holds the crank by virtual work, ∂U/∂φ_C: that of the forces on it plus cage_speed times "
@@ -467,6 +472,10 @@ _DECLARED = (
     ),
     Quantity(
         "main_bearing_moment_y", "drive", "N mm", "moment of the main bearing on the output about the zero of disc.planes"
+    ),
+    Quantity(
+        "main_bearing_axial_displacement", "drive", "mm", "displacement of the output along the axis on its main bearing",
+        (Scalar("max_{}", "displacement of the output along the axis, largest", how="largest amount", digits=".4f"),),
     ),
     _scalar("N", Scalar("max_main_bearing_radial", "radial load of the main bearing, largest")),
     _scalar("N", Scalar("max_main_bearing_axial", "axial load of the main bearing, largest")),

@@ -105,7 +105,9 @@ def drives():
     text = text.replace("[pin_wheel]\n", "[pin_wheel]\nsupport_stiffness = 1e6\n") + RUBBING
     files["rubbing"] = parse_drive(text, "rubbing")
     found = {name: next(iter(file.cases.values())) for name, file in files.items()}
-    teeth = {"first_stage.sun_teeth": 20, "first_stage.planet_teeth": 40, "load.external.0.force.x": 100.0}
+    teeth = {"first_stage.sun_teeth": 20, "first_stage.planet_teeth": 40, "load.external.0.force.x": 100.0,
+             "first_stage.plane": 40.0}  # fmt: skip
+    teeth |= {"main_bearing.radial_stiffness": 1e6, "main_bearing.axial_stiffness": 1e6}
     twisting = {"crank.support.torsion": True, "crank.support.spline_plane": 40.0}
     return found | {"geared": with_fields(found["rv"], teeth), "twisting": with_fields(found["rv"], twisting)}
 

@@ -137,6 +137,8 @@ def _solve_and_write(
     print(
         f"{name} {case}, {load}, full finite elements, plane {arguments.plane}: 1 position, φ_C = {arguments.angle:g} rad"
     )
+    if told := ring_words(drive):
+        print(told)
     count, problem = len(solution.discs), ""
     pictures: list[Sequence[Picture]] = []
     for number, disc in enumerate(solution.discs):
@@ -165,6 +167,13 @@ def _solve_and_write(
             referee(disc, deck)
     print(f"written to {out}")
     return solution, checks, pictures
+
+
+def ring_words(drive: Drive) -> str:
+    """Return what is told of a ring that an analysis has as a beam; empty where there is none."""
+    if drive.ring is None or drive.ring.model == "fe":
+        return ""
+    return 'the ring is a plane mesh with the seats of the wheel pins here; analyses have it as a beam (ring.model = "beam")'
 
 
 def _print_contacts(solution: FullSolution) -> None:

@@ -39,7 +39,7 @@ from ltca.drive.parts import Drive
 from ltca.drive.ring_shape import has_ring_of_elements, ring_fingerprint
 from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.balance import Equilibrium, lever_arms
-from ltca.equilibrium.output_torque import input_moment, solve_at_output
+from ltca.equilibrium.output_torque import solve_at_output, unbalanced_moment
 from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
@@ -158,8 +158,7 @@ class _Position:
         if not self.held:
             return np.asarray(found.wheel_moment - node.drive.wheel_moment(torque))
         share = np.full(found.crank_angle.shape, node.drive.input_per_crank_moment)
-        moment = input_moment(node.model, found.crank_angle, found.pose, found.response, share)
-        return np.asarray(found.wheel_moment + moment + node.drive.driving_sign * torque)
+        return unbalanced_moment(node.model, found, share, node.drive.driving_sign * torque)
 
     def _tangent(self, base: _Node) -> FloatArray:
         """Slopes of the residual by pose and moment, those of forces as the balance takes them."""

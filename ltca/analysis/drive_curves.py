@@ -17,7 +17,7 @@ from ltca.analysis.life.life_text import life_content, life_lines
 from ltca.analysis.memory_need import positions_together
 from ltca.analysis.pressure_safety import PressureOfTurns, PressureSafety
 from ltca.analysis.stiffness_by_part import StiffnessByPart, stiffness_by_part
-from ltca.analysis.torque_curve import TorqueCurve, curve_content, torque_curve
+from ltca.analysis.torque_curve import UNDER_FORCES, TorqueCurve, curve_content, torque_curve
 from ltca.analysis.transmission_error_orders import Order, Spectrum, fit_orders, known_orders, least_turns
 from ltca.arrays import FloatArray
 from ltca.drive.members.judgement import Value, judge
@@ -235,6 +235,7 @@ def curve_lines(found: DriveCurves, title: str) -> list[str]:
             if words
         ),
         f"  {floating:<40}  {_range(curve.backlash * ARCMIN)}′",
+        *([f"  {UNDER_FORCES}"] if curve.displaced else []),
         f"  lost motion at ±{100.0 * curve.lost_motion_part:g} % of the rated torque   {_range(curve.lost_motion * ARCMIN)}′",
         *of_loop,
         f"  stiffness of the cycloid stage, 50…100 %  {_range(curve.stiffness / ARCMIN / 1e3)} N m/′",

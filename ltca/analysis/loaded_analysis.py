@@ -26,12 +26,14 @@ from ltca.drive.hole_contact import hole_words
 from ltca.drive.members.named_materials import strength_warning
 from ltca.drive.members.temperatures import temperature_words, warm_drive
 from ltca.drive.parts import Drive, Temperature
+from ltca.drive.ring_shape import deep_seats_warning
 from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import names_unit_mistakes, unit_warnings
 from ltca.drive.units.quantities import ARCMIN
 from ltca.drive.units.table import range_of
 from ltca.equilibrium.balance import Equilibrium, equilibrium_of_disc
 from ltca.equilibrium.compliance_shares import PARTS, compliance_shares
+from ltca.equilibrium.first_stage import StageMesh
 from ltca.equilibrium.output_angle import crank_lag, wheel_angle_of_input
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.partial_balance import (
@@ -279,7 +281,7 @@ class LoadedAnalysis:
         """What to know of drive and answer before they are used, one sentence each."""
         units = unit_warnings(self.as_written, self.torque)
         found = [*units, preload_warning(self.drive), self._lost_play()]
-        found.append(strength_warning(self.drive.materials))
+        found += [strength_warning(self.drive.materials), deep_seats_warning(self.drive)]
         if not units and self.drive.load.light_torque > self.torque > 0.0:
             found.append(
                 f"load.light_torque = {self.drive.load.light_torque:g} N·mm is more than the torque of {self.torque:g} N·mm "
@@ -609,7 +611,8 @@ def require_preload(
     """Refuse positions at which nothing holds the discs without a torque, which field or argument `named` has left out.
 
     Where the output has a free play, or parts only just touch, no force says where discs and wheel stand. Where parts overlap in
-    every pose and hold the wheel, they balance each other.
+    every pose and hold the wheel, they balance each other. Teeth of a first stage with backlash leave the output free beside the
+    tightest discs: the moments of the cranks are round-off then, and tell no side.
 
     Raises
     ------
@@ -617,11 +620,13 @@ def require_preload(
         Naming the torque and the play.
     """
     found = free_play(discs, crank_angle)
-    loose = np.flatnonzero(~(found.preloaded & (found.play * drive.reduction_ratio < HELD_PLAY)))
+    stage = StageMesh.of_drive(drive)
+    play = found.play if stage is None else found.play + stage.play
+    loose = np.flatnonzero(~(found.preloaded & (play * drive.reduction_ratio < HELD_PLAY)))
     if not loose.size:
         return
-    row = loose[int(np.argmax(found.play[loose]))]
-    played = abs(drive.output_per_wheel_angle) * float(found.play[row]) * ARCMIN
+    row = loose[int(np.argmax(play[loose]))]
+    played = abs(drive.output_per_wheel_angle) * float(play[row]) * ARCMIN
     told = f"has a free play of {played:.3g}′" if played > 0.0 else "is held by parts that only just touch"
     raise DriveError(
         [

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import sin
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.response import bearing_pushes
 from ltca.equilibrium.external_force import entries_of
 from ltca.equilibrium.first_stage import MeshForces
+from ltca.equilibrium.supports import crank_laws, wheel_axial_stiffness, wheel_rows
 from ltca.geometry.rotation import unit
 from ltca.laws.beam import support_parts
 
@@ -58,12 +60,37 @@ def crank_support_forces(analysis: LoadedAnalysis) -> ComplexArray | None:
     return np.asarray(carried)
 
 
+def relieved_rows_warning(analysis: LoadedAnalysis) -> str | None:
+    """Return a warning where axial forces exceed the axial preload of rows, whose radial stiffness is that at the preload."""
+    drive, support, values = analysis.drive, analysis.drive.crank.support, reaction_values(analysis)
+    found = []
+    given = () if drive.main_bearing is None else drive.main_bearing.bearings
+    pressed = [
+        row.normal_load * sin(own.contact_angle)
+        for row, own in zip(wheel_rows(drive), given, strict=True)
+        if row.normal_load
+    ]
+    if pressed and "main_bearing_z" in values:
+        found.append(("main_bearing.preload", np.max(np.abs(values["main_bearing_z"])), min(pressed)))
+    if support is not None and support.load_constant is not None and "first_stage_axial_force" in values:
+        held = (crank_laws(drive) or ())[0].preload_load * sin(support.contact_angle or 0.0)
+        found.append(("crank.support.preload", np.nanmax(np.abs(values["first_stage_axial_force"])), held))
+    told = [f"{force:.4g} N on rows of {path} = {held:.4g} N" for path, force, held in found if force > held]
+    if not told:
+        return None
+    return (
+        f"axial forces exceed the preload of bearings: {', '.join(told)}; one row is relieved, and stiffness and friction stay "
+        "those at the preload"
+    )
+
+
 def _main_bearing(analysis: LoadedAnalysis) -> dict[str, FloatArray]:
     """Force and moment of the housing on the output where its main bearing is described or forces from outside act on it, in the
     frame of the housing.
 
     Moments are about the zero of the planes of the discs. Forces off that plane and along the axis tilt the output; nothing
-    yields in tilt, so they load the main bearing alone.
+    yields in tilt, so they load the main bearing alone. Where its axial stiffness is known it yields
+    along the axis.
     """
     drive, full = analysis.drive, analysis.full
     if not (drive.load.external or drive.wheel_yields):
@@ -90,8 +117,10 @@ def _main_bearing(analysis: LoadedAnalysis) -> dict[str, FloatArray]:
         pressed_by_sun = teeth.in_plane.sum(axis=1) * into_housing
         tilted = (-1j * radius * outward * teeth.axial).sum(axis=1) * into_housing
         force, axial = force + pressed_by_sun, axial + teeth.axial.sum(axis=1)
-        moment = moment + 1j * stage.plane * pressed_by_sun + tilted
-    return {
+        moment = moment + 1j * (stage.plane or 0.0) * pressed_by_sun + tilted
+    stiffness = wheel_axial_stiffness(drive)
+    displaced = {} if stiffness is None else {"main_bearing_axial_displacement": axial / stiffness}
+    return displaced | {
         "main_bearing_x": -force.real,
         "main_bearing_y": -force.imag,
         "main_bearing_z": -axial,

@@ -282,7 +282,8 @@ def _of_main_bearing(arrays: Mapping[str, FloatArray]) -> dict[str, float]:
     """Largest loads of the main bearing; nothing where the file says nothing of it."""
     if "main_bearing_x" not in arrays:
         return {}
-    return {
+    axial = "main_bearing_axial_displacement"
+    return ({f"max_{axial}": float(np.max(np.abs(arrays[axial])))} if axial in arrays else {}) | {
         "max_main_bearing_radial": float(np.max(np.hypot(arrays["main_bearing_x"], arrays["main_bearing_y"]))),
         "max_main_bearing_axial": float(np.max(np.abs(arrays["main_bearing_z"]))),
         "max_main_bearing_moment": float(

@@ -22,7 +22,7 @@ SEAT_ROWS = (
 REACTION_ROWS = (
     "max_crank_support_load_first", "max_crank_support_load_second", "max_first_stage_tangential_force",
     "max_first_stage_radial_force", "max_first_stage_axial_force", "max_main_bearing_radial", "max_main_bearing_axial",
-    "max_main_bearing_moment", "cycloid_stage_stiffness", "reducer_stiffness",
+    "max_main_bearing_moment", "max_main_bearing_axial_displacement", "cycloid_stage_stiffness", "reducer_stiffness",
 )  # fmt: skip
 FRICTION_ROWS = (
     "mean_efficiency", "mean_efficiency_back", "moves_back", "mean_crank_torque", "drag_torque", "power_loss", "power_loss_pin",

@@ -2,9 +2,10 @@
 
 The input is held, the output is loaded one way and the other. Without friction the curve has no loop; towards vanishing torque
 its branches end at the two stops of the free play (`ltca.geometry.play`), which is the backlash, with that of
-a first stage. The stiffness of the cycloid stage is that with the cranks held: flanks, pins, crank bearings and, where the file
-has them, beams, supports, ring and carrier; that of the reducer has everything that the file describes, and what it leaves out
-is told (`ltca.drive.yielding_parts`). With friction the curve is what the bodies
+a first stage. Forces from outside on a wheel whose main bearing yields take up what is free on their side before any torque: the
+backlash is then the gap that they leave between the branches. The stiffness of the cycloid stage is that with the cranks held:
+flanks, pins, crank bearings and, where the file has them, beams, supports, ring and carrier; that of the reducer has everything
+that the file describes, and what it leaves out is told (`ltca.drive.yielding_parts`). With friction the curve is what the bodies
 yield, and the loop about it is told beside it (`ltca.analysis.friction.hysteresis`). Torques and angles are those of the output,
 whichever member that is.
 """
@@ -24,12 +25,17 @@ from ltca.drive.unit_mistakes import names_unit_mistakes
 from ltca.drive.yielding_parts import YieldingParts, yielding_parts
 from ltca.equilibrium.output_angle import play_of_input, wheel_angle_of_input
 from ltca.equilibrium.output_torque import solve_at_output
-from ltca.errors import DriveError
+from ltca.equilibrium.reducer import Reducer
+from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.play import free_play
 
 LEAST_TORQUE_RATIO = 1e-4
 """Smallest torque relative to the rated one: elastic wind-up is some 1e-4 of its rated value there."""
+GAP_TORQUE_RATIOS = (1e-6, 1e-5, LEAST_TORQUE_RATIO)
+"""Torque by the rated one, either way, between which the gap under forces from outside is read: the first that balances beside
+them. Bodies yield some 1e-5 of the gap at the first."""
+UNDER_FORCES = "backlash is what the forces from outside leave of the play: they displace the wheel on its main bearing"
 LOST_MOTION = 0.03
 """Lost motion is read between ± this part of the rated torque unless another is asked for, as makers of precision reducers do."""
 LEAST_PART, MOST_PART = 0.001, 0.5
@@ -53,7 +59,8 @@ class TorqueCurve:
     output_angle : array, shape (angles, points)
         Deviation of the output with the input held, rad.
     backlash : array, shape (angles,)
-        Free play of the output with every clearance (`ltca.geometry.play`), rad.
+        Free play of the output with every clearance (`ltca.geometry.play`), rad; where forces from outside displace the wheel
+        what these leave of it.
     lost_motion : array, shape (angles,)
         Between ± `lost_motion_part` of the rated torque, rad; with friction between the middles of the loop there.
     stiffness : array, shape (angles, 2)
@@ -63,6 +70,8 @@ class TorqueCurve:
         The same with the input held: of everything that the file describes, N·mm/rad.
     yielding : YieldingParts
         What yields in both, and what is rigid because the file leaves it out.
+    displaced : bool
+        Whether forces from outside displace the wheel.
     lost_motion_part : float
         Part of the rated torque at which lost motion is read.
     loop : HysteresisLoop or None
@@ -78,6 +87,7 @@ class TorqueCurve:
     stiffness: FloatArray
     reducer_stiffness: FloatArray
     yielding: YieldingParts
+    displaced: bool = False
     lost_motion_part: float = LOST_MOTION
     loop: HysteresisLoop | None = None
 
@@ -159,14 +169,38 @@ def torque_curve(
         torque=torque,
         wheel_angle=wheel,
         output_angle=output,
-        backlash=abs(drive.output_per_wheel_angle) * play_of_input(tables, free_play(tables.geometries, angles).play),
+        backlash=abs(drive.output_per_wheel_angle) * play_of_input(tables, _play(tables, drive, angles)),
         lost_motion=at(lost_motion) - at(-lost_motion) if loop is None else loop.lost_motion,
         stiffness=stiffness(of_stage),
         reducer_stiffness=stiffness(output),
         yielding=yielding_parts(drive),
+        displaced=_displaced(tables),
         lost_motion_part=lost_motion,
         loop=loop,
     )
+
+
+def _displaced(model: Reducer) -> bool:
+    """Tell whether forces from outside displace the wheel."""
+    return model.external is not None and model.coordinates.wheel and bool(np.any(model.external.on_wheel(np.zeros(1))))
+
+
+def _play(model: Reducer, drive: Drive, crank_angle: FloatArray) -> FloatArray:
+    """Return the free play of the wheel with the cranks held, or what forces from outside leave of it, rad, (angles,)."""
+    free = free_play(model.geometries, crank_angle).play
+    if not _displaced(model):
+        return free
+    for part in GAP_TORQUE_RATIOS:
+        torque = np.tile(part * drive.load.torque * np.array([-1.0, 1.0]), crank_angle.size)
+        try:
+            found = solve_at_output(model, [drive], np.repeat(crank_angle, 2), torque)
+        except ConvergenceError:  # loads that are round-off beside those of a large arm
+            if part == GAP_TORQUE_RATIOS[-1]:
+                raise
+            continue
+        break
+    ends = found.pose[:, WHEEL_ANGLE].reshape(-1, 2)
+    return np.asarray(np.where(free > 0.0, np.abs(ends[:, 1] - ends[:, 0]), 0.0))
 
 
 def torsional_stiffness(drive: Drive, crank_angle: FloatArray, *, engine: Engine | None = None) -> FloatArray:

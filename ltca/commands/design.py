@@ -55,7 +55,7 @@ def execute(arguments: argparse.Namespace) -> int:
     from concurrent.futures.process import BrokenProcessPool
 
     from ltca.output.run_folder import claimed_folder, require_folder
-    from ltca.studies.design_search.requirements import load_requirements
+    from ltca.studies.design_search.requirement_file import load_requirements
 
     check_worker_arguments(arguments)
     requirements = load_requirements(arguments.requirements)

@@ -6,7 +6,7 @@ contacts exert at this pose, and what is its tangent? `ltca.equilibrium.reducer`
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import Protocol
 
 import numpy as np
@@ -157,10 +157,13 @@ class Response(DiscResponse):
         Of each disc, by its own pose.
     left : array, shape (positions,), or None
         Force that displacements which have not settled amount to, N; None where none are displaced.
+    contact_stiffness : array, shape (positions, coordinates)
+        Diagonal of the tangent without supports.
     """
 
     parts: tuple[DiscResponse, ...]
     left: FloatArray | None = None
+    contact_stiffness: FloatArray = field(default_factory=lambda: np.zeros((0, 0)))
 
     @classmethod
     def of_disc(cls, part: DiscResponse) -> Response:

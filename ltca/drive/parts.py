@@ -340,9 +340,14 @@ class Drive:
         return found + against * self.carrier_compliance * torque if self.carrier_compliance else found
 
     @property
+    def posts(self) -> CarrierPosts | None:
+        """Posts that hold the far flange of the carrier; None without a carrier or without posts of its own."""
+        return None if self.carrier is None else self.carrier.posts
+
+    @property
     def post_length(self) -> float:
         """Distance of the flanges of the carrier, the length of its posts, mm; placeholder without posts."""
-        posts = None if self.carrier is None else self.carrier.posts
+        posts = self.posts
         return self.shaft_pin_span if posts is None or posts.length is None else posts.length
 
     @property
@@ -352,7 +357,7 @@ class Drive:
         """
         if self.crank.support is not None:
             return self.crank.support.positions
-        if self.carrier is None or self.carrier.posts is None:
+        if self.carrier is None or self.posts is None:
             return None
         near, far = self.carrier.flange or (0.0, 0.0)
         return -0.5 * (self.post_length + near), 0.5 * (self.post_length + far)

@@ -17,7 +17,8 @@ from math import pi, sin, sqrt
 from typing import ParamSpec, TypeVar
 
 from ltca.drive.members.limits import Limit
-from ltca.drive.parts import Drive, Material, Materials, contact_modulus
+from ltca.drive.members.main_bearing import ROLLER
+from ltca.drive.parts import Drive, Material, Materials, Preload, contact_modulus
 from ltca.errors import ConvergenceError, CycloError, DriveError
 from ltca.quantities import LIMITED
 
@@ -61,6 +62,11 @@ SHORT, LONG = 0.01, 100.0
 FINEST, FINE = 3e-4, 5e-5
 """Offset or clearance below what machines hold: in mm, a third of a micrometre, and by the pin radius, for micro drives. A
 thousandth of it is a number of its own."""
+FAINT = 1.0 / 5000.0
+"""Preload or force from outside by the load of a crank at the torque that a drive carries below which it is likely in kN: usual
+ones are from a hundredth to ten of it, the weight of a small arm a thousandth."""
+PRESSED_IN = 0.03
+"""Displacement of a row by its preload, in eccentricities, beyond that of any bearing: usual ones are some micrometres."""
 POOREST = 0.02
 """Load rating by an estimate from the rollers' sizes below which it is likely in kN; makers differ by a factor of two."""
 FASTEST = 1.5e6
@@ -76,6 +82,25 @@ def _parts(drive: Drive) -> list[str]:
     seats = {drive.pin_wheel.seat.kind} | (set() if drive.pin_shaft is None else {drive.pin_shaft.seat.kind})
     counts = {"crankshaft": False, "carrier": False, "wheel_seat": "slot" in seats, "sleeve": "sleeve" in seats}
     return [item.name for item in fields(Materials) if counts.get(item.name, True)]
+
+
+def _bodies(drive: Drive) -> dict[str, Material]:
+    """Materials of all parts that yield, by path: those under contact pressure, and cranks, carrier and ring that bend."""
+    found = {f"materials.{part}": getattr(drive.materials, part) for part in _parts(drive)}
+    if drive.crank.support is not None:
+        found["materials.crankshaft"] = drive.materials.crankshaft
+    if drive.carrier is not None and drive.carrier.posts is not None:
+        found["materials.carrier"] = drive.materials.carrier
+    if drive.ring is not None:
+        found["ring.material"] = drive.ring.material
+    return found
+
+
+def _together(paths: list[str]) -> str:
+    """Paths of materials in one: "materials.disc, wheel_pin, ring.material"."""
+    own = [path.removeprefix("materials.") for path in paths if path.startswith("materials.")]
+    told = [f"materials.{', '.join(own)}"] if own else []
+    return ", ".join([*told, *(path for path in paths if not path.startswith("materials."))])
 
 
 def likely_unit_mistakes(drive: Drive, torque: float | None = None) -> list[str]:
@@ -145,12 +170,12 @@ def _too_long(path: str, span: float, diameter: float, bent: float) -> str:
 
 def _modulus(drive: Drive) -> list[str]:
     values: dict[float, list[str]] = {}
-    for part in _parts(drive):
-        values.setdefault(getattr(drive.materials, part).youngs_modulus, []).append(part)
+    for path, material in _bodies(drive).items():
+        values.setdefault(material.youngs_modulus, []).append(path)
     return [
-        f"materials.{', '.join(names)}: youngs_modulus = {value:g} MPa is softer than any rigid plastic (some {SOFT:g} MPa) "
+        f"{_together(paths)}: youngs_modulus = {value:g} MPa is softer than any rigid plastic (some {SOFT:g} MPa) "
         f'and does not carry this torque; {value:g} GPa are written {1000.0 * value:g} or "{value:g} GPa"'
-        for value, names in values.items()
+        for value, paths in values.items()
         if value < SOFT
     ]
 
@@ -210,20 +235,18 @@ def stiffness_warning(drive: Drive) -> str | None:
     Beyond that of any material pascals are likely; a value that would be a metal in GPa, beside a part a hundred times
     stiffer, is likely in GPa: a soft shaft pin alone lets every solution succeed.
     """
-    parts = _parts(drive)
-    for part in parts:
-        modulus = getattr(drive.materials, part).youngs_modulus
+    moduli = {path: material.youngs_modulus for path, material in _bodies(drive).items()}
+    for path, modulus in moduli.items():
         if modulus > STIFF:
             return (
-                f"materials.{part}.youngs_modulus = {modulus:g} MPa is stiffer than diamond ({DIAMOND:g} MPa); a plain "
+                f"{path}.youngs_modulus = {modulus:g} MPa is stiffer than diamond ({DIAMOND:g} MPa); a plain "
                 f'number is MPa, not Pa: {modulus:g} Pa are written {1e-6 * modulus:g} or "{1e-9 * modulus:g} GPa"'
             )
-    stiffest = max(getattr(drive.materials, part).youngs_modulus for part in parts)
-    for part in parts:
-        modulus = getattr(drive.materials, part).youngs_modulus
+    stiffest = max(moduli.values())
+    for path, modulus in moduli.items():
         if METALS[0] <= 1000.0 * modulus <= METALS[1] and stiffest >= 100.0 * modulus:
             return (
-                f"materials.{part}.youngs_modulus = {modulus:g} MPa, beside {stiffest:g} MPa of another part; a plain number "
+                f"{path}.youngs_modulus = {modulus:g} MPa, beside {stiffest:g} MPa of another part; a plain number "
                 f'is MPa: write "{modulus:g} GPa" for a metal'
             )
     return None
@@ -241,6 +264,7 @@ def unit_warnings(drive: Drive, torque: float | None = None) -> list[str]:
     return found or [
         *_odd_torques(drive, torque),
         *_odd_stiffnesses(drive),
+        *_odd_forces(drive),
         *_odd_ratings(drive),
         *_odd_speeds(drive),
         *_soft_carrier(drive, torque),
@@ -298,13 +322,12 @@ def _odd_torques(drive: Drive, torque: float | None) -> Iterator[str]:
 def _odd_strengths(drive: Drive) -> Iterator[str]:
     """Strengths in GPa or Pa that were read as MPa, by the modulus of their own material: each value once, with its parts."""
     found: dict[tuple[str, float, float], list[str]] = {}
-    for part in _parts(drive):
-        own = getattr(drive.materials, part)
+    for path, own in _bodies(drive).items():
         for name in STRENGTHS:
             if (value := getattr(own, name)) is not None:
-                found.setdefault((name, value, own.youngs_modulus), []).append(part)
-    for (name, value, modulus), parts in found.items():
-        if told := _odd_strength(f"materials.{', '.join(parts)}: {name}", value, modulus, modulus):
+                found.setdefault((name, value, own.youngs_modulus), []).append(path)
+    for (name, value, modulus), paths in found.items():
+        if told := _odd_strength(f"{_together(paths)}: {name}", value, modulus, modulus):
             yield told
 
 
@@ -333,6 +356,8 @@ def _odd_stiffnesses(drive: Drive) -> Iterator[str]:
         "pin_wheel.support_stiffness": drive.pin_wheel.support_stiffness,
         "main_bearing.radial_stiffness": None if drive.main_bearing is None else drive.main_bearing.radial_stiffness,
     }
+    if drive.main_bearing is not None:
+        given["main_bearing.axial_stiffness"] = drive.main_bearing.axial_stiffness
     if drive.ring is not None and drive.ring.bolts is not None:
         given["ring.bolts.stiffness"] = drive.ring.bolts.stiffness
     if drive.first_stage is not None:
@@ -348,6 +373,49 @@ def _odd_stiffnesses(drive: Drive) -> Iterator[str]:
                 f"{path} = {value:g} N/mm is {_fraction(value / body)} of Young's modulus times thickness of the disc "
                 f'({body:.3g} N/mm): softer than any part of it; a plain number is N/mm, did you mean "{value:g} N/µm" '
                 f"({1000.0 * value:g} N/mm)?"
+            )
+
+
+def _odd_forces(drive: Drive) -> Iterator[str]:
+    """Preloads and forces from outside in kN that were read as N, by the load of the crank that the drive carries, and load
+    constants of rows by how far their preload presses them in.
+    """
+    carried = carried_torque(drive) / (drive.crank.eccentricity * abs(drive.reduction_ratio))
+    preloads = _preloads(drive)
+    given = {f"{path}.force": one.force for path, one in preloads.items() if one.force is not None}
+    for number, entry in enumerate(drive.load.external):
+        parts = {f"load.external.{number}.force.{axis}": getattr(entry.force, axis) for axis in "xyz"}
+        largest = max(parts, key=lambda path: abs(parts[path]))
+        given[largest] = parts[largest]
+    for path, value in given.items():
+        if 0.0 < abs(value) < FAINT * carried:
+            yield (
+                f"{path} = {value:g} N is {_fraction(abs(value) / carried)} of the load of a crank that this drive carries (some "
+                f'{_rounded(1e-3 * carried)} kN); a plain number is N, did you mean "{value:g} kN"?'
+            )
+    bearing, support = drive.main_bearing, drive.crank.support
+    rows = [
+        (f"main_bearing.bearings.{number}", row.load_constant, row.power, row.preload or bearing.preload)
+        for number, row in enumerate(() if bearing is None else bearing.bearings)
+        if bearing is not None
+    ]
+    if support is not None:
+        rows.append(("crank.support", support.load_constant, ROLLER, support.preload))
+    for path, constant, power, preload in rows:
+        if constant is None or preload is None:
+            continue
+        if preload.force is not None:
+            pressed = (preload.force / constant) ** (1.0 / power)
+            told = f"would be pressed in by {pressed:.3g} mm by its preload of {preload.force:g} N"
+            odd = pressed > PRESSED_IN * drive.crank.eccentricity
+        else:
+            force = constant * (preload.displacement or 0.0) ** power
+            told = f"would press with {force:.3g} N at its preload of {preload.displacement:g} mm"
+            odd = force < FAINT * carried
+        if odd:
+            yield (
+                f"{path}.load_constant = {constant:g} N/mmⁿ: the row {told}; a plain number is N/mmⁿ, did you mean "
+                f"{1000.0 * constant:.10g} (kN by mmⁿ)?"
             )
 
 
@@ -384,14 +452,14 @@ def _rounded(value: float) -> str:
 def _odd_lengths(drive: Drive) -> Iterator[str]:
     """Lengths in metres or micrometres that were read as mm, by the lengths beside them, and offsets finer than any made."""
     for path, value, beside, what in _lengths_beside(drive):
-        if value < SHORT * beside:
+        if abs(value) < SHORT * beside:
             yield (
-                f"{path} = {value:g} mm is {_fraction(value / beside)} of {what} ({beside:.3g} mm); did you mean "
+                f"{path} = {value:g} mm is {_fraction(abs(value) / beside)} of {what} ({beside:.3g} mm); did you mean "
                 f'"{value:g} m", {1000.0 * value:g} mm?'
             )
-        elif value > LONG * beside:
+        elif abs(value) > LONG * beside:
             yield (
-                f"{path} = {value:g} mm is {_rounded(value / beside)} times {what} ({beside:.3g} mm); did you mean "
+                f"{path} = {value:g} mm is {_rounded(abs(value) / beside)} times {what} ({beside:.3g} mm); did you mean "
                 f'"{value:g} µm", {value / 1000.0:g} mm?'
             )
     fine = {
@@ -414,12 +482,35 @@ def _plays(drive: Drive) -> dict[str, float]:
     """Clearances, preloads by displacement and backlash of what holds the contacts, by path, mm."""
     found = {} if drive.first_stage is None else {"first_stage.backlash": drive.first_stage.backlash}
     bearing, support = drive.main_bearing, drive.crank.support
-    held = [(path, one) for path, one in (("main_bearing", bearing), ("crank.support", support)) if one is not None]
-    found |= {f"{path}.clearance": one.clearance or 0.0 for path, one in held}
-    preloads = [(f"{path}.preload", one.preload) for path, one in held]
+    held = (("main_bearing", bearing), ("crank.support", support))
+    found |= {f"{path}.clearance": one.clearance or 0.0 for path, one in held if one is not None}
+    return found | {f"{path}.displacement": one.displacement or 0.0 for path, one in _preloads(drive).items()}
+
+
+def _preloads(drive: Drive) -> dict[str, Preload]:
+    """Preloads of bearings by path."""
+    bearing, support = drive.main_bearing, drive.crank.support
+    found = {
+        "main_bearing.preload": None if bearing is None else bearing.preload,
+        "crank.support.preload": None if support is None else support.preload,
+    }
     for number, row in enumerate(() if bearing is None else bearing.bearings):
-        preloads.append((f"main_bearing.bearings.{number}.preload", row.preload))
-    return found | {f"{path}.displacement": one.displacement or 0.0 for path, one in preloads if one is not None}
+        found[f"main_bearing.bearings.{number}.preload"] = row.preload
+    return {path: one for path, one in found.items() if one is not None}
+
+
+def _axial_places(drive: Drive) -> dict[str, float | None]:
+    """Places along the axis of what holds and loads the discs, by path, mm."""
+    support, stage, bearing = drive.crank.support, drive.first_stage, drive.main_bearing
+    found: dict[str, float | None] = {"first_stage.plane": None if stage is None else stage.plane}
+    if support is not None:
+        found["crank.support.spline_plane"] = support.spline_plane
+        found |= {f"crank.support.positions[{number}]": one for number, one in enumerate(support.positions)}
+    for number, row in enumerate(() if bearing is None else bearing.bearings):
+        found[f"main_bearing.bearings.{number}.plane"] = row.plane
+    for number, entry in enumerate(drive.load.external):
+        found[f"load.external.{number}.at.z"] = entry.at.z
+    return found
 
 
 def _lengths_beside(drive: Drive) -> Iterator[tuple[str, float, float, str]]:
@@ -439,6 +530,9 @@ def _lengths_beside(drive: Drive) -> Iterator[tuple[str, float, float, str]]:
     if support is not None:
         inner = 2.0 * bearing.inner_race_radius
         yield "crank.support.diameter", support.diameter, inner, "the diameter of the inner race on it"
+    for path, place in _axial_places(drive).items():
+        if place:
+            yield path, place, stack, "the thickness of all discs"
     ring = drive.ring
     if ring is not None:
         yield "ring.outer_radius", ring.outer_radius, half_circle, "half the pin circle radius"

@@ -80,7 +80,7 @@ def _has_shaft_pins(drive: Drive) -> bool:
 
 
 def _has_posts(drive: Drive) -> bool:
-    return drive.carrier is not None and drive.carrier.posts is not None
+    return drive.posts is not None
 
 
 def _has_far_flange(drive: Drive) -> bool:

@@ -348,8 +348,8 @@ def _follow_down(search: Search, rows: NDArray[np.intp]) -> NDArray[np.intp]:
 
 def _below_round_off(search: Search, rows: NDArray[np.intp]) -> NDArray[np.bool_]:
     """Whether loads are so small that round-off of the approaches, times their stiffness, is no small part of them."""
-    _, tangent = search.scaled(rows, search.evaluate(rows, search.pose[rows], None))
-    return np.asarray(search.round_off(tangent) > ROUND_OFF_BOUND * search.load[rows])
+    response = search.evaluate(rows, search.pose[rows], None)
+    return np.asarray(search.round_off(rows, response) > ROUND_OFF_BOUND * search.load[rows])
 
 
 def _failure(search: Search, rows: NDArray[np.intp]) -> ConvergenceError:

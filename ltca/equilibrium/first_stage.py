@@ -74,8 +74,6 @@ class StageMesh:
         Half of the angle by which a planet is free to turn, rad.
     sun_radius : float
         Radius of the pitch circle of the sun, mm.
-    plane : float
-        Axial place of the planets, mm.
     reduction_ratio : float
         u.
     outward : array of complex, shape (cranks,)
@@ -104,7 +102,6 @@ class StageMesh:
     twist: BatchScalar = by_drive(0)
     half_free: BatchScalar = by_drive(0)
     sun_radius: BatchScalar = by_drive(0)
-    plane: BatchScalar = by_drive(0)
     reduction_ratio: float
     outward: ComplexArray = by_drive(1)
     by_pose: ComplexArray = by_drive(3)
@@ -123,23 +120,24 @@ class StageMesh:
         mesh, places, coordinates = stage.mesh(distance), np.array(drive.crank.places), Coordinates.of_drive(drive)
         stiffness, support, discs = stage.mesh_stiffness, drive.crank.support, drive.disc.number_of_discs
         planes, bearings, shaft = drive.disc.disc_planes, drive.crank_supports, drive.materials.crankshaft
+        place = 0.0 if stage.plane is None else stage.plane  # left out where no bearing gives their forces an arm
         bending, own, by_bearings = np.zeros((discs, 2)), np.zeros((2, 2)), np.zeros((2, 2))
         on_supports: FloatArray = np.eye(discs + 1, 2, -discs)
         if support is not None:
             whole = shaft_flexibility(
-                [*planes, stage.plane], support.positions, crank_springs(drive), support.diameter, shaft.youngs_modulus,
-                [stage.plane],
+                [*planes, place], support.positions, crank_springs(drive), support.diameter, shaft.youngs_modulus,
+                [place],
             )  # fmt: skip
             bending = np.asarray(np.linalg.solve(whole[:discs, :discs], whole[:discs, discs:]), dtype=float)
             own = whole[discs:, discs:] - whole[discs:, :discs] @ bending
         if bearings is not None:
-            on_supports = support_parts([stage.plane], bearings, [stage.plane])
+            on_supports = support_parts([place], bearings, [place])
             by_bearings = on_supports - support_parts(planes, bearings) @ bending
         by_pose = np.zeros((drive.crank.number, 2, coordinates.size), dtype=complex)
         for crank in range(coordinates.cranks):
             x = coordinates.own * np.arange(discs) + coordinates.crank(crank)
             by_pose[crank][:, x], by_pose[crank][:, x + 1] = bending.T, 1j * bending.T
-        on_posts = drive.carrier is not None and drive.carrier.posts is not None
+        on_posts = drive.posts is not None
         if on_posts:
             axes = drive.crank.axis_offset.place + places
             seats = np.stack((np.ones_like(axes), np.full_like(axes, 1j), 1j * axes), axis=-1)
@@ -151,7 +149,6 @@ class StageMesh:
             twist=0.0 if stiffness is None else 1.0 / (stiffness * mesh.base_radius**2),
             half_free=0.5 * mesh.backlash_angle(stage.backlash),
             sun_radius=distance - mesh.pitch_radius,
-            plane=stage.plane,
             reduction_ratio=drive.reduction_ratio,
             outward=places / np.abs(places),
             by_pose=by_pose,

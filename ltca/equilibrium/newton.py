@@ -149,7 +149,7 @@ class Search:
         for _ in range(most):
             self.history.append(residual.copy())
             # A residual that is no number does not balance either.
-            balanced = residual[active] <= self.accepted(active, tangent)
+            balanced = residual[active] <= self.accepted(active, response)
             going = ~(balanced | self.slipped[active])
             if not going.all():
                 self.keep(active, response, balanced & ~self.slipped[active])
@@ -199,7 +199,7 @@ class Search:
         damping, size = 1e-10, pose.shape[1]
         for _ in range(MAX_REDUCTION_STEPS):
             self.residual[row] = np.max(np.abs(gradient))
-            if self.residual[row] <= self.accepted(rows, tangent)[0]:
+            if self.residual[row] <= self.accepted(rows, response)[0]:
                 self.pose[rows] = pose
                 self.keep(rows, response, np.ones(1, dtype=bool))
                 return True
@@ -246,7 +246,7 @@ class Search:
                 soft = modes[:, np.argmin(np.abs(values))]
                 soft = soft if soft @ last >= 0.0 else -soft
                 self.residual[row] = np.max(np.abs(gradient))
-                if self.residual[row] <= self.accepted(rows, tangent)[0]:
+                if self.residual[row] <= self.accepted(rows, response)[0]:
                     # A ridge balances as well: steps this long may have left the valley.
                     if self.symmetric and values[0] < -RIDGE * values[-1]:
                         return False
@@ -283,14 +283,18 @@ class Search:
             self.balanced = [(rows[order], take_positions(join_positions([part for _, part in self.balanced]), order))]
         return self.balanced[0]
 
-    def round_off(self, tangent: FloatArray) -> FloatArray:
-        """Return what round-off of the approaches makes of the residual, N."""
-        size = float(np.max(np.abs(self.place.wheel_pin_centres)))
-        return np.asarray(ROUND_OFF * size * np.abs(np.trace(tangent, axis1=1, axis2=2)))
+    def round_off(self, rows: NDArray[np.intp], response: Response) -> FloatArray:
+        """Return what round-off of the approaches makes of the residual, N.
 
-    def accepted(self, rows: NDArray[np.intp], tangent: FloatArray) -> FloatArray:
+        Supports know displacements, not places, so however stiff they are they add nothing.
+        """
+        size = float(np.max(np.abs(self.place.wheel_pin_centres)))
+        stiffness = response.contact_stiffness / self.levers(rows) ** 2
+        return np.asarray(ROUND_OFF * size * np.abs(stiffness.sum(axis=1)))
+
+    def accepted(self, rows: NDArray[np.intp], response: Response) -> FloatArray:
         """Return the largest residual that counts as balance, N."""
-        round_off, load = self.round_off(tangent), self.load[rows]
+        round_off, load = self.round_off(rows, response), self.load[rows]
         return np.asarray(np.maximum(TOLERANCE * load, np.minimum(round_off, ROUND_OFF_BOUND * load)))
 
     def walk(

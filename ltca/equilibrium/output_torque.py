@@ -1,9 +1,11 @@
 r"""Equilibrium at a given torque of the output, whichever member is held.
 
 With the pin shaft held the output is the wheel, and its moment is the torque. With the wheel held the output is the pin
-shaft: what holds the wheel then follows from the sum of all moments, :math:`T_W + T_{in} + T_{out} = 0`, with the moment of
-the input at every position: that of a central crank, of the sun of a first stage, or none where the shaft itself turns its
-cranks. Contacts do not care who is held.
+shaft: what holds the wheel then follows from the sum of all moments about its axis,
+:math:`T_W + T_{in} + T_{out} + w \times G = 0`, with the moment of the input at every position: that of a central crank, of the
+sun of a first stage, or none where the shaft itself turns its cranks. A force G on the wheel relative to the shaft, from outside
+or by the teeth of a first stage, acts on the shaft at its axis and is held at that of the wheel, which a main bearing that yields
+leaves displaced by w. Contacts do not care who is held.
 
 The moment of a crank is that of virtual work, with its cages geared to it. The forces on the crank alone have the moment
 :math:`T_C - k M_K` about its axis, with the part k of the crank's angle by which cages turn, and cages are held by the moments
@@ -20,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.arrays import FloatArray, put_positions, take_positions
-from ltca.compliance.response import Response, Start
+from ltca.compliance.response import Start
 from ltca.drive.parts import Drive
 from ltca.equilibrium.balance import Equilibrium, follow_equilibrium, solve_equilibrium
 from ltca.equilibrium.reducer import Reducer
@@ -34,14 +36,21 @@ TORQUE_TOLERANCE = 1e-10
 """Unbalanced moment relative to the output torque; the balance of forces leaves more."""
 
 
-def input_moment(
-    model: Reducer, crank_angle: FloatArray, pose: FloatArray, response: Response, input_per_crank_moment: FloatArray
+def unbalanced_moment(
+    model: Reducer, found: Equilibrium, input_per_crank_moment: FloatArray, output: FloatArray | float
 ) -> FloatArray:
-    """Return the external moment of the input, ccw positive, N·mm, without what seals and oil take there.
+    """Return what is left of the moments about the axis of the shaft, ccw positive, N·mm, shape (positions,).
 
-    `input_per_crank_moment` is that of the drive of each position.
+    `input_per_crank_moment` is that of the drive of each position, and `output` the torque on the output. What seals and oil take
+    at the input is not in it.
     """
-    return np.asarray(input_per_crank_moment * model.crank_moments(crank_angle, pose, response.parts).sum(axis=1))
+    angle, pose, parts = found.crank_angle, found.pose, found.response.parts
+    left = found.wheel_moment + input_per_crank_moment * model.crank_moments(angle, pose, parts).sum(axis=1) + output
+    if model.coordinates.wheel:
+        x, y = pose[:, model.coordinates.wheel_place].T
+        force = model.force_beside_pins(angle, pose, parts)
+        left = left + x * force.imag - y * force.real
+    return np.asarray(left)
 
 
 FIRST_FRICTION_STEP, LEAST_FRICTION_STEP = 0.25, 0.01
@@ -241,7 +250,7 @@ def _at_output(
         return found
     angle, mean = found.crank_angle, found.wheel_moment
     moment = mean.copy()
-    left = moment + input_moment(model, angle, found.pose, found.response, input_per_crank_moment) + signed
+    left = unbalanced_moment(model, found, input_per_crank_moment, signed)
     # The cranks carry 1/u of the wheel's moment in the mean, the input its part of that: what is left grows with the moment.
     slope = by_wheel.copy()
     history = []
@@ -259,11 +268,7 @@ def _at_output(
         found = part if whole else put_positions(found, open_rows, part)
         before = left[open_rows]
         model_part = model if whole else model.take(open_rows)
-        left[open_rows] = (
-            moment[open_rows]
-            + input_moment(model_part, angle[open_rows], part.pose, part.response, input_per_crank_moment[open_rows])
-            + signed[open_rows]
-        )
+        left[open_rows] = unbalanced_moment(model_part, part, input_per_crank_moment[open_rows], signed[open_rows])
         secant = (left[open_rows] - before) / step
         # Round-off of both ends makes no slope any more; a wrong one would only cost rounds.
         slope[open_rows] = np.where(np.abs(secant / slope[open_rows] - 1.0) < 0.5, secant, slope[open_rows])

@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -129,6 +130,8 @@ class PinDisplacements:
             most = float(np.max(np.abs(system.shifts), initial=0.0))
             if history[-1] <= SHIFT_TOLERANCE + 1e-13 * most or (roughly and np.all(size <= system.rough)):
                 return system
+            if system.is_settled(most, roughly):
+                return system
             step, fraction = system.step, np.ones(size.shape)
             for _ in range(10):
                 there = at(system.shifts + fraction[:, None, None] * step)
@@ -157,7 +160,7 @@ def _settled_by_energy(
         most = float(np.max(np.abs(system.shifts), initial=0.0))
         history.append(float(np.max(system.size, initial=0.0)))
         settled = history[-1] <= SHIFT_TOLERANCE + 1e-12 * most or _is_round_off(history[-1], history[-2], most)
-        if settled or (roughly and np.all(system.size <= system.rough)):
+        if settled or system.is_settled(most, roughly):
             return system
         way, step = system.aim - known, system.step
         steep = np.abs(_along(way, system.left))
@@ -171,7 +174,11 @@ def _settled_by_energy(
             fraction = np.where(too_far, shorter * fraction, fraction)
             there = at(system.shifts + fraction[:, None, None] * step)
         known, system = known + fraction[:, None, None] * way, there
-    raise ConvergenceError("the displacements of the pins do not settle; largest change in mm", history)
+    raise ConvergenceError(
+        f"the displacements of the pins do not settle (the largest is {most:.3g} mm): the ring or the beams that hold them are "
+        "too soft for these loads; largest change in mm",
+        history,
+    )
 
 
 def _is_round_off(left: float, before: float, most: float) -> bool:
@@ -255,12 +262,21 @@ class DisplacedPins:
         largest = [np.max(part.flank.approach, axis=1) for part in self.parts]
         return np.asarray(ROUGH * np.maximum(np.max(largest, axis=0), 0.0))
 
-    @property
+    @cached_property
     def step(self) -> ComplexArray:
         """Newton's step of the displacements with the pose held, mm."""
         return -self.left - self.held.under(self.aim - self.force)
 
-    @property
+    def is_settled(self, most: float, roughly: bool) -> bool:
+        """Whether Newton's step is nothing, or small enough; `most` is the largest displacement, mm.
+
+        A soft part makes much of little: what is left, by a step that moves no contact, is its flexibility times the round-off of
+        their loads.
+        """
+        size = np.max(np.abs(self.step), axis=(1, 2), initial=0.0)
+        return bool(np.all(size <= SHIFT_TOLERANCE + 1e-12 * most) or (roughly and np.all(size <= self.rough)))
+
+    @cached_property
     def aim(self) -> ComplexArray:
         """Forces on the pins after Newton's step, linear, N."""
         change = np.zeros_like(self.left)
@@ -277,7 +293,7 @@ class DisplacedPins:
         added, tangent = np.zeros((positions, size)), np.zeros((positions, size, size))
         # By the coordinates, and by what is left of the displacements.
         change = np.zeros((size + 1, *self.force.shape), dtype=complex)
-        stiffest = np.zeros(positions)
+        unbalanced, stiffest, stepped = (np.zeros(positions) for _ in range(3))
         for rows, disc, pair in self._groups():
             stiffness, flexibility = self._stiffness(rows, disc, pair), self._flexibility(rows, disc, pair)
             by_pose, own = self._by_pose(rows, disc, pair), rows[:, 0, 0]
@@ -290,14 +306,18 @@ class DisplacedPins:
             force = _times(stiffness, moved)
             force[..., :-1] += by_pose
             change[:, rows, disc, pair] = np.moveaxis(_vectors_of(force), -1, 0)
+            unbalanced[own] = np.max(np.abs(force[..., -1]), axis=(1, 2), initial=0.0)
+            stepped[own] = np.max(np.abs(moved[..., -1]), axis=(1, 2), initial=0.0)
             stiffest[own] = np.abs(stiffness).reshape(own.size, -1).max(axis=1)
+        # What is left by a step that moves no contact is round-off of a soft part.
+        most = np.max(np.abs(self.shifts), axis=(1, 2), initial=0.0)
         *by_pose_of_all, by_left = (self.held.under(each) for each in change)
         return Settled(
             force=added,
             tangent=0.5 * (tangent + tangent.swapaxes(1, 2)) if self.rubs is None else tangent,
             onward=self.shifts - self.left - by_left,
             by_pose=-np.stack(by_pose_of_all, axis=-1),
-            left=stiffest * self.size,
+            left=np.where(stepped <= SHIFT_TOLERANCE + 1e-12 * most, unbalanced, stiffest * self.size),
         )
 
     @staticmethod

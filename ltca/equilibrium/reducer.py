@@ -220,6 +220,7 @@ class Reducer:
         if settled is not None:
             force += settled.force
             tangent += settled.tangent
+        contact_stiffness = np.einsum("bii->bi", tangent).copy()
         beside_discs: tuple[ComplexArray, FloatArray] | tuple[()] = ()
         if self.stage is not None and self._teeth_press:
             beside_discs = self._press_teeth(self.stage, crank_angle, pose, parts, force, tangent)
@@ -248,6 +249,7 @@ class Reducer:
             ring=parts[0].ring,
             follow=None if settled is None else FollowingPins(settled.onward, settled.by_pose, pose),
             left=None if settled is None else settled.left,
+            contact_stiffness=contact_stiffness,
         )
 
     def crank_moments(self, crank_angle: FloatArray, pose: FloatArray, parts: Sequence[DiscResponse]) -> FloatArray:

@@ -20,23 +20,21 @@ beside the discs, such as the teeth of a first stage, adds to R what the bearing
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import tan
+from math import isfinite, nan
 
 import numpy as np
 
 from ltca.arrays import ComplexArray, FloatArray, by_drive
-from ltca.drive.parts import Drive, Preload
+from ltca.drive.members.main_bearing import ROLLER, axial_preload
+from ltca.drive.parts import CrankSupport, Drive, Preload
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import Coordinates
 from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.backed import shaft_pin_beam
 from ltca.laws.beam import shaft_flexibility, support_parts, torsion_flexibility
 from ltca.laws.bearing_pair import (
-    BALL,
-    ROLLER,
     RollingRow,
     SideLaw,
-    axial_stiffness,
     facing_of,
 )
 from ltca.laws.carrier import far_flange_stiffness
@@ -312,10 +310,13 @@ def crank_bearing_stiffness(drive: Drive) -> tuple[float, float]:
     if support.load_constant is None:
         first, second = support.stiffness
         return first, second
-    preload = support.preload or Preload()
-    axial = axial_stiffness(support.load_constant, ROLLER, force=preload.force, displacement=preload.displacement)
-    radial = RollingRow.of_axial(axial, support.contact_angle or 0.0).radial
+    radial = _tapered_row(support).radial
     return radial, radial
+
+
+def _tapered_row(support: CrankSupport) -> RollingRow:
+    """A bearing of a crank that is a preloaded row of tapered rollers."""
+    return _row(ROLLER, support.contact_angle or 0.0, None, support.load_constant, support.preload)
 
 
 def crank_springs(drive: Drive) -> tuple[float, float]:
@@ -337,8 +338,7 @@ def crank_laws(drive: Drive) -> tuple[SideLaw, ...] | None:
         elif support.load_constant is None:
             found.append(SideLaw.of_preload(stiffness, support.preload.force, support.preload.displacement))
         else:
-            angle = support.contact_angle or 0.0
-            found.append(_lifting(stiffness, _lift_off(ROLLER, 0.0, support.load_constant, angle, support.preload)))
+            found.append(SideLaw.of_rows([_tapered_row(support)]))
     return tuple(found)
 
 
@@ -348,21 +348,24 @@ def wheel_rows(drive: Drive) -> tuple[RollingRow, ...]:
     rows = () if bearing is None else bearing.bearings
     if bearing is None or not rows:
         return ()
-    middle = sum(row.plane for row in rows) / len(rows)
+    placed = [row.plane for row in rows if row.contact_angle]
+    middle = sum(placed) / max(len(placed), 1)
     found = []
     for row in rows:
         if not row.contact_angle:
             found.append(RollingRow(radial=row.radial_stiffness or 0.0, axial=0.0, pressure_centre=row.plane))
             continue
-        stiffness, preload = row.axial_stiffness, row.preload or bearing.preload or Preload()
-        if stiffness is None:
-            stiffness = axial_stiffness(
-                row.load_constant or 0.0, _power(row.kind), force=preload.force, displacement=preload.displacement
-            )
         facing = facing_of(bearing.arrangement, row.plane, middle)
         found.append(
-            RollingRow.of_axial(
-                stiffness, row.contact_angle, plane=row.plane, pitch_radius=row.pitch_radius or 0.0, facing=facing
+            _row(
+                row.power,
+                row.contact_angle,
+                row.axial_stiffness,
+                row.load_constant,
+                row.preload or bearing.preload,
+                plane=row.plane,
+                pitch_radius=nan if row.pitch_radius is None else row.pitch_radius,
+                facing=facing,
             )
         )
     return tuple(found)
@@ -386,30 +389,41 @@ def wheel_law(drive: Drive) -> SideLaw | float | None:
     if not rows:
         held = bearing.preload
         return stiffness if held is None else SideLaw.of_preload(stiffness, held.force, held.displacement)
-    reaches = [
-        _lift_off(_power(given.kind), row.axial, given.load_constant, given.contact_angle, preload)
-        for row, given in zip(rows, bearing.bearings, strict=True)
-        if given.contact_angle and (preload := given.preload or bearing.preload) is not None
-    ]
-    return _lifting(stiffness, min(reaches)) if reaches else stiffness
+    return SideLaw.of_rows(rows) if any(isfinite(row.reach) for row in rows) else stiffness
 
 
-def _power(kind: str) -> float:
-    return BALL if kind in ("angular-contact ball", "deep groove") else ROLLER
+def wheel_axial_stiffness(drive: Drive) -> float | None:
+    """Return the axial stiffness of the main bearing, N/mm, of rows k_zz of all of them about their preload.
+
+    None where it is not known: of rows with clearance just one carries along the axis, beyond an axial play.
+    """
+    bearing = drive.main_bearing
+    if bearing is None or not bearing.bearings:
+        return None if bearing is None else bearing.axial_stiffness
+    found = sum(row.axial for row in wheel_rows(drive))
+    return found if found and bearing.clearance is None else None
 
 
-def _lift_off(power: float, axial: float, load_constant: float | None, contact_angle: float, preload: Preload) -> float:
-    """Radial displacement at which the elements opposite to the load lift off, mm: their normal approach by cos α."""
-    pressed = preload.displacement
-    if pressed is None:
-        force = preload.force or 0.0
-        pressed = power * force / axial if load_constant is None else (force / load_constant) ** (1.0 / power)
-    return float(pressed * tan(contact_angle))
-
-
-def _lifting(stiffness: float, reach: float) -> SideLaw:
-    """Law of preloaded rows of a radial stiffness whose unloaded side lifts off at a displacement, mm."""
-    return SideLaw(stiffness=stiffness, lift_off=stiffness * reach, beyond=1.0 / stiffness)
+def _row(
+    power: float,
+    contact_angle: float,
+    axial: float | None,
+    load_constant: float | None,
+    preload: Preload | None,
+    *,
+    plane: float = 0.0,
+    pitch_radius: float = 0.0,
+    facing: int = 1,
+) -> RollingRow:
+    """A row with a contact angle about its preload, by its axial stiffness there or by its load constant."""
+    if preload is None:
+        if axial is None:
+            raise AssertionError("a load constant needs a preload")
+        return RollingRow.of_axial(axial, contact_angle, plane=plane, pitch_radius=pitch_radius, facing=facing)
+    force, pressed = axial_preload(power, axial, load_constant, force=preload.force, displacement=preload.displacement)
+    stiffness = power * force / pressed if axial is None else axial
+    row = RollingRow.of_axial(stiffness, contact_angle, plane=plane, pitch_radius=pitch_radius, facing=facing)
+    return row.pressed(contact_angle, force, pressed)
 
 
 def _crank_shares(drive: Drive) -> FloatArray:

@@ -430,8 +430,7 @@ MARGIN = 0.25
 
 def _carrier_bodies(drive: Drive, place: Placement) -> list[Body]:
     """Posts, and flanges where their thickness is given, on the axis of the discs' planes."""
-    carrier, shaft = drive.carrier, drive.pin_shaft
-    posts = None if carrier is None else carrier.posts
+    carrier, posts, shaft = drive.carrier, drive.posts, drive.pin_shaft
     if carrier is None or posts is None:
         return []
     half, cranks = 0.5 * drive.post_length, drive.crank.number

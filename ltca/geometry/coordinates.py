@@ -68,8 +68,7 @@ class Coordinates:
         support = drive.crank.support
         cranks, twists = (0, False) if support is None else (drive.crank.number, support.torsion)
         beam = None if drive.pin_shaft is None else drive.pin_shaft.beam
-        posts = None if drive.carrier is None else drive.carrier.posts
-        ring = posts is not None or (beam is not None and beam.tip != "free")
+        ring = drive.posts is not None or (beam is not None and beam.tip != "free")
         wheel = drive.wheel_yields
         discs, leans = drive.disc.number_of_discs, drive.contact.slices > 1
         return cls(discs=discs, cranks=cranks, wheel=wheel, ring=ring, twists=twists, leans=leans)

@@ -115,7 +115,7 @@ class ContactGeometry:
             share = (drive.disc.disc_planes[0] - near) / (far - near)
             if support is not None:
                 gaps, shares = np.full(2, 0.5 * max(support.clearance or 0.0, 0.0)), np.array([1.0 - share, share])
-            if drive.carrier is not None and drive.carrier.posts is not None:
+            if drive.posts is not None:
                 seat_share = share
         return cls(
             placement=place,

@@ -19,15 +19,12 @@ in series with a spring (`SideLaw`).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from math import cos, sin, tan
+from dataclasses import dataclass, replace
+from math import cos, inf, isfinite, sin, tan
 
 import numpy as np
 
 from ltca.arrays import FloatArray
-
-BALL, ROLLER = 1.5, 10.0 / 9.0
-"""Powers of the approach by which balls (Hertz) and rollers (Lundberg) press."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -40,11 +37,17 @@ class RollingRow:
         Stiffness, N/mm.
     pressure_centre : float
         Place h where the contact normals meet the axis, mm.
+    reach : float
+        Radial displacement at which the elements opposite to the load lift off, mm; infinite without preload.
+    normal_load : float
+        Sum of the normal loads of all elements by the preload, N.
     """
 
     radial: float
     axial: float
     pressure_centre: float
+    reach: float = inf
+    normal_load: float = 0.0
 
     @classmethod
     def of_axial(
@@ -63,6 +66,18 @@ class RollingRow:
         radial = 0.5 * axial * (cos(contact_angle) / sin(contact_angle)) ** 2
         return cls(radial=radial, axial=axial, pressure_centre=plane - facing * pitch_radius * tan(contact_angle))
 
+    def pressed(self, contact_angle: float, force: float, displacement: float) -> RollingRow:
+        """Return the row under an axial preload, N, that presses it in by a displacement, mm: elements by δ sin α, loads P/sin α
+        together, and a radial displacement takes cos α of itself off the elements opposite to the load.
+
+        Examples
+        --------
+        >>> row = RollingRow.of_axial(1e5, np.pi / 4).pressed(np.pi / 4, 500.0, 0.005)
+        >>> print(f"{row.reach:.4f} {row.normal_load:.1f}")
+        0.0050 707.1
+        """
+        return replace(self, reach=displacement * tan(contact_angle), normal_load=force / sin(contact_angle))
+
     @property
     def matrix(self) -> FloatArray:
         """Forces and moments by displacements and tilts (x, y, z, θ_x, θ_y), N/mm, N, N·mm, shape (5, 5)."""
@@ -71,20 +86,6 @@ class RollingRow:
         found[0, 4] = found[4, 0] = self.radial * h
         found[1, 3] = found[3, 1] = -self.radial * h
         return found
-
-
-def axial_stiffness(load_constant: float, power: float, *, force: float | None, displacement: float | None) -> float:
-    """Return dF/dδ of F = K δⁿ at a force, N, or at a displacement, mm: N/mm.
-
-    Examples
-    --------
-    >>> round(axial_stiffness(1e6, 1.5, force=None, displacement=0.01))
-    150000
-    >>> round(axial_stiffness(1e6, 1.5, force=1e3, displacement=None))  # 10 µm again
-    150000
-    """
-    pressed = (force or 0.0) / load_constant if displacement is None else displacement**power
-    return float(power * load_constant * pressed ** (1.0 - 1.0 / power))
 
 
 def bearing_matrix(rows: Sequence[RollingRow]) -> FloatArray:
@@ -112,15 +113,19 @@ class SideLaw:
     gap : float
         g, mm.
     lift_off : float
-        R_0 at which one side lifts off, N; half of it is the preload.
+        R_0 at which one side lifts off, N.
     beyond : float
         c, mm/N: beyond lift-off the flexibility is 1/k + c.
+    preload_load : float
+        Sum of the loads of all elements at rest, N, by which a preloaded bearing rubs: of two sides twice the preload, of rows
+        with contact angles Σ P/sin α.
     """
 
     stiffness: float
     gap: float = 0.0
     lift_off: float = 0.0
     beyond: float = 0.0
+    preload_load: float = 0.0
 
     @classmethod
     def of_clearance(cls, side: float, clearance: float) -> SideLaw:
@@ -130,7 +135,8 @@ class SideLaw:
         """
         if clearance >= 0.0:
             return cls(stiffness=side, gap=0.5 * clearance)
-        return cls(stiffness=2.0 * side, lift_off=-side * clearance, beyond=0.5 / side)
+        pressed = -side * clearance
+        return cls(stiffness=2.0 * side, lift_off=pressed, beyond=0.5 / side, preload_load=pressed)
 
     @classmethod
     def of_preload(cls, both: float, force: float | None, displacement: float | None) -> SideLaw:
@@ -139,4 +145,28 @@ class SideLaw:
         Two sides of k/2 each, pressed together by P or by δ: one lifts off at 2P = kδ.
         """
         lift_off = both * displacement if displacement is not None else 2.0 * (force or 0.0)
-        return cls(stiffness=both, lift_off=lift_off, beyond=1.0 / both)
+        return cls(stiffness=both, lift_off=lift_off, beyond=1.0 / both, preload_load=lift_off)
+
+    @classmethod
+    def of_rows(cls, rows: Sequence[RollingRow]) -> SideLaw:
+        """Return the law of rows side by side, of which at least one is preloaded.
+
+        Preloaded ones lift off on one side and are half as stiff from there, others keep their stiffness. Rows with reaches δ_i
+        of their own lift off together at the mean of these by the stiffness: force and stiffness are right before the first
+        and beyond the last of them.
+
+        Examples
+        --------
+        >>> loaded = RollingRow(radial=1e5, axial=0.0, pressure_centre=0.0, reach=0.005, normal_load=800.0)
+        >>> law = SideLaw.of_rows([loaded, RollingRow(radial=5e4, axial=0.0, pressure_centre=0.0)])
+        >>> print(f"{law.lift_off:g} N, {1.0 / (1.0 / law.stiffness + law.beyond):g} N/mm beyond")
+        750 N, 100000 N/mm beyond
+        """
+        stiffness, lifting = sum(row.radial for row in rows), [row for row in rows if isfinite(row.reach)]
+        both = sum(row.radial for row in lifting)
+        return cls(
+            stiffness=stiffness,
+            lift_off=stiffness * sum(row.radial * row.reach for row in lifting) / both,
+            beyond=1.0 / (stiffness - 0.5 * both) - 1.0 / stiffness,
+            preload_load=sum(row.normal_load for row in lifting),
+        )

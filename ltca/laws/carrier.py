@@ -32,7 +32,7 @@ from ltca.drive.parts import Drive
 def post_stiffness(
     length: float, diameter: float, youngs_modulus: float, poisson_ratio: float, ends: tuple[float, float] = (0.0, 0.0)
 ) -> tuple[float, float]:
-    """Return the force by unit displacement of one post's far end that does not turn, N/mm, and its moment by unit twist, N·mm.
+    """Return the force by unit displacement of one post's far end that does not turn, N/mm, and its moment by twist, N·mm/rad.
 
     Parameters
     ----------
@@ -79,9 +79,10 @@ def flange_compliance(thickness: float, number: int, radius: float, size: float,
 
 
 def far_flange_stiffness(drive: Drive) -> FloatArray | None:
-    """Return the forces on the far flange by its x, y and rotation, shape (3, 3), N/mm, N and N·mm; None without posts."""
-    carrier = drive.carrier
-    posts = None if carrier is None else carrier.posts
+    """Return the forces on the far flange by its x, y and rotation, shape (3, 3), N/mm, N/rad and N·mm/rad; None without
+    posts.
+    """
+    carrier, posts = drive.carrier, drive.posts
     if carrier is None or posts is None:
         return None
     material = drive.materials.carrier
@@ -89,9 +90,10 @@ def far_flange_stiffness(drive: Drive) -> FloatArray | None:
     ends, sheared = (0.0, 0.0), 0.0
     if carrier.flange is not None:
         near, far = carrier.flange
-        ends = tuple(  # type: ignore[assignment]
+        at_near, at_far = (
             flange_compliance(thickness, posts.number, posts.radius, posts.size, modulus) for thickness in (near, far)
         )
+        ends = at_near, at_far
         if loaded := loaded_circle(drive):
             shear_modulus = modulus / (2.0 * (1.0 + ratio))
             sheared = abs(posts.radius**-2 - loaded**-2) / (4.0 * pi * shear_modulus * far)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import degrees, pi, sin
+from math import degrees, isnan, pi, sin
 
 import numpy as np
 
@@ -176,12 +176,13 @@ def _teeth(drive: Drive) -> Rows:
     if stage is None or distance is None:
         return []
     mesh, give = stage.mesh(distance), stage.mesh_stiffness
+    planets = "" if stage.plane is None else f", planets at {stage.plane:g} mm"
     yields = "rigid" if give is None else f"{give:g} N/mm along the line of action"
     return [
         (
             "first stage",
             f"{stage.sun_teeth} and {stage.planet_teeth} teeth, helix angle {degrees(stage.helix_angle):g}°, pitch circles ⌀ "
-            f"{2.0 * (distance - mesh.pitch_radius):.6g} and {2.0 * mesh.pitch_radius:.6g} mm, planets at {stage.plane:g} mm",
+            f"{2.0 * (distance - mesh.pitch_radius):.6g} and {2.0 * mesh.pitch_radius:.6g} mm{planets}",
         ),
         (
             "forces of a planet",
@@ -227,13 +228,12 @@ def _supports(drive: Drive) -> Rows:
         rows.append(("main bearing of the wheel", f"{held}; {left_out} left out"))
     if found := wheel_rows(drive):
         matrix = bearing_matrix(found)
-        rows.append(
-            (
-                "rows of the main bearing",
-                f"axial {matrix[2, 2]:.4g} N/mm, tilt {matrix[3, 3]:.4g} N·mm/rad about the zero of disc.planes, pressure "
-                f"centres at {', '.join(f'{row.pressure_centre:.4g}' for row in found)} mm",
-            )
+        tilt = (
+            f", tilt {matrix[3, 3]:.4g} N·mm/rad about the zero of disc.planes, pressure "
+            f"centres at {', '.join(f'{row.pressure_centre:.4g}' for row in found)} mm"
         )
+        told = "" if isnan(matrix[3, 3]) else tilt
+        rows.append(("rows of the main bearing", f"axial {matrix[2, 2]:.4g} N/mm{told}"))
     return [*rows, *_carrier(drive)]
 
 
@@ -258,7 +258,8 @@ def _side_words(law: SideLaw) -> str:
     """What clearance or preload does, in words; empty for a spring alone."""
     if law.gap:
         return f"free within {law.gap:.4g} mm"
-    return f"both sides carry up to {law.lift_off:.4g} N, half as stiff beyond" if law.lift_off else ""
+    beyond = 1.0 / (1.0 / law.stiffness + law.beyond)
+    return f"both sides carry up to {law.lift_off:.4g} N, {beyond:.4g} N/mm beyond" if law.lift_off else ""
 
 
 THIN_WALL = 0.1
@@ -280,7 +281,7 @@ def _pins(drive: Drive) -> Rows:
         return rows
     rows += _seat(shaft, "shaft pins", "the holes")
     if shaft.beam is not None:
-        ring = "a ring" if drive.carrier is None or drive.carrier.posts is None else "the far flange"
+        ring = "a ring" if drive.posts is None else "the far flange"
         tips = {"free": "free", "tied-clamped": f"clamped in {ring}", "tied-pinned": f"pinned in {ring}"}[
             shaft.beam.tip
         ]

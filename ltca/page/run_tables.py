@@ -131,7 +131,7 @@ def _not_there(drive: Drive) -> tuple[str, ...]:
         "crankshaft": drive.crank.support is not None,
         "wheel_seat": drive.pin_wheel.seat.kind == "slot",
         "sleeve": "sleeve" in kinds,
-        "carrier": drive.carrier is not None and drive.carrier.posts is not None,
+        "carrier": drive.posts is not None,
     }
     without = [
         f"materials.{part}." for part, is_there in there.items() if not is_there and getattr(parts, part) == Material()

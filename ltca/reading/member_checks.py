@@ -8,6 +8,8 @@ from itertools import pairwise
 from math import cos, degrees, fsum, pi, sin
 
 from ltca.drive.fields import ANY, OWN
+from ltca.drive.members.first_stage import FirstStage
+from ltca.drive.members.main_bearing import axial_preload
 from ltca.drive.members.pins import PinShaft, PinWheel, ShaftPinBeam, WheelPinBeam
 from ltca.drive.mistakes import entry_words
 from ltca.drive.parts import BearingRow, CrankSupport, Drive, MainBearing, Material, Preload
@@ -22,8 +24,12 @@ MOST_OF_BODY = 0.95
 """Largest rigid core of a pin, or fixed bore of a race, by its radius: thinner walls the default meshes do not resolve."""
 MOST_WORKING_ANGLE = pi / 4.0
 """Largest working pressure angle: teeth cut at 20° and shifted as far as they go have some 30°."""
+UNBALANCED = 0.01
+"""Largest difference of the axial preloads of two rows, by the larger: displacements are written to two or three figures."""
 BELONGS = {"radius": "slot", "pin_radius": "sleeve", "bore_radius": "sleeve"}
 """Fields of a seat, and the kind of seat they belong to."""
+LARGEST_BOLT_CIRCLE = 1.5
+"""Bolt circle by the outer radius of the ring, with room for lugs."""
 
 
 def find_member_problems(drive: Drive) -> Iterator[str]:
@@ -124,6 +130,11 @@ def _ring(drive: Drive) -> Iterator[str]:
         )
     if not inner <= bolts.circle_radius:
         yield f"ring.bolts.circle_radius = {bolts.circle_radius:g} mm: must be at least ring.inner_radius = {inner:g} mm"
+    if bolts.circle_radius > LARGEST_BOLT_CIRCLE * outer:
+        yield (
+            f"ring.bolts.circle_radius = {bolts.circle_radius:g} mm: must be at most {LARGEST_BOLT_CIRCLE * outer:g} mm, "
+            f"{LARGEST_BOLT_CIRCLE:g} times ring.outer_radius: bolts stand in the ring, or in lugs on it"
+        )
 
 
 def _first_stage(drive: Drive) -> Iterator[str]:
@@ -137,6 +148,7 @@ def _first_stage(drive: Drive) -> Iterator[str]:
         return
     if given is not None and abs(given - stage.ratio) > ROUNDING * stage.ratio:
         yield f"installation.first_stage_ratio = {given:g}: must be {stage.ratio:.12g}, {teeth}, or be left out"
+    yield from _planets_plane(drive, stage)
     if crank.support is not None and (crank.support.clearance or 0.0) > 0.0:
         yield (
             f"crank.support.clearance = {crank.support.clearance:g} mm: must be at most 0 beside first_stage: cranks that float "
@@ -172,6 +184,23 @@ def _first_stage(drive: Drive) -> Iterator[str]:
         most = 0.5 * pi / stage.planet_teeth * mesh.pitch_radius
         yield (
             f"first_stage.backlash = {stage.backlash:g} mm: must be less than {most:.4g} mm, a quarter of the pitch of the teeth"
+        )
+
+
+def _planets_plane(drive: Drive, stage: FirstStage) -> Iterator[str]:
+    """Problems of the place of the planets along the axis, that where twisting cranks are held."""
+    path, support = "first_stage.plane", drive.crank.support
+    beside = "crank.support" if support is not None else "carrier.posts" if drive.crank_supports is not None else None
+    if beside is None and drive.wheel_is_held and (drive.wheel_yields or drive.load.external):
+        own = "main_bearing" if drive.main_bearing is not None else "pin_wheel.support_stiffness"
+        beside = own if drive.wheel_yields else "load.external"
+    if stage.plane is None:
+        if beside is not None:
+            yield f"{path}: must be given with {beside}, mm on the axis of disc.planes: the forces of the teeth act there"
+    elif support is not None and support.torsion and support.spline_plane not in (None, stage.plane):
+        yield (
+            f"{path} = {stage.plane:g} mm: must be crank.support.spline_plane = {support.spline_plane:g} mm, where the planets "
+            "are fixed on the cranks"
         )
 
 
@@ -339,12 +368,11 @@ def _main_bearing(drive: Drive) -> Iterator[str]:
             f"{path}.radial_stiffness = {radial:g} N/mm and pin_wheel.support_stiffness = {alias:g} N/mm: are two names of one "
             "stiffness; give one of them"
         )
-    for name, value, unit, why in (
-        ("tilt_stiffness", bearing.tilt_stiffness, "N·mm/rad", "the wheel does not tilt in the model yet"),
-        ("axial_stiffness", bearing.axial_stiffness, "N/mm", "nothing presses the wheel along its axis in the model"),
-    ):
-        if value is not None:
-            yield f"{path}.{name} = {value:g} {unit}: must be left out: {why}"
+    if bearing.tilt_stiffness is not None:
+        yield (
+            f"{path}.tilt_stiffness = {bearing.tilt_stiffness:g} N·mm/rad: must be left out: the wheel does not tilt in "
+            "the model yet"
+        )
     yield from _loose_or_tight(path, bearing.clearance, bearing.preload, drive.crank.eccentricity)
     if not bearing.bearings:
         if radial is None and alias is None:
@@ -352,23 +380,71 @@ def _main_bearing(drive: Drive) -> Iterator[str]:
         if bearing.arrangement != "O":
             yield f'{path}.arrangement = "{bearing.arrangement}": must be left out without {path}.bearings'
         return
-    for name, value in (("main_bearing.radial_stiffness", radial), ("pin_wheel.support_stiffness", alias)):
+    for name, value in (
+        ("main_bearing.radial_stiffness", radial),
+        ("pin_wheel.support_stiffness", alias),
+        ("main_bearing.axial_stiffness", bearing.axial_stiffness),
+    ):
         if value is not None:
             yield f"{name} = {value:g} N/mm: must be left out beside {path}.bearings, from which it follows"
-    used = False
+    used, wrong = False, list[str]()
     for number, row in enumerate(bearing.bearings):
-        yield from _bearing_row(f"{path}.bearings.{number}", row, bearing)
+        wrong += _bearing_row(f"{path}.bearings.{number}", row, bearing)
         used = used or (bool(row.contact_angle) and row.preload is None)
+    yield from wrong or _row_preloads(bearing)
     if bearing.preload is not None and not used:
         yield f"{path}.preload: must be left out where no row of {path}.bearings takes it (contact_angle, no preload of its own)"
     placed = [row for row in bearing.bearings if row.contact_angle]
-    if len(placed) > 1 and len({row.plane for row in placed}) == 1:
+    if len(placed) > 2:
+        yield (
+            f"{path}.bearings has {len(placed)} rows with contact angles: must have at most 2, which face each other by "
+            f"{path}.arrangement; rows that face alike are one row of their load constants together"
+        )
+    elif len(placed) > 1 and len({row.plane for row in placed}) == 1:
         yield (
             f"{path}.bearings: plane = {placed[0].plane:g} mm of all rows: rows with contact angles must stand in different "
             "planes"
         )
     if bearing.arrangement != "O" and len(placed) < 2:
         yield f'{path}.arrangement = "{bearing.arrangement}": must be left out without two rows with contact angles'
+
+
+def _row_preloads(bearing: MainBearing) -> Iterator[str]:
+    """Problems of axial preloads that are in no balance, of rows that are sound each by itself."""
+    rows, forces = [], []
+    for number, row in enumerate(bearing.bearings):
+        if row.contact_angle:
+            preload = row.preload or bearing.preload
+            rows.append((f"main_bearing.bearings.{number}", row.preload))
+            if preload is None:
+                forces.append(0.0)
+                continue
+            force, _ = axial_preload(
+                row.power,
+                row.axial_stiffness,
+                row.load_constant,
+                force=preload.force,
+                displacement=preload.displacement,
+            )
+            forces.append(force)
+    if len(rows) == 1 and forces[0]:
+        ((path, own),) = rows
+        given = "main_bearing.preload" if own is None else f"{path}.preload"
+        yield (
+            f"{given}: must be left out with one row with a contact angle ({path}), which has none to "
+            "press against; give axial_stiffness in place of load_constant"
+        )
+    if len(rows) != 2:
+        return
+    ((first, _), (second, _)), (one, other) = rows, forces
+    if not all(forces) and any(forces):
+        given, left_out = (first, second) if one else (second, first)
+        yield f"{left_out}.preload: must be given beside {given}.preload: rows that face each other press with one force"
+    elif abs(one - other) > UNBALANCED * max(one, other):
+        yield (
+            f"{first} and {second}: axial preloads of {one:.4g} and {other:.4g} N must be equal to {100.0 * UNBALANCED:g} %: "
+            "rows that face each other press with one force; main_bearing.preload is that of both"
+        )
 
 
 def _bearing_row(path: str, row: BearingRow, bearing: MainBearing) -> Iterator[str]:
@@ -400,8 +476,6 @@ def _bearing_row(path: str, row: BearingRow, bearing: MainBearing) -> Iterator[s
             f"{path}.radial_stiffness = {row.radial_stiffness:g} N/mm: must be left out with a contact angle, from which it "
             "follows"
         )
-    if row.pitch_radius is None:
-        yield f"{path}.pitch_radius: must be given with a contact angle, it places the pressure centre"
     if (row.axial_stiffness is None) == (row.load_constant is None):
         yield f"{path}: must have either axial_stiffness or load_constant"
     if row.load_constant is not None and preload is None:

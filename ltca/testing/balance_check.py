@@ -246,7 +246,7 @@ class PotentialEnergy:
                 total = total + shaft_energy(bending, shares, springs, moved[:, :, crank], pull)
             twisted = np.stack([self._twists(disc, pose) for disc in discs], axis=1)
             total = total + shaft_torsion(self.drive, twisted)
-        if self.drive.carrier is not None and self.drive.carrier.posts is not None:
+        if self.drive.posts is not None:
             flange = pose[:, -4:-1]
             total = total + 0.5 * np.einsum("pi,ij,pj->p", flange, post_forces(self.drive), flange)
         return np.asarray(total)
@@ -501,7 +501,8 @@ def find_imbalance(
     here = np.zeros((1, size))
     # Separately, since the farthest pose determines the width of the pieces.
     rubbed_at_cranks = 0.0 if rubbed is None else rubbed.at_each_crank
-    work = potential.outside(pose, rubbed_at_cranks) / lever
+    outside = potential.outside(pose, rubbed_at_cranks)
+    work = outside / lever
     if drive.first_stage is not None:
         pulls = teeth_on_shafts(drive, potential.crank_moments(pose) + rubbed_at_cranks)[1]
         potential = replace(potential, pulls=pulls)
@@ -559,6 +560,11 @@ def find_imbalance(
             stage = drive.first_stage_ratio
             reaction = 1.0 if drive.crank.number == 1 else 0.0 if stage is None else -1.0 / stage
             left += reaction * (potential.crank_moment(pose) + (0.0 if rubbed is None else rubbed.at_cranks))
+            if (
+                wheel_spring(drive) is not None
+            ):  # forces on the shaft at its axis are held at that of the displaced wheel
+                last = -6 if has_ring(drive) else -3
+                left -= pose[last] * outside[last + 1] - pose[last + 1] * outside[last]
         if abs(left) > 1e-3 * abs(output):
             problems.append(f"moments of wheel, crank and output leave {left:.3g} N·mm of {output:.3g} N·mm")
     return problems

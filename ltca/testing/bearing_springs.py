@@ -1,8 +1,8 @@
 """Bearings as one-sided springs, for the independent check: energies of each side, and of shafts on two of them.
 
-Independent of `ltca.equilibrium.supports` and `ltca.laws.bearing_pair`: rows are summed over their rolling elements, sides of
-a bearing are springs that press or do not, and the displacements of a shaft at its bearings are found by minimising the
-energy, pose by pose.
+Independent of `ltca.equilibrium.supports` and `ltca.laws.bearing_pair`: rows are sums over rolling elements that press or do not
+(`ElementRow`), sides of a bearing are springs that press or do not, and the displacements of a shaft at its bearings are found by
+minimising the energy, pose by pose.
 """
 
 from __future__ import annotations
@@ -14,8 +14,62 @@ import numpy as np
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.drive.parts import Drive, Preload
 
-ELEMENTS = 12
-"""Rolling elements of a row: sums of cos² and sin² over a circle do not depend on their number from three on."""
+ELEMENTS = 120
+"""Rolling elements of a row: while all press, sums over a circle do not depend on their number from three on."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ElementRow:
+    """A row of rolling elements each of which presses along its normal with Q = c qⁿ of its approach q, where that is positive.
+
+    Parameters
+    ----------
+    power : float
+        n.
+    load_constant : float
+        K of the axial force F = K δⁿ of the row at an axial displacement δ alone, N/mmⁿ.
+    angle : float
+        Of the normals against the radial plane, rad.
+    pressed : float
+        δ at rest, mm.
+    facing : int
+        +1 where a displacement towards +z presses the row.
+    """
+
+    power: float
+    load_constant: float
+    angle: float
+    pressed: float
+    facing: int = 1
+
+    def loads(self, radial: float = 0.0, axial: float = 0.0) -> tuple[FloatArray, FloatArray]:
+        """Return normal load and stiffness of every element at a displacement along x and z, N and N/mm."""
+        into_row = self.pressed + self.facing * axial
+        approach = np.maximum(into_row * np.sin(self.angle) + radial * np.cos(self.angle) * self._ahead, 0.0)
+        # K δⁿ = Z c (δ sin α)ⁿ sin α
+        constant = self.load_constant / (ELEMENTS * np.sin(self.angle) ** (self.power + 1.0))
+        return constant * approach**self.power, constant * self.power * approach ** (self.power - 1.0)
+
+    def forces(self, radial: float = 0.0, axial: float = 0.0) -> tuple[float, float]:
+        """Return what resists along x and z, N."""
+        loads = self.loads(radial, axial)[0]
+        return float((loads * self._ahead).sum() * np.cos(self.angle)), self.facing * float(loads.sum()) * float(
+            np.sin(self.angle)
+        )
+
+    @property
+    def radial_stiffness(self) -> float:
+        """Stiffness along x at rest, N/mm."""
+        return float((self.loads()[1] * (np.cos(self.angle) * self._ahead) ** 2).sum())
+
+    @property
+    def reach(self) -> float:
+        """Radial displacement at which the element opposite to it is free, mm."""
+        return self.pressed * float(np.sin(self.angle) / np.cos(self.angle))
+
+    @property
+    def _ahead(self) -> FloatArray:
+        return np.cos(2.0 * np.pi * np.arange(ELEMENTS) / ELEMENTS)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,10 +82,16 @@ class SidedSpring:
         Stiffness of one side, N/mm.
     pressed : float
         Displacement by which each side is pressed in at rest, mm; a gap where negative; infinite where both always carry.
+    beside : float
+        Stiffness of rows that carry on both sides always, N/mm.
+    normal : float or None
+        Sum of the loads of all rolling elements at rest, N; where omitted that of two sides.
     """
 
     side: float
     pressed: float
+    beside: float = 0.0
+    normal: float | None = None
 
     def energy(self, distance: FloatArray) -> FloatArray:
         """Return the energy of a displacement, N·mm, less that at rest."""
@@ -41,7 +101,8 @@ class SidedSpring:
         if self.pressed < 0.0:
             behind = np.zeros_like(behind)
         rest = max(self.pressed, 0.0)
-        return np.asarray(0.5 * self.side * (ahead**2 + behind**2 - 2.0 * rest**2))
+        sides = self.side * (ahead**2 + behind**2 - 2.0 * rest**2)
+        return np.asarray(0.5 * (sides + self.beside * distance**2))
 
     def slopes(self, distance: float) -> tuple[float, float]:
         """Return force and stiffness at a displacement, N and N/mm."""
@@ -50,11 +111,13 @@ class SidedSpring:
         ahead, behind = self.pressed + distance, self.pressed - distance
         force = self.side * (max(ahead, 0.0) - (max(behind, 0.0) if self.pressed > 0.0 else 0.0))
         sides = int(ahead > 0.0) + int(behind > 0.0 and self.pressed > 0.0)  # of numpy's truths True + True is True
-        return force, self.side * sides
+        return force + self.beside * distance, self.side * sides + self.beside
 
     @property
-    def sides_together(self) -> float:
-        """Sum of the loads of both sides at rest, N."""
+    def load_at_rest(self) -> float:
+        """Sum of the loads of both sides, or of all rolling elements, at rest, N."""
+        if self.normal is not None:
+            return self.normal
         return 0.0 if np.isinf(self.pressed) else 2.0 * self.side * max(self.pressed, 0.0)
 
 
@@ -69,22 +132,26 @@ def _spring(stiffness: float, clearance: float | None, preload: Preload | None) 
     )
 
 
-def _row(
-    power: float, angle: float, axial: float | None, constant: float | None, preload: Preload | None
-) -> tuple[float, float]:
-    """Radial stiffness of a row about its preload, by its rolling elements, and the radial displacement that unloads one."""
-    force, pressed = (None, None) if preload is None else (preload.force, preload.displacement)
-    if constant is not None:  # F = K δⁿ of all elements together, each by its approach δ sin α
-        pressed = (force / constant) ** (1.0 / power) if pressed is None and force is not None else pressed
-        assert pressed is not None
-        normal = power * constant * pressed ** (power - 1.0) / (ELEMENTS * np.sin(angle) ** 2)
-    else:
+def _elements(power: float, angle: float, axial: float | None, constant: float | None, preload: Preload) -> ElementRow:
+    """A preloaded row: F = K δⁿ at the preload, or what has the axial stiffness there."""
+    force, pressed = preload.force, preload.displacement
+    if constant is None:
         assert axial is not None
         pressed = power * force / axial if pressed is None and force is not None else pressed
-        normal = axial / (ELEMENTS * np.sin(angle) ** 2)
-    around = 2.0 * np.pi * np.arange(ELEMENTS) / ELEMENTS
-    radial = float((normal * (np.cos(angle) * np.cos(around)) ** 2).sum())
-    return radial, np.inf if pressed is None else pressed * np.sin(angle) / np.cos(angle)
+        assert pressed is not None
+        constant = axial * pressed ** (1.0 - power) / power
+    elif pressed is None:
+        assert force is not None
+        pressed = (force / constant) ** (1.0 / power)
+    return ElementRow(power=power, load_constant=constant, angle=angle, pressed=pressed)
+
+
+def _rows_together(rows: list[ElementRow], beside: float) -> SidedSpring:
+    """Preloaded rows, one side of which lifts off where they do on the average, beside others."""
+    stiffness = [row.radial_stiffness for row in rows]
+    reach = sum(one * row.reach for one, row in zip(stiffness, rows, strict=True)) / sum(stiffness)
+    normal = float(sum(row.loads()[0].sum() for row in rows))
+    return SidedSpring(side=0.5 * sum(stiffness), pressed=reach, beside=beside, normal=normal)
 
 
 def crank_springs(drive: Drive) -> tuple[SidedSpring, SidedSpring]:
@@ -92,11 +159,27 @@ def crank_springs(drive: Drive) -> tuple[SidedSpring, SidedSpring]:
     support = drive.crank.support
     assert support is not None
     if support.load_constant is not None:
-        radial, reach = _row(10.0 / 9.0, support.contact_angle or 0.0, None, support.load_constant, support.preload)
-        spring = SidedSpring(side=0.5 * radial, pressed=reach)
-        return spring, spring
+        assert support.preload is not None
+        row = _elements(10.0 / 9.0, support.contact_angle or 0.0, None, support.load_constant, support.preload)
+        return _rows_together([row], 0.0), _rows_together([row], 0.0)
     first, second = (_spring(value, support.clearance, support.preload) for value in support.stiffness)
     return first, second
+
+
+def wheel_rows(drive: Drive) -> tuple[list[ElementRow], float]:
+    """Return the preloaded rows of the main bearing, and the radial stiffness of its others, N/mm."""
+    bearing, rows, others = drive.main_bearing, [], 0.0
+    assert bearing is not None
+    for row in bearing.bearings:
+        power = 10.0 / 9.0 if row.kind in ("tapered roller", "cylindrical") else 1.5
+        preload = row.preload or bearing.preload
+        if not row.contact_angle:
+            others += row.radial_stiffness or 0.0
+        elif preload is None:
+            others += 0.5 * (row.axial_stiffness or 0.0) / np.tan(row.contact_angle) ** 2
+        else:
+            rows.append(_elements(power, row.contact_angle, row.axial_stiffness, row.load_constant, preload))
+    return rows, float(others)
 
 
 def wheel_spring(drive: Drive) -> SidedSpring | None:
@@ -106,18 +189,8 @@ def wheel_spring(drive: Drive) -> SidedSpring | None:
         return None if alias is None else _spring(alias, None, None)
     if not bearing.bearings:
         return _spring(bearing.radial_stiffness or alias or 0.0, bearing.clearance, bearing.preload)
-    total, nearest = 0.0, np.inf
-    for row in bearing.bearings:
-        if not row.contact_angle:
-            total += row.radial_stiffness or 0.0
-            continue
-        power = 10.0 / 9.0 if row.kind == "tapered roller" else 1.5
-        preload = row.preload or bearing.preload
-        radial, reach = _row(power, row.contact_angle, row.axial_stiffness, row.load_constant, preload)
-        total, nearest = total + radial, min(nearest, reach)
-    if bearing.clearance is not None:
-        return _spring(total, bearing.clearance, None)
-    return SidedSpring(side=0.5 * total, pressed=nearest)
+    rows, others = wheel_rows(drive)
+    return _rows_together(rows, others) if rows else _spring(others, bearing.clearance, None)
 
 
 def softened(bending: FloatArray, springs: tuple[SidedSpring, ...]) -> FloatArray:

@@ -100,7 +100,10 @@ def _on_the_carrier(random: Generator, drive: Drive) -> Drive:
 
 
 def _geared(random: Generator, drive: Drive) -> Drive:
-    """The drive with teeth in half of its first stages: often straight ones without backlash that do not yield."""
+    """The drive with teeth in half of its first stages: often straight ones without backlash that do not yield.
+
+    Planets stand beside the discs, on cranks that twist at their splines.
+    """
     ratio, distance, support = drive.installation.first_stage_ratio, drive.crank.circle_radius, drive.crank.support
     floats = support is not None and (support.clearance or 0.0) > 0.0
     if ratio is None or distance is None or random.uniform() < 0.5 or floats:
@@ -115,8 +118,10 @@ def _geared(random: Generator, drive: Drive) -> Drive:
         helix_angle=helix,
         backlash=float(random.choice([0.0, 0.01, 0.05])) * reference,
         mesh_stiffness=float(random.choice([0.0, 1e5, 1e6])) or None,
-        plane=float(random.choice([0.0, 1.5])) * drive.disc.stack_length,
+        plane=float(random.choice([-1.0, 1.5])) * drive.disc.stack_length,
     )
+    if support is not None and support.torsion:
+        teeth = replace(teeth, plane=support.spline_plane)
     kept = None if random.uniform() < 0.5 else ratio
     return replace(drive, first_stage=teeth, installation=replace(drive.installation, first_stage_ratio=kept))
 

@@ -87,8 +87,8 @@ _LEFT_OUT = {
     "crank.support.clearance": 0.01,
     "crank.support.preload.force": 50.0,
     "crank.support.preload.displacement": 2e-4,
-    "main_bearing.bearings.0.preload.force": 1e3,
-    "main_bearing.bearings.0.preload.displacement": 2e-3,
+    "main_bearing.bearings.0.preload.force": 2.01e3,
+    "main_bearing.bearings.0.preload.displacement": 2.157e-3,
     "installation.first_stage_ratio": 2.0,
     "first_stage.module": 1.42,
     "first_stage.mesh_stiffness": 3e5,
@@ -121,6 +121,7 @@ _FIRST_STAGE = {
     "first_stage.sun_teeth": 20,
     "first_stage.planet_teeth": 40,
     "first_stage.helix_angle": 0.1,
+    "first_stage.plane": 40.0,
     "installation.first_stage_ratio": None,
 }
 _EXTERNAL = {f"load.external.0.{name}": 300.0 for name in ("force.x", "force.y", "force.z", "at.z")}
@@ -153,7 +154,10 @@ _OF_LIFE |= dict.fromkeys(
 )
 _EVERYWHERE = _NAME | _OF_LIFE
 _TILTING = dict.fromkeys(
-    [f"load.external.0.{name}" for name in ("force.z", "moment.x", "moment.y", "at.z")],
+    [
+        "main_bearing.axial_stiffness",
+        *(f"load.external.0.{name}" for name in ("force.z", "moment.x", "moment.y", "at.z")),
+    ],
     "what tilts the output or pushes it along the axis loads the main bearing alone, which here is not told",
 )
 _BODIES = dict.fromkeys(
@@ -302,7 +306,7 @@ def _carrier(drive: Drive, path: str, span: float) -> dict[str, Any]:
     if path == "carrier.stiffness_torsion":
         return {} if drive.carrier is not None else {path: 1e8}
     given: dict[str, Any] = {}
-    if drive.carrier is None or drive.carrier.posts is None:
+    if drive.posts is None:
         circle = drive.crank.circle_radius if drive.pin_shaft is None else drive.pin_shaft.pin_circle_radius
         radius = 0.9 * (circle or 0.0)
         given = {"carrier.posts.number": 4, "carrier.posts.radius": radius, "carrier.posts.size": 0.3 * radius}
@@ -385,6 +389,8 @@ def _of_main_bearing(path: str) -> dict[str, Any]:
     if name == "bearings.0.axial_stiffness":
         rows = {one: value for one, value in _ROWS.items() if not one.endswith("load_constant")}
         return rows | {f"main_bearing.bearings.{number}.axial_stiffness": 5e5 for number in (0, 1)}
+    if name == "axial_stiffness":
+        return _EXTERNAL | {"main_bearing.radial_stiffness": 5e5, path: 4e5}
     if name == "arrangement" or name.startswith("bearings."):
         return _ROWS
     return {} if name == "radial_stiffness" else {"main_bearing.radial_stiffness": 5e5}

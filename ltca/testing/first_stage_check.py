@@ -50,7 +50,7 @@ def teeth_on_shafts(drive: Drive, moments: FloatArray) -> tuple[ComplexArray, Co
     both = np.stack((in_plane, axial * pitch * np.array(drive.crank.places) / distance))
     held: FloatArray = np.zeros((discs, 2))
     if drive.crank.support is not None:
-        columns = [crankshaft_bending(drive, stage.plane, couple=which)[:-1, -1] for which in (False, True)]
+        columns = [crankshaft_bending(drive, stage.plane or 0.0, couple=which)[:-1, -1] for which in (False, True)]
         held = np.asarray(
             np.linalg.solve(softened(crankshaft_bending(drive), crank_springs(drive)), np.stack(columns, axis=1))
         )
@@ -75,7 +75,7 @@ def teeth_on_supports(drive: Drive, moments: FloatArray) -> ComplexArray:
     start, end = supports
     pitch = distance * stage.planet_teeth / (stage.sun_teeth + stage.planet_teeth)
     tilted = axial * pitch * np.array(drive.crank.places) / distance
-    far = (in_plane * (stage.plane - start) + tilted) / (end - start)
+    far = (in_plane * ((stage.plane or 0.0) - start) + tilted) / (end - start)
     return np.stack((in_plane - far, far))
 
 

@@ -209,7 +209,7 @@ class FrictionCheck:
         for part, found in zip(self.parts, self.contacts, strict=True):
             on_wheel += (found.rubbing[:pins] - part.pin_load[0] * found.into_disc[:pins]).sum()
         friction, spring = self._friction, wheel_spring(self.drive)
-        load = max(abs(on_wheel + self.outside), 0.0 if spring is None else spring.sides_together)
+        load = max(abs(on_wheel + self.outside), 0.0 if spring is None else spring.load_at_rest)
         return float(friction.support_bearing * friction.support_bearing_radius * load)
 
     def _told(self, disc: int) -> ComplexArray:
@@ -274,4 +274,4 @@ class FrictionCheck:
 
 def _at_least(carried: ComplexArray, spring: SidedSpring | None) -> FloatArray:
     """Loads of bearings, N: those of both sides of preloaded ones where these are more."""
-    return np.maximum(np.abs(carried), 0.0 if spring is None else spring.sides_together)
+    return np.maximum(np.abs(carried), 0.0 if spring is None else spring.load_at_rest)

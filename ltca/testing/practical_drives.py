@@ -396,7 +396,7 @@ def compare_with_load(seed: int, draw: Callable[[int], tuple[Drive, float]] = pr
 def compare(drive: Drive, crank_angle: FloatArray) -> list[Comparison]:
     """Return the comparisons of a drive, as written, at crank angles φ_C, rad."""
     drive = warm_drive(drive)
-    drive = replace(drive, load=replace(drive.load, external=()))  # an arm takes the play of what yields on its side
+    drive = replace(drive, load=replace(drive.load, external=()))  # an arm takes the play on its side (`torque_curve`)
     model = replace(HalfSpace().prepare(drive).model, friction=None)
     discs, scale = model.geometries, abs(drive.output_per_wheel_angle) * ARCMIN
     found, before = free_play(discs, crank_angle), scale * float(play_of_input(model, np.zeros(())))

@@ -191,7 +191,7 @@ class YieldingPins:
 def has_ring(drive: Drive) -> bool:
     """Tell whether a ring ties the tips of the shaft pins, or the carrier has a far flange on posts."""
     tied = drive.pin_shaft is not None and drive.pin_shaft.beam is not None and drive.pin_shaft.beam.tip != "free"
-    return tied or (drive.carrier is not None and drive.carrier.posts is not None)
+    return tied or drive.posts is not None
 
 
 def ring_tips(drive: Drive, pose: FloatArray) -> ComplexArray:

@@ -53,22 +53,41 @@ def unbalanced_work():
 
 
 def work_left_over(drive, angle):
-    """T_C + T_W (1/u + w′) − U′ + Σ ∂U/∂ρ ρ′ by the torque; T_C of all cranks with their cages, U with the supports' energy."""
+    """Power of input, output and forces from outside in the frame of the housing, less U′ − Σ ∂U/∂ρ ρ′, by the torque.
+
+    T_C is that of all cranks with their cages, U has the supports' energy. With the shaft held the housing is the frame of the
+    pose: T_C + T_W θ′ + G·w′, θ′ = 1/u + w′. With the wheel held the shaft turns by −θ in it, and its axis, on which the opposite
+    of G acts, stands at s = −w exp(−iθ).
+    """
     model = HalfSpace().prepare(drive).model
     centre = solve_at_output(model, [drive], angle, drive.load.torque)
     crank = model.crank_moments(angle, centre.pose, centre.response.parts).sum(axis=1)
     slope = stored_energy(model, centre.response, centre.pose, angle)[1]
+    beside = model.force_beside_pins(angle, centre.pose, centre.response.parts)
+
+    def places(angle, found):
+        turned = angle / drive.reduction_ratio + found.pose[:, WHEEL_ANGLE]
+        w = 0j
+        if model.coordinates.wheel:
+            w = found.pose[:, model.coordinates.wheel_place] @ np.array([1.0, 1j])
+        return turned, w, -w * np.exp(-1j * turned)
+
+    turned, _, _ = places(angle, centre)
+    in_housing = -beside * np.exp(-1j * turned)
 
     def left(step):
         ends = []
         for side in (1.0, -1.0):
             found = solve_at_output(model, [drive], angle + side * step, drive.load.torque, centre.pose)
             energy = stored_energy(model, found.response, found.pose, angle + side * step)[0]
-            ends.append((energy, found.pose[:, WHEEL_ANGLE], found.response.flank.effective_radius))
-        (up, wheel_up, radius_up), (down, wheel_down, radius_down) = ends
-        turn = (wheel_up - wheel_down) / (2.0 * step)
-        work = (up - down) / (2.0 * step) - (slope * (radius_up - radius_down) / (2.0 * step)).sum(axis=1)
-        return crank + centre.wheel_moment * (1.0 / drive.reduction_ratio + turn) - work
+            ends.append((energy, found.response.flank.effective_radius, *places(angle + side * step, found)))
+        energy, radius, turn, w, s = ((up - down) / (2.0 * step) for up, down in zip(*ends, strict=True))
+        work = energy - (slope * radius).sum(axis=1)
+        if not drive.wheel_is_held:
+            return crank + centre.wheel_moment * turn + (beside.conjugate() * w).real - work
+        output = drive.driving_sign * drive.load.torque
+        by_input = crank * (1.0 - drive.input_per_crank_moment * turn)
+        return by_input - output * turn + (in_housing.conjugate() * s).real - work
 
     # differences of second order, taken to fourth by two of them (Richardson)
     return (4.0 * left(1e-4) - left(2e-4)) / 3.0 / drive.load.torque

@@ -23,7 +23,7 @@ from ltca.testing.practical_drives import compare
 ANGLES = np.array([0.3, 1.9])
 TEETH = {
     "first_stage.sun_teeth": 20, "first_stage.planet_teeth": 40, "first_stage.helix_angle": 0.2,
-    "first_stage.mesh_stiffness": 3e5, "first_stage.backlash": 0.02, "first_stage.plane": 31.0,
+    "first_stage.mesh_stiffness": 3e5, "first_stage.backlash": 0.02, "first_stage.plane": 40.0,
 }  # fmt: skip
 POSTS = {
     "carrier.posts.number": 3, "carrier.posts.radius": 42.0, "carrier.posts.size": 20.0, "carrier.flange": (10.0, 8.0),

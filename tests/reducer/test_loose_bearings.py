@@ -120,12 +120,59 @@ def test_preloaded_bearings_drag():
     rubbing = {"friction.pin": 0.04, "friction.support_bearing": 0.003, "friction.support_bearing_radius": 12.0}
     drive = with_fields(drive_of("rv"), rubbing | {"crank.support.preload": 2e4})
     model, found = balanced(drive, ANGLES[:1])
-    alone = replace(model, friction=replace(model.friction, crank_lift_off=np.zeros(2)))
+    alone = replace(model, friction=replace(model.friction, crank_preload=np.zeros(2)))
     of = [one.crank_moments(ANGLES[:1], found.pose, found.response.parts) for one in (model, alone)]
     smooth = replace(model, friction=None).crank_moments(ANGLES[:1], found.pose, found.response.parts)
     # six bearings of three cranks at 40 kN, none of which lifts off
     np.testing.assert_allclose(of[0] - smooth, 0.003 * 12.0 * 2.0 * 4e4, rtol=1e-12)
     assert np.all(of[1] - smooth < of[0] - smooth)
+
+
+def axially_preloaded(angle, force):
+    """Rows with contact angles under the wheel, tapered rollers under the cranks, friction on their radii alone."""
+    rows = {
+        f"main_bearing.bearings.{number}.{name}": value
+        for number, plane in enumerate((-30.0, 30.0))
+        for name, value in {
+            "plane": plane, "kind": "angular-contact ball", "contact_angle": angle, "pitch_radius": 95.0, "load_constant": 3e6,
+        }.items()
+    } | {"main_bearing.preload": force}  # fmt: skip
+    tapered = {"contact_angle": np.radians(15.0), "load_constant": 2e5, "stiffness": (), "preload": 500.0}
+    rubbing = {"friction.support_bearing": 0.02, "friction.support_bearing_radius": 40.0}
+    return rows | {f"crank.support.{name}": value for name, value in tapered.items()} | rubbing
+
+
+@pytest.mark.parametrize(
+    ("angle", "together"), [(15.0, 15454.81), (40.0, 6222.895), (60.0, 4618.802)], ids=["15°", "40°", "60°"]
+)
+def test_rows_rub_with_the_loads_of_their_elements(angle, together):
+    """Two rows of 2 kN press with 2·2 kN/sin α, not with the radial force at which they lift off (11.2, 3.6, 1.7 kN); a row of
+    tapered rollers of 500 N at 15° with 1932 N.
+    """
+    found = HalfSpace().prepare(with_fields(drive_of("rv"), axially_preloaded(np.radians(angle), 2e3))).model.friction
+    # seven figures
+    assert found.wheel_preload == pytest.approx(together, rel=1e-6)
+    np.testing.assert_allclose(found.crank_preload, 1931.852, rtol=1e-6)
+
+
+@pytest.mark.parametrize(
+    "name", ["paper", *(pytest.param(name, marks=pytest.mark.slow) for name in ("rv", "plastic", "sleeved"))]
+)
+def test_axially_preloaded_rows_that_rub_balance(name):
+    """The independent check sums over rolling elements: energies, and moments of friction at wheel and cranks."""
+    drive = with_fields(drive_of(name), axially_preloaded(0.6, 4e3) | {"friction.pin": 0.04})
+    model, found = balanced(drive)
+    for position in (0, 2):
+        assert find_imbalance(warm_drive(drive), model, found, position, torque=drive.load.torque) == []
+    spoilt = replace(model, friction=replace(model.friction, wheel_preload=0.5 * model.friction.wheel_preload))
+    told = find_imbalance(
+        warm_drive(drive),
+        spoilt,
+        solve_at_output(spoilt, [drive], ANGLES, drive.load.torque),
+        0,
+        torque=drive.load.torque,
+    )
+    assert told  # half of it is seen
 
 
 @pytest.mark.slow

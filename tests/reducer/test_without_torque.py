@@ -11,12 +11,14 @@ from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.summary import summarise
 from ltca.analysis.torque_curve import torque_curve
 from ltca.commands.program import main
+from ltca.drive.units.quantities import ARCMIN
 from ltca.errors import DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.placement import position_angles
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
 from ltca.reading.writing import drive_text
+from ltca.studies.batch_analysis import BatchSettings, solve_batch
 
 ANGLES = np.array([0.31, 1.7])
 TIGHT = {"disc.equidistant_offset": -0.01, "disc.shifting_offset": 0.0}
@@ -33,7 +35,12 @@ def drives(paper):
     joint, rv = (load_drive(files("ltca.drives") / f"{name}.toml").cases["nominal"] for name in ("robot-joint", "rv"))
     soft = with_fields(paper, TIGHT | {"materials.disc.youngs_modulus": 2500.0, "load.light_torque": 1e3})
     tight = {"disc.equidistant_offset": -0.005, "disc.shifting_offset": 0.0}
-    teeth = {"first_stage.sun_teeth": 20, "first_stage.planet_teeth": 40, "first_stage.mesh_stiffness": 3e5}
+    teeth = {
+        "first_stage.sun_teeth": 20,
+        "first_stage.planet_teeth": 40,
+        "first_stage.plane": 40.0,
+        "first_stage.mesh_stiffness": 3e5,
+    }
     closed = {"clearance.bearing": 0.0, "clearance.pin_hole": 0.0}
     return {
         "paper": with_fields(paper, TIGHT),
@@ -81,6 +88,20 @@ def test_play_without_a_torque_is_refused_by_name(paper):
         DriveError, match=r"^torque = 0 N·mm: .* free play of .*′ at crank angle .* \(2 of 2 positions\)"
     ):
         analyse(paper, ANGLES, 0.0)
+
+
+def test_backlash_of_teeth_beside_tight_discs_is_refused(paper):
+    """It was answered by the sign of round-off: the transmission error of the RV drive changed sides, ± 2.73″.
+
+    0.03 mm on 28 mm by u = 40 turn the wheel, 80/81 of it the carrier.
+    """
+    told = 0.03 / 28.0 / 40.0 * 80.0 / 81.0 * ARCMIN
+    drive = with_fields(drives(paper)["cranks"], {"first_stage.backlash": 0.03, "load.torque": 0.0})
+    refused = rf"^load\.torque = 0 N·mm: .* free play of {told:.3g}′ at crank angle .* \(2 of 2 positions\)"
+    with pytest.raises(DriveError, match=refused):
+        analyse(drive, ANGLES)
+    with pytest.raises(DriveError, match=refused):
+        solve_batch([drive], BatchSettings(quantities=("mean_transmission_error",), crank_angle=ANGLES))
 
 
 def test_parts_that_only_just_touch_are_refused(paper):

@@ -61,8 +61,8 @@ TITLES: dict[str, tuple[str, str]] = {
         name: (f"{SCALARS[name].title} over a turn", SCALARS[name].unit)
         for name in (*LOADS, "max_pin_pressure_mid", "max_roller_pressure_mid")
     },
-    "wind_up": ("mean wind-up of the wheel, backlash included", '"'),
-    "elastic_wind_up": ("mean wind-up of the wheel from the light torque on", '"'),
+    "wind_up": ("mean wheel angle, backlash included", '"'),
+    "elastic_wind_up": ("mean wind-up of the wheel, from the light torque on", '"'),
     "wheel_swing": ("wheel angle, peak to peak over a turn", '"'),
 }
 """Title and unit of each figure."""

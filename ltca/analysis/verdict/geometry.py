@@ -60,6 +60,8 @@ def walls(single: Drive) -> Iterator[tuple[str, float]]:
         "between neighbouring wheel pins",
         2.0 * (wheel.pin_circle_radius * sin(pi / wheel.number_of_pins) - _outside(single)),
     )
+    if single.ring is not None:
+        yield "of the ring behind the wheel pins", single.ring.outer_radius - wheel.pin_circle_radius - _outside(single)
     for name, part in (("wheel", wheel), ("shaft", shaft)):
         if part is not None and part.seat.kind == "sleeve":
             yield f"of the sleeves on {name} pins", part.pin_radius - (part.seat.bore_radius or 0.0)

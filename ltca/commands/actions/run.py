@@ -13,6 +13,7 @@ from ltca.analysis.life.bearing_lives import BearingLives, bearing_lives
 from ltca.analysis.life.equivalent_load import covers_whole_turns
 from ltca.analysis.light_torque import at_light_torque
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse_cases
+from ltca.analysis.reactions import relieved_rows_warning
 from ltca.analysis.results import labelled_results
 from ltca.analysis.summary import summarise_cases
 from ltca.analysis.summary_rows import with_residual_part
@@ -245,7 +246,11 @@ def _sampling(analyses: Analyses, summaries: Summaries, angles: FloatArray) -> l
     warnings = {
         warning
         for analysis in analyses.values()
-        for warning in (sampling_warning(analysis.drive, angles), *analysis.warnings)
+        for warning in (
+            sampling_warning(analysis.drive, angles),
+            relieved_rows_warning(analysis),
+            *analysis.warnings,
+        )
         if warning is not None
     }
     # Told before the work began.

@@ -51,6 +51,7 @@ GROUPS: tuple[Group, ...] = (
     ("largest deflection [mm]", (
         ("wheel pin", "max_pin_deflection"), ("shaft pin", "max_shaft_pin_deflection"),
         ("crank #", "max_crank_deflection_crank_#"),
+        ("output along the axis", "max_main_bearing_axial_displacement"),
     )),
     ("transmission error, peak to peak [″]", (
         ("at the torque", "ptp_transmission_error"), ("at the light torque", "ptp_transmission_error_light"),

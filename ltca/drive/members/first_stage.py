@@ -31,11 +31,14 @@ class FirstStage:
     helix_angle : float
         Helix angle at the reference circle, rad; positive where the planet is right-handed.
     backlash : float
-        Circumferential backlash of sun and planet at their pitch circles, mm.
+        Circumferential backlash of sun and planet at their pitch circles, mm; at 20 °C: it opens where the carrier, with the
+        distance of the axes, grows more than the teeth do with the crankshaft.
     mesh_stiffness : float or None
         Stiffness of one mesh along the line of action in the transverse plane (c_γ b of ISO 6336-1), N/mm; rigid when left out.
-    plane : float
-        Axial place of the middle of the planets on the axis of ``disc.planes``, mm.
+    plane : float or None
+        Axial place of the middle of the planets on the axis of ``disc.planes``, mm; needed where their forces have an arm: with
+        bearings of the cranks, or with a main bearing that carries them. Equal to ``crank.support.spline_plane`` of cranks that
+        twist from there.
     """
 
     sun_teeth: Teeth
@@ -45,7 +48,7 @@ class FirstStage:
     helix_angle: Annotated[float, quantity("rad", gt=-0.25 * pi, lt=0.25 * pi)] = 0.0
     backlash: Annotated[NonNegativeLength, grows("eccentric")] = 0.0
     mesh_stiffness: Annotated[float, quantity("N/mm", gt=0.0)] | None = None
-    plane: Annotated[SignedLength, grows("planes")] = 0.0
+    plane: Annotated[SignedLength | None, grows("planes")] = None
 
     @property
     def ratio(self) -> float:

@@ -10,6 +10,9 @@ from ltca.drive.deviations import STRICT, Angle, PositiveLength, SignedLength
 from ltca.drive.members.preload import LoadConstant, Preload, Stiffness
 from ltca.drive.units.quantities import quantity
 
+BALL, ROLLER = 1.5, 10.0 / 9.0
+"""Powers of the approach by which balls (Hertz) and rollers (Lundberg) press."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
 class BearingRow:
@@ -24,7 +27,7 @@ class BearingRow:
     contact_angle : float
         Angle of the contact normals against the radial plane, rad; 0 for cylindrical rollers.
     pitch_radius : float or None
-        Radius of the circle of the contacts, mm, with a contact angle: it places the pressure centre.
+        Radius of the circle of the contacts, mm, with a contact angle: it places the pressure centre, which concerns tilt alone.
     axial_stiffness : float or None
         Axial stiffness of the row at its preload, N/mm, with a contact angle.
     load_constant : float or None
@@ -44,6 +47,11 @@ class BearingRow:
     radial_stiffness: Stiffness | None = None
     preload: Preload | None = None
 
+    @property
+    def power(self) -> float:
+        """n of F = K δⁿ."""
+        return BALL if self.kind in ("angular-contact ball", "deep groove") else ROLLER
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
 class MainBearing:
@@ -57,7 +65,7 @@ class MainBearing:
     tilt_stiffness : float or None
         Stiffness against tilt, N·mm/rad; refused, the wheel does not tilt in the model yet.
     axial_stiffness : float or None
-        Axial stiffness, N/mm; refused, nothing presses the wheel along its axis in the model yet.
+        Axial stiffness, N/mm; it tells how far forces along the axis displace the output, which moves no contact.
     clearance : float or None
         Radial internal clearance, diametral as usual: the wheel is free within half of it, mm; negative where it is tight.
     preload : Preload or None
@@ -75,3 +83,24 @@ class MainBearing:
     preload: Preload | None = None
     arrangement: Literal["O", "X"] = "O"
     bearings: tuple[BearingRow, ...] = ()
+
+
+def axial_preload(
+    power: float, axial: float | None, load_constant: float | None, *, force: float | None, displacement: float | None
+) -> tuple[float, float]:
+    """Return the force, N, and the displacement, mm, of an axial preload by the one of them that is given: F = K δⁿ by the load
+    constant, F = k δ/n by the axial stiffness k = dF/dδ at the preload.
+
+    Examples
+    --------
+    >>> print("%.1f N, %.4f mm" % axial_preload(1.5, None, 1e6, force=None, displacement=0.01))
+    1000.0 N, 0.0100 mm
+    >>> print("%.1f N, %.4f mm" % axial_preload(1.5, 1.5e5, None, force=1e3, displacement=None))
+    1000.0 N, 0.0100 mm
+    """
+    if load_constant is None:
+        secant = (axial or 0.0) / power
+        return (force, force / secant) if force is not None else (secant * (displacement or 0.0), displacement or 0.0)
+    if force is not None:
+        return force, (force / load_constant) ** (1.0 / power)
+    return load_constant * (displacement or 0.0) ** power, displacement or 0.0

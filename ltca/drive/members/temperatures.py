@@ -4,7 +4,8 @@ How a field grows is part of its type (`ltca.drive.units.quantities.grows`). The
 eccentricity that it is generated with by one factor, which is exact. The pin circle of the wheel grows with the housing, the
 eccentric with the crank: the differences are the offsets of the flank and the error of the eccentricity. Holes stand on a
 circle of the disc, shaft pins on one of the carrier, and so do bores and several cranks: the difference is a radial error of
-every pin or bore.
+every pin or bore. Sun and planets stand apart by the circle of the cranks, their teeth grow with the shafts: the difference opens
+or closes their backlash.
 """
 
 from __future__ import annotations
@@ -91,6 +92,7 @@ def warm_drive(drive: Drive) -> Drive:
     if held != Temperature():
         growth = growth_of(drive)
         warm = _with_roller_length(_grown(_with_bore_errors(drive, growth), drive, growth), drive, growth)
+        warm = _with_backlash_of_teeth(warm, drive, growth)
     return replace(warm, temperature=None, materials=_mechanical(drive))
 
 
@@ -156,7 +158,7 @@ def _mechanical(drive: Drive) -> Materials:
     materials = drive.materials
     if drive.pin_wheel.seat.kind != "slot":
         materials = replace(materials, wheel_seat=Material())
-    if drive.carrier is None or drive.carrier.posts is None:
+    if drive.posts is None:
         materials = replace(materials, carrier=Material())
     return materials if drive.crank.support is not None else replace(materials, crankshaft=Material())
 
@@ -223,6 +225,26 @@ def _with_bore_errors(drive: Drive, growth: Growth) -> Drive:
         entry if entry.bore_errors is not None else replace(entry, bore_errors=BoreErrors()) for entry in entries
     )
     return replace(drive, disc=replace(drive.disc, of=entries))
+
+
+def _with_backlash_of_teeth(warm: Drive, cold: Drive, growth: Growth) -> Drive:
+    """The warm drive with the backlash that the distance of sun and planets leaves its teeth: 2 tan α_wt of what the carrier
+    grows more than the teeth.
+    """
+    stage, distance = cold.first_stage, cold.crank.circle_radius
+    if stage is None or distance is None or growth.carrier == growth.eccentric:
+        return warm
+    opened = 2.0 * stage.mesh(distance).separating * distance * (growth.carrier - growth.eccentric)
+    left = stage.backlash * growth.eccentric + opened
+    if left < 0.0:
+        raise DriveError(
+            [
+                f"first_stage.backlash = {stage.backlash:g} mm: must be at least {-opened / growth.eccentric:.3g} mm, by which "
+                "teeth close at these temperatures (the carrier grows less than its crankshafts), or they jam"
+            ]
+        )
+    assert warm.first_stage is not None
+    return replace(warm, first_stage=replace(warm.first_stage, backlash=left))
 
 
 def _with_roller_length(warm: Drive, cold: Drive, growth: Growth) -> Drive:

@@ -5,8 +5,8 @@ it: the generalised force :math:`Q = \sum \mu F \sigma s_q` with the sense σ of
 where that takes less: loose in a slot with the smaller of both coefficients, under a sleeve of bore r_i and outside R with
 :math:`\min(\mu, \mu_{seat} r_i/R)`, to first order in μ (the total forces on a free pin pass through both its contacts).
 Crank bearings roll with the moment :math:`f |F_b| (r_i + r_{BR})` between crank and disc; the bearings of cranks and wheel rub
-with f times their load at a radius of their own. The two sides of a preloaded bearing carry twice its preload together until
-one of them lifts off, and the load from then on.
+with f times their load at a radius of their own: the radial force, and where that is less the loads of all elements by the
+preload (`SideLaw.preload_load`). Axial forces and tilting moments are left out.
 """
 
 from __future__ import annotations
@@ -92,9 +92,9 @@ class TurningFriction:
         f of the bearings of cranks and wheel times their radius, mm.
     crank_bearings : array, shape (bearings, discs)
         Load of each bearing of a crank by the forces of the discs on it.
-    wheel_lift_off : float
-        Load of the main bearing at which its unloaded side lifts off, N: below, its two preloaded sides carry as much together.
-    crank_lift_off : array, shape (bearings,)
+    wheel_preload : float
+        Sum of the loads of the elements of the main bearing by its preload, N.
+    crank_preload : array, shape (bearings,)
         The same of the bearings of a crank, N.
     motion : int
         +1 where the crank turns counter-clockwise, −1 clockwise.
@@ -107,8 +107,8 @@ class TurningFriction:
     rolling: float
     support: float
     crank_bearings: FloatArray
-    wheel_lift_off: float
-    crank_lift_off: FloatArray
+    wheel_preload: float
+    crank_preload: FloatArray
     motion: int
     strength: float = 1.0
 
@@ -124,8 +124,8 @@ class TurningFriction:
             rolling=found.roller * (bearing.inner_race_radius + bearing.roller_radius),
             support=found.support_bearing * found.support_bearing_radius,
             crank_bearings=_bearing_loads(drive),
-            wheel_lift_off=wheel.lift_off if isinstance(wheel := wheel_law(drive), SideLaw) else 0.0,
-            crank_lift_off=np.array([law.lift_off for law in crank_laws(drive) or ()] or [0.0]),
+            wheel_preload=wheel.preload_load if isinstance(wheel := wheel_law(drive), SideLaw) else 0.0,
+            crank_preload=np.array([law.preload_load for law in crank_laws(drive) or ()] or [0.0]),
             motion=drive.motion_sign,
         )
 
@@ -193,7 +193,7 @@ class TurningFriction:
         """
         pins = parts[0].pin_load.shape[1]
         load = np.abs(sum(part.pin_forces[:, :pins].sum(axis=1) for part in parts) + external)
-        load = np.maximum(load, self.wheel_lift_off)
+        load = np.maximum(load, self.wheel_preload)
         return np.asarray(self.motion * self.strength * self.support * np.sign(reduction_ratio) * load)
 
     def of_cranks(self, pushes: Sequence[ComplexArray], on_bearings: ComplexArray | None = None) -> FloatArray:
@@ -207,7 +207,7 @@ class TurningFriction:
         if on_bearings is not None:
             more = np.zeros((*carried.shape[:-1], on_bearings.shape[-1] - carried.shape[-1]))
             carried = on_bearings - np.concatenate((carried, more), axis=-1)
-        reactions = np.maximum(np.abs(carried), self.crank_lift_off).sum(axis=-1)
+        reactions = np.maximum(np.abs(carried), self.crank_preload).sum(axis=-1)
         rolled = np.abs(forces).sum(axis=-1)
         return np.asarray(self.motion * self.strength * (self.rolling * rolled + self.support * reactions))
 

@@ -10,7 +10,7 @@ import numpy as np
 from ltca.analysis.life.bearing_lives import BearingLives
 from ltca.analysis.pressure_safety import PressureSafety
 from ltca.analysis.stiffness_by_part import FORMS, HEADS, StiffnessByPart
-from ltca.analysis.torque_curve import TorqueCurve
+from ltca.analysis.torque_curve import UNDER_FORCES, TorqueCurve
 from ltca.analysis.transmission_error_orders import Spectrum
 from ltca.arrays import FloatArray
 from ltca.drive.units.quantities import ARCMIN, ARCSEC
@@ -53,6 +53,8 @@ def torque_section(curves: Mapping[str, TorqueCurve]) -> Section:
     angles = {curve.crank_angle.size for curve in curves.values()}
     told = f"Means of {' or '.join(map(str, sorted(angles)))} crank angles; the table has the range over them."
     whose = stiffness_notes({name: curve.yielding for name, curve in curves.items()})
+    if any(curve.displaced for curve in curves.values()):
+        whose.append(f"{UNDER_FORCES[0].upper()}{UNDER_FORCES[1:]}.")
     return Section(heading="Torque curve", notes=[told, *whose], curves=[plot], tables=[table])
 
 

@@ -120,7 +120,7 @@ class WantedStage:
         Circumferential backlash at the pitch circles, mm.
     mesh_stiffness : float or None
         Of one mesh along the line of action, N/mm; rigid when left out.
-    plane : float
+    plane : float or None
         Axial place of the middle of the planets, mm.
     """
 
@@ -128,7 +128,7 @@ class WantedStage:
     helix_angle: Annotated[float, quantity("rad", gt=-0.25 * np.pi, lt=0.25 * np.pi)] = 0.0
     backlash: NonNegativeLength = 0.0
     mesh_stiffness: Annotated[float, quantity("N/mm", gt=0.0)] | None = None
-    plane: SignedLength = 0.0
+    plane: SignedLength | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)

@@ -13,6 +13,7 @@ from fem.reducer.solution_files import ARRAYS
 from ltca.errors import CycloError
 from ltca.output.labelled import LabelledDataset
 from ltca.quantities import QUANTITIES
+from ltca.reading.changes import with_fields
 
 SCALARS = (
     "wheel_angle_rad", "bearing_radial_N", "bearing_tangential_N", "equilibrium_residual_N", "pose_iterations", "dof", "seconds",
@@ -193,3 +194,10 @@ def test_missing_referee_is_said_before_any_work(monkeypatch, tmp_path):
     monkeypatch.setenv("PATH", str(tmp_path))
     with pytest.raises(CycloError, match="ccx is not installed"):
         run("paper", "--referee", "calculix", "--out", str(tmp_path / "out"))
+
+
+@pytest.mark.parametrize(("model", "told"), [(None, False), ("fe", False), ("beam", True)])
+def test_a_ring_that_analyses_have_as_a_beam_is_told(paper_cases, model, told):
+    ring = {"inner_radius": 88.5, "outer_radius": 106.0, "width": 20.0, "model": model}
+    drive = paper_cases["CS-1"] if model is None else with_fields(paper_cases["CS-1"], {"ring": ring})
+    assert ("as a beam" in command.ring_words(drive)) is told

@@ -51,6 +51,39 @@ def warmth(housing, disc, shaft):
     return {"temperature.housing": housing, "temperature.disc": disc, "temperature.shaft": shaft}
 
 
+def geared(backlash, shaft):
+    """Aluminium carrier on steel cranks, 42 mm apart; no expansion of discs or bearings counts at 20 °C."""
+    given = {"first_stage.sun_teeth": 20, "first_stage.planet_teeth": 40, "first_stage.plane": 40.0}
+    given |= {f"materials.{part}.thermal_expansion": STEEL for part in ("disc", "wheel_pin", "roller", "inner_race")}
+    given |= {"materials.crankshaft.thermal_expansion": STEEL, "materials.carrier.thermal_expansion": 2.36e-5}
+    return with_fields(shipped("rv"), given | {"first_stage.backlash": backlash} | warmth(20.0, 20.0, shaft))
+
+
+@pytest.mark.parametrize("shaft", [70.0, -10.0])
+def test_backlash_of_the_first_stage_follows_the_distance_of_its_axes(shaft):
+    """Involutes: at the distance a + Δa the arc of the pitch circle between flanks is p − s₁ − s₂, by the involute function.
+
+    It stayed that of 20 °C: an aluminium carrier takes two thirds of 0.03 mm between 20 and −30 °C.
+    """
+    warm = warm_drive(geared(0.03, shaft)).first_stage
+    teeth = 1.0 + STEEL * (shaft - 20.0)
+    distance = 42.0 * (1.0 + 2.36e-5 * (shaft - 20.0))
+    base = 42.0 * teeth * np.cos(np.pi / 9.0)
+    working = np.arccos(base / distance)
+    involute = [np.tan(angle) - angle for angle in (working, np.pi / 9.0)]
+    by_hand = distance / (42.0 * teeth) * 0.03 * teeth + 2.0 * distance * (involute[0] - involute[1])
+    # of second order: the working angle changes by Δa/(a tan α) = 1.7e-3, and its slope by that over tan α
+    assert warm.backlash == pytest.approx(by_hand, rel=0.0, abs=5e-3 * abs(by_hand - 0.03))
+
+
+def test_teeth_that_jam_in_the_cold_are_refused_by_name():
+    """They need 2 tan 20° · 42 mm · 1.21e-5/K · 60 K = 22 µm."""
+    with pytest.raises(
+        DriveError, match=r"first_stage\.backlash = 0\.02 mm: must be at least 0\.0222 mm, by which teeth close"
+    ):
+        warm_drive(geared(0.02, -40.0))
+
+
 def shipped(name):
     return parse_drive(shipped_drive(name), name).cases["nominal"]
 

@@ -24,6 +24,7 @@ from ltca.drive.members.limits import Limit, parse_limits
 from ltca.drive.members.pins import WheelPinSeat
 from ltca.drive.members.verdict_words import part_words, verdict_line, verdict_table
 from ltca.drive.parts import Material
+from ltca.drive.single_discs import single_discs
 from ltca.errors import DriveError
 from ltca.geometry.coordinates import DISC_PLACE
 from ltca.geometry.placement import position_angles
@@ -688,3 +689,20 @@ def test_a_case_is_judged_once_by_shear_of_the_core_or_by_depth(paper):
         drive = replace(paper, materials=replace(paper.materials, disc=material))
         found = judge(drive, values, {})
         assert [None if check.limit is None else check.limit.value for check in found] == limits
+
+
+def test_the_wall_of_a_ring_is_that_behind_its_seats():
+    """Seats that end at 62.5 mm in a ring of 62.51 mm were told to leave walls of millimetres."""
+    ring = {"inner_radius": 60.0, "outer_radius": 62.51, "width": 20.0}
+    drive = with_fields(load_drive("robot-joint").cases["nominal"], {"ring": ring})
+    name, wall = min(walls(single_discs(drive)[0]), key=lambda found: found[1])
+    assert (name, wall) == ("of the ring behind the wheel pins", pytest.approx(0.01))
+
+
+def test_bolts_stand_on_the_ring():
+    ring = {"inner_radius": 60.0, "outer_radius": 98.0, "width": 20.0}
+    ring["bolts"] = {"number": 8, "circle_radius": 1050.0, "stiffness": 5e5}
+    with pytest.raises(
+        DriveError, match=r"ring.bolts.circle_radius = 1050 mm: must be at most 147 mm, 1.5 times ring.outer"
+    ):
+        with_fields(load_drive("robot-joint").cases["nominal"], {"ring": ring})

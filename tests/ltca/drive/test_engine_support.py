@@ -60,6 +60,7 @@ def test_every_problem_is_named_at_once(engine):
             "pin_shaft.stiffness": None,
             "first_stage.sun_teeth": 20,
             "first_stage.planet_teeth": 40,
+            "first_stage.plane": 40.0,
             "load.external.0.force.x": 100.0,
             "pin_wheel.support_stiffness": 5e5,
             "main_bearing.clearance": 0.01,

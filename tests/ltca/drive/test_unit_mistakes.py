@@ -145,7 +145,13 @@ ROWS = {
         ("plane", plane), ("kind", "tapered roller"), ("contact_angle", 0.5), ("pitch_radius", 95.0), ("axial_stiffness", 5e5),
     )
 }  # fmt: skip
-TEETH = {"first_stage.sun_teeth": 20, "first_stage.planet_teeth": 40}
+TAPERED = {
+    path.replace("axial_stiffness", "load_constant"): 800.0 if path.endswith("axial_stiffness") else value
+    for path, value in ROWS.items()
+}
+STIFF = {"main_bearing.radial_stiffness": 1e6}
+POSTS = {"carrier.posts.number": 6, "carrier.posts.radius": 42.0, "carrier.posts.size": 16.0}
+TEETH = {"first_stage.sun_teeth": 20, "first_stage.planet_teeth": 40, "first_stage.plane": 40.0}
 
 
 @pytest.mark.parametrize(
@@ -200,11 +206,6 @@ TEETH = {"first_stage.sun_teeth": 20, "first_stage.planet_teeth": 40}
         ("robot-joint", RINGED | {"ring.outer_radius": 90e3}, r'^ring.outer_radius = .* mean "90000 µm", 90 mm\?$'),
         (
             "robot-joint",
-            RINGED | {"ring.bolts": BOLTS | {"circle_radius": 75e3}},
-            r"^ring.bolts.circle_radius = 75000 mm",
-        ),
-        (
-            "robot-joint",
             RINGED | {"ring.bolts": BOLTS | {"stiffness": 500.0}},
             r'^ring.bolts.stiffness = .* "500 N/µm"',
         ),
@@ -217,6 +218,54 @@ TEETH = {"first_stage.sun_teeth": 20, "first_stage.planet_teeth": 40}
             "rv",
             ROWS | {"main_bearing.bearings.0.axial_stiffness": 500.0},
             r'^main_bearing.bearings.0.axial_stiff.* "500 N/µm"',
+        ),
+        (
+            "robot-joint",
+            RINGED | {"ring.material.youngs_modulus": 206.0},
+            r'^ring.material.youngs_modulus = 206 MPa, beside .* write "206 GPa" for a metal$',
+        ),
+        (
+            "robot-joint",
+            RINGED | {"ring.material.youngs_modulus": 206e9},
+            r"^ring.material.youngs_modulus = 2.06e\+11 MPa is stiffer than diamond .* not Pa",
+        ),
+        (
+            "rv",
+            {"materials.crankshaft.youngs_modulus": 206.0},
+            r"^materials.crankshaft.youngs_modulus = 206 MPa, beside",
+        ),
+        (
+            "rv",
+            POSTS | {"materials.carrier.youngs_modulus": 206.0},
+            r"^materials.carrier.youngs_modulus = 206 MPa, beside",
+        ),
+        (
+            "rv",
+            {"materials.crankshaft.yield_strength": 1.1},
+            r'^materials.crankshaft: yield_strength .* mean "1.1 GPa"',
+        ),
+        ("rv", STIFF | {"main_bearing.preload": 2.0}, r'^main_bearing.preload.force = 2 N is 1/.* mean "2 kN"\?$'),
+        ("rv", {"crank.support.preload": 0.5}, r'^crank.support.preload.force = 0.5 N is 1/.* mean "0.5 kN"\?$'),
+        ("rv", STIFF | {"load.external.0.force.x": -1.5}, r'^load.external.0.force.x = -1.5 N is .* "-1.5 kN"\?$'),
+        (
+            "rv",
+            ROWS | {"main_bearing.bearings.1.plane": 30e3},
+            r'^main_bearing.bearings.1.plane = .* "30000 µm", 30 mm\?$',
+        ),
+        (
+            "rv",
+            {"crank.support.torsion": True, "crank.support.spline_plane": -40e3},
+            r'^crank.support.spline_plane = -40000 mm is 1\d+ times the thickness of all discs .* "-40000 µm", -40 mm\?$',
+        ),
+        (
+            "rv",
+            {"crank.support.positions": (-0.022, 22.0)},
+            r'^crank.support.positions\[0\] = -0.022 mm .* "-0.022 m", -22',
+        ),
+        (
+            "rv",
+            STIFF | {"load.external.0.force.x": 1e3, "load.external.0.at.z": 60e3},
+            r'^load.external.0.at.z = .* "60000 µm", 60 mm\?$',
         ),
         ("rv", {"main_bearing.radial_stiffness": 1000.0}, r'^main_bearing.radial_stiffness = 1000 N/mm .* "1000 N/µm"'),
         (
@@ -253,6 +302,25 @@ def test_plain_numbers_in_another_unit_are_pointed_out(shipped, changes, told):
     (drive,) = parse_drive(shipped_drive(shipped), shipped).cases.values()
     (found,) = unit_warnings(with_fields(drive, changes))
     assert re.search(told, found)
+
+
+@pytest.mark.parametrize(
+    ("preload", "told"),
+    [
+        (2e3, "would be pressed in by 2.28 mm by its preload of 2000 N"),
+        ("5 µm", "would press with 2.22 N at its preload of"),
+    ],
+)
+def test_load_constants_in_kilonewtons_are_pointed_out(preload, told):
+    """(2000/800)^0.9 = 2.28 mm; 800 · 0.005^(10/9) = 2.22 N. A thousandfold is sound."""
+    (drive,) = parse_drive(shipped_drive("rv"), "rv").cases.values()
+    found = unit_warnings(with_fields(drive, TAPERED | {"main_bearing.preload": preload}))
+    assert len(found) == 2
+    for number, words in enumerate(found):
+        assert words.startswith(f"main_bearing.bearings.{number}.load_constant = 800 N/mmⁿ: the row {told}")
+        assert words.endswith("did you mean 800000 (kN by mmⁿ)?")
+    sound = {f"main_bearing.bearings.{number}.load_constant": 8e5 for number in (0, 1)}
+    assert unit_warnings(with_fields(drive, TAPERED | {"main_bearing.preload": preload} | sound)) == []
 
 
 def test_ratings_of_makers_are_sound():

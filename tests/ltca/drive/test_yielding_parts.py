@@ -16,7 +16,7 @@ ROWS = {
     }.items()
 }  # fmt: skip
 POSTS = {"carrier.posts.number": 6, "carrier.posts.radius": 42.0, "carrier.posts.size": 16.0}
-ENDS = {"first_stage.sun_teeth": 20, "first_stage.planet_teeth": 40}
+ENDS = {"first_stage.sun_teeth": 20, "first_stage.planet_teeth": 40, "first_stage.plane": 40.0}
 
 
 def ring(circle, **fields):

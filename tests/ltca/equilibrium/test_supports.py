@@ -8,18 +8,27 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from ltca.analysis.engines import HalfSpace
 from ltca.arrays import stack_drives
 from ltca.drive.parts import Preload
 from ltca.drive.single_discs import single_discs
+from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.supports import Supports, crank_laws, wheel_law, wheel_rows
 from ltca.errors import DriveError
 from ltca.geometry.coordinates import Coordinates
 from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.bearing_pair import SideLaw, bearing_matrix
+from ltca.page.derived import derived_rows
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import build_drive, load_drive, parse_drive, parse_toml, shipped_drive
 from ltca.reading.writing import drive_text
-from ltca.testing.bearing_springs import SidedSpring, crank_springs, shaft_energy, wheel_spring
+from ltca.testing.bearing_springs import (
+    SidedSpring,
+    crank_springs,
+    shaft_energy,
+    wheel_rows as element_rows,
+    wheel_spring,
+)
 from ltca.testing.yielding_pins import crankshaft_bending
 
 ROWS = {
@@ -40,6 +49,11 @@ KINDS = {
     "rows": {
         "crank.support.contact_angle": 0.25, "crank.support.load_constant": 2e5, "crank.support.stiffness": (),
         "crank.support.preload": 400.0, "main_bearing.preload": "1 kN", **ROWS,
+    },
+    "rows not alike": {
+        "main_bearing.preload": "1 kN", **ROWS, "main_bearing.bearings.1.contact_angle": 0.6,
+        "main_bearing.bearings.1.load_constant": 3e6, "main_bearing.bearings.2.plane": 0.0,
+        "main_bearing.bearings.2.kind": "cylindrical", "main_bearing.bearings.2.radial_stiffness": 5e5,
     },
 }  # fmt: skip
 
@@ -161,6 +175,116 @@ def test_supports_of_different_drives_are_one_batch(drives):
         np.testing.assert_allclose(whole, np.concatenate(parts), rtol=1e-12, atol=1e-9)
 
 
+def main_bearing(rv, rows, preload=None):
+    """The law of a main bearing of rows, and its preloaded rows as sums over elements, facing each other."""
+    changes = {
+        f"main_bearing.bearings.{number}.{name}": value
+        for number, row in enumerate(rows)
+        for name, value in row.items()
+    }
+    drive = with_fields(rv, changes | ({} if preload is None else {"main_bearing.preload": preload}))
+    elements, beside = element_rows(drive)
+    return wheel_law(drive), [replace(row, facing=1 - 2 * number) for number, row in enumerate(elements)], beside
+
+
+def row_of(angle, plane, **fields):
+    ball = {"kind": "angular-contact ball", "pitch_radius": 60.0, "contact_angle": np.radians(angle)}
+    return ball | {"plane": plane} | fields
+
+
+def force_of(law, displacement):
+    """Radial force of a law by its displacement."""
+    ends = displacement - law.lift_off / law.stiffness
+    return law.stiffness * displacement if ends <= 0.0 else law.lift_off + ends / (1.0 / law.stiffness + law.beyond)
+
+
+CYLINDER = {"kind": "cylindrical", "plane": 0.0, "radial_stiffness": 4e5}
+ALIKE = [row_of(25.0, plane, load_constant=2e6) for plane in (-30.0, 30.0)]
+UNLIKE = [row_of(25.0, -30.0, load_constant=2e6), row_of(35.0, 30.0, load_constant=4e6)]
+
+
+@pytest.mark.parametrize(
+    ("rows", "law_beyond", "elements_beyond"),
+    [
+        # elements lift off one after the other: at most 4 % of balls, 2 % of rollers softer up to the lift-off of the law;
+        # beyond it balls stiffen (√δ), which one side alone leaves out: up to 18 % at twice the displacement and 60 %
+        # at five times, rollers 8 and 14 %
+        (ALIKE, 0.04, (0.18, 0.60)),
+        (UNLIKE, 0.04, (0.18, 0.60)),
+        ([*UNLIKE, CYLINDER], 0.04, (0.18, 0.60)),
+        ([row | {"kind": "tapered roller"} for row in ALIKE], 0.02, (0.08, 0.14)),
+        ([*(row | {"kind": "tapered roller"} for row in ALIKE), CYLINDER], 0.02, (0.08, 0.14)),
+    ],
+    ids=["balls alike", "balls not alike", "balls beside rollers", "tapered", "tapered beside rollers"],
+)
+def test_law_of_rows_is_the_sum_over_elements(rv, rows, law_beyond, elements_beyond):
+    law, elements, beside = main_bearing(rv, rows, preload=2e3)
+
+    def summed(radial):
+        return sum(row.forces(radial)[0] for row in elements) + beside * radial
+
+    reach, step = law.lift_off / law.stiffness, 1e-4 * law.lift_off / law.stiffness
+    # at rest: central differences of second order, 1e-8 of it; loads to round-off, and no axial force is left
+    assert (summed(step) - summed(-step)) / (2.0 * step) == pytest.approx(law.stiffness, rel=1e-7)
+    assert sum(row.forces()[1] for row in elements) == pytest.approx(0.0, abs=1e-8)
+    assert law.preload_load == pytest.approx(sum(row.loads()[0].sum() for row in elements), rel=1e-12)
+    for part in (0.25, 0.5, 0.75, 1.0):
+        assert summed(part * reach) == pytest.approx(force_of(law, part * reach), rel=law_beyond)
+    for part, most in zip((2.0, 5.0), elements_beyond, strict=True):
+        assert 0.0 < summed(part * reach) / force_of(law, part * reach) - 1.0 < most
+
+
+def test_half_of_linear_elements_carry_beyond_lift_off(rv):
+    """The factor ½: of elements without stiffening half press under a large displacement, and rows beside them as before."""
+    law, elements, beside = main_bearing(rv, [*UNLIKE, CYLINDER], preload=2e3)
+    linear = [
+        replace(row, power=1.0, load_constant=row.power * row.load_constant * row.pressed ** (row.power - 1.0))
+        for row in elements
+    ]
+    far, step = 1e4 * law.lift_off / law.stiffness, 1.0 * law.lift_off / law.stiffness
+    slope = sum(row.forces(far + step)[0] - row.forces(far)[0] for row in linear) / step + beside
+    # as far as that just the elements on one side press, whose cos² sum up to a quarter of all; differences to round-off
+    assert 1.0 / (1.0 / law.stiffness + law.beyond) == pytest.approx(slope, rel=1e-8)
+
+
+def test_a_row_beside_a_preloaded_pair_keeps_its_stiffness(rv):
+    """45°, 1e5 N/mm axially are 5e4 radially: 1e5 of a pair, 5e4 beyond lift-off at δ = 1.5·500/1e5 = 7.5 µm; 3e4 of cylindrical
+    rollers beside it on both sides of it.
+    """
+    pair = [row_of(45.0, plane, axial_stiffness=1e5) for plane in (-30.0, 30.0)]
+    law = main_bearing(rv, [*pair, CYLINDER | {"radial_stiffness": 3e4}], preload=500.0)[0]
+    assert law.stiffness == pytest.approx(1.3e5, rel=1e-12)
+    assert law.lift_off == pytest.approx(1.3e5 * 0.0075, rel=1e-12)
+    assert 1.0 / (1.0 / law.stiffness + law.beyond) == pytest.approx(0.8e5, rel=1e-12)
+
+
+def test_rows_that_are_not_alike_lift_off_on_the_average(rv):
+    """45°, 1e5 and 2e5 N/mm axially under 500 N: 5e4 and 1e5 radially, free from 7.5 and 3.75 µm. One after the other at 20 µm:
+    1.5e5·0.02 − 2.5e4·(0.02 − 0.0075) − 5e4·(0.02 − 0.00375) = 1875 N.
+    """
+    rows = [row_of(45.0, plane, axial_stiffness=stiff) for plane, stiff in ((-30.0, 1e5), (30.0, 2e5))]
+    law = main_bearing(rv, rows, preload=500.0)[0]
+    assert law.lift_off == pytest.approx(1.5e5 * 0.005, rel=1e-12)
+    assert force_of(law, 0.020) == pytest.approx(1875.0, rel=1e-12)
+    assert force_of(law, 0.00375) == pytest.approx(1.5e5 * 0.00375, rel=1e-12)
+
+
+@pytest.mark.parametrize(("arrangement", "centres"), [("O", (-30.0, 60.0)), ("X", (30.0, 0.0))])
+def test_a_row_without_contact_angle_does_not_turn_the_others(rv, arrangement, centres):
+    """45° on a radius of 30 mm at 0 and 30 mm: pressure centres 30 mm outside or inside, whatever stands at −60 mm."""
+    rows = {
+        f"main_bearing.bearings.{number}.{name}": value
+        for number, plane in enumerate((0.0, 30.0))
+        for name, value in row_of(45.0, plane, pitch_radius=30.0, axial_stiffness=1e5).items()
+    } | {"main_bearing.arrangement": arrangement}
+    beside = {f"main_bearing.bearings.2.{name}": value for name, value in CYLINDER.items()} | {
+        "main_bearing.bearings.2.plane": -60.0
+    }
+    for changes in (rows, rows | beside):
+        found = wheel_rows(with_fields(rv, changes))
+        assert [row.pressure_centre for row in found[:2]] == pytest.approx(centres, abs=1e-12)
+
+
 def test_rows_by_hand(drives):
     """1 kN on 8e5 δ^(10/9): δ = 2.43 µm, k = (10/9) F/δ; radial cot²α/2 of both rows, the rows lift off at δ tan α."""
     pressed = (1000.0 / 8e5) ** 0.9
@@ -190,8 +314,8 @@ def test_rows_by_hand(drives):
             r"main_bearing\.tilt_stiffness = 1e\+09 N·mm/rad: must be left out: the wheel does not tilt",
         ),
         (
-            {"main_bearing.radial_stiffness": 1e6, "main_bearing.axial_stiffness": 1e6},
-            r"main_bearing\.axial_stiffness = 1e\+06 N/mm: must be left out: nothing presses",
+            ROWS | {"main_bearing.preload": 1e3, "main_bearing.axial_stiffness": 1e6},
+            r"main_bearing\.axial_stiffness = 1e\+06 N/mm: must be left out beside main_bearing\.bearings, from which",
         ),
         ({"main_bearing.clearance": 0.01}, r"main_bearing\.radial_stiffness: must be given"),
         (
@@ -207,6 +331,34 @@ def test_rows_by_hand(drives):
         (ROWS, r"main_bearing\.bearings\.0\.load_constant = 800000 N/mmⁿ: needs a preload"),
         (ROWS | {"main_bearing.bearings.1.kind": "cylindrical"}, r"main_bearing\.bearings\.1\.contact_angle = 0\.35 rad"),
         (ROWS | {"main_bearing.bearings.1.plane": -25.0}, r"must stand in different planes"),
+        (
+            ROWS | {"main_bearing.preload": 1e3, **{
+                path.replace(".1.", ".2."): 50.0 if path.endswith("plane") else value
+                for path, value in ROWS.items() if ".1." in path
+            }},
+            r"main_bearing\.bearings has 3 rows with contact angles: must have at most 2",
+        ),
+        (
+            ROWS | {"main_bearing.bearings.0.preload": 1e3, "main_bearing.bearings.1.preload": 5e3},
+            r"main_bearing\.bearings\.0 and main_bearing\.bearings\.1: axial preloads of 1000 and 5000 N must be equal to 1 %",
+        ),
+        (
+            ROWS | {"main_bearing.preload": "5 µm", "main_bearing.bearings.1.load_constant": 9e5},
+            r"axial preloads of 2220 and 2498 N must be equal",
+        ),
+        (
+            {path: value for path, value in ROWS.items() if ".1." not in path} | {"main_bearing.preload": 1e3},
+            r"main_bearing\.preload: must be left out with one row with a contact angle \(main_bearing\.bearings\.0\)",
+        ),
+        (
+            {path: value for path, value in ROWS.items() if ".1." not in path} | {"main_bearing.bearings.0.preload": 1e3},
+            r"main_bearing\.bearings\.0\.preload: must be left out with one row",
+        ),
+        (
+            ROWS | {"main_bearing.bearings.0.preload": 1e3, "main_bearing.bearings.1.load_constant": None,
+                    "main_bearing.bearings.1.axial_stiffness": 5e5},
+            r"main_bearing\.bearings\.1\.preload: must be given beside main_bearing\.bearings\.0\.preload",
+        ),
         (ROWS | {"main_bearing.bearings.3.plane": 0.0}, r"main_bearing\.bearings\.3: there is no entry 3"),
         ({"crank.support.stiffness": ()}, r"crank\.support\.stiffness has 0 values: must have 2"),
         (
@@ -259,3 +411,35 @@ def test_both_sides_of_the_checks_spring_carry_until_one_lifts_off(distance):
     spring = SidedSpring(side=5e5, pressed=0.004)
     assert spring.slopes(distance) == (pytest.approx(1e3), 1e6)
     assert spring.slopes(6.0 * distance)[1] == 5e5
+
+
+def test_stiff_supports_end_at_rigid_ones():
+    """Their stiffness counted as round-off of approaches: from 1e11 N/mm on loads stayed 1e-5 away. Now k tells alone."""
+    drive = load_drive("rv").cases["nominal"]
+    angle = np.array([0.0, 1.2])
+    rigid = with_fields(drive, {"pin_wheel.support_stiffness": None})
+    expected = solve_at_output(HalfSpace().prepare(rigid).model, [rigid], angle, drive.load.torque).response.pin_load
+    apart = []
+    for stiffness in (1e10, 1e12, 1e15):
+        stiff = with_fields(drive, {"pin_wheel.support_stiffness": stiffness})
+        found = solve_at_output(HalfSpace().prepare(stiff).model, [stiff], angle, drive.load.torque).response.pin_load
+        apart.append(np.max(np.abs(found - expected)) / expected.max())
+    assert apart[1] < 0.02 * apart[0]  # as 1/k
+    assert apart[2] < 1e-8  # the balance ends at 1e-9 of the load
+
+
+def test_the_pair_of_lines_in_the_docs(rv):
+    """docs/how-to/supports.md: a preload of 2 kN and a negative clearance of 8 µm are one bearing."""
+    preloaded = with_fields(rv, {"main_bearing.radial_stiffness": 1e6, "main_bearing.preload": "2 kN"})
+    tight = with_fields(rv, {"main_bearing.radial_stiffness": 5e5, "main_bearing.clearance": "-8 µm"})
+    assert wheel_law(preloaded) == wheel_law(tight)
+    assert wheel_law(tight).lift_off == pytest.approx(4000.0, rel=1e-12)
+
+
+def test_rows_without_pitch_radius_tell_no_tilt(rv):
+    rows = ROWS | {"main_bearing.preload": 1e3}
+    drives = [with_fields(rv, rows | {"main_bearing.bearings.1.pitch_radius": radius}) for radius in (None, 60.0)]
+    without, whole = (dict(derived_rows(drive, drive, plays=False))["rows of the main bearing"] for drive in drives)
+    assert re.fullmatch(r"axial [0-9.e+]+ N/mm", without)
+    assert "pressure centres at -46.9, 56.9 mm" in whole  # -25 - 60 tan 0.35, 35 + 60 tan 0.35
+    assert wheel_law(drives[0]) == wheel_law(drives[1])

@@ -5,12 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from ltca.drive.members.main_bearing import BALL, ROLLER, axial_preload
 from ltca.laws.bearing_pair import (
-    BALL,
-    ROLLER,
     RollingRow,
     SideLaw,
-    axial_stiffness,
     bearing_matrix,
     facing_of,
 )
@@ -66,10 +64,17 @@ def test_pairs_are_symmetric_and_positive(arrangement):
 )
 def test_axial_stiffness_at_a_preload(power, expected):
     """dF/dδ of 1e6 δⁿ at 4 µm, from the displacement and from the force there."""
-    by_displacement = axial_stiffness(1e6, power, force=None, displacement=0.004)
-    by_force = axial_stiffness(1e6, power, force=1e6 * 0.004**power, displacement=None)
-    assert by_displacement == pytest.approx(expected, rel=1e-12)
-    assert by_force == pytest.approx(expected, rel=1e-12)
+    force = 1e6 * 0.004**power
+    assert axial_preload(power, None, 1e6, force=None, displacement=0.004) == pytest.approx((force, 0.004), rel=1e-12)
+    assert axial_preload(power, None, 1e6, force=force, displacement=None) == pytest.approx((force, 0.004), rel=1e-12)
+    assert power * force / 0.004 == pytest.approx(expected, rel=1e-12)
+    # the same row by its stiffness there
+    assert axial_preload(power, expected, None, force=None, displacement=0.004) == pytest.approx(
+        (force, 0.004), rel=1e-12
+    )
+    assert axial_preload(power, expected, None, force=force, displacement=None) == pytest.approx(
+        (force, 0.004), rel=1e-12
+    )
 
 
 def test_loose_and_tight_meet():

@@ -22,7 +22,7 @@ from ltca.studies.design_search.closed_forms import (
 from ltca.studies.design_search.demands import find_demands, written_limits
 from ltca.studies.design_search.enumeration import _different, enumerate_candidates, teeth
 from ltca.studies.design_search.refinement import CONTINUOUS, _between, most_rollers
-from ltca.studies.design_search.requirements import parse_requirements
+from ltca.studies.design_search.requirement_file import parse_requirements
 from ltca.studies.design_search.search import rounded_safely
 from ltca.studies.design_search.sizes import Sizes, drive_of, stack_length
 

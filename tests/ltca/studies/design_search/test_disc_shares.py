@@ -14,7 +14,7 @@ from ltca.studies.design_search.demands import find_demands
 from ltca.studies.design_search.designs import refused_words
 from ltca.studies.design_search.enumeration import enumerate_candidates
 from ltca.studies.design_search.refinement import Refined
-from ltca.studies.design_search.requirements import parse_requirements
+from ltca.studies.design_search.requirement_file import parse_requirements
 from ltca.studies.design_search.sizes import Sizes, drive_of
 from ltca.studies.design_search.solution import Solution, least_disc_share, solve_coarsely
 

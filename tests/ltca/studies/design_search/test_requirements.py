@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from ltca.errors import DriveError
-from ltca.studies.design_search.requirements import load_requirements, parse_requirements
+from ltca.studies.design_search.requirement_file import load_requirements, parse_requirements
 
 EXAMPLES = sorted((Path(__file__).parents[4] / "examples" / "requirements").glob("*.toml"))
 SOUND = """

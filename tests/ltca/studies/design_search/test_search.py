@@ -15,7 +15,7 @@ from ltca.studies.design_search.demands import find_demands
 from ltca.studies.design_search.designs import design_text
 from ltca.studies.design_search.enumeration import Enumeration
 from ltca.studies.design_search.refinement import Refined
-from ltca.studies.design_search.requirements import parse_requirements
+from ltca.studies.design_search.requirement_file import parse_requirements
 from ltca.studies.design_search.search import Relaxation, find_designs
 from ltca.studies.design_search.solution import Solution
 

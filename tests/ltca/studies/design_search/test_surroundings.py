@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 from ltca.commands.program import main
+from ltca.errors import DriveError
 from ltca.studies.design_search.closed_forms import Setting, shape_values
 from ltca.studies.design_search.demands import find_demands
-from ltca.studies.design_search.requirements import parse_requirements
+from ltca.studies.design_search.requirement_file import parse_requirements
 from ltca.studies.design_search.sizes import Sizes, drive_of
 from ltca.studies.design_search.solution import solve_coarsely
 from ltca.studies.design_search.surroundings import inner_radius, seat_depth
@@ -46,6 +47,7 @@ radial_stiffness = "500 N/µm"
 preload = "2 kN"
 [first_stage]
 mesh_stiffness = 2e5
+plane = 25.0
 backlash = "30 µm"
 [[load.external]]
 force = { x = "1.5 kN" }
@@ -84,10 +86,21 @@ def test_seats_lead_their_pins_and_leave_room_for_teeth():
     assert not [one for one in plain if one.name == "ring_seat"]
 
 
+def test_planets_need_their_place():
+    with pytest.raises(
+        DriveError, match=r"first_stage\.plane: must be given with shop\.crank_support_stiffness, in mm"
+    ):
+        parse_requirements(RV + "[first_stage]\nbacklash = 0.03\n")
+
+
 def test_candidates_are_solved_with_all_of_it():
     """Every part that yields makes the output softer; play/r_w of the planets adds to the backlash by their ratio."""
     reached = {}
-    for name, text in (("plain", RV), ("stage", RV + "[first_stage]\nbacklash = 0.03\n"), ("all", RV + SURROUNDED)):
+    for name, text in (
+        ("plain", RV),
+        ("stage", RV + "[first_stage]\nbacklash = 0.03\nplane = 25.0\n"),
+        ("all", RV + SURROUNDED),
+    ):
         requirements = parse_requirements(text)
         solution = solve_coarsely(ROW, requirements, find_demands(requirements))
         assert not solution.message
