@@ -31,6 +31,7 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ltca.arrays import FloatArray, by_drive
 from ltca.contact.influence import lagged_influence
@@ -124,6 +125,15 @@ class SlicedContact:
     energy: FloatArray
     slice_load: FloatArray
     line_load: FloatArray
+
+    def take(self, rows: NDArray[np.intp]) -> SlicedContact:
+        """Return some of a row of contacts."""
+        return SlicedContact(**{name: getattr(self, name)[rows] for name in self.__slots__})
+
+    def put(self, rows: NDArray[np.intp], part: SlicedContact) -> None:
+        """Write what some of a row of contacts are now."""
+        for name in self.__slots__:
+            getattr(self, name)[rows] = getattr(part, name)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
