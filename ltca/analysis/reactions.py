@@ -9,10 +9,10 @@ import numpy as np
 
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.arrays import ComplexArray, FloatArray
-from ltca.compliance.response import bearing_pushes
+from ltca.compliance.response import bearing_moments, bearing_pushes
 from ltca.equilibrium.external_force import entries_of
 from ltca.equilibrium.first_stage import MeshForces
-from ltca.equilibrium.supports import crank_laws, wheel_axial_stiffness, wheel_rows
+from ltca.equilibrium.supports import crank_laws, journals, wheel_axial_stiffness, wheel_rows
 from ltca.geometry.rotation import unit
 from ltca.laws.beam import support_parts
 
@@ -50,9 +50,14 @@ def crank_support_forces(analysis: LoadedAnalysis) -> ComplexArray | None:
     drive, full, stage = analysis.drive, analysis.full, analysis.model.stage
     if drive.crank_supports is None:
         return None
-    parts = support_parts(drive.disc.disc_planes, drive.crank_supports)
-    pushes = np.stack([bearing_pushes(part.rollers, drive.crank.number) for part in full.response.parts], axis=-1)
-    carried = -np.matmul(pushes, parts.T.astype(complex))
+    cranks, contacts = drive.crank.number, full.response.parts
+    planes, slopes = journals(drive)
+    parts = support_parts(planes, drive.crank_supports, slopes)
+    pushes = [bearing_pushes(part.rollers, cranks) for part in contacts]
+    if slopes:
+        rays = [disc.geometry.rollers(full.crank_angle) for disc in analysis.model.discs]
+        pushes += [bearing_moments(part.rollers, own, cranks) for part, own in zip(contacts, rays, strict=True)]
+    carried = -np.matmul(np.stack(pushes, axis=-1), parts.T.astype(complex))
     if stage is not None:
         carried = carried + stage.on_bearings(
             analysis.model.crank_moments(full.crank_angle, full.pose, full.response.parts)

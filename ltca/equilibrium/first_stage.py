@@ -27,7 +27,7 @@ import numpy as np
 
 from ltca.arrays import ComplexArray, FloatArray, by_drive
 from ltca.drive.parts import Drive
-from ltca.equilibrium.supports import crank_springs
+from ltca.equilibrium.supports import crank_springs, journals
 from ltca.geometry.coordinates import Coordinates
 from ltca.geometry.placement import BatchScalar
 from ltca.laws.beam import shaft_flexibility, support_parts
@@ -119,23 +119,26 @@ class StageMesh:
             return None
         mesh, places, coordinates = stage.mesh(distance), np.array(drive.crank.places), Coordinates.of_drive(drive)
         stiffness, support, discs = stage.mesh_stiffness, drive.crank.support, drive.disc.number_of_discs
-        planes, bearings, shaft = drive.disc.disc_planes, drive.crank_supports, drive.materials.crankshaft
+        (planes, slopes), bearings, shaft = journals(drive), drive.crank_supports, drive.materials.crankshaft
+        count = len(planes) + len(slopes)
         place = 0.0 if stage.plane is None else stage.plane  # left out where no bearing gives their forces an arm
-        bending, own, by_bearings = np.zeros((discs, 2)), np.zeros((2, 2)), np.zeros((2, 2))
+        bending, own, by_bearings = np.zeros((count, 2)), np.zeros((2, 2)), np.zeros((2, 2))
         on_supports: FloatArray = np.eye(discs + 1, 2, -discs)
         if support is not None:
             whole = shaft_flexibility(
                 [*planes, place], support.positions, crank_springs(drive), support.diameter, shaft.youngs_modulus,
-                [place],
+                [*slopes, place],
             )  # fmt: skip
-            bending = np.asarray(np.linalg.solve(whole[:discs, :discs], whole[:discs, discs:]), dtype=float)
-            own = whole[discs:, discs:] - whole[discs:, :discs] @ bending
+            at_planet = [discs, count + 1]
+            held = np.setdiff1d(np.arange(count + 2), at_planet)
+            bending = np.asarray(np.linalg.solve(whole[np.ix_(held, held)], whole[np.ix_(held, at_planet)]), dtype=float)
+            own = whole[np.ix_(at_planet, at_planet)] - whole[np.ix_(at_planet, held)] @ bending
         if bearings is not None:
             on_supports = support_parts([place], bearings, [place])
-            by_bearings = on_supports - support_parts(planes, bearings) @ bending
+            by_bearings = on_supports - support_parts(planes, bearings, slopes) @ bending
         by_pose = np.zeros((drive.crank.number, 2, coordinates.size), dtype=complex)
         for crank in range(coordinates.cranks):
-            x = coordinates.own * np.arange(discs) + coordinates.crank(crank)
+            x = coordinates.journals(crank)
             by_pose[crank][:, x], by_pose[crank][:, x + 1] = bending.T, 1j * bending.T
         on_posts = drive.posts is not None
         if on_posts:

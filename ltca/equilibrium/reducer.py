@@ -24,6 +24,7 @@ from ltca.compliance.response import (
     KindPressures,
     Response,
     Start,
+    bearing_moments,
     bearing_pushes,
     split_shifts,
 )
@@ -274,13 +275,18 @@ class Reducer:
         """Return the external moment that holds the cages of each crank at their angle, ccw positive, N·mm, (positions, cranks).
 
         Cage and inner race are concentric and the race pushes its rollers along its radii, the bore along its own: what holds
-        the cage is the moment of the bearing's force at the displaced centre of the bore, the sum over all discs.
+        the cage is the moment of the bearing's force at the displaced centre of the bore, and of its couple at the bore's lean in
+        the race, the sum over all discs.
         """
         cranks = self.discs[0].geometry.placement.cranks
         total = np.zeros((crank_angle.size, cranks))
         for number, (disc, part) in enumerate(zip(self.discs, parts, strict=True)):
-            bores = disc.geometry.bores(crank_angle, pose[:, self.coordinates.columns(number)])
+            geometry, own = disc.geometry, pose[:, self.coordinates.columns(number)]
+            bores = geometry.bores(crank_angle, own)
             total += (bores.displacement.conjugate() * bearing_pushes(part.rollers, cranks)).imag
+            if self.coordinates.leans:
+                tilting = bearing_moments(part.rollers, geometry.rollers(crank_angle), cranks)
+                total += ((geometry.lean(own) - geometry.journal_leans(own)).conjugate() * tilting).imag
         return total
 
     def force_beside_pins(

@@ -19,6 +19,7 @@ beside the discs, such as the teeth of a first stage, adds to R what the bearing
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isfinite, nan
 
@@ -53,7 +54,8 @@ class BearingSupport:
     Attributes
     ----------
     by_pose : array, shape (2·planes, coordinates)
-        x and y in each plane in turn, relative to what its bearings stand in, by the coordinates.
+        x and y in each plane in turn, relative to what its bearings stand in, by the coordinates; leans there follow, where discs
+        lean, as if they were planes.
     stiffness : array, shape (planes, planes)
         K of forces in the planes on springs alone, N/mm.
     shares : array, shape (planes, bearings)
@@ -275,7 +277,8 @@ class Supports:
 
 
 def crank_stiffness(drive: Drive) -> FloatArray | None:
-    """Return the forces on a crank at the planes of the discs by displacements there, N/mm, shape (discs, discs).
+    """Return the forces on a crank at the planes of the discs by displacements there, N/mm, shape (discs, discs); where discs
+    lean, of its journals (`journals`).
 
     None where cranks are rigid. Bearings are without clearance, and both sides of preloaded ones carry.
     """
@@ -283,8 +286,18 @@ def crank_stiffness(drive: Drive) -> FloatArray | None:
     if support is None:
         return None
     modulus = drive.materials.crankshaft.youngs_modulus
-    planes, springs = drive.disc.disc_planes, crank_springs(drive)
-    return np.asarray(np.linalg.inv(shaft_flexibility(planes, support.positions, springs, support.diameter, modulus)))
+    planes, slopes = journals(drive)
+    springs = crank_springs(drive)
+    yields = shaft_flexibility(planes, support.positions, springs, support.diameter, modulus, slopes)
+    return np.asarray(np.linalg.inv(yields))
+
+
+def journals(drive: Drive) -> tuple[Sequence[float], Sequence[float]]:
+    """Return the planes at which a crank is displaced, mm, and those at which it leans: at every disc, in the order of
+    `Coordinates.journals`.
+    """
+    planes = drive.disc.disc_planes
+    return planes, planes if drive.contact.slices > 1 else ()
 
 
 def crank_torsion(drive: Drive) -> FloatArray | None:
@@ -427,27 +440,28 @@ def _row(
 
 
 def _crank_shares(drive: Drive) -> FloatArray:
-    """Part of a force at each disc that each of the two bearings of a crank carries, shape (discs, 2)."""
+    """Part of a force or couple at each journal that each of the two bearings of a crank carries, shape (journals, 2)."""
     support = drive.crank.support
     if support is None:
         raise AssertionError("cranks are rigid")
-    return support_parts(drive.disc.disc_planes, support.positions).T
+    planes, slopes = journals(drive)
+    return support_parts(planes, support.positions, slopes).T
 
 
 def _bent_by_pose(drive: Drive, geometry: ContactGeometry, crank: int) -> FloatArray:
-    """x and y of a crank at each disc in turn relative to the straight line between its bearings, by the coordinates of the
-    drive, shape (2·discs, coordinates).
+    """x and y of each journal of a crank in turn, and of its lean there, relative to the straight line between its bearings, by
+    the coordinates of the drive, shape (2·journals, coordinates).
     """
     coordinates = Coordinates.of_drive(drive)
-    found = np.zeros((coordinates.discs, 2, coordinates.size))
-    places = coordinates.own * np.arange(coordinates.discs) + coordinates.crank(crank)
+    places = coordinates.journals(crank)
+    found = np.zeros((places.size, 2, coordinates.size))
     for direction in (0, 1):
-        found[np.arange(coordinates.discs), direction, places + direction] = 1.0
+        found[np.arange(places.size), direction, places + direction] = 1.0
     if drive.carrier is not None and drive.carrier.posts is not None:
         far, seat = _crank_shares(drive)[:, 1, None], geometry.seats_by_ring[..., crank, :]
         found[:, 0, coordinates.ring_place] -= far * seat.real
         found[:, 1, coordinates.ring_place] -= far * seat.imag
-    return found.reshape(2 * coordinates.discs, coordinates.size)
+    return found.reshape(2 * places.size, coordinates.size)
 
 
 def _ring_stiffness(drive: Drive, geometry: ContactGeometry) -> FloatArray:

@@ -363,6 +363,15 @@ class ContactGeometry:
         place = self.coordinates_of(pose).lean_place
         return np.asarray(pose[:, place.start : place.start + 1] + 1j * pose[:, place.start + 1 : place.stop])
 
+    def journal_leans(self, pose: FloatArray) -> ComplexArray:
+        """Return the lean of every crank in the plane of the disc, rad, shape (positions, cranks)."""
+        coordinates, place = self.coordinates_of(pose), self.placement
+        found = np.zeros((pose.shape[0], place.cranks), dtype=complex) + np.asarray(place.crank_lean)[..., None]
+        for crank in range(coordinates.cranks):
+            first = coordinates.crank_lean(crank)
+            found[:, crank] += pose[:, first] + 1j * pose[:, first + 1]
+        return found
+
     def flank_tilt(self, crank_angle: FloatArray, pose: FloatArray, flank: FlankMotion) -> PairTilt:
         """Return the tilt of wheel pins and flank; arguments as for `flank`."""
         place, coordinates = self.placement, self.coordinates_of(pose)
