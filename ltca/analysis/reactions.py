@@ -93,9 +93,9 @@ def _main_bearing(analysis: LoadedAnalysis) -> dict[str, FloatArray]:
     """Force and moment of the housing on the output where its main bearing is described or forces from outside act on it, in the
     frame of the housing.
 
-    Moments are about the zero of the planes of the discs. Forces off that plane and along the axis tilt the output; nothing
-    yields in tilt, so they load the main bearing alone. Where its axial stiffness is known it yields
-    along the axis.
+    Moments are about the zero of the planes of the discs. Forces off that plane and along the axis tilt the output, and so do
+    contacts that carry unevenly along their width; where the bearing is rigid in tilt they load it alone. Where its axial
+    stiffness is known it yields along the axis.
     """
     drive, full = analysis.drive, analysis.full
     if not (drive.load.external or drive.wheel_yields):
@@ -116,6 +116,8 @@ def _main_bearing(analysis: LoadedAnalysis) -> dict[str, FloatArray]:
     for plane, part in zip(drive.disc.disc_planes, full.response.parts, strict=True):
         pressed_by_disc = sense * part.pin_forces[:, :pins].sum(axis=1) * into_housing
         force, moment = force + pressed_by_disc, moment + 1j * plane * pressed_by_disc
+        if part.leaning_pins is not None:
+            moment = moment + 1j * sense * part.pin_tilting[:, :pins].sum(axis=1) * into_housing
     teeth, stage = mesh_forces(analysis), drive.first_stage
     if drive.wheel_is_held and teeth is not None and stage is not None and analysis.model.stage is not None:
         outward, radius = analysis.model.stage.outward, float(np.max(analysis.model.stage.sun_radius))

@@ -143,6 +143,17 @@ class DiscResponse:
             force = force + self.friction[..., None] * along
         return np.asarray(force[..., 0] + 1j * force[..., 1])
 
+    @property
+    def pin_tilting(self) -> ComplexArray:
+        """What the disc presses the lean of each wheel pin and shaft pin with, M n, N·mm, shape (positions, pairs); zero in the
+        plane. As a moment vector it is i M n.
+        """
+        if self.leaning_pins is None or self.leaning_holes is None:
+            return np.zeros_like(self.pin_forces)
+        moment = np.concatenate((self.leaning_pins.contact.moment, self.leaning_holes.contact.moment), axis=1)
+        normal = np.concatenate((self.flank.gradient, self.holes.gradient), axis=1)[..., DISC_PLACE]
+        return np.asarray(moment * (normal[..., 0] + 1j * normal[..., 1]))
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Response(DiscResponse):

@@ -72,6 +72,8 @@ class StageMesh:
         Rotation of a crank by its moment while the sun is held, 1/(c r_b²), rad/(N·mm); 0 where teeth are rigid.
     half_free : float
         Half of the angle by which a planet is free to turn, rad.
+    plane : float
+        Axial place of the planets, mm.
     sun_radius : float
         Radius of the pitch circle of the sun, mm.
     reduction_ratio : float
@@ -101,6 +103,7 @@ class StageMesh:
     axial: BatchScalar = by_drive(0)
     twist: BatchScalar = by_drive(0)
     half_free: BatchScalar = by_drive(0)
+    plane: BatchScalar = by_drive(0)
     sun_radius: BatchScalar = by_drive(0)
     reduction_ratio: float
     outward: ComplexArray = by_drive(1)
@@ -151,6 +154,7 @@ class StageMesh:
             axial=mesh.axial,
             twist=0.0 if stiffness is None else 1.0 / (stiffness * mesh.base_radius**2),
             half_free=0.5 * mesh.backlash_angle(stage.backlash),
+            plane=place,
             sun_radius=distance - mesh.pitch_radius,
             reduction_ratio=drive.reduction_ratio,
             outward=places / np.abs(places),
@@ -186,6 +190,14 @@ class StageMesh:
         """
         sign = -1.0 if self.carried else 0.0
         return sign * self.forces(moments).in_plane.sum(axis=1), sign * self._slope(np.sign(moments))[0]
+
+    def tilting_on_wheel(self, moments: FloatArray) -> ComplexArray:
+        """Return what the sun presses the lean of the wheel with relative to the carrier, z F − i M, N·mm, shape (positions,); zero
+        where the carrier is held.
+        """
+        sign, forces = -1.0 if self.carried else 0.0, self.forces(moments)
+        along = (self.sun_radius * self.outward * forces.axial).sum(axis=1)
+        return sign * (np.asarray(self.plane)[..., None] * forces.in_plane).sum(axis=1) - sign * along
 
     def on_bearings(self, moments: FloatArray) -> ComplexArray:
         """Return what bearings of the cranks carry of the forces of the teeth, N, shape (positions, cranks, supports)."""

@@ -232,6 +232,9 @@ class Reducer:
         if self.external is not None and coordinates.wheel:
             pressed = self.external.on_wheel(crank_angle)
             force[:, coordinates.wheel_place] -= np.stack((pressed.real, pressed.imag), axis=-1)
+            if coordinates.wheel_leans:
+                tilting = self.external.tilting(crank_angle)
+                force[:, coordinates.wheel_lean_place] -= np.stack((tilting.real, tilting.imag), axis=-1)
         if self.friction is not None:
             ratio = self.discs[0].geometry.placement.reduction_ratio
             beside = self.force_beside_pins(crank_angle, pose, parts)
@@ -302,6 +305,17 @@ class Reducer:
             total = total + self.stage.on_wheel(self.crank_moments(crank_angle, pose, parts))[0]
         return total
 
+    def tilting_beside_pins(
+        self, crank_angle: FloatArray, pose: FloatArray, parts: Sequence[DiscResponse]
+    ) -> ComplexArray:
+        """Return what presses the lean of the wheel from outside and by the teeth of a first stage, N·mm, shape (positions,)."""
+        total = np.zeros(crank_angle.shape, dtype=complex)
+        if self.external is not None:
+            total = total + self.external.tilting(crank_angle)
+        if self.stage is not None and self.stage.carried:
+            total = total + self.stage.tilting_on_wheel(self.crank_moments(crank_angle, pose, parts))
+        return total
+
     def carried_beside_discs(
         self, crank_angle: FloatArray, pose: FloatArray, parts: Sequence[DiscResponse]
     ) -> ComplexArray | None:
@@ -334,6 +348,9 @@ class Reducer:
             force[:, coordinates.wheel_place] -= np.stack((on_wheel.real, on_wheel.imag), axis=-1)
             moved = np.einsum("pc,pcj->pj", by_moments, slopes)
             tangent[:, coordinates.wheel_place] -= np.stack((moved.real, moved.imag), axis=1)
+        if coordinates.wheel_leans:
+            tilting = stage.tilting_on_wheel(moments)
+            force[:, coordinates.wheel_lean_place] -= np.stack((tilting.real, tilting.imag), axis=-1)
         if not stage.yields:
             return ()
         pressed, by_moment = stage.on_planets(moments)

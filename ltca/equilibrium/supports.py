@@ -2,7 +2,8 @@ r"""What holds wheel and cranks: springs on coordinates, linear ones and those o
 
 Every crank is a beam on two bearings (`ltca.laws.beam`); its stiffness ties x and y of the crank in the planes of the discs,
 alike in every direction. Where it twists its stiffness in torsion ties the angles of its eccentrics against the splined planet.
-The wheel's main bearing holds its x and y. A ring that ties the tips of the shaft pins is held by what the pins resist when it
+The wheel's main bearing holds its x and y, and its
+lean where it yields in tilt: rows each at its pressure centre. A ring that ties the tips of the shaft pins is held by what the pins resist when it
 moves all tips; as the far flange of a carrier it is held by the posts as well (`ltca.laws.carrier`), and the far bearings of the
 cranks stand in it: a crank bends by its displacement relative to the straight line between its bearings. Linear springs are one
 matrix.
@@ -229,11 +230,17 @@ class Supports:
                 turns = coordinates.own * np.arange(coordinates.discs) + twist
                 matrix[np.ix_(turns, turns)] += twisted
         of_wheel = np.eye(coordinates.size)[coordinates.wheel_place]
-        if isinstance(wheel, SideLaw):
+        of_lean = np.eye(coordinates.size)[coordinates.wheel_lean_place]
+        rows = wheel_rows(drive)
+        if drive.wheel_tilts and rows:
+            bearings += _tilting_rows(drive, rows, of_wheel, of_lean, matrix)
+        elif isinstance(wheel, SideLaw):
             held, whole = np.array([[wheel.stiffness]]), np.ones((1, 1))
             bearings.append(BearingSupport.of_laws(of_wheel, held, whole, (wheel,)))
         elif wheel is not None:
             matrix += wheel * of_wheel.T @ of_wheel
+        if drive.wheel_tilts and not rows and drive.main_bearing is not None:
+            matrix += (drive.main_bearing.tilt_stiffness or 0.0) * of_lean.T @ of_lean
         if flange is not None:
             matrix[coordinates.ring_place, coordinates.ring_place] += flange
         if geometry.tips_by_ring.size and coordinates.ring:
@@ -403,6 +410,28 @@ def wheel_law(drive: Drive) -> SideLaw | float | None:
         held = bearing.preload
         return stiffness if held is None else SideLaw.of_preload(stiffness, held.force, held.displacement)
     return SideLaw.of_rows(rows) if any(isfinite(row.reach) for row in rows) else stiffness
+
+
+def _tilting_rows(
+    drive: Drive, rows: Sequence[RollingRow], of_wheel: FloatArray, of_lean: FloatArray, matrix: FloatArray
+) -> list[BearingSupport]:
+    """Rows of a main bearing that yields in tilt, each at its pressure centre: springs are added to the matrix, those with
+    clearance or preload are returned.
+    """
+    found = []
+    for row in rows:
+        at_row = of_wheel + row.pressure_centre * of_lean
+        clearance = None if drive.main_bearing is None else drive.main_bearing.clearance
+        law = None
+        if clearance is not None:
+            law = SideLaw.of_clearance(row.radial, clearance)
+        elif isfinite(row.reach):
+            law = SideLaw.of_rows([row])
+        if law is None:
+            matrix += row.radial * at_row.T @ at_row
+        else:
+            found.append(BearingSupport.of_laws(at_row, np.array([[law.stiffness]]), np.ones((1, 1)), (law,)))
+    return found
 
 
 def wheel_axial_stiffness(drive: Drive) -> float | None:

@@ -4,7 +4,7 @@ A pose of one disc at a held crank angle is q = (x, y, disc rotation, …, wheel
 the disc from its nominal place in the fixed frame, the angles in rad; the wheel angle is its deviation from φ_C/u. Between
 them stand x and y of each crank in the plane of the disc, if cranks yield, and the angle by which each eccentric is ahead of
 the crank, if they twist; if contacts have slices, the leans of these cranks and of the disc; x and y of the wheel, if its bearing
-yields; and x, y and rotation of the ring that ties the tips of the shaft pins, or of the far flange of the carrier, if there is
+yields, and its lean, if it yields in tilt; and x, y and rotation of the ring that ties the tips of the shaft pins, or of the far flange of the carrier, if there is
 one. The poses of several discs follow each other, with one wheel.
 
 A lean is what x and y of a part change by along its axis, dx/dz and dy/dz about the middle of the disc: with the rotation vector ω of a
@@ -53,6 +53,8 @@ class Coordinates:
         Whether cranks yield in torsion.
     leans : bool
         Whether discs lean, and cranks that yield in their planes.
+    wheel_leans : bool
+        Whether the wheel leans as well.
     """
 
     discs: int = 1
@@ -61,6 +63,7 @@ class Coordinates:
     ring: bool = False
     twists: bool = False
     leans: bool = False
+    wheel_leans: bool = False
 
     @classmethod
     def of_drive(cls, drive: Drive) -> Coordinates:
@@ -71,7 +74,15 @@ class Coordinates:
         ring = drive.posts is not None or (beam is not None and beam.tip != "free")
         wheel = drive.wheel_yields
         discs, leans = drive.disc.number_of_discs, drive.contact.slices > 1
-        return cls(discs=discs, cranks=cranks, wheel=wheel, ring=ring, twists=twists, leans=leans)
+        return cls(
+            discs=discs,
+            cranks=cranks,
+            wheel=wheel,
+            ring=ring,
+            twists=twists,
+            leans=leans,
+            wheel_leans=drive.wheel_tilts,
+        )
 
     @property
     def own(self) -> int:
@@ -83,7 +94,7 @@ class Coordinates:
     @property
     def shared(self) -> int:
         """Number of coordinates of wheel and ring."""
-        return 1 + 2 * self.wheel + 3 * self.ring
+        return 1 + 2 * self.wheel + 2 * self.wheel_leans + 3 * self.ring
 
     @property
     def size(self) -> int:
@@ -135,6 +146,12 @@ class Coordinates:
         return slice(first, first + 2 * self.wheel)
 
     @property
+    def wheel_lean_place(self) -> slice:
+        """Lean of the wheel; empty where it does not lean."""
+        first = self.wheel_place.stop
+        return slice(first, first + 2 * self.wheel_leans)
+
+    @property
     def ring_place(self) -> slice:
         """x, y and rotation of the ring; empty where there is none."""
         return slice(self.size - 1 - 3 * self.ring, self.size - 1)
@@ -157,5 +174,6 @@ class Coordinates:
         leans = self.own - 2 * (self.cranks + 1) * self.leans
         one = np.r_[X, DISC_ROTATION + 1 : self.crank(self.cranks) : 2, leans : self.own : 2]
         each = (self.own * np.arange(self.discs)[:, None] + one).ravel()
-        shared = [self.size - self.shared] if self.wheel else []
+        shared = [self.wheel_place.start] if self.wheel else []
+        shared += [self.wheel_lean_place.start] if self.wheel_leans else []
         return np.append(each, [*shared, self.ring_place.start] if self.ring else shared).astype(np.intp)
