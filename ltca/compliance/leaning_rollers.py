@@ -8,14 +8,17 @@ angle. s and ψ are where the energy of both contacts is least.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.rollers import RollerLaws, RollerState
 from ltca.errors import ConvergenceError
-from ltca.geometry.pair_motion import RollerRays
+from ltca.geometry.pair_motion import RollerRays, dot
 from ltca.laws.sliced_line import SlicedContact, SlicedLine
 
 MAX_ITERATIONS = 80
@@ -23,6 +26,13 @@ SETTLED = 1e-10
 """Largest force and moment (by half the length) left over, by the larger load of the two contacts."""
 ROUND_OFF = 1e-7
 """What is left that may be due to what the slices leave over."""
+MAX_HALVINGS = 12
+STEEPEST = 0.5
+"""Largest slope of the energy at the end of a step, by that at its start, that is not shortened."""
+
+_Near = tuple[FloatArray | None, FloatArray | None]
+_Contacts = tuple[SlicedContact, SlicedContact, ComplexArray, FloatArray]
+_ALL = slice(None)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -68,57 +78,45 @@ def balance_leaning_rollers(
     ray, moved, outermost, play = (each(one) for one in (rays.direction, displacement, rays.outermost, rays.bore_play))
     inner_radius, outer_radius = each(laws.inner_radius), each(laws.outer_radius)
     at_race, at_bore, overlap = each(race_lean), each(bore_lean), each(total)
+    along, lowest = ray.real * moved.real + ray.imag * moved.imag, outermost - overlap
 
-    def contacts(
-        inward: FloatArray, lean: FloatArray, near: tuple[FloatArray | None, FloatArray | None]
-    ) -> tuple[SlicedContact, SlicedContact, ComplexArray, FloatArray]:
-        arm = (outermost - inward) * ray - moved
+    def contacts(which: Any, inward: FloatArray, lean: FloatArray, near: _Near) -> _Contacts:
+        place = outermost[which] - inward
+        arm = place * ray[which] - moved[which]
         length = np.abs(arm)
-        along = ray.real * moved.real + ray.imag * moved.imag
-        lowest = outermost - overlap
         # |s n − d| less the bore play as a product, as for rollers that do not lean.
-        outer = (overlap - inward) * (outermost - inward + lowest - 2.0 * along) / (length + play)
-        first = laws.inner.respond(inward, at_race - lean, inner_radius, near[0])
-        second = laws.outer.respond(outer, lean - at_bore, outer_radius, near[1])
+        outer = (overlap[which] - inward) * (place + lowest[which] - 2.0 * along[which]) / (length + play[which])
+        first = laws.inner.respond(inward, at_race[which] - lean, inner_radius[which], near[0])
+        second = laws.outer.respond(outer, lean - at_bore[which], outer_radius[which], near[1])
         return first, second, arm / length, length
 
     inward, lean = 0.5 * overlap, 0.5 * (at_race + at_bore)
-    near: tuple[FloatArray | None, FloatArray | None] = (None, None)
+    near: _Near = (None, None)
     if start is not None:
         known = start.inner[rows, numbers].sum(axis=1) > 0.0
         inward = np.where(known, start.inward[rows, numbers] * overlap, inward)
         lean = np.where(known, start.lean[rows, numbers], lean)
         near = start.inner[rows, numbers], start.outer[rows, numbers]
-    inner, outer, outward, length = contacts(inward, lean, near)
+    inner, outer, outward, length = contacts(_ALL, inward, lean, near)
     history: list[float] = []
+    going = np.arange(rows.size)
+    before = np.full(rows.size, np.inf)
     for _ in range(MAX_ITERATIONS):
-        cosine = outward.real * ray.real + outward.imag * ray.imag
-        force, moment = inner.load - outer.load * cosine, outer.moment - inner.moment
-        size = np.maximum(np.maximum(inner.load, outer.load), 1e-300)
+        force, moment = _imbalance(inner, outer, outward, ray)
+        size = np.maximum(np.maximum(inner.load, outer.load), np.finfo(float).tiny)
         left = np.maximum(np.abs(force), np.abs(moment) / half) / size
         history.append(float(np.max(left, initial=0.0)))
-        if history[-1] <= SETTLED or (
-            len(history) > 1 and history[-2] < ROUND_OFF and history[-1] >= 0.5 * history[-2]
-        ):
+        # Nothing but what the slices leave over is left where steps no longer help.
+        going = np.flatnonzero((left > SETTLED) & ~((before < ROUND_OFF) & (left >= 0.5 * before)))
+        if not going.size:
             break
-        stiff, mixed, turning = _own_stiffness(inner, outer, cosine, length)
-        # A roller that touches at one end alone turns about that end freely.
-        turning = turning + 1e-9 * half**2 * stiff
-        determinant = stiff * turning - mixed**2
-        determinant = np.where(stiff > 0.0, determinant, 1.0)
-        step = -(turning * force - mixed * moment) / determinant
-        turn = -(stiff * moment - mixed * force) / determinant
-        energy = inner.energy + outer.energy
-        fraction = np.ones(step.shape)
-        for _ in range(12):
-            there = contacts(inward + fraction * step, lean + fraction * turn, (inner.slice_load, outer.slice_load))
-            rise = there[0].energy + there[1].energy - energy
-            worse = rise > 1e-10 * energy
-            if not worse.any():
-                break
-            fraction = np.where(worse, 0.5 * fraction, fraction)
-        inward, lean = inward + fraction * step, lean + fraction * turn
-        inner, outer, outward, length = there
+        before = left
+        there, moved_by = _downhill(contacts, going, inward, lean, inner, outer, outward, length, ray, half)
+        inward[going] += moved_by[0]
+        lean[going] += moved_by[1]
+        for whole, part in zip((inner, outer), there[:2], strict=True):
+            whole.put(going, part)
+        outward[going], length[going] = there[2:]
     else:
         raise ConvergenceError("leaning rollers do not balance between the races; force left over by the load", history)
     cosine = outward.real * ray.real + outward.imag * ray.imag
@@ -149,6 +147,66 @@ def balance_leaning_rollers(
         full[rows, numbers] = values
         whole[name] = full
     return RollerState(**whole)
+
+
+def _imbalance(
+    inner: SlicedContact, outer: SlicedContact, outward: ComplexArray, ray: ComplexArray
+) -> tuple[FloatArray, FloatArray]:
+    """Slopes of the energy by place inward and lean."""
+    return inner.load - outer.load * dot(outward, ray), outer.moment - inner.moment
+
+
+def _along(slopes: tuple[FloatArray, FloatArray], step: tuple[FloatArray, FloatArray]) -> FloatArray:
+    return slopes[0] * step[0] + slopes[1] * step[1]
+
+
+def _downhill(
+    contacts: Callable[..., _Contacts],
+    going: NDArray[np.intp],
+    inward: FloatArray,
+    lean: FloatArray,
+    inner: SlicedContact,
+    outer: SlicedContact,
+    outward: ComplexArray,
+    length: FloatArray,
+    ray: ComplexArray,
+    half: float,
+) -> tuple[_Contacts, tuple[FloatArray, FloatArray]]:
+    """Newton's step of the rollers that go on, shortened where the energy rises again steeply at its end.
+
+    The energy is convex along a step: its slope says how far the least of it is, also where differences of energies are round-off.
+    """
+    first, second = inner.take(going), outer.take(going)
+    n, towards, arm = ray[going], outward[going], length[going]
+    force, moment = _imbalance(first, second, towards, n)
+    stiff, mixed, turning = _own_stiffness(first, second, dot(towards, n), arm)
+    # A roller that touches at one end alone turns about that end freely.
+    turning = turning + 1e-9 * half**2 * stiff
+    determinant = np.where(stiff > 0.0, stiff * turning - mixed**2, 1.0)
+    step = -(turning * force - mixed * moment) / determinant
+    turn = -(stiff * moment - mixed * force) / determinant
+    slope = force * step + moment * turn
+    fraction = np.ones(step.shape)
+    start = (first.slice_load, second.slice_load)
+    there = contacts(going, inward[going] + step, lean[going] + turn, start)
+    for _ in range(MAX_HALVINGS):
+        ahead = _along(_imbalance(*there[:3], n), (step, turn))
+        long = np.flatnonzero(ahead > STEEPEST * np.abs(slope))
+        if not long.size:
+            break
+        cut = np.abs(slope[long]) / (np.abs(slope[long]) + ahead[long])
+        fraction[long] *= np.clip(cut, 0.1, 0.7)
+        again = going[long]
+        part = contacts(
+            again,
+            inward[again] + fraction[long] * step[long],
+            lean[again] + fraction[long] * turn[long],
+            (start[0][long], start[1][long]),
+        )
+        there[0].put(long, part[0])
+        there[1].put(long, part[1])
+        there[2][long], there[3][long] = part[2:]
+    return there, (fraction * step, fraction * turn)
 
 
 def _own_stiffness(

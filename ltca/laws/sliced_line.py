@@ -161,6 +161,15 @@ class SlicedContact:
     slice_load: FloatArray
     line_load: FloatArray
 
+    def take(self, rows: NDArray[np.intp]) -> SlicedContact:
+        """Return some of a row of contacts."""
+        return SlicedContact(**{name: getattr(self, name)[rows] for name in self.__slots__})
+
+    def put(self, rows: NDArray[np.intp], part: SlicedContact) -> None:
+        """Write what some of a row of contacts are now."""
+        for name in self.__slots__:
+            getattr(self, name)[rows] = getattr(part, name)
+
 
 @cache
 def _bends(slices: int) -> tuple[NDArray[np.intp], NDArray[np.intp], FloatArray]:
