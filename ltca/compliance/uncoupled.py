@@ -78,7 +78,12 @@ class UncoupledContacts(ABC, Generic[Law]):
         return np.full(positions, None, dtype=object)
 
     def respond(
-        self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None, shifts: ComplexArray | None = None
+        self,
+        crank_angle: FloatArray,
+        pose: FloatArray,
+        start: Start | None = None,
+        shifts: ComplexArray | None = None,
+        leans: ComplexArray | None = None,
     ) -> DiscResponse:
         """Return the contact forces at the poses of a batch of positions.
 
@@ -93,6 +98,8 @@ class UncoupledContacts(ABC, Generic[Law]):
         shifts : array of complex, shape (positions, z_P + z_PS), optional
             Displacements of the pins, mm: of wheel pins in the turning wheel, of shaft pins in the fixed frame. Slopes come
             with them.
+        leans : array of complex, shape (positions, z_P + z_PS), optional
+            Leans of the pins at the disc in the same frames, rad, of contacts in slices.
 
         Returns
         -------
@@ -109,10 +116,10 @@ class UncoupledContacts(ABC, Generic[Law]):
         places, known, share, warm = (
             (None, None, None, None) if start is None else (start.parameter, start.known, start.share, start.warm_start)
         )
-        flank = geometry.flank(crank_angle, pose, places, moved[0], known)
+        flank = geometry.flank(crank_angle, pose, places, moved[0], known, split_shifts(leans, geometry)[0])
         laws = self.laws(flank, warm)
         if geometry.coordinates_of(pose).leans:
-            return self._respond_in_slices(crank_angle, pose, flank, laws, shifts, warm)
+            return self._respond_in_slices(crank_angle, pose, flank, laws, shifts, leans, warm)
         pin_load, pin_stiffness = laws.pins.load_and_stiffness(flank.approach, flank.effective_radius)
         holes = geometry.holes(crank_angle, pose, moved[1])
         hole_load, hole_stiffness = self.hole_law.load_and_stiffness(
@@ -143,6 +150,7 @@ class UncoupledContacts(ABC, Generic[Law]):
         flank: FlankMotion,
         laws: PairLaws[Any],
         shifts: ComplexArray | None,
+        leans: ComplexArray | None,
         warm: NDArray[np.object_] | None,
     ) -> DiscResponse:
         """The same of contacts in slices, which tilt."""
@@ -153,17 +161,19 @@ class UncoupledContacts(ABC, Generic[Law]):
         coordinates = geometry.coordinates_of(pose)
         holes = geometry.holes(crank_angle, pose, split_shifts(shifts, geometry)[1])
         bores, rays = geometry.bores(crank_angle, pose), geometry.rollers(crank_angle)
-        pairs = []
-        for motion, tilt, law, radius in (
-            (flank, geometry.flank_tilt(crank_angle, pose, flank), laws.pins, flank.effective_radius),
-            (holes, geometry.hole_tilt(pose, holes), self.hole_law, place.hole_effective_radii),
+        pairs, leaning = [], split_shifts(leans, geometry)
+        for number, (motion, tilt, law, radius) in enumerate(
+            (
+                (flank, geometry.flank_tilt(crank_angle, pose, flank, leaning[0]), laws.pins, flank.effective_radius),
+                (holes, geometry.hole_tilt(pose, holes, leaning[1]), self.hole_law, place.hole_effective_radii),
+            )
         ):
-            begin = () if near is None or motion is holes else (near[0],)
-            contact = law.respond(motion.approach, tilt.tilt, radius, *begin)
+            begin = None if near is None else near[number]
+            contact = law.respond(motion.approach, tilt.tilt, radius, begin)
             pairs.append((motion, LeaningPairs(tilt=tilt, contact=contact)))
         displacement = bores.each(bores.displacement, rays.direction.shape[1])
         along = [dot(rays.direction, lean) for lean in (np.asarray(place.crank_lean), geometry.lean(pose))]
-        begin = None if near is None else RollerStart(inward=near[1], lean=near[2], inner=near[3], outer=near[4])
+        begin = None if near is None else RollerStart(inward=near[2], lean=near[3], inner=near[4], outer=near[5])
         rollers = balance_leaning_rollers(rays, displacement, laws.rollers, *along, begin)
         tangent = _leaning_roller_tangent(rollers, bores, coordinates)
         pins, of_holes = (pair.contact.load for _, pair in pairs)
@@ -172,13 +182,12 @@ class UncoupledContacts(ABC, Generic[Law]):
             pressed = (rollers.outer_moment * rays.direction).sum(axis=1)
             force[:, coordinates.lean_place] -= np.stack((pressed.real, pressed.imag), axis=-1)
         for motion, pair in pairs:
-            found, leaning = pair.contact, pair.tilt
-            force += np.einsum("bi,bij->bj", found.moment, leaning.gradient)
+            found, by_tilt = pair.contact, pair.tilt.gradient
+            force += np.einsum("bi,bij->bj", found.moment, by_tilt)
             tangent += _pair_tangent(motion, found.load, found.by_approach)
-            mixed = np.matmul(motion.gradient.swapaxes(1, 2), found.by_tilt[..., None] * leaning.gradient)
+            mixed = np.matmul(motion.gradient.swapaxes(1, 2), found.by_tilt[..., None] * by_tilt)
             tangent += mixed + mixed.swapaxes(1, 2)
-            turning = found.moment_by_tilt[..., None] * leaning.gradient
-            tangent += np.matmul(leaning.gradient.swapaxes(1, 2), turning)
+            tangent += np.matmul(by_tilt.swapaxes(1, 2), found.moment_by_tilt[..., None] * by_tilt)
             tangent += motion.bend_leans(found.moment, coordinates)
         return DiscResponse(
             force=force,
@@ -188,8 +197,10 @@ class UncoupledContacts(ABC, Generic[Law]):
             rollers=rollers,
             pin_load=pins,
             hole_load=of_holes,
-            warm_start=_rows_of(pairs[0][1].contact.slice_load, rollers),
+            warm_start=_rows_of([pair.contact.slice_load for _, pair in pairs], rollers),
             shifts=shifts,
+            leans=leans,
+            slopes=None if shifts is None else _leaning_slopes(pairs),
             leaning_pins=pairs[0][1],
             leaning_holes=pairs[1][1],
         )
@@ -214,6 +225,23 @@ def _slopes(flank: FlankMotion, pin: FloatArray, holes: PairMotion, hole: FloatA
     return PairSlopes(by_approach=by_approach, by_pose=by_approach[..., None] * gradient)
 
 
+def _leaning_slopes(pairs: list[tuple[PairMotion, LeaningPairs]]) -> PairSlopes:
+    """The same of contacts in slices."""
+    k, mixed, turning = (
+        np.concatenate([getattr(pair.contact, name) for _, pair in pairs], axis=1)
+        for name in ("by_approach", "by_tilt", "moment_by_tilt")
+    )
+    gradient = np.concatenate([motion.gradient for motion, _ in pairs], axis=1)
+    by_tilt = np.concatenate([pair.tilt.gradient for _, pair in pairs], axis=1)
+    return PairSlopes(
+        by_approach=k,
+        by_pose=k[..., None] * gradient + mixed[..., None] * by_tilt,
+        by_tilt=mixed,
+        moment_by_tilt=turning,
+        moment_by_pose=mixed[..., None] * gradient + turning[..., None] * by_tilt,
+    )
+
+
 def _roller_tangent(rollers: RollerState, bores: BoreMotion) -> FloatArray:
     positions, cranks = bores.arm.shape
     stiffness = np.einsum("bcri->bci", rollers.tangent.reshape(positions, cranks, -1, 4)).reshape(-1, cranks, 2, 2)
@@ -223,10 +251,10 @@ def _roller_tangent(rollers: RollerState, bores: BoreMotion) -> FloatArray:
     return np.asarray(tangent)
 
 
-def _rows_of(pins: FloatArray, rollers: RollerState) -> NDArray[np.object_]:
+def _rows_of(pairs: list[FloatArray], rollers: RollerState) -> NDArray[np.object_]:
     """What contacts in slices want to find again, row by row."""
-    found = np.empty(pins.shape[0], dtype=object)
-    each = (pins, rollers.share, rollers.lean, rollers.inner_slices, rollers.outer_slices)
+    found = np.empty(pairs[0].shape[0], dtype=object)
+    each = (*pairs, rollers.share, rollers.lean, rollers.inner_slices, rollers.outer_slices)
     found[:] = list(zip(*(values for values in each if values is not None), strict=True))
     return found
 

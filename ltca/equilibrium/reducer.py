@@ -190,8 +190,10 @@ class Reducer:
                 moved = self._unmoved(crank_angle.size)  # friction needs the slopes that come with displacements
             parts = []
             for number, (own, disc) in enumerate(zip(places, self.discs, strict=True)):
-                shift = None if moved is None else moved[:, number]
-                part = disc.respond(crank_angle, pose[:, own], starts[number], shift)
+                shift: tuple[ComplexArray | None, ...] = () if moved is None else (moved[:, number],)
+                if moved is not None and self.pins is not None:
+                    shift = self.pins.parts_of(moved, number)
+                part = disc.respond(crank_angle, pose[:, own], starts[number], *shift)
                 if self.friction is not None:
                     rubbing = self.friction.of_disc(disc.geometry, crank_angle, pose[:, own], part, number)
                     force, tangent = part.force + rubbing.force, part.tangent + rubbing.tangent
@@ -203,13 +205,13 @@ class Reducer:
         if self.pins is None:
             parts = respond(None)
         else:
-            begin = self._unmoved(crank_angle.size)
+            begin = self.pins.unmoved(crank_angle.size)
             if start is not None and start.follow is not None:
                 begin = start.follow.at(pose)
             placement = self.discs[0].geometry.placement
             turned = unit(placement.wheel_rotation(crank_angle) + pose[:, WHEEL_ANGLE])
             system = self.pins.settle(respond, coordinates, turned, begin, roughly=roughly)
-            parts, shifts, settled = system.parts, system.shifts, system.settled()
+            parts, shifts, settled = system.parts, system.shifts[:, : len(self.discs)], system.settled()
             if self.pins.ring is not None:
                 ring = -self.pins.of_ring(system.force)
                 parts = tuple(replace(part, ring=ring) for part in parts)
