@@ -267,9 +267,10 @@ class DiscModel(Protocol):
         start: Start | None = None,
         shifts: ComplexArray | None = None,
         leans: ComplexArray | None = None,
+        again: DiscResponse | None = None,
     ) -> DiscResponse:
-        """Return the contact forces at the poses of a batch of positions; `shifts` are displacements of the pins, if any, and
-        `leans` their leans.
+        """Return the contact forces at the poses of a batch of positions; `shifts` are displacements of the pins, if any, `leans`
+        their leans, and `again` what was answered there with pins displaced otherwise.
         """
         ...
 

@@ -84,6 +84,7 @@ class UncoupledContacts(ABC, Generic[Law]):
         start: Start | None = None,
         shifts: ComplexArray | None = None,
         leans: ComplexArray | None = None,
+        again: DiscResponse | None = None,
     ) -> DiscResponse:
         """Return the contact forces at the poses of a batch of positions.
 
@@ -100,6 +101,8 @@ class UncoupledContacts(ABC, Generic[Law]):
             with them.
         leans : array of complex, shape (positions, z_P + z_PS), optional
             Leans of the pins at the disc in the same frames, rad, of contacts in slices.
+        again : DiscResponse, optional
+            What was answered at the same poses with pins displaced otherwise, in slices: their rollers stand where they stood.
 
         Returns
         -------
@@ -119,7 +122,7 @@ class UncoupledContacts(ABC, Generic[Law]):
         flank = geometry.flank(crank_angle, pose, places, moved[0], known, split_shifts(leans, geometry)[0])
         laws = self.laws(flank, warm)
         if geometry.coordinates_of(pose).leans:
-            return self._respond_in_slices(crank_angle, pose, flank, laws, shifts, leans, warm)
+            return self._respond_in_slices(crank_angle, pose, flank, laws, shifts, leans, warm, again)
         pin_load, pin_stiffness = laws.pins.load_and_stiffness(flank.approach, flank.effective_radius)
         holes = geometry.holes(crank_angle, pose, moved[1])
         hole_load, hole_stiffness = self.hole_law.load_and_stiffness(
@@ -152,6 +155,7 @@ class UncoupledContacts(ABC, Generic[Law]):
         shifts: ComplexArray | None,
         leans: ComplexArray | None,
         warm: NDArray[np.object_] | None,
+        again: DiscResponse | None,
     ) -> DiscResponse:
         """The same of contacts in slices, which tilt."""
         near = None
@@ -169,12 +173,18 @@ class UncoupledContacts(ABC, Generic[Law]):
             )
         ):
             begin = None if near is None else near[number]
+            if again is not None:
+                known = again.leaning_holes if number else again.leaning_pins
+                begin = None if known is None else known.contact.slice_load
             contact = law.respond(motion.approach, tilt.tilt, radius, begin)
             pairs.append((motion, LeaningPairs(tilt=tilt, contact=contact)))
-        displacement = bores.each(bores.displacement, rays.direction.shape[1])
-        along = [dot(rays.direction, lean) for lean in (np.asarray(place.crank_lean), geometry.lean(pose))]
-        begin = None if near is None else RollerStart(inward=near[2], lean=near[3], inner=near[4], outer=near[5])
-        rollers = balance_leaning_rollers(rays, displacement, laws.rollers, *along, begin)
+        if again is None:
+            displacement = bores.each(bores.displacement, rays.direction.shape[1])
+            along = [dot(rays.direction, lean) for lean in (np.asarray(place.crank_lean), geometry.lean(pose))]
+            stood = None if near is None else RollerStart(inward=near[2], lean=near[3], inner=near[4], outer=near[5])
+            rollers = balance_leaning_rollers(rays, displacement, laws.rollers, *along, stood)
+        else:
+            rollers = again.rollers
         tangent = _leaning_roller_tangent(rollers, bores, coordinates)
         pins, of_holes = (pair.contact.load for _, pair in pairs)
         force = resultant(flank, pins, holes, of_holes, rollers, bores)

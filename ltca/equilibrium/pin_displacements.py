@@ -90,11 +90,9 @@ class PinDisplacements:
         pairs, rows, _ = self.beams.shape[-3:]
         return np.zeros((positions, rows, pairs), dtype=complex)
 
-    def parts_of(self, shifts: ComplexArray, disc: int) -> tuple[ComplexArray, ComplexArray | None]:
-        """Return displacements of the pins at a disc, mm, and their leans there, rad, shape (positions, pairs)."""
-        if not self.leans:
-            return shifts[:, disc], None
-        return shifts[:, disc], np.asarray(shifts[:, self.discs + disc] / self.half_width)
+    def lean(self, shifts: ComplexArray, disc: int) -> ComplexArray:
+        """Return the leans of the pins at a disc among their displacements, rad, shape (positions, pairs)."""
+        return np.asarray(shifts[:, self.discs + disc] / self.half_width)
 
     def under(self, force: ComplexArray) -> ComplexArray:
         """Return S f, mm, for forces on the pins by disc, N, shape (positions, discs, pairs)."""
@@ -131,7 +129,7 @@ class PinDisplacements:
         ----------
         respond : callable
             Returns the contacts of all discs for displacements, mm, complex, shape (positions, discs, pairs), with leans behind
-            them in slices (`parts_of`).
+            them in slices (`lean`).
         coordinates : Coordinates
             Of the whole.
         turned : array of complex, shape (positions,)
