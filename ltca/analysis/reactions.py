@@ -117,7 +117,7 @@ def _main_bearing(analysis: LoadedAnalysis) -> dict[str, FloatArray]:
         pressed_by_disc = sense * part.pin_forces[:, :pins].sum(axis=1) * into_housing
         force, moment = force + pressed_by_disc, moment + 1j * plane * pressed_by_disc
         if part.leaning_pins is not None:
-            moment = moment + 1j * sense * part.pin_tilting[:, :pins].sum(axis=1) * into_housing
+            moment = moment + 1j * sense * part.pin_moments[:, :pins].sum(axis=1) * into_housing
     teeth, stage = mesh_forces(analysis), drive.first_stage
     if drive.wheel_is_held and teeth is not None and stage is not None and analysis.model.stage is not None:
         outward, radius = analysis.model.stage.outward, float(np.max(analysis.model.stage.sun_radius))

@@ -79,7 +79,13 @@ class UncoupledContacts(ABC, Generic[Law]):
         return np.full(positions, None, dtype=object)
 
     def respond(
-        self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None, shifts: ComplexArray | None = None
+        self,
+        crank_angle: FloatArray,
+        pose: FloatArray,
+        start: Start | None = None,
+        shifts: ComplexArray | None = None,
+        leans: ComplexArray | None = None,
+        again: DiscResponse | None = None,
     ) -> DiscResponse:
         """Return the contact forces at the poses of a batch of positions.
 
@@ -94,6 +100,10 @@ class UncoupledContacts(ABC, Generic[Law]):
         shifts : array of complex, shape (positions, z_P + z_PS), optional
             Displacements of the pins, mm: of wheel pins in the turning wheel, of shaft pins in the fixed frame. Slopes come
             with them.
+        leans : array of complex, shape (positions, z_P + z_PS), optional
+            Leans of the pins at the disc in the same frames, rad, of contacts in slices.
+        again : DiscResponse, optional
+            What was answered at the same poses with pins displaced otherwise, in slices: their rollers stand where they stood.
 
         Returns
         -------
@@ -110,12 +120,12 @@ class UncoupledContacts(ABC, Generic[Law]):
         places, known, share, warm = (
             (None, None, None, None) if start is None else (start.parameter, start.known, start.share, start.warm_start)
         )
-        leans = geometry.coordinates_of(pose).leans
+        leaning = geometry.coordinates_of(pose).leans
         # A pin that is open in the middle may touch at its end: none is left out.
-        flank = geometry.flank(crank_angle, pose, places, moved[0], None if leans else known)
+        flank = geometry.flank(crank_angle, pose, places, moved[0], None if leaning else known)
         laws = self.laws(flank, warm)
-        if leans:
-            return self._respond_in_slices(crank_angle, pose, flank, laws, shifts, warm)
+        if leaning:
+            return self._respond_in_slices(crank_angle, pose, flank, laws, shifts, leans, warm, again)
         pin_load, pin_stiffness = laws.pins.load_and_stiffness(flank.approach, flank.effective_radius)
         holes = geometry.holes(crank_angle, pose, moved[1])
         hole_load, hole_stiffness = self.hole_law.load_and_stiffness(
@@ -146,7 +156,9 @@ class UncoupledContacts(ABC, Generic[Law]):
         flank: FlankMotion,
         laws: PairLaws[Any],
         shifts: ComplexArray | None,
+        leans: ComplexArray | None,
         warm: NDArray[np.object_] | None,
+        again: DiscResponse | None,
     ) -> DiscResponse:
         """The same of contacts in slices, which tilt."""
         near = None
@@ -156,32 +168,39 @@ class UncoupledContacts(ABC, Generic[Law]):
         coordinates = geometry.coordinates_of(pose)
         holes = geometry.holes(crank_angle, pose, split_shifts(shifts, geometry)[1])
         bores, rays = geometry.bores(crank_angle, pose), geometry.rollers(crank_angle)
-        pairs = []
-        for motion, tilt, law, radius in (
-            (flank, geometry.flank_tilt(crank_angle, pose, flank), laws.pins, flank.effective_radius),
-            (holes, geometry.hole_tilt(pose, holes), self.hole_law, place.hole_effective_radii),
+        pairs, leaning = [], split_shifts(leans, geometry)
+        for number, (motion, tilt, law, radius) in enumerate(
+            (
+                (flank, geometry.flank_tilt(crank_angle, pose, flank, leaning[0]), laws.pins, flank.effective_radius),
+                (holes, geometry.hole_tilt(pose, holes, leaning[1]), self.hole_law, place.hole_effective_radii),
+            )
         ):
-            begin = () if near is None or motion is holes else (near[0],)
-            contact = law.respond(motion.approach, tilt.tilt, radius, *begin)
+            begin = None if near is None else near[number]
+            if again is not None:
+                known = again.leaning_holes if number else again.leaning_pins
+                begin = None if known is None else known.contact.slice_load
+            contact = law.respond(motion.approach, tilt.tilt, radius, begin)
             pairs.append((motion, LeaningPairs(tilt=tilt, contact=contact)))
-        displacement = bores.each(bores.displacement, rays.direction.shape[1])
-        journals = bores.each(geometry.journal_leans(pose), rays.direction.shape[1])
-        along = [dot(rays.direction, lean) for lean in (journals, geometry.lean(pose))]
-        begin = None if near is None else RollerStart(inward=near[1], lean=near[2], inner=near[3], outer=near[4])
-        rollers = balance_leaning_rollers(rays, displacement, laws.rollers, *along, begin)
+        if again is None:
+            displacement = bores.each(bores.displacement, rays.direction.shape[1])
+            journals = bores.each(geometry.journal_leans(pose), rays.direction.shape[1])
+            along = [dot(rays.direction, lean) for lean in (journals, geometry.lean(pose))]
+            stood = None if near is None else RollerStart(inward=near[2], lean=near[3], inner=near[4], outer=near[5])
+            rollers = balance_leaning_rollers(rays, displacement, laws.rollers, *along, stood)
+        else:
+            rollers = again.rollers
         tangent = _leaning_roller_tangent(rollers, bores, coordinates)
         pins, of_holes = (pair.contact.load for _, pair in pairs)
         force = resultant(flank, pins, holes, of_holes, rollers, bores)
         tilting = bearing_moments(rollers, rays, bores.arm.shape[1])
         force -= np.einsum("bc,bcj->bj", tilting.conjugate(), _relative_leans(bores, coordinates)).real
         for motion, pair in pairs:
-            found, leaning = pair.contact, pair.tilt
-            force += np.einsum("bi,bij->bj", found.moment, leaning.gradient)
+            found, by_tilt = pair.contact, pair.tilt.gradient
+            force += np.einsum("bi,bij->bj", found.moment, by_tilt)
             tangent += _pair_tangent(motion, found.load, found.by_approach)
-            mixed = np.matmul(motion.gradient.swapaxes(1, 2), found.by_tilt[..., None] * leaning.gradient)
+            mixed = np.matmul(motion.gradient.swapaxes(1, 2), found.by_tilt[..., None] * by_tilt)
             tangent += mixed + mixed.swapaxes(1, 2)
-            turning = found.moment_by_tilt[..., None] * leaning.gradient
-            tangent += np.matmul(leaning.gradient.swapaxes(1, 2), turning)
+            tangent += np.matmul(by_tilt.swapaxes(1, 2), found.moment_by_tilt[..., None] * by_tilt)
             tangent += motion.bend_leans(found.moment, coordinates)
         return DiscResponse(
             force=force,
@@ -191,8 +210,10 @@ class UncoupledContacts(ABC, Generic[Law]):
             rollers=rollers,
             pin_load=pins,
             hole_load=of_holes,
-            warm_start=_rows_of(pairs[0][1].contact.slice_load, rollers),
+            warm_start=_rows_of([pair.contact.slice_load for _, pair in pairs], rollers),
             shifts=shifts,
+            leans=leans,
+            slopes=None if shifts is None else _leaning_slopes(pairs),
             leaning_pins=pairs[0][1],
             leaning_holes=pairs[1][1],
         )
@@ -217,6 +238,23 @@ def _slopes(flank: FlankMotion, pin: FloatArray, holes: PairMotion, hole: FloatA
     return PairSlopes(by_approach=by_approach, by_pose=by_approach[..., None] * gradient)
 
 
+def _leaning_slopes(pairs: list[tuple[PairMotion, LeaningPairs]]) -> PairSlopes:
+    """The same of contacts in slices."""
+    k, mixed, turning = (
+        np.concatenate([getattr(pair.contact, name) for _, pair in pairs], axis=1)
+        for name in ("by_approach", "by_tilt", "moment_by_tilt")
+    )
+    gradient = np.concatenate([motion.gradient for motion, _ in pairs], axis=1)
+    by_tilt = np.concatenate([pair.tilt.gradient for _, pair in pairs], axis=1)
+    return PairSlopes(
+        by_approach=k,
+        by_pose=k[..., None] * gradient + mixed[..., None] * by_tilt,
+        by_tilt=mixed,
+        moment_by_tilt=turning,
+        moment_by_pose=mixed[..., None] * gradient + turning[..., None] * by_tilt,
+    )
+
+
 def _roller_tangent(rollers: RollerState, bores: BoreMotion) -> FloatArray:
     positions, cranks = bores.arm.shape
     stiffness = np.einsum("bcri->bci", rollers.tangent.reshape(positions, cranks, -1, 4)).reshape(-1, cranks, 2, 2)
@@ -226,10 +264,10 @@ def _roller_tangent(rollers: RollerState, bores: BoreMotion) -> FloatArray:
     return np.asarray(tangent)
 
 
-def _rows_of(pins: FloatArray, rollers: RollerState) -> NDArray[np.object_]:
+def _rows_of(pairs: list[FloatArray], rollers: RollerState) -> NDArray[np.object_]:
     """What contacts in slices want to find again, row by row."""
-    found = np.empty(pins.shape[0], dtype=object)
-    each = (pins, rollers.share, rollers.lean, rollers.inner_slices, rollers.outer_slices)
+    found = np.empty(pairs[0].shape[0], dtype=object)
+    each = (*pairs, rollers.share, rollers.lean, rollers.inner_slices, rollers.outer_slices)
     found[:] = list(zip(*(values for values in each if values is not None), strict=True))
     return found
 

@@ -186,31 +186,38 @@ class Reducer:
         places = [coordinates.columns(number) for number in range(count)]
         starts = [None] * count if start is None else _split_start(start, count)
 
+        latest: list[DiscResponse] = []
+
         def respond(moved: ComplexArray | None) -> tuple[DiscResponse, ...]:
             if moved is None and self.friction is not None:
                 moved = self._unmoved(crank_angle.size)  # friction needs the slopes that come with displacements
             parts = []
             for number, (own, disc) in enumerate(zip(places, self.discs, strict=True)):
                 shift = None if moved is None else moved[:, number]
-                part = disc.respond(crank_angle, pose[:, own], starts[number], shift)
+                if moved is not None and self.pins is not None and self.pins.leans:
+                    lean, again = self.pins.lean(moved, number), latest[number] if latest else None
+                    part = disc.respond(crank_angle, pose[:, own], starts[number], shift, lean, again)
+                else:
+                    part = disc.respond(crank_angle, pose[:, own], starts[number], shift)
                 if self.friction is not None:
                     rubbing = self.friction.of_disc(disc.geometry, crank_angle, pose[:, own], part, number)
                     force, tangent = part.force + rubbing.force, part.tangent + rubbing.tangent
                     part = replace(part, force=force, tangent=tangent, friction=rubbing.tangential)
                 parts.append(part)
+            latest[:] = parts
             return tuple(parts)
 
         shifts, settled, size = None, None, coordinates.size
         if self.pins is None:
             parts = respond(None)
         else:
-            begin = self._unmoved(crank_angle.size)
+            begin = self.pins.unmoved(crank_angle.size)
             if start is not None and start.follow is not None:
                 begin = start.follow.at(pose)
             placement = self.discs[0].geometry.placement
             turned = unit(placement.wheel_rotation(crank_angle) + pose[:, WHEEL_ANGLE])
             system = self.pins.settle(respond, coordinates, turned, begin, roughly=roughly)
-            parts, shifts, settled = system.parts, system.shifts, system.settled()
+            parts, shifts, settled = system.parts, system.shifts[:, : len(self.discs)], system.settled()
             if self.pins.ring is not None:
                 ring = -self.pins.of_ring(system.force)
                 parts = tuple(replace(part, ring=ring) for part in parts)

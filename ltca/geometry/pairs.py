@@ -84,8 +84,12 @@ class ContactGeometry:
         Axial place of the middle of the disc, mm: a wheel that leans displaces its pins there.
     half_width : float or array, shape (positions, 1)
         Half the thickness of the disc, mm: what leans are measured by.
+    end_metal : float or array, shape (positions, 1)
+        Metal that the lead of the flank leaves at an end beyond that in the middle, mm.
     tip_share : float or array, shape (positions, 1)
         Displacement of a shaft pin at the disc per displacement of its tip, where a ring ties the tips.
+    tip_slope : float or array, shape (positions, 1)
+        Lean of a shaft pin at the disc per displacement of its tip, 1/mm, where contacts have slices.
     seat_share : float or array, shape (positions, 1)
         Displacement of a crank's axis at the disc per displacement of its bearing in the far flange of the carrier, as long as
         the crank stays straight; 0 where no flange moves.
@@ -101,7 +105,9 @@ class ContactGeometry:
     coordinates: Coordinates
     plane: float | FloatArray = by_drive(0, default=0.0)
     half_width: float | FloatArray = by_drive(0, default=1.0)
+    end_metal: float | FloatArray = by_drive(0, default=0.0)
     tip_share: float | FloatArray = by_drive(0, default=0.0)
+    tip_slope: float | FloatArray = by_drive(0, default=0.0)
     seat_share: float | FloatArray = by_drive(0, default=0.0)
     wheel_gap: float | FloatArray = by_drive(0, default=0.0)
     crank_gaps: FloatArray = by_drive(1, default_factory=lambda: np.zeros(2))
@@ -126,6 +132,7 @@ class ContactGeometry:
             coordinates=Coordinates.of_drive(drive),
             plane=drive.disc.disc_planes[0],
             half_width=0.5 * drive.disc.thickness,
+            end_metal=0.5 * drive.disc.thickness * abs(drive.disc.lead_slope),
             seat_share=seat_share,
             wheel_gap=0.0 if bearing is None else 0.5 * max(bearing.clearance or 0.0, 0.0),
             crank_gaps=gaps,
@@ -182,6 +189,7 @@ class ContactGeometry:
         start: FloatArray | None = None,
         shifts: ComplexArray | None = None,
         known: KnownPins | None = None,
+        leans: ComplexArray | None = None,
     ) -> FlankMotion:
         """Return the pairs of wheel pin and flank (Eq. 60–64).
 
@@ -197,13 +205,24 @@ class ContactGeometry:
             Displacements of the pins in the turning wheel, mm.
         known : KnownPins, optional
             Of the same drives: pins that cannot touch the flank are left out, see `complete_flank`.
+        leans : array of complex, shape (positions, z_P), optional
+            Leans of the pins at the disc in the turning wheel, rad, by which their ends may touch.
         """
         pins = self._pins(crank_angle, pose, shifts)
         if start is None:
             start = self.nominal_parameter(crank_angle) + pose[:, WHEEL_ANGLE, None] - pose[:, DISC_ROTATION, None]
         if known is None:
             return self._touching(self.profile, pins, start, self.coordinates_of(pose))
-        return self._touching_some(pins, start, known.may_touch(pins.point), known, self.coordinates_of(pose))
+        near = known.may_touch(pins.point, self._closer_at_ends(pose, leans))
+        return self._touching_some(pins, start, near, known, self.coordinates_of(pose))
+
+    def _closer_at_ends(self, pose: FloatArray, leans: ComplexArray | None) -> FloatArray | float:
+        """Bound of how much closer pins and flank may be at their ends than in the middle, mm; nothing in the plane."""
+        if not self.coordinates_of(pose).leans:
+            return 0.0
+        place = self.placement
+        own = np.abs(place.wheel_pin_leans if leans is None else place.wheel_pin_leans + leans)
+        return np.asarray(self.half_width * (np.abs(self.lean(pose) - place.wheel_lean) + own) + self.end_metal)
 
     def complete_flank(
         self, crank_angle: FloatArray, pose: FloatArray, motion: FlankMotion, shifts: ComplexArray | None = None
@@ -389,20 +408,33 @@ class ContactGeometry:
             found[:, crank] += pose[:, first] + 1j * pose[:, first + 1]
         return found
 
-    def flank_tilt(self, crank_angle: FloatArray, pose: FloatArray, flank: FlankMotion) -> PairTilt:
-        """Return the tilt of wheel pins and flank; arguments as for `flank`."""
+    def flank_tilt(
+        self, crank_angle: FloatArray, pose: FloatArray, flank: FlankMotion, leans: ComplexArray | None = None
+    ) -> PairTilt:
+        """Return the tilt of wheel pins and flank; arguments as for `flank`.
+
+        `leans` are those of the bent pins at the disc in the turning wheel, rad, shape (positions, z_P).
+        """
         place, coordinates = self.placement, self.coordinates_of(pose)
         turned = unit(place.wheel_rotation(crank_angle)[:, None] + pose[:, WHEEL_ANGLE, None])
-        own = place.wheel_pin_leans * turned
+        own = (place.wheel_pin_leans if leans is None else place.wheel_pin_leans + leans) * turned
         lean = self.lean(pose) - place.wheel_lean - self.wheel_lean(pose) - own
         return flank.leaning(lean, coordinates, {WHEEL_ANGLE: -1j * own})
 
-    def hole_tilt(self, pose: FloatArray, holes: PairMotion) -> PairTilt:
-        """Return the tilt of shaft pins and holes; arguments as for `holes`."""
-        place = self.placement
+    def hole_tilt(self, pose: FloatArray, holes: PairMotion, leans: ComplexArray | None = None) -> PairTilt:
+        """Return the tilt of shaft pins and holes; arguments as for `holes`, leans of the bent pins in the fixed frame."""
+        place, coordinates = self.placement, self.coordinates_of(pose)
         own = place.hole_leans * unit(pose[:, DISC_ROTATION, None])
         lean = self.lean(pose) + own - place.shaft_pin_leans
-        return holes.leaning(lean, self.coordinates_of(pose), {DISC_ROTATION: 1j * own})
+        turns = {DISC_ROTATION: 1j * own}
+        if leans is not None:
+            lean = lean - leans
+        if coordinates.ring and np.any(self.tip_slope):
+            by_ring = np.asarray(self.tip_slope)[..., None] * self.tips_by_ring
+            ring = coordinates.ring_place
+            lean = lean - _moved(pose[:, ring], by_ring)
+            turns |= {ring.start + number: -by_ring[..., number] for number in range(3)}
+        return holes.leaning(lean, coordinates, turns)
 
     def bores(self, crank_angle: FloatArray, pose: FloatArray) -> BoreMotion:
         """Return the displacements of the bores; arguments as for `flank`."""
