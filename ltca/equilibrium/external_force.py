@@ -62,7 +62,6 @@ class ExternalForce:
         """Return the force at crank angles, in the frame of the pin shaft, N, shape (positions,)."""
         return np.asarray(self.still[..., 0] + self.turning[..., 0] * unit(crank_angle / self.reduction_ratio))
 
-
     def tilting(self, crank_angle: FloatArray) -> ComplexArray:
         """Return what presses the lean of the wheel at crank angles, N·mm, shape (positions,)."""
         turned = unit(crank_angle / self.reduction_ratio)

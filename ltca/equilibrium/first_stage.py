@@ -134,7 +134,9 @@ class StageMesh:
             )  # fmt: skip
             at_planet = [discs, count + 1]
             held = np.setdiff1d(np.arange(count + 2), at_planet)
-            bending = np.asarray(np.linalg.solve(whole[np.ix_(held, held)], whole[np.ix_(held, at_planet)]), dtype=float)
+            bending = np.asarray(
+                np.linalg.solve(whole[np.ix_(held, held)], whole[np.ix_(held, at_planet)]), dtype=float
+            )
             own = whole[np.ix_(at_planet, at_planet)] - whole[np.ix_(at_planet, held)] @ bending
         if bearings is not None:
             on_supports = support_parts([place], bearings, [place])

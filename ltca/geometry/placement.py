@@ -176,7 +176,8 @@ class Placement:
         (plane,) = drive.disc.disc_planes
         pin_leans = _leans(wheel.pin_errors, wheel.number_of_pins)
         return cls(
-            wheel_pin_centres=_circle(wheel.pin_circle_radius, wheel.number_of_pins, wheel.pin_errors) + plane * pin_leans,
+            wheel_pin_centres=_circle(wheel.pin_circle_radius, wheel.number_of_pins, wheel.pin_errors)
+            + plane * pin_leans,
             wheel_pin_radii=wheel.pin_radius + 0.5 * _filled(wheel.pin_errors.diameter, wheel.number_of_pins),
             wheel_pin_plays=_wheel_pin_plays(drive),
             **_of_shaft(drive),
