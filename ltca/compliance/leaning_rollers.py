@@ -19,7 +19,7 @@ from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.rollers import RollerLaws, RollerState
 from ltca.errors import ConvergenceError
 from ltca.geometry.pair_motion import RollerRays, dot
-from ltca.laws.sliced_line import SlicedContact, SlicedLine
+from ltca.laws.sliced_line import SlicedContact, SlicedLine, slice_heights
 
 MAX_ITERATIONS = 80
 SETTLED = 1e-10
@@ -69,7 +69,8 @@ def balance_leaning_rollers(
     shape = rays.direction.shape
     half = 0.5 * laws.outer.length
     total = rays.outermost - rays.touching_distance(displacement)
-    pressed = total + half * np.abs(race_lean - bore_lean) > 0.0
+    highest = slice_heights(laws.outer.length, laws.outer.slices).max()
+    pressed = total + highest * np.abs(race_lean - bore_lean) > 0.0
     rows, numbers = np.nonzero(pressed)
 
     def each(values: FloatArray | ComplexArray) -> FloatArray | ComplexArray:
@@ -98,12 +99,13 @@ def balance_leaning_rollers(
         lean = np.where(known, start.lean[rows, numbers], lean)
         near = start.inner[rows, numbers], start.outer[rows, numbers]
     inner, outer, outward, length = contacts(_ALL, inward, lean, near)
+    # What round-off of places makes of a load.
+    lightest = np.spacing(outermost) * laws.outer.contact_modulus * laws.outer.length / SETTLED
     history: list[float] = []
-    going = np.arange(rows.size)
     before = np.full(rows.size, np.inf)
     for _ in range(MAX_ITERATIONS):
         force, moment = _imbalance(inner, outer, outward, ray)
-        size = np.maximum(np.maximum(inner.load, outer.load), np.finfo(float).tiny)
+        size = np.maximum(np.maximum(inner.load, outer.load), lightest)
         left = np.maximum(np.abs(force), np.abs(moment) / half) / size
         history.append(float(np.max(left, initial=0.0)))
         # Nothing but what the slices leave over is left where steps no longer help.

@@ -16,7 +16,7 @@ from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.compliance.rollers import RollerState
 from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION, X, Y
-from ltca.geometry.pair_motion import BoreMotion, FlankMotion, KnownPins, PairMotion, PairTilt
+from ltca.geometry.pair_motion import BoreMotion, FlankMotion, KnownPins, PairMotion, PairTilt, RollerRays
 from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.sliced_line import SlicedContact
 
@@ -356,6 +356,16 @@ def resultant(
 def bearing_pushes(rollers: RollerState, cranks: int) -> ComplexArray:
     """Return the force of every crank bearing on the disc in the fixed frame, shape (positions, cranks), N."""
     each = rollers.outer_load * rollers.outer_direction
+    return np.asarray(each.reshape(each.shape[0], cranks, -1).sum(axis=2))
+
+
+def bearing_moments(rollers: RollerState, rays: RollerRays, cranks: int) -> ComplexArray:
+    """Return what every crank bearing presses the lean of the disc with, x + iy, shape (positions, cranks), N·mm; zero where
+    rollers do not lean.
+    """
+    if rollers.outer_moment is None:
+        return np.zeros((rays.direction.shape[0], cranks), dtype=complex)
+    each = rollers.outer_moment * rays.direction
     return np.asarray(each.reshape(each.shape[0], cranks, -1).sum(axis=2))
 
 

@@ -24,6 +24,7 @@ from ltca.compliance.response import (
     PairSlopes,
     Start,
     add_bearing_bend,
+    bearing_moments,
     resultant,
     split_shifts,
 )
@@ -119,9 +120,11 @@ class UncoupledContacts(ABC, Generic[Law]):
         places, known, share, warm = (
             (None, None, None, None) if start is None else (start.parameter, start.known, start.share, start.warm_start)
         )
-        flank = geometry.flank(crank_angle, pose, places, moved[0], known, split_shifts(leans, geometry)[0])
+        leaning = geometry.coordinates_of(pose).leans
+        # A pin that is open in the middle may touch at its end: none is left out.
+        flank = geometry.flank(crank_angle, pose, places, moved[0], None if leaning else known)
         laws = self.laws(flank, warm)
-        if geometry.coordinates_of(pose).leans:
+        if leaning:
             return self._respond_in_slices(crank_angle, pose, flank, laws, shifts, leans, warm, again)
         pin_load, pin_stiffness = laws.pins.load_and_stiffness(flank.approach, flank.effective_radius)
         holes = geometry.holes(crank_angle, pose, moved[1])
@@ -180,7 +183,8 @@ class UncoupledContacts(ABC, Generic[Law]):
             pairs.append((motion, LeaningPairs(tilt=tilt, contact=contact)))
         if again is None:
             displacement = bores.each(bores.displacement, rays.direction.shape[1])
-            along = [dot(rays.direction, lean) for lean in (np.asarray(place.crank_lean), geometry.lean(pose))]
+            journals = bores.each(geometry.journal_leans(pose), rays.direction.shape[1])
+            along = [dot(rays.direction, lean) for lean in (journals, geometry.lean(pose))]
             stood = None if near is None else RollerStart(inward=near[2], lean=near[3], inner=near[4], outer=near[5])
             rollers = balance_leaning_rollers(rays, displacement, laws.rollers, *along, stood)
         else:
@@ -188,9 +192,8 @@ class UncoupledContacts(ABC, Generic[Law]):
         tangent = _leaning_roller_tangent(rollers, bores, coordinates)
         pins, of_holes = (pair.contact.load for _, pair in pairs)
         force = resultant(flank, pins, holes, of_holes, rollers, bores)
-        if rollers.outer_moment is not None:
-            pressed = (rollers.outer_moment * rays.direction).sum(axis=1)
-            force[:, coordinates.lean_place] -= np.stack((pressed.real, pressed.imag), axis=-1)
+        tilting = bearing_moments(rollers, rays, bores.arm.shape[1])
+        force -= np.einsum("bc,bcj->bj", tilting.conjugate(), _relative_leans(bores, coordinates)).real
         for motion, pair in pairs:
             found, by_tilt = pair.contact, pair.tilt.gradient
             force += np.einsum("bi,bij->bj", found.moment, by_tilt)
@@ -269,12 +272,23 @@ def _rows_of(pairs: list[FloatArray], rollers: RollerState) -> NDArray[np.object
     return found
 
 
+def _relative_leans(bores: BoreMotion, coordinates: Coordinates) -> ComplexArray:
+    """Lean of the disc less that of each crank by the pose, shape (positions, cranks, coordinates)."""
+    found = np.zeros(bores.gradient.shape, dtype=complex)
+    found[..., coordinates.lean_place] = (1.0, 1j)
+    for crank in range(coordinates.cranks):
+        place = coordinates.crank_lean(crank)
+        found[:, crank, place : place + 2] = (-1.0, -1j)
+    return found
+
+
 def _leaning_roller_tangent(rollers: RollerState, bores: BoreMotion, coordinates: Coordinates) -> FloatArray:
     positions, cranks = bores.arm.shape
     stiffness = rollers.tangent.reshape(positions, cranks, -1, 4, 4).sum(axis=2)
     moved = np.zeros((positions, cranks, 4, coordinates.size))
     moved[:, :, 0], moved[:, :, 1] = bores.gradient.real, bores.gradient.imag
-    moved[:, :, 2:, coordinates.lean_place] = np.eye(2)
+    leans = _relative_leans(bores, coordinates)
+    moved[:, :, 2], moved[:, :, 3] = leans.real, leans.imag
     tangent = np.matmul(moved.swapaxes(2, 3), np.matmul(stiffness, moved)).sum(axis=1)
     add_bearing_bend(tangent, rollers, bores)
     return np.asarray(tangent)

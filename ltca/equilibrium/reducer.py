@@ -24,6 +24,7 @@ from ltca.compliance.response import (
     KindPressures,
     Response,
     Start,
+    bearing_moments,
     bearing_pushes,
     split_shifts,
 )
@@ -238,6 +239,9 @@ class Reducer:
         if self.external is not None and coordinates.wheel:
             pressed = self.external.on_wheel(crank_angle)
             force[:, coordinates.wheel_place] -= np.stack((pressed.real, pressed.imag), axis=-1)
+            if coordinates.wheel_leans:
+                tilting = self.external.tilting(crank_angle)
+                force[:, coordinates.wheel_lean_place] -= np.stack((tilting.real, tilting.imag), axis=-1)
         if self.friction is not None:
             ratio = self.discs[0].geometry.placement.reduction_ratio
             beside = self.force_beside_pins(crank_angle, pose, parts)
@@ -281,13 +285,18 @@ class Reducer:
         """Return the external moment that holds the cages of each crank at their angle, ccw positive, N·mm, (positions, cranks).
 
         Cage and inner race are concentric and the race pushes its rollers along its radii, the bore along its own: what holds
-        the cage is the moment of the bearing's force at the displaced centre of the bore, the sum over all discs.
+        the cage is the moment of the bearing's force at the displaced centre of the bore, and of its couple at the bore's lean in
+        the race, the sum over all discs.
         """
         cranks = self.discs[0].geometry.placement.cranks
         total = np.zeros((crank_angle.size, cranks))
         for number, (disc, part) in enumerate(zip(self.discs, parts, strict=True)):
-            bores = disc.geometry.bores(crank_angle, pose[:, self.coordinates.columns(number)])
+            geometry, own = disc.geometry, pose[:, self.coordinates.columns(number)]
+            bores = geometry.bores(crank_angle, own)
             total += (bores.displacement.conjugate() * bearing_pushes(part.rollers, cranks)).imag
+            if self.coordinates.leans:
+                tilting = bearing_moments(part.rollers, geometry.rollers(crank_angle), cranks)
+                total += ((geometry.lean(own) - geometry.journal_leans(own)).conjugate() * tilting).imag
         return total
 
     def force_beside_pins(
@@ -301,6 +310,17 @@ class Reducer:
             total = total + self.external.on_wheel(crank_angle)
         if self.stage is not None and self.stage.carried:
             total = total + self.stage.on_wheel(self.crank_moments(crank_angle, pose, parts))[0]
+        return total
+
+    def tilting_beside_pins(
+        self, crank_angle: FloatArray, pose: FloatArray, parts: Sequence[DiscResponse]
+    ) -> ComplexArray:
+        """Return what presses the lean of the wheel from outside and by the teeth of a first stage, N·mm, shape (positions,)."""
+        total = np.zeros(crank_angle.shape, dtype=complex)
+        if self.external is not None:
+            total = total + self.external.tilting(crank_angle)
+        if self.stage is not None and self.stage.carried:
+            total = total + self.stage.tilting_on_wheel(self.crank_moments(crank_angle, pose, parts))
         return total
 
     def carried_beside_discs(
@@ -335,6 +355,9 @@ class Reducer:
             force[:, coordinates.wheel_place] -= np.stack((on_wheel.real, on_wheel.imag), axis=-1)
             moved = np.einsum("pc,pcj->pj", by_moments, slopes)
             tangent[:, coordinates.wheel_place] -= np.stack((moved.real, moved.imag), axis=1)
+        if coordinates.wheel_leans:
+            tilting = stage.tilting_on_wheel(moments)
+            force[:, coordinates.wheel_lean_place] -= np.stack((tilting.real, tilting.imag), axis=-1)
         if not stage.yields:
             return ()
         pressed, by_moment = stage.on_planets(moments)

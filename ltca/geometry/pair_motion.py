@@ -86,7 +86,8 @@ class PairMotion:
         normal = self.gradient[..., 0] + 1j * self.gradient[..., 1]
         across = dot(self.along[..., 0] + 1j * self.along[..., 1], lean)
         gradient = self._bent_by(across)
-        gradient[..., coordinates.lean_place] = self.gradient[..., DISC_PLACE]
+        for place, sign in self._leans(coordinates):
+            gradient[..., place] += sign * self.gradient[..., DISC_PLACE]
         for place, turn in turns.items():
             gradient[..., place] += dot(normal, turn)
         return PairTilt(tilt=dot(normal, lean), gradient=gradient)
@@ -101,12 +102,17 @@ class PairMotion:
         Moments M are in N·mm, shape (positions, pairs); the answer has the shape (positions, coordinates, coordinates).
         """
         total = np.zeros((moment.shape[0], coordinates.size, coordinates.size))
-        first = coordinates.lean_place.start
-        for lean, place in ((first, 0), (first + 1, 1)):
+        for place in (0, 1):
             row = (moment[..., None] * self._bent_by(self.along[..., place])).sum(axis=1)
-            total[:, lean] += row
-            total[:, :, lean] += row
+            for leans, sign in self._leans(coordinates):
+                total[:, leans.start + place] += sign * row
+                total[:, :, leans.start + place] += sign * row
         return total
+
+    @staticmethod
+    def _leans(coordinates: Coordinates) -> tuple[tuple[slice, float], ...]:
+        """Places of the leans among the coordinates that pairs tilt by, and their signs."""
+        return ((coordinates.lean_place, 1.0),)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -155,6 +161,12 @@ class FlankMotion(PairMotion):
         found = -(across * self.bending)[..., None] * self.along
         found[..., DISC_ROTATION] -= across
         return found
+
+    @staticmethod
+    def _leans(coordinates: Coordinates) -> tuple[tuple[slice, float], ...]:
+        """As for holes; pins on the flank lean with the wheel."""
+        of_disc = (coordinates.lean_place, 1.0)
+        return (of_disc, (coordinates.wheel_lean_place, -1.0)) if coordinates.wheel_leans else (of_disc,)
 
     @staticmethod
     def _sum(load: FloatArray, bending: FloatArray, along: FloatArray) -> FloatArray:

@@ -80,6 +80,8 @@ class ContactGeometry:
         Places of the parts, and the flank.
     coordinates : Coordinates
         Of a pose in which every member moves that can.
+    plane : float or array, shape (positions, 1)
+        Axial place of the middle of the disc, mm: a wheel that leans displaces its pins there.
     half_width : float or array, shape (positions, 1)
         Half the thickness of the disc, mm: what leans are measured by.
     end_metal : float or array, shape (positions, 1)
@@ -101,6 +103,7 @@ class ContactGeometry:
     placement: Placement
     profile: FlankProfile
     coordinates: Coordinates
+    plane: float | FloatArray = by_drive(0, default=0.0)
     half_width: float | FloatArray = by_drive(0, default=1.0)
     end_metal: float | FloatArray = by_drive(0, default=0.0)
     tip_share: float | FloatArray = by_drive(0, default=0.0)
@@ -127,6 +130,7 @@ class ContactGeometry:
             placement=place,
             profile=profile,
             coordinates=Coordinates.of_drive(drive),
+            plane=drive.disc.disc_planes[0],
             half_width=0.5 * drive.disc.thickness,
             end_metal=0.5 * drive.disc.thickness * abs(drive.disc.lead_slope),
             seat_share=seat_share,
@@ -218,7 +222,10 @@ class ContactGeometry:
             return 0.0
         place = self.placement
         own = np.abs(place.wheel_pin_leans if leans is None else place.wheel_pin_leans + leans)
-        return np.asarray(self.half_width * (np.abs(self.lean(pose) - place.wheel_lean) + own) + self.end_metal)
+        return np.asarray(
+            self.half_width * (np.abs(self.lean(pose) - place.wheel_lean - self.wheel_lean(pose)) + own)
+            + self.end_metal
+        )
 
     def complete_flank(
         self, crank_angle: FloatArray, pose: FloatArray, motion: FlankMotion, shifts: ComplexArray | None = None
@@ -265,6 +272,8 @@ class ContactGeometry:
         if coordinates.wheel:  # a displacement of the wheel is one of the disc in the opposite direction
             wheel = coordinates.wheel_place
             disc_centre = disc_centre - (pose[:, wheel.start] + 1j * pose[:, wheel.start + 1])[:, None]
+        if coordinates.wheel_leans:
+            disc_centre = disc_centre - self.plane * self.wheel_lean(pose)
         turned = place.wheel_rotation(crank_angle)[:, None] + pose[:, WHEEL_ANGLE, None]
         centres = place.wheel_pin_centres if shifts is None else place.wheel_pin_centres + shifts
         pin = centres * unit(turned)
@@ -340,6 +349,10 @@ class ContactGeometry:
         if coordinates.wheel:
             wheel = coordinates.wheel_place
             gradient[..., wheel], along[..., wheel] = -gradient[..., DISC_PLACE], -along[..., DISC_PLACE]
+        if coordinates.wheel_leans:
+            lean, plane = coordinates.wheel_lean_place, np.asarray(self.plane)[..., None]
+            gradient[..., lean] = -plane * gradient[..., DISC_PLACE]
+            along[..., lean] = -plane * along[..., DISC_PLACE]
         return FlankMotion(
             approach=pins.reach - offset - distance,
             gradient=gradient,
@@ -382,6 +395,22 @@ class ContactGeometry:
         place = self.coordinates_of(pose).lean_place
         return np.asarray(pose[:, place.start : place.start + 1] + 1j * pose[:, place.start + 1 : place.stop])
 
+    def wheel_lean(self, pose: FloatArray) -> ComplexArray:
+        """Return what the wheel leans by in its bearing, rad, shape (positions, 1); zero where it does not."""
+        place = self.coordinates_of(pose).wheel_lean_place
+        if place.start == place.stop:
+            return np.zeros((pose.shape[0], 1), dtype=complex)
+        return np.asarray(pose[:, place.start : place.start + 1] + 1j * pose[:, place.start + 1 : place.stop])
+
+    def journal_leans(self, pose: FloatArray) -> ComplexArray:
+        """Return the lean of every crank in the plane of the disc, rad, shape (positions, cranks)."""
+        coordinates, place = self.coordinates_of(pose), self.placement
+        found = np.zeros((pose.shape[0], place.cranks), dtype=complex) + np.asarray(place.crank_lean)[..., None]
+        for crank in range(coordinates.cranks):
+            first = coordinates.crank_lean(crank)
+            found[:, crank] += pose[:, first] + 1j * pose[:, first + 1]
+        return found
+
     def flank_tilt(
         self, crank_angle: FloatArray, pose: FloatArray, flank: FlankMotion, leans: ComplexArray | None = None
     ) -> PairTilt:
@@ -392,7 +421,7 @@ class ContactGeometry:
         place, coordinates = self.placement, self.coordinates_of(pose)
         turned = unit(place.wheel_rotation(crank_angle)[:, None] + pose[:, WHEEL_ANGLE, None])
         own = (place.wheel_pin_leans if leans is None else place.wheel_pin_leans + leans) * turned
-        lean = self.lean(pose) - place.wheel_lean - own
+        lean = self.lean(pose) - place.wheel_lean - self.wheel_lean(pose) - own
         return flank.leaning(lean, coordinates, {WHEEL_ANGLE: -1j * own})
 
     def hole_tilt(self, pose: FloatArray, holes: PairMotion, leans: ComplexArray | None = None) -> PairTilt:
