@@ -175,8 +175,8 @@ class CoupledCompliance:
         leans: ComplexArray | None = None,
         again: DiscResponse | None = None,
     ) -> DiscResponse:
-        """Return the contact forces at the poses of a batch of positions; see `ltca.compliance.uncoupled`. Where contacts feel each
-        other nothing of `again` stands where it stood.
+        """Return the contact forces at the poses of a batch of positions; see `ltca.compliance.uncoupled`. Contacts that feel each other all
+        move with displaced pins: `again` is of no use.
 
         Raises
         ------
@@ -187,7 +187,9 @@ class CoupledCompliance:
         if self.geometry.coordinates_of(pose).leans:
             parts = [
                 respond_in_slices(self, *take_positions((crank_angle, pose, start, shifts, leans, moved[0]), rows))
-                for rows in np.array_split(np.arange(crank_angle.size), max(1, -(-crank_angle.size // POSITIONS_PER_CHUNK)))
+                for rows in np.array_split(
+                    np.arange(crank_angle.size), max(1, -(-crank_angle.size // POSITIONS_PER_CHUNK))
+                )
             ]
             in_slices: DiscResponse = join_positions(parts)
             return in_slices
