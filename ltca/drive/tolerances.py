@@ -26,6 +26,7 @@ from ltca.drive.fields import (
     own_paths,
     read_field,
 )
+from ltca.drive.members.width import FEWEST_SLICES, needs_slices
 from ltca.drive.mistakes import describe_mistakes
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import quantity
@@ -148,6 +149,8 @@ def nothing_scatters(drive: Drive, path: str) -> str | None:
     """Return why a field cannot scatter in a drive that is without it; None where it can."""
     if (problem := absence(drive, path)) is not None:
         return problem
+    if drive.contact.slices < FEWEST_SLICES and needs_slices(path):
+        return f"needs slices along the width, contact.slices = {FEWEST_SLICES} or more (it is {drive.contact.slices})"
     try:
         if may_be_left_out(path):
             read_field(drive, path)

@@ -15,6 +15,7 @@ from ltca.drive.mistakes import entry_words
 from ltca.drive.parts import BearingRow, CrankSupport, Drive, MainBearing, Material, Preload
 from ltca.drive.ring_shape import ring_mesh_problems, seat_radius
 from ltca.reading.disc_checks import deviation_bound, part_errors
+from ltca.reading.width_checks import find_width_problems
 
 SHARE_ROUNDING = 1e-9
 """Round-off accepted in the sum of the shares of a duty."""
@@ -34,6 +35,7 @@ LARGEST_BOLT_CIRCLE = 1.5
 
 def find_member_problems(drive: Drive) -> Iterator[str]:
     """Yield the problems of cranks, supports, pins, duty and values per disc, one sentence each."""
+    yield from find_width_problems(drive)
     yield from _installation(drive)
     yield from _per_disc(drive)
 
@@ -367,11 +369,6 @@ def _main_bearing(drive: Drive) -> Iterator[str]:
         yield (
             f"{path}.radial_stiffness = {radial:g} N/mm and pin_wheel.support_stiffness = {alias:g} N/mm: are two names of one "
             "stiffness; give one of them"
-        )
-    if bearing.tilt_stiffness is not None:
-        yield (
-            f"{path}.tilt_stiffness = {bearing.tilt_stiffness:g} N·mm/rad: must be left out: the wheel does not tilt in "
-            "the model yet"
         )
     yield from _loose_or_tight(path, bearing.clearance, bearing.preload, drive.crank.eccentricity)
     if not bearing.bearings:

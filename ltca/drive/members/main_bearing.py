@@ -63,7 +63,7 @@ class MainBearing:
         Radial stiffness, N/mm; ``pin_wheel.support_stiffness`` is another name of it. With ``preload`` that of the bearing
         while both sides carry, otherwise that of the side that carries.
     tilt_stiffness : float or None
-        Stiffness against tilt, N·mm/rad; refused, the wheel does not tilt in the model yet.
+        Stiffness against tilt, N·mm/rad; needs slices along the width (``contact.slices``).
     axial_stiffness : float or None
         Axial stiffness, N/mm; it tells how far forces along the axis displace the output, which moves no contact.
     clearance : float or None
