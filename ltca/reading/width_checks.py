@@ -12,6 +12,9 @@ from ltca.drive.engine_support import given, shown, unit_of
 from ltca.drive.members.width import FEWEST_SLICES, LARGEST_SLOPE, MOST_SLICES, needs_slices
 from ltca.drive.parts import Disc, Drive
 
+PLAY = "disc.axial_play"
+"""The one field of the width that says something where it is zero."""
+
 
 def find_width_problems(drive: Drive) -> Iterator[str]:
     """Yield the problems of slices along the width, of what needs them, and of inclined axes, one sentence each."""
@@ -31,7 +34,7 @@ def find_width_problems(drive: Drive) -> Iterator[str]:
                 yield f"{path}.inclination.{name} = {angle:g} rad: {slope_bound()}"
     play, most = drive.disc.axial_play, drive.disc.thickness
     if play is not None and play > most:
-        yield f"disc.axial_play = {play:g} mm: must be at most {most:g} mm, the thickness of the disc"
+        yield f"{PLAY} = {play:g} mm: must be at most {most:g} mm, the thickness of the disc"
 
 
 def _without_slices(drive: Drive) -> Iterator[str]:
@@ -40,7 +43,7 @@ def _without_slices(drive: Drive) -> Iterator[str]:
         f"{path} = {shown(value)}{unit_of(declared)}"
         for declared in _needing()
         for path, value, default in given(drive, declared.split("."))
-        if value != default and not (isinstance(value, tuple) and not any(value))
+        if value != default and (path == PLAY or any(value if isinstance(value, tuple) else (value,)))
     ]
     if found:
         yield (
@@ -58,7 +61,11 @@ def _needing() -> tuple[str, ...]:
 def _may_need_slices(drive: Drive) -> bool:
     """Whether to look closer: studies check millions of drives without anything along the width."""
     parts = ((getattr(drive, name), read) for name, read in _readers())
-    return bool(drive.disc.of) or any(part is not None and any(read(part)) for part, read in parts)
+    return (
+        bool(drive.disc.of)
+        or drive.disc.axial_play is not None
+        or any(part is not None and any(read(part)) for part, read in parts)
+    )
 
 
 @cache
