@@ -188,7 +188,10 @@ class SlicedLine:
         given = (np.asarray(each, dtype=float) for each in (approach, tilt, effective_radius))
         delta, theta, radius = np.broadcast_arrays(*given)
         shape, z = delta.shape, slice_heights(self.length, self.slices)
-        free = (delta[..., None, None] + theta[..., None, None] * z - self.relief).reshape(-1, *z.shape)
+        relief = self.relief
+        if relief.ndim > z.ndim:  # of several drives, the first axis of the approaches
+            relief = relief.reshape(-1, *(1,) * (delta.ndim - 1), *z.shape)
+        free = (delta[..., None, None] + theta[..., None, None] * z - relief).reshape(-1, *z.shape)
         closed = np.flatnonzero((free > 0.0).any(axis=(1, 2)))
         free, radius = free[closed], radius.reshape(-1)[closed]
         begin = None if start is None else start.reshape(-1, self.slices)[closed]

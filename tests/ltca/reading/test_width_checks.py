@@ -32,15 +32,18 @@ def paper():
 def test_the_fields_of_the_width_are_those_of_the_issue():
     parts = ("pin_wheel.pin_errors", "pin_shaft.pin_errors", "disc.hole_errors", "disc.of.0.hole_errors")
     leads = ("lead_crown_drop", "lead_relief_length", "lead_relief_depth", "lead_slope")
-    assert sorted(
-        [
-            *(f"{part}.inclination.{axis}" for part in ("pin_wheel", "pin_shaft", "crank") for axis in "xy"),
-            *(f"{part}.inclination_{axis}" for part in parts for axis in "xy"),
-            *(f"{table}.{lead}" for table in ("disc", "disc.of.0") for lead in leads),
-            "disc.axial_play",
-            "main_bearing.tilt_stiffness",
-        ]
-    ) == NEEDING
+    assert (
+        sorted(
+            [
+                *(f"{part}.inclination.{axis}" for part in ("pin_wheel", "pin_shaft", "crank") for axis in "xy"),
+                *(f"{part}.inclination_{axis}" for part in parts for axis in "xy"),
+                *(f"{table}.{lead}" for table in ("disc", "disc.of.0") for lead in leads),
+                "disc.axial_play",
+                "main_bearing.tilt_stiffness",
+            ]
+        )
+        == NEEDING
+    )
 
 
 @pytest.mark.parametrize("path", NEEDING)
