@@ -21,12 +21,12 @@ from ltca.drive.fields import (
     element_count,
     field_kind,
     field_kinds,
+    lacks_slices,
     may_be_left_out,
     not_a_field,
     own_paths,
     read_field,
 )
-from ltca.drive.members.width import FEWEST_SLICES, needs_slices
 from ltca.drive.mistakes import describe_mistakes
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import quantity
@@ -149,8 +149,8 @@ def nothing_scatters(drive: Drive, path: str) -> str | None:
     """Return why a field cannot scatter in a drive that is without it; None where it can."""
     if (problem := absence(drive, path)) is not None:
         return problem
-    if drive.contact.slices < FEWEST_SLICES and needs_slices(path):
-        return f"needs slices along the width, contact.slices = {FEWEST_SLICES} or more (it is {drive.contact.slices})"
+    if (problem := lacks_slices(drive, path)) is not None:
+        return problem
     try:
         if may_be_left_out(path):
             read_field(drive, path)

@@ -18,6 +18,7 @@ from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
 from ltca.reading.physical_checks import is_sound
 from ltca.reading.writing import drive_text
+from ltca.studies.optimiser import parse_variable
 from ltca.testing.field_changes import sensible_change
 
 SLICES = {"contact.slices": 5}
@@ -185,3 +186,13 @@ def test_shipped_drives_are_plane():
         for drive in parse_drive(shipped_drive(name), name).cases.values():
             assert drive.contact.slices == 1
     assert all(kind.unit in ("rad", "mm", "N*mm/rad") for path, kind in field_kinds().items() if needs_slices(path))
+
+
+def test_nothing_of_the_width_is_varied_in_a_plane_drive(paper):
+    """An optimisation ended with "none of 87 candidates is sound"."""
+    with pytest.raises(
+        DriveError, match=r"^--vary disc\.lead_crown_drop: needs slices along the width, contact\.slices = 3"
+    ):
+        parse_variable("disc.lead_crown_drop=0:0.01", paper)
+    found = parse_variable("lead_crown_drop=0:10 um", with_fields(paper, SLICES))
+    assert (found.path, found.low, found.high) == ("disc.lead_crown_drop", 0.0, 0.01)
