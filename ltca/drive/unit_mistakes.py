@@ -504,7 +504,7 @@ def _odd_leads(drive: Drive) -> Iterator[str]:
                 )
             elif field.name.endswith(("_drop", "_depth")) and value > DEEP * thickness:
                 yield (
-                    f"{path} = {value:g} mm is {1e3 * value:g} µm on a disc {thickness:g} mm thick, more than any crown or relief; "
+                    f"{path} = {value:g} mm is {1e3 * value:g} µm on a disc {thickness:g} mm thick, more than any relief; "
                     f'a plain number is in mm, micrometres are written "{value:g} µm"'
                 )
             elif field.name.endswith(("_drop", "_depth")) and 1e-3 * finest <= value < finest:
