@@ -210,7 +210,7 @@ def press_tilted(
     for shape, share in shares.items():
         piece = _settle(kind, shape, patch, separation, approach, tilt, start)
         found.append((share, piece, *_press_piece(kind, piece, separation, approach, tilt)))
-    values = sum(share * numbers for share, _, numbers, *_ in found)
+    values = np.sum([share * numbers for share, _, numbers, *_ in found], axis=0)
     if len(found) > 1:
         # Shares differ in what multiplies 1e-4 of the load: differences do.
         sizes = np.array((1e-6 * patch.depth, 1e-6 * patch.depth / kind.length))

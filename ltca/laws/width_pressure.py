@@ -84,7 +84,7 @@ def estimate_along_width(kind: ContactKind, contact: SlicedContact, effective_ra
     # What end slices carry beyond the line beside them is the bulge at an end, by aligned lines of as many slices.
     nodes, bulges = _end_bulges(line.shape[-2])
     size = kind.length / line.shape[-2]
-    ends = []
+    carried = []
     for last, beside, outermost in (
         (even[..., 0], even[..., 1], line[..., 0, 0]),
         (even[..., -1], even[..., -2], line[..., -1, -1]),
@@ -93,8 +93,8 @@ def estimate_along_width(kind: ContactKind, contact: SlicedContact, effective_ra
         for _ in range(3):
             wide = np.sqrt(4.0 * own * radius / (np.pi * kind.contact_modulus)) / size
             own = last / np.interp(np.log(np.maximum(wide, 1e-300)), nodes, bulges)
-        ends.append(np.where(outermost > 0.0, np.maximum(own + 0.5 * (own - beside), 0.0), 0.0))
-    ends = np.stack(ends, axis=-1)
+        carried.append(np.where(outermost > 0.0, np.maximum(own + 0.5 * (own - beside), 0.0), 0.0))
+    ends = np.stack(carried, axis=-1)
     # An end carries as one of a line that is even and long has its peak by the half-width there.
     half_width = np.sqrt(4.0 * ends * radius[..., None] / (np.pi * kind.contact_modulus))
     at_ends = pressure_of(ends, 1) * find_cylinder_ratio(kind, half_width)

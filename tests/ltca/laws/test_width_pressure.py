@@ -8,7 +8,7 @@ import pytest
 from ltca.contact.hertz import line_peak_pressure
 from ltca.contact.length_profile import CircularCrown, SummedProfile
 from ltca.contact.tracked_grid import ContactKind
-from ltca.contact.width_pressure import estimate_along_width, solve_along_width
+from ltca.laws.width_pressure import estimate_along_width, solve_along_width
 from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.sliced_line import SlicedLine, slice_heights
 
