@@ -15,9 +15,10 @@ from __future__ import annotations
 import numpy as np
 
 from ltca.arrays import FloatArray
-from ltca.compliance.response import KindPressures
+from ltca.compliance.response import AlongWidth, KindPressures
 from ltca.contact.end_pressure import largest_pressure_ratio
 from ltca.contact.tracked_grid import ContactKind
+from ltca.contact.width_pressure import WidthPressures
 from ltca.geometry.placement import Placement
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.line_contact import LineContactLaw
@@ -50,3 +51,25 @@ def elastic_hole_pressures(kind: ContactKind, load: FloatArray, place: Placement
     law, radius = LineContactLaw(kind.length, kind.contact_modulus), place.hole_effective_radii
     approach, _ = law.approach_at_load(load, radius)
     return pressures_of_law(law, kind, approach, radius)
+
+
+def pressures_of_slices(kind: ContactKind, found: WidthPressures, effective_radius: FloatArray) -> KindPressures:
+    """Return pressures and half-widths of contacts in slices from those along their width.
+
+    The number of slices is odd: mid-width is the middle one. Effective radii, mm, are broadcast to the contacts.
+    """
+    half_width = 2.0 / kind.contact_modulus * found.pressure * np.asarray(effective_radius)[..., None]
+    middle = found.pressure.shape[-1] // 2
+    return KindPressures(
+        mid=found.pressure[..., middle],
+        largest=found.largest,
+        half_width=half_width[..., middle],
+        end_cell=kind.end_cell,
+        along=AlongWidth(
+            line_load=found.line_load,
+            pressure=found.pressure,
+            half_width=half_width,
+            place=found.place,
+            runs_off=found.runs_off,
+        ),
+    )

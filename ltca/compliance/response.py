@@ -12,7 +12,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.arrays import ComplexArray, FloatArray
+from ltca.arrays import BoolArray, ComplexArray, FloatArray
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.compliance.rollers import RollerState
 from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION
@@ -178,6 +178,29 @@ class Response(DiscResponse):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class AlongWidth:
+    """What all pairs of one kind in slices carry along their width, zero where open.
+
+    Attributes
+    ----------
+    line_load : array, shape (positions, pairs, slices)
+        Mean over each slice, N/mm.
+    pressure, half_width : array, shape (positions, pairs, slices)
+        Largest over the profile and half-width in the middle of each slice, MPa and mm.
+    place : array, shape (positions, pairs)
+        Height of the largest pressure anywhere above the middle of the contact, mm.
+    runs_off : array of bool, shape (positions, pairs, 2)
+        Whether the contact carries right up to its lower and its upper end.
+    """
+
+    line_load: FloatArray
+    pressure: FloatArray
+    half_width: FloatArray
+    place: FloatArray
+    runs_off: BoolArray
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class KindPressures:
     """Pressures and half-widths of all pairs of one kind, zero where open.
 
@@ -192,12 +215,20 @@ class KindPressures:
         Contact half-width at mid-width, mm.
     end_cell : float
         Length of the end cell behind `largest`, mm; not a number where that is none.
+    along : AlongWidth or None
+        Of contacts in slices; None in the plane.
     """
 
     mid: FloatArray
     largest: FloatArray
     half_width: FloatArray
     end_cell: float
+    along: AlongWidth | None = None
+
+    @property
+    def widest(self) -> FloatArray:
+        """Largest half-width anywhere along the width but at its very ends, mm, shape (positions, pairs)."""
+        return self.half_width if self.along is None else np.asarray(self.along.half_width.max(axis=-1))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -329,6 +360,18 @@ def resultant(
 def bearing_pushes(rollers: RollerState, cranks: int) -> ComplexArray:
     """Return the force of every crank bearing on the disc in the fixed frame, shape (positions, cranks), N."""
     each = rollers.outer_load * rollers.outer_direction
+    return np.asarray(each.reshape(each.shape[0], cranks, -1).sum(axis=2))
+
+
+def bearing_leverages(rollers: RollerState, direction: ComplexArray, cranks: int) -> ComplexArray:
+    """Return Σ F z of every crank bearing on the disc in the fixed frame, N·mm, shape (positions, cranks); zero in the plane.
+
+    It does work on the lean of the disc as the force does on its displacement; the moment M_x + i M_y is i times it. `direction`
+    are the rays of the rollers (`ltca.geometry.pair_motion.RollerRays`).
+    """
+    if rollers.outer_moment is None:
+        return np.zeros((rollers.outer_load.shape[0], cranks), dtype=complex)
+    each = rollers.outer_moment * direction
     return np.asarray(each.reshape(each.shape[0], cranks, -1).sum(axis=2))
 
 

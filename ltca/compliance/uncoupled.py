@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.leaning_rollers import RollerStart, balance_leaning_rollers
-from ltca.compliance.pressures import elastic_hole_pressures
+from ltca.compliance.pressures import elastic_hole_pressures, pressures_of_slices
 from ltca.compliance.response import (
     ContactPressures,
     DiscResponse,
@@ -29,10 +29,12 @@ from ltca.compliance.response import (
 )
 from ltca.compliance.rollers import Law, RollerLaws, RollerState, balance_rollers
 from ltca.contact.tracked_grid import ContactKind, ContactKinds
+from ltca.contact.width_pressure import estimate_along_width, estimate_of_slices
 from ltca.geometry.coordinates import Coordinates
 from ltca.geometry.pair_motion import BoreMotion, FlankMotion, PairMotion, dot
 from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.contact_law import ContactLaw
+from ltca.laws.sliced_line import SlicedContact
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -196,6 +198,8 @@ class UncoupledContacts(ABC, Generic[Law]):
 
     def pressures(self, response: DiscResponse) -> ContactPressures:
         """Return pressures and half-widths from the laws, those of the shaft pins from their loads."""
+        if response.leaning_pins is not None and response.leaning_holes is not None:
+            return self._pressures_of_slices(response, response.leaning_pins.contact, response.leaning_holes.contact)
         flank, rollers, kinds = response.flank, response.rollers, self.kinds
         laws = self.laws(flank, response.warm_start)
         of_rollers = laws.rollers
@@ -204,6 +208,22 @@ class UncoupledContacts(ABC, Generic[Law]):
             outer=self.read_pressures(of_rollers.outer, kinds.outer, rollers.outer_approach, of_rollers.outer_radius),
             inner=self.read_pressures(of_rollers.inner, kinds.inner, rollers.inner_approach, of_rollers.inner_radius),
             holes=elastic_hole_pressures(kinds.holes, response.hole_load, self.geometry.placement),
+            rigid_shaft_pins=False,
+        )
+
+    def _pressures_of_slices(self, response: DiscResponse, pins: SlicedContact, holes: SlicedContact) -> ContactPressures:
+        """The same of contacts in slices, from their line loads."""
+        rollers, kinds, place = response.rollers, self.kinds, self.geometry.placement
+        radius, hole = response.flank.effective_radius, place.hole_effective_radii
+
+        def of_rollers(kind: ContactKind, slices: FloatArray | None, radii: FloatArray) -> KindPressures:
+            return pressures_of_slices(kind, estimate_of_slices(kind, np.asarray(slices), radii), radii)
+
+        return ContactPressures(
+            pins=pressures_of_slices(kinds.pins, estimate_along_width(kinds.pins, pins, radius), radius),
+            outer=of_rollers(kinds.outer, rollers.outer_slices, place.outer_effective_radii),
+            inner=of_rollers(kinds.inner, rollers.inner_slices, place.inner_effective_radii),
+            holes=pressures_of_slices(kinds.holes, estimate_along_width(kinds.holes, holes, hole), hole),
             rigid_shaft_pins=False,
         )
 
