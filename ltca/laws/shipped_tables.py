@@ -2,11 +2,13 @@
 
     OPENBLAS_NUM_THREADS=1 python -m ltca.laws.shipped_tables
 
-writes those of `ltca.laws.line_contact` and `ltca.contact.end_pressure` anew; ``tests/ltca/laws/test_shipped_tables.py``
-compares. That takes a second, which every process would spend, and other processors would find other last digits.
+writes those of `ltca.laws.line_contact`, `ltca.contact.end_pressure` and `ltca.laws.sliced_line` anew;
+``tests/ltca/laws/test_shipped_tables.py`` compares. That takes some seconds, which every process would spend, and other
+processors would find other last digits.
 
 The nodes of the line contact are solutions of `ltca.contact.pressure_cells` on two grids, extrapolated to zero cell size
-(Richardson) with the orders measured in ``tests/analytic/test_line_contact_table.py``.
+(Richardson) with the orders measured in ``tests/analytic/test_line_contact_table.py``. The softer ends of contacts in slices
+follow from that law: they give an aligned straight line of `END_SLICES` slices its load.
 """
 
 from __future__ import annotations
@@ -16,15 +18,21 @@ import os
 
 import numpy as np
 
+from ltca.arrays import FloatArray
 from ltca.contact import end_pressure
 from ltca.contact.pressure_cells import expected_half_width, solve_cylinder_patch
 from ltca.contact.tracked_grid import CELLS as TRACKED_CELLS
-from ltca.laws import line_contact
-from ltca.laws.line_contact import LONGEST, SHORTEST, LineContactTable
+from ltca.laws import line_contact, sliced_line
+from ltca.laws.line_contact import LONGEST, SHORTEST, LineContactLaw, LineContactTable
 from ltca.laws.slenderness_curve import SlendernessCurve
 
 NODES = 31
 CELLS = 16
+END_SLICES = 9
+_END_NODES = 65
+_LONGEST_CUT, _SHORTEST_CUT = 5.0e4, 2.0
+"""L/√(ρδ) at the ends of the lines that give the softer ends."""
+_END_DIGITS = 7
 # Orders of convergence when both cell counts are doubled, as measured: energy 2.7, half-width and pressure 2.2 to 2.9.
 _ENERGY_GAIN = 1.0 / (2.0**2.7 - 1.0)
 _FIELD_GAIN = 1.0 / (2.0**2.4 - 1.0)
@@ -61,12 +69,44 @@ def tabulate_line_contact(
     )
 
 
+def tabulate_softer_ends(slices: int = END_SLICES, nodes: int = _END_NODES) -> FloatArray:
+    """Return by how much the end slices of a line are softer, at `ltca.laws.sliced_line.places`.
+
+    An aligned straight line of so many slices then has the load of `ltca.laws.line_contact`, found at so many L/√(ρδ).
+    """
+    from scipy.interpolate import make_interp_spline
+    from scipy.optimize import brentq
+
+    law = LineContactLaw(1.0, 1.0)
+    relief = np.zeros((slices, sliced_line.POINTS))
+    pieces = sliced_line.places().size - 1
+    found, softer = [], 0.07
+    for slenderness in np.geomspace(_LONGEST_CUT, _SHORTEST_CUT, nodes):
+        approach = np.array(slenderness**-2)
+        load = float(law.load_and_stiffness(approach, 1.0)[0])
+
+        def press(softer: float, approach: FloatArray = approach) -> sliced_line.SlicedContact:
+            ends = np.zeros((6, pieces))
+            ends[0] = softer
+            line = sliced_line.SlicedLine(length=1.0, contact_modulus=1.0, slices=slices, relief=relief, ends=ends)
+            return line.respond(approach, np.array(0.0), np.array(1.0))
+
+        softer = brentq(lambda value: float(press(value).load) / load - 1.0, softer - 0.05, softer + 0.05, xtol=1e-12)  # noqa: B023
+        carried = press(softer).slice_load
+        mean = (carried**2).sum() / carried.sum() * slices
+        found.append((0.5 * np.log(4.0 * mean / np.pi) + np.log(slices), softer))
+    place, values = np.array(sorted(found)).T
+    at = sliced_line.places().clip(place[0], place[-1])
+    return np.asarray(make_interp_spline(place, values, k=3)(at).round(_END_DIGITS))
+
+
 def write_tables() -> None:
     """Write the tables into the package."""
     ratio = dict(zip(("nodes", "ratio"), end_pressure.tabulate_cylinder_ratio(TRACKED_CELLS), strict=True))
     contents = {
         line_contact.TABLE: tabulate_line_contact().content(),
         end_pressure.TABLE: {name: values.tolist() for name, values in ratio.items()},
+        sliced_line.TABLE: {"softer": tabulate_softer_ends().tolist()},
     }
     for path, content in contents.items():
         path.write_text(json.dumps(content, indent=0) + "\n", encoding="utf-8")

@@ -10,17 +10,20 @@ does as plane strain counts it:
     V = \frac{1}{2 \pi E^* l} \sum_{ij} a_{|i-j|}(b/l) F_i F_j .
 
 q is the line load of plane strain with the datum D (`ltca.laws.plane_strain`), :math:`\delta = (2 q/\pi E^*)(\ln(2D/b) + 1/2)`
-with the half-width b of the line load itself; a lag's coefficient :math:`a_k` is the integral of Boussinesq's kernel over two strips
-l long and as wide as the contact of the mean line load (Love; `ltca.contact.influence`), and of a slice on itself less what q counts
-of it. Strips are as wide as makes their own energy that of the semi-elliptic pressure. The mean line load
-:math:`\sum F^2/(l \sum F)` moves with the loads, and V knows it: loads, moment and energy belong to one potential to the last bit,
+with the half-width b of the line load itself; a lag's coefficient :math:`a_k` is the integral of Boussinesq's kernel over two
+strips l long and as wide as the contact of the mean line load (Love; `ltca.contact.influence`), and of a slice on itself less
+what q counts of it. Strips are as wide as makes their own energy that of the semi-elliptic pressure. The mean line load
+:math:`\sum F^2/(l \sum F)` moves with the loads, and V knows it: loads, moment and energy belong to one potential,
 
 .. math:: E = \sum \int \varphi(\delta + \theta z - h - u_i)\,dz + \sum F_i u_i - V, \qquad \varphi' = q .
 
-Slices are integrated at `POINTS` points each, so that a contact that ends within a slice moves on smoothly. Where the ends of the
-line carry, pressure bulges there within some half-widths: the end slices are softer in V by :math:`\varepsilon(b/l)`, tabulated
-once so that an aligned straight line has the load of `ltca.laws.line_contact`. A line of one slice is that law itself and not
-made here.
+Slices are integrated at `POINTS` points each, so that a contact that ends within a slice moves on smoothly. Where the ends of
+the line carry, pressure bulges there within some half-widths: the end slices are softer in V by :math:`\varepsilon(b/l)`,
+tabulated once so that an aligned straight line has the load of `ltca.laws.line_contact`. A line of one slice is that law itself
+and not made here. ``docs/theory/width.md`` has the sources and the measured errors.
+
+Newton's method on the loads squares what is left over: its last step is taken along the slopes without another evaluation, to
+round-off.
 """
 
 from __future__ import annotations
@@ -46,17 +49,18 @@ strip, 1/4 − ln(b/2) of the semi-ellipse."""
 DATUM = 4.0
 """Datum of the plane law by the length of the line; what it is makes no difference but to slices that carry unevenly."""
 MAX_ITERATIONS = 60
-SETTLED = 1e-12
-"""What is left over of a slice's load, by the largest."""
-ROUND_OFF = 1e-9
-"""What round-off of approaches may leave over."""
+NEAR = 1e-8
+"""What may be left over of a slice's load, by the largest, before the last step, which squares it."""
+ROUND_OFF = 1e-13
+"""What is left over by round-off alone."""
 NARROWEST, WIDEST = 1e-4, 40.0
 """Half-width by the length of a slice at the ends of the tables."""
-SMOOTHING = 1.0
 _KNOTS = 81
+_LIGHTEST, _HEAVIEST, _PLANE_KNOTS = -46.0, -0.3, 4097
 TABLE = Path(__file__).with_name("sliced_line.json")
 
 
+@cache
 def slice_heights(length: float, slices: int) -> FloatArray:
     """Return z of the points of the slices of a line of a length in mm, shape (slices, points)."""
     middle = (np.arange(slices) - 0.5 * (slices - 1)) * length / slices
@@ -66,26 +70,57 @@ def slice_heights(length: float, slices: int) -> FloatArray:
 @cache
 def plane_curve() -> SlendernessCurve:
     """Return w = X/Q over ln X, of the plane law with X = 2 δ ρ/D² and Q = (b/D)²: X = Q (ln(4/Q) + 1)/2."""
-    places = np.linspace(-46.0, -0.3, 129)
-    square = np.exp(places) / 3.0
+    places = np.linspace(_LIGHTEST, _HEAVIEST, 129)
+    return SlendernessCurve.through(places, np.exp(places) / _plane_square(places), 0.5)
+
+
+def _plane_square(place: FloatArray) -> FloatArray:
+    """Q at ln X."""
+    square = np.exp(place) / 3.0
     for _ in range(100):
-        square = np.exp(places) / (0.5 * (np.log(4.0 / square) + 1.0))
+        square = np.exp(place) / (0.5 * (np.log(4.0 / square) + 1.0))
     for _ in range(3):
         slope = 0.5 * np.log(4.0 / square)
-        square = square - (square * (slope + 0.5) - np.exp(places)) / slope
-    return SlendernessCurve.through(places, np.exp(places) / square, 0.5)
+        square = square - (square * (slope + 0.5) - np.exp(place)) / slope
+    return np.asarray(square)
+
+
+@cache
+def _plane_pieces() -> FloatArray:
+    """Cubic pieces of w over ln X from its values and slopes, as close to it as round-off of loads lets them matter."""
+    places = np.linspace(_LIGHTEST, _HEAVIEST, _PLANE_KNOTS)
+    square = _plane_square(places)
+    value = 0.5 * (np.log(4.0 / square) + 1.0)
+    slope = -0.5 * value / (value - 0.5) * (places[1] - places[0])
+    before, after, rise = slope[:-1], slope[1:], np.diff(value)
+    return np.stack((value[:-1], before, 3.0 * rise - 2.0 * before - after, before + after - 2.0 * rise))
+
+
+def _inverse_of_plane_load(place: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """w at ln X and its derivative."""
+    per_knot = (_PLANE_KNOTS - 1) / (_HEAVIEST - _LIGHTEST)
+    beyond = (place < _LIGHTEST) | (place >= _HEAVIEST)
+    any_beyond = beyond.any()
+    at = (place - _LIGHTEST) * per_knot
+    piece = np.where(beyond, 0.0, at).astype(np.intp) if any_beyond else at.astype(np.intp)
+    t = at - piece
+    c0, c1, c2, c3 = _plane_pieces().take(piece, axis=1)
+    value, slope = c0 + t * (c1 + t * (c2 + t * c3)), (c1 + t * (2.0 * c2 + (3.0 * t) * c3)) * per_knot
+    if any_beyond:
+        value[beyond], slope[beyond], _ = plane_curve().value_and_derivatives(place[beyond])
+    return value, slope
 
 
 @cache
 def _lags(slices: int) -> FloatArray:
-    """Pieces of a_k over ln(b/l), k = 0 … n − 1, without the softer ends, shape (6, pieces, slices)."""
+    """Pieces of a_k over ln(b/l), k = 0 … n − 1, without the softer ends, shape (6, slices, pieces)."""
     found = np.empty((_KNOTS, slices))
     for row, place in zip(found, places(), strict=True):
         width = 2.0 * STRIP * float(np.exp(place))
         row[:] = lagged_influence(width, 1, np.arange(slices + 1.0), mirrored=False)[0, 0] / width**2
     # What plane strain counts of a strip, its datum at the length of a slice.
     found[:, 0] -= 2.0 * (1.5 - np.log(2.0 * STRIP) - places())
-    return np.stack([quintic_spline_pieces(column) for column in found.T], axis=-1)
+    return np.stack([quintic_spline_pieces(column) for column in found.T], axis=1)
 
 
 def places() -> FloatArray:
@@ -136,6 +171,53 @@ class SlicedContact:
             getattr(self, name)[rows] = getattr(part, name)
 
 
+@cache
+def _bends(slices: int) -> tuple[NDArray[np.intp], NDArray[np.intp], FloatArray]:
+    """Rows, columns and values of D′D of second differences, where they are not zero."""
+    differences = np.diff(np.eye(slices), 2, axis=0)
+    product = differences.T @ differences
+    rows, columns = np.nonzero(product)
+    return rows, columns, product[rows, columns]
+
+
+@cache
+def _weights(length: float, slices: int) -> FloatArray:
+    """Weights of the points of a slice of a line of a length in mm, shape (points, 1)."""
+    return np.asarray(0.5 * length / slices * np.polynomial.legendre.leggauss(POINTS)[1][:, None])
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Coupling:
+    """What the slices of contacts press in together, V, at some loads; contacts come last.
+
+    The second derivative is ``scale`` times that of the lags, the softer ends and the smoothing at a held width, with
+    ``diagonal`` added on the diagonal and ``across grow' + grow across'`` everywhere, by which the width follows the loads.
+    """
+
+    energy: FloatArray
+    pressed_in: FloatArray
+    scale: float
+    lags: FloatArray
+    ends: FloatArray
+    smooth: FloatArray
+    diagonal: FloatArray
+    across: FloatArray
+    grow: FloatArray
+
+    def by_load(self) -> FloatArray:
+        """Return ∂u/∂F, shape (slices, slices, contacts)."""
+        n = self.grow.shape[0]
+        found = self.across[:, None] * self.grow
+        found += found.swapaxes(0, 1).copy()
+        found += self.lags[np.abs(np.arange(n)[:, None] - np.arange(n))]
+        rows, columns, bends = _bends(n)
+        found[rows, columns] += bends[:, None] * self.smooth
+        found[np.arange(n), np.arange(n)] += self.diagonal
+        found[0, 0] -= self.ends
+        found[-1, -1] -= self.ends
+        return np.asarray(self.scale * found)
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SlicedLine:
     """Law of line contacts of one length and modulus in slices.
@@ -159,10 +241,6 @@ class SlicedLine:
     slices: int
     relief: FloatArray = by_drive(2)
     ends: FloatArray = field(default_factory=softer_ends)
-
-    @property
-    def _weights(self) -> FloatArray:
-        return np.asarray(0.5 * self.length / self.slices * np.polynomial.legendre.leggauss(POINTS)[1])
 
     def respond(
         self,
@@ -188,154 +266,201 @@ class SlicedLine:
         given = (np.asarray(each, dtype=float) for each in (approach, tilt, effective_radius))
         delta, theta, radius = np.broadcast_arrays(*given)
         shape, z = delta.shape, slice_heights(self.length, self.slices)
-        free = (delta[..., None, None] + theta[..., None, None] * z - self.relief).reshape(-1, *z.shape)
+        relief = self.relief if self.relief.ndim == 2 else self.relief[:, None]
+        free = (delta[..., None, None] + theta[..., None, None] * z - relief).reshape(-1, *z.shape)
         closed = np.flatnonzero((free > 0.0).any(axis=(1, 2)))
-        free, radius = free[closed], radius.reshape(-1)[closed]
-        begin = None if start is None else start.reshape(-1, self.slices)[closed]
-        found = self._closed(free, radius, begin)
-        sizes = ((), (), (), (), (), (), (self.slices,), z.shape)
+        begin = None if start is None else start.reshape(-1, self.slices)[closed].T
+        # Contacts come last: every step is one on arrays over them.
+        found = self._closed(np.ascontiguousarray(free[closed].transpose(1, 2, 0)), radius.reshape(-1)[closed], begin)
         whole = []
-        for values, size in zip(found, sizes, strict=True):
-            full = np.zeros((delta.size, *size))
-            full[closed] = values
-            whole.append(full.reshape((*shape, *size)))
+        for values in found:
+            full = np.zeros((delta.size, *values.shape[:-1]))
+            full[closed] = np.moveaxis(values, -1, 0)
+            whole.append(full.reshape((*shape, *values.shape[:-1])))
         return SlicedContact(**dict(zip(SlicedContact.__slots__, whole, strict=True)))
 
-    def _line_load(self, approach: FloatArray, effective_radius: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """q and dq/dδ of the plane law, zero where open."""
-        datum = DATUM * self.length
+    def _line_load(
+        self, approach: FloatArray, effective_radius: FloatArray, datum: float
+    ) -> tuple[FloatArray, FloatArray]:
+        """q and dq/dδ of the plane law, zero where open, shape (slices, points, contacts)."""
         load, slope = np.zeros(approach.shape), np.zeros(approach.shape)
         pressed = approach > 0.0
-        radius = np.broadcast_to(effective_radius[:, None, None], approach.shape)[pressed]
-        scaled = 2.0 * approach[pressed] * radius / datum**2
-        w, first, _ = plane_curve().value_and_derivatives(np.log(scaled))
-        load[pressed] = 0.25 * np.pi * self.contact_modulus * datum**2 * scaled / (w * radius)
-        slope[pressed] = 0.5 * np.pi * self.contact_modulus * (1.0 - first / w) / w
+        radius = np.broadcast_to(effective_radius, approach.shape)[pressed]
+        scaled = (2.0 / datum**2) * approach[pressed] * radius
+        w, first = _inverse_of_plane_load(np.log(scaled))
+        inverse = (np.pi * self.contact_modulus) / w
+        load[pressed] = (0.25 * datum**2) * scaled * inverse / radius
+        slope[pressed] = inverse * (0.5 - 0.5 * first / w)
         return load, slope
 
-    def _coupling(self, load: FloatArray, effective_radius: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """V, u and their derivative, shapes (contacts,), (contacts, slices) and (contacts, slices, slices)."""
+    def _coupling(self, load: FloatArray, effective_radius: FloatArray) -> _Coupling:
+        """V at the loads of slices, shape (slices, contacts)."""
         n, size = self.slices, self.length / self.slices
-        total, square = load.sum(axis=1), (load**2).sum(axis=1)
-        mean = square / (size * total)
-        place = 0.5 * np.log(4.0 * mean * effective_radius / (np.pi * self.contact_modulus)) - np.log(size)
+        total, square = load.sum(axis=0), (load**2).sum(axis=0)
+        place = 0.5 * np.log(4.0 * square * effective_radius / (np.pi * self.contact_modulus * size * total))
+        place -= np.log(size)
         # How ln b follows the loads.
-        grow = load / square[:, None] - 0.5 / total[:, None]
-        curve = self._coefficients(place)
-        lag = np.abs(np.arange(n)[:, None] - np.arange(n))
-        matrix, first, second = (each[:, lag] for each in curve[..., :n])
-        for each, ends in zip((matrix, first, second), curve[..., n], strict=True):
-            each[:, (0, -1), (0, -1)] -= ends[:, None]
-        matrix[:, np.arange(n), np.arange(n)] -= 2.0 * np.log(DATUM * n)
-        bends = np.diff(np.eye(n), 2, axis=0)
+        grow = load / square - 0.5 / total
+        lags, ends = self._coefficients(place)
+        lags[0, 0] -= 2.0 * np.log(DATUM * n)
+        # Products of the matrix and of its first two derivatives by ln b with the loads: a lag each way.
+        beside = np.zeros((3 * n - 2, place.size))
+        beside[n - 1 : 2 * n - 1] = load
+        row, column = beside.strides
+        near = np.lib.stride_tricks.as_strided(beside, (n, 2 * n - 1, place.size), (row, row, column))
+        products = np.einsum("kmc,imc->kic", lags[:2, np.abs(np.arange(1 - n, n))], near)
+        alike = np.einsum("ic,imc->mc", load, near[:, n - 1 :])
+        form = 2.0 * (lags[2] * alike).sum(axis=0) - lags[2, 0] * square
+        # Second differences count where slices are narrower than the contact: the kernel of wide strips hardly knows of loads
+        # that alternate from slice to slice.
         wide = np.exp(2.0 * place)
         part = wide / (1.0 + wide)
-        for each, factor in (
-            (matrix, part),
-            (first, 2.0 * part * (1.0 - part)),
-            (second, 4.0 * part * (1.0 - part) * (1.0 - 2.0 * part)),
-        ):
-            each += SMOOTHING * factor[:, None, None] * (bends.T @ bends)
+        smooth = np.stack((part, 2.0 * part * (1.0 - part), 4.0 * part * (1.0 - part) * (1.0 - 2.0 * part)))
+        bends = np.diff(load, 2, axis=0)
+        back = np.zeros(load.shape)
+        back[:-2] += bends
+        back[1:-1] -= 2.0 * bends
+        back[2:] += bends
+        products += smooth[:2, None] * back
+        form += smooth[2] * (bends**2).sum(axis=0)
+        products[:, 0] -= ends[:2] * load[0]
+        products[:, -1] -= ends[:2] * load[-1]
+        form -= ends[2] * (load[0] ** 2 + load[-1] ** 2)
+        pressed, by_width = products
+        slope, curved = 0.5 * (load * by_width).sum(axis=0), 0.5 * form
         scale = 1.0 / (np.pi * self.contact_modulus * size)
-        pressed, by_width, bend = (np.matmul(each, load[..., None])[..., 0] for each in (matrix, first, second))
-        energy, slope, curved = (0.5 * (load * each).sum(axis=1) for each in (pressed, by_width, bend))
-        given = pressed + slope[:, None] * grow
-        outer = by_width[:, :, None] * grow[:, None, :]
-        grown = (
-            np.eye(n) / square[:, None, None]
-            + (0.5 / total**2)[:, None, None]
-            - 2.0 * load[:, :, None] * load[:, None, :] / (square**2)[:, None, None]
+        return _Coupling(
+            energy=0.5 * scale * (load * pressed).sum(axis=0),
+            pressed_in=scale * (pressed + slope * grow),
+            scale=scale,
+            lags=lags[0],
+            ends=ends[0],
+            smooth=smooth[0],
+            diagonal=slope / square,
+            across=by_width + (0.5 * curved - slope) * grow - slope / total,
+            grow=grow,
         )
-        hessian = matrix + outer + outer.swapaxes(1, 2)
-        hessian += curved[:, None, None] * grow[:, :, None] * grow[:, None, :] + slope[:, None, None] * grown
-        return scale * energy, scale * given, scale * hessian
 
-    def _coefficients(self, place: FloatArray) -> FloatArray:
-        """a_k and ε with first and second derivatives by ln(b/l), shape (3, contacts, slices + 1)."""
-        pieces = np.concatenate((_lags(self.slices), self.ends[..., None]), axis=-1)
+    def _coefficients(self, place: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """a_k and ε with first and second derivatives by ln(b/l), shapes (3, slices, contacts) and (3, contacts)."""
+        pieces = np.concatenate((_lags(self.slices), self.ends[:, None]), axis=1)
         start, stop = np.log(NARROWEST), np.log(WIDEST)
         spacing = (stop - start) / (_KNOTS - 1)
         held = place.clip(start, stop)
         at = (held - start) / spacing
         piece = np.minimum(at.astype(np.intp), _KNOTS - 2)
-        t = (at - piece)[:, None]
-        c0, c1, c2, c3, c4, c5 = pieces[:, piece]
-        value = c0 + t * (c1 + t * (c2 + t * (c3 + t * (c4 + t * c5))))
-        first = (c1 + t * (2.0 * c2 + t * (3.0 * c3 + t * (4.0 * c4 + t * 5.0 * c5)))) / spacing
-        second = (2.0 * c2 + t * (6.0 * c3 + t * (12.0 * c4 + t * 20.0 * c5))) / spacing**2
-        inside = (held == place)[:, None]
-        return np.stack((value, np.where(inside, first, 0.0), np.where(inside, second, 0.0)))
+        t = at - piece
+        c0, c1, c2, c3, c4, c5 = pieces[:, :, piece]
+        curve = np.empty((3, self.slices + 1, place.size))
+        curve[0] = c0 + t * (c1 + t * (c2 + t * (c3 + t * (c4 + t * c5))))
+        curve[1] = (c1 + t * (2.0 * c2 + t * (3.0 * c3 + t * (4.0 * c4 + t * (5.0 * c5))))) / spacing
+        curve[2] = (2.0 * c2 + t * (6.0 * c3 + t * (12.0 * c4 + t * (20.0 * c5)))) / spacing**2
+        beyond = place != held
+        if beyond.any():
+            # Curves are nearly straight there.
+            curve[0][:, beyond] += curve[1][:, beyond] * (place - held)[beyond]
+            curve[2][:, beyond] = 0.0
+        return curve[:, :-1], curve[:, -1]
 
     def _closed(self, free: FloatArray, radius: FloatArray, start: FloatArray | None) -> tuple[FloatArray, ...]:
-        """The arrays of `SlicedContact` in its order, of contacts with something pressed together."""
-        weights, z, n = self._weights, slice_heights(self.length, self.slices), self.slices
-        load = self._line_load(free, radius)[0] @ weights if start is None else start.copy()
-        bad = ~(load.sum(axis=1) > 0.0)
-        if bad.any():
-            load[bad] = self._line_load(free[bad], radius[bad])[0] @ weights
+        """The arrays of `SlicedContact` in its order, of contacts with something pressed together, which come last."""
+        n, datum, count = self.slices, DATUM * self.length, radius.size
+        z = slice_heights(self.length, n)[..., None]
+        weights = _weights(self.length, n)
+
+        def loads_of(line: FloatArray) -> FloatArray:
+            return np.asarray((line * weights).sum(axis=1))
+
+        # With the length as datum an aligned line has about the load that it has with its slices coupled.
+        load = loads_of(self._line_load(free, radius, self.length)[0]) if start is None else start.copy()
+        bad = ~(load.sum(axis=0) > 0.0)
+        if start is not None and bad.any():
+            load[:, bad] = loads_of(self._line_load(free[..., bad], radius[bad], self.length)[0])
         history: list[float] = []
-        going, before, fraction = np.arange(radius.size), np.full(radius.size, np.inf), np.ones(radius.size)
+        going, before, fraction = np.arange(count), np.full(count, np.inf), np.ones(count)
         way = np.zeros(load.shape)
-        # Of the last evaluation: V, u, ∂u/∂F, q and its slope, and the approach that q is of.
-        shapes = ((), (n,), (n, n), z.shape, z.shape, z.shape)
-        last = tuple(np.zeros((radius.size, *shape)) for shape in shapes)
+        scalars, by_slice, by_point = np.zeros((6, count)), np.zeros((n, count)), np.zeros((*free.shape[:2], count))
         for _ in range(MAX_ITERATIONS):
-            now, here = load[going], radius[going]
-            energy, pressed_in, by_load = self._coupling(now, here)
-            local = free[going] - pressed_in[..., None]
-            line, slope = self._line_load(local, here)
-            left = line @ weights - now
-            size = np.max(np.abs(left), axis=1)
-            largest = np.max(now, axis=1)
+            now, here = load[:, going], radius[going]
+            coupled = self._coupling(now, here)
+            local = free[..., going] - coupled.pressed_in[:, None]
+            line, slope = self._line_load(local, here, datum)
+            left = loads_of(line) - now
+            size, largest = np.max(np.abs(left), axis=0), np.max(now, axis=0)
             history.append(float(np.max(size / largest, initial=0.0)))
-            done = size <= SETTLED * largest
-            # Nothing but round-off of approaches is left where steps no longer help.
-            done |= (size <= ROUND_OFF * largest) & (size >= 0.5 * before[going])
-            for whole, part in zip(last, (energy, pressed_in, by_load, line, slope, local), strict=True):
-                whole[going[done]] = part[done]
-            worse = (size > before[going]) & (fraction[going] > 1e-3) & ~done
+            worse = (size > before[going]) & (fraction[going] > 1e-3) & (size > ROUND_OFF * largest)
             # Back to a part of the last step where it made things worse.
             back = going[worse]
             fraction[back] *= 0.4
-            load[back] = np.maximum(load[back] - (1.5 * fraction[back])[:, None] * way[back], 1e-3 * load[back])
+            load[:, back] = np.maximum(load[:, back] - 1.5 * fraction[back] * way[:, back], 0.0)
+            carried = slope * weights
+            stiff, leaning = carried.sum(axis=1), (carried * z).sum(axis=1)
+            by_load = coupled.by_load()
+            # Of what is left over, of the approach and of the tilt.
+            right = np.stack((left, stiff, leaning), axis=-1).swapaxes(0, 1)
+            system = np.moveaxis(by_load * stiff[:, None], -1, 0) + np.eye(n)
+            moved = np.moveaxis(np.linalg.solve(system, right), 0, -1)
+            step = moved[:, 0]
+            done = size <= NEAR * largest
+            if done.any():
+                # The last step is taken along the slopes, unless points open or close in it.
+                some = np.flatnonzero(done)
+                shift = -(by_load[..., some] * step[:, some]).sum(axis=1)[:, None]
+                at = local[..., some]
+                steady = (np.abs(shift) <= 1e-3 * np.abs(at)).all(axis=(0, 1)) | (
+                    size[some] <= ROUND_OFF * largest[some]
+                )
+                done[some[~steady]] = False
+                some, shift, at = some[steady], shift[..., steady], at[..., steady]
+                kept = going[some]
+                settled = np.maximum(line[..., some] + slope[..., some] * shift, 0.0)
+                stored = loads_of(self._plane_energy(at, line[..., some], here[some])).sum(axis=0)
+                k, m = stiff[:, some], leaning[:, some]
+                middle = np.divide(m, k, out=np.zeros(k.shape), where=k > 0.0)
+                by_approach, by_tilt = moved[:, 1, some], moved[:, 2, some]
+                own = (carried[..., some] * z**2).sum(axis=(0, 1)) - (m * middle).sum(axis=0)
+                by_slice[:, kept], by_point[..., kept] = loads_of(settled), settled
+                scalars[:, kept] = (
+                    by_slice[:, kept].sum(axis=0),
+                    loads_of(settled * z).sum(axis=0),
+                    by_approach.sum(axis=0),
+                    by_tilt.sum(axis=0),
+                    own + (middle * by_tilt).sum(axis=0),
+                    stored + (now[:, some] * coupled.pressed_in[:, some]).sum(axis=0) - coupled.energy[some],
+                )
             on = ~worse & ~done
             ahead = going[on]
-            if ahead.size:
-                stiff = slope[on] @ weights
-                system = np.eye(n) + stiff[..., None] * by_load[on]
-                step = np.linalg.solve(system, left[on][..., None])[..., 0]
-                before[ahead], fraction[ahead] = size[on], 1.0
-                moved = np.maximum(load[ahead] + step, 0.1 * load[ahead])
-                way[ahead] = moved - load[ahead]
-                load[ahead] = moved
+            before[ahead], fraction[ahead] = size[on], 1.0
+            target = np.maximum(now[:, on] + step[:, on], 0.0)
+            # Something carries on.
+            target = np.where(target.any(axis=0), target, 0.1 * now[:, on])
+            way[:, ahead] = target - now[:, on]
+            load[:, ahead] = target
             going = going[~done]
             if not going.size:
                 break
         else:
-            raise ConvergenceError("the slices of a line contact do not settle; load left over by the largest", history)
-        energy, pressed_in, by_load, line, slope, local = last
-        by_point = slope * weights
-        stiff, leaning, turning = by_point.sum(axis=2), (by_point * z).sum(axis=2), (by_point * z**2).sum(axis=(1, 2))
-        system = np.eye(n) + stiff[..., None] * by_load
-        moved = np.linalg.solve(system, np.stack((stiff, leaning), axis=-1))
-        back = np.matmul(by_load, moved)
-        by_tilt = moved[..., 1].sum(axis=1)
-        stored = self._plane_energy(local, line, radius) @ weights
+            raise ConvergenceError(self._why_not(load[:, going], radius[going]), history)
+        return (*scalars, by_slice, by_point)
+
+    def _why_not(self, load: FloatArray, effective_radius: FloatArray) -> str:
+        """What to tell of contacts that do not settle."""
+        told = "the slices of a line contact do not settle; load left over by the largest"
+        mean = (load**2).sum(axis=0) / (load.sum(axis=0) * self.length / self.slices)
+        half_width = float(np.max(np.sqrt(4.0 * mean * effective_radius / (np.pi * self.contact_modulus))))
+        size = self.length / self.slices
+        if not half_width > size:
+            return told
+        most = max(3, int(2.0 * self.length / half_width) // 2 * 2 - 1)
         return (
-            load.sum(axis=1),
-            ((line * z) @ weights).sum(axis=1),
-            moved[..., 0].sum(axis=1),
-            by_tilt,
-            turning - (leaning * back[..., 1]).sum(axis=1),
-            stored.sum(axis=1) + (load * pressed_in).sum(axis=1) - energy,
-            load,
-            line,
+            f"contact.slices = {self.slices}: slices of {size:.3g} mm are too narrow for a contact with a half-width of "
+            f"{half_width:.3g} mm, choose at most {most}; {told}"
         )
 
     def _plane_energy(self, approach: FloatArray, line_load: FloatArray, radius: FloatArray) -> FloatArray:
         """∫ q dδ = q δ − ∫ δ dq, N."""
         q = np.where(line_load > 0.0, line_load, 1.0)
         scale = 2.0 / (np.pi * self.contact_modulus)
-        half_width = np.sqrt(2.0 * scale * q * radius[:, None, None])
+        half_width = np.sqrt(2.0 * scale * q * radius)
         spent = scale * q**2 * 0.5 * (np.log(2.0 * DATUM * self.length / half_width) + 0.75)
         return np.where(line_load > 0.0, q * approach - spent, 0.0)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ltca.arrays import FloatArray
+from ltca.arrays import FloatArray, by_drive
 from ltca.laws.sliced_line import POINTS, SlicedContact, slice_heights
 
 
@@ -24,7 +24,7 @@ class SlicedSpring:
         As of `ltca.laws.sliced_line.SlicedLine`.
     """
 
-    stiffness: float
+    stiffness: float | FloatArray = by_drive(0)
     length: float
     slices: int
 
@@ -34,7 +34,8 @@ class SlicedSpring:
         weights = 0.5 / self.slices * np.polynomial.legendre.leggauss(POINTS)[1] * np.ones(z.shape)
         delta, theta = np.broadcast_arrays(approach, tilt)
         pressed = np.maximum(delta[..., None, None] + theta[..., None, None] * z, 0.0)
-        load, carried = self.stiffness * weights * pressed, self.stiffness * weights * (pressed > 0.0)
+        stiffness = np.asarray(self.stiffness)[..., None, None]
+        load, carried = stiffness * weights * pressed, stiffness * weights * (pressed > 0.0)
         both = (-2, -1)
         return SlicedContact(
             load=load.sum(axis=both),
@@ -44,5 +45,5 @@ class SlicedSpring:
             moment_by_tilt=(carried * z**2).sum(axis=both),
             energy=0.5 * (load * pressed).sum(axis=both),
             slice_load=load.sum(axis=-1),
-            line_load=self.stiffness / self.length * pressed,
+            line_load=stiffness / self.length * pressed,
         )

@@ -14,9 +14,9 @@ import pytest
 
 from ltca.contact import end_pressure
 from ltca.contact.tracked_grid import CELLS, ContactKind
-from ltca.laws import line_contact
+from ltca.laws import line_contact, sliced_line
 from ltca.laws.line_contact import LONGEST, SHORTEST, LineContactTable, line_contact_table
-from ltca.laws.shipped_tables import tabulate_line_contact
+from ltca.laws.shipped_tables import tabulate_line_contact, tabulate_softer_ends
 
 ROOT = Path(__file__).parents[3]
 
@@ -41,6 +41,12 @@ def test_end_pressure_remade():
     np.testing.assert_allclose(stored["ratio"], ratio, rtol=1e-9)  # as above
 
 
+@pytest.mark.slow
+def test_softer_ends_remade():
+    stored = json.loads(sliced_line.TABLE.read_text(encoding="utf-8"))["softer"]
+    np.testing.assert_allclose(stored, tabulate_softer_ends(), atol=2e-7)  # seven digits are kept
+
+
 def test_a_table_written_and_read_is_the_same_to_the_last_bit():
     made = line_contact_table().content()
     assert LineContactTable.of_content(json.loads(json.dumps(made))).content() == made
@@ -57,7 +63,7 @@ def test_end_pressure_of_grids_that_are_not_shipped_is_solved(cells):
 
 def test_the_wheel_has_the_tables():
     data = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["setuptools"]["package-data"]
-    for table in (line_contact.TABLE, end_pressure.TABLE):
+    for table in (line_contact.TABLE, end_pressure.TABLE, sliced_line.TABLE):
         assert any(fnmatch(table.relative_to(ROOT / "ltca").as_posix(), pattern) for pattern in data["ltca"])
 
 

@@ -1,0 +1,144 @@
+"""Contacts in slices: they settle, their loads and moments have one energy, and they agree with the law of aligned lines."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from ltca.errors import ConvergenceError
+from ltca.laws.line_contact import LineContactLaw
+from ltca.laws.plane_strain import PlaneContactLaw
+from ltca.laws.sliced_line import DATUM, SlicedLine, slice_heights
+
+LENGTH, MODULUS = 10.0, 100e3
+SLICES = (3, 5, 9, 17, 33)
+
+
+def wild(slices, seed, count=120):
+    """Contacts from a touch to a corner that carries alone: line with some relief, and δ, θ, ρ whose half-width is at most
+    twice the length of a slice."""
+    random = np.random.default_rng(seed)
+    deepest = np.exp(random.uniform(np.log(1e-6), np.log(0.05), count))
+    z = slice_heights(LENGTH, slices)
+    relief = (
+        random.choice([0.0, 1.0]) * np.median(deepest) * np.exp(random.normal()) * (2.0 * z / LENGTH) ** 2
+        + random.choice([0.0, 1.0]) * np.median(deepest) * (np.maximum(np.abs(z) - 0.35 * LENGTH, 0.0) / 1.5) ** 2
+        + random.choice([0.0, 1.0]) * random.normal() * 1e-3 * z
+    )
+    tilt = random.choice([0.0, 1.0, -1.0], count) * deepest / LENGTH * np.exp(random.uniform(-3.0, 3.0, count))
+    # Deep where the line is deepest, wherever that is.
+    shape = tilt[:, None, None] * z - relief
+    approach = deepest - shape.max(axis=(1, 2))
+    widest = 2.0 * LENGTH / slices
+    radius = np.minimum(np.exp(random.uniform(np.log(0.1), np.log(300.0), count)), widest**2 / (0.7 * deepest))
+    # Within the tables, from a ten-thousandth of a slice: below they go on straight, and derivatives turn by 1e-7 there.
+    radius = np.maximum(radius, (5e-3 * LENGTH / slices) ** 2 / deepest)
+    return SlicedLine(length=LENGTH, contact_modulus=MODULUS, slices=slices, relief=relief), approach, tilt, radius
+
+
+@pytest.mark.parametrize("slices", SLICES)
+def test_wild_contacts_settle_to_round_off(slices):
+    law = PlaneContactLaw(thickness=1.0, contact_modulus=MODULUS, datum=DATUM * LENGTH)
+    for seed in range(6):
+        line, approach, tilt, radius = wild(slices, seed)
+        found = line.respond(approach, tilt, radius)
+        for positive in (found.load, found.by_approach, found.moment_by_tilt):
+            assert np.all(positive > 0.0)
+        # A second start leaves the same answer: the loads of the neighbour, as in an iteration of the balance.
+        again = line.respond(approach, tilt, radius, start=np.roll(found.slice_load, 1, axis=0))
+        # measured: 2e-13 of the load, what the square of the last step leaves
+        np.testing.assert_allclose(again.load, found.load, rtol=1e-11)
+        np.testing.assert_allclose(again.moment, found.moment, rtol=1e-11, atol=1e-11 * LENGTH * found.load.max())
+        # The points obey the plane law at one and the same u of their slice.
+        free = approach[:, None, None] + tilt[:, None, None] * slice_heights(LENGTH, slices) - line.relief
+        own = law.approach_at_load(found.line_load, radius[:, None, None])[0]
+        pressed = found.line_load > 1e-3 * found.line_load.max(axis=(1, 2), keepdims=True)
+        shift = np.where(pressed, free - own, np.nan)
+        with np.errstate(invalid="ignore"):
+            every = np.nan_to_num(np.fmax.reduce(shift, axis=2) - np.fmin.reduce(shift, axis=2))
+        assert np.max(every / own.max(axis=(1, 2))[:, None]) < 1e-9
+
+
+@pytest.mark.parametrize("slices", SLICES)
+def test_derivatives_energy_and_maxwell(slices):
+    compared = 0
+    for seed in range(6):
+        line, approach, tilt, radius = wild(slices, seed)
+        found = line.respond(approach, tilt, radius)
+        depth = (approach[:, None, None] + tilt[:, None, None] * slice_heights(LENGTH, slices) - line.relief).max(
+            (1, 2)
+        )
+        step = 1e-3 * depth
+        smooth = np.ones(approach.size, dtype=bool)
+
+        def differences(by_approach, by_tilt, place=(line, approach, tilt, radius, step, smooth, found)):
+            line, approach, tilt, radius, step, smooth, found = place
+            total = np.zeros((3, approach.size))
+            # Fourth order: what is left, 1e-12, is that of round-off.
+            for far, weight in ((1, 8.0), (-1, -8.0), (2, -1.0), (-2, 1.0)):
+                there = line.respond(
+                    approach + far * by_approach * step, tilt + far * by_tilt * step, radius, start=found.slice_load
+                )
+                moved = np.abs(there.line_load - found.line_load)
+                smooth &= (moved <= 0.05 * found.line_load).all(axis=(1, 2))
+                total += weight * np.stack((there.load, there.moment, there.energy))
+            return total / (12.0 * step)
+
+        by_approach, by_tilt = differences(1.0, 0.0), differences(0.0, 1.0 / LENGTH) * LENGTH
+        some = np.flatnonzero(smooth)
+        compared += some.size
+        stiff = found.by_approach[some]
+        scale = np.array((1.0, LENGTH))[:, None]
+        # Derivatives are those before the last step, 1e-8 of the loads away: within 1e-6 where contacts bend most.
+        error = np.abs(by_approach[:2] - np.stack((found.by_approach, found.by_tilt)))[:, some]
+        assert np.max(error / scale / stiff) < 1e-6
+        error = np.abs(by_tilt[:2] - np.stack((found.by_tilt, found.moment_by_tilt)))[:, some]
+        assert np.max(error / scale / LENGTH / stiff) < 1e-6
+        # Loads and moments are those of one energy, M ∂δ = F ∂θ.
+        assert np.max(np.abs(by_approach[2] / found.load - 1.0)[some]) < 1e-8
+        assert np.max(np.abs(by_tilt[2] - found.moment)[some] / (LENGTH * found.load[some])) < 1e-8
+        assert np.max(np.abs(by_tilt[0] - by_approach[1])[some] / (LENGTH * stiff)) < 1e-8
+    assert compared > 200  # in the others points open or close nearby
+
+
+def test_mirror_and_units():
+    line, approach, tilt, radius = wild(9, 2)
+    found = line.respond(approach, tilt, radius)
+    mirrored = SlicedLine(length=LENGTH, contact_modulus=MODULUS, slices=9, relief=line.relief[::-1, ::-1])
+    back = mirrored.respond(approach, -tilt, radius)
+    np.testing.assert_allclose(back.load, found.load, rtol=1e-11)
+    np.testing.assert_allclose(back.moment, -found.moment, atol=1e-11 * LENGTH * found.load.max())
+    inch = SlicedLine(length=LENGTH / 25.4, contact_modulus=MODULUS, slices=9, relief=line.relief / 25.4)
+    np.testing.assert_allclose(inch.respond(approach / 25.4, tilt, radius / 25.4).load * 25.4**2, found.load, rtol=1e-9)
+
+
+def test_contacts_do_not_know_of_each_other():
+    """One far beyond the table of the plane law moved the others by 1e-5."""
+    line = SlicedLine(length=LENGTH, contact_modulus=MODULUS, slices=3, relief=np.zeros((3, 4)))
+    alone = line.respond(np.array([0.01]), np.array([1e-4]), np.array([5.0]))
+    crowd = line.respond(np.array([0.01, 1e-18, 5.0]), np.array([1e-4, 0.0, 0.0]), np.array([5.0, 1e-3, 30.0]))
+    assert crowd.load[0] == alone.load[0]
+    nothing = line.respond(np.array([-0.01]), np.array([1e-4]), np.array([5.0]))
+    assert nothing.load[0] == 0.0
+    assert not nothing.line_load.any()
+
+
+def test_aligned_lines_have_the_load_of_the_line_law():
+    """The softer ends are those of nine slices; with others the load is within what the ends of slices lose."""
+    law = LineContactLaw(LENGTH, MODULUS)
+    radius = np.array([5.0])
+    for slenderness, most in ((1000.0, 3e-4), (100.0, 1e-3), (10.0, 2e-3)):
+        approach = LENGTH**2 / slenderness**2 / radius
+        given = law.load_and_stiffness(approach, radius)[0]
+        errors = []
+        for slices in (5, 9, 17):
+            line = SlicedLine(length=LENGTH, contact_modulus=MODULUS, slices=slices, relief=np.zeros((slices, 4)))
+            errors.append(abs(float((line.respond(approach, np.zeros(1), radius).load / given)[0]) - 1.0))
+        assert errors[1] < most
+        assert max(errors) < 5e-3  # bound of the issue
+
+
+def test_slices_much_narrower_than_the_contact_are_told():
+    line = SlicedLine(length=LENGTH, contact_modulus=MODULUS, slices=51, relief=np.zeros((51, 4)))
+    with pytest.raises(ConvergenceError, match=r"contact.slices = 51: .* choose at most \d+"):
+        line.respond(np.array([0.0377]), np.array([0.0]), np.array([40.4]))
