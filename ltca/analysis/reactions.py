@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ltca.analysis.loaded_analysis import LoadedAnalysis
+from ltca.analysis.width import pin_leverages
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.response import bearing_pushes
 from ltca.equilibrium.external_force import entries_of
@@ -108,9 +109,11 @@ def _main_bearing(analysis: LoadedAnalysis) -> dict[str, FloatArray]:
             axial = axial + entry.force.z
     pins = analysis.drive.pin_wheel.number_of_pins
     sense = -1.0 if drive.wheel_is_held else 1.0
-    for plane, part in zip(drive.disc.disc_planes, full.response.parts, strict=True):
+    parts = zip(drive.disc.disc_planes, full.response.parts, pin_leverages(analysis), strict=True)
+    for plane, part, leverage in parts:
         pressed_by_disc = sense * part.pin_forces[:, :pins].sum(axis=1) * into_housing
         force, moment = force + pressed_by_disc, moment + 1j * plane * pressed_by_disc
+        moment = moment + 1j * sense * leverage * into_housing
     teeth, stage = mesh_forces(analysis), drive.first_stage
     if drive.wheel_is_held and teeth is not None and stage is not None and analysis.model.stage is not None:
         outward, radius = analysis.model.stage.outward, float(np.max(analysis.model.stage.sun_radius))

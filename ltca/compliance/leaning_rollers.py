@@ -26,6 +26,8 @@ SETTLED = 1e-10
 """Largest force and moment (by half the length) left over, by the larger load of the two contacts."""
 ROUND_OFF = 1e-7
 """What is left that may be due to what the slices leave over."""
+NOTHING = 1e-14
+"""Load by E* L² that counts as none: a roller that all but leaves both races goes on losing parts of what it carries."""
 MAX_HALVINGS = 12
 STEEPEST = 0.5
 """Largest slope of the energy at the end of a step, by that at its start, that is not shortened."""
@@ -98,12 +100,13 @@ def balance_leaning_rollers(
         lean = np.where(known, start.lean[rows, numbers], lean)
         near = start.inner[rows, numbers], start.outer[rows, numbers]
     inner, outer, outward, length = contacts(_ALL, inward, lean, near)
+    nothing = NOTHING * laws.outer.contact_modulus * laws.outer.length**2
     history: list[float] = []
     going = np.arange(rows.size)
     before = np.full(rows.size, np.inf)
     for _ in range(MAX_ITERATIONS):
         force, moment = _imbalance(inner, outer, outward, ray)
-        size = np.maximum(np.maximum(inner.load, outer.load), np.finfo(float).tiny)
+        size = np.maximum(np.maximum(inner.load, outer.load), nothing)
         left = np.maximum(np.abs(force), np.abs(moment) / half) / size
         history.append(float(np.max(left, initial=0.0)))
         # Nothing but what the slices leave over is left where steps no longer help.

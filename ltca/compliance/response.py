@@ -322,8 +322,11 @@ class Start:
     def onward(cls, response: Response) -> Start:
         """Return the start for other poses of the same positions: pins that cannot touch may be left out.
 
-        What is left out `ltca.equilibrium.reducer.complete` adds.
+        What is left out `ltca.equilibrium.reducer.complete` adds. Of contacts in slices none are left out: pins that are open
+        at mid-width may touch at a corner, and how far a corner reaches turns with the pose.
         """
+        if response.parts[0].leaning_pins is not None:
+            return cls.after(response)
         return replace(cls.after(response), known=KnownPins.of(response.flank))
 
     def of_others(self, reach_beyond: FloatArray) -> Start:

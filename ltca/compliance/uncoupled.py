@@ -211,7 +211,9 @@ class UncoupledContacts(ABC, Generic[Law]):
             rigid_shaft_pins=False,
         )
 
-    def _pressures_of_slices(self, response: DiscResponse, pins: SlicedContact, holes: SlicedContact) -> ContactPressures:
+    def _pressures_of_slices(
+        self, response: DiscResponse, pins: SlicedContact, holes: SlicedContact
+    ) -> ContactPressures:
         """The same of contacts in slices, from their line loads."""
         rollers, kinds, place = response.rollers, self.kinds, self.geometry.placement
         radius, hole = response.flank.effective_radius, place.hole_effective_radii

@@ -29,7 +29,9 @@ def estimate_along_width(
     """Pressures from line loads at the points of slices."""
     points = contact.line_load.shape[-1]
     weights = np.polynomial.legendre.leggauss(points)[1] / 2.0
-    return estimate_of_slices(kind, contact.line_load @ weights * kind.length / contact.line_load.shape[-2], effective_radius)
+    return estimate_of_slices(
+        kind, contact.line_load @ weights * kind.length / contact.line_load.shape[-2], effective_radius
+    )
 
 
 def estimate_of_slices(kind: ContactKind, slice_load: FloatArray, effective_radius: FloatArray) -> WidthPressures:

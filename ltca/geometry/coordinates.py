@@ -75,7 +75,7 @@ class Coordinates:
 
     @property
     def own(self) -> int:
-        """Number of coordinates of each disc: x, y, rotation, x and y of every crank there, the twist of every crank, its lean."""
+        """Number of coordinates of each disc: x, y, rotation, x and y of every crank there, the twist of every crank, lean."""
         return DISC_ROTATION + 1 + (2 + self.twists) * self.cranks + 2 * self.leans
 
     @property

@@ -53,6 +53,8 @@ NEAR = 1e-8
 """What may be left over of a slice's load, by the largest, before the last step, which squares it."""
 ROUND_OFF = 1e-13
 """What is left over by round-off alone."""
+NOTHING = 1e-18
+"""Approach by the length below which a line is open: squares of smaller loads are no numbers."""
 NARROWEST, WIDEST = 1e-4, 40.0
 """Half-width by the length of a slice at the ends of the tables."""
 _KNOTS = 81
@@ -268,7 +270,7 @@ class SlicedLine:
         shape, z = delta.shape, slice_heights(self.length, self.slices)
         relief = self.relief if self.relief.ndim == 2 else self.relief[:, None]
         free = (delta[..., None, None] + theta[..., None, None] * z - relief).reshape(-1, *z.shape)
-        closed = np.flatnonzero((free > 0.0).any(axis=(1, 2)))
+        closed = np.flatnonzero((free > NOTHING * self.length).any(axis=(1, 2)))
         begin = None if start is None else start.reshape(-1, self.slices)[closed].T
         # Contacts come last: every step is one on arrays over them.
         found = self._closed(np.ascontiguousarray(free[closed].transpose(1, 2, 0)), radius.reshape(-1)[closed], begin)

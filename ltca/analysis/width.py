@@ -1,0 +1,148 @@
+"""Along the width of contacts in slices: line loads, pressures, moments, tilts; nothing of the plane model.
+
+Heights are above the middle of the contact. A tilt is a small rotation vector, about x and about y of the fixed frame, and so are
+moments, about the middle of the disc.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from ltca.analysis.loaded_analysis import LoadedAnalysis
+from ltca.arrays import ComplexArray, FloatArray
+from ltca.compliance.response import AlongWidth, KindPressures, bearing_leverages
+from ltca.drive.parts import Drive
+from ltca.quantities import QUANTITIES
+
+AXES = ("x", "y")
+"""What the dimension ``axis`` stands for."""
+HEIGHTS = {"pin": "z_pin", "roller": "z_roller", "hole": "z_hole"}
+"""Coordinates of the heights of the slices, by the parts that a quantity belongs to."""
+
+
+def width_values(analysis: LoadedAnalysis) -> dict[str, FloatArray]:
+    """Return what one disc has along its width, (position, pair, slice), (position, pair) or (position, …, axis)."""
+    pressures, response = analysis.pressures, analysis.full.response
+    pins, outer, inner, holes = (
+        each.along for each in (pressures.pins, pressures.outer, pressures.inner, pressures.holes)
+    )
+    if pins is None or outer is None or inner is None or holes is None:
+        return {}
+    (disc,) = analysis.model.discs
+    angle, cranks = analysis.full.crank_angle, disc.geometry.placement.cranks
+    lean = analysis.full.pose[:, disc.geometry.coordinates_of(analysis.full.pose).lean_place]
+    rays = disc.geometry.rollers(angle).direction
+    values = {
+        "pin_line_load": pins.line_load,
+        "roller_line_load": outer.line_load,
+        "roller_line_load_inner": inner.line_load,
+        "pin_shaft_line_load": holes.line_load,
+        "disc_tilt": np.stack((-lean[:, 1], lean[:, 0]), axis=-1),
+        "crank_bearing_moment": moments_of(bearing_leverages(response.rollers, rays, cranks)),
+        "pin_face_load_factor": face_load_factor(pins)[:, 0],
+        "roller_face_load_factor": np.maximum(face_load_factor(outer, cranks), face_load_factor(inner, cranks)),
+        "pin_shaft_face_load_factor": face_load_factor(holes)[:, 0],
+    }
+    for part, side, kind in (
+        ("pin", "", pins),
+        ("roller", "_outer", outer),
+        ("roller", "_inner", inner),
+        ("pin_shaft", "", holes),
+    ):
+        values[f"{part}_pressure_along_width{side}"] = kind.pressure
+        values[f"{part}_pressure_max_place{side}"] = kind.place
+    return values
+
+
+def moments_of(leverage: ComplexArray) -> FloatArray:
+    """Return the moments about x and y, N·mm, of forces of which Σ F z is given, shape (…, 2)."""
+    return np.stack((-leverage.imag, leverage.real), axis=-1)
+
+
+def face_load_factor(kind: AlongWidth, groups: int = 1) -> FloatArray:
+    """Return K_Hβ of groups of pairs, shape (positions, groups): the largest line load by the largest mean one.
+
+    It is that of the pair that carries most, where that has the largest line load as well; not a number where none carries.
+    """
+    each = kind.line_load.reshape(kind.line_load.shape[0], groups, -1, kind.line_load.shape[-1])
+    if not each.shape[2]:
+        return np.full(each.shape[:2], np.nan)
+    mean = each.mean(axis=3).max(axis=2)
+    return np.divide(each.max(axis=(2, 3)), mean, out=np.full(mean.shape, np.nan), where=mean > 0.0)
+
+
+def pin_leverages(analysis: LoadedAnalysis) -> list[ComplexArray]:
+    """Return Σ F z of the forces of each disc on the wheel pins about the middle of the disc, N·mm, shape (positions,) each."""
+    found = []
+    for part in analysis.full.response.parts:
+        if part.leaning_pins is None:
+            found.append(np.zeros(analysis.full.crank_angle.shape, dtype=complex))
+            continue
+        load, moment = part.pin_load, part.leaning_pins.contact.moment
+        arm = np.divide(moment, load, out=np.zeros(load.shape), where=load > 0.0)
+        found.append((arm * part.pin_forces[:, : load.shape[1]]).sum(axis=1))
+    return found
+
+
+def width_coordinates(drives: Mapping[str, Drive]) -> dict[str, Any]:
+    """Return the coordinates of slices and axes; none in the plane."""
+    slices = next(iter(drives.values())).contact.slices
+    if slices == 1:
+        return {}
+    place = (np.arange(slices) - 0.5 * (slices - 1)) / slices
+    lengths = {
+        "z_pin": [drive.disc.thickness for drive in drives.values()],
+        "z_roller": [drive.roller_length for drive in drives.values()],
+        "z_hole": [drive.disc.thickness for drive in drives.values()],
+    }
+    return {
+        "slice": np.arange(slices),
+        "axis": list(AXES),
+        **{name: QUANTITIES[name].labelled(np.outer(each, place)) for name, each in lengths.items()},
+    }
+
+
+RUN_OFF = 0.02
+"""Pressure at an end, by the largest of the same kind, from which it is told that a crowned contact runs off there."""
+
+
+def run_off_warning(analysis: LoadedAnalysis) -> str | None:
+    """Return a warning where a line that is crowned or relieved carries right up to an end of it; None elsewhere.
+
+    Straight lines do so always.
+    """
+    drive, told = analysis.drive, []
+    disc = drive.disc
+    leads = disc.lead_crown_drop > 0.0 or (disc.lead_relief_length > 0.0 and disc.lead_relief_depth > 0.0)
+    kinds = (
+        ("wheel pins", leads or not drive.pin_wheel.pin_profile.is_cylinder, analysis.pressures.pins),
+        ("rollers in the bore", not drive.crank_bearing.roller_profile.is_cylinder, analysis.pressures.outer),
+        ("rollers on the inner race", not drive.crank_bearing.roller_profile.is_cylinder, analysis.pressures.inner),
+    )
+    for name, modified, kind in kinds:
+        if modified and (words := _run_off_words(kind)):
+            told.append(f"{name} {words}")
+    if not told:
+        return None
+    return (
+        f"the patch of pressure runs off the end of modified contacts: {', '.join(told)}; pressure peaks there, a larger crown or "
+        "relief takes it in"
+    )
+
+
+def _run_off_words(kind: KindPressures) -> str:
+    along = kind.along
+    if along is None or not along.pressure.size:
+        return ""
+    ends = np.where(along.runs_off, along.pressure[..., [0, -1]], 0.0)
+    ends = np.where(np.isfinite(ends), ends, 0.0)
+    largest = float(np.nanmax(along.pressure))
+    if not np.max(ends) > RUN_OFF * largest:
+        return ""
+    sides = [
+        side for side, one in zip(("lower", "upper"), ends.max(axis=(0, 1)), strict=True) if one > RUN_OFF * largest
+    ]
+    return f"(at the {' and the '.join(sides)} end, {np.max(ends):.4g} MPa in the last slice)"
