@@ -8,12 +8,11 @@ from typing import Any
 import numpy as np
 
 from ltca.analysis.loaded_analysis import LoadedAnalysis
-from ltca.analysis.width import pin_leverages
 from ltca.arrays import ComplexArray, FloatArray
-from ltca.compliance.response import bearing_pushes
+from ltca.compliance.response import bearing_moments, bearing_pushes
 from ltca.equilibrium.external_force import entries_of
 from ltca.equilibrium.first_stage import MeshForces
-from ltca.equilibrium.supports import crank_laws, wheel_axial_stiffness, wheel_rows
+from ltca.equilibrium.supports import crank_laws, journals, wheel_axial_stiffness, wheel_rows
 from ltca.geometry.rotation import unit
 from ltca.laws.beam import support_parts
 
@@ -51,9 +50,14 @@ def crank_support_forces(analysis: LoadedAnalysis) -> ComplexArray | None:
     drive, full, stage = analysis.drive, analysis.full, analysis.model.stage
     if drive.crank_supports is None:
         return None
-    parts = support_parts(drive.disc.disc_planes, drive.crank_supports)
-    pushes = np.stack([bearing_pushes(part.rollers, drive.crank.number) for part in full.response.parts], axis=-1)
-    carried = -np.matmul(pushes, parts.T.astype(complex))
+    cranks, contacts = drive.crank.number, full.response.parts
+    planes, slopes = journals(drive)
+    parts = support_parts(planes, drive.crank_supports, slopes)
+    pushes = [bearing_pushes(part.rollers, cranks) for part in contacts]
+    if slopes:
+        rays = [disc.geometry.rollers(full.crank_angle) for disc in analysis.model.discs]
+        pushes += [bearing_moments(part.rollers, own, cranks) for part, own in zip(contacts, rays, strict=True)]
+    carried = -np.matmul(np.stack(pushes, axis=-1), parts.T.astype(complex))
     if stage is not None:
         carried = carried + stage.on_bearings(
             analysis.model.crank_moments(full.crank_angle, full.pose, full.response.parts)
@@ -89,9 +93,9 @@ def _main_bearing(analysis: LoadedAnalysis) -> dict[str, FloatArray]:
     """Force and moment of the housing on the output where its main bearing is described or forces from outside act on it, in the
     frame of the housing.
 
-    Moments are about the zero of the planes of the discs. Forces off that plane and along the axis tilt the output; nothing
-    yields in tilt, so they load the main bearing alone. Where its axial stiffness is known it yields
-    along the axis.
+    Moments are about the zero of the planes of the discs. Forces off that plane and along the axis tilt the output, and so do
+    contacts that carry unevenly along their width; where the bearing is rigid in tilt they load it alone. Where its axial
+    stiffness is known it yields along the axis.
     """
     drive, full = analysis.drive, analysis.full
     if not (drive.load.external or drive.wheel_yields):
@@ -109,11 +113,11 @@ def _main_bearing(analysis: LoadedAnalysis) -> dict[str, FloatArray]:
             axial = axial + entry.force.z
     pins = analysis.drive.pin_wheel.number_of_pins
     sense = -1.0 if drive.wheel_is_held else 1.0
-    parts = zip(drive.disc.disc_planes, full.response.parts, pin_leverages(analysis), strict=True)
-    for plane, part, leverage in parts:
+    for plane, part in zip(drive.disc.disc_planes, full.response.parts, strict=True):
         pressed_by_disc = sense * part.pin_forces[:, :pins].sum(axis=1) * into_housing
         force, moment = force + pressed_by_disc, moment + 1j * plane * pressed_by_disc
-        moment = moment + 1j * sense * leverage * into_housing
+        if part.leaning_pins is not None:
+            moment = moment + 1j * sense * part.pin_moments[:, :pins].sum(axis=1) * into_housing
     teeth, stage = mesh_forces(analysis), drive.first_stage
     if drive.wheel_is_held and teeth is not None and stage is not None and analysis.model.stage is not None:
         outward, radius = analysis.model.stage.outward, float(np.max(analysis.model.stage.sun_radius))

@@ -13,7 +13,7 @@ import numpy as np
 
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.arrays import ComplexArray, FloatArray
-from ltca.compliance.response import AlongWidth, KindPressures, bearing_leverages
+from ltca.compliance.response import AlongWidth, KindPressures, bearing_moments
 from ltca.drive.parts import Drive
 from ltca.quantities import QUANTITIES
 
@@ -34,14 +34,14 @@ def width_values(analysis: LoadedAnalysis) -> dict[str, FloatArray]:
     (disc,) = analysis.model.discs
     angle, cranks = analysis.full.crank_angle, disc.geometry.placement.cranks
     lean = analysis.full.pose[:, disc.geometry.coordinates_of(analysis.full.pose).lean_place]
-    rays = disc.geometry.rollers(angle).direction
+    rays = disc.geometry.rollers(angle)
     values = {
         "pin_line_load": pins.line_load,
         "roller_line_load": outer.line_load,
         "roller_line_load_inner": inner.line_load,
         "pin_shaft_line_load": holes.line_load,
         "disc_tilt": np.stack((-lean[:, 1], lean[:, 0]), axis=-1),
-        "crank_bearing_moment": moments_of(bearing_leverages(response.rollers, rays, cranks)),
+        "crank_bearing_moment": moments_of(bearing_moments(response.rollers, rays, cranks)),
         "pin_face_load_factor": face_load_factor(pins)[:, 0],
         "roller_face_load_factor": np.maximum(face_load_factor(outer, cranks), face_load_factor(inner, cranks)),
         "pin_shaft_face_load_factor": face_load_factor(holes)[:, 0],
@@ -72,19 +72,6 @@ def face_load_factor(kind: AlongWidth, groups: int = 1) -> FloatArray:
         return np.full(each.shape[:2], np.nan)
     mean = each.mean(axis=3).max(axis=2)
     return np.divide(each.max(axis=(2, 3)), mean, out=np.full(mean.shape, np.nan), where=mean > 0.0)
-
-
-def pin_leverages(analysis: LoadedAnalysis) -> list[ComplexArray]:
-    """Return Σ F z of the forces of each disc on the wheel pins about the middle of the disc, N·mm, shape (positions,) each."""
-    found = []
-    for part in analysis.full.response.parts:
-        if part.leaning_pins is None:
-            found.append(np.zeros(analysis.full.crank_angle.shape, dtype=complex))
-            continue
-        load, moment = part.pin_load, part.leaning_pins.contact.moment
-        arm = np.divide(moment, load, out=np.zeros(load.shape), where=load > 0.0)
-        found.append((arm * part.pin_forces[:, : load.shape[1]]).sum(axis=1))
-    return found
 
 
 def width_coordinates(drives: Mapping[str, Drive]) -> dict[str, Any]:

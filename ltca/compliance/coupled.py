@@ -47,7 +47,7 @@ from ltca.drive.hole_contact import shaft_pins_yield
 from ltca.drive.parts import Drive
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.pairs import ContactGeometry
-from ltca.laws.backed import back_shaft_pins, shaft_pin_stiffness, tip_share
+from ltca.laws.backed import back_shaft_pins, shaft_pin_stiffness, tip_share, tip_slope
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.spring import SpringLaw
 
@@ -131,7 +131,7 @@ class CoupledCompliance:
                     f"{drive.shape_fingerprint()}"
                 ]
             )
-        geometry = replace(ContactGeometry.of_drive(drive), tip_share=tip_share(drive))
+        geometry = replace(ContactGeometry.of_drive(drive), tip_share=tip_share(drive), tip_slope=tip_slope(drive))
         place = geometry.placement
         yields = hole_near_field and shaft_pins_yield(drive)
         laws = NearFieldLaws.of_drive(drive, near_field, rigid_shaft_pins=hole_near_field and not yields)

@@ -15,11 +15,12 @@ from ltca.compliance.rollers import RollerLaws
 from ltca.compliance.uncoupled import PairLaws, UncoupledContacts
 from ltca.contact.length_profile import generator_profile, lead_relief
 from ltca.contact.tracked_grid import ContactKind, ContactKinds
+from ltca.drive.hole_contact import hole_modulus, shaft_pins_yield
 from ltca.drive.parts import Drive, LengthProfile, Material, contact_modulus
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.pair_motion import FlankMotion
 from ltca.geometry.pairs import ContactGeometry
-from ltca.laws.backed import back_shaft_pins, back_wheel_pins, shaft_pin_stiffness, tip_share
+from ltca.laws.backed import back_shaft_pins, back_wheel_pins, shaft_pin_beam, shaft_pin_stiffness, tip_share, tip_slope
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.generator_law import law_for_profile
 from ltca.laws.sliced_line import SlicedLine, slice_heights
@@ -57,7 +58,7 @@ class HalfSpaceCompliance(UncoupledContacts[ContactLaw]):
         In a batch (`ltca.arrays.stack_drives`) tables of profiled parts are made for ranges of radii on a ladder, so that drives
         that differ little have the same.
         """
-        geometry = replace(ContactGeometry.of_drive(drive), tip_share=tip_share(drive))
+        geometry = replace(ContactGeometry.of_drive(drive), tip_share=tip_share(drive), tip_slope=tip_slope(drive))
         place, bearing, parts = geometry.placement, drive.crank_bearing, drive.materials
         inner_radius, outer_radius = place.inner_effective_radii, place.outer_effective_radii
         pin_radii = np.ones(1)
@@ -121,6 +122,12 @@ class HalfSpaceCompliance(UncoupledContacts[ContactLaw]):
             contact_modulus(parts.disc, drive.flank_pin),
             of_pin + lead_relief(drive.disc, slice_heights(wide, slices)),
         )
+        hole: SlicedLine | SlicedSpring
+        if shaft_pin_beam(drive) is None:
+            hole = SlicedSpring(stiffness=shaft_pin_stiffness(drive), length=wide, slices=slices)
+        else:
+            # A beam bends behind its contact, which says how its load lies along the width.
+            hole = line(wide, hole_modulus(drive, rigid_shaft_pins=not shaft_pins_yield(drive)), 0.0)
         return cls(
             geometry=geometry,
             pin_law=flank,
@@ -130,7 +137,7 @@ class HalfSpaceCompliance(UncoupledContacts[ContactLaw]):
                 inner_radius=place.inner_effective_radii,
                 outer_radius=place.outer_effective_radii,
             ),
-            hole_law=SlicedSpring(stiffness=shaft_pin_stiffness(drive), length=wide, slices=slices),
+            hole_law=hole,
             kinds=ContactKinds.of_drive(drive),
         )
 

@@ -19,15 +19,13 @@ from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.rollers import RollerLaws, RollerState
 from ltca.errors import ConvergenceError
 from ltca.geometry.pair_motion import RollerRays, dot
-from ltca.laws.sliced_line import SlicedContact, SlicedLine
+from ltca.laws.sliced_line import SlicedContact, SlicedLine, slice_heights
 
 MAX_ITERATIONS = 80
 SETTLED = 1e-10
 """Largest force and moment (by half the length) left over, by the larger load of the two contacts."""
 ROUND_OFF = 1e-7
 """What is left that may be due to what the slices leave over."""
-NOTHING = 1e-14
-"""Load by E* L² that counts as none: a roller that all but leaves both races goes on losing parts of what it carries."""
 MAX_HALVINGS = 12
 STEEPEST = 0.5
 """Largest slope of the energy at the end of a step, by that at its start, that is not shortened."""
@@ -62,16 +60,18 @@ def balance_leaning_rollers(
     race_lean: FloatArray,
     bore_lean: FloatArray,
     start: RollerStart | None = None,
+    given: tuple[FloatArray | float, FloatArray | float] = (0.0, 0.0),
 ) -> RollerState:
     """Place every roller so that its contacts balance; arguments as for `ltca.compliance.rollers.balance_rollers`.
 
     `race_lean` and `bore_lean` are the leans of race and bore along the rays, rad, shape (positions, rollers); `start` is what
-    stood nearby.
+    stood nearby, and `given` what the bodies take of the approaches in the bore and on the race, mm, shape (positions, rollers).
     """
     shape = rays.direction.shape
     half = 0.5 * laws.outer.length
     total = rays.outermost - rays.touching_distance(displacement)
-    pressed = total + half * np.abs(race_lean - bore_lean) > 0.0
+    highest = slice_heights(laws.outer.length, laws.outer.slices).max()
+    pressed = total - (given[0] + given[1]) + highest * np.abs(race_lean - bore_lean) > 0.0
     rows, numbers = np.nonzero(pressed)
 
     def each(values: FloatArray | ComplexArray) -> FloatArray | ComplexArray:
@@ -80,6 +80,7 @@ def balance_leaning_rollers(
     ray, moved, outermost, play = (each(one) for one in (rays.direction, displacement, rays.outermost, rays.bore_play))
     inner_radius, outer_radius = each(laws.inner_radius), each(laws.outer_radius)
     at_race, at_bore, overlap = each(race_lean), each(bore_lean), each(total)
+    from_bore, from_race = (each(np.asarray(one)) for one in given)
     along, lowest = ray.real * moved.real + ray.imag * moved.imag, outermost - overlap
 
     def contacts(which: Any, inward: FloatArray, lean: FloatArray, near: _Near) -> _Contacts:
@@ -88,11 +89,11 @@ def balance_leaning_rollers(
         length = np.abs(arm)
         # |s n − d| less the bore play as a product, as for rollers that do not lean.
         outer = (overlap[which] - inward) * (place + lowest[which] - 2.0 * along[which]) / (length + play[which])
-        first = laws.inner.respond(inward, at_race[which] - lean, inner_radius[which], near[0])
-        second = laws.outer.respond(outer, lean - at_bore[which], outer_radius[which], near[1])
+        first = laws.inner.respond(inward - from_race[which], at_race[which] - lean, inner_radius[which], near[0])
+        second = laws.outer.respond(outer - from_bore[which], lean - at_bore[which], outer_radius[which], near[1])
         return first, second, arm / length, length
 
-    inward, lean = 0.5 * overlap, 0.5 * (at_race + at_bore)
+    inward, lean = from_race + 0.5 * (overlap - from_race - from_bore), 0.5 * (at_race + at_bore)
     near: _Near = (None, None)
     if start is not None:
         known = start.inner[rows, numbers].sum(axis=1) > 0.0
@@ -100,13 +101,13 @@ def balance_leaning_rollers(
         lean = np.where(known, start.lean[rows, numbers], lean)
         near = start.inner[rows, numbers], start.outer[rows, numbers]
     inner, outer, outward, length = contacts(_ALL, inward, lean, near)
-    nothing = NOTHING * laws.outer.contact_modulus * laws.outer.length**2
+    # What round-off of places makes of a load.
+    lightest = np.spacing(outermost) * laws.outer.contact_modulus * laws.outer.length / SETTLED
     history: list[float] = []
-    going = np.arange(rows.size)
     before = np.full(rows.size, np.inf)
     for _ in range(MAX_ITERATIONS):
         force, moment = _imbalance(inner, outer, outward, ray)
-        size = np.maximum(np.maximum(inner.load, outer.load), nothing)
+        size = np.maximum(np.maximum(inner.load, outer.load), lightest)
         left = np.maximum(np.abs(force), np.abs(moment) / half) / size
         history.append(float(np.max(left, initial=0.0)))
         # Nothing but what the slices leave over is left where steps no longer help.
@@ -141,7 +142,7 @@ def balance_leaning_rollers(
     rest = np.abs(arm)
     free = {
         "share": np.full(shape, 0.5), "outer_approach": rest - rays.bore_play, "outer_direction": arm / rest,
-        "tangent": np.zeros((*shape, 4, 4)),
+        "tangent": np.zeros((*shape, 6, 6)),
         "inner_slices": np.zeros((*shape, laws.inner.slices)), "outer_slices": np.zeros((*shape, laws.outer.slices)),
     }  # fmt: skip
     whole = {}
@@ -231,25 +232,36 @@ def _eliminated(
     outer: SlicedContact,
     half: float,
 ) -> FloatArray:
-    """Second derivative of the eliminated energy by displacement (x, y) and lean (x, y) of the bore, shape (rollers, 4, 4)."""
+    """Second derivative of the eliminated energy by displacement (x, y) and lean (x, y) of the bore and what the bodies take of the
+    approaches in the bore and on the race, shape (rollers, 6, 6).
+    """
     slant = ray.imag * outward.real - ray.real * outward.imag
     bend = outer.load / length
     normal = np.stack((outward.real, outward.imag), axis=-1)
     across = np.stack((-outward.imag, outward.real), axis=-1)
     n = np.stack((ray.real, ray.imag), axis=-1)
     k, x, m = (each[:, None] for each in (outer.by_approach, outer.by_tilt, outer.moment_by_tilt))
-    # By place outward and lean of the roller, for displacement and lean of the bore.
-    by_place = np.concatenate(
-        (-k * cosine[:, None] * normal - (bend * slant)[:, None] * across, -x * cosine[:, None] * n), axis=1
+    # By place outward and lean of the roller, for displacement and lean of the bore and what is taken of the approaches.
+    first, second = (
+        np.stack((one, other), axis=1)
+        for one, other in ((outer.by_approach * cosine, -inner.by_approach), (outer.by_tilt, -inner.by_tilt))
     )
-    by_lean = np.concatenate((-x * normal, -m * n), axis=1)
-    direct = np.zeros((ray.size, 4, 4))
+    by_place = np.concatenate(
+        (-k * cosine[:, None] * normal - (bend * slant)[:, None] * across, -x * cosine[:, None] * n, -first), axis=1
+    )
+    by_lean = np.concatenate((-x * normal, -m * n, -second), axis=1)
+    direct = np.zeros((ray.size, 6, 6))
     direct[:, :2, :2] = (
         k[..., None] * normal[:, :, None] * normal[:, None] + bend[:, None, None] * across[:, :, None] * across[:, None]
     )
-    direct[:, :2, 2:] = x[..., None] * normal[:, :, None] * n[:, None]
-    direct[:, 2:, :2] = direct[:, :2, 2:].swapaxes(1, 2)
-    direct[:, 2:, 2:] = m[..., None] * n[:, :, None] * n[:, None]
+    direct[:, :2, 2:4] = x[..., None] * normal[:, :, None] * n[:, None]
+    direct[:, 2:4, 2:4] = m[..., None] * n[:, :, None] * n[:, None]
+    direct[:, :2, 4], direct[:, 2:4, 4] = k * normal, x * n
+    direct[:, 4, 4], direct[:, 5, 5] = outer.by_approach, inner.by_approach
+    for own, other in ((slice(0, 2), slice(2, 4)), (slice(0, 2), 4), (slice(2, 4), 4)):
+        direct[:, other, own] = (
+            direct[:, own, other].swapaxes(1, -1) if isinstance(other, slice) else direct[:, own, other]
+        )
     stiff, mixed, turning = _own_stiffness(inner, outer, cosine, length)
     turning = turning + 1e-9 * half**2 * stiff
     own = np.empty((ray.size, 2, 2))

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from ltca.arrays import BoolArray, ComplexArray, FloatArray
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.compliance.rollers import RollerState
-from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION
-from ltca.geometry.pair_motion import BoreMotion, FlankMotion, KnownPins, PairMotion, PairTilt
+from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION, X, Y
+from ltca.geometry.pair_motion import BoreMotion, FlankMotion, KnownPins, PairMotion, PairTilt, RollerRays
 from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.sliced_line import SlicedContact
 
@@ -31,10 +31,17 @@ class PairSlopes:
         ∂F/∂δ of wheel pins and shaft pins, N/mm; a matrix where the contacts of a disc feel each other.
     by_pose : array, shape (positions, pairs, coordinates)
         ∂F/∂q, N/mm and N.
+    by_tilt, moment_by_tilt : array, shape (positions, pairs) or (positions, pairs, pairs), or None
+        ∂F/∂θ and ∂M/∂θ of contacts in slices, N/rad and N·mm/rad; None in the plane.
+    moment_by_pose : array, shape (positions, pairs, coordinates), or None
+        ∂M/∂q of contacts in slices, N and N·mm.
     """
 
     by_approach: FloatArray
     by_pose: FloatArray
+    by_tilt: FloatArray | None = None
+    moment_by_tilt: FloatArray | None = None
+    moment_by_pose: FloatArray | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +51,7 @@ class FollowingPins:
     Attributes
     ----------
     shifts : array of complex, shape (positions, discs, pairs)
-        mm.
+        mm; in slices those of slopes follow those of all discs (`ltca.equilibrium.pin_displacements`).
     by_pose : array of complex, shape (positions, discs, pairs, coordinates), or None
         mm by mm and rad; None where balanced positions are kept, of which it would be a quarter of the memory.
     pose : array, shape (positions, coordinates)
@@ -102,6 +109,8 @@ class DiscResponse:
         wants nothing. It saves work and alters no answer.
     shifts : array of complex, shape (positions, pairs), or None
         Displacements of wheel pins and shaft pins that were given, mm: what the parts that hold them yield.
+    leans : array of complex, shape (positions, pairs), or None
+        Leans of wheel pins and shaft pins at the disc that were given with them in slices, rad.
     ring : array of complex, shape (positions, z_P), or None
         What the ring of the wheel moves the wheel pins in the turning wheel, mm, a part of `shifts`; None where it is rigid.
     follow : FollowingPins or None
@@ -123,6 +132,7 @@ class DiscResponse:
     hole_load: FloatArray
     warm_start: NDArray[np.object_]
     shifts: ComplexArray | None = None
+    leans: ComplexArray | None = None
     ring: ComplexArray | None = None
     follow: FollowingPins | None = None
     slopes: PairSlopes | None = None
@@ -142,6 +152,15 @@ class DiscResponse:
         if self.friction is not None:
             force = force + self.friction[..., None] * along
         return np.asarray(force[..., 0] + 1j * force[..., 1])
+
+    @property
+    def pin_moments(self) -> ComplexArray:
+        """Moment of the disc on each pin in slices as an arrow that works along leans, N·mm, shape (positions, pairs)."""
+        found = []
+        for motion, pairs in ((self.flank, self.leaning_pins), (self.holes, self.leaning_holes)):
+            assert pairs is not None
+            found.append(pairs.contact.moment * (motion.gradient[..., X] + 1j * motion.gradient[..., Y]))
+        return np.concatenate(found, axis=1)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -273,9 +292,17 @@ class DiscModel(Protocol):
         ...
 
     def respond(
-        self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None, shifts: ComplexArray | None = None
+        self,
+        crank_angle: FloatArray,
+        pose: FloatArray,
+        start: Start | None = None,
+        shifts: ComplexArray | None = None,
+        leans: ComplexArray | None = None,
+        again: DiscResponse | None = None,
     ) -> DiscResponse:
-        """Return the contact forces at the poses of a batch of positions; `shifts` are displacements of the pins, if any."""
+        """Return the contact forces at the poses of a batch of positions; `shifts` are displacements of the pins, if any, `leans`
+        their leans, and `again` what was answered there with pins displaced otherwise.
+        """
         ...
 
     def pressures(self, response: DiscResponse) -> ContactPressures:
@@ -322,11 +349,8 @@ class Start:
     def onward(cls, response: Response) -> Start:
         """Return the start for other poses of the same positions: pins that cannot touch may be left out.
 
-        What is left out `ltca.equilibrium.reducer.complete` adds. Of contacts in slices none are left out: pins that are open
-        at mid-width may touch at a corner, and how far a corner reaches turns with the pose.
+        What is left out `ltca.equilibrium.reducer.complete` adds.
         """
-        if response.parts[0].leaning_pins is not None:
-            return cls.after(response)
         return replace(cls.after(response), known=KnownPins.of(response.flank))
 
     def of_others(self, reach_beyond: FloatArray) -> Start:
@@ -366,15 +390,13 @@ def bearing_pushes(rollers: RollerState, cranks: int) -> ComplexArray:
     return np.asarray(each.reshape(each.shape[0], cranks, -1).sum(axis=2))
 
 
-def bearing_leverages(rollers: RollerState, direction: ComplexArray, cranks: int) -> ComplexArray:
-    """Return Σ F z of every crank bearing on the disc in the fixed frame, N·mm, shape (positions, cranks); zero in the plane.
-
-    It does work on the lean of the disc as the force does on its displacement; the moment M_x + i M_y is i times it. `direction`
-    are the rays of the rollers (`ltca.geometry.pair_motion.RollerRays`).
+def bearing_moments(rollers: RollerState, rays: RollerRays, cranks: int) -> ComplexArray:
+    """Return what every crank bearing presses the lean of the disc with, x + iy, shape (positions, cranks), N·mm; zero where
+    rollers do not lean.
     """
     if rollers.outer_moment is None:
-        return np.zeros((rollers.outer_load.shape[0], cranks), dtype=complex)
-    each = rollers.outer_moment * direction
+        return np.zeros((rays.direction.shape[0], cranks), dtype=complex)
+    each = rollers.outer_moment * rays.direction
     return np.asarray(each.reshape(each.shape[0], cranks, -1).sum(axis=2))
 
 

@@ -14,13 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.arrays import ComplexArray, FloatArray
-from ltca.compliance.leaning_rollers import RollerStart, balance_leaning_rollers
+from ltca.compliance.in_slices import ContactsInSlices, roller_start, stacked, warm_rows
 from ltca.compliance.pressures import elastic_hole_pressures, pressures_of_slices
 from ltca.compliance.response import (
     ContactPressures,
     DiscResponse,
     KindPressures,
-    LeaningPairs,
     PairSlopes,
     Start,
     add_bearing_bend,
@@ -30,8 +29,7 @@ from ltca.compliance.response import (
 from ltca.compliance.rollers import Law, RollerLaws, RollerState, balance_rollers
 from ltca.contact.tracked_grid import ContactKind, ContactKinds
 from ltca.contact.width_pressure import estimate_along_width, estimate_of_slices
-from ltca.geometry.coordinates import Coordinates
-from ltca.geometry.pair_motion import BoreMotion, FlankMotion, PairMotion, dot
+from ltca.geometry.pair_motion import BoreMotion, FlankMotion, PairMotion
 from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.sliced_line import SlicedContact
@@ -80,7 +78,13 @@ class UncoupledContacts(ABC, Generic[Law]):
         return np.full(positions, None, dtype=object)
 
     def respond(
-        self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None, shifts: ComplexArray | None = None
+        self,
+        crank_angle: FloatArray,
+        pose: FloatArray,
+        start: Start | None = None,
+        shifts: ComplexArray | None = None,
+        leans: ComplexArray | None = None,
+        again: DiscResponse | None = None,
     ) -> DiscResponse:
         """Return the contact forces at the poses of a batch of positions.
 
@@ -95,6 +99,10 @@ class UncoupledContacts(ABC, Generic[Law]):
         shifts : array of complex, shape (positions, z_P + z_PS), optional
             Displacements of the pins, mm: of wheel pins in the turning wheel, of shaft pins in the fixed frame. Slopes come
             with them.
+        leans : array of complex, shape (positions, z_P + z_PS), optional
+            Leans of the pins at the disc in the same frames, rad, of contacts in slices.
+        again : DiscResponse, optional
+            What was answered at the same poses with pins displaced otherwise, in slices: their rollers stand where they stood.
 
         Returns
         -------
@@ -111,10 +119,12 @@ class UncoupledContacts(ABC, Generic[Law]):
         places, known, share, warm = (
             (None, None, None, None) if start is None else (start.parameter, start.known, start.share, start.warm_start)
         )
-        flank = geometry.flank(crank_angle, pose, places, moved[0], known)
+        leaning = geometry.coordinates_of(pose).leans
+        # A pin that is open in the middle may touch at its end: none is left out.
+        flank = geometry.flank(crank_angle, pose, places, moved[0], None if leaning else known)
         laws = self.laws(flank, warm)
-        if geometry.coordinates_of(pose).leans:
-            return self._respond_in_slices(crank_angle, pose, flank, laws, shifts, warm)
+        if leaning:
+            return self._respond_in_slices(crank_angle, pose, flank, laws, shifts, leans, warm, again)
         pin_load, pin_stiffness = laws.pins.load_and_stiffness(flank.approach, flank.effective_radius)
         holes = geometry.holes(crank_angle, pose, moved[1])
         hole_load, hole_stiffness = self.hole_law.load_and_stiffness(
@@ -145,56 +155,22 @@ class UncoupledContacts(ABC, Generic[Law]):
         flank: FlankMotion,
         laws: PairLaws[Any],
         shifts: ComplexArray | None,
+        leans: ComplexArray | None,
         warm: NDArray[np.object_] | None,
+        again: DiscResponse | None,
     ) -> DiscResponse:
         """The same of contacts in slices, which tilt."""
-        near = None
-        if warm is not None and all(each is not None for each in warm):
-            near = [np.stack(parts) for parts in zip(*warm, strict=True)]
-        geometry, place = self.geometry, self.geometry.placement
-        coordinates = geometry.coordinates_of(pose)
-        holes = geometry.holes(crank_angle, pose, split_shifts(shifts, geometry)[1])
-        bores, rays = geometry.bores(crank_angle, pose), geometry.rollers(crank_angle)
-        pairs = []
-        for motion, tilt, law, radius in (
-            (flank, geometry.flank_tilt(crank_angle, pose, flank), laws.pins, flank.effective_radius),
-            (holes, geometry.hole_tilt(pose, holes), self.hole_law, place.hole_effective_radii),
-        ):
-            begin = () if near is None or motion is holes else (near[0],)
-            contact = law.respond(motion.approach, tilt.tilt, radius, *begin)
-            pairs.append((motion, LeaningPairs(tilt=tilt, contact=contact)))
-        displacement = bores.each(bores.displacement, rays.direction.shape[1])
-        along = [dot(rays.direction, lean) for lean in (np.asarray(place.crank_lean), geometry.lean(pose))]
-        begin = None if near is None else RollerStart(inward=near[1], lean=near[2], inner=near[3], outer=near[4])
-        rollers = balance_leaning_rollers(rays, displacement, laws.rollers, *along, begin)
-        tangent = _leaning_roller_tangent(rollers, bores, coordinates)
-        pins, of_holes = (pair.contact.load for _, pair in pairs)
-        force = resultant(flank, pins, holes, of_holes, rollers, bores)
-        if rollers.outer_moment is not None:
-            pressed = (rollers.outer_moment * rays.direction).sum(axis=1)
-            force[:, coordinates.lean_place] -= np.stack((pressed.real, pressed.imag), axis=-1)
-        for motion, pair in pairs:
-            found, leaning = pair.contact, pair.tilt
-            force += np.einsum("bi,bij->bj", found.moment, leaning.gradient)
-            tangent += _pair_tangent(motion, found.load, found.by_approach)
-            mixed = np.matmul(motion.gradient.swapaxes(1, 2), found.by_tilt[..., None] * leaning.gradient)
-            tangent += mixed + mixed.swapaxes(1, 2)
-            turning = found.moment_by_tilt[..., None] * leaning.gradient
-            tangent += np.matmul(leaning.gradient.swapaxes(1, 2), turning)
-            tangent += motion.bend_leans(found.moment, coordinates)
-        return DiscResponse(
-            force=force,
-            tangent=tangent,
-            flank=flank,
-            holes=holes,
-            rollers=rollers,
-            pin_load=pins,
-            hole_load=of_holes,
-            warm_start=_rows_of(pairs[0][1].contact.slice_load, rollers),
-            shifts=shifts,
-            leaning_pins=pairs[0][1],
-            leaning_holes=pairs[1][1],
-        )
+        here = ContactsInSlices(self.geometry, crank_angle, pose, flank, shifts, leans)
+        near = stacked(warm)
+        starts = (None, None) if near is None else (near[0], near[1])
+        if again is not None and again.leaning_pins is not None and again.leaning_holes is not None:
+            starts = again.leaning_pins.contact.slice_load, again.leaning_holes.contact.slice_load
+        pairs = here.pair(0, laws.pins, starts[0]), here.pair(1, self.hole_law, starts[1])
+        if again is None:
+            rollers = here.rollers(laws.rollers, None if near is None else roller_start(near))
+        else:
+            rollers = again.rollers
+        return here.response(pairs, rollers, warm_rows(pairs, rollers))
 
     def pressures(self, response: DiscResponse) -> ContactPressures:
         """Return pressures and half-widths from the laws, those of the shaft pins from their loads."""
@@ -240,25 +216,6 @@ def _roller_tangent(rollers: RollerState, bores: BoreMotion) -> FloatArray:
     positions, cranks = bores.arm.shape
     stiffness = np.einsum("bcri->bci", rollers.tangent.reshape(positions, cranks, -1, 4)).reshape(-1, cranks, 2, 2)
     moved = np.stack((bores.gradient.real, bores.gradient.imag), axis=2)
-    tangent = np.matmul(moved.swapaxes(2, 3), np.matmul(stiffness, moved)).sum(axis=1)
-    add_bearing_bend(tangent, rollers, bores)
-    return np.asarray(tangent)
-
-
-def _rows_of(pins: FloatArray, rollers: RollerState) -> NDArray[np.object_]:
-    """What contacts in slices want to find again, row by row."""
-    found = np.empty(pins.shape[0], dtype=object)
-    each = (pins, rollers.share, rollers.lean, rollers.inner_slices, rollers.outer_slices)
-    found[:] = list(zip(*(values for values in each if values is not None), strict=True))
-    return found
-
-
-def _leaning_roller_tangent(rollers: RollerState, bores: BoreMotion, coordinates: Coordinates) -> FloatArray:
-    positions, cranks = bores.arm.shape
-    stiffness = rollers.tangent.reshape(positions, cranks, -1, 4, 4).sum(axis=2)
-    moved = np.zeros((positions, cranks, 4, coordinates.size))
-    moved[:, :, 0], moved[:, :, 1] = bores.gradient.real, bores.gradient.imag
-    moved[:, :, 2:, coordinates.lean_place] = np.eye(2)
     tangent = np.matmul(moved.swapaxes(2, 3), np.matmul(stiffness, moved)).sum(axis=1)
     add_bearing_bend(tangent, rollers, bores)
     return np.asarray(tangent)

@@ -394,6 +394,16 @@ class Drive:
         return self.pin_wheel.support_stiffness is not None or self.main_bearing is not None
 
     @property
+    def wheel_tilts(self) -> bool:
+        """Whether the main bearing of the wheel yields in tilt and contacts have slices, which feel it: by its own stiffness, or by
+        rows with pressure centres apart.
+        """
+        bearing = self.main_bearing
+        if bearing is None or self.contact.slices == 1:
+            return False
+        return bearing.tilt_stiffness is not None or bearing.rows_resist_tilt
+
+    @property
     def number_of_holes(self) -> int:
         """z_PS, number of shaft pins and of holes; 0 without a pin shaft."""
         return 0 if self.pin_shaft is None else self.pin_shaft.number_of_pins

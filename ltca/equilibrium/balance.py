@@ -104,8 +104,9 @@ def lever_arms(model: Reducer) -> FloatArray:
         arms[..., place], arms[..., WHEEL_ANGLE] = wheel - e, wheel
         for twist in coordinates.twist_places:
             arms[..., place - DISC_ROTATION + twist] = e
-        for lean in range(*coordinates.lean_place.indices(coordinates.own)):
+        for lean in range(coordinates.own - 2 * (1 + coordinates.cranks) * coordinates.leans, coordinates.own):
             arms[..., place - DISC_ROTATION + lean] = np.squeeze(geometry.half_width)
+        arms[..., coordinates.wheel_lean_place] = np.squeeze(geometry.half_width + np.abs(geometry.plane))[..., None]
     if coordinates.ring:
         arms[..., coordinates.ring_place.stop - 1] = ring
     return arms

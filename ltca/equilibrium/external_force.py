@@ -25,12 +25,16 @@ class ExternalForce:
         At rest in the frame of the pin shaft, x + iy, N.
     turning : complex
         Turning with the wheel by φ_C/u, as it stands at φ_C = 0, N.
+    tilting_still, tilting_turning : complex
+        What presses the lean of the wheel, z F − i M of forces at z and moments M = M_x + i M_y, N·mm.
     reduction_ratio : float
         u.
     """
 
     still: ComplexArray = by_drive(1)
     turning: ComplexArray = by_drive(1)
+    tilting_still: ComplexArray = by_drive(1)
+    tilting_turning: ComplexArray = by_drive(1)
     reduction_ratio: float
 
     @classmethod
@@ -39,18 +43,36 @@ class ExternalForce:
         if not drive.load.external:
             return None
         sums = {
-            frame: np.array([sum((complex(one.force.x, one.force.y) for one in entries_of(drive, frame)), 0j)])
+            frame: np.array([sum((_pressing(one) for one in entries_of(drive, frame)), np.zeros(2, dtype=complex))])
             for frame in ("housing", "output")
         }
         if drive.wheel_is_held:
             still, turning = -sums["output"], -sums["housing"]
         else:
             still, turning = sums["housing"], sums["output"]
-        return cls(still=still, turning=turning, reduction_ratio=drive.reduction_ratio)
+        return cls(
+            still=still[:, 0],
+            turning=turning[:, 0],
+            tilting_still=still[:, 1],
+            tilting_turning=turning[:, 1],
+            reduction_ratio=drive.reduction_ratio,
+        )
 
     def on_wheel(self, crank_angle: FloatArray) -> ComplexArray:
         """Return the force at crank angles, in the frame of the pin shaft, N, shape (positions,)."""
         return np.asarray(self.still[..., 0] + self.turning[..., 0] * unit(crank_angle / self.reduction_ratio))
+
+    def tilting(self, crank_angle: FloatArray) -> ComplexArray:
+        """Return what presses the lean of the wheel at crank angles, N·mm, shape (positions,)."""
+        turned = unit(crank_angle / self.reduction_ratio)
+        return np.asarray(self.tilting_still[..., 0] + self.tilting_turning[..., 0] * turned)
+
+
+def _pressing(load: ExternalLoad) -> ComplexArray:
+    """Force in the plane, N, and what presses a lean, N·mm: the axial force has its arm from the axis."""
+    force = complex(load.force.x, load.force.y)
+    moment = complex(load.moment.x, load.moment.y)
+    return np.array([force, load.at.z * force - 1j * moment])
 
 
 def entries_of(drive: Drive, frame: str) -> list[ExternalLoad]:

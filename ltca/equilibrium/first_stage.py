@@ -27,7 +27,7 @@ import numpy as np
 
 from ltca.arrays import ComplexArray, FloatArray, by_drive
 from ltca.drive.parts import Drive
-from ltca.equilibrium.supports import crank_springs
+from ltca.equilibrium.supports import crank_springs, journals
 from ltca.geometry.coordinates import Coordinates
 from ltca.geometry.placement import BatchScalar
 from ltca.laws.beam import shaft_flexibility, support_parts
@@ -72,6 +72,8 @@ class StageMesh:
         Rotation of a crank by its moment while the sun is held, 1/(c r_b²), rad/(N·mm); 0 where teeth are rigid.
     half_free : float
         Half of the angle by which a planet is free to turn, rad.
+    plane : float
+        Axial place of the planets, mm.
     sun_radius : float
         Radius of the pitch circle of the sun, mm.
     reduction_ratio : float
@@ -101,6 +103,7 @@ class StageMesh:
     axial: BatchScalar = by_drive(0)
     twist: BatchScalar = by_drive(0)
     half_free: BatchScalar = by_drive(0)
+    plane: BatchScalar = by_drive(0)
     sun_radius: BatchScalar = by_drive(0)
     reduction_ratio: float
     outward: ComplexArray = by_drive(1)
@@ -119,23 +122,28 @@ class StageMesh:
             return None
         mesh, places, coordinates = stage.mesh(distance), np.array(drive.crank.places), Coordinates.of_drive(drive)
         stiffness, support, discs = stage.mesh_stiffness, drive.crank.support, drive.disc.number_of_discs
-        planes, bearings, shaft = drive.disc.disc_planes, drive.crank_supports, drive.materials.crankshaft
+        (planes, slopes), bearings, shaft = journals(drive), drive.crank_supports, drive.materials.crankshaft
+        count = len(planes) + len(slopes)
         place = 0.0 if stage.plane is None else stage.plane  # left out where no bearing gives their forces an arm
-        bending, own, by_bearings = np.zeros((discs, 2)), np.zeros((2, 2)), np.zeros((2, 2))
+        bending, own, by_bearings = np.zeros((count, 2)), np.zeros((2, 2)), np.zeros((2, 2))
         on_supports: FloatArray = np.eye(discs + 1, 2, -discs)
         if support is not None:
             whole = shaft_flexibility(
                 [*planes, place], support.positions, crank_springs(drive), support.diameter, shaft.youngs_modulus,
-                [place],
+                [*slopes, place],
             )  # fmt: skip
-            bending = np.asarray(np.linalg.solve(whole[:discs, :discs], whole[:discs, discs:]), dtype=float)
-            own = whole[discs:, discs:] - whole[discs:, :discs] @ bending
+            at_planet = [discs, count + 1]
+            held = np.setdiff1d(np.arange(count + 2), at_planet)
+            bending = np.asarray(
+                np.linalg.solve(whole[np.ix_(held, held)], whole[np.ix_(held, at_planet)]), dtype=float
+            )
+            own = whole[np.ix_(at_planet, at_planet)] - whole[np.ix_(at_planet, held)] @ bending
         if bearings is not None:
             on_supports = support_parts([place], bearings, [place])
-            by_bearings = on_supports - support_parts(planes, bearings) @ bending
+            by_bearings = on_supports - support_parts(planes, bearings, slopes) @ bending
         by_pose = np.zeros((drive.crank.number, 2, coordinates.size), dtype=complex)
         for crank in range(coordinates.cranks):
-            x = coordinates.own * np.arange(discs) + coordinates.crank(crank)
+            x = coordinates.journals(crank)
             by_pose[crank][:, x], by_pose[crank][:, x + 1] = bending.T, 1j * bending.T
         on_posts = drive.posts is not None
         if on_posts:
@@ -148,6 +156,7 @@ class StageMesh:
             axial=mesh.axial,
             twist=0.0 if stiffness is None else 1.0 / (stiffness * mesh.base_radius**2),
             half_free=0.5 * mesh.backlash_angle(stage.backlash),
+            plane=place,
             sun_radius=distance - mesh.pitch_radius,
             reduction_ratio=drive.reduction_ratio,
             outward=places / np.abs(places),
@@ -183,6 +192,14 @@ class StageMesh:
         """
         sign = -1.0 if self.carried else 0.0
         return sign * self.forces(moments).in_plane.sum(axis=1), sign * self._slope(np.sign(moments))[0]
+
+    def tilting_on_wheel(self, moments: FloatArray) -> ComplexArray:
+        """Return what the sun presses the lean of the wheel with relative to the carrier, z F − i M, N·mm, shape (positions,); zero
+        where the carrier is held.
+        """
+        sign, forces = -1.0 if self.carried else 0.0, self.forces(moments)
+        along = (self.sun_radius * self.outward * forces.axial).sum(axis=1)
+        return sign * (np.asarray(self.plane)[..., None] * forces.in_plane).sum(axis=1) - sign * along
 
     def on_bearings(self, moments: FloatArray) -> ComplexArray:
         """Return what bearings of the cranks carry of the forces of the teeth, N, shape (positions, cranks, supports)."""

@@ -50,6 +50,10 @@ def unbalanced_moment(
         x, y = pose[:, model.coordinates.wheel_place].T
         force = model.force_beside_pins(angle, pose, parts)
         left = left + x * force.imag - y * force.real
+    if model.coordinates.wheel_leans:
+        x, y = pose[:, model.coordinates.wheel_lean_place].T
+        tilting = model.tilting_beside_pins(angle, pose, parts)
+        left = left + x * tilting.imag - y * tilting.real
     return np.asarray(left)
 
 

@@ -11,6 +11,11 @@ Gaps are those of the displaced pins, with no normal linearised: loads and displ
 Newton's method, pin by pin where neither the ring nor the body of a disc couples them, for all that carry at once elsewhere.
 With :math:`K = \partial f/\partial u` and :math:`H = \partial f/\partial q` the tangent of the whole is that of pins at rest
 less :math:`H^T (1 + S K)^{-1} S H`.
+
+In slices a disc presses a pin with a moment as well, and the pin leans where it stands in the disc. Leans are kept as
+displacements at half the thickness of the disc and moments as forces there, behind those of all discs, so that S stays one
+symmetric matrix: the slope under a force is the deflection under a moment. All that a beam bends is in S then, also under its
+own disc and in a drive of one disc, and laws are those of the contacts alone. A ring of the wheel moves seats and does not lean them.
 """
 
 from __future__ import annotations
@@ -50,13 +55,19 @@ class PinDisplacements:
     ----------
     beams : array, shape (pairs, discs, discs) or (positions, pairs, discs, discs)
         Deflection of each pin at disc d under a unit force of disc d', wheel pins before shaft pins, mm/N; zero for d = d', and
-        for pins that do not bend.
+        for pins that do not bend. Where pins lean, those of leans and moments by `half_width` follow, and d = d' is not zero.
     ring : array, shape (z_P, 2, z_P, 2) or (positions, z_P, 2, z_P, 2), or None
         Displacement (x, y) of the seats of the wheel pins in the wheel under unit forces at the seats, mm/N.
+    half_width : float or array, shape (positions, 1)
+        Half the thickness of the discs, mm.
+    leans : bool
+        Whether pins lean.
     """
 
     beams: FloatArray = by_drive(3)
     ring: FloatArray | None = by_drive(4, default=None)
+    half_width: float | FloatArray = by_drive(0, default=1.0)
+    leans: bool = False
 
     @classmethod
     def of_drive(cls, drive: Drive, lender: Drive | None = None) -> PinDisplacements | None:
@@ -67,7 +78,21 @@ class PinDisplacements:
         beams, ring = _beams(drive), ring_flexibility(drive, lender)
         if ring is None and not beams.any():
             return None
-        return cls(beams=beams, ring=ring)
+        return cls(beams=beams, ring=ring, half_width=0.5 * drive.disc.thickness, leans=drive.contact.slices > 1)
+
+    @property
+    def discs(self) -> int:
+        """Number of discs."""
+        return int(self.beams.shape[-1]) // (1 + self.leans)
+
+    def unmoved(self, positions: int) -> ComplexArray:
+        """Return the displacements of pins that stand where they stand without load, shape (positions, discs, pairs)."""
+        pairs, rows, _ = self.beams.shape[-3:]
+        return np.zeros((positions, rows, pairs), dtype=complex)
+
+    def lean(self, shifts: ComplexArray, disc: int) -> ComplexArray:
+        """Return the leans of the pins at a disc among their displacements, rad, shape (positions, pairs)."""
+        return np.asarray(shifts[:, self.discs + disc] / self.half_width)
 
     def under(self, force: ComplexArray) -> ComplexArray:
         """Return S f, mm, for forces on the pins by disc, N, shape (positions, discs, pairs)."""
@@ -75,7 +100,7 @@ class PinDisplacements:
             1, 2
         )
         if self.ring is not None:
-            found[:, :, : self.ring.shape[-2]] += self.of_ring(force)[:, None]
+            found[:, : self.discs, : self.ring.shape[-2]] += self.of_ring(force)[:, None]
         return found
 
     def of_ring(self, force: ComplexArray) -> ComplexArray:
@@ -83,7 +108,7 @@ class PinDisplacements:
         if self.ring is None:
             return np.zeros((force.shape[0], 0), dtype=complex)
         seats = self.ring.shape[-2]
-        total = force[:, :, :seats].sum(axis=1)
+        total = force[:, : self.discs, :seats].sum(axis=1)
         flat = np.stack((total.real, total.imag), axis=-1).reshape(-1, 2 * seats, 1)
         matrix = self.ring.reshape(*self.ring.shape[:-4], 2 * seats, 2 * seats)
         moved = np.matmul(matrix, flat).reshape(-1, seats, 2)
@@ -103,7 +128,8 @@ class PinDisplacements:
         Parameters
         ----------
         respond : callable
-            Returns the contacts of all discs for displacements, mm, complex, shape (positions, discs, pairs).
+            Returns the contacts of all discs for displacements, mm, complex, shape (positions, discs, pairs), with leans behind
+            them in slices (`lean`).
         coordinates : Coordinates
             Of the whole.
         turned : array of complex, shape (positions,)
@@ -119,8 +145,10 @@ class PinDisplacements:
             When they do not settle.
         """
 
+        kind = LeaningPins if self.leans else DisplacedPins
+
         def at(moved: ComplexArray) -> DisplacedPins:
-            return DisplacedPins(self, respond(moved), coordinates, turned, moved)
+            return kind(self, respond(moved), coordinates, turned, moved)
 
         history: list[float] = []
         system = at(shifts)
@@ -250,11 +278,14 @@ class DisplacedPins:
         self.frame = np.where(np.arange(pairs) < wheel, turned.conjugate()[:, None], 1.0)
         """What turns directions into those of the part that holds the pin, shape (positions, pairs)."""
         self.rubs = _friction_by_load(parts)
-        # Against the pins' displacements.
-        self.force = np.stack([-part.pin_forces * self.frame for part in parts], axis=1)
+        self.force = self._forces()
+        """Against the pins' displacements, N, shape (positions, discs, pairs)."""
         self.left = shifts + held.under(self.force)
         """Displacements less what the forces make of them, mm, shape (positions, discs, pairs)."""
         self.size = np.max(np.abs(self.left), axis=(1, 2), initial=0.0)
+
+    def _forces(self) -> ComplexArray:
+        return np.stack([-part.pin_forces * self.frame for part in self.parts], axis=1)
 
     @property
     def rough(self) -> FloatArray:
@@ -338,6 +369,7 @@ class DisplacedPins:
         else:
             # A contact that carries nothing has no stiffness. Most rows have a few idle ones for the sake of the fullest.
             load = np.stack([np.concatenate((part.pin_load, part.hole_load), axis=1) for part in self.parts], axis=1)
+            load = np.tile(load, (1, discs // len(self.parts), 1))  # leans carry where displacements do
             carries = ((load > 0.0) & self.moves).reshape(positions, discs * pairs)
             most = max(1, int(np.max(np.count_nonzero(carries, axis=1), initial=0)))
             chosen = np.sort(np.argsort(~carries, axis=1, kind="stable")[:, :most], axis=1)[:, None, :]
@@ -368,7 +400,8 @@ class DisplacedPins:
             own = ring[rows[:, 0, 0]] if ring.ndim > 4 else ring
             whole = np.zeros((*own.shape[:-4], 2 * seats + 2, 2 * seats + 2))
             whole[..., :-2, :-2] = own.reshape(*own.shape[:-4], 2 * seats, 2 * seats)
-            seat = (2 * np.minimum(pair, seats)[..., None] + np.arange(2)).reshape(*pair.shape[:-1], count)
+            seat = np.where(disc < self.held.discs, np.minimum(pair, seats), seats)
+            seat = (2 * seat[..., None] + np.arange(2)).reshape(*pair.shape[:-1], count)
             if ring.ndim > 4:
                 row = np.arange(own.shape[0])[:, None, None, None]
                 found = found + whole[row, seat[..., :, None], seat[..., None, :]]
@@ -432,30 +465,45 @@ class DisplacedPins:
         normal: FloatArray,
     ) -> FloatArray:
         """Forces along normals whose loads follow the pose as given, and loads that turn with it."""
-        slip = self._vectors(rows, disc, pair, "along")
-        bend, on_flank = self._bend(rows, disc, pair), self._load(rows, disc, pair) * self._on_flank(pair)
+        load = self._load(rows, disc, pair)
         found = np.zeros((*normal.shape, self.coordinates.size))
-        for number, (part, loads) in enumerate(zip(self.parts, by_pose, strict=True)):
+        for number, loads in enumerate(by_pose):
             mine = (disc == number)[..., None, None]
-            # F ∂²δ/∂u∂q: κ s_u s_qᵀ, on the flank with s_u e₂ᵀ − s_u e_Wᵀ as well.
-            every = np.concatenate((part.flank.along, part.holes.along), axis=1)[rows, pair]
-            block = bend[..., None, None] * slip[..., :, None] * every[..., None, :]
-            block[..., DISC_ROTATION] -= on_flank[..., None] * slip
-            block[..., WHEEL_ANGLE] += on_flank[..., None] * slip
+            block = self._turning(rows, disc, pair, number, load)
             block += normal[..., :, None] * loads[..., None, :]
             found[..., self.coordinates.columns(number)] += mine * block
         return np.asarray(found.reshape(*found.shape[:2], -1, self.coordinates.size))
+
+    def _turning(
+        self,
+        rows: NDArray[np.intp],
+        disc: NDArray[np.intp],
+        pair: NDArray[np.intp],
+        number: int,
+        load: FloatArray | float,
+    ) -> FloatArray:
+        """F ∂²δ/∂u∂q by the pose of a disc: κ s_u s_qᵀ, on the flank with s_u e₂ᵀ − s_u e_Wᵀ as well."""
+        slip = self._vectors(rows, disc, pair, "along")
+        bend, on_flank = self._curved(rows, disc, pair) * load, load * self._on_flank(pair)
+        part = self.parts[number]
+        every = np.concatenate((part.flank.along, part.holes.along), axis=1)[rows, pair]
+        block = bend[..., None, None] * slip[..., :, None] * every[..., None, :]
+        block[..., DISC_ROTATION] -= on_flank[..., None] * slip
+        block[..., WHEEL_ANGLE] += on_flank[..., None] * slip
+        return np.asarray(block)
 
     def _vectors(self, rows: NDArray[np.intp], disc: NDArray[np.intp], pair: NDArray[np.intp], name: str) -> FloatArray:
         """Normals (`gradient`) or tangents (`along`) against displacements of the pins, shape (positions, groups, members, 2).
 
         A pin moves against a disc as the disc moves the other way against it.
         """
-        each = [
-            np.concatenate((getattr(p.flank, name), getattr(p.holes, name)), axis=1)[..., DISC_PLACE]
-            for p in self.parts
-        ]
-        every = np.stack(each, axis=1)
+        each = [np.concatenate((getattr(p.flank, name), getattr(p.holes, name)), axis=1) for p in self.parts]
+        return self._seen(np.stack([one[..., DISC_PLACE] for one in each], axis=1), rows, disc, pair)
+
+    def _seen(
+        self, every: FloatArray, rows: NDArray[np.intp], disc: NDArray[np.intp], pair: NDArray[np.intp]
+    ) -> FloatArray:
+        """Derivatives by places of discs, (positions, discs, pairs, 2), as those by displacements of the members of groups."""
         turned = -(every[..., 0] + 1j * every[..., 1]) * self.frame[:, None]
         found = turned[rows, disc, pair]
         return np.stack((found.real, found.imag), axis=-1)
@@ -469,9 +517,112 @@ class DisplacedPins:
 
     def _bend(self, rows: NDArray[np.intp], disc: NDArray[np.intp], pair: NDArray[np.intp]) -> FloatArray:
         """F κ of the contacts with the sign of their curvature."""
+        return self._curved(rows, disc, pair) * self._load(rows, disc, pair)
+
+    def _curved(self, rows: NDArray[np.intp], disc: NDArray[np.intp], pair: NDArray[np.intp]) -> FloatArray:
+        """κ of the contacts with its sign, 1/mm."""
         bending = [np.concatenate((part.flank.bending, part.holes.bending), axis=1) for part in self.parts]
-        turning = np.stack(bending, axis=1)[rows, disc, pair] * self._load(rows, disc, pair)
-        return np.asarray(turning * np.where(self._on_flank(pair), -1.0, 1.0))
+        return np.asarray(np.stack(bending, axis=1)[rows, disc, pair] * np.where(self._on_flank(pair), -1.0, 1.0))
+
+
+class LeaningPins(DisplacedPins):
+    """Pins that lean as well: members of groups are displacements and leans of pairs, the latter behind those of all discs.
+
+    With :math:`a = \\partial \\delta/\\partial u` and :math:`b = \\partial \\theta/\\partial u` the stiffness is
+    :math:`F_\\delta a a^T + F_\\theta (a b^T + b a^T) + M_\\theta b b^T`, and what loads and moments add that turn with the pins.
+    """
+
+    def _forces(self) -> ComplexArray:
+        moments = np.stack([-part.pin_moments * self.frame for part in self.parts], axis=1)
+        moments /= np.asarray(self.held.half_width)[..., None]
+        return np.concatenate((super()._forces(), moments), axis=1)
+
+    def _kinds(
+        self, rows: NDArray[np.intp], row: NDArray[np.intp]
+    ) -> tuple[NDArray[np.intp], NDArray[np.bool_], FloatArray]:
+        """Disc of each member, whether it is a lean, and half the width."""
+        half = np.asarray(self.held.half_width)
+        return (
+            row % self.held.discs,
+            row >= self.held.discs,
+            half[rows[:, 0, 0]][..., None] if half.ndim else half,
+        )
+
+    def _by_member(
+        self, rows: NDArray[np.intp], row: NDArray[np.intp], pair: NDArray[np.intp]
+    ) -> tuple[FloatArray, FloatArray]:
+        """a and b of the members, shape (positions, groups, members, 2)."""
+        disc, lean, half = self._kinds(rows, row)
+        normal = self._vectors(rows, disc, pair, "gradient")
+        tilts = [(part.leaning_pins, part.leaning_holes) for part in self.parts]
+        each = [np.concatenate([one.tilt.gradient for one in both if one is not None], axis=1) for both in tilts]
+        turned = self._seen(np.stack([one[..., DISC_PLACE] for one in each], axis=1), rows, disc, pair)
+        on = lean[..., None]
+        return np.where(on, 0.0, normal), np.where(on, normal / half[..., None], turned)
+
+    def _loads(self, rows: NDArray[np.intp], row: NDArray[np.intp], pair: NDArray[np.intp]) -> FloatArray:
+        """F of displacements and M by half the width of leans."""
+        disc, lean, half = self._kinds(rows, row)
+        return np.where(lean, self._moments(rows, disc, pair) / half, self._load(rows, disc, pair))
+
+    def _moments(self, rows: NDArray[np.intp], disc: NDArray[np.intp], pair: NDArray[np.intp]) -> FloatArray:
+        each = [
+            np.concatenate(
+                [one.contact.moment for one in (part.leaning_pins, part.leaning_holes) if one is not None], axis=1
+            )
+            for part in self.parts
+        ]
+        return np.asarray(np.stack(each, axis=1)[rows, disc, pair])
+
+    def _stiffness(self, rows: NDArray[np.intp], disc: NDArray[np.intp], pair: NDArray[np.intp]) -> FloatArray:
+        """K among the members of groups, a matrix by member and component."""
+        row = disc
+        disc, lean, half = self._kinds(rows, row)
+        a, b = self._by_member(rows, row, pair)
+        one_disc = disc[..., :, None] == disc[..., None, :]
+        itself = one_disc & (pair[..., :, None] == pair[..., None, :])
+
+        def among(name: str) -> FloatArray:
+            every = np.stack([np.asarray(getattr(slopes, name)) for slopes in self.slopes], axis=1)
+            if every.ndim == 3:
+                return np.asarray(every[rows, disc, pair][..., None] * itself)
+            where = rows[..., None], disc[..., :, None], pair[..., :, None], pair[..., None, :]
+            return np.asarray(every[where] * one_disc)
+
+        def outer(first: FloatArray, values: FloatArray, second: FloatArray) -> FloatArray:
+            return np.asarray(
+                first[..., :, :, None, None] * values[..., :, None, :, None] * second[..., None, None, :, :]
+            )
+
+        mixed = among("by_tilt")
+        found = outer(a, among("by_approach"), a) + outer(b, among("moment_by_tilt"), b)
+        found += outer(a, mixed, b) + outer(b, mixed.swapaxes(-1, -2), a)
+        slip = self._vectors(rows, disc, pair, "along")
+        other = lean[..., :, None] ^ lean[..., None, :]
+        none = lean[..., :, None] & lean[..., None, :]
+        load, moment = self._load(rows, disc, pair), self._moments(rows, disc, pair) / half
+        turning = np.where(other, moment[..., None], np.where(none, 0.0, load[..., None])) * itself
+        found += outer(slip, turning * self._curved(rows, disc, pair)[..., None], slip)
+        members = 2 * row.shape[-1]
+        return found.reshape(*found.shape[:2], members, members)
+
+    def _by_pose(self, rows: NDArray[np.intp], disc: NDArray[np.intp], pair: NDArray[np.intp]) -> FloatArray:
+        row = disc
+        disc, lean, _ = self._kinds(rows, row)
+        a, b = self._by_member(rows, row, pair)
+        load, moment = self._loads(rows, row, pair), np.where(lean, 0.0, self._moments(rows, disc, pair))
+        found = np.zeros((*a.shape, self.coordinates.size))
+        own = self.coordinates.lean_place
+        for number, slopes in enumerate(self.slopes):
+            assert slopes.moment_by_pose is not None
+            turned = self._turning(rows, disc, pair, number, 1.0)
+            block = load[..., None, None] * turned
+            # Leans of the disc turn the contact as its displacements do.
+            block[..., own] += moment[..., None, None] * turned[..., DISC_PLACE]
+            block += a[..., :, None] * slopes.by_pose[rows, pair][..., None, :]
+            block += b[..., :, None] * slopes.moment_by_pose[rows, pair][..., None, :]
+            found[..., self.coordinates.columns(number)] += (disc == number)[..., None, None] * block
+        return np.asarray(found.reshape(*found.shape[:2], -1, self.coordinates.size))
 
 
 def _friction_by_load(parts: tuple[DiscResponse, ...]) -> FloatArray | None:
@@ -512,14 +663,20 @@ def _vectors_of(values: FloatArray) -> ComplexArray:
 
 
 def _beams(drive: Drive) -> FloatArray:
-    """Flexibility of the pins between discs, without what each disc bends alone."""
-    discs, thickness = drive.disc.number_of_discs, drive.disc.thickness
+    """Flexibility of the pins between discs, without what each disc bends alone; in slices with that and with leans."""
+    discs, thickness, leans = drive.disc.number_of_discs, drive.disc.thickness, drive.contact.slices > 1
 
     def of(beam: PinBeam | None, pins: int) -> FloatArray:
-        if beam is None or discs == 1:
-            return np.zeros((pins, discs, discs))
-        found = beam.flexibility(from_start(beam, drive).tolist(), thickness)
-        return np.broadcast_to(found - np.diag(np.diag(found)), (pins, discs, discs))
+        rows = discs * (1 + leans)
+        if beam is None or (discs == 1 and not leans):
+            return np.zeros((pins, rows, rows))
+        found = beam.flexibility(from_start(beam, drive).tolist(), thickness, slopes=leans)
+        if leans:
+            lever = np.repeat([1.0, 0.5 * thickness], discs)
+            found = found * lever[:, None] * lever
+        else:
+            found = found - np.diag(np.diag(found))
+        return np.broadcast_to(found, (pins, rows, rows))
 
     shaft = of(shaft_pin_beam(drive), drive.number_of_holes)
     return np.concatenate((of(wheel_pin_beam(drive), drive.pin_wheel.number_of_pins), shaft))

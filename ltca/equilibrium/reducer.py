@@ -24,6 +24,7 @@ from ltca.compliance.response import (
     KindPressures,
     Response,
     Start,
+    bearing_moments,
     bearing_pushes,
     split_shifts,
 )
@@ -185,31 +186,38 @@ class Reducer:
         places = [coordinates.columns(number) for number in range(count)]
         starts = [None] * count if start is None else _split_start(start, count)
 
+        latest: list[DiscResponse] = []
+
         def respond(moved: ComplexArray | None) -> tuple[DiscResponse, ...]:
             if moved is None and self.friction is not None:
                 moved = self._unmoved(crank_angle.size)  # friction needs the slopes that come with displacements
             parts = []
             for number, (own, disc) in enumerate(zip(places, self.discs, strict=True)):
                 shift = None if moved is None else moved[:, number]
-                part = disc.respond(crank_angle, pose[:, own], starts[number], shift)
+                if moved is not None and self.pins is not None and self.pins.leans:
+                    lean, again = self.pins.lean(moved, number), latest[number] if latest else None
+                    part = disc.respond(crank_angle, pose[:, own], starts[number], shift, lean, again)
+                else:
+                    part = disc.respond(crank_angle, pose[:, own], starts[number], shift)
                 if self.friction is not None:
                     rubbing = self.friction.of_disc(disc.geometry, crank_angle, pose[:, own], part, number)
                     force, tangent = part.force + rubbing.force, part.tangent + rubbing.tangent
                     part = replace(part, force=force, tangent=tangent, friction=rubbing.tangential)
                 parts.append(part)
+            latest[:] = parts
             return tuple(parts)
 
         shifts, settled, size = None, None, coordinates.size
         if self.pins is None:
             parts = respond(None)
         else:
-            begin = self._unmoved(crank_angle.size)
+            begin = self.pins.unmoved(crank_angle.size)
             if start is not None and start.follow is not None:
                 begin = start.follow.at(pose)
             placement = self.discs[0].geometry.placement
             turned = unit(placement.wheel_rotation(crank_angle) + pose[:, WHEEL_ANGLE])
             system = self.pins.settle(respond, coordinates, turned, begin, roughly=roughly)
-            parts, shifts, settled = system.parts, system.shifts, system.settled()
+            parts, shifts, settled = system.parts, system.shifts[:, : len(self.discs)], system.settled()
             if self.pins.ring is not None:
                 ring = -self.pins.of_ring(system.force)
                 parts = tuple(replace(part, ring=ring) for part in parts)
@@ -231,6 +239,9 @@ class Reducer:
         if self.external is not None and coordinates.wheel:
             pressed = self.external.on_wheel(crank_angle)
             force[:, coordinates.wheel_place] -= np.stack((pressed.real, pressed.imag), axis=-1)
+            if coordinates.wheel_leans:
+                tilting = self.external.tilting(crank_angle)
+                force[:, coordinates.wheel_lean_place] -= np.stack((tilting.real, tilting.imag), axis=-1)
         if self.friction is not None:
             ratio = self.discs[0].geometry.placement.reduction_ratio
             beside = self.force_beside_pins(crank_angle, pose, parts)
@@ -274,13 +285,18 @@ class Reducer:
         """Return the external moment that holds the cages of each crank at their angle, ccw positive, N·mm, (positions, cranks).
 
         Cage and inner race are concentric and the race pushes its rollers along its radii, the bore along its own: what holds
-        the cage is the moment of the bearing's force at the displaced centre of the bore, the sum over all discs.
+        the cage is the moment of the bearing's force at the displaced centre of the bore, and of its couple at the bore's lean in
+        the race, the sum over all discs.
         """
         cranks = self.discs[0].geometry.placement.cranks
         total = np.zeros((crank_angle.size, cranks))
         for number, (disc, part) in enumerate(zip(self.discs, parts, strict=True)):
-            bores = disc.geometry.bores(crank_angle, pose[:, self.coordinates.columns(number)])
+            geometry, own = disc.geometry, pose[:, self.coordinates.columns(number)]
+            bores = geometry.bores(crank_angle, own)
             total += (bores.displacement.conjugate() * bearing_pushes(part.rollers, cranks)).imag
+            if self.coordinates.leans:
+                tilting = bearing_moments(part.rollers, geometry.rollers(crank_angle), cranks)
+                total += ((geometry.lean(own) - geometry.journal_leans(own)).conjugate() * tilting).imag
         return total
 
     def force_beside_pins(
@@ -294,6 +310,17 @@ class Reducer:
             total = total + self.external.on_wheel(crank_angle)
         if self.stage is not None and self.stage.carried:
             total = total + self.stage.on_wheel(self.crank_moments(crank_angle, pose, parts))[0]
+        return total
+
+    def tilting_beside_pins(
+        self, crank_angle: FloatArray, pose: FloatArray, parts: Sequence[DiscResponse]
+    ) -> ComplexArray:
+        """Return what presses the lean of the wheel from outside and by the teeth of a first stage, N·mm, shape (positions,)."""
+        total = np.zeros(crank_angle.shape, dtype=complex)
+        if self.external is not None:
+            total = total + self.external.tilting(crank_angle)
+        if self.stage is not None and self.stage.carried:
+            total = total + self.stage.tilting_on_wheel(self.crank_moments(crank_angle, pose, parts))
         return total
 
     def carried_beside_discs(
@@ -328,6 +355,9 @@ class Reducer:
             force[:, coordinates.wheel_place] -= np.stack((on_wheel.real, on_wheel.imag), axis=-1)
             moved = np.einsum("pc,pcj->pj", by_moments, slopes)
             tangent[:, coordinates.wheel_place] -= np.stack((moved.real, moved.imag), axis=1)
+        if coordinates.wheel_leans:
+            tilting = stage.tilting_on_wheel(moments)
+            force[:, coordinates.wheel_lean_place] -= np.stack((tilting.real, tilting.imag), axis=-1)
         if not stage.yields:
             return ()
         pressed, by_moment = stage.on_planets(moments)

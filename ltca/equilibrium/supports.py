@@ -2,7 +2,8 @@ r"""What holds wheel and cranks: springs on coordinates, linear ones and those o
 
 Every crank is a beam on two bearings (`ltca.laws.beam`); its stiffness ties x and y of the crank in the planes of the discs,
 alike in every direction. Where it twists its stiffness in torsion ties the angles of its eccentrics against the splined planet.
-The wheel's main bearing holds its x and y. A ring that ties the tips of the shaft pins is held by what the pins resist when it
+The wheel's main bearing holds its x and y, and its
+lean where it yields in tilt: rows each at its pressure centre. A ring that ties the tips of the shaft pins is held by what the pins resist when it
 moves all tips; as the far flange of a carrier it is held by the posts as well (`ltca.laws.carrier`), and the far bearings of the
 cranks stand in it: a crank bends by its displacement relative to the straight line between its bearings. Linear springs are one
 matrix.
@@ -19,6 +20,7 @@ beside the discs, such as the teeth of a first stage, adds to R what the bearing
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isfinite, nan
 
@@ -53,7 +55,8 @@ class BearingSupport:
     Attributes
     ----------
     by_pose : array, shape (2·planes, coordinates)
-        x and y in each plane in turn, relative to what its bearings stand in, by the coordinates.
+        x and y in each plane in turn, relative to what its bearings stand in, by the coordinates; leans there follow, where discs
+        lean, as if they were planes.
     stiffness : array, shape (planes, planes)
         K of forces in the planes on springs alone, N/mm.
     shares : array, shape (planes, bearings)
@@ -227,11 +230,17 @@ class Supports:
                 turns = coordinates.own * np.arange(coordinates.discs) + twist
                 matrix[np.ix_(turns, turns)] += twisted
         of_wheel = np.eye(coordinates.size)[coordinates.wheel_place]
-        if isinstance(wheel, SideLaw):
+        of_lean = np.eye(coordinates.size)[coordinates.wheel_lean_place]
+        rows = wheel_rows(drive)
+        if drive.wheel_tilts and rows:
+            bearings += _tilting_rows(drive, rows, of_wheel, of_lean, matrix)
+        elif isinstance(wheel, SideLaw):
             held, whole = np.array([[wheel.stiffness]]), np.ones((1, 1))
             bearings.append(BearingSupport.of_laws(of_wheel, held, whole, (wheel,)))
         elif wheel is not None:
             matrix += wheel * of_wheel.T @ of_wheel
+        if drive.wheel_tilts and not rows and drive.main_bearing is not None:
+            matrix += (drive.main_bearing.tilt_stiffness or 0.0) * of_lean.T @ of_lean
         if flange is not None:
             matrix[coordinates.ring_place, coordinates.ring_place] += flange
         if geometry.tips_by_ring.size and coordinates.ring:
@@ -275,7 +284,8 @@ class Supports:
 
 
 def crank_stiffness(drive: Drive) -> FloatArray | None:
-    """Return the forces on a crank at the planes of the discs by displacements there, N/mm, shape (discs, discs).
+    """Return the forces on a crank at the planes of the discs by displacements there, N/mm, shape (discs, discs); where discs
+    lean, of its journals (`journals`).
 
     None where cranks are rigid. Bearings are without clearance, and both sides of preloaded ones carry.
     """
@@ -283,8 +293,18 @@ def crank_stiffness(drive: Drive) -> FloatArray | None:
     if support is None:
         return None
     modulus = drive.materials.crankshaft.youngs_modulus
-    planes, springs = drive.disc.disc_planes, crank_springs(drive)
-    return np.asarray(np.linalg.inv(shaft_flexibility(planes, support.positions, springs, support.diameter, modulus)))
+    planes, slopes = journals(drive)
+    springs = crank_springs(drive)
+    yields = shaft_flexibility(planes, support.positions, springs, support.diameter, modulus, slopes)
+    return np.asarray(np.linalg.inv(yields))
+
+
+def journals(drive: Drive) -> tuple[Sequence[float], Sequence[float]]:
+    """Return the planes at which a crank is displaced, mm, and those at which it leans: at every disc, in the order of
+    `Coordinates.journals`.
+    """
+    planes = drive.disc.disc_planes
+    return planes, planes if drive.contact.slices > 1 else ()
 
 
 def crank_torsion(drive: Drive) -> FloatArray | None:
@@ -392,6 +412,28 @@ def wheel_law(drive: Drive) -> SideLaw | float | None:
     return SideLaw.of_rows(rows) if any(isfinite(row.reach) for row in rows) else stiffness
 
 
+def _tilting_rows(
+    drive: Drive, rows: Sequence[RollingRow], of_wheel: FloatArray, of_lean: FloatArray, matrix: FloatArray
+) -> list[BearingSupport]:
+    """Rows of a main bearing that yields in tilt, each at its pressure centre: springs are added to the matrix, those with
+    clearance or preload are returned.
+    """
+    found = []
+    for row in rows:
+        at_row = of_wheel + row.pressure_centre * of_lean
+        clearance = None if drive.main_bearing is None else drive.main_bearing.clearance
+        law = None
+        if clearance is not None:
+            law = SideLaw.of_clearance(row.radial, clearance)
+        elif isfinite(row.reach):
+            law = SideLaw.of_rows([row])
+        if law is None:
+            matrix += row.radial * at_row.T @ at_row
+        else:
+            found.append(BearingSupport.of_laws(at_row, np.array([[law.stiffness]]), np.ones((1, 1)), (law,)))
+    return found
+
+
 def wheel_axial_stiffness(drive: Drive) -> float | None:
     """Return the axial stiffness of the main bearing, N/mm, of rows k_zz of all of them about their preload.
 
@@ -427,27 +469,28 @@ def _row(
 
 
 def _crank_shares(drive: Drive) -> FloatArray:
-    """Part of a force at each disc that each of the two bearings of a crank carries, shape (discs, 2)."""
+    """Part of a force or couple at each journal that each of the two bearings of a crank carries, shape (journals, 2)."""
     support = drive.crank.support
     if support is None:
         raise AssertionError("cranks are rigid")
-    return support_parts(drive.disc.disc_planes, support.positions).T
+    planes, slopes = journals(drive)
+    return support_parts(planes, support.positions, slopes).T
 
 
 def _bent_by_pose(drive: Drive, geometry: ContactGeometry, crank: int) -> FloatArray:
-    """x and y of a crank at each disc in turn relative to the straight line between its bearings, by the coordinates of the
-    drive, shape (2·discs, coordinates).
+    """x and y of each journal of a crank in turn, and of its lean there, relative to the straight line between its bearings, by
+    the coordinates of the drive, shape (2·journals, coordinates).
     """
     coordinates = Coordinates.of_drive(drive)
-    found = np.zeros((coordinates.discs, 2, coordinates.size))
-    places = coordinates.own * np.arange(coordinates.discs) + coordinates.crank(crank)
+    places = coordinates.journals(crank)
+    found = np.zeros((places.size, 2, coordinates.size))
     for direction in (0, 1):
-        found[np.arange(coordinates.discs), direction, places + direction] = 1.0
+        found[np.arange(places.size), direction, places + direction] = 1.0
     if drive.carrier is not None and drive.carrier.posts is not None:
         far, seat = _crank_shares(drive)[:, 1, None], geometry.seats_by_ring[..., crank, :]
         found[:, 0, coordinates.ring_place] -= far * seat.real
         found[:, 1, coordinates.ring_place] -= far * seat.imag
-    return found.reshape(2 * coordinates.discs, coordinates.size)
+    return found.reshape(2 * places.size, coordinates.size)
 
 
 def _ring_stiffness(drive: Drive, geometry: ContactGeometry) -> FloatArray:

@@ -3,9 +3,9 @@
 A pose of one disc at a held crank angle is q = (x, y, disc rotation, …, wheel angle): x and y in mm are the displacement of
 the disc from its nominal place in the fixed frame, the angles in rad; the wheel angle is its deviation from φ_C/u. Between
 them stand x and y of each crank in the plane of the disc, if cranks yield, and the angle by which each eccentric is ahead of
-the crank, if they twist; the lean of the disc, if contacts have slices; x and y of the wheel, if its bearing yields; and
-x, y and rotation of the ring that ties the tips of the shaft pins, or of the far flange of the carrier, if there is one. The
-poses of several discs follow each other, with one wheel.
+the crank, if they twist; if contacts have slices, the leans of these cranks and of the disc; x and y of the wheel, if its bearing
+yields, and its lean, if it yields in tilt; and x, y and rotation of the ring that ties the tips of the shaft pins, or of the far flange of the carrier, if there is
+one. The poses of several discs follow each other, with one wheel.
 
 A lean is what x and y of a part change by along its axis, dx/dz and dy/dz about the middle of the disc: with the rotation vector ω of a
 small tilt it is (ω_y, −ω_x). As an arrow of the plane it turns as displacements do.
@@ -52,7 +52,9 @@ class Coordinates:
     twists : bool
         Whether cranks yield in torsion.
     leans : bool
-        Whether discs lean.
+        Whether discs lean, and cranks that yield in their planes.
+    wheel_leans : bool
+        Whether the wheel leans as well.
     """
 
     discs: int = 1
@@ -61,6 +63,7 @@ class Coordinates:
     ring: bool = False
     twists: bool = False
     leans: bool = False
+    wheel_leans: bool = False
 
     @classmethod
     def of_drive(cls, drive: Drive) -> Coordinates:
@@ -71,17 +74,27 @@ class Coordinates:
         ring = drive.posts is not None or (beam is not None and beam.tip != "free")
         wheel = drive.wheel_yields
         discs, leans = drive.disc.number_of_discs, drive.contact.slices > 1
-        return cls(discs=discs, cranks=cranks, wheel=wheel, ring=ring, twists=twists, leans=leans)
+        return cls(
+            discs=discs,
+            cranks=cranks,
+            wheel=wheel,
+            ring=ring,
+            twists=twists,
+            leans=leans,
+            wheel_leans=drive.wheel_tilts,
+        )
 
     @property
     def own(self) -> int:
-        """Number of coordinates of each disc: x, y, rotation, x and y of every crank there, the twist of every crank, lean."""
-        return DISC_ROTATION + 1 + (2 + self.twists) * self.cranks + 2 * self.leans
+        """Number of coordinates of each disc: x, y, rotation, x and y of every crank there, the twist of every crank, the
+        lean of every crank and its own.
+        """
+        return DISC_ROTATION + 1 + (2 + self.twists + 2 * self.leans) * self.cranks + 2 * self.leans
 
     @property
     def shared(self) -> int:
         """Number of coordinates of wheel and ring."""
-        return 1 + 2 * self.wheel + 3 * self.ring
+        return 1 + 2 * self.wheel + 2 * self.wheel_leans + 3 * self.ring
 
     @property
     def size(self) -> int:
@@ -109,6 +122,18 @@ class Coordinates:
         first = self.crank(self.cranks)
         return tuple(range(first, first + self.cranks)) if self.twists else ()
 
+    def crank_lean(self, crank: int) -> int:
+        """Return the first of the two places of the lean of a crank in the pose of one disc, where discs lean."""
+        return self.lean_place.start - 2 * (self.cranks - crank)
+
+    def journals(self, crank: int) -> Columns:
+        """Return the places of x of a crank at every disc, followed by those of its lean there if discs lean; each has its y
+        behind it.
+        """
+        first = self.own * np.arange(self.discs)
+        places = [first + self.crank(crank)]
+        return np.concatenate([*places, first + self.crank_lean(crank)] if self.leans else places)
+
     @property
     def lean_place(self) -> slice:
         """Lean of a disc in its pose; empty where it does not lean."""
@@ -119,6 +144,12 @@ class Coordinates:
         """x and y of the wheel; empty where its bearing does not yield."""
         first = self.size - self.shared
         return slice(first, first + 2 * self.wheel)
+
+    @property
+    def wheel_lean_place(self) -> slice:
+        """Lean of the wheel; empty where it does not lean."""
+        first = self.wheel_place.stop
+        return slice(first, first + 2 * self.wheel_leans)
 
     @property
     def ring_place(self) -> slice:
@@ -140,7 +171,9 @@ class Coordinates:
     @property
     def displacements(self) -> Columns:
         """Places of every x that is followed by its y: discs, cranks, leans, wheel, ring."""
-        one = np.r_[X, DISC_ROTATION + 1 : self.crank(self.cranks) : 2, self.lean_place.start : self.own : 2]
+        leans = self.own - 2 * (self.cranks + 1) * self.leans
+        one = np.r_[X, DISC_ROTATION + 1 : self.crank(self.cranks) : 2, leans : self.own : 2]
         each = (self.own * np.arange(self.discs)[:, None] + one).ravel()
-        shared = [self.size - self.shared] if self.wheel else []
+        shared = [self.wheel_place.start] if self.wheel else []
+        shared += [self.wheel_lean_place.start] if self.wheel_leans else []
         return np.append(each, [*shared, self.ring_place.start] if self.ring else shared).astype(np.intp)

@@ -86,7 +86,8 @@ class PairMotion:
         normal = self.gradient[..., 0] + 1j * self.gradient[..., 1]
         across = dot(self.along[..., 0] + 1j * self.along[..., 1], lean)
         gradient = self._bent_by(across)
-        gradient[..., coordinates.lean_place] = self.gradient[..., DISC_PLACE]
+        for place, sign in self._leans(coordinates):
+            gradient[..., place] += sign * self.gradient[..., DISC_PLACE]
         for place, turn in turns.items():
             gradient[..., place] += dot(normal, turn)
         return PairTilt(tilt=dot(normal, lean), gradient=gradient)
@@ -101,12 +102,17 @@ class PairMotion:
         Moments M are in N·mm, shape (positions, pairs); the answer has the shape (positions, coordinates, coordinates).
         """
         total = np.zeros((moment.shape[0], coordinates.size, coordinates.size))
-        first = coordinates.lean_place.start
-        for lean, place in ((first, 0), (first + 1, 1)):
+        for place in (0, 1):
             row = (moment[..., None] * self._bent_by(self.along[..., place])).sum(axis=1)
-            total[:, lean] += row
-            total[:, :, lean] += row
+            for leans, sign in self._leans(coordinates):
+                total[:, leans.start + place] += sign * row
+                total[:, :, leans.start + place] += sign * row
         return total
+
+    @staticmethod
+    def _leans(coordinates: Coordinates) -> tuple[tuple[slice, float], ...]:
+        """Places of the leans among the coordinates that pairs tilt by, and their signs."""
+        return ((coordinates.lean_place, 1.0),)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -157,6 +163,12 @@ class FlankMotion(PairMotion):
         return found
 
     @staticmethod
+    def _leans(coordinates: Coordinates) -> tuple[tuple[slice, float], ...]:
+        """As for holes; pins on the flank lean with the wheel."""
+        of_disc = (coordinates.lean_place, 1.0)
+        return (of_disc, (coordinates.wheel_lean_place, -1.0)) if coordinates.wheel_leans else (of_disc,)
+
+    @staticmethod
     def _sum(load: FloatArray, bending: FloatArray, along: FloatArray) -> FloatArray:
         """Pins on the flank: −(κ s sᵀ + e₂ sᵀ + s e₂ᵀ − s₂ e₂e₂ᵀ − s_W e_W e_Wᵀ), the wheel angle being the last coordinate."""
         total = np.matmul(along.swapaxes(-1, -2), (load * bending)[..., None] * along)
@@ -187,12 +199,13 @@ class KnownPins:
         """Return the pins of pairs of pins and flank."""
         return cls(approach=motion.approach, point=motion.point, turning=motion.turning)
 
-    def may_touch(self, point: ComplexArray) -> BoolArray:
+    def may_touch(self, point: ComplexArray, at_ends: FloatArray | float = 0.0) -> BoolArray:
         """Return which pins may touch the flank, from their centres in the frame of the disc, mm, shape (positions, z_P).
 
-        A distance changes by no more than the displacement of the point from which it is measured.
+        A distance changes by no more than the displacement of the point from which it is measured. Tilted pairs are closer by
+        `at_ends` at most than in the middle, mm.
         """
-        room, moved = -MARGIN - self.approach, point - self.point
+        room, moved = -MARGIN - at_ends - self.approach, point - self.point
         return np.asarray((room < 0.0) | (moved.real**2 + moved.imag**2 > room * room))
 
 

@@ -80,10 +80,16 @@ class ContactGeometry:
         Places of the parts, and the flank.
     coordinates : Coordinates
         Of a pose in which every member moves that can.
+    plane : float or array, shape (positions, 1)
+        Axial place of the middle of the disc, mm: a wheel that leans displaces its pins there.
     half_width : float or array, shape (positions, 1)
         Half the thickness of the disc, mm: what leans are measured by.
+    end_metal : float or array, shape (positions, 1)
+        Metal that the lead of the flank leaves at an end beyond that in the middle, mm.
     tip_share : float or array, shape (positions, 1)
         Displacement of a shaft pin at the disc per displacement of its tip, where a ring ties the tips.
+    tip_slope : float or array, shape (positions, 1)
+        Lean of a shaft pin at the disc per displacement of its tip, 1/mm, where contacts have slices.
     seat_share : float or array, shape (positions, 1)
         Displacement of a crank's axis at the disc per displacement of its bearing in the far flange of the carrier, as long as
         the crank stays straight; 0 where no flange moves.
@@ -97,8 +103,11 @@ class ContactGeometry:
     placement: Placement
     profile: FlankProfile
     coordinates: Coordinates
+    plane: float | FloatArray = by_drive(0, default=0.0)
     half_width: float | FloatArray = by_drive(0, default=1.0)
+    end_metal: float | FloatArray = by_drive(0, default=0.0)
     tip_share: float | FloatArray = by_drive(0, default=0.0)
+    tip_slope: float | FloatArray = by_drive(0, default=0.0)
     seat_share: float | FloatArray = by_drive(0, default=0.0)
     wheel_gap: float | FloatArray = by_drive(0, default=0.0)
     crank_gaps: FloatArray = by_drive(1, default_factory=lambda: np.zeros(2))
@@ -121,7 +130,9 @@ class ContactGeometry:
             placement=place,
             profile=profile,
             coordinates=Coordinates.of_drive(drive),
+            plane=drive.disc.disc_planes[0],
             half_width=0.5 * drive.disc.thickness,
+            end_metal=0.5 * drive.disc.thickness * abs(drive.disc.lead_slope),
             seat_share=seat_share,
             wheel_gap=0.0 if bearing is None else 0.5 * max(bearing.clearance or 0.0, 0.0),
             crank_gaps=gaps,
@@ -178,6 +189,7 @@ class ContactGeometry:
         start: FloatArray | None = None,
         shifts: ComplexArray | None = None,
         known: KnownPins | None = None,
+        leans: ComplexArray | None = None,
     ) -> FlankMotion:
         """Return the pairs of wheel pin and flank (Eq. 60–64).
 
@@ -193,13 +205,24 @@ class ContactGeometry:
             Displacements of the pins in the turning wheel, mm.
         known : KnownPins, optional
             Of the same drives: pins that cannot touch the flank are left out, see `complete_flank`.
+        leans : array of complex, shape (positions, z_P), optional
+            Leans of the pins at the disc in the turning wheel, rad, by which their ends may touch.
         """
         pins = self._pins(crank_angle, pose, shifts)
         if start is None:
             start = self.nominal_parameter(crank_angle) + pose[:, WHEEL_ANGLE, None] - pose[:, DISC_ROTATION, None]
         if known is None:
             return self._touching(self.profile, pins, start, self.coordinates_of(pose))
-        return self._touching_some(pins, start, known.may_touch(pins.point), known, self.coordinates_of(pose))
+        near = known.may_touch(pins.point, self._closer_at_ends(pose, leans))
+        return self._touching_some(pins, start, near, known, self.coordinates_of(pose))
+
+    def _closer_at_ends(self, pose: FloatArray, leans: ComplexArray | None) -> FloatArray | float:
+        """Bound of how much closer pins and flank may be at their ends than in the middle, mm; nothing in the plane."""
+        if not self.coordinates_of(pose).leans:
+            return 0.0
+        place = self.placement
+        own = np.abs(place.wheel_pin_leans if leans is None else place.wheel_pin_leans + leans)
+        return np.asarray(self.half_width * (np.abs(self.lean(pose) - place.wheel_lean) + own) + self.end_metal)
 
     def complete_flank(
         self, crank_angle: FloatArray, pose: FloatArray, motion: FlankMotion, shifts: ComplexArray | None = None
@@ -246,6 +269,8 @@ class ContactGeometry:
         if coordinates.wheel:  # a displacement of the wheel is one of the disc in the opposite direction
             wheel = coordinates.wheel_place
             disc_centre = disc_centre - (pose[:, wheel.start] + 1j * pose[:, wheel.start + 1])[:, None]
+        if coordinates.wheel_leans:
+            disc_centre = disc_centre - self.plane * self.wheel_lean(pose)
         turned = place.wheel_rotation(crank_angle)[:, None] + pose[:, WHEEL_ANGLE, None]
         centres = place.wheel_pin_centres if shifts is None else place.wheel_pin_centres + shifts
         pin = centres * unit(turned)
@@ -321,6 +346,10 @@ class ContactGeometry:
         if coordinates.wheel:
             wheel = coordinates.wheel_place
             gradient[..., wheel], along[..., wheel] = -gradient[..., DISC_PLACE], -along[..., DISC_PLACE]
+        if coordinates.wheel_leans:
+            lean, plane = coordinates.wheel_lean_place, np.asarray(self.plane)[..., None]
+            gradient[..., lean] = -plane * gradient[..., DISC_PLACE]
+            along[..., lean] = -plane * along[..., DISC_PLACE]
         return FlankMotion(
             approach=pins.reach - offset - distance,
             gradient=gradient,
@@ -363,20 +392,49 @@ class ContactGeometry:
         place = self.coordinates_of(pose).lean_place
         return np.asarray(pose[:, place.start : place.start + 1] + 1j * pose[:, place.start + 1 : place.stop])
 
-    def flank_tilt(self, crank_angle: FloatArray, pose: FloatArray, flank: FlankMotion) -> PairTilt:
-        """Return the tilt of wheel pins and flank; arguments as for `flank`."""
+    def wheel_lean(self, pose: FloatArray) -> ComplexArray:
+        """Return what the wheel leans by in its bearing, rad, shape (positions, 1); zero where it does not."""
+        place = self.coordinates_of(pose).wheel_lean_place
+        if place.start == place.stop:
+            return np.zeros((pose.shape[0], 1), dtype=complex)
+        return np.asarray(pose[:, place.start : place.start + 1] + 1j * pose[:, place.start + 1 : place.stop])
+
+    def journal_leans(self, pose: FloatArray) -> ComplexArray:
+        """Return the lean of every crank in the plane of the disc, rad, shape (positions, cranks)."""
+        coordinates, place = self.coordinates_of(pose), self.placement
+        found = np.zeros((pose.shape[0], place.cranks), dtype=complex) + np.asarray(place.crank_lean)[..., None]
+        for crank in range(coordinates.cranks):
+            first = coordinates.crank_lean(crank)
+            found[:, crank] += pose[:, first] + 1j * pose[:, first + 1]
+        return found
+
+    def flank_tilt(
+        self, crank_angle: FloatArray, pose: FloatArray, flank: FlankMotion, leans: ComplexArray | None = None
+    ) -> PairTilt:
+        """Return the tilt of wheel pins and flank; arguments as for `flank`.
+
+        `leans` are those of the bent pins at the disc in the turning wheel, rad, shape (positions, z_P).
+        """
         place, coordinates = self.placement, self.coordinates_of(pose)
         turned = unit(place.wheel_rotation(crank_angle)[:, None] + pose[:, WHEEL_ANGLE, None])
-        own = place.wheel_pin_leans * turned
-        lean = self.lean(pose) - place.wheel_lean - own
+        own = (place.wheel_pin_leans if leans is None else place.wheel_pin_leans + leans) * turned
+        lean = self.lean(pose) - place.wheel_lean - self.wheel_lean(pose) - own
         return flank.leaning(lean, coordinates, {WHEEL_ANGLE: -1j * own})
 
-    def hole_tilt(self, pose: FloatArray, holes: PairMotion) -> PairTilt:
-        """Return the tilt of shaft pins and holes; arguments as for `holes`."""
-        place = self.placement
+    def hole_tilt(self, pose: FloatArray, holes: PairMotion, leans: ComplexArray | None = None) -> PairTilt:
+        """Return the tilt of shaft pins and holes; arguments as for `holes`, leans of the bent pins in the fixed frame."""
+        place, coordinates = self.placement, self.coordinates_of(pose)
         own = place.hole_leans * unit(pose[:, DISC_ROTATION, None])
         lean = self.lean(pose) + own - place.shaft_pin_leans
-        return holes.leaning(lean, self.coordinates_of(pose), {DISC_ROTATION: 1j * own})
+        turns = {DISC_ROTATION: 1j * own}
+        if leans is not None:
+            lean = lean - leans
+        if coordinates.ring and np.any(self.tip_slope):
+            by_ring = np.asarray(self.tip_slope)[..., None] * self.tips_by_ring
+            ring = coordinates.ring_place
+            lean = lean - _moved(pose[:, ring], by_ring)
+            turns |= {ring.start + number: -by_ring[..., number] for number in range(3)}
+        return holes.leaning(lean, coordinates, turns)
 
     def bores(self, crank_angle: FloatArray, pose: FloatArray) -> BoreMotion:
         """Return the displacements of the bores; arguments as for `flank`."""

@@ -49,14 +49,16 @@ def _of_shaft(drive: Drive) -> dict[str, Any]:
             "hole_centres": nowhere, "hole_radii": nothing, "shaft_pin_centres": nowhere, "shaft_pin_radii": nothing,
             "shaft_pin_plays": nothing, "hole_leans": nowhere, "shaft_pin_leans": nowhere,
         }  # fmt: skip
+    leans = shaft.inclination.lean + _leans(shaft.pin_errors, count)
+    (plane,) = drive.disc.disc_planes
     return {
         "hole_centres": _circle(shaft.pin_circle_radius, count, drive.disc.hole_errors),
         "hole_radii": drive.hole_radius + 0.5 * _filled(drive.disc.hole_errors.diameter, count),
-        "shaft_pin_centres": _circle(shaft.pin_circle_radius, count, shaft.pin_errors),
+        "shaft_pin_centres": _circle(shaft.pin_circle_radius, count, shaft.pin_errors) + plane * leans,
         "shaft_pin_radii": shaft.pin_radius + 0.5 * _filled(shaft.pin_errors.diameter, count),
         "shaft_pin_plays": np.full(count, shaft.seat_play),
         "hole_leans": _leans(drive.disc.hole_errors, count),
-        "shaft_pin_leans": shaft.inclination.lean + _leans(shaft.pin_errors, count),
+        "shaft_pin_leans": leans,
     }
 
 
@@ -170,8 +172,12 @@ class Placement:
         roller_radii = bearing.roller_radius + 0.5 * _filled(bearing.roller_errors.diameter, rollers)
         eccentrics = [crank.eccentric(0, number) for number in range(crank.number)]
         errors = [entry.eccentricity_error for entry in eccentrics]
+        # Inclined axes pass through the places of their parts at the zero of the planes.
+        (plane,) = drive.disc.disc_planes
+        pin_leans = _leans(wheel.pin_errors, wheel.number_of_pins)
         return cls(
-            wheel_pin_centres=_circle(wheel.pin_circle_radius, wheel.number_of_pins, wheel.pin_errors),
+            wheel_pin_centres=_circle(wheel.pin_circle_radius, wheel.number_of_pins, wheel.pin_errors)
+            + plane * pin_leans,
             wheel_pin_radii=wheel.pin_radius + 0.5 * _filled(wheel.pin_errors.diameter, wheel.number_of_pins),
             wheel_pin_plays=_wheel_pin_plays(drive),
             **_of_shaft(drive),
@@ -181,10 +187,10 @@ class Placement:
             bore_radius=drive.bore_radius,
             eccentricity=crank.eccentricity + np.array([crank.eccentricity_error if e is None else e for e in errors]),
             eccentric_phase=drive.disc.phase + np.array([entry.phase_error for entry in eccentrics]),
-            crank_axes=crank.axis_offset.place + np.array(crank.places),
+            crank_axes=crank.axis_offset.place + np.array(crank.places) + plane * crank.inclination.lean,
             bore_centres=_bore_centres(drive),
-            wheel_axis=wheel.axis_offset.place,
-            wheel_pin_leans=_leans(wheel.pin_errors, wheel.number_of_pins),
+            wheel_axis=wheel.axis_offset.place + plane * wheel.inclination.lean,
+            wheel_pin_leans=pin_leans,
             wheel_lean=wheel.inclination.lean,
             crank_lean=crank.inclination.lean,
             cage_speed=bearing.inner_race_radius / (bearing.inner_race_radius + bearing.outer_race_radius),

@@ -256,6 +256,14 @@ def tip_share(drive: Drive) -> float:
     return float(beam.tip_shape(from_start(beam, drive).tolist(), drive.disc.thickness)[0])
 
 
+def tip_slope(drive: Drive) -> float:
+    """Return the lean of a shaft pin at the disc per displacement of its tip by the ring, 1/mm; 0 without ring or slices."""
+    beam = shaft_pin_beam(drive)
+    if beam is None or beam.ends[1] == "free" or drive.contact.slices == 1:
+        return 0.0
+    return float(beam.tip_shape(from_start(beam, drive).tolist(), drive.disc.thickness, slopes=True)[1])
+
+
 def from_start(beam: PinBeam, drive: Drive) -> FloatArray:
     """Return the planes of the discs from the start of a beam whose middle is at their zero, mm."""
     return np.asarray(drive.disc.disc_planes) + 0.5 * beam.span

@@ -6,7 +6,8 @@ two reactions, and the rigid motion that brings the supports back to zero; elast
 straight line between them. Overhanging ends are included.
 
 A pin between two ends (Timoshenko's beam, shear coefficient of a round section by Cowper 1966): each disc presses evenly along
-its thickness, and deflections are means along it, so that the flexibility is symmetric (Maxwell).
+its thickness, and deflections are means along it, so that the flexibility is symmetric (Maxwell). Discs that tilt press with
+moments as well, linearly along the thickness, and slopes are the means that these work along.
 The deflection is the sum of fundamental solutions of forces :math:`|x|^3/12EI - |x|/2\kappa GA` and couples
 :math:`x|x|/4EI`, and a rigid motion; forces and couples at the ends follow from equilibrium and from how the ends are held.
 """
@@ -23,6 +24,7 @@ import numpy as np
 from ltca.arrays import BoolArray, FloatArray
 
 End = Literal["free", "supported", "clamped"]
+GAUSS_POINTS, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(4)
 
 
 def shaft_flexibility(
@@ -129,8 +131,12 @@ class PinBeam:
     youngs_modulus: float
     poisson_ratio: float | None = None
 
-    def flexibility(self, planes: Sequence[float], width: float) -> FloatArray:
+    def flexibility(self, planes: Sequence[float], width: float, *, slopes: bool = False) -> FloatArray:
         """Return mean deflections along each disc under unit forces of the discs, mm/N, symmetric, shape (discs, discs).
+
+        With `slopes` the mean slopes of all discs follow, and behind the forces the moments of the discs, (2 discs, 2 discs).
+        A moment presses linearly along the thickness, 12 M z/w³, and the mean slope is what it works along, 12/w³ ∫ y z dz:
+        1/N, and 1/(N·mm).
 
         Examples
         --------
@@ -142,11 +148,58 @@ class PinBeam:
         True
         """
         middle = np.asarray(planes, dtype=float)
+        if slopes:
+            return self._with_slopes(middle, width)
         held = self._held(middle, width)
         apart = middle[:, None] - middle
         own = sum(sign * self._integral(apart + shift, 2) for sign, shift in ((1, width), (-2, 0.0), (1, -width)))
         found = own / width**2 + self._bent(held, middle, width)
         return np.asarray(0.5 * (found + found.T))
+
+    def _with_slopes(self, middle: FloatArray, width: float) -> FloatArray:
+        """The flexibility with slopes behind deflections and moments behind forces."""
+        count = middle.size
+        z, weights = _points(np.zeros((count, count)), width)
+        apart = (middle[:, None] - middle)[..., None, None] + z[..., :, None] - z[..., None, :]
+        own = np.einsum("aijz,bijs,ijzs->aibj", weights, weights, self._integral(apart, 0))
+        itself = np.arange(count)
+        own[:, itself, :, itself] = np.diag(self._alone(width))
+        around = self._around(middle, width)
+        found = own.reshape(2 * count, -1) + around.reshape(2 * count, 6) @ self._held_with_moments(middle, width)
+        return np.asarray(0.5 * (found + found.T))
+
+    def _alone(self, width: float) -> FloatArray:
+        """What force and moment of a disc do to its own deflection and slope without ends, from integrals of |z − s|³, |z − s|."""
+        bending, shear = self._rigidity
+        of_force = width**3 / (120.0 * bending) - width / (6.0 * shear)
+        of_moment = -9.0 * width / (70.0 * bending) + 6.0 / (5.0 * width * shear)
+        return np.array([of_force, of_moment])
+
+    def _around(self, middle: FloatArray, width: float) -> FloatArray:
+        """Mean deflection and mean slope along each disc by forces, couples and rigid motion of the ends, shape (2, discs, 6)."""
+        columns = []
+        for end in (0.0, self.span):
+            z, weights = _points(end - middle, width)
+            apart = middle[:, None] + z - end
+            columns.append(np.einsum("aiz,iz->ai", weights, self._integral(apart, 0)))
+            columns.append(np.einsum("aiz,iz->ai", weights, self._turn(apart)))
+        still, turned = np.zeros((2, middle.size)), np.zeros((2, middle.size))
+        still[0], turned[0], turned[1] = 1.0, middle, 1.0
+        return np.stack([*columns, still, turned], axis=-1)
+
+    def _held_with_moments(self, middle: FloatArray, width: float) -> FloatArray:
+        """Forces and couples of the ends and the rigid motion under unit forces, then unit moments, of the discs."""
+        right = np.zeros((6, 2, middle.size))
+        right[0, 0], right[1, 0], right[1, 1] = -1.0, -middle, -1.0
+        for number, kind in enumerate(self.ends):
+            end = self.span * number
+            z, weights = _points(end - middle, width)
+            apart = end - middle[:, None] - z
+            if kind != "free":
+                right[2 + 2 * number] = -np.einsum("aiz,iz->ai", weights, self._integral(apart, 0))
+            if kind == "clamped":
+                right[3 + 2 * number] = -np.einsum("aiz,iz->ai", weights, self._turn(apart))
+        return np.asarray(np.linalg.solve(self._conditions(), right.reshape(6, -1)))
 
     def deflection(self, at: float, middle: float, width: float) -> float:
         """Return the deflection at one place under a unit force spread evenly over `width` about another, mm/N."""
@@ -154,12 +207,15 @@ class PinBeam:
         own = self._mean(np.array([at - middle]), width)
         return float((own + self._point(np.array([at]))[:, :6] @ held)[0, 0])
 
-    def tip_shape(self, planes: Sequence[float], width: float) -> FloatArray:
+    def tip_shape(self, planes: Sequence[float], width: float, *, slopes: bool = False) -> FloatArray:
         """Return the mean displacement along each disc when the far end is moved by one, shape (discs,).
 
-        By reciprocity it is also the share of the force of each disc that the far end carries.
+        By reciprocity it is also the share of the force of each disc that the far end carries. With `slopes` mean slopes follow,
+        1/mm, the shares of moments.
         """
-        return np.asarray(-self._held(np.asarray(planes, dtype=float), width)[2])
+        middle = np.asarray(planes, dtype=float)
+        held = self._held_with_moments(middle, width) if slopes else self._held(middle, width)
+        return np.asarray(-held[2])
 
     def moments(self, at: FloatArray, planes: Sequence[float], width: float) -> FloatArray:
         """Return bending moments at places under unit forces of the discs, mm, shape (places, discs + 1).
@@ -277,3 +333,16 @@ class PinBeam:
                 turned = (np.abs(high) ** 3 - np.abs(low) ** 3) / (12.0 * self._rigidity[0] * width)
                 right[3 + 2 * number] = -turned
         return np.asarray(np.linalg.solve(self._conditions(), right))
+
+
+def _points(kink: FloatArray, width: float) -> tuple[FloatArray, FloatArray]:
+    """Places along discs about their middles, and weights there of a unit force and of a unit moment.
+
+    What is integrated is a polynomial on either side of a kink at `kink`, shape (…); places have the shape (…, 8), weights
+    (2, …, 8).
+    """
+    split = np.clip(kink, -0.5 * width, 0.5 * width)[..., None]
+    below, above = 0.5 * (split + 0.5 * width), 0.5 * (0.5 * width - split)
+    places = np.concatenate((split - below + below * GAUSS_POINTS, split + above + above * GAUSS_POINTS), axis=-1)
+    even = np.concatenate((below * GAUSS_WEIGHTS, above * GAUSS_WEIGHTS), axis=-1) / width
+    return places, np.stack((even, even * 12.0 * places / width**2))

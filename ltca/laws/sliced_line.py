@@ -53,10 +53,10 @@ NEAR = 1e-8
 """What may be left over of a slice's load, by the largest, before the last step, which squares it."""
 ROUND_OFF = 1e-13
 """What is left over by round-off alone."""
-NOTHING = 1e-18
-"""Approach by the length below which a line is open: squares of smaller loads are no numbers."""
 NARROWEST, WIDEST = 1e-4, 40.0
 """Half-width by the length of a slice at the ends of the tables."""
+TOUCHING = 1e-16
+"""Deepest approach by the length up to which a contact is open: less is round-off of where parts stand."""
 _KNOTS = 81
 _LIGHTEST, _HEAVIEST, _PLANE_KNOTS = -46.0, -0.3, 4097
 TABLE = Path(__file__).with_name("sliced_line.json")
@@ -270,7 +270,7 @@ class SlicedLine:
         shape, z = delta.shape, slice_heights(self.length, self.slices)
         relief = self.relief if self.relief.ndim == 2 else self.relief[:, None]
         free = (delta[..., None, None] + theta[..., None, None] * z - relief).reshape(-1, *z.shape)
-        closed = np.flatnonzero((free > NOTHING * self.length).any(axis=(1, 2)))
+        closed = np.flatnonzero((free > TOUCHING * self.length).any(axis=(1, 2)))
         begin = None if start is None else start.reshape(-1, self.slices)[closed].T
         # Contacts come last: every step is one on arrays over them.
         found = self._closed(np.ascontiguousarray(free[closed].transpose(1, 2, 0)), radius.reshape(-1)[closed], begin)

@@ -28,8 +28,10 @@ class SlicedSpring:
     length: float
     slices: int
 
-    def respond(self, approach: FloatArray, tilt: FloatArray, effective_radius: FloatArray) -> SlicedContact:
-        """Return loads, moments and their derivatives, as `ltca.laws.sliced_line.SlicedLine.respond`."""
+    def respond(
+        self, approach: FloatArray, tilt: FloatArray, effective_radius: FloatArray, start: FloatArray | None = None
+    ) -> SlicedContact:
+        """Return loads, moments and their derivatives, as `ltca.laws.sliced_line.SlicedLine.respond`; no start is needed."""
         z = slice_heights(self.length, self.slices)
         weights = 0.5 / self.slices * np.polynomial.legendre.leggauss(POINTS)[1] * np.ones(z.shape)
         delta, theta = np.broadcast_arrays(approach, tilt)

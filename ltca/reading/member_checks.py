@@ -368,10 +368,15 @@ def _main_bearing(drive: Drive) -> Iterator[str]:
             f"{path}.radial_stiffness = {radial:g} N/mm and pin_wheel.support_stiffness = {alias:g} N/mm: are two names of one "
             "stiffness; give one of them"
         )
-    if bearing.tilt_stiffness is not None:
+    if bearing.tilt_stiffness is not None and bearing.bearings:
         yield (
-            f"{path}.tilt_stiffness = {bearing.tilt_stiffness:g} N·mm/rad: must be left out: the wheel does not tilt in "
-            "the model yet"
+            f"{path}.tilt_stiffness = {bearing.tilt_stiffness:g} N·mm/rad: must be left out beside {path}.bearings, whose "
+            "pressure centres bring it"
+        )
+    elif bearing.tilt_stiffness is not None and drive.contact.slices == 1:
+        yield (
+            f"{path}.tilt_stiffness = {bearing.tilt_stiffness:g} N·mm/rad: needs contact.slices of 3 or more; with 1 the wheel "
+            "does not tilt"
         )
     yield from _loose_or_tight(path, bearing.clearance, bearing.preload, drive.crank.eccentricity)
     if not bearing.bearings:

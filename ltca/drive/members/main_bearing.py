@@ -63,7 +63,8 @@ class MainBearing:
         Radial stiffness, N/mm; ``pin_wheel.support_stiffness`` is another name of it. With ``preload`` that of the bearing
         while both sides carry, otherwise that of the side that carries.
     tilt_stiffness : float or None
-        Stiffness against tilt, N·mm/rad; refused, the wheel does not tilt in the model yet.
+        Stiffness against tilt about the zero of ``disc.planes``, N·mm/rad, beside ``radial_stiffness``; rigid when left out. It
+        needs ``contact.slices``.
     axial_stiffness : float or None
         Axial stiffness, N/mm; it tells how far forces along the axis displace the output, which moves no contact.
     clearance : float or None
@@ -83,6 +84,12 @@ class MainBearing:
     preload: Preload | None = None
     arrangement: Literal["O", "X"] = "O"
     bearings: tuple[BearingRow, ...] = ()
+
+    @property
+    def rows_resist_tilt(self) -> bool:
+        """Whether the rows say how the bearing yields in tilt: at least two, each with its pressure centre."""
+        known = all(row.pitch_radius is not None or not row.contact_angle for row in self.bearings)
+        return known and len(self.bearings) > 1
 
 
 def axial_preload(

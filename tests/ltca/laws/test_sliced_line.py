@@ -138,6 +138,13 @@ def test_aligned_lines_have_the_load_of_the_line_law():
         assert max(errors) < 5e-3  # bound of the issue
 
 
+def test_a_touch_of_nothing_is_open():
+    """Squares of the loads of a roller 1e-165 mm in vanished, and one 1e-20 mm in never balanced."""
+    line = SlicedLine(length=12.0, contact_modulus=MODULUS, slices=9, relief=np.zeros((9, 4)))
+    found = line.respond(np.array([1e-165, 1e-20, 1e-12]), np.zeros(3), np.full(3, 2.0))
+    np.testing.assert_array_equal(found.load > 0.0, [False, False, True])
+
+
 def test_slices_much_narrower_than_the_contact_are_told():
     line = SlicedLine(length=LENGTH, contact_modulus=MODULUS, slices=51, relief=np.zeros((51, 4)))
     with pytest.raises(ConvergenceError, match=r"contact.slices = 51: .* choose at most \d+"):
