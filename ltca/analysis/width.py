@@ -93,7 +93,7 @@ def width_coordinates(drives: Mapping[str, Drive]) -> dict[str, Any]:
 
 
 RUN_OFF = 0.02
-"""Pressure at an end, by the largest of the same kind, from which it is told that a crowned contact runs off there."""
+"""Line load at an end, by the largest of all contacts of the kind, from which a contact with a crown is said to run off there."""
 
 
 def run_off_warning(analysis: LoadedAnalysis) -> str | None:
@@ -122,14 +122,11 @@ def run_off_warning(analysis: LoadedAnalysis) -> str | None:
 
 def _run_off_words(kind: KindPressures) -> str:
     along = kind.along
-    if along is None or not along.pressure.size:
+    if along is None or not along.line_load.size:
         return ""
-    ends = np.where(along.runs_off, along.pressure[..., [0, -1]], 0.0)
-    ends = np.where(np.isfinite(ends), ends, 0.0)
-    largest = float(np.nanmax(along.pressure))
-    if not np.max(ends) > RUN_OFF * largest:
+    load = np.where(np.isfinite(along.end_load), along.end_load, 0.0)
+    ends = load.max(axis=(0, 1)) / max(float(np.nanmax(along.line_load, initial=0.0)), 1e-300)
+    sides = [side for side, one in zip(("lower", "upper"), ends, strict=True) if one > RUN_OFF]
+    if not sides:
         return ""
-    sides = [
-        side for side, one in zip(("lower", "upper"), ends.max(axis=(0, 1)), strict=True) if one > RUN_OFF * largest
-    ]
-    return f"(at the {' and the '.join(sides)} end, {np.max(ends):.4g} MPa in the last slice)"
+    return f"(at the {' and the '.join(sides)} end, with {100.0 * np.max(ends):.2g} % of the largest line load)"

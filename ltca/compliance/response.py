@@ -12,7 +12,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.arrays import BoolArray, ComplexArray, FloatArray
+from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.compliance.rollers import RollerState
 from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION, X, Y
@@ -208,15 +208,15 @@ class AlongWidth:
         Largest over the profile and half-width in the middle of each slice, MPa and mm.
     place : array, shape (positions, pairs)
         Height of the largest pressure anywhere above the middle of the contact, mm.
-    runs_off : array of bool, shape (positions, pairs, 2)
-        Whether the contact carries right up to its lower and its upper end.
+    end_load : array, shape (positions, pairs, 2)
+        Line load at the lower and the upper end, N/mm: zero where the contact ends before.
     """
 
     line_load: FloatArray
     pressure: FloatArray
     half_width: FloatArray
     place: FloatArray
-    runs_off: BoolArray
+    end_load: FloatArray
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

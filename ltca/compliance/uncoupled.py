@@ -28,7 +28,6 @@ from ltca.compliance.response import (
 )
 from ltca.compliance.rollers import Law, RollerLaws, RollerState, balance_rollers
 from ltca.contact.tracked_grid import ContactKind, ContactKinds
-from ltca.contact.width_pressure import estimate_along_width, estimate_of_slices
 from ltca.geometry.pair_motion import BoreMotion, FlankMotion, PairMotion
 from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.contact_law import ContactLaw
@@ -192,16 +191,12 @@ class UncoupledContacts(ABC, Generic[Law]):
     ) -> ContactPressures:
         """The same of contacts in slices, from their line loads."""
         rollers, kinds, place = response.rollers, self.kinds, self.geometry.placement
-        radius, hole = response.flank.effective_radius, place.hole_effective_radii
-
-        def of_rollers(kind: ContactKind, slices: FloatArray | None, radii: FloatArray) -> KindPressures:
-            return pressures_of_slices(kind, estimate_of_slices(kind, np.asarray(slices), radii), radii)
-
+        outer, inner = np.asarray(rollers.outer_lines), np.asarray(rollers.inner_lines)
         return ContactPressures(
-            pins=pressures_of_slices(kinds.pins, estimate_along_width(kinds.pins, pins, radius), radius),
-            outer=of_rollers(kinds.outer, rollers.outer_slices, place.outer_effective_radii),
-            inner=of_rollers(kinds.inner, rollers.inner_slices, place.inner_effective_radii),
-            holes=pressures_of_slices(kinds.holes, estimate_along_width(kinds.holes, holes, hole), hole),
+            pins=pressures_of_slices(kinds.pins, pins.line_load, response.flank.effective_radius),
+            outer=pressures_of_slices(kinds.outer, outer, place.outer_effective_radii),
+            inner=pressures_of_slices(kinds.inner, inner, place.inner_effective_radii),
+            holes=pressures_of_slices(kinds.holes, holes.line_load, place.hole_effective_radii),
             rigid_shaft_pins=False,
         )
 
