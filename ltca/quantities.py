@@ -423,7 +423,7 @@ _DECLARED = (
         "moment of the crank bearing on the disc about x and y through the middle of the disc",
         (Scalar("max_{}", "moment of a crank bearing, largest", digits=".4g", how="largest length"),),
     ),
-    _of_design("axial_play_taken", "1", "part of the axial play of a disc that its tilt takes at the rim"),
+    _checked("axial_play_taken", "1", "part of the axial play of a disc that its tilt takes at the rim"),
     # crank bearings
     Quantity(
         "bearing_load", "", "N",
