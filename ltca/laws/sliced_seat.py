@@ -197,7 +197,7 @@ class BackedLine:
         travel, lean = 0.5 * delta, 0.5 * theta
         half = 0.5 * self.length
         if start is not None:
-            known = start.sum(axis=1) > 0.0
+            known = np.count_nonzero(start > 0.0, axis=1) > 2  # a line through two slices says little
             near = self._seat_under(start[known], play[known])
             travel[known], lean[known] = near
             # What was there may leave nothing pressed outside here.
@@ -234,7 +234,7 @@ class BackedLine:
         middle, mean = (loads @ z) / total, (loads * own).sum(axis=1) / total
         apart = z - middle[:, None]
         spread = (loads * apart**2).sum(axis=1)
-        slope = np.divide((loads * apart * own).sum(axis=1), spread, out=np.zeros_like(total), where=spread > 0.0)
+        slope = (loads * apart * own).sum(axis=1) / spread
         return mean - slope * middle, slope
 
     def _step(
