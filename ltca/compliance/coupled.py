@@ -189,7 +189,9 @@ class CoupledCompliance:
         leans: ComplexArray | None = None,
         again: DiscResponse | None = None,
     ) -> DiscResponse:
-        """Return the contact forces at the poses of a batch of positions; see `ltca.compliance.uncoupled`. Contacts that feel each other all
+        """Return the contact forces at the poses of a batch of positions; see `ltca.compliance.uncoupled`.
+
+        Contacts that feel each other all
         move with displaced pins: `again` is of no use.
 
         Raises

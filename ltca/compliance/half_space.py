@@ -132,6 +132,7 @@ class HalfSpaceCompliance(UncoupledContacts[ContactLaw]):
             of_pin + lead_relief(drive.disc, slice_heights(wide, slices)),
             drive.pin_wheel,
         )
+        pins: Any = back_line(flank, wheel_pin_seat(drive), place.wheel_pin_plays)
         if shaft_pin_beam(drive) is None:
             spring = SlicedSpring(stiffness=shaft_pin_stiffness(drive), length=wide, slices=slices)
             hole: Any = back_line(spring, shaft_pin_seat(drive), place.shaft_pin_plays)
@@ -142,7 +143,7 @@ class HalfSpaceCompliance(UncoupledContacts[ContactLaw]):
             )
         return cls(
             geometry=geometry,
-            pin_law=back_line(flank, wheel_pin_seat(drive), place.wheel_pin_plays),
+            pin_law=pins,
             roller_laws=RollerLaws(
                 inner=_line(drive, long, contact_modulus(parts.inner_race, parts.roller), of_roller),
                 outer=_line(drive, long, contact_modulus(parts.disc, parts.roller), of_roller),
@@ -182,8 +183,9 @@ def _line(
 
 
 def hole_in_slices(drive: Drive, modulus: float, play: FloatArray) -> Any:
-    """Return the half-space law of shaft pins and holes in slices with a contact modulus, MPa, sleeves behind it; `play` is that of
-    the sleeves on their pins, mm.
+    """Return the half-space law of shaft pins and holes in slices with a contact modulus, MPa, sleeves behind it.
+
+    `play` is that of the sleeves on their pins, mm.
     """
     line = _line(drive, drive.disc.thickness, modulus, 0.0, drive.pin_shaft)
     return back_line(line, shaft_pin_seat(drive), play)
