@@ -29,6 +29,7 @@ from numpy.typing import NDArray
 from ltca.arrays import ComplexArray, FloatArray, join_positions, take_positions
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.compliance.coupled_slices import respond_in_slices
+from ltca.compliance.in_slices import pressures_in_slices
 from ltca.compliance.near_field import NearField, NearFieldLaws, OwnParts
 from ltca.compliance.pressures import pressures_of_law
 from ltca.compliance.response import (
@@ -233,6 +234,8 @@ class CoupledCompliance:
 
     def pressures(self, response: DiscResponse) -> ContactPressures:
         """Return pressures and half-widths from the near fields."""
+        if response.leaning_pins is not None:
+            return self._pressures_in_slices(response)
         laws, near = self.near_field, np.stack(list(response.warm_start))
         pins, rollers = response.pin_load.shape[1], self.outer_radius.size
         inner, _ = laws.inner.approach_at_load(response.rollers.inner_load, self.inner_radius)
@@ -248,6 +251,13 @@ class CoupledCompliance:
             holes=read(laws.hole, laws.kinds.holes, hole, self.hole_radius),
             rigid_shaft_pins=laws.rigid_shaft_pins,
         )
+
+    def _pressures_in_slices(self, response: DiscResponse) -> ContactPressures:
+        laws, place = self.near_field, self.geometry.placement
+        at_hole: Any = laws.hole
+        modulus = getattr(at_hole, "contact", at_hole).contact_modulus
+        kinds = replace(laws.kinds, holes=replace(laws.kinds.holes, contact_modulus=modulus))
+        return pressures_in_slices(response, kinds, place, rigid_shaft_pins=laws.rigid_shaft_pins, ends=laws.has_ends)
 
 
 class _Batch:

@@ -53,20 +53,22 @@ def elastic_hole_pressures(kind: ContactKind, load: FloatArray, place: Placement
     return pressures_of_law(law, kind, approach, radius)
 
 
-def pressures_of_slices(kind: ContactKind, line_load: FloatArray, effective_radius: FloatArray) -> KindPressures:
+def pressures_of_slices(
+    kind: ContactKind, line_load: FloatArray, effective_radius: FloatArray, *, ends: bool = True
+) -> KindPressures:
     """Return pressures and half-widths of contacts in slices by their line loads at the points of these, N/mm.
 
     Line loads have the shape (positions, pairs, slices, points); the number of slices is odd, and mid-width is the middle one.
-    Effective radii, mm, are broadcast to the contacts.
+    Effective radii, mm, are broadcast to the contacts. Without `ends` nothing bulges there, as in plane strain.
     """
     found = estimate_along_width(kind, line_load, effective_radius)
     half_width = 2.0 / kind.contact_modulus * found.pressure * np.asarray(effective_radius)[..., None]
     middle = found.pressure.shape[-1] // 2
     return KindPressures(
         mid=found.pressure[..., middle],
-        largest=found.largest,
+        largest=found.largest if ends else found.pressure.max(axis=-1),
         half_width=half_width[..., middle],
-        end_cell=kind.end_cell,
+        end_cell=kind.end_cell if ends else np.nan,
         along=AlongWidth(
             line_load=found.line_load,
             pressure=found.pressure,
