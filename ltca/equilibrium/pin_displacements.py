@@ -15,7 +15,8 @@ less :math:`H^T (1 + S K)^{-1} S H`.
 In slices a disc presses a pin with a moment as well, and the pin leans where it stands in the disc. Leans are kept as
 displacements at half the thickness of the disc and moments as forces there, behind those of all discs, so that S stays one
 symmetric matrix: the slope under a force is the deflection under a moment. All that a beam bends is in S then, also under its
-own disc and in a drive of one disc, and laws are those of the contacts alone. A ring of the wheel moves seats and does not lean them.
+own disc and in a drive of one disc, and laws are those of the contacts alone. A ring of the wheel moves seats and leaves them
+upright.
 """
 
 from __future__ import annotations
