@@ -187,7 +187,9 @@ class CoupledCompliance:
         if self.geometry.coordinates_of(pose).leans:
             parts = [
                 respond_in_slices(self, *take_positions((crank_angle, pose, start, shifts, leans, moved[0]), rows))
-                for rows in np.array_split(np.arange(crank_angle.size), max(1, -(-crank_angle.size // POSITIONS_PER_CHUNK)))
+                for rows in np.array_split(
+                    np.arange(crank_angle.size), max(1, -(-crank_angle.size // POSITIONS_PER_CHUNK))
+                )
             ]
             in_slices: DiscResponse = join_positions(parts)
             return in_slices

@@ -121,9 +121,7 @@ class _Bodies:
 
     def split(self, values: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """Values of wheel pins, bores, holes and races."""
-        first, second, third, last = np.split(
-            values, np.cumsum((self.pins, self.rollers, self.holes)), axis=1
-        )
+        first, second, third, last = np.split(values, np.cumsum((self.pins, self.rollers, self.holes)), axis=1)
         return first, second, third, last
 
     def stiffness(self, state: _State) -> FloatArray:
@@ -201,4 +199,6 @@ def _settled(bodies: _Bodies, given: FloatArray, near: list[FloatArray] | None) 
                 break
             fraction = np.where(worse, 0.5 * fraction, fraction)
         state = there
-    raise ConvergenceError("what the bodies yield under contacts in slices does not settle; largest residual in mm", history)
+    raise ConvergenceError(
+        "what the bodies yield under contacts in slices does not settle; largest residual in mm", history
+    )

@@ -19,7 +19,7 @@ from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.rollers import RollerLaws, RollerState
 from ltca.errors import ConvergenceError
 from ltca.geometry.pair_motion import RollerRays, dot
-from ltca.laws.sliced_line import SlicedContact, SlicedLine, slice_heights
+from ltca.laws.sliced_line import POINTS, SlicedContact, SlicedLine, slice_heights
 
 MAX_ITERATIONS = 80
 SETTLED = 1e-10
@@ -137,6 +137,8 @@ def balance_leaning_rollers(
         "lean": lean,
         "inner_slices": inner.slice_load,
         "outer_slices": outer.slice_load,
+        "inner_lines": inner.line_load,
+        "outer_lines": outer.line_load,
     }
     arm = rays.outermost * rays.direction - displacement
     rest = np.abs(arm)
@@ -144,6 +146,8 @@ def balance_leaning_rollers(
         "share": np.full(shape, 0.5), "outer_approach": rest - rays.bore_play, "outer_direction": arm / rest,
         "tangent": np.zeros((*shape, 6, 6)),
         "inner_slices": np.zeros((*shape, laws.inner.slices)), "outer_slices": np.zeros((*shape, laws.outer.slices)),
+        "inner_lines": np.zeros((*shape, laws.inner.slices, POINTS)),
+        "outer_lines": np.zeros((*shape, laws.outer.slices, POINTS)),
     }  # fmt: skip
     whole = {}
     for name, values in found.items():

@@ -197,6 +197,29 @@ class Response(DiscResponse):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class AlongWidth:
+    """What all pairs of one kind in slices carry along their width, zero where open.
+
+    Attributes
+    ----------
+    line_load : array, shape (positions, pairs, slices)
+        Mean over each slice, N/mm.
+    pressure, half_width : array, shape (positions, pairs, slices)
+        Largest over the profile and half-width in the middle of each slice, MPa and mm.
+    place : array, shape (positions, pairs)
+        Height of the largest pressure anywhere above the middle of the contact, mm.
+    end_load : array, shape (positions, pairs, 2)
+        Line load at the lower and the upper end, N/mm: zero where the contact ends before.
+    """
+
+    line_load: FloatArray
+    pressure: FloatArray
+    half_width: FloatArray
+    place: FloatArray
+    end_load: FloatArray
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class KindPressures:
     """Pressures and half-widths of all pairs of one kind, zero where open.
 
@@ -211,12 +234,20 @@ class KindPressures:
         Contact half-width at mid-width, mm.
     end_cell : float
         Length of the end cell behind `largest`, mm; not a number where that is none.
+    along : AlongWidth or None
+        Of contacts in slices; None in the plane.
     """
 
     mid: FloatArray
     largest: FloatArray
     half_width: FloatArray
     end_cell: float
+    along: AlongWidth | None = None
+
+    @property
+    def widest(self) -> FloatArray:
+        """Largest half-width anywhere along the width but at its very ends, mm, shape (positions, pairs)."""
+        return self.half_width if self.along is None else np.asarray(self.along.half_width.max(axis=-1))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -71,6 +71,8 @@ class RollerState:
         Of leaning rollers along their rays, rad.
     inner_slices, outer_slices : array, shape (positions, rollers, slices), or None
         Loads of the slices of leaning rollers, N.
+    inner_lines, outer_lines : array, shape (positions, rollers, slices, points), or None
+        Their line loads at the points of the slices, N/mm.
     """
 
     share: FloatArray
@@ -85,6 +87,8 @@ class RollerState:
     lean: FloatArray | None = None
     inner_slices: FloatArray | None = None
     outer_slices: FloatArray | None = None
+    inner_lines: FloatArray | None = None
+    outer_lines: FloatArray | None = None
 
 
 def balance_rollers(
