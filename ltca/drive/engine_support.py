@@ -35,10 +35,8 @@ _IN_MESSAGES = {
     "full FE": "full finite elements",
     "FE mesh": "meshes of full finite elements",
     "clearance-free": "the clearance-free analysis",
-    "slices": "contacts in slices (contact.slices > 1)",
 }
-"""Names of engines in messages. The last three are no choice of an analysis: ``cyclo mesh``, a reference of the tests, and what
-every engine is for contacts in slices (`require_engine`)."""
+"""Names of engines in messages. The last two are no choice of an analysis: ``cyclo mesh`` and a reference of the tests."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +73,6 @@ _TWO_DIMENSIONS = (
 )
 _RIGID = ("paper", "full FE", "FE mesh", "clearance-free")
 _FIXED = ("direct", *_RIGID)
-_SLICES = ("slices",)
 _ONE_BORE = ("paper", "clearance-free")
 _HYBRID = "use --compliance hybrid"
 _HALF_SPACE, _TABLES = "use --compliance half-space", "use --method tables"
@@ -107,19 +104,9 @@ REFUSALS = (
     Refusal("friction", _FIXED, "the model is frictionless"),
     Refusal("contact.slices", ("fe",), _TWO_DIMENSIONS, _HALF_SPACE),
     Refusal("contact.slices", ("hybrid",), "discs do not tilt in the model", _HALF_SPACE),
-    Refusal("contact.slices", ("direct", "paper"), "discs do not tilt in the model", _TABLES),
+    Refusal("contact.slices", ("paper",), "discs do not tilt in the model", _TABLES),
     Refusal("contact.slices", ("full FE", "FE mesh"), _TWO_DIMENSIONS),
     Refusal("contact.slices", ("clearance-free",), "discs do not tilt in the model"),
-    # What contacts in slices do not go together with.
-    Refusal("friction", _SLICES, "they are frictionless"),
-    Refusal("pin_wheel.seat", _SLICES, "pins are fixed then"),
-    Refusal("pin_wheel.beam", _SLICES, "pins do not bend then"),
-    Refusal("pin_shaft.seat", _SLICES, "pins are fixed then"),
-    Refusal("pin_shaft.beam", _SLICES, "pins do not slope then", "give pin_shaft.stiffness in its place"),
-    Refusal("ring", _SLICES, "the wheel pins stand in a rigid ring then"),
-    Refusal("crank.support", _SLICES, "cranks do not slope then"),
-    Refusal("carrier.posts", _SLICES, "the carrier does not slope then"),
-    Refusal("main_bearing.tilt_stiffness", _SLICES, "the wheel does not tilt then"),
 )
 """Everything that an engine refuses, in the order of the definition of a drive."""
 ROUNDING = 1e-9
@@ -138,15 +125,6 @@ def require(drive: Drive, engine: str) -> None:
     problems = [problem for row in REFUSALS if engine in row.engines for problem in _problems(drive, row, engine)]
     if problems:
         raise DriveError(problems)
-
-
-def require_engine(drive: Drive, engine: str) -> None:
-    """Refuse a drive with anything that an engine of an analysis cannot represent (`require`), nor contacts in slices where it
-    has them.
-    """
-    require(drive, engine)
-    if drive.contact.slices > 1:
-        require(drive, "slices")
 
 
 def refusal(engine: str, path: str) -> str | None:
