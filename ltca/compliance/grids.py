@@ -6,8 +6,8 @@ The warm start that travels with each position holds its contacts as values, so 
 contact cells of the last.
 
 With ``contact.slices`` above 1 contacts tilt: their grids cover the whole width without symmetry (`ltca.contact.tilted_grid`),
-and slices are what their line loads are told by. Cells found are then kept by contact for the next time it is pressed, at whatever
-position that is: where an iteration starts alters no answer.
+and slices are what their line loads are told by. Cells found are then kept by contact for the next time it is pressed, at
+whatever position: where an iteration starts alters no answer.
 """
 
 from __future__ import annotations
