@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,14 +16,26 @@ from ltca.compliance.uncoupled import PairLaws, UncoupledContacts
 from ltca.contact.length_profile import generator_profile, lead_relief
 from ltca.contact.tracked_grid import ContactKind, ContactKinds
 from ltca.drive.hole_contact import hole_modulus, shaft_pins_yield
-from ltca.drive.parts import Drive, LengthProfile, Material, contact_modulus
+from ltca.drive.parts import Drive, LengthProfile, Material, PinShaft, PinWheel, contact_modulus
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.pair_motion import FlankMotion
 from ltca.geometry.pairs import ContactGeometry
-from ltca.laws.backed import back_shaft_pins, back_wheel_pins, shaft_pin_beam, shaft_pin_stiffness, tip_share, tip_slope
+from ltca.laws.backed import (
+    HALF_SPACE_DATUM,
+    back_shaft_pins,
+    back_wheel_pins,
+    shaft_pin_beam,
+    shaft_pin_seat,
+    shaft_pin_stiffness,
+    sleeve_overlap,
+    tip_share,
+    tip_slope,
+    wheel_pin_seat,
+)
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.generator_law import law_for_profile
 from ltca.laws.sliced_line import SlicedLine, slice_heights
+from ltca.laws.sliced_seat import back_line
 from ltca.laws.sliced_spring import SlicedSpring
 from ltca.laws.spring import SpringLaw
 
@@ -106,10 +118,6 @@ class HalfSpaceCompliance(UncoupledContacts[ContactLaw]):
         """Return the model with contacts in slices."""
         parts, bearing, place, slices = drive.materials, drive.crank_bearing, geometry.placement, drive.contact.slices
 
-        def line(length: float, modulus: float, relief: FloatArray | float) -> SlicedLine:
-            z = slice_heights(length, slices)
-            return SlicedLine(length=length, contact_modulus=modulus, slices=slices, relief=np.zeros(z.shape) + relief)
-
         def profile(given: LengthProfile, length: float, radius: float) -> FloatArray | float:
             found = generator_profile(given, length, radius)
             return 0.0 if found is None else found.relief(slice_heights(length, slices))
@@ -117,23 +125,28 @@ class HalfSpaceCompliance(UncoupledContacts[ContactLaw]):
         wide, long = drive.disc.thickness, drive.roller_length
         of_pin = profile(drive.pin_wheel.pin_profile, wide, drive.pin_wheel.pin_radius)
         of_roller = profile(bearing.roller_profile, long, bearing.roller_radius)
-        flank = line(
+        flank = _line(
+            drive,
             wide,
             contact_modulus(parts.disc, drive.flank_pin),
             of_pin + lead_relief(drive.disc, slice_heights(wide, slices)),
+            drive.pin_wheel,
         )
-        hole: SlicedLine | SlicedSpring
+        pins: Any = back_line(flank, wheel_pin_seat(drive), place.wheel_pin_plays)
         if shaft_pin_beam(drive) is None:
-            hole = SlicedSpring(stiffness=shaft_pin_stiffness(drive), length=wide, slices=slices)
+            spring = SlicedSpring(stiffness=shaft_pin_stiffness(drive), length=wide, slices=slices)
+            hole: Any = back_line(spring, shaft_pin_seat(drive), place.shaft_pin_plays)
         else:
             # A beam bends behind its contact, which says how its load lies along the width.
-            hole = line(wide, hole_modulus(drive, rigid_shaft_pins=not shaft_pins_yield(drive)), 0.0)
+            hole = hole_in_slices(
+                drive, hole_modulus(drive, rigid_shaft_pins=not shaft_pins_yield(drive)), place.shaft_pin_plays
+            )
         return cls(
             geometry=geometry,
-            pin_law=flank,
+            pin_law=pins,
             roller_laws=RollerLaws(
-                inner=line(long, contact_modulus(parts.inner_race, parts.roller), of_roller),
-                outer=line(long, contact_modulus(parts.disc, parts.roller), of_roller),
+                inner=_line(drive, long, contact_modulus(parts.inner_race, parts.roller), of_roller),
+                outer=_line(drive, long, contact_modulus(parts.disc, parts.roller), of_roller),
                 inner_radius=place.inner_effective_radii,
                 outer_radius=place.outer_effective_radii,
             ),
@@ -150,6 +163,32 @@ class HalfSpaceCompliance(UncoupledContacts[ContactLaw]):
     ) -> KindPressures:
         """Return pressures and half-widths of contacts of one kind at their approaches, shape (positions, pairs)."""
         return pressures_of_law(law, kind, approach, effective_radius)
+
+
+def _line(
+    drive: Drive,
+    length: float,
+    modulus: float,
+    relief: FloatArray | float,
+    part: PinWheel | PinShaft | None = None,
+) -> Any:
+    """Law in slices of a contact of a length, mm, with what it falls short by; of pins under sleeves with these."""
+    slices = drive.contact.slices
+    held = np.zeros(slice_heights(length, slices).shape) + relief
+    found = SlicedLine(length=length, contact_modulus=modulus, slices=slices, relief=held)
+    if part is None or part.seat.kind != "sleeve":
+        return found
+    twice = sleeve_overlap(drive, part, HALF_SPACE_DATUM * length)
+    return replace(found, sleeve=drive.materials.sleeve.plane_strain_compliance * modulus, overlap=twice)
+
+
+def hole_in_slices(drive: Drive, modulus: float, play: FloatArray) -> Any:
+    """Return the half-space law of shaft pins and holes in slices with a contact modulus, MPa, sleeves behind it.
+
+    `play` is that of the sleeves on their pins, mm.
+    """
+    line = _line(drive, drive.disc.thickness, modulus, 0.0, drive.pin_shaft)
+    return back_line(line, shaft_pin_seat(drive), play)
 
 
 def _effective_radii(profile: FlankProfile, pin_radii: FloatArray, turn: FloatArray) -> FloatArray:

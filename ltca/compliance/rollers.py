@@ -25,10 +25,11 @@ BISECTION_TOLERANCE = 1e-11
 """Last change of a share where the step was a bisection."""
 
 Law = TypeVar("Law", bound=ContactLaw)
+AnyLaw = TypeVar("AnyLaw")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RollerLaws(Generic[Law]):
+class RollerLaws(Generic[AnyLaw]):
     """Load laws of the two contacts of every roller.
 
     Attributes
@@ -41,8 +42,8 @@ class RollerLaws(Generic[Law]):
         Whether the laws know their contacts by their places, shape (positions, rollers), as grids do.
     """
 
-    inner: Law
-    outer: Law
+    inner: AnyLaw
+    outer: AnyLaw
     inner_radius: FloatArray = by_drive(1)
     outer_radius: FloatArray = by_drive(1)
     by_place: bool = False
@@ -71,6 +72,8 @@ class RollerState:
         Of leaning rollers along their rays, rad.
     inner_slices, outer_slices : array, shape (positions, rollers, slices), or None
         Loads of the slices of leaning rollers, N.
+    inner_lines, outer_lines : array, shape (positions, rollers, slices, points), or None
+        Their line loads at the points of the slices, N/mm.
     """
 
     share: FloatArray
@@ -85,6 +88,8 @@ class RollerState:
     lean: FloatArray | None = None
     inner_slices: FloatArray | None = None
     outer_slices: FloatArray | None = None
+    inner_lines: FloatArray | None = None
+    outer_lines: FloatArray | None = None
 
 
 def balance_rollers(

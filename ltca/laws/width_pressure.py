@@ -19,7 +19,7 @@ from ltca.arrays import BoolArray, FloatArray
 from ltca.contact.end_pressure import find_cylinder_ratio
 from ltca.contact.tilted_grid import TiltedPatch, recover_tilted
 from ltca.contact.tracked_grid import ContactKind, Separation
-from ltca.laws.sliced_line import POINTS, SlicedContact, SlicedLine, slice_heights
+from ltca.laws.sliced_line import POINTS, SlicedLine, slice_heights
 
 HEIGHTS = 33
 """Heights at which pressures are given where none are asked for."""
@@ -60,20 +60,20 @@ class WidthPressures:
         return np.asarray(self.end_load > 0.0)
 
 
-def estimate_along_width(kind: ContactKind, contact: SlicedContact, effective_radius: FloatArray) -> WidthPressures:
+def estimate_along_width(kind: ContactKind, line_load: FloatArray, effective_radius: FloatArray) -> WidthPressures:
     """Return pressures of contacts in slices by their line loads, at the middles of the slices.
 
     Parameters
     ----------
     kind : ContactKind
         Kind of the contacts.
-    contact : SlicedContact
-        Contacts, arrays of shape (…).
+    line_load : array, shape (…, slices, points)
+        Of the contacts at the points of their slices (`ltca.laws.sliced_line.SlicedContact`), N/mm.
     effective_radius : array
         ρ, mm, broadcasts to (…).
     """
-    line = contact.line_load
-    radius = np.broadcast_to(effective_radius, contact.load.shape)
+    line = line_load
+    radius = np.broadcast_to(effective_radius, line.shape[:-2])
     z = slice_heights(kind.length, line.shape[-2])
     even = line @ (0.5 * np.polynomial.legendre.leggauss(line.shape[-1])[1])
 
@@ -102,7 +102,7 @@ def estimate_along_width(kind: ContactKind, contact: SlicedContact, effective_ra
     every = np.concatenate((flat, at_ends), axis=-1)
     places = np.concatenate((z.ravel(), (-0.5 * kind.length, 0.5 * kind.length)))
     top = np.argmax(every, axis=-1)
-    closed = contact.load > 0.0
+    closed = (even > 0.0).any(axis=-1)
     return WidthPressures(
         height=z.mean(axis=1),
         line_load=even,

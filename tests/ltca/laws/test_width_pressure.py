@@ -30,7 +30,7 @@ def both(drop, approach, tilt, slices=9):
         length=LENGTH, contact_modulus=MODULUS, slices=slices, relief=kind.relief(slice_heights(LENGTH, slices))
     )
     delta, theta, radius = (np.array([value]) for value in (approach, tilt, RADIUS))
-    estimate = estimate_along_width(kind, line.respond(delta, theta, radius), radius)
+    estimate = estimate_along_width(kind, line.respond(delta, theta, radius).line_load, radius)
     return estimate, solve_along_width(kind, delta, theta, radius, estimate.height)
 
 
