@@ -175,8 +175,8 @@ class CoupledCompliance:
         leans: ComplexArray | None = None,
         again: DiscResponse | None = None,
     ) -> DiscResponse:
-        """Return the contact forces at the poses of a batch of positions; see `ltca.compliance.uncoupled`. Where contacts feel each
-        other nothing of `again` stands where it stood.
+        """Return the contact forces at the poses of a batch of positions; see `ltca.compliance.uncoupled`. Contacts that feel each other all
+        move with displaced pins: `again` is of no use.
 
         Raises
         ------

@@ -1,7 +1,7 @@
 r"""Contacts in slices that feel each other through the bodies (`fe` and `hybrid` with slices).
 
-Walls and supports of the bodies yield evenly along the width: coefficients of plane bodies know of no other way. What the loads of
-all contacts take off the approach of each is
+Walls and supports of the bodies yield evenly along the width: coefficients of plane bodies know of no other way. What the loads
+of all contacts take off the approach of each is
 
 .. math:: y = C F(\delta(q) - y, \theta(q)),
 
@@ -23,8 +23,8 @@ from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.in_slices import ContactsInSlices, roller_start, stacked, warm_rows
 from ltca.compliance.response import DiscResponse, LeaningPairs, PairSlopes, Start
 from ltca.compliance.rollers import RollerLaws, RollerState
-from ltca.geometry.coordinates import DISC_ROTATION, X, Y
 from ltca.errors import ConvergenceError
+from ltca.geometry.coordinates import DISC_ROTATION, X, Y
 
 if TYPE_CHECKING:
     from ltca.compliance.coupled import CoupledCompliance
@@ -170,7 +170,9 @@ class _Bodies:
 def _coupled_slopes(pairs: PairSlopes, between: FloatArray, given: FloatArray) -> PairSlopes:
     """How loads and moments of wheel pins and shaft pins follow approaches, tilts and pose where contacts feel each other."""
     k, x, m = pairs.by_approach, pairs.by_tilt, pairs.moment_by_tilt
-    assert x is not None and m is not None and pairs.moment_by_pose is not None
+    assert x is not None
+    assert m is not None
+    assert pairs.moment_by_pose is not None
     one = np.eye(k.shape[1])
     return PairSlopes(
         by_approach=k[:, :, None] * one - k[:, :, None] * between * k[:, None, :],

@@ -16,14 +16,26 @@ from ltca.compliance.uncoupled import PairLaws, UncoupledContacts
 from ltca.contact.length_profile import generator_profile, lead_relief
 from ltca.contact.tracked_grid import ContactKind, ContactKinds
 from ltca.drive.hole_contact import hole_modulus, shaft_pins_yield
-from ltca.drive.parts import Drive, LengthProfile, Material, contact_modulus
+from ltca.drive.parts import Drive, LengthProfile, Material, PinShaft, PinWheel, contact_modulus
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.pair_motion import FlankMotion
 from ltca.geometry.pairs import ContactGeometry
-from ltca.laws.backed import back_shaft_pins, back_wheel_pins, shaft_pin_beam, shaft_pin_stiffness, tip_share, tip_slope
+from ltca.laws.backed import (
+    HALF_SPACE_DATUM,
+    back_shaft_pins,
+    back_wheel_pins,
+    shaft_pin_beam,
+    shaft_pin_seat,
+    shaft_pin_stiffness,
+    sleeve_overlap,
+    tip_share,
+    tip_slope,
+    wheel_pin_seat,
+)
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.generator_law import law_for_profile
 from ltca.laws.sliced_line import SlicedLine, slice_heights
+from ltca.laws.sliced_seat import back_line
 from ltca.laws.sliced_spring import SlicedSpring
 from ltca.laws.spring import SpringLaw
 
@@ -106,9 +118,15 @@ class HalfSpaceCompliance(UncoupledContacts[ContactLaw]):
         """Return the model with contacts in slices."""
         parts, bearing, place, slices = drive.materials, drive.crank_bearing, geometry.placement, drive.contact.slices
 
-        def line(length: float, modulus: float, relief: FloatArray | float) -> SlicedLine:
-            z = slice_heights(length, slices)
-            return SlicedLine(length=length, contact_modulus=modulus, slices=slices, relief=np.zeros(z.shape) + relief)
+        def line(
+            length: float, modulus: float, relief: FloatArray | float, part: PinWheel | PinShaft | None = None
+        ) -> SlicedLine:
+            held = np.zeros(slice_heights(length, slices).shape) + relief
+            found = SlicedLine(length=length, contact_modulus=modulus, slices=slices, relief=held)
+            if part is None or part.seat.kind != "sleeve":
+                return found
+            twice = sleeve_overlap(drive, part, HALF_SPACE_DATUM * length)
+            return replace(found, sleeve=parts.sleeve.plane_strain_compliance * modulus, overlap=twice)
 
         def profile(given: LengthProfile, length: float, radius: float) -> FloatArray | float:
             found = generator_profile(given, length, radius)
@@ -122,23 +140,25 @@ class HalfSpaceCompliance(UncoupledContacts[ContactLaw]):
             wide,
             contact_modulus(parts.disc, drive.flank_pin),
             of_pin + lead_relief(drive.disc, slice_heights(wide, slices)),
+            drive.pin_wheel,
         )
         hole: SlicedLine | SlicedSpring
         if shaft_pin_beam(drive) is None:
             hole = SlicedSpring(stiffness=shaft_pin_stiffness(drive), length=wide, slices=slices)
         else:
             # A beam bends behind its contact, which says how its load lies along the width.
-            hole = line(wide, hole_modulus(drive, rigid_shaft_pins=not shaft_pins_yield(drive)), 0.0)
+            modulus = hole_modulus(drive, rigid_shaft_pins=not shaft_pins_yield(drive))
+            hole = line(wide, modulus, 0.0, drive.pin_shaft)
         return cls(
             geometry=geometry,
-            pin_law=flank,
+            pin_law=back_line(flank, wheel_pin_seat(drive), place.wheel_pin_plays),
             roller_laws=RollerLaws(
                 inner=line(long, contact_modulus(parts.inner_race, parts.roller), of_roller),
                 outer=line(long, contact_modulus(parts.disc, parts.roller), of_roller),
                 inner_radius=place.inner_effective_radii,
                 outer_radius=place.outer_effective_radii,
             ),
-            hole_law=hole,
+            hole_law=back_line(hole, shaft_pin_seat(drive), place.shaft_pin_plays),
             kinds=replace(kinds, pins=replace(kinds.pins, lead=None)),
         )
 

@@ -182,7 +182,7 @@ def _downhill(
 ) -> tuple[_Contacts, tuple[FloatArray, FloatArray]]:
     """Newton's step of the rollers that go on, shortened where the energy rises again steeply at its end.
 
-    The energy is convex along a step: its slope says how far the least of it is, also where differences of energies are round-off.
+    The energy is convex along a step: its slope says how far its least is, also where differences of energies are round-off.
     """
     first, second = inner.take(going), outer.take(going)
     n, towards, arm = ray[going], outward[going], length[going]
@@ -236,8 +236,8 @@ def _eliminated(
     outer: SlicedContact,
     half: float,
 ) -> FloatArray:
-    """Second derivative of the eliminated energy by displacement (x, y) and lean (x, y) of the bore and what the bodies take of the
-    approaches in the bore and on the race, shape (rollers, 6, 6).
+    """Second derivative of the eliminated energy by displacement (x, y) and lean (x, y) of the bore and what the bodies take of
+    the approaches in the bore and on the race, shape (rollers, 6, 6).
     """
     slant = ray.imag * outward.real - ray.real * outward.imag
     bend = outer.load / length

@@ -18,8 +18,8 @@ import numpy as np
 
 from ltca.compliance.coefficients import InfluenceCoefficients, logarithm_factor
 from ltca.compliance.half_space import HalfSpaceCompliance
-from ltca.contact.length_profile import lead_relief
 from ltca.contact.hertz import effective_radius, line_half_width
+from ltca.contact.length_profile import lead_relief
 from ltca.contact.tracked_grid import ContactKinds
 from ltca.drive.engine_support import require
 from ltca.drive.hole_contact import hole_modulus
@@ -30,9 +30,9 @@ from ltca.geometry.placement import Placement
 from ltca.laws.backed import HALF_SPACE_DATUM, back_wheel_pins
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.line_contact import LineContactLaw
+from ltca.laws.plane_strain import SELF_ENERGY, PlaneContactLaw
 from ltca.laws.sliced_line import SlicedLine, slice_heights
 from ltca.laws.sliced_plane import SlicedPlane
-from ltca.laws.plane_strain import SELF_ENERGY, PlaneContactLaw
 
 NearField = Literal["plane-strain", "half-space"]
 

@@ -165,10 +165,8 @@ class UncoupledContacts(ABC, Generic[Law]):
         if again is not None and again.leaning_pins is not None and again.leaning_holes is not None:
             starts = again.leaning_pins.contact.slice_load, again.leaning_holes.contact.slice_load
         pairs = here.pair(0, laws.pins, starts[0]), here.pair(1, self.hole_law, starts[1])
-        if again is None:
-            rollers = here.rollers(laws.rollers, None if near is None else roller_start(near))
-        else:
-            rollers = again.rollers
+        begin = None if near is None else roller_start(near)
+        rollers = here.rollers(laws.rollers, begin) if again is None else again.rollers
         return here.response(pairs, rollers, warm_rows(pairs, rollers))
 
     def pressures(self, response: DiscResponse) -> ContactPressures:

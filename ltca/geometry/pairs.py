@@ -222,7 +222,10 @@ class ContactGeometry:
             return 0.0
         place = self.placement
         own = np.abs(place.wheel_pin_leans if leans is None else place.wheel_pin_leans + leans)
-        return np.asarray(self.half_width * (np.abs(self.lean(pose) - place.wheel_lean) + own) + self.end_metal)
+        return np.asarray(
+            self.half_width * (np.abs(self.lean(pose) - place.wheel_lean - self.wheel_lean(pose)) + own)
+            + self.end_metal
+        )
 
     def complete_flank(
         self, crank_angle: FloatArray, pose: FloatArray, motion: FlankMotion, shifts: ComplexArray | None = None
@@ -402,7 +405,7 @@ class ContactGeometry:
     def journal_leans(self, pose: FloatArray) -> ComplexArray:
         """Return the lean of every crank in the plane of the disc, rad, shape (positions, cranks)."""
         coordinates, place = self.coordinates_of(pose), self.placement
-        found = np.zeros((pose.shape[0], place.cranks), dtype=complex) + np.asarray(place.crank_lean)[..., None]
+        found = np.zeros((pose.shape[0], place.cranks), dtype=complex) + np.asarray(place.crank_lean)
         for crank in range(coordinates.cranks):
             first = coordinates.crank_lean(crank)
             found[:, crank] += pose[:, first] + 1j * pose[:, first + 1]

@@ -181,7 +181,7 @@ def back_wheel_pins(drive: Drive, contact: ContactLaw, play: FloatArray, depth: 
         return contact
     overlap = 0.0
     if drive.pin_wheel.seat.kind == "sleeve":
-        overlap = _overlap(drive, drive.pin_wheel, depth or HALF_SPACE_DATUM * drive.disc.thickness)
+        overlap = sleeve_overlap(drive, drive.pin_wheel, depth or HALF_SPACE_DATUM * drive.disc.thickness)
     return BackedLaw(contact=contact, seat=seat, play=play, flexibility=own_flexibility(drive, beam), overlap=overlap)
 
 
@@ -195,7 +195,7 @@ def back_shaft_pins(drive: Drive, contact: ContactLaw, play: FloatArray, depth: 
     seat, shaft = shaft_pin_seat(drive), drive.pin_shaft
     if seat is None or shaft is None:
         return contact
-    overlap = 0.0 if depth is None else _overlap(drive, shaft, depth)
+    overlap = 0.0 if depth is None else sleeve_overlap(drive, shaft, depth)
     return BackedLaw(contact=contact, seat=seat, play=play, overlap=overlap)
 
 
@@ -205,8 +205,8 @@ def _datum(drive: Drive, part: PinWheel | PinShaft) -> float:
     return min(0.5 * wall, HALF_SPACE_DATUM * drive.disc.thickness)
 
 
-def _overlap(drive: Drive, part: PinWheel | PinShaft, depth: float) -> float:
-    """Compliance of a half-plane of the sleeve between that depth and another, 2 (1 − ν²) ln(D/d)/(π E L), mm/N."""
+def sleeve_overlap(drive: Drive, part: PinWheel | PinShaft, depth: float) -> float:
+    """Return the compliance of a half-plane of the sleeve between that depth and another, 2 (1 − ν²) ln(D/d)/(π E L), mm/N."""
     compliance = drive.materials.sleeve.plane_strain_compliance
     return float(2.0 * compliance * np.log(depth / _datum(drive, part)) / (np.pi * drive.disc.thickness))
 

@@ -39,6 +39,7 @@ from numpy.typing import NDArray
 from ltca.arrays import FloatArray, by_drive
 from ltca.contact.influence import lagged_influence
 from ltca.errors import ConvergenceError
+from ltca.laws.backed import HALF_SPACE_DATUM, MAX_OVERLAP, OVERLAP_SHARPNESS
 from ltca.laws.slenderness_curve import SlendernessCurve, quintic_spline_pieces
 
 POINTS = 4
@@ -234,6 +235,10 @@ class SlicedLine:
         n, at least 3.
     relief : array, shape (slices, points)
         h, mm: by how much lead and profile fall short at the points (`slice_heights`).
+    sleeve : float
+        Part of the compliance that is a sleeve's, whose slices do not feel each other: its wall is thinner than they are long.
+    overlap : float
+        Compliance of the whole line that the law of that sleeve has as well, mm/N (`ltca.laws.backed.BackedLaw`).
     ends : array, shape (6, pieces), optional
         By how much end slices are softer, ε over ln(b/l); default `softer_ends`.
     """
@@ -242,6 +247,8 @@ class SlicedLine:
     contact_modulus: float
     slices: int
     relief: FloatArray = by_drive(2)
+    sleeve: float = 0.0
+    overlap: float = 0.0
     ends: FloatArray = field(default_factory=softer_ends)
 
     def respond(
@@ -305,6 +312,9 @@ class SlicedLine:
         grow = load / square - 0.5 / total
         lags, ends = self._coefficients(place)
         lags[0, 0] -= 2.0 * np.log(DATUM * n)
+        if self.sleeve:
+            lags, ends = (1.0 - self.sleeve) * lags, (1.0 - self.sleeve) * ends
+            lags[0, 0] -= 2.0 * self.sleeve * np.log(DATUM / HALF_SPACE_DATUM)
         # Products of the matrix and of its first two derivatives by ln b with the loads: a lag each way.
         beside = np.zeros((3 * n - 2, place.size))
         beside[n - 1 : 2 * n - 1] = load
@@ -331,17 +341,40 @@ class SlicedLine:
         pressed, by_width = products
         slope, curved = 0.5 * (load * by_width).sum(axis=0), 0.5 * form
         scale = 1.0 / (np.pi * self.contact_modulus * size)
+        stored, twice, by_load = self._counted_twice(load, effective_radius)
         return _Coupling(
-            energy=0.5 * scale * (load * pressed).sum(axis=0),
-            pressed_in=scale * (pressed + slope * grow),
+            energy=0.5 * scale * (load * pressed).sum(axis=0) - stored,
+            pressed_in=scale * (pressed + slope * grow) - twice,
             scale=scale,
             lags=lags[0],
             ends=ends[0],
             smooth=smooth[0],
-            diagonal=slope / square,
+            diagonal=slope / square - by_load / scale,
             across=by_width + (0.5 * curved - slope) * grow - slope / total,
             grow=grow,
         )
+
+    def _counted_twice(
+        self, load: FloatArray, effective_radius: FloatArray
+    ) -> tuple[FloatArray | float, FloatArray | float, FloatArray | float]:
+        """Energy, what is subtracted from what each slice presses in, smoothly bounded, and its derivative by the load.
+
+        The bound is a part of the approach of a plane as deep as a half-space of the line's length counts, at the line load.
+        """
+        if not self.overlap:
+            return 0.0, 0.0, 0.0
+        nodes, weights = np.polynomial.legendre.leggauss(8)
+        places, shares = 0.5 * (nodes + 1.0), 0.5 * weights
+        at = np.maximum(load, 1e-300) * np.append(places**2, 1.0)[:, None, None]
+        datum, ratio = HALF_SPACE_DATUM * self.length, self.overlap * self.length * np.pi * self.contact_modulus
+        half_width = np.sqrt(4.0 * at * (self.slices / self.length) * effective_radius / (np.pi * self.contact_modulus))
+        deep = np.maximum(np.log(2.0 * datum / half_width) + 0.5, 0.5)
+        part = (ratio / (2.0 * MAX_OVERLAP * deep)) ** OVERLAP_SHARPNESS
+        bounded = self.overlap * self.slices * (1.0 + part) ** (-1.0 / OVERLAP_SHARPNESS)
+        off = bounded * at
+        stored = np.einsum("k,kic->c", 2.0 * shares * places, off[:-1] * load)
+        narrow = np.where(deep > 0.5, 0.5 * part / (1.0 + part) / deep, 0.0)
+        return stored, off[-1], (bounded * (1.0 - narrow))[-1]
 
     def _coefficients(self, place: FloatArray) -> tuple[FloatArray, FloatArray]:
         """a_k and ε with first and second derivatives by ln(b/l), shapes (3, slices, contacts) and (3, contacts)."""
