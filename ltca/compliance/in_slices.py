@@ -13,9 +13,7 @@ from numpy.typing import NDArray
 
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.leaning_rollers import RollerStart, balance_leaning_rollers
-from ltca.compliance.pressures import pressures_of_slices
 from ltca.compliance.response import (
-    ContactPressures,
     DiscResponse,
     LeaningPairs,
     PairSlopes,
@@ -25,11 +23,9 @@ from ltca.compliance.response import (
     split_shifts,
 )
 from ltca.compliance.rollers import RollerLaws, RollerState
-from ltca.contact.tracked_grid import ContactKinds
 from ltca.geometry.coordinates import Coordinates
 from ltca.geometry.pair_motion import BoreMotion, FlankMotion, PairMotion, dot
 from ltca.geometry.pairs import ContactGeometry
-from ltca.geometry.placement import Placement
 from ltca.laws.sliced_line import SlicedContact
 
 
@@ -170,23 +166,6 @@ class ContactsInSlices:
         tangent = np.matmul(moved.swapaxes(2, 3), np.matmul(stiffness, moved)).sum(axis=1)
         add_bearing_bend(tangent, rollers, self.bores)
         return np.asarray(tangent)
-
-
-def pressures_in_slices(
-    response: DiscResponse, kinds: ContactKinds, place: Placement, *, rigid_shaft_pins: bool, ends: bool = True
-) -> ContactPressures:
-    """Return pressures and half-widths of contacts in slices, from their line loads; in plane strain they have no ends."""
-    rollers, flank, pins, holes = response.rollers, response.flank, response.leaning_pins, response.leaning_holes
-    assert pins is not None
-    assert holes is not None
-    outer, inner = np.asarray(rollers.outer_lines), np.asarray(rollers.inner_lines)
-    return ContactPressures(
-        pins=pressures_of_slices(kinds.pins, pins.contact.line_load, flank.effective_radius, ends=ends),
-        outer=pressures_of_slices(kinds.outer, outer, place.outer_effective_radii, ends=ends),
-        inner=pressures_of_slices(kinds.inner, inner, place.inner_effective_radii, ends=ends),
-        holes=pressures_of_slices(kinds.holes, holes.contact.line_load, place.hole_effective_radii, ends=ends),
-        rigid_shaft_pins=rigid_shaft_pins,
-    )
 
 
 def roller_start(near: list[Any]) -> RollerStart:

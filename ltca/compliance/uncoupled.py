@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.arrays import ComplexArray, FloatArray
-from ltca.compliance.in_slices import ContactsInSlices, pressures_in_slices, roller_start, stacked, warm_rows
-from ltca.compliance.pressures import elastic_hole_pressures
+from ltca.compliance.in_slices import ContactsInSlices, roller_start, stacked, warm_rows
+from ltca.compliance.pressures import elastic_hole_pressures, pressures_in_slices
 from ltca.compliance.response import (
     ContactPressures,
     DiscResponse,
@@ -172,7 +172,7 @@ class UncoupledContacts(ABC, Generic[Law]):
     def pressures(self, response: DiscResponse) -> ContactPressures:
         """Return pressures and half-widths from the laws, those of the shaft pins from their loads."""
         if response.leaning_pins is not None:
-            return pressures_in_slices(response, self.kinds, self.geometry.placement, rigid_shaft_pins=False)
+            return pressures_in_slices(response, self.kinds, self.geometry.placement)
         flank, rollers, kinds = response.flank, response.rollers, self.kinds
         laws = self.laws(flank, response.warm_start)
         of_rollers = laws.rollers
