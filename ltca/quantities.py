@@ -30,6 +30,12 @@ DIMENSIONS = {
     "roller": ("case", "disc", "crank", "position", "roller"),
     "hole": ("case", "disc", "position", "hole"),
     "lobe": ("case", "disc", "position", "lobe"),
+    "slices of a pin": ("case", "disc", "position", "pin", "slice"),
+    "slices of a roller": ("case", "disc", "crank", "position", "roller", "slice"),
+    "slices of a hole": ("case", "disc", "position", "hole", "slice"),
+    "axes of a disc": ("case", "disc", "position", "axis"),
+    "axes of a crank": ("case", "disc", "crank", "position", "axis"),
+    "slice of the case": ("case", "slice"),
     "cells of a pin": ("case", "disc", "position", "pin", "pin_cell_x", "pin_cell_y"),
     "x edges of a pin": ("case", "disc", "position", "pin", "pin_bound_x"),
     "y edges of a pin": ("case", "disc", "position", "pin", "pin_bound_y"),
@@ -47,7 +53,7 @@ ANY_NUMBER = (None, None)
 FROM_0_TO_1 = (0.0, 1.0)
 AT_MOST_1 = (None, 1.0)
 
-SUFFIXES = {"1": "", "N mm": "_Nmm", "MPa m/s": "_MPa_m_s", "N mm/rad": "_Nmm_per_rad"}
+SUFFIXES = {"1": "", "N mm": "_Nmm", "N/mm": "_N_per_mm", "MPa m/s": "_MPa_m_s", "N mm/rad": "_Nmm_per_rad"}
 """Units as they end the keys of ``summary.json``, where they are spelled otherwise."""
 SIGNS = {"1": "", "N mm/rad": "N·mm/rad", "arcmin": "′", "arcsec": "″", "deg": "°", "N mm": "N·mm"}
 """Units as they are printed, where they are spelled otherwise."""
@@ -247,9 +253,30 @@ def _bend(title: str, judged: str) -> Scalar:
     return Scalar("max_{}", title, digits=".4f", limit=AT_LEAST_0, judged=judged)
 
 
-def _anywhere(title: str) -> tuple[Scalar, ...]:
+def _anywhere(title: str, judged: str) -> tuple[Scalar, ...]:
     """The largest pressure, the ends of the contact included."""
-    return (Scalar("max_{}", f"largest {title} anywhere (end cell a hundredth)", refined=True),)
+    told = f"largest {title} anywhere (end cell a hundredth)"
+    return (Scalar("max_{}", told, limit=AT_LEAST_0, judged=f"{judged} anywhere along the width", refined=True),)
+
+
+def _along(part: str, of: str, name: str, sides: tuple[tuple[str, str, str], ...]) -> tuple[Quantity, ...]:
+    """What contacts of one kind in slices have along their width: sides are endings of line load and of pressure, and who meets."""
+    found: tuple[Quantity, ...] = ()
+    largest = (Scalar(f"max_{part}_line_load", f"largest line load of a {name}", "N/mm"),)
+    for line, pressure, pair in sides:
+        place = f"height above mid-width at which the pressure of {pair} is largest"
+        each = f"largest pressure over the profile of {pair} in each slice"
+        load = f"line load of {pair}, mean over each slice"
+        found += (
+            Quantity(f"{part}_line_load{line}", f"slices of a {of}", "N/mm", load, () if line else largest),
+            Quantity(f"{part}_pressure_along_width{pressure}", f"slices of a {of}", "MPa", each),
+            Quantity(f"{part}_pressure_max_place{pressure}", of, "mm", place),
+        )
+    told = f"face load factor K_Hβ of a {name}: largest line load by the largest mean line load"
+    limited = Scalar(
+        "max_{}", f"face load factor K_Hβ of a {name}", digits=".3f", how="largest known", limit=AT_LEAST_0
+    )
+    return (*found, Quantity(f"{part}_face_load_factor", "crank" if of == "roller" else "disc", "1", told, (limited,)))
 
 
 _TIP_RING = (
@@ -322,15 +349,25 @@ _DECLARED = (
     ),
     Quantity(
         "pin_pressure_max", "pin", "MPa", "largest pressure of wheel pin and flank anywhere, end cell in attrs",
-        _anywhere("flank pressure"),
+        _anywhere("flank pressure", "flank pressure"),
     ),
-    Quantity("roller_pressure_max", "", "MPa", scalars=_anywhere("roller pressure")),
+    Quantity("roller_pressure_max", "", "MPa", scalars=_anywhere("roller pressure", "roller pressure")),
     Quantity(
-        "roller_pressure_max_outer", "roller", "MPa", "largest pressure of roller and bore anywhere, end cell in attrs"
+        "roller_pressure_max_outer", "roller", "MPa", "largest pressure of roller and bore anywhere, end cell in attrs",
+        (
+            Scalar(
+                "max_{}", "roller pressure in the bore anywhere along the width", limit=AT_LEAST_0, in_summary=False
+            ),
+        ),
     ),
     Quantity(
         "roller_pressure_max_inner", "roller", "MPa",
         "largest pressure of roller and inner race anywhere, end cell in attrs",
+        (
+            Scalar(
+                "max_{}", "roller pressure on the inner race anywhere along the width", limit=AT_LEAST_0, in_summary=False
+            ),
+        ),
     ),
     Quantity(
         "pin_shaft_pressure_mid", "hole", "MPa", "largest pressure of shaft pin and hole at mid-width",
@@ -339,7 +376,7 @@ _DECLARED = (
     ),
     Quantity(
         "pin_shaft_pressure_max", "hole", "MPa", "largest pressure of shaft pin and hole anywhere, end cell in attrs",
-        _anywhere("pressure of a shaft pin"),
+        _anywhere("pressure of a shaft pin", "hole pressure"),
     ),
     _scalar("mm", Scalar("pin_end_cell", "length of the end cell of the largest flank pressure anywhere")),
     _scalar("mm", Scalar("roller_end_cell", "length of the end cell of the largest roller pressure anywhere")),
@@ -371,6 +408,22 @@ _DECLARED = (
     ),
     _scalar("1", Scalar("mean_loaded_rollers", "loaded rollers, mean", digits=".2f")),
     _scalar("1", Scalar("mean_loaded_pin_shaft_pins", "loaded shaft pins, mean", digits=".2f")),
+    # along the width of contacts in slices
+    *_along("pin", "pin", "wheel pin", (("", "", "wheel pin and flank"),)),
+    *_along(
+        "roller", "roller", "roller", (("", "_outer", "roller and bore"), ("_inner", "_inner", "roller and inner race"))
+    ),
+    *_along("pin_shaft", "hole", "shaft pin", (("", "", "shaft pin and hole"),)),
+    Quantity(
+        "disc_tilt", "axes of a disc", "rad", "small rotation of the disc about x and y of the fixed frame",
+        (Scalar("max_{}", "tilt of a disc, largest", digits=".3g", how="largest length", limit=AT_LEAST_0),),
+    ),
+    Quantity(
+        "crank_bearing_moment", "axes of a crank", "N mm",
+        "moment of the crank bearing on the disc about x and y through the middle of the disc",
+        (Scalar("max_{}", "moment of a crank bearing, largest", digits=".4g", how="largest length"),),
+    ),
+    _checked("axial_play_taken", "1", "part of the axial play of a disc that its tilt takes at the rim"),
     # crank bearings
     Quantity(
         "bearing_load", "", "N",
@@ -678,6 +731,9 @@ _DECLARED = (
     ),
     Quantity("disc_phase", "disc of the case", "rad", "phase of the disc's eccentric against the crank angle"),
     Quantity("disc_plane", "disc of the case", "mm", "axial place of the disc's middle"),
+    Quantity("z_pin", "slice of the case", "mm", "height of the slice of wheel pin and flank above the middle of the disc"),
+    Quantity("z_roller", "slice of the case", "mm", "height of the slice of a roller above its middle"),
+    Quantity("z_hole", "slice of the case", "mm", "height of the slice of shaft pin and hole above the middle of the disc"),
     Quantity("cage_speed", "case", "1", "cage angle by crank angle"),
     Quantity(
         "torque", "case", "N mm", "output torque of the run", (Scalar("{}", "output torque", in_summary=False),),

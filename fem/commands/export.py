@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ltca.drive.members.width import needs_slices
 from ltca.errors import DriveError
 from ltca.reading.arguments import (
     add_case_argument,
@@ -106,11 +107,14 @@ def _require_libraries(kind: str) -> None:
 
 
 def _require_straight(part: Part, kind: str) -> None:
-    """Refuse profiles along the length, which straight bodies do not have."""
+    """Refuse profiles along the length and inclinations, which straight and upright bodies do not have."""
     if kind in SOLID and part.profiled:
         raise DriveError(
             [
-                f"{field}: crown and relief along the length are not written to {kind.upper()}, whose pins and rollers are "
+                f"{field}: inclinations are not written to {kind.upper()}, whose pins and holes stand upright; --format dxf and "
+                "csv hold the section at mid-length"
+                if needs_slices(field)
+                else f"{field}: crown and relief along the length are not written to {kind.upper()}, whose pins and rollers are "
                 "straight; --format dxf and csv hold the section at mid-length, --part disc has none of them"
                 for field in part.profiled
             ]
@@ -129,7 +133,7 @@ def _paths(part: Part, kind: str, out: Path) -> list[Path]:
 def _write(part: Part, arguments: argparse.Namespace, out: Path) -> None:
     """Write the files of one part and print their content."""
     kind, paths = arguments.format, _paths(part, arguments.format, out)
-    for remark in part.remarks[2:]:
+    for remark in (*part.remarks[2:], *part.leads):
         print(f"  {part.name}: {remark}", flush=True)
     if kind == "dxf":
         from ltca.export.drawing import write_drawing

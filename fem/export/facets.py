@@ -6,6 +6,7 @@ belongs to two triangles, and the surface closes to the last bit.
 
 from __future__ import annotations
 
+from itertools import pairwise
 from pathlib import Path
 from types import ModuleType
 
@@ -22,6 +23,8 @@ DEFAULT_CHORD = 1e-3
 """mm."""
 MIN_CIRCLE_EDGES = 360
 """Least number of edges of a circle: the error of its area is then 5e-5, however small it is."""
+ALONG_WIDTH = 0.1
+"""Part of the chord that a flank may depart by along its width, between heights at which it has corners."""
 MAX_EDGE_BY_LOBE = 1.0 / 40
 """Longest edge of a flank by the length of a lobe."""
 START_OFFSET = 0.381966
@@ -55,18 +58,41 @@ def write_facets(part: Part, path: Path, chord: float = DEFAULT_CHORD) -> int:
 
 def body_facets(gmsh: ModuleType, body: Body, chord: float) -> FloatArray:
     """Return the triangles of a body within a chord, mm, corners counter-clockwise seen from outside, shape (n, 3, 3)."""
-    loops = [divide(body.outer, chord), *(divide(circle, chord) for circle in body.inner)]
+    circles = [divide(circle, chord) for circle in body.inner]
+    # The flank along its width takes a part of the chord: both depart at the same place.
+    heights = body.heights(ALONG_WIDTH * chord)
+    outlines = [divide(body.outer, chord)]
+    if body.lead is not None:
+        outlines = _along_width(body, heights, chord)
     # What the file can hold is 32 bits: rounded before, so that corners of neighbours are equal.
-    loops = [loop.astype(np.complex64).astype(complex) for loop in loops]
-    points = np.concatenate(loops)
+    circles, outlines = ([loop.astype(np.complex64).astype(complex) for loop in loops] for loops in (circles, outlines))
+    caps = [_cap(gmsh, body, [outline, *circles]) for outline in outlines[:: max(len(outlines) - 1, 1)]]
+    bottom, top = _at(caps[0][:, ::-1], body.bottom), _at(caps[-1], body.top)
+    rows = [outlines[0], outlines[0]] if len(outlines) == 1 else outlines
+    sides = [
+        _between(low, high, *ends) for (low, high), ends in zip(pairwise(rows), pairwise(heights.tolist()), strict=True)
+    ]
+    sides += [_between(loop, loop, body.bottom, body.top)[:, ::-1] for loop in circles]
+    return np.concatenate([top, bottom, *sides])
+
+
+def _along_width(body: Body, heights: FloatArray, chord: float) -> list[ComplexArray]:
+    """Corners of the flank at heights, at the same parameters."""
+    assert isinstance(body.outer, FlankSpline)
+    parameter, centre = _parameters(body.outer, chord), body.outer.centre
+    return [np.asarray(body.flank(height).points(parameter) + centre) for height in heights.tolist()]
+
+
+def _cap(gmsh: ModuleType, body: Body, loops: list[ComplexArray]) -> ComplexArray:
+    """Corners of the triangles that fill a section, counter-clockwise, shape (n, 3)."""
     triangles = _fill_round(body, loops)
     if triangles is None:
         triangles = _fill(gmsh, body.name, loops)
-    top = np.dstack([points.real[triangles], points.imag[triangles], np.full(triangles.shape, body.top)])
-    bottom = top[:, ::-1].copy()
-    bottom[..., 2] = body.bottom
-    sides = [_sides(loop, body.bottom, body.top, inside=place > 0) for place, loop in enumerate(loops)]
-    return np.concatenate([top, bottom, *sides])
+    return np.asarray(np.concatenate(loops)[triangles])
+
+
+def _at(points: ComplexArray, height: float) -> FloatArray:
+    return np.stack([points.real, points.imag, np.full(points.shape, height)], axis=-1)
 
 
 def divide(curve: FlankSpline | Circle, chord: float) -> ComplexArray:
@@ -75,6 +101,11 @@ def divide(curve: FlankSpline | Circle, chord: float) -> ComplexArray:
         half = np.arccos(max(1.0 - chord / curve.radius, 0.0))
         count = max(MIN_CIRCLE_EDGES, int(np.ceil(np.pi / half)))
         return np.asarray(curve.centre + curve.radius * np.exp(2j * np.pi * (np.arange(count) + START_OFFSET) / count))
+    return np.asarray(curve.flank.points(_parameters(curve, chord)) + curve.centre)
+
+
+def _parameters(curve: FlankSpline, chord: float) -> FloatArray:
+    """θ of corners on a flank whose edges are no further from it than a chord, mm."""
     # On a fine table: the chord of an edge of length s is κ s²/8.
     flank = curve.flank
     fine = np.linspace(0.0, 2.0 * np.pi, 16 * curve.parameter.size + 1)
@@ -86,8 +117,7 @@ def divide(curve: FlankSpline | Circle, chord: float) -> ComplexArray:
     edges = np.minimum(edges, MAX_EDGE_BY_LOBE * lengths.sum() / flank.lobes)
     needed = np.concatenate([[0.0], np.cumsum(lengths / edges)])
     count = int(np.ceil(needed[-1]))
-    parameter = np.interp(np.arange(count) * needed[-1] / count, needed, fine)
-    return np.asarray(flank.points(parameter) + curve.centre)
+    return np.interp(np.arange(count) * needed[-1] / count, needed, fine)
 
 
 def _fill_round(body: Body, loops: list[ComplexArray]) -> IntArray | None:
@@ -147,13 +177,8 @@ def _numbers_of(found: ComplexArray, points: ComplexArray) -> IntArray:
     return np.array([known.get(place, -1) for place in found.tolist()], dtype=np.int64)
 
 
-def _sides(loop: ComplexArray, bottom: float, top: float, *, inside: bool) -> FloatArray:
-    """Two triangles for each edge of a counter-clockwise loop, looking out of it, or into it where it is a hole."""
-    here, there = loop, np.roll(loop, -1)
-
-    def at(points: ComplexArray, height: float) -> FloatArray:
-        return np.column_stack([points.real, points.imag, np.full(points.size, height)])
-
-    low, high = (at(here, bottom), at(there, bottom)), (at(here, top), at(there, top))
-    found = np.concatenate([np.stack([low[0], low[1], high[1]], axis=1), np.stack([low[0], high[1], high[0]], axis=1)])
-    return found[:, ::-1] if inside else found
+def _between(lower: ComplexArray, upper: ComplexArray, bottom: float, top: float) -> FloatArray:
+    """Two triangles for each edge between counter-clockwise loops of equally many corners, looking out of them."""
+    here, above = _at(lower, bottom), _at(upper, top)
+    there, beyond = (np.roll(loop, -1, axis=0) for loop in (here, above))
+    return np.concatenate([np.stack([here, there, beyond], axis=1), np.stack([here, beyond, above], axis=1)])

@@ -27,6 +27,8 @@ POINT, CURVE, SURFACE, VOLUME = 0, 1, 2, 3
 SAME_VOLUME = 1e-4
 """Relative difference between the volume of a solid and its exact section times its height at which it is refused: the kernel
 integrates to some 1e-5, a wrong loop is far beyond it."""
+ALONG_WIDTH = 5e-4
+"""Departure of straight lines between the outlines of a lofted flank, mm; the smooth surface through them departs by a fifth."""
 _PRODUCT = re.compile(r"PRODUCT\('Open CASCADE STEP translator [0-9.]+ [0-9]+(?:\.([0-9]+))?',\s*'[^']*'")
 _HEADER = re.compile(r"HEADER;.*?ENDSEC;", re.DOTALL)
 _SCHEMA = re.compile(r"FILE_SCHEMA\(.*?\);", re.DOTALL)
@@ -54,11 +56,29 @@ def write_solids(part: Part, path: Path) -> None:
 
 
 def _add_solid(gmsh: ModuleType, body: Body) -> None:
-    """Extrude the section of a body; solids are numbered in the order they are added."""
+    """Extrude the section of a body, or loft it along its lead; solids are numbered in the order they are added."""
     occ = gmsh.model.occ
+    if body.lead is not None:
+        _add_lofted(gmsh, body)
+        return
     loops = [_add_loop(gmsh, curve, body.bottom) for curve in (body.outer, *body.inner)]
     face = occ.addPlaneSurface(loops)
     occ.extrude([(SURFACE, face)], 0.0, 0.0, body.top - body.bottom)
+
+
+def _add_lofted(gmsh: ModuleType, body: Body) -> None:
+    """A smooth surface through the outlines at several heights, with the holes cut out of it."""
+    occ = gmsh.model.occ
+    loops = [_add_loop(gmsh, body.outline(height), height) for height in body.heights(ALONG_WIDTH).tolist()]
+    ((_, solid),) = [one for one in occ.addThruSections(loops, makeSolid=True) if one[0] == VOLUME]
+    occ.remove([(CURVE, tag) for _, tag in occ.getEntities(CURVE)], recursive=True)
+    height = body.top - body.bottom
+    holes = [
+        (VOLUME, occ.addCylinder(one.centre.real, one.centre.imag, body.bottom, 0.0, 0.0, height, one.radius))
+        for one in body.inner
+    ]
+    if holes:
+        occ.cut([(VOLUME, solid)], holes)
 
 
 def _add_loop(gmsh: ModuleType, curve: FlankSpline | Circle, height: float) -> int:
@@ -102,7 +122,7 @@ def _require_volumes(gmsh: ModuleType, bodies: Sequence[Body]) -> None:
     if len(solids) != len(bodies):
         raise MeshError(f"gmsh made {len(solids)} solids of {len(bodies)} bodies")
     for (_, tag), body in zip(solids, bodies, strict=True):
-        volume, exact = gmsh.model.occ.getMass(VOLUME, tag), body.section * (body.top - body.bottom)
+        volume, exact = gmsh.model.occ.getMass(VOLUME, tag), body.volume
         if abs(volume - exact) > SAME_VOLUME * exact:
             raise MeshError(
                 f"gmsh made {body.name} with {volume:.8g} mm³, its section times its height is {exact:.8g} mm³"
@@ -124,7 +144,7 @@ def _named(text: str, part: Part, names: Sequence[str]) -> str:
     occurrences = iter(enumerate(own, 1))  # the kernel counts on through all files of a process
     text = _OCCURRENCE.sub(lambda _: "NEXT_ASSEMBLY_USAGE_OCCURRENCE('{}','{}'".format(*next(occurrences)), text)
     schema = _SCHEMA.search(text)
-    remarks = ",".join(f"'{_quoted(remark)}'" for remark in part.remarks)
+    remarks = ",".join(f"'{_quoted(remark)}'" for remark in (*part.remarks, *part.leads))
     header = (
         f"HEADER;\nFILE_DESCRIPTION(({remarks}),'2;1');\n"
         f"FILE_NAME('{_quoted(part.stem)}.step','',(''),(''),'cyclo','cyclo','');\n{schema[0] if schema else ''}\nENDSEC;"

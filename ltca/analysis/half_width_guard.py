@@ -74,9 +74,9 @@ def check_half_widths(
     curvature = 1.0 / contacts.flank.effective_radius - 1.0 / pin_radius
     flank_radius = 1.0 / np.maximum(curvature, 1e-9)
     found: list[tuple[str, FloatArray, FloatArray]] = [
-        (PIN, pressures.pins.half_width, np.minimum(flank_radius, pin_radius)),
-        (OUTER, pressures.outer.half_width, roller),
-        (INNER, pressures.inner.half_width, roller),
+        (PIN, pressures.pins.widest, np.minimum(flank_radius, pin_radius)),
+        (OUTER, pressures.outer.widest, roller),
+        (INNER, pressures.inner.widest, roller),
     ]
     discs = drives[0].disc.number_of_discs  # that of all
     problems = []
@@ -123,7 +123,7 @@ def wide_holes_warning(drive: Drive, pressures: ContactPressures) -> str | None:
     """
     if drive.pin_shaft is None:
         return None
-    radius, widest = drive.pin_shaft.pin_radius, float(np.nanmax(pressures.holes.half_width))
+    radius, widest = drive.pin_shaft.pin_radius, float(np.nanmax(pressures.holes.widest))
     if widest <= HALF_WIDTH_BOUND * radius:
         return None
     return (

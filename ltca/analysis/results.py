@@ -1,6 +1,6 @@
 """The labelled dataset of a run: what ``results.nc`` holds.
 
-Dimensions stand in the order case, disc, crank, position, then pin, roller or hole, always all of them that a
+Dimensions stand in the order case, disc, crank, position, then pin, roller or hole, then slice or axis, always all of them that a
 quantity has, of size 1 where a drive has one disc or one crank. Places of the parts are coordinates: wheel pins in
 the frame of the wheel, holes in that of the disc, shaft pins in the fixed frame, rollers by their angle in the cage.
 """
@@ -17,6 +17,7 @@ from ltca.analysis.friction.variables import friction_values
 from ltca.analysis.half_width_guard import pin_deflections
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.analysis.reactions import reaction_values
+from ltca.analysis.width import width_coordinates, width_values
 from ltca.arrays import FloatArray
 from ltca.compliance.response import ContactPressures
 from ltca.compliance.wall_stress import WallStresses
@@ -80,7 +81,7 @@ def _supports(analysis: LoadedAnalysis) -> dict[str, Any]:
 
 
 def _disc_values(analysis: LoadedAnalysis) -> dict[str, Any]:
-    """Quantities of one disc on its eccentric: (position,) or (position, pair)."""
+    """Quantities of one disc on its eccentric: (position,), (position, pair) or (position, pair, slice)."""
     full, pressures = analysis.full, analysis.pressures
     contacts = full.response
     place = analysis.model.discs[0].geometry.placement
@@ -97,7 +98,7 @@ def _disc_values(analysis: LoadedAnalysis) -> dict[str, Any]:
     }
     for walls in analysis.wall_stresses:
         values |= _wall_values(walls, pressures)
-    return values | _seat_values(analysis)
+    return values | width_values(analysis) | _seat_values(analysis)
 
 
 def _seat_values(analysis: LoadedAnalysis) -> dict[str, FloatArray]:
@@ -132,8 +133,9 @@ def _by_crank(values: FloatArray, of: str, cranks: int) -> FloatArray:
     """Put the axis of the cranks behind that of the discs where a quantity has one: pairs come crank after crank."""
     if "crank" not in DIMENSIONS[of]:
         return values
-    parts = values.reshape(*values.shape[:2], cranks, -1).swapaxes(1, 2)
-    return parts[..., 0] if of == "crank" else parts
+    pairs = values.shape[2] // cranks
+    parts = values.reshape(*values.shape[:2], cranks, pairs, *values.shape[3:]).swapaxes(1, 2)
+    return parts if "roller" in DIMENSIONS[of] else parts[:, :, :, 0]
 
 
 def coordinates(analyses: Mapping[str, LoadedAnalysis]) -> dict[str, Any]:
@@ -146,6 +148,7 @@ def coordinates(analyses: Mapping[str, LoadedAnalysis]) -> dict[str, Any]:
             [[disc.geometry.placement for disc in analysis.model.discs] for analysis in each],
             first.full.crank_angle,
         ),
+        **width_coordinates({name: analysis.drive for name, analysis in analyses.items()}),
         **({} if not first.wall_stresses else {"lobe": np.arange(first.drive.disc.number_of_teeth)}),
         "torque": QUANTITIES["torque"].labelled([analysis.torque for analysis in each]),
         "light_torque": QUANTITIES["light_torque"].labelled([analysis.drive.load.light_torque for analysis in each]),
@@ -167,11 +170,12 @@ def check_common_shape(cases: Mapping[str, Drive], mend: str = "run it alone wit
             d.number_of_holes,
             d.disc.number_of_discs,
             d.crank.number,
+            d.contact.slices,
         )
         for name, d in cases.items()
     }
     first = next(iter(shapes))
-    things = ("wheel pins", "rollers", "shaft pins", "discs", "cranks")
+    things = ("wheel pins", "rollers", "shaft pins", "discs", "cranks", "slices")
     problems = [
         f"case {name}: has {_counted(shape, things)}: must be {_counted(shapes[first], things)} as in case {first} to share "
         f"one result ({mend})"
@@ -202,7 +206,7 @@ def build_dataset(drive_name: str, analyses: Mapping[str, LoadedAnalysis], drive
     Returns
     -------
     xarray.Dataset
-        Dimensions case, disc, crank, position, pin, roller, hole; units and descriptions in the attributes.
+        Dimensions case, disc, crank, position, pin, roller, hole, slice, axis; units and descriptions in the attributes.
     """
     return labelled_results(drive_name, analyses, drive_file).to_xarray()
 

@@ -39,6 +39,11 @@ OF_REACTIONS = (
     *(f"max_first_stage_{which}_force" for which in ("tangential", "radial", "axial")),
 )
 """Largest forces of the teeth of a first stage and on the bearings of cranks."""
+OF_WIDTH = (
+    *(f"max_{part}_{kind}" for part in ("pin", "roller", "pin_shaft") for kind in ("line_load", "face_load_factor")),
+    "max_disc_tilt", "max_crank_bearing_moment",
+)  # fmt: skip
+"""Of contacts in slices."""
 OF_RANGES = (
     "ptp_tangential_bearing_load",
     "ptp_transmission_error",
@@ -185,6 +190,7 @@ def scalars_of_positions(analysis: LoadedAnalysis, arrays: Mapping[str, FloatArr
     for crank in range(torques.shape[1]):
         values[f"mean_torque_crank_{crank}"] = np.mean(torques[:, crank])
         values[f"max_torque_crank_{crank}"] = np.max(np.abs(torques[:, crank]))
+    values |= _sums(arrays, *OF_WIDTH)
     values |= _of_cranks(analysis) | _sums(arrays, *OF_PINS, *OF_REACTIONS) | _of_friction(analysis, arrays)
     values |= _of_main_bearing(arrays)
     return values | _sums(arrays, "max_root_stress", "max_bore_stress", "max_hole_stress")
@@ -240,6 +246,7 @@ SUMS: dict[str, Callable[..., Any]] = {
     "ptp": np.ptp,
     "largest known": np.nanmax,
     "largest amount": lambda values: np.max(np.abs(values)),
+    "largest length": lambda values: np.max(np.hypot(values[..., 0], values[..., 1])),
 }
 """How a scalar sums its array up."""
 

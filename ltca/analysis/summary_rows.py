@@ -19,6 +19,10 @@ SEAT_ROWS = (
     "max_pin_seat_pressure", "max_hole_seat_pressure", "max_pin_deflection", "max_shaft_pin_deflection",
     "max_ring_displacement_radial",
 )  # fmt: skip
+WIDTH_ROWS = (
+    *(f"max_{part}_{kind}" for kind in ("line_load", "face_load_factor") for part in ("pin", "roller", "pin_shaft")),
+    "max_disc_tilt", "max_crank_bearing_moment",
+)  # fmt: skip
 REACTION_ROWS = (
     "max_crank_support_load_first", "max_crank_support_load_second", "max_first_stage_tangential_force",
     "max_first_stage_radial_force", "max_first_stage_axial_force", "max_main_bearing_radial", "max_main_bearing_axial",
@@ -38,7 +42,8 @@ Summaries = Mapping[str, Mapping[str, float | None]]
 def rows_of(summaries: Summaries, *, yields: bool) -> list[Scalar]:
     """Return the rows of a table of summaries that say something; `yields` tells whether cranks or wheel yield on supports."""
     found = [
-        scalar_named(name) for name in (*ROWS, "preloaded_part_of_turn", *SEAT_ROWS, *REACTION_ROWS, *FRICTION_ROWS)
+        scalar_named(name)
+        for name in (*ROWS, "preloaded_part_of_turn", *WIDTH_ROWS, *SEAT_ROWS, *REACTION_ROWS, *FRICTION_ROWS)
     ]
     needed = ("preloaded_part_of_turn", "interference")
     found += [*_share_rows(summaries), *_compliance_rows(summaries, yields)]

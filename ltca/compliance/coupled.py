@@ -28,6 +28,7 @@ from numpy.typing import NDArray
 
 from ltca.arrays import ComplexArray, FloatArray, join_positions, take_positions
 from ltca.compliance.coefficients import InfluenceCoefficients
+from ltca.compliance.coupled_slices import respond_in_slices
 from ltca.compliance.near_field import NearField, NearFieldLaws, OwnParts
 from ltca.compliance.pressures import pressures_of_law
 from ltca.compliance.response import (
@@ -47,8 +48,9 @@ from ltca.drive.hole_contact import shaft_pins_yield
 from ltca.drive.parts import Drive
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.pairs import ContactGeometry
-from ltca.laws.backed import back_shaft_pins, shaft_pin_stiffness, tip_share, tip_slope
+from ltca.laws.backed import back_shaft_pins, shaft_pin_beam, shaft_pin_stiffness, tip_share, tip_slope
 from ltca.laws.contact_law import ContactLaw
+from ltca.laws.sliced_spring import SlicedSpring
 from ltca.laws.spring import SpringLaw
 
 MAX_ITERATIONS = 60
@@ -137,7 +139,16 @@ class CoupledCompliance:
         laws = NearFieldLaws.of_drive(drive, near_field, rigid_shaft_pins=hole_near_field and not yields)
         body = coefficients.placed_in(drive).with_roller_length(drive.roller_length)
         stiffness = shaft_pin_stiffness(drive)
-        at_hole = laws.hole if hole_near_field else SpringLaw(stiffness=stiffness)
+        slices, width = drive.contact.slices, drive.disc.thickness
+        # In slices a beam bends behind its contact, under the forces of all discs (`ltca.equilibrium.pin_displacements`).
+        bends_behind = slices > 1 and shaft_pin_beam(drive) is not None
+        at_hole = laws.hole
+        if not hole_near_field and not bends_behind:
+            at_hole = (
+                SpringLaw(stiffness=stiffness)
+                if slices == 1
+                else SlicedSpring(stiffness=stiffness, length=width, slices=slices)
+            )
         # A sleeve's own law has all that it yields (`ltca.laws.backed`).
         bare = drive.pin_shaft is not None and drive.pin_shaft.seat.kind == "fixed"
         own = OwnParts.of_drive(drive, geometry, body, near_field, laws.datum, elastic_shaft_pins=yields and bare)
@@ -147,7 +158,7 @@ class CoupledCompliance:
             coefficients=body,
             near_field=laws,
             hole_law=back_shaft_pins(drive, at_hole, place.shaft_pin_plays, laws.depth if hole_near_field else None),
-            hole_spring=1.0 / stiffness if hole_near_field else 0.0,
+            hole_spring=1.0 / stiffness if hole_near_field and not bends_behind else 0.0,
             race=race + own.inner * np.eye(race.shape[0]),
             outer_radius=place.outer_effective_radii,
             inner_radius=place.inner_effective_radii,
@@ -156,9 +167,16 @@ class CoupledCompliance:
         )
 
     def respond(
-        self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None, shifts: ComplexArray | None = None
+        self,
+        crank_angle: FloatArray,
+        pose: FloatArray,
+        start: Start | None = None,
+        shifts: ComplexArray | None = None,
+        leans: ComplexArray | None = None,
+        again: DiscResponse | None = None,
     ) -> DiscResponse:
-        """Return the contact forces at the poses of a batch of positions; see `ltca.compliance.uncoupled`.
+        """Return the contact forces at the poses of a batch of positions; see `ltca.compliance.uncoupled`. Contacts that feel each other all
+        move with displaced pins: `again` is of no use.
 
         Raises
         ------
@@ -166,6 +184,15 @@ class CoupledCompliance:
             When the near-field approaches of a position do not settle.
         """
         moved = split_shifts(shifts, self.geometry)
+        if self.geometry.coordinates_of(pose).leans:
+            parts = [
+                respond_in_slices(self, *take_positions((crank_angle, pose, start, shifts, leans, moved[0]), rows))
+                for rows in np.array_split(
+                    np.arange(crank_angle.size), max(1, -(-crank_angle.size // POSITIONS_PER_CHUNK))
+                )
+            ]
+            in_slices: DiscResponse = join_positions(parts)
+            return in_slices
         flank = self.geometry.flank(crank_angle, pose, None if start is None else start.parameter, moved[0])
         holes = self.geometry.holes(crank_angle, pose, moved[1])
         pins, parts = (flank, holes, shifts), []

@@ -4,28 +4,35 @@ The same equilibrium as with tables, but each loaded contact is a grid of its ow
 surfaces: exact circles for rollers and races, exact flank and exact circle for pins. Loads depend on the pose alone.
 The warm start that travels with each position holds its contacts as values, so that one iteration starts from the
 contact cells of the last.
+
+With ``contact.slices`` above 1 contacts tilt: their grids cover the whole width without symmetry (`ltca.contact.tilted_grid`), and
+slices are what their line loads are told by. Cells found are then kept by contact for the next time it is pressed, at whichever
+position that is of: where an iteration starts alters no answer.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import ClassVar, NamedTuple
+from dataclasses import dataclass, field
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ltca.arrays import FloatArray
+from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.response import KindPressures
 from ltca.compliance.rollers import RollerLaws
 from ltca.compliance.uncoupled import PairLaws, UncoupledContacts
 from ltca.contact.end_pressure import largest_pressure
+from ltca.contact.tilted_grid import TiltedPieces, press_tilted
 from ltca.contact.tracked_grid import CELLS, ContactKind, ContactKinds, Pieces, Separation, press, recover_patches
 from ltca.drive.parts import Drive
 from ltca.geometry.pair_motion import FlankMotion
 from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.separation import circle_departure, flank_departure
 from ltca.laws.contact_law import ContactLaw
+from ltca.laws.sliced_line import SlicedContact, slice_heights
 from ltca.laws.spring import SpringLaw
 
 STATIONS_PER_WAVE = 4096
@@ -74,23 +81,113 @@ class _KindGrids(ContactLaw):
         return KindPressures(mid=found[0], largest=found[1], half_width=found[2], end_cell=self.kind.end_cell)
 
 
+class _TiltedGrids:
+    """The law of the contacts of one kind that tilt, as `ltca.laws.sliced_line.SlicedLine` answers.
+
+    Parameters
+    ----------
+    kind : ContactKind
+        Of the contacts.
+    slices : int
+        Slices along the width.
+    separation : callable
+        Separation of a contact by its indices and its effective radius.
+    kept : dict
+        Pieces of the contacts that have been loaded so far, by what `separation` is of.
+    alike : bool
+        Whether contacts of one effective radius are alike, as rollers are.
+    """
+
+    def __init__(
+        self,
+        kind: ContactKind,
+        slices: int,
+        separation: Callable[[tuple[int, ...], float], Separation],
+        kept: dict[tuple[float, ...], TiltedPieces],
+        *,
+        alike: bool,
+    ) -> None:
+        self.kind, self.slices = kind, slices
+        self.length, self.contact_modulus = kind.length, kind.contact_modulus
+        self.separation, self.kept, self.alike = separation, kept, alike
+
+    def respond(
+        self, approach: FloatArray, tilt: FloatArray, effective_radius: FloatArray, start: FloatArray | None = None
+    ) -> SlicedContact:
+        """Return what contacts carry; loads of the slices nearby are of no use here."""
+        delta, theta, radius = np.broadcast_arrays(
+            *(np.asarray(each, float) for each in (approach, tilt, effective_radius))
+        )
+        z = slice_heights(self.length, self.slices)
+        edges = np.linspace(-0.5 * self.length, 0.5 * self.length, self.slices + 1)
+        values = np.zeros((6, *delta.shape))
+        slice_load, line_load = np.zeros((*delta.shape, self.slices)), np.zeros((*delta.shape, *z.shape))
+        for index in np.ndindex(delta.shape):
+            size = float(radius[index])
+            which = (size,) if self.alike else tuple(float(number) for number in index)
+            known = self.kept.get(which, ())
+            found = press_tilted(
+                self.kind, self.separation(index, size), float(delta[index]), float(theta[index]), known
+            )
+            if found is None:
+                continue
+            self.kept[which] = found.pieces
+            values[(slice(None), *index)] = found[:6]
+            sums = np.concatenate(([0.0], np.cumsum(found.line_load * np.diff(found.edges))))
+            shares = np.diff(np.interp(edges, found.edges, sums))
+            # Of blended grids the larger tells how the load lies.
+            slice_load[index] = shares * (found.load / shares.sum())
+            centres = 0.5 * (found.edges[1:] + found.edges[:-1])
+            line_load[index] = np.interp(z, centres, found.line_load) * ((z > found.edges[0]) & (z < found.edges[-1]))
+        load, moment, by_approach, by_tilt, turning, energy = values
+        return SlicedContact(
+            load=load,
+            moment=moment,
+            by_approach=by_approach,
+            by_tilt=by_tilt,
+            moment_by_tilt=turning,
+            energy=energy,
+            slice_load=slice_load,
+            line_load=line_load,
+        )
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GridCompliance(UncoupledContacts[_KindGrids]):
-    """Half-space contact grids for pins and rollers, springs for the pin holes."""
+    """Half-space contact grids for pins and rollers, springs for the pin holes.
+
+    Attributes
+    ----------
+    slices : int
+        Slices along the width of the contacts.
+    """
 
     grids_can_check: ClassVar[bool] = False
+
+    slices: int = 1
+    _kept: tuple[dict[tuple[float, ...], TiltedPieces], ...] = field(
+        default_factory=lambda: ({}, {}, {}), repr=False, compare=False
+    )
 
     @classmethod
     def of_drive(cls, drive: Drive, cells: int = CELLS) -> GridCompliance:
         """Return the grid model of a drive, with so many cells over each half-width and over half of each length."""
+        geometry, slices = ContactGeometry.of_drive(drive), drive.contact.slices
         return cls(
-            geometry=ContactGeometry.of_drive(drive),
+            geometry=geometry,
             kinds=ContactKinds.of_drive(drive, cells),
-            hole_law=SpringLaw(stiffness=drive.hole_stiffness),
+            hole_law=(
+                SpringLaw(stiffness=drive.hole_stiffness)
+                if slices == 1
+                else HalfSpaceCompliance.in_slices(drive, geometry).hole_law
+            ),
+            slices=slices,
         )
 
-    def laws(self, flank: FlankMotion, warm_start: NDArray[np.object_] | None) -> PairLaws[_KindGrids]:
+    def laws(self, flank: FlankMotion, warm_start: NDArray[np.object_] | None) -> PairLaws[Any]:
         """Return the grids of the pins and of the rollers on the inner race and in the bore."""
+        if self.slices > 1:
+            return self._tilted_laws(flank)
         pins, inner, outer = self._grids(flank, self._known(flank.approach.shape[0], warm_start))
         rollers = RollerLaws(
             inner=inner,
@@ -100,6 +197,31 @@ class GridCompliance(UncoupledContacts[_KindGrids]):
             by_place=True,
         )
         return PairLaws(pins=pins, rollers=rollers)
+
+    def _tilted_laws(self, flank: FlankMotion) -> PairLaws[_TiltedGrids]:
+        """The same of contacts that tilt."""
+        place = self.geometry.placement
+        between_pin_and_flank = self._pin_separation(flank)
+
+        def of_roller(race: float) -> Callable[[tuple[int, ...], float], Separation]:
+            def separation(_: tuple[int, ...], effective_radius: float) -> Separation:
+                radius = 1.0 / (1.0 / effective_radius - 1.0 / race)
+                return _roller_separation(radius, race, effective_radius)
+
+            return separation
+
+        pins, inner, outer = self._kept
+        kinds, slices = self.kinds, self.slices
+        race, bore = float(place.inner_race_radius), -float(place.bore_radius)
+        return PairLaws(
+            pins=_TiltedGrids(kinds.pins, slices, lambda at, _: between_pin_and_flank(*at), pins, alike=False),
+            rollers=RollerLaws(
+                inner=_TiltedGrids(kinds.inner, slices, of_roller(race), inner, alike=True),
+                outer=_TiltedGrids(kinds.outer, slices, of_roller(bore), outer, alike=True),
+                inner_radius=place.inner_effective_radii,
+                outer_radius=place.outer_effective_radii,
+            ),
+        )
 
     def read_pressures(
         self, law: _KindGrids, kind: ContactKind, approach: FloatArray, effective_radius: FloatArray
@@ -122,8 +244,8 @@ class GridCompliance(UncoupledContacts[_KindGrids]):
         fresh = PositionContacts(pins=((),) * place.wheel_pin_radii.size, inner=nothing, outer=nothing)
         return [fresh if warm is None else warm for warm in ([None] * positions if warm_start is None else warm_start)]
 
-    def _grids(self, flank: FlankMotion, known: list[PositionContacts]) -> tuple[_KindGrids, _KindGrids, _KindGrids]:
-        """Grids of the pins, of the rollers on the inner race and in the bore."""
+    def _pin_separation(self, flank: FlankMotion) -> SeparationOf:
+        """Separation of the pins from the flank, by position and pin."""
         place, profile = self.geometry.placement, self.geometry.profile
         spacing = self._spacing
         number, part = np.divmod(flank.parameter, spacing)
@@ -142,20 +264,22 @@ class GridCompliance(UncoupledContacts[_KindGrids]):
                 part=float(part[row, pin]),
             )
 
+        return between_pin_and_flank
+
+    def _grids(self, flank: FlankMotion, known: list[PositionContacts]) -> tuple[_KindGrids, _KindGrids, _KindGrids]:
+        """Grids of the pins, of the rollers on the inner race and in the bore."""
+        place = self.geometry.placement
+
         def between_roller_and(race: float, effective_radius: FloatArray) -> SeparationOf:
             def separation(row: int, roller: int) -> Separation:
-                radius = float(place.roller_radii[roller])
-                return Separation(
-                    effective_radius=float(effective_radius[roller]),
-                    departure=lambda _, x: circle_departure(x, radius) + circle_departure(x, race),
-                )
+                return _roller_separation(float(place.roller_radii[roller]), race, float(effective_radius[roller]))
 
             return separation
 
         bore = between_roller_and(-float(place.bore_radius), place.outer_effective_radii)
         race = between_roller_and(float(place.inner_race_radius), place.inner_effective_radii)
         return (
-            _KindGrids(self.kinds.pins, between_pin_and_flank, [position.pins for position in known]),
+            _KindGrids(self.kinds.pins, self._pin_separation(flank), [position.pins for position in known]),
             _KindGrids(self.kinds.inner, race, [position.inner for position in known]),
             _KindGrids(self.kinds.outer, bore, [position.outer for position in known]),
         )
@@ -168,3 +292,11 @@ class GridCompliance(UncoupledContacts[_KindGrids]):
         if profile.deviation is not None:
             waves = max(waves, profile.deviation.knots.size, *profile.deviation.orders)
         return float(2.0 * np.pi / (STATIONS_PER_WAVE * waves))
+
+
+def _roller_separation(radius: float, race: float, effective_radius: float) -> Separation:
+    """Separation of a roller from a race, whose radius is negative where it is a bore, mm."""
+    return Separation(
+        effective_radius=effective_radius,
+        departure=lambda _, x: circle_departure(x, radius) + circle_departure(x, race),
+    )

@@ -19,7 +19,7 @@ from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.rollers import RollerLaws, RollerState
 from ltca.errors import ConvergenceError
 from ltca.geometry.pair_motion import RollerRays, dot
-from ltca.laws.sliced_line import SlicedContact, SlicedLine, slice_heights
+from ltca.laws.sliced_line import POINTS, SlicedContact, SlicedLine, slice_heights
 
 MAX_ITERATIONS = 80
 SETTLED = 1e-10
@@ -60,17 +60,18 @@ def balance_leaning_rollers(
     race_lean: FloatArray,
     bore_lean: FloatArray,
     start: RollerStart | None = None,
+    given: tuple[FloatArray | float, FloatArray | float] = (0.0, 0.0),
 ) -> RollerState:
     """Place every roller so that its contacts balance; arguments as for `ltca.compliance.rollers.balance_rollers`.
 
     `race_lean` and `bore_lean` are the leans of race and bore along the rays, rad, shape (positions, rollers); `start` is what
-    stood nearby.
+    stood nearby, and `given` what the bodies take of the approaches in the bore and on the race, mm, shape (positions, rollers).
     """
     shape = rays.direction.shape
     half = 0.5 * laws.outer.length
     total = rays.outermost - rays.touching_distance(displacement)
     highest = slice_heights(laws.outer.length, laws.outer.slices).max()
-    pressed = total + highest * np.abs(race_lean - bore_lean) > 0.0
+    pressed = total - (given[0] + given[1]) + highest * np.abs(race_lean - bore_lean) > 0.0
     rows, numbers = np.nonzero(pressed)
 
     def each(values: FloatArray | ComplexArray) -> FloatArray | ComplexArray:
@@ -79,6 +80,7 @@ def balance_leaning_rollers(
     ray, moved, outermost, play = (each(one) for one in (rays.direction, displacement, rays.outermost, rays.bore_play))
     inner_radius, outer_radius = each(laws.inner_radius), each(laws.outer_radius)
     at_race, at_bore, overlap = each(race_lean), each(bore_lean), each(total)
+    from_bore, from_race = (each(np.asarray(one)) for one in given)
     along, lowest = ray.real * moved.real + ray.imag * moved.imag, outermost - overlap
 
     def contacts(which: Any, inward: FloatArray, lean: FloatArray, near: _Near) -> _Contacts:
@@ -87,11 +89,11 @@ def balance_leaning_rollers(
         length = np.abs(arm)
         # |s n − d| less the bore play as a product, as for rollers that do not lean.
         outer = (overlap[which] - inward) * (place + lowest[which] - 2.0 * along[which]) / (length + play[which])
-        first = laws.inner.respond(inward, at_race[which] - lean, inner_radius[which], near[0])
-        second = laws.outer.respond(outer, lean - at_bore[which], outer_radius[which], near[1])
+        first = laws.inner.respond(inward - from_race[which], at_race[which] - lean, inner_radius[which], near[0])
+        second = laws.outer.respond(outer - from_bore[which], lean - at_bore[which], outer_radius[which], near[1])
         return first, second, arm / length, length
 
-    inward, lean = 0.5 * overlap, 0.5 * (at_race + at_bore)
+    inward, lean = from_race + 0.5 * (overlap - from_race - from_bore), 0.5 * (at_race + at_bore)
     near: _Near = (None, None)
     if start is not None:
         known = start.inner[rows, numbers].sum(axis=1) > 0.0
@@ -135,13 +137,17 @@ def balance_leaning_rollers(
         "lean": lean,
         "inner_slices": inner.slice_load,
         "outer_slices": outer.slice_load,
+        "inner_lines": inner.line_load,
+        "outer_lines": outer.line_load,
     }
     arm = rays.outermost * rays.direction - displacement
     rest = np.abs(arm)
     free = {
         "share": np.full(shape, 0.5), "outer_approach": rest - rays.bore_play, "outer_direction": arm / rest,
-        "tangent": np.zeros((*shape, 4, 4)),
+        "tangent": np.zeros((*shape, 6, 6)),
         "inner_slices": np.zeros((*shape, laws.inner.slices)), "outer_slices": np.zeros((*shape, laws.outer.slices)),
+        "inner_lines": np.zeros((*shape, laws.inner.slices, POINTS)),
+        "outer_lines": np.zeros((*shape, laws.outer.slices, POINTS)),
     }  # fmt: skip
     whole = {}
     for name, values in found.items():
@@ -176,7 +182,7 @@ def _downhill(
 ) -> tuple[_Contacts, tuple[FloatArray, FloatArray]]:
     """Newton's step of the rollers that go on, shortened where the energy rises again steeply at its end.
 
-    The energy is convex along a step: its slope says how far the least of it is, also where differences of energies are round-off.
+    The energy is convex along a step: its slope says how far its least is, also where differences of energies are round-off.
     """
     first, second = inner.take(going), outer.take(going)
     n, towards, arm = ray[going], outward[going], length[going]
@@ -230,25 +236,36 @@ def _eliminated(
     outer: SlicedContact,
     half: float,
 ) -> FloatArray:
-    """Second derivative of the eliminated energy by displacement (x, y) and lean (x, y) of the bore, shape (rollers, 4, 4)."""
+    """Second derivative of the eliminated energy by displacement (x, y) and lean (x, y) of the bore and what the bodies take of
+    the approaches in the bore and on the race, shape (rollers, 6, 6).
+    """
     slant = ray.imag * outward.real - ray.real * outward.imag
     bend = outer.load / length
     normal = np.stack((outward.real, outward.imag), axis=-1)
     across = np.stack((-outward.imag, outward.real), axis=-1)
     n = np.stack((ray.real, ray.imag), axis=-1)
     k, x, m = (each[:, None] for each in (outer.by_approach, outer.by_tilt, outer.moment_by_tilt))
-    # By place outward and lean of the roller, for displacement and lean of the bore.
-    by_place = np.concatenate(
-        (-k * cosine[:, None] * normal - (bend * slant)[:, None] * across, -x * cosine[:, None] * n), axis=1
+    # By place outward and lean of the roller, for displacement and lean of the bore and what is taken of the approaches.
+    first, second = (
+        np.stack((one, other), axis=1)
+        for one, other in ((outer.by_approach * cosine, -inner.by_approach), (outer.by_tilt, -inner.by_tilt))
     )
-    by_lean = np.concatenate((-x * normal, -m * n), axis=1)
-    direct = np.zeros((ray.size, 4, 4))
+    by_place = np.concatenate(
+        (-k * cosine[:, None] * normal - (bend * slant)[:, None] * across, -x * cosine[:, None] * n, -first), axis=1
+    )
+    by_lean = np.concatenate((-x * normal, -m * n, -second), axis=1)
+    direct = np.zeros((ray.size, 6, 6))
     direct[:, :2, :2] = (
         k[..., None] * normal[:, :, None] * normal[:, None] + bend[:, None, None] * across[:, :, None] * across[:, None]
     )
-    direct[:, :2, 2:] = x[..., None] * normal[:, :, None] * n[:, None]
-    direct[:, 2:, :2] = direct[:, :2, 2:].swapaxes(1, 2)
-    direct[:, 2:, 2:] = m[..., None] * n[:, :, None] * n[:, None]
+    direct[:, :2, 2:4] = x[..., None] * normal[:, :, None] * n[:, None]
+    direct[:, 2:4, 2:4] = m[..., None] * n[:, :, None] * n[:, None]
+    direct[:, :2, 4], direct[:, 2:4, 4] = k * normal, x * n
+    direct[:, 4, 4], direct[:, 5, 5] = outer.by_approach, inner.by_approach
+    for own, other in ((slice(0, 2), slice(2, 4)), (slice(0, 2), 4), (slice(2, 4), 4)):
+        direct[:, other, own] = (
+            direct[:, own, other].swapaxes(1, -1) if isinstance(other, slice) else direct[:, own, other]
+        )
     stiff, mixed, turning = _own_stiffness(inner, outer, cosine, length)
     turning = turning + 1e-9 * half**2 * stiff
     own = np.empty((ray.size, 2, 2))

@@ -12,13 +12,14 @@ place that length would cancel, and short rollers would be as stiff as long ones
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 
 from ltca.compliance.coefficients import InfluenceCoefficients, logarithm_factor
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.contact.hertz import effective_radius, line_half_width
+from ltca.contact.length_profile import lead_relief
 from ltca.contact.tracked_grid import ContactKinds
 from ltca.drive.engine_support import require
 from ltca.drive.hole_contact import hole_modulus
@@ -30,6 +31,8 @@ from ltca.laws.backed import HALF_SPACE_DATUM, back_wheel_pins
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.plane_strain import SELF_ENERGY, PlaneContactLaw
+from ltca.laws.sliced_line import SlicedLine, slice_heights
+from ltca.laws.sliced_plane import SlicedPlane
 
 NearField = Literal["plane-strain", "half-space"]
 
@@ -97,7 +100,7 @@ class NearFieldLaws:
                 pin=half_space.pin_law,
                 outer=half_space.roller_laws.outer,
                 inner=half_space.roller_laws.inner,
-                hole=LineContactLaw(thickness, at_hole),
+                hole=_hole_line(drive, at_hole),
                 rigid_shaft_pins=rigid_shaft_pins,
                 datum=datum,
                 kinds=half_space.kinds,
@@ -105,12 +108,17 @@ class NearFieldLaws:
         require(drive, "fe")
         plays = Placement.of_drive(drive).wheel_pin_plays
 
-        def law(modulus: float) -> PlaneContactLaw:
-            return PlaneContactLaw(thickness=thickness, contact_modulus=modulus, datum=datum)
+        def law(modulus: float, lead: bool = False) -> Any:
+            slices = drive.contact.slices
+            if slices == 1:
+                return PlaneContactLaw(thickness=thickness, contact_modulus=modulus, datum=datum)
+            z = slice_heights(thickness, slices)
+            relief = lead_relief(drive.disc, z) if lead else np.zeros(z.shape)
+            return SlicedPlane(length=thickness, contact_modulus=modulus, datum=datum, slices=slices, relief=relief)
 
         return cls(
             kind=kind,
-            pin=back_wheel_pins(drive, law(contact_modulus(parts.disc, drive.flank_pin)), plays, datum),
+            pin=back_wheel_pins(drive, law(contact_modulus(parts.disc, drive.flank_pin), lead=True), plays, datum),
             outer=law(contact_modulus(parts.disc, parts.roller)),
             inner=law(contact_modulus(parts.inner_race, parts.roller)),
             hole=law(at_hole),
@@ -128,6 +136,15 @@ class NearFieldLaws:
     def has_ends(self) -> bool:
         """Whether contacts end somewhere: in plane strain they do not."""
         return self.kind == "half-space"
+
+
+def _hole_line(drive: Drive, modulus: float) -> Any:
+    """Half-space law of shaft pins and holes, in slices where contacts have them."""
+    length, slices = drive.disc.thickness, drive.contact.slices
+    if slices == 1:
+        return LineContactLaw(length, modulus)
+    straight = np.zeros(slice_heights(length, slices).shape)
+    return SlicedLine(length=length, contact_modulus=modulus, slices=slices, relief=straight)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -15,12 +15,13 @@ from __future__ import annotations
 import numpy as np
 
 from ltca.arrays import FloatArray
-from ltca.compliance.response import KindPressures
+from ltca.compliance.response import AlongWidth, KindPressures
 from ltca.contact.end_pressure import largest_pressure_ratio
 from ltca.contact.tracked_grid import ContactKind
 from ltca.geometry.placement import Placement
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.line_contact import LineContactLaw
+from ltca.laws.width_pressure import estimate_along_width
 
 
 def pressures_of_law(
@@ -50,3 +51,27 @@ def elastic_hole_pressures(kind: ContactKind, load: FloatArray, place: Placement
     law, radius = LineContactLaw(kind.length, kind.contact_modulus), place.hole_effective_radii
     approach, _ = law.approach_at_load(load, radius)
     return pressures_of_law(law, kind, approach, radius)
+
+
+def pressures_of_slices(kind: ContactKind, line_load: FloatArray, effective_radius: FloatArray) -> KindPressures:
+    """Return pressures and half-widths of contacts in slices by their line loads at the points of these, N/mm.
+
+    Line loads have the shape (positions, pairs, slices, points); the number of slices is odd, and mid-width is the middle one.
+    Effective radii, mm, are broadcast to the contacts.
+    """
+    found = estimate_along_width(kind, line_load, effective_radius)
+    half_width = 2.0 / kind.contact_modulus * found.pressure * np.asarray(effective_radius)[..., None]
+    middle = found.pressure.shape[-1] // 2
+    return KindPressures(
+        mid=found.pressure[..., middle],
+        largest=found.largest,
+        half_width=half_width[..., middle],
+        end_cell=kind.end_cell,
+        along=AlongWidth(
+            line_load=found.line_load,
+            pressure=found.pressure,
+            half_width=half_width,
+            place=found.place,
+            end_load=found.end_load,
+        ),
+    )

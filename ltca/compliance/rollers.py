@@ -64,13 +64,15 @@ class RollerState:
         Unit vector from the bore centre to the roller, the direction of the load on the disc.
     tangent : array, shape (positions, rollers, 2, 2)
         Second derivative of the eliminated energy by the displacement (x, y) of the bore, N/mm; of leaning rollers
-        (`ltca.compliance.leaning_rollers`) by its displacement and its lean, shape (positions, rollers, 4, 4).
+        (`ltca.compliance.leaning_rollers`) by its displacement, its lean and what is taken of both approaches, shape (…, 6, 6).
     inner_moment, outer_moment : array, shape (positions, rollers), or None
         Of leaning rollers about mid-length, N·mm; that on the disc acts along the ray.
     lean : array, shape (positions, rollers), or None
         Of leaning rollers along their rays, rad.
     inner_slices, outer_slices : array, shape (positions, rollers, slices), or None
         Loads of the slices of leaning rollers, N.
+    inner_lines, outer_lines : array, shape (positions, rollers, slices, points), or None
+        Their line loads at the points of the slices, N/mm.
     """
 
     share: FloatArray
@@ -85,6 +87,8 @@ class RollerState:
     lean: FloatArray | None = None
     inner_slices: FloatArray | None = None
     outer_slices: FloatArray | None = None
+    inner_lines: FloatArray | None = None
+    outer_lines: FloatArray | None = None
 
 
 def balance_rollers(

@@ -14,26 +14,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.arrays import ComplexArray, FloatArray
-from ltca.compliance.leaning_rollers import RollerStart, balance_leaning_rollers
-from ltca.compliance.pressures import elastic_hole_pressures
+from ltca.compliance.in_slices import ContactsInSlices, roller_start, stacked, warm_rows
+from ltca.compliance.pressures import elastic_hole_pressures, pressures_of_slices
 from ltca.compliance.response import (
     ContactPressures,
     DiscResponse,
     KindPressures,
-    LeaningPairs,
     PairSlopes,
     Start,
     add_bearing_bend,
-    bearing_moments,
     resultant,
     split_shifts,
 )
 from ltca.compliance.rollers import Law, RollerLaws, RollerState, balance_rollers
 from ltca.contact.tracked_grid import ContactKind, ContactKinds
-from ltca.geometry.coordinates import Coordinates
-from ltca.geometry.pair_motion import BoreMotion, FlankMotion, PairMotion, dot
+from ltca.geometry.pair_motion import BoreMotion, FlankMotion, PairMotion
 from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.contact_law import ContactLaw
+from ltca.laws.sliced_line import SlicedContact
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -161,65 +159,20 @@ class UncoupledContacts(ABC, Generic[Law]):
         again: DiscResponse | None,
     ) -> DiscResponse:
         """The same of contacts in slices, which tilt."""
-        near = None
-        if warm is not None and all(each is not None for each in warm):
-            near = [np.stack(parts) for parts in zip(*warm, strict=True)]
-        geometry, place = self.geometry, self.geometry.placement
-        coordinates = geometry.coordinates_of(pose)
-        holes = geometry.holes(crank_angle, pose, split_shifts(shifts, geometry)[1])
-        bores, rays = geometry.bores(crank_angle, pose), geometry.rollers(crank_angle)
-        pairs, leaning = [], split_shifts(leans, geometry)
-        for number, (motion, tilt, law, radius) in enumerate(
-            (
-                (flank, geometry.flank_tilt(crank_angle, pose, flank, leaning[0]), laws.pins, flank.effective_radius),
-                (holes, geometry.hole_tilt(pose, holes, leaning[1]), self.hole_law, place.hole_effective_radii),
-            )
-        ):
-            begin = None if near is None else near[number]
-            if again is not None:
-                known = again.leaning_holes if number else again.leaning_pins
-                begin = None if known is None else known.contact.slice_load
-            contact = law.respond(motion.approach, tilt.tilt, radius, begin)
-            pairs.append((motion, LeaningPairs(tilt=tilt, contact=contact)))
-        if again is None:
-            displacement = bores.each(bores.displacement, rays.direction.shape[1])
-            journals = bores.each(geometry.journal_leans(pose), rays.direction.shape[1])
-            along = [dot(rays.direction, lean) for lean in (journals, geometry.lean(pose))]
-            stood = None if near is None else RollerStart(inward=near[2], lean=near[3], inner=near[4], outer=near[5])
-            rollers = balance_leaning_rollers(rays, displacement, laws.rollers, *along, stood)
-        else:
-            rollers = again.rollers
-        tangent = _leaning_roller_tangent(rollers, bores, coordinates)
-        pins, of_holes = (pair.contact.load for _, pair in pairs)
-        force = resultant(flank, pins, holes, of_holes, rollers, bores)
-        tilting = bearing_moments(rollers, rays, bores.arm.shape[1])
-        force -= np.einsum("bc,bcj->bj", tilting.conjugate(), _relative_leans(bores, coordinates)).real
-        for motion, pair in pairs:
-            found, by_tilt = pair.contact, pair.tilt.gradient
-            force += np.einsum("bi,bij->bj", found.moment, by_tilt)
-            tangent += _pair_tangent(motion, found.load, found.by_approach)
-            mixed = np.matmul(motion.gradient.swapaxes(1, 2), found.by_tilt[..., None] * by_tilt)
-            tangent += mixed + mixed.swapaxes(1, 2)
-            tangent += np.matmul(by_tilt.swapaxes(1, 2), found.moment_by_tilt[..., None] * by_tilt)
-            tangent += motion.bend_leans(found.moment, coordinates)
-        return DiscResponse(
-            force=force,
-            tangent=tangent,
-            flank=flank,
-            holes=holes,
-            rollers=rollers,
-            pin_load=pins,
-            hole_load=of_holes,
-            warm_start=_rows_of([pair.contact.slice_load for _, pair in pairs], rollers),
-            shifts=shifts,
-            leans=leans,
-            slopes=None if shifts is None else _leaning_slopes(pairs),
-            leaning_pins=pairs[0][1],
-            leaning_holes=pairs[1][1],
-        )
+        here = ContactsInSlices(self.geometry, crank_angle, pose, flank, shifts, leans)
+        near = stacked(warm)
+        starts = (None, None) if near is None else (near[0], near[1])
+        if again is not None and again.leaning_pins is not None and again.leaning_holes is not None:
+            starts = again.leaning_pins.contact.slice_load, again.leaning_holes.contact.slice_load
+        pairs = here.pair(0, laws.pins, starts[0]), here.pair(1, self.hole_law, starts[1])
+        begin = None if near is None else roller_start(near)
+        rollers = here.rollers(laws.rollers, begin) if again is None else again.rollers
+        return here.response(pairs, rollers, warm_rows(pairs, rollers))
 
     def pressures(self, response: DiscResponse) -> ContactPressures:
         """Return pressures and half-widths from the laws, those of the shaft pins from their loads."""
+        if response.leaning_pins is not None and response.leaning_holes is not None:
+            return self._pressures_of_slices(response, response.leaning_pins.contact, response.leaning_holes.contact)
         flank, rollers, kinds = response.flank, response.rollers, self.kinds
         laws = self.laws(flank, response.warm_start)
         of_rollers = laws.rollers
@@ -231,6 +184,20 @@ class UncoupledContacts(ABC, Generic[Law]):
             rigid_shaft_pins=False,
         )
 
+    def _pressures_of_slices(
+        self, response: DiscResponse, pins: SlicedContact, holes: SlicedContact
+    ) -> ContactPressures:
+        """The same of contacts in slices, from their line loads."""
+        rollers, kinds, place = response.rollers, self.kinds, self.geometry.placement
+        outer, inner = np.asarray(rollers.outer_lines), np.asarray(rollers.inner_lines)
+        return ContactPressures(
+            pins=pressures_of_slices(kinds.pins, pins.line_load, response.flank.effective_radius),
+            outer=pressures_of_slices(kinds.outer, outer, place.outer_effective_radii),
+            inner=pressures_of_slices(kinds.inner, inner, place.inner_effective_radii),
+            holes=pressures_of_slices(kinds.holes, holes.line_load, place.hole_effective_radii),
+            rigid_shaft_pins=False,
+        )
+
 
 def _slopes(flank: FlankMotion, pin: FloatArray, holes: PairMotion, hole: FloatArray) -> PairSlopes:
     by_approach = np.concatenate((pin, hole), axis=1)
@@ -238,57 +205,10 @@ def _slopes(flank: FlankMotion, pin: FloatArray, holes: PairMotion, hole: FloatA
     return PairSlopes(by_approach=by_approach, by_pose=by_approach[..., None] * gradient)
 
 
-def _leaning_slopes(pairs: list[tuple[PairMotion, LeaningPairs]]) -> PairSlopes:
-    """The same of contacts in slices."""
-    k, mixed, turning = (
-        np.concatenate([getattr(pair.contact, name) for _, pair in pairs], axis=1)
-        for name in ("by_approach", "by_tilt", "moment_by_tilt")
-    )
-    gradient = np.concatenate([motion.gradient for motion, _ in pairs], axis=1)
-    by_tilt = np.concatenate([pair.tilt.gradient for _, pair in pairs], axis=1)
-    return PairSlopes(
-        by_approach=k,
-        by_pose=k[..., None] * gradient + mixed[..., None] * by_tilt,
-        by_tilt=mixed,
-        moment_by_tilt=turning,
-        moment_by_pose=mixed[..., None] * gradient + turning[..., None] * by_tilt,
-    )
-
-
 def _roller_tangent(rollers: RollerState, bores: BoreMotion) -> FloatArray:
     positions, cranks = bores.arm.shape
     stiffness = np.einsum("bcri->bci", rollers.tangent.reshape(positions, cranks, -1, 4)).reshape(-1, cranks, 2, 2)
     moved = np.stack((bores.gradient.real, bores.gradient.imag), axis=2)
-    tangent = np.matmul(moved.swapaxes(2, 3), np.matmul(stiffness, moved)).sum(axis=1)
-    add_bearing_bend(tangent, rollers, bores)
-    return np.asarray(tangent)
-
-
-def _rows_of(pairs: list[FloatArray], rollers: RollerState) -> NDArray[np.object_]:
-    """What contacts in slices want to find again, row by row."""
-    found = np.empty(pairs[0].shape[0], dtype=object)
-    each = (*pairs, rollers.share, rollers.lean, rollers.inner_slices, rollers.outer_slices)
-    found[:] = list(zip(*(values for values in each if values is not None), strict=True))
-    return found
-
-
-def _relative_leans(bores: BoreMotion, coordinates: Coordinates) -> ComplexArray:
-    """Lean of the disc less that of each crank by the pose, shape (positions, cranks, coordinates)."""
-    found = np.zeros(bores.gradient.shape, dtype=complex)
-    found[..., coordinates.lean_place] = (1.0, 1j)
-    for crank in range(coordinates.cranks):
-        place = coordinates.crank_lean(crank)
-        found[:, crank, place : place + 2] = (-1.0, -1j)
-    return found
-
-
-def _leaning_roller_tangent(rollers: RollerState, bores: BoreMotion, coordinates: Coordinates) -> FloatArray:
-    positions, cranks = bores.arm.shape
-    stiffness = rollers.tangent.reshape(positions, cranks, -1, 4, 4).sum(axis=2)
-    moved = np.zeros((positions, cranks, 4, coordinates.size))
-    moved[:, :, 0], moved[:, :, 1] = bores.gradient.real, bores.gradient.imag
-    leans = _relative_leans(bores, coordinates)
-    moved[:, :, 2], moved[:, :, 3] = leans.real, leans.imag
     tangent = np.matmul(moved.swapaxes(2, 3), np.matmul(stiffness, moved)).sum(axis=1)
     add_bearing_bend(tangent, rollers, bores)
     return np.asarray(tangent)

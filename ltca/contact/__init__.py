@@ -10,6 +10,7 @@ pressure_cells  Contact of two half-spaces over a rectangular patch: grid, solut
 length_profile  Profiles of rollers and pins along their length: crown, logarithmic relief, end relief, and their sum
 grid_ladder     Shapes of the contact grids, in steps of half-width and reach, and which of them a contact is solved on
 tracked_grid    Contacts solved on grids at every approach of an equilibrium: load, stiffness, pressures
+tilted_grid     Contacts that tilt, on grids over their whole width: load and moment by approach and tilt
 end_pressure    The largest pressure of a contact and its ratio to that at mid-width
 subsurface      Stresses in a half-space below a contact patch: uniformly pressed rectangles summed (Love 1929)
 hertz           Reference solutions of smooth elastic contact: line contact, approach of finite bodies, elliptical

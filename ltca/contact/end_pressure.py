@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from ltca.arrays import FloatArray
-from ltca.contact.pressure_cells import PatchSolution
+from ltca.contact.pressure_cells import PatchSolution, expected_half_width
 from ltca.contact.tracked_grid import CELLS, ContactKind, solve_fitted
 
 TABLE = Path(__file__).with_name("end_pressure.json")
@@ -63,6 +63,16 @@ def _cylinder_ratio(cells: int) -> tuple[FloatArray, FloatArray]:
         return tabulate_cylinder_ratio(cells)
     stored = json.loads(TABLE.read_text(encoding="utf-8"))
     return np.array(stored["nodes"]), np.array(stored["ratio"])
+
+
+def find_cylinder_ratio(kind: ContactKind, half_width: FloatArray) -> FloatArray:
+    """Return the ratio of the largest pressure of an end to that of its line, by the half-width of the line, mm; 1 where open."""
+    nodes, values = _cylinder_ratio(kind.cells)
+    # The half-width of every node by the length: that of a line with the length as datum, as long lines have.
+    slenderness = np.exp(nodes)
+    by_length = np.array([expected_half_width(1.0, 1.0 / each, 1.0 / each) for each in slenderness])
+    width = np.maximum(half_width, 1e-300) / kind.length
+    return np.asarray(np.where(half_width > 0.0, np.interp(-np.log(width), -np.log(by_length), values), 1.0))
 
 
 def largest_pressure_ratio(kind: ContactKind, approach: FloatArray, effective_radius: FloatArray) -> FloatArray:

@@ -29,7 +29,8 @@ END_GRADING = 2.5
 """Grading of the cells along an unrelieved length (`ltca.contact.pressure_cells.graded_edges`): the singular end then
 errs by 1e-4 in the load with 12 cells."""
 _ROOM = 1.6  # an unrelieved end bulges by up to 1.56 of the half-width at mid-width (ltca.contact.pressure_cells)
-_FREE_GRADING = 1.25  # of contacts that end within a profile, where pressure falls to zero by itself
+FREE_GRADING = 1.25
+"""The same of contacts that end within a profile, where pressure falls to zero by itself."""
 
 
 class GridRung(NamedTuple):
@@ -49,7 +50,7 @@ def unit_grid(rung: int, reach_rung: int, *, cells: int, symmetric: bool) -> Pat
     """
     half_width = float(np.exp(rung * RUNG))
     share = float(np.exp(-8.0 * reach_rung * RUNG))
-    grading = _FREE_GRADING + share * (END_GRADING - _FREE_GRADING)
+    grading = FREE_GRADING + share * (END_GRADING - FREE_GRADING)
     count = int(np.ceil(_ROOM * cells))
     x = half_width / cells * np.arange(count + 1.0)
     return PatchGrid(
@@ -59,7 +60,8 @@ def unit_grid(rung: int, reach_rung: int, *, cells: int, symmetric: bool) -> Pat
     )
 
 
-def _smooth_step(part: float) -> float:
+def smooth_step(part: float) -> float:
+    """Return 0 below 0, 1 above 1, and 3 t² − 2 t³ between."""
     part = min(max(part, 0.0), 1.0)
     return part * part * (3.0 - 2.0 * part)
 
@@ -75,13 +77,13 @@ def find_shares(
     reach = int(np.floor(reach_place))
     # A patch a little too long only has idle cells, one too short would cut the contact off: the longer one is left
     # only when the shorter has enough room.
-    over = _smooth_step((reach_place - reach) / BLEND) if reach > 0 else 1.0
+    over = smooth_step((reach_place - reach) / BLEND) if reach > 0 else 1.0
     found: dict[GridRung, float] = {}
     for number, part in ((reach, over), (reach - 1, 1.0 - over)):
         if part > 0.0:
             place = find_width_place(length, number, effective_radius, approach)
             below = int(np.floor(place))
-            above = _smooth_step((place - below - 0.5) / BLEND + 0.5)
+            above = smooth_step((place - below - 0.5) / BLEND + 0.5)
             if above < 1.0:
                 found[GridRung(below, number)] = part * (1.0 - above)
             if above > 0.0:

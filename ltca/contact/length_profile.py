@@ -166,6 +166,12 @@ def generator_profile(profile: LengthProfile, length: float, radius: float) -> S
     return SummedProfile(length=length, parts=tuple(parts))
 
 
+def has_lead(disc: Disc) -> bool:
+    """Return whether the flank of a disc is anything but straight along its width."""
+    relieved = disc.lead_relief_length > 0.0 and disc.lead_relief_depth > 0.0
+    return bool(relieved or disc.lead_crown_drop != 0.0 or disc.lead_slope != 0.0)
+
+
 def lead_relief(disc: Disc, z: FloatArray) -> FloatArray:
     """Return by how much the flank falls short at heights above the middle of the disc, mm; negative where metal is left."""
     length = disc.thickness

@@ -21,6 +21,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ltca.arrays import BoolArray, FloatArray, freeze
 from ltca.contact.grid_ladder import (
@@ -35,10 +36,10 @@ from ltca.contact.grid_ladder import (
     find_width_place,
     unit_grid,
 )
-from ltca.contact.length_profile import SummedProfile, generator_profile
+from ltca.contact.length_profile import SummedProfile, generator_profile, has_lead, lead_relief
 from ltca.contact.pressure_cells import PatchGrid, PatchSolution
 from ltca.contact.unilateral import UnilateralSolution, solve_unilateral_contact
-from ltca.drive.parts import Drive, contact_modulus
+from ltca.drive.parts import Disc, Drive, contact_modulus
 
 Departure = Callable[[FloatArray], FloatArray]
 
@@ -68,6 +69,8 @@ class ContactKind:
         Whether the separation is even along the profile (circles) or not (flanks).
     cells : int
         Cells over the half-width and over half the length.
+    lead : Disc or None
+        Disc whose flank has a lead; None where it is straight.
     """
 
     length: float
@@ -75,6 +78,17 @@ class ContactKind:
     generator: SummedProfile | None
     symmetric: bool
     cells: int = CELLS
+    lead: Disc | None = None
+
+    def relief(self, z: ArrayLike) -> FloatArray:
+        """Return by how much profile and lead fall short at heights above mid-width, mm."""
+        height = np.asarray(z, dtype=float)
+        total = np.zeros(height.shape)
+        if self.generator is not None:
+            total = total + self.generator.relief(height)
+        if self.lead is not None:
+            total = total + lead_relief(self.lead, height)
+        return total
 
     @property
     def end_cell(self) -> float:
@@ -103,6 +117,7 @@ class ContactKinds:
                 generator=generator_profile(wheel.pin_profile, drive.disc.thickness, wheel.pin_radius),
                 symmetric=False,
                 cells=cells,
+                lead=drive.disc if has_lead(drive.disc) else None,
             ),
             inner=ContactKind(
                 length=drive.roller_length,

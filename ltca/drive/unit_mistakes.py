@@ -16,8 +16,11 @@ from dataclasses import fields
 from math import pi, sin, sqrt
 from typing import ParamSpec, TypeVar
 
+from ltca.drive.declaration import declared_fields
+from ltca.drive.engine_support import given
 from ltca.drive.members.limits import Limit
 from ltca.drive.members.main_bearing import ROLLER
+from ltca.drive.members.width import needs_slices
 from ltca.drive.parts import Drive, Material, Materials, Preload, contact_modulus
 from ltca.errors import ConvergenceError, CycloError, DriveError
 from ltca.quantities import LIMITED
@@ -73,6 +76,10 @@ FASTEST = 1.5e6
 """Speed by the mean diameter of the crank bearing, mm/min, that no roller bearing of a drive reaches: the fastest have 1e6."""
 TWISTED = 0.03
 """Twist of the carrier under the torque beyond that of any reducer, rad: precision reducers wind up by some 3e-4 as a whole."""
+STEEP = 3e-3
+"""Inclination or slope beyond that of any part, rad: pins under load lean by tenths of a milliradian, drawings allow less."""
+DEEP = 0.01
+"""Crown or relief by the thickness of the disc beyond any: usual ones are some micrometres."""
 SLOW_INPUT, SLOW_OUTPUT = 60.0, 5.0
 """Speeds of input and output, rpm, below which a speed is likely in Hz: motors make 10 to 100 turns a second."""
 
@@ -267,6 +274,7 @@ def unit_warnings(drive: Drive, torque: float | None = None) -> list[str]:
         *_odd_forces(drive),
         *_odd_ratings(drive),
         *_odd_speeds(drive),
+        *_odd_leads(drive),
         *_soft_carrier(drive, torque),
     ]
 
@@ -476,6 +484,34 @@ def _odd_lengths(drive: Drive) -> Iterator[str]:
                 f"{path} = {value:g} mm is {1000.0 * value:g} µm, finer than machines hold; did you mean "
                 f'"{value:g} m", {1000.0 * value:g} mm?'
             )
+
+
+def _odd_leads(drive: Drive) -> Iterator[str]:
+    """Inclinations and leads in degrees, millimetres a metre or micrometres that were read as rad and mm."""
+    if drive.contact.slices == 1:
+        return
+    thickness, finest = drive.disc.thickness, min(FINEST, FINE * drive.pin_wheel.pin_radius)
+    for declared, field in declared_fields().items():
+        if not needs_slices(declared) or declared.startswith("main_bearing."):
+            continue
+        for path, given_value, _ in given(drive, declared.split(".")):
+            values = given_value if isinstance(given_value, tuple) else (given_value or 0.0,)
+            value = max(values, key=abs, default=0.0)
+            if field.unit == "rad" and abs(value) > STEEP:
+                yield (
+                    f"{path} = {value:g} rad is {1e3 * value * thickness:.3g} µm over the width of a disc, more than any part "
+                    f'leans; a plain number is in rad, others are written "{value:g}°", "{value:g} mrad" or "{value:g} mm/m"'
+                )
+            elif field.name.endswith(("_drop", "_depth")) and value > DEEP * thickness:
+                yield (
+                    f"{path} = {value:g} mm is {1e3 * value:g} µm on a disc {thickness:g} mm thick, more than any relief; "
+                    f'a plain number is in mm, micrometres are written "{value:g} µm"'
+                )
+            elif field.name.endswith(("_drop", "_depth")) and 1e-3 * finest <= value < finest:
+                yield (
+                    f"{path} = {value:g} mm is {1e3 * value:g} µm, finer than machines hold; did you mean "
+                    f'"{value:g} m", {1e3 * value:g} mm?'
+                )
 
 
 def _plays(drive: Drive) -> dict[str, float]:

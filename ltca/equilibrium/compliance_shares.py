@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from ltca.arrays import FloatArray
-from ltca.compliance.response import Response, Start, bearing_pushes
+from ltca.compliance.response import Response, Start, bearing_moments, bearing_pushes
 from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.reducer import Reducer
 from ltca.geometry.coordinates import WHEEL_ANGLE
@@ -54,6 +54,19 @@ def compliance_shares(model: Reducer, found: Equilibrium, behind: float = 0.0) -
         shift = np.einsum("bcj,bj->bc", bores.gradient, own)
         push = bearing_pushes(up.rollers, shift.shape[1]) - bearing_pushes(down.rollers, shift.shape[1])
         work["crank_bearings"] -= (push.conjugate() * shift).real.sum(axis=1)
+        lean = own[:, model.coordinates.lean_place]
+        if up.leaning_pins is not None and lean.size:
+            for part, name in (("pins", "leaning_pins"), ("shaft_pins", "leaning_holes")):
+                change = getattr(up, name).contact.moment - getattr(down, name).contact.moment
+                work[part] += _taken(getattr(here, name).tilt.gradient, own, change)
+            rays = model.discs[number].geometry.rollers(found.crank_angle)
+            turning, back = (bearing_moments(end.rollers, rays, shift.shape[1]) for end in (up, down))
+            for crank, changed in enumerate((turning - back).T):
+                relative = lean
+                if model.coordinates.cranks:
+                    place = model.coordinates.crank_lean(crank)
+                    relative = lean - own[:, place : place + 2]
+                work["crank_bearings"] -= changed.real * relative[:, 0] + changed.imag * relative[:, 1]
     if model.pins is not None and ends[0].ring is not None:
         poses = [found.pose + side * moved for side in (0.5, -0.5)]
         work["ring"] = _of_ring(model, found.crank_angle, poses, ends)

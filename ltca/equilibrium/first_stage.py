@@ -194,8 +194,8 @@ class StageMesh:
         return sign * self.forces(moments).in_plane.sum(axis=1), sign * self._slope(np.sign(moments))[0]
 
     def tilting_on_wheel(self, moments: FloatArray) -> ComplexArray:
-        """Return what the sun presses the lean of the wheel with relative to the carrier, z F − i M, N·mm, shape (positions,); zero
-        where the carrier is held.
+        """Return what the sun presses the lean of the wheel with relative to the carrier, z F − i M, N·mm, shape (positions,);
+        zero where the carrier is held.
         """
         sign, forces = -1.0 if self.carried else 0.0, self.forces(moments)
         along = (self.sun_radius * self.outward * forces.axial).sum(axis=1)

@@ -15,7 +15,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.arrays import ComplexArray, FloatArray, by_drive, has_rows, take_rows
+from ltca.arrays import ComplexArray, FloatArray, by_drive, has_rows, map_arrays, take_rows
 from ltca.compliance.response import (
     ContactPressures,
     DiscModel,
@@ -27,6 +27,7 @@ from ltca.compliance.response import (
     bearing_moments,
     bearing_pushes,
     split_shifts,
+    with_tilting_friction,
 )
 from ltca.drive.parts import Drive
 from ltca.equilibrium.external_force import ExternalForce
@@ -203,6 +204,8 @@ class Reducer:
                     rubbing = self.friction.of_disc(disc.geometry, crank_angle, pose[:, own], part, number)
                     force, tangent = part.force + rubbing.force, part.tangent + rubbing.tangent
                     part = replace(part, force=force, tangent=tangent, friction=rubbing.tangential)
+                    if coordinates.leans:
+                        part = with_tilting_friction(part, replace(coordinates, discs=1))
                 parts.append(part)
             latest[:] = parts
             return tuple(parts)
@@ -436,6 +439,7 @@ def disc_pressures(pressures: ContactPressures, discs: int) -> tuple[ContactPres
             largest=kind.largest[:, own],
             half_width=kind.half_width[:, own],
             end_cell=kind.end_cell,
+            along=None if kind.along is None else map_arrays(lambda array: array[:, own], kind.along),
         )
 
     return tuple(
@@ -497,4 +501,5 @@ def _beside_kinds(kinds: Sequence[KindPressures]) -> KindPressures:
         largest=_beside([kind.largest for kind in kinds]),
         half_width=_beside([kind.half_width for kind in kinds]),
         end_cell=kinds[0].end_cell,
+        along=_beside([kind.along for kind in kinds]),
     )

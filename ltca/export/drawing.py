@@ -51,6 +51,8 @@ def write_drawing(part: Part, path: Path) -> None:
         document = new(RELEASE, units=ezdxf.units.MM)
         for name, remark in zip(REMARKS, part.remarks, strict=False):
             document.header.custom_vars.append(name, remark)
+        for number, lead in enumerate(part.leads):
+            document.header.custom_vars.append(f"Lead {number}", lead)
         space = document.modelspace()
         for body in part.bodies:
             _draw(document, space, body)

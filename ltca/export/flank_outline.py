@@ -139,6 +139,10 @@ class FlankSpline:
         moved[3] += centre - self.centre
         return replace(self, pieces=moved, centre=centre)
 
+    def along(self, flank: MadeFlank) -> FlankSpline:
+        """Return one in the same place through points of a flank that is nearly this one, at the same parameters and knots."""
+        return _through(flank, self.parameter, self.knots).placed(self.centre)
+
     def values(self, piece: NDArray[np.intp], share: FloatArray) -> ComplexArray:
         """Return points of pieces, at shares of their lengths from 0 to 1."""
         t = share * np.diff(self.knots)[piece]
@@ -210,12 +214,13 @@ def departures(spline: FlankSpline, places: FloatArray = CHECKED_SHARES) -> Floa
     return np.array(rows)
 
 
-def _through(flank: MadeFlank, parameter: FloatArray) -> FlankSpline:
-    """The periodic cubic spline by chord length through the points at θ."""
+def _through(flank: MadeFlank, parameter: FloatArray, knots: FloatArray | None = None) -> FlankSpline:
+    """The periodic cubic spline by chord length, or with knots given, through the points at θ."""
     from scipy.interpolate import CubicSpline  # 0.1 s to import
 
     points = flank.points(parameter)
     closed = np.append(points, points[0])
-    knots = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(closed)))])
+    if knots is None:
+        knots = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(closed)))])
     both = CubicSpline(knots, np.column_stack([closed.real, closed.imag]), bc_type="periodic").c
     return FlankSpline(flank=flank, parameter=parameter, knots=knots, pieces=both[..., 0] + 1j * both[..., 1])

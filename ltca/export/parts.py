@@ -12,10 +12,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
-from ltca.drive.parts import Drive, Ring
+from ltca.arrays import FloatArray
+from ltca.contact.length_profile import lead_relief
+from ltca.drive.parts import Disc, Drive, Inclination, PlacementErrors, Ring
 from ltca.drive.single_discs import single_discs
 from ltca.errors import DriveError
 from ltca.export.flank_outline import FlankSpline, MadeFlank, follow_flank
@@ -59,7 +62,7 @@ class Circle:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Body:
-    """A straight body: a plane outline with holes between two heights.
+    """A body between two heights: a plane outline with holes, straight or with a lead along its width.
 
     Attributes
     ----------
@@ -73,6 +76,8 @@ class Body:
         Disc of an assembly that it belongs to, ``disc 1``; empty for others.
     bottom, top : float
         z of its faces, mm.
+    lead : Disc or None
+        Disc whose lead the flank has; the outline is that of the middle then.
     """
 
     name: str
@@ -81,12 +86,57 @@ class Body:
     of: str = ""
     bottom: float
     top: float
+    lead: Disc | None = None
 
     @property
     def section(self) -> float:
-        """Area of the exact section, mm²."""
+        """Area of the exact section, that of the middle, mm²."""
         outside = self.outer.flank.area() if isinstance(self.outer, FlankSpline) else np.pi * self.outer.radius**2
         return float(outside - np.pi * sum(circle.radius**2 for circle in self.inner))
+
+    @property
+    def volume(self) -> float:
+        """Exact volume, mm³."""
+        volume = self.section * (self.top - self.bottom)
+        if self.lead is None or not isinstance(self.outer, FlankSpline):
+            return volume
+        cuts, (places, weights) = self.heights(np.inf), np.polynomial.legendre.leggauss(4)
+        for low, high in pairwise(cuts.tolist()):
+            half = 0.5 * (high - low)
+            for place, weight in zip((low + half * (1.0 + places)).tolist(), (half * weights).tolist(), strict=True):
+                volume += weight * (self.flank(place).area() - self.outer.flank.area())
+        return volume
+
+    def heights(self, departure: float) -> FloatArray:
+        """Return heights from the lower to the upper face, mm, between which straight lines depart from the lead by less than
+        `departure`, mm; where it begins to relieve the ends is one of them.
+        """
+        if self.lead is None:
+            return np.array([self.bottom, self.top])
+        half, relief = 0.5 * self.lead.thickness, self.lead.lead_relief_length
+        ends = [-half, *((relief - half, half - relief) if 0.0 < relief < half else ()), 0.0, half]
+        # Crown and relief are a z² each: a straight line over a length s departs by a s²/4.
+        bend = self.lead.lead_crown_drop / half**2 + (self.lead.lead_relief_depth / relief**2 if relief else 0.0)
+        finest = 2.0 * np.sqrt(departure / bend) if bend else np.inf
+        parts = [
+            np.linspace(low, high, max(int(np.ceil((high - low) / finest)), 1), endpoint=False)
+            for low, high in pairwise(sorted(ends))
+        ]
+        return np.append(np.concatenate(parts), half) + 0.5 * (self.bottom + self.top)
+
+    def flank(self, height: float) -> MadeFlank:
+        """Return the flank at a height, mm, of a body that has one."""
+        assert isinstance(self.outer, FlankSpline)
+        if self.lead is None:
+            return self.outer.flank
+        short = float(lead_relief(self.lead, np.array(height - 0.5 * (self.bottom + self.top))))
+        return replace(self.outer.flank, inward=self.outer.flank.inward + short)
+
+    def outline(self, height: float) -> FlankSpline | Circle:
+        """Return the outline at a height, mm, with as many pieces as that of the middle."""
+        if self.lead is None or not isinstance(self.outer, FlankSpline):
+            return self.outer
+        return self.outer.along(self.flank(height))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -125,7 +175,7 @@ class Part:
     walls : tuple of Wall
         What is no solid.
     profiled : tuple of str
-        Fields of profiles along the length that its straight bodies do not have.
+        Fields of profiles along the length, and of inclinations, that its straight bodies do not have.
     """
 
     name: str
@@ -161,6 +211,19 @@ class Part:
         whither, told = ("into", "shrink, bores and holes grow") if into else ("out of", "grow, bores and holes shrink")
         moved = f"every face is moved {whither} the material by {abs(self.compensation):g} mm"
         return (*lines, f"compensation {self.compensation:g} mm: {moved} (outlines {told} in radius)")
+
+    @property
+    def leads(self) -> tuple[str, ...]:
+        """What a reader of the file should know of flanks that are not straight along their width, disc by disc."""
+        return tuple(f"flank of {body.name}: {_lead_words(body.lead)}" for body in self.bodies if body.lead is not None)
+
+
+def _lead_words(disc: Disc) -> str:
+    words = [f"crown {disc.lead_crown_drop:g} mm"] if disc.lead_crown_drop else []
+    if disc.lead_relief_depth:
+        words.append(f"end relief {disc.lead_relief_depth:g} mm over {disc.lead_relief_length:g} mm")
+    words += [f"slope {disc.lead_slope:g} rad"] if disc.lead_slope else []
+    return f"{', '.join(words)}; the outline of a drawing or table is that of the middle"
 
 
 def make_parts(
@@ -228,6 +291,7 @@ def _discs(drive: Drive, case: str, number: int, compensation: float) -> Part:
         frame=frame,
         compensation=compensation,
         bodies=(replace(body, name=name.replace("_", " ")),),
+        profiled=_profiled(drive, "disc"),
     )
 
 
@@ -235,7 +299,7 @@ def _disc_body(single: Drive, name: str, compensation: float) -> Body:
     """The disc of a drive of one disc, its lower face at z = 0."""
     placement = Placement.of_drive(single)
     flank = MadeFlank(profile=FlankProfile.of_drive(single), inward=compensation)
-    _require_flank(flank)
+    _require_flank(flank, f"--compensate {compensation:g} mm")
     bores = placement.bore_centres.tolist()
     inner = [
         Circle(feature="bore", name=_numbered("bore", c, len(bores)), radius=single.bore_radius, centre=centre)
@@ -248,8 +312,31 @@ def _disc_body(single: Drive, name: str, compensation: float) -> Body:
     ]
     grown = tuple(_grown(circle, compensation) for circle in inner)
     spline = follow_flank(flank)
-    _require_walls(spline, grown, compensation)
-    return Body(name=name, outer=spline, inner=grown, bottom=0.0, top=single.disc.thickness)
+    body = Body(
+        name=name,
+        outer=spline,
+        inner=grown,
+        bottom=0.0,
+        top=single.disc.thickness,
+        lead=single.disc if _has_lead(single.disc) else None,
+    )
+    for height in body.heights(np.inf).tolist():
+        outline = body.outline(height)
+        assert isinstance(outline, FlankSpline)
+        _require_flank(outline.flank, f"{_lead_fields(single.disc)} (falls short by {outline.flank.inward:g} mm)")
+        _require_walls(outline, grown, compensation)
+    return body
+
+
+def _has_lead(disc: Disc) -> bool:
+    return bool(disc.lead_crown_drop or disc.lead_relief_depth or disc.lead_slope)
+
+
+def _lead_fields(disc: Disc) -> str:
+    given = {"lead_crown_drop": "mm", "lead_relief_depth": "mm", "lead_slope": "rad"}
+    return ", ".join(
+        f"disc.{name} = {getattr(disc, name):g} {unit}" for name, unit in given.items() if getattr(disc, name)
+    )
 
 
 def _numbered(name: str, number: int, count: int) -> str:
@@ -265,8 +352,8 @@ def _grown(circle: Circle, by: float) -> Circle:
     return replace(circle, radius=circle.radius + by) if by else circle
 
 
-def _require_flank(flank: MadeFlank) -> None:
-    """A flank that is moved by more than its sharpest radius would fold."""
+def _require_flank(flank: MadeFlank, given: str) -> None:
+    """A flank that is moved by more than its sharpest radius would fold; `given` names what moves it."""
     if not flank.inward:
         return
     # By four times the points of a spline; by half of what would fold it the flank is no use to anybody.
@@ -276,8 +363,7 @@ def _require_flank(flank: MadeFlank) -> None:
         told = "convex" if flank.inward > 0.0 else "concave"
         raise DriveError(
             [
-                f"--compensate {flank.inward:g} mm: must be less than {0.5 / sharpest:.4g} mm in size, half of the smallest "
-                f"{told} radius of the flank"
+                f"{given}: must be less than {0.5 / sharpest:.4g} mm in size, half of the smallest {told} radius of the flank"
             ]
         )
 
@@ -395,7 +481,7 @@ def _pin_wheel(drive: Drive, case: str, _: int, compensation: float) -> Part:
             Wall(circle=_grown(wall.circle, compensation), bottom=wall.bottom + lift, top=wall.top + lift)
             for wall in walls
         ),
-        profiled=_profiled(drive, rollers=False),
+        profiled=_profiled(drive, "pin_wheel"),
     )
 
 
@@ -421,6 +507,7 @@ def _of_bodies(drive: Drive, case: str, name: str, table: str, bodies: Sequence[
         frame=OWN_FRAME[name],
         compensation=compensation,
         bodies=tuple(_compensated(body, compensation, lift) for body in bodies),
+        profiled=_profiled(drive, "pin_shaft"),
     )
 
 
@@ -471,14 +558,34 @@ def _carrier_bodies(drive: Drive, place: Placement) -> list[Body]:
     return bodies
 
 
-def _profiled(drive: Drive, *, rollers: bool) -> tuple[str, ...]:
-    """Fields of profiles along the length, which no straight body has."""
-    fields = [] if drive.pin_wheel.pin_profile.is_cylinder else ["pin_wheel.pin_profile"]
-    return (*fields, *(["crank_bearing.roller_profile"] if rollers and _are_profiled(drive) else []))
+def _profiled(drive: Drive, *parts: str) -> tuple[str, ...]:
+    """Fields of profiles along the length and of inclinations, which no straight body has, of some members."""
+    bearing, wheel, shaft = drive.crank_bearing, drive.pin_wheel, drive.pin_shaft
+    found: dict[str, list[tuple[str, bool]]] = {
+        "pin_wheel": [
+            ("pin_wheel.pin_profile", not wheel.pin_profile.is_cylinder),
+            ("pin_wheel.inclination", wheel.inclination != Inclination()),
+            *_leaning("pin_wheel.pin_errors", wheel.pin_errors),
+        ],
+        "disc": [
+            one for single in single_discs(drive) for one in _leaning("disc.hole_errors", single.disc.hole_errors)
+        ],
+        "pin_shaft": []
+        if shaft is None
+        else [
+            ("pin_shaft.inclination", shaft.inclination != Inclination()),
+            *_leaning("pin_shaft.pin_errors", shaft.pin_errors),
+        ],
+        "crank_bearing": [
+            ("crank_bearing.roller_profile", not bearing.roller_profile.is_cylinder),
+            ("crank.inclination", drive.crank.inclination != Inclination()),
+        ],
+    }
+    return tuple(dict.fromkeys(path for part in parts for path, given in found[part] if given))
 
 
-def _are_profiled(drive: Drive) -> bool:
-    return not drive.crank_bearing.roller_profile.is_cylinder
+def _leaning(path: str, errors: PlacementErrors) -> list[tuple[str, bool]]:
+    return [(f"{path}.{name}", any(getattr(errors, name))) for name in ("inclination_x", "inclination_y")]
 
 
 def _assembly(drive: Drive, case: str, _: int, __: float) -> Part:
@@ -497,7 +604,7 @@ def _assembly(drive: Drive, case: str, _: int, __: float) -> Part:
         frame=OWN_FRAME["assembly"],
         bodies=tuple(bodies),
         walls=tuple(replace(wall, circle=_shifted(wall.circle, axis)) for wall in walls),
-        profiled=_profiled(drive, rollers=True),
+        profiled=_profiled(drive, "pin_wheel", "disc", "pin_shaft", "crank_bearing"),
     )
 
 

@@ -28,7 +28,7 @@ def table_paths(part: Part, folder: Path) -> tuple[list[Path], Path]:
 def write_tables(part: Part, folder: Path) -> list[Path]:
     """Write the tables of a part and return their files; `FaultError` when a file cannot be written."""
     flanks, circles = table_paths(part, folder)
-    head = "".join(f"# {line}\n" for line in part.remarks)
+    head = "".join(f"# {line}\n" for line in (*part.remarks, *part.leads))
     splines = [body.outer for body in part.bodies if isinstance(body.outer, FlankSpline)]
     for path, spline in zip(flanks, splines, strict=True):
         _write(path, head + _flank_table(spline))

@@ -8,6 +8,9 @@ spring                 A contact that yields like a linear spring
 slenderness_curve      Smooth curves over the slenderness of a line contact: quintic splines on uniform knots, fast
                        to evaluate
 line_contact           Load–approach law of an uncrowned line contact between two half-spaces
+sliced_line            Line contacts in slices along their width: load and moment by approach and tilt
+sliced_spring          Springs even along the width, in slices
+width_pressure         Pressures along the width, from slices and from grids that tilt
 shipped_tables         Makes the tables of cylinders that ship with the package
 profiled_line_contact  Load–approach law of line contacts that are crowned or relieved along their length
 generator_law          The tabulated law of a roller or pin, with the profile along its length that the drive defines

@@ -294,18 +294,21 @@ def entry_loads(parts: Sequence[RollerPassages], speed: float | None, share: flo
     rollers = np.split(np.arange(parts[0].on_inner.shape[2]), cranks)
     for disc, crank in np.ndindex(*inner.shape):
         own = np.s_[:, disc, rollers[crank]]
-        inner[disc, crank] = race_load(*_of_bearing(parts, "inner_load", "on_inner", own), on_race)
-        outer[disc, crank] = race_load(*_of_bearing(parts, "outer_load", "in_bore", own), on_bore)
+        load, place, slices = _of_bearing(parts, ("inner_load", "on_inner", "inner_slices"), own)
+        inner[disc, crank] = race_load(load, place, on_race, slices)
+        load, place, slices = _of_bearing(parts, ("outer_load", "in_bore", "outer_slices"), own)
+        outer[disc, crank] = race_load(load, place, on_bore, slices)
     force = np.max([part.largest_force for part in parts], axis=0)
     return EntryLoads(torque=parts[0].torque, speed=speed, share=share, inner=inner, outer=outer, largest_force=force)
 
 
-def _of_bearing(parts: Sequence[RollerPassages], load: str, place: str, own: Any) -> tuple[FloatArray, FloatArray]:
-    """Loads and places of one bearing at all positions."""
-    return (
-        np.concatenate([getattr(part, load)[own] for part in parts]),
-        np.concatenate([getattr(part, place)[own] for part in parts]),
-    )
+def _of_bearing(parts: Sequence[RollerPassages], names: Sequence[str], own: Any) -> list[Any]:
+    """Loads, places and loads of slices of one bearing at all positions; None for what is not there."""
+    found = []
+    for name in names:
+        each = [getattr(part, name) for part in parts]
+        found.append(None if each[0] is None else np.concatenate([values[own] for values in each]))
+    return found
 
 
 def lives_of_entries(

@@ -25,7 +25,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ltca.analysis.life.laminae import Laminae
+from ltca.analysis.life.laminae import LAMINAE, Laminae, uneven_shares
 from ltca.arrays import FloatArray
 
 HARMONICS = 24
@@ -39,7 +39,7 @@ WEIBULL_SLOPE = 9.0 / 8.0
 """Slope of line contact: exponent of the damage over the places."""
 
 
-def race_load(load: FloatArray, place: FloatArray, laminae: Laminae) -> float:
+def race_load(load: FloatArray, place: FloatArray, laminae: Laminae, slices: FloatArray | None = None) -> float:
     """Return the equivalent roller load of a race, N.
 
     Parameters
@@ -49,24 +49,30 @@ def race_load(load: FloatArray, place: FloatArray, laminae: Laminae) -> float:
     place : array, shape (positions, rollers)
         Where on the race each one presses, in its own frame, rad.
     laminae : Laminae
-        How the load of a roller spreads along it.
+        How the load of an aligned roller spreads along it; of a straight one where slices are given.
+    slices : array, shape (positions, rollers, slices), optional
+        Loads of the slices of rollers that tilt, N.
     """
     pressed = load > 0.0
     if not np.any(pressed):
         return 0.0
     size, at = load[pressed], place[pressed]
+    along = None if slices is None else slices[pressed]
+    weights = laminae.weights if along is None else np.full(LAMINAE, 1.0 / LAMINAE)
     largest = float(np.max(size))
     order = np.arange(HARMONICS + 1)
-    series = np.zeros((order.size, laminae.weights.size), dtype=complex)
+    series = np.zeros((order.size, weights.size), dtype=complex)
     for first in range(0, size.size, LOADS_PER_CHUNK):
         few = slice(first, first + LOADS_PER_CHUNK)
         shares = laminae.shares(np.append(size[few], largest))[:-1]  # solved around the largest of all
+        if along is not None:
+            shares = uneven_shares(along[few], shares, laminae.slice_shares(size[few], along.shape[1]))
         damage = ((size[few] / largest)[:, None] * shares) ** DAMAGE_EXPONENT
         series += np.exp(-1j * np.outer(order, at[few])) @ damage / load.size
     series[1:] *= 2.0
     around = np.exp(2j * np.pi * np.outer(np.arange(_PLACES), order) / _PLACES)
     over_time = np.maximum((around @ series).real, 0.0)  # a cut series may dip below zero where nothing presses
-    over_places = float((over_time**WEIBULL_SLOPE).mean(axis=0) @ laminae.weights)
+    over_places = float((over_time**WEIBULL_SLOPE).mean(axis=0) @ weights)
     return float(largest * over_places ** (1.0 / (DAMAGE_EXPONENT * WEIBULL_SLOPE)))
 
 

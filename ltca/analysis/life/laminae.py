@@ -10,6 +10,9 @@ and the same sum, and the solution follows the profile continuously: a crown of 
 function of ISO 16281:2025 for the ends of plain rollers stands for the edges. Plane strain refuses profiles by name, so no
 roller ever changes from one to the other.
 
+**Where contacts have slices** (`contact.slices`) laminae carry what tilt and profile give them in the equilibrium
+(`uneven_shares`), with the edges of the straight roller.
+
 The pressure of a straight end is singular, more so in thinner slices: life then belongs to a number of slices. ISO
 16281:2025 asks for at least 30; 31 are taken (of the paper's straight rollers 51 give 9 % less life, 101 a quarter less).
 Profiles that carry no peak at their ends do not feel the number.
@@ -28,6 +31,7 @@ import numpy as np
 from ltca.arrays import FloatArray
 from ltca.contact.length_profile import Relief
 from ltca.contact.pressure_cells import PatchGrid, PatchSolution, expected_half_width, solve_patch
+from ltca.laws.sliced_line import SlicedLine, slice_heights
 
 LAMINAE = 31
 """n_s, odd: one in the middle and pairs beside it."""
@@ -44,7 +48,7 @@ _PER_LAMINA, _IN_LAST, _LAST_GRADING = 2, 8, 3.0
 
 
 class Laminae(Protocol):
-    """How a roller's load spreads over its slices."""
+    """How the load of an aligned roller spreads over its laminae, from the middle outward."""
 
     @property
     def weights(self) -> FloatArray:
@@ -61,10 +65,48 @@ class Laminae(Protocol):
         """
         ...
 
+    def slice_shares(self, load: FloatArray, slices: int) -> FloatArray:
+        """Return the part of every load that each of some slices of the straight aligned roller carries, (loads, slices).
+
+        Parameters
+        ----------
+        load : array, shape (loads,)
+            Q, N.
+        slices : int
+            Of the contacts of the analysis.
+        """
+        ...
+
 
 def pair_weights() -> FloatArray:
     """Return the parts of the length from the middle outward: one slice, then pairs of them."""
     return np.array([1.0] + [2.0] * (LAMINAE // 2)) / LAMINAE
+
+
+def uneven_shares(slice_load: FloatArray, straight: FloatArray, aligned_slices: FloatArray) -> FloatArray:
+    """Return n_s q_k/Q of tilted rollers over all laminae from one end to the other, shape (loads, laminae).
+
+    Tilt and profile are in the loads of the slices that the contact was balanced with; the rest, its edges, is as of the straight
+    aligned roller: what slices carry, by what those of the straight aligned roller do, is interpolated between their middles, and
+    prolonged to the ends. A straight aligned roller has its own shares.
+
+    Parameters
+    ----------
+    slice_load : array, shape (loads, slices)
+        N.
+    straight : array, shape (loads, laminae from the middle outward)
+        Shares of the straight aligned roller under the same load (`SolvedLaminae`, or edge factors).
+    aligned_slices : array, shape (loads, slices)
+        Parts of its load that its slices carry.
+    """
+    aligned = np.concatenate((straight[:, :0:-1], straight), axis=1)
+    slices, laminae = slice_load.shape[1], aligned.shape[1]
+    ratio = slice_load / slice_load.sum(axis=1, keepdims=True) / aligned_slices
+    at, middles = (np.arange(laminae) + 0.5) / laminae, (np.arange(slices) + 0.5) / slices
+    piece = np.clip(np.searchsorted(middles, at) - 1, 0, slices - 2)
+    part = (at - middles[piece]) * slices
+    found = aligned * np.maximum((1.0 - part) * ratio[:, piece] + part * ratio[:, piece + 1], 0.0)
+    return np.asarray(found * laminae / found.sum(axis=1, keepdims=True))
 
 
 def edge_factors(laminae: int = LAMINAE) -> FloatArray:
@@ -97,6 +139,10 @@ class EvenLaminae:
         """Return the edge factors for every load, or ones."""
         row = edge_factors()[LAMINAE // 2 :] if self.edges else np.ones(LAMINAE // 2 + 1)
         return np.broadcast_to(row, (load.size, row.size))
+
+    def slice_shares(self, load: FloatArray, slices: int) -> FloatArray:
+        """Return equal parts."""
+        return np.full((load.size, slices), 1.0 / slices)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -132,6 +178,19 @@ class SolvedLaminae:
         at = np.log(np.clip(load, loads[0], loads[-1]))
         found = monotone_cubic(np.log(loads), rows, at)
         return np.asarray(found / (found @ self.weights)[:, None])
+
+    def slice_shares(self, load: FloatArray, slices: int) -> FloatArray:
+        """Return what the law of slices gives each of them, interpolated between loads."""
+        law = SlicedLine(
+            length=self.length,
+            contact_modulus=self.contact_modulus,
+            slices=slices,
+            relief=np.zeros_like(slice_heights(self.length, slices)),
+        )
+        rungs = self._height * APPROACH_RATIO ** np.array(RUNGS)
+        found = law.respond(rungs, np.zeros(rungs.size), np.full(rungs.size, self.effective_radius))
+        at = np.log(np.clip(load, found.load[0], found.load[-1]))
+        return monotone_cubic(np.log(found.load), found.slice_load / found.load[:, None], at)
 
     def _solved(self, largest: float) -> tuple[FloatArray, FloatArray]:
         """Loads and shares of the contacts around [LEAST_LOAD_RATIO, 1] of the largest load, ascending."""

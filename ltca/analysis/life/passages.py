@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -33,7 +34,9 @@ class RollerPassages:
     largest_force : array, shape (discs, cranks)
         Largest radial force over the positions, N.
     laminae : tuple of Laminae
-        How rollers spread their loads on the inner race and in the bore.
+        How rollers spread their loads on the inner race and in the bore; straight aligned ones where slices are given.
+    inner_slices, outer_slices : array, shape (positions, discs, rollers, slices), or None
+        Loads of the slices of rollers that tilt, N.
     """
 
     drive: Drive
@@ -45,6 +48,8 @@ class RollerPassages:
     in_bore: FloatArray
     largest_force: FloatArray
     laminae: tuple[Laminae, Laminae]
+    inner_slices: FloatArray | None = None
+    outer_slices: FloatArray | None = None
 
 
 def roller_passages(analysis: LoadedAnalysis) -> RollerPassages:
@@ -79,20 +84,30 @@ def roller_passages(analysis: LoadedAnalysis) -> RollerPassages:
         ),
         largest_force=force.max(axis=0),
         laminae=laminae_of(analysis),
+        inner_slices=_beside([each.inner_slices for each in rollers]),
+        outer_slices=_beside([each.outer_slices for each in rollers]),
     )
+
+
+def _beside(discs: Sequence[FloatArray | None]) -> FloatArray | None:
+    known = [each for each in discs if each is not None]
+    return np.stack(known, axis=1) if known else None
 
 
 def laminae_of(analysis: LoadedAnalysis) -> tuple[Laminae, Laminae]:
     """Return how the rollers of an analysis spread their loads on the inner race and in the bore.
 
-    By the profile, where the engine has one along the length; even with edge factors in plane strain, which has none.
+    By the profile, where the engine has one along the length; even with edge factors in plane strain, which has none. Where
+    contacts have slices, which know the profile, those of a straight roller.
     Effective radii are those of the drawing: errors of single rollers are thousandths of them.
     """
     drive = analysis.drive
     if analysis.engine.compliance == "fe":
         return EvenLaminae(), EvenLaminae()
     part, materials = drive.crank_bearing, drive.materials
-    profile = generator_profile(part.roller_profile, drive.roller_length, part.roller_radius)
+    profile = None
+    if drive.contact.slices == 1:
+        profile = generator_profile(part.roller_profile, drive.roller_length, part.roller_radius)
 
     def solved(curvature: float, race_modulus: float) -> SolvedLaminae:
         return SolvedLaminae(

@@ -11,6 +11,7 @@ from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.summary import summarise
 from ltca.analysis.verdict.advice import MAX_INPUTS, Driver, advise
 from ltca.analysis.verdict.assembly import play_at_temperature
+from ltca.analysis.verdict.lead_crown import best_lead_crown
 from ltca.analysis.verdict.values import judge_analysis, notes as notes_of
 from ltca.drive.members.judgement import WHOLE, Check, Value, judge
 from ltca.drive.members.limits import Limit
@@ -160,6 +161,10 @@ def check_drive(
         return found(checks, {}, told)
     if engine.compliance != "half-space" and any(check.fails for check in checks):
         told.append("what drives each value is found on half-spaces, whatever judges it")
+    if drive.contact.slices > 1:
+        crown = best_lead_crown(drive, part * whole)
+        if crown is not None and crown.words:
+            told.append(crown.words)
     # Between those of a turn, so that nothing is refined.
     angles = position_angles(min(positions, ADVICE_POSITIONS)) + OFFSET
     return found(checks, advise(drive, checks, angles, whole, part), told)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from math import inf, isclose, isfinite
 
 import numpy as np
@@ -22,8 +23,9 @@ from ltca.analysis.verdict.geometry import pin_hollow_margin, roller_gap, underc
 from ltca.analysis.verdict.pin_stress import PinStress, pin_stress
 from ltca.analysis.verdict.places import largest_value, most_of
 from ltca.analysis.verdict.proportions import odd_proportions
+from ltca.compliance.response import ContactPressures, KindPressures
 from ltca.contact.subsurface import LINE_SHEAR_DEPTH, line_contact_shear, line_contact_shear_at
-from ltca.drive.members.judgement import WHOLE, Check, Value, judge
+from ltca.drive.members.judgement import ANYWHERE, WHOLE, Check, Value, allowable_anywhere, judge
 from ltca.drive.members.limits import Limit
 from ltca.drive.single_discs import single_discs
 from ltca.drive.yielding_parts import yielding_parts
@@ -42,6 +44,10 @@ DEMANDED = {
         Limit(
             quantity="distinct_mesh_phases", sense="min", value=float(RESOLVED), source="sampling of the mesh"
         ),
+        Limit(
+            quantity="axial_play_taken", sense="max", value=1.0,
+            source="geometry: the rim of a tilted disc touches beside it (disc.axial_play)",
+        ),
     )
 }  # fmt: skip
 """What theories demand, by quantity."""
@@ -57,6 +63,7 @@ LIVES = ("bearing_life_million_turns", "bearing_life_hours", "bearing_life_modif
 def find_values(analysis: LoadedAnalysis, summary: Mapping[str, float | None], *, lives: bool = True) -> list[Value]:
     """Return everything that may be judged of one case and its summary; bearing lives, which take 1 s, on demand."""
     found = [*_of_shape(analysis), *_of_loads(analysis, summary), *_of_pins(analysis), *_of_walls(analysis)]
+    found += [*_anywhere(analysis, summary), *_of_tilt(analysis)]
     found += _of_lives(analysis) if lives else []
     return [*found, *_of_theory(analysis, summary), *assembly_values(analysis), *_of_friction(analysis, summary)]
 
@@ -67,7 +74,77 @@ def judge_analysis(
     """Return the checks of one case against the limits of its drive file; lives that have a limit are judged in any case."""
     wanted = lives or any(limit.quantity in LIVES for limit in limits.values())
     values = worst_of_duty(analysis, find_values(analysis, summary, lives=wanted), find_values)
-    return judge(analysis.drive, values, limits, DEMANDED)
+    if analysis.drive.contact.slices == 1:  # pressures at ends are judged where a limit asks for them
+        asked = {limit.quantity for limit in limits.values()}
+        if "roller_pressure_max" in asked:
+            asked |= {"roller_pressure_max_outer", "roller_pressure_max_inner"}
+        values = [value for value in values if value.quantity not in ANYWHERE or value.quantity in asked]
+    return judge(analysis.drive, values, limits, DEMANDED | _allowable_inside(analysis, values, limits))
+
+
+def _allowable_inside(
+    analysis: LoadedAnalysis, values: Sequence[Value], limits: Mapping[str, Limit]
+) -> dict[str, Limit]:
+    """Allowable pressures of the joints whose contacts end before their lines do, by quantity."""
+    kinds, known = _kinds_anywhere(analysis.pressures), {value.quantity: value for value in values}
+    found = {}
+    for quantity, kind in kinds.items():
+        value, along = known.get(quantity), kind.along
+        if value is None or along is None or np.nanmax(along.end_load, initial=0.0) > 0.0:
+            continue
+        if any(
+            limit.sense == "max" and limit.quantity in (quantity, "roller_pressure_max") for limit in limits.values()
+        ):
+            continue
+        limit = allowable_anywhere(analysis.drive, value)
+        if limit is not None:
+            found[quantity] = limit
+    return found
+
+
+def _kinds_anywhere(pressures: ContactPressures) -> dict[str, KindPressures]:
+    """Pressures by the names of their largest anywhere."""
+    return dict(zip(ANYWHERE, (pressures.pins, pressures.outer, pressures.inner, pressures.holes), strict=True))
+
+
+def _anywhere(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) -> Iterator[Value]:
+    """Largest pressures anywhere along the width, with the height where that is known; refined between the positions."""
+    names = ("wheel pin", "roller", "roller", "shaft pin")
+    rollers = max(
+        ("roller_pressure_max_outer", "roller_pressure_max_inner"),
+        key=lambda name: float(np.max(_kinds_anywhere(analysis.pressures)[name].largest, initial=0.0)),
+    )
+    for (quantity, kind), name in zip(_kinds_anywhere(analysis.pressures).items(), names, strict=True):
+        if not kind.largest.shape[1]:
+            continue
+        scalar = "roller_pressure_max" if quantity == rollers else quantity
+        refined = refined_value(summary, LIMITED[scalar].key) if scalar in LIMITED else None
+        value = largest_value(analysis, quantity, kind.largest, name, refined)
+        if kind.along is not None and value.value is not None:
+            place = np.unravel_index(int(np.nanargmax(kind.largest)), kind.largest.shape)
+            value = replace(value, part=f"{value.part}, z = {kind.along.place[place]:.3g} mm")
+        yield value
+
+
+def _of_tilt(analysis: LoadedAnalysis) -> Iterator[Value]:
+    """Tilts of the discs, what they take of the axial play, and face load factors; nothing in the plane."""
+    arrays = case_arrays(analysis)
+    if "disc_tilt" not in arrays:
+        return
+    for part, name in (("pin", "wheel pins"), ("roller", "rollers"), ("pin_shaft", "shaft pins")):
+        each = np.asarray(arrays[f"{part}_face_load_factor"])
+        each = np.moveaxis(each, -1, 0).reshape(each.shape[-1], -1)
+        if np.any(np.isfinite(each)):
+            found = largest_value(analysis, f"{part}_face_load_factor", each, name, discs=1)
+            yield replace(found, part=name)
+    tilt = np.hypot(*np.moveaxis(np.asarray(arrays["disc_tilt"]), -1, 0)).T
+    yield largest_value(analysis, "disc_tilt", tilt, "")
+    play = analysis.drive.disc.axial_play
+    if play is not None:
+        rims = [model.geometry.profile.tip_radius for model in analysis.model.discs]
+        taken = 2.0 * float(np.max(rims)) * tilt
+        taken = np.divide(taken, play, out=np.where(taken > 0.0, np.inf, 0.0), where=play > 0.0)
+        yield largest_value(analysis, "axial_play_taken", taken, "")
 
 
 STIFF_PINS = 10.0

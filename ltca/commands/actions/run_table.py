@@ -85,6 +85,19 @@ LOSSES: Group = (
         ("drag at the input [N·mm]", "drag_torque"),
     ),
 )
+ALONG: Group = (
+    "along the width",
+    (
+        ("largest flank pressure anywhere [MPa]", "max_pin_pressure_max"),
+        ("largest roller pressure anywhere [MPa]", "max_roller_pressure_max"),
+        ("largest hole pressure anywhere [MPa]", "max_pin_shaft_pressure_max"),
+        ("face load factor K_Hβ, wheel pins", "max_pin_face_load_factor"),
+        ("face load factor K_Hβ, rollers", "max_roller_face_load_factor"),
+        ("face load factor K_Hβ, shaft pins", "max_pin_shaft_face_load_factor"),
+        ("tilt of a disc [rad]", "max_disc_tilt"),
+        ("moment of a crank bearing [N·mm]", "max_crank_bearing_moment"),
+    ),
+)
 LIFE = (
     ("million turns", "bearing_life_million_turns", ".1f"),
     ("hours", "bearing_life_hours", ".0f"),
@@ -103,6 +116,9 @@ def run_table(
     rows = [("torque, crank", [loads[name] for name in summaries])] if loads else []
     for heading, each in GROUPS:
         rows += _group(heading, [row for title, name in each for row in _rows(title, name, summaries)])
+    if any(scalar_named("max_disc_tilt").key in case for case in summaries.values()):
+        heading, each = ALONG
+        rows += _group(heading, [row for title, name in each for row in _rows(title, name, summaries, known=True)])
     rows += _group("stiffness of the cycloid stage [N·m/′]", _stiffness_rows(summaries))
     rows += _group(
         "life of the crank bearings, L10r",

@@ -137,6 +137,10 @@ def judge(
             reason = "not in this drive, or not computed by this engine"
             if drive.pin_shaft is None and limit.quantity.startswith(OF_SHAFT_PINS):
                 reason = "this drive has no shaft pins"
+            elif drive.contact.slices == 1 and limit.quantity in OF_WIDTH:
+                reason = "nothing tilts in the plane model (contact.slices = 1)"
+            elif limit.quantity == "axial_play_taken":
+                reason = "disc.axial_play is left out"
             checks.append(
                 Check(value=Value(quantity=limit.quantity, value=None, reason=reason), limit=limit, asked=True)
             )
@@ -164,7 +168,38 @@ def judged_by(limit: Limit, value: Value) -> Value:
     return replace(value, value=value.least, part=", ".join(filter(None, ("least", value.part))))
 
 
-_BOTH = {"roller_pressure_mid_outer": "roller_pressure_mid", "roller_pressure_mid_inner": "roller_pressure_mid"}
+ANYWHERE = {
+    "pin_pressure_max": "pin_pressure_mid",
+    "roller_pressure_max_outer": "roller_pressure_mid_outer",
+    "roller_pressure_max_inner": "roller_pressure_mid_inner",
+    "pin_shaft_pressure_max": "pin_shaft_pressure_mid",
+}
+"""Largest pressures anywhere along the width, with those at mid-width of the same joints. Where a contact ends before its line does
+the allowable pressure of the joint holds for them; at a straight end that carries the pressure is singular in any drive, and first
+yield holds, unless the file limits it."""
+OF_WIDTH = (
+    "disc_tilt",
+    "pin_face_load_factor",
+    "roller_face_load_factor",
+    "pin_shaft_face_load_factor",
+    "axial_play_taken",
+)
+"""What only contacts in slices have."""
+
+
+def allowable_anywhere(drive: Drive, value: Value) -> Limit | None:
+    """Return the limit by the allowable pressures of a joint on one of `ANYWHERE`; None where a body has none."""
+    found, _ = _of_materials(drive, replace(value, quantity=ANYWHERE[value.quantity]), [])
+    allowed = [one for one in found if one.source.endswith("allowable_pressure")]
+    return replace(allowed[0], quantity=value.quantity) if allowed else None
+
+
+_BOTH = {
+    "roller_pressure_max_outer": "roller_pressure_max",
+    "roller_pressure_max_inner": "roller_pressure_max",
+    "roller_pressure_mid_outer": "roller_pressure_mid",
+    "roller_pressure_mid_inner": "roller_pressure_mid",
+}
 """Quantities that are bounded by the limit of another one as well."""
 
 
@@ -201,6 +236,9 @@ def _of_materials(drive: Drive, value: Value, own: Sequence[Limit]) -> tuple[lis
         return _of_joint(value, joints[quantity], upper)
     if upper is not None:
         return [], ""
+    if quantity in ANYWHERE:
+        bodies = joints[ANYWHERE[quantity]]
+        return _of_bodies(value, _yielding(value, bodies), [name for name, _ in bodies], "hardness or yield_strength")
     seats = {
         "pin_seat_pressure": (("wheel_pin", parts.wheel_pin), _seat(drive)),
         "hole_seat_pressure": (("shaft_pin", parts.shaft_pin), ("sleeve", parts.sleeve)),
@@ -228,6 +266,11 @@ def _of_materials(drive: Drive, value: Value, own: Sequence[Limit]) -> tuple[lis
     if quantity == "shear_depth" and strength is None:  # the core is judged by its shear where its strength is known
         return _of_property(value, parts.disc.hardness_depth, "materials.disc.hardness_depth"), ""
     return [], ""
+
+
+def _yielding(value: Value, bodies: Sequence[tuple[str, Material]]) -> dict[str, list[Limit]]:
+    """First yield of the bodies of which it is known."""
+    return {name: found for name, part in bodies if (found := _first_yield(value, name, part))}
 
 
 FIRST_YIELD = "first yield below a line contact, 1.67 Y (Johnson, Contact Mechanics, 1985, sect. 4.2)"

@@ -437,3 +437,33 @@ def test_commands_tell_what_was_probably_meant_before_they_work(command, vary, t
     assert main([command, str(path), "--out", str(tmp_path / "out")]) == 2
     told = capsys.readouterr().err
     assert told.index("warning: disc.phases") < told.index("work has begun")
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        ({"disc.lead_slope": 0.005}, "disc.lead_slope = 0.005 rad is 59 µm over the width of a disc"),
+        (
+            {"pin_shaft.inclination.y": -0.004},
+            'pin_shaft.inclination.y = -0.004 rad is -47.2 µm over .* "-0.004°", "-0.004 mrad"',
+        ),
+        ({"pin_wheel.pin_errors.inclination_x.3": 0.01}, "pin_wheel.pin_errors.inclination_x = 0.01 rad is 118 µm over"),
+        ({"disc.lead_crown_drop": 0.4}, 'disc.lead_crown_drop = 0.4 mm is 400 µm on a disc 11.8 mm thick, .* "0.4 µm"'),
+        (
+            {"disc.lead_relief_depth": 5e-6, "disc.lead_relief_length": 2.0},
+            r'disc.lead_relief_depth = 5e-06 mm is 0.005 µm, finer than machines hold; did you mean "5e-06 m", 0.005 mm\?',
+        ),
+    ],
+)  # fmt: skip
+def test_leads_and_inclinations_of_another_unit(vary, words, told):
+    (warning,) = unit_warnings(with_fields(vary(), {"contact.slices": 5} | words))
+    assert re.match(told, warning), warning
+
+
+def test_usual_leads_and_inclinations_are_not_told(vary):
+    usual = {
+        "contact.slices": 5, "disc.lead_slope": 1e-4, "disc.lead_crown_drop": "5 µm", "pin_shaft.inclination.x": "1 mrad",
+        "disc.lead_relief_length": 1.0, "disc.lead_relief_depth": "10 µm", "disc.axial_play": 0.1,
+        "pin_wheel.pin_errors.inclination_y": (0.0,) * 13 + (2e-3,),
+    }  # fmt: skip
+    assert unit_warnings(with_fields(vary(), usual)) == []

@@ -1,0 +1,92 @@
+"""Along the width of contacts in slices: line loads, pressures, moments, tilts; nothing of the plane model.
+
+Heights are above the middle of the contact. A tilt is a small rotation vector, about x and about y of the fixed frame, and so are
+moments, about the middle of the disc.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from ltca.analysis.loaded_analysis import LoadedAnalysis
+from ltca.arrays import ComplexArray, FloatArray
+from ltca.compliance.response import AlongWidth, bearing_moments
+from ltca.drive.parts import Drive
+from ltca.quantities import QUANTITIES
+
+AXES = ("x", "y")
+"""What the dimension ``axis`` stands for."""
+HEIGHTS = {"pin": "z_pin", "roller": "z_roller", "hole": "z_hole"}
+"""Coordinates of the heights of the slices, by the parts that a quantity belongs to."""
+
+
+def width_values(analysis: LoadedAnalysis) -> dict[str, FloatArray]:
+    """Return what one disc has along its width, (position, pair, slice), (position, pair) or (position, …, axis)."""
+    pressures, response = analysis.pressures, analysis.full.response
+    pins, outer, inner, holes = (
+        each.along for each in (pressures.pins, pressures.outer, pressures.inner, pressures.holes)
+    )
+    if pins is None or outer is None or inner is None or holes is None:
+        return {}
+    (disc,) = analysis.model.discs
+    angle, cranks = analysis.full.crank_angle, disc.geometry.placement.cranks
+    lean = analysis.full.pose[:, disc.geometry.coordinates_of(analysis.full.pose).lean_place]
+    rays = disc.geometry.rollers(angle)
+    values = {
+        "pin_line_load": pins.line_load,
+        "roller_line_load": outer.line_load,
+        "roller_line_load_inner": inner.line_load,
+        "pin_shaft_line_load": holes.line_load,
+        "disc_tilt": np.stack((-lean[:, 1], lean[:, 0]), axis=-1),
+        "crank_bearing_moment": moments_of(bearing_moments(response.rollers, rays, cranks)),
+        "pin_face_load_factor": face_load_factor(pins)[:, 0],
+        "roller_face_load_factor": np.maximum(face_load_factor(outer, cranks), face_load_factor(inner, cranks)),
+        "pin_shaft_face_load_factor": face_load_factor(holes)[:, 0],
+    }
+    for part, side, kind in (
+        ("pin", "", pins),
+        ("roller", "_outer", outer),
+        ("roller", "_inner", inner),
+        ("pin_shaft", "", holes),
+    ):
+        values[f"{part}_pressure_along_width{side}"] = kind.pressure
+        values[f"{part}_pressure_max_place{side}"] = kind.place
+    return values
+
+
+def moments_of(leverage: ComplexArray) -> FloatArray:
+    """Return the moments about x and y, N·mm, of forces of which Σ F z is given, shape (…, 2)."""
+    return np.stack((-leverage.imag, leverage.real), axis=-1)
+
+
+def face_load_factor(kind: AlongWidth, groups: int = 1) -> FloatArray:
+    """Return K_Hβ of groups of pairs, shape (positions, groups): the largest line load by the largest mean one.
+
+    It is that of the pair that carries most, where that has the largest line load as well; not a number where none carries.
+    """
+    each = kind.line_load.reshape(kind.line_load.shape[0], groups, -1, kind.line_load.shape[-1])
+    if not each.shape[2]:
+        return np.full(each.shape[:2], np.nan)
+    mean = each.mean(axis=3).max(axis=2)
+    return np.divide(each.max(axis=(2, 3)), mean, out=np.full(mean.shape, np.nan), where=mean > 0.0)
+
+
+def width_coordinates(drives: Mapping[str, Drive]) -> dict[str, Any]:
+    """Return the coordinates of slices and axes; none in the plane."""
+    slices = next(iter(drives.values())).contact.slices
+    if slices == 1:
+        return {}
+    place = (np.arange(slices) - 0.5 * (slices - 1)) / slices
+    lengths = {
+        "z_pin": [drive.disc.thickness for drive in drives.values()],
+        "z_roller": [drive.roller_length for drive in drives.values()],
+        "z_hole": [drive.disc.thickness for drive in drives.values()],
+    }
+    return {
+        "slice": np.arange(slices),
+        "axis": list(AXES),
+        **{name: QUANTITIES[name].labelled(np.outer(each, place)) for name, each in lengths.items()},
+    }

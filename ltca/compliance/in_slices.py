@@ -1,0 +1,199 @@
+"""Contacts of a disc in slices at a pose: how they tilt, what they carry, and what force and tangent of the disc that makes.
+
+Walls of bodies that yield under other contacts (`ltca.compliance.coupled_slices`) take their part off every approach, even along
+the width: contacts may be asked for with that given.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.arrays import ComplexArray, FloatArray
+from ltca.compliance.leaning_rollers import RollerStart, balance_leaning_rollers
+from ltca.compliance.response import (
+    DiscResponse,
+    LeaningPairs,
+    PairSlopes,
+    add_bearing_bend,
+    bearing_moments,
+    resultant,
+    split_shifts,
+)
+from ltca.compliance.rollers import RollerLaws, RollerState
+from ltca.geometry.coordinates import Coordinates
+from ltca.geometry.pair_motion import BoreMotion, FlankMotion, PairMotion, dot
+from ltca.geometry.pairs import ContactGeometry
+from ltca.laws.sliced_line import SlicedContact
+
+
+class SlicedLaw(Protocol):
+    """Law of contacts in slices."""
+
+    def respond(
+        self, approach: FloatArray, tilt: FloatArray, effective_radius: FloatArray, start: FloatArray | None = None
+    ) -> SlicedContact:
+        """Return what contacts carry, as `ltca.laws.sliced_line.SlicedLine.respond`."""
+        ...
+
+
+class ContactsInSlices:
+    """Wheel pins, shaft pins and rollers of a disc at the poses of a batch of positions.
+
+    Parameters
+    ----------
+    geometry : ContactGeometry
+        Of the disc.
+    crank_angle : array, shape (positions,)
+        φ_C, rad.
+    pose : array, shape (positions, coordinates)
+        q.
+    flank : FlankMotion
+        Wheel pins and flank there.
+    shifts, leans : array of complex, shape (positions, z_P + z_PS), or None
+        Displacements, mm, and leans, rad, of the pins.
+    """
+
+    def __init__(
+        self,
+        geometry: ContactGeometry,
+        crank_angle: FloatArray,
+        pose: FloatArray,
+        flank: FlankMotion,
+        shifts: ComplexArray | None,
+        leans: ComplexArray | None,
+    ) -> None:
+        self.geometry, self.shifts, self.leans = geometry, shifts, leans
+        self.coordinates = geometry.coordinates_of(pose)
+        holes = geometry.holes(crank_angle, pose, split_shifts(shifts, geometry)[1])
+        of_pins, of_holes = split_shifts(leans, geometry)
+        self.motions: tuple[FlankMotion, PairMotion] = flank, holes
+        self.tilts = (
+            geometry.flank_tilt(crank_angle, pose, flank, of_pins),
+            geometry.hole_tilt(pose, holes, of_holes),
+        )
+        self.radii = flank.effective_radius, geometry.placement.hole_effective_radii
+        self.bores, self.rays = geometry.bores(crank_angle, pose), geometry.rollers(crank_angle)
+        journals = self.bores.each(geometry.journal_leans(pose), self.rays.direction.shape[1])
+        self.at_race, self.at_bore = (dot(self.rays.direction, lean) for lean in (journals, geometry.lean(pose)))
+
+    def pair(
+        self, number: int, law: SlicedLaw, start: FloatArray | None = None, given: FloatArray | float = 0.0
+    ) -> LeaningPairs:
+        """Return what wheel pins (0) or shaft pins (1) carry, of whose approaches the bodies take `given`, mm."""
+        motion, tilt = self.motions[number], self.tilts[number]
+        contact = law.respond(motion.approach - given, tilt.tilt, self.radii[number], start)
+        return LeaningPairs(tilt=tilt, contact=contact)
+
+    def rollers(
+        self,
+        laws: RollerLaws[Any],
+        start: RollerStart | None = None,
+        given: tuple[FloatArray | float, FloatArray | float] = (0.0, 0.0),
+    ) -> RollerState:
+        """Return the balanced rollers, of whose approaches in the bore and on the race the bodies take `given`, mm."""
+        displacement = self.bores.each(self.bores.displacement, self.rays.direction.shape[1])
+        return balance_leaning_rollers(self.rays, displacement, laws, self.at_race, self.at_bore, start, given)
+
+    @property
+    def moved(self) -> FloatArray:
+        """How displacement and lean of the bores follow the pose, shape (positions, cranks, 4, coordinates)."""
+        leans = _relative_leans(self.bores, self.coordinates)
+        by_pose = self.bores.gradient
+        return np.stack((by_pose.real, by_pose.imag, leans.real, leans.imag), axis=2)
+
+    def response(
+        self,
+        pairs: tuple[LeaningPairs, LeaningPairs],
+        rollers: RollerState,
+        warm_start: NDArray[np.object_],
+    ) -> DiscResponse:
+        """Return force, tangent and loads, the bodies' part of approaches held."""
+        flank, holes = self.motions
+        pins, of_holes = pairs[0].contact.load, pairs[1].contact.load
+        force = resultant(flank, pins, holes, of_holes, rollers, self.bores)
+        tilting = bearing_moments(rollers, self.rays, self.bores.arm.shape[1])
+        leans = _relative_leans(self.bores, self.coordinates)
+        force -= np.einsum("bc,bcj->bj", tilting.conjugate(), leans).real
+        tangent = self._roller_tangent(rollers)
+        for motion, pair in zip(self.motions, pairs, strict=True):
+            found, by_tilt = pair.contact, pair.tilt.gradient
+            force += np.einsum("bi,bij->bj", found.moment, by_tilt)
+            scaled = found.by_approach[..., None] * motion.gradient
+            tangent += np.matmul(motion.gradient.swapaxes(1, 2), scaled) + motion.bend(found.load)
+            mixed = np.matmul(motion.gradient.swapaxes(1, 2), found.by_tilt[..., None] * by_tilt)
+            tangent += mixed + mixed.swapaxes(1, 2)
+            tangent += np.matmul(by_tilt.swapaxes(1, 2), found.moment_by_tilt[..., None] * by_tilt)
+            tangent += motion.bend_leans(found.moment, self.coordinates)
+        return DiscResponse(
+            force=force,
+            tangent=tangent,
+            flank=flank,
+            holes=holes,
+            rollers=rollers,
+            pin_load=pins,
+            hole_load=of_holes,
+            warm_start=warm_start,
+            shifts=self.shifts,
+            leans=self.leans,
+            slopes=None if self.shifts is None else self.slopes(pairs),
+            leaning_pins=pairs[0],
+            leaning_holes=pairs[1],
+        )
+
+    def slopes(self, pairs: tuple[LeaningPairs, LeaningPairs]) -> PairSlopes:
+        """Return how loads and moments of wheel pins and shaft pins follow their approaches, tilts and the pose."""
+        k, mixed, turning = (
+            np.concatenate([getattr(pair.contact, name) for pair in pairs], axis=1)
+            for name in ("by_approach", "by_tilt", "moment_by_tilt")
+        )
+        gradient = np.concatenate([motion.gradient for motion in self.motions], axis=1)
+        by_tilt = np.concatenate([pair.tilt.gradient for pair in pairs], axis=1)
+        return PairSlopes(
+            by_approach=k,
+            by_pose=k[..., None] * gradient + mixed[..., None] * by_tilt,
+            by_tilt=mixed,
+            moment_by_tilt=turning,
+            moment_by_pose=mixed[..., None] * gradient + turning[..., None] * by_tilt,
+        )
+
+    def _roller_tangent(self, rollers: RollerState) -> FloatArray:
+        positions, cranks = self.bores.arm.shape
+        stiffness = rollers.tangent[..., :4, :4].reshape(positions, cranks, -1, 4, 4).sum(axis=2)
+        moved = self.moved
+        tangent = np.matmul(moved.swapaxes(2, 3), np.matmul(stiffness, moved)).sum(axis=1)
+        add_bearing_bend(tangent, rollers, self.bores)
+        return np.asarray(tangent)
+
+
+def roller_start(near: list[Any]) -> RollerStart:
+    """Return the rollers of a warm start (`warm_rows`)."""
+    return RollerStart(inward=near[2], lean=near[3], inner=near[4], outer=near[5])
+
+
+def warm_rows(pairs: tuple[LeaningPairs, LeaningPairs], rollers: RollerState, *more: FloatArray) -> NDArray[np.object_]:
+    """Return what contacts in slices want to find again, row by row: loads of slices of pins and holes, the rollers, and more."""
+    found = np.empty(rollers.share.shape[0], dtype=object)
+    loads = (pair.contact.slice_load for pair in pairs)
+    each = (*loads, rollers.share, rollers.lean, rollers.inner_slices, rollers.outer_slices, *more)
+    found[:] = list(zip(*(values for values in each if values is not None), strict=True))
+    return found
+
+
+def stacked(warm: NDArray[np.object_] | None) -> list[FloatArray] | None:
+    """Return the arrays behind the rows of `warm_rows`; None where a row is missing."""
+    if warm is None or any(each is None for each in warm):
+        return None
+    return [np.stack(parts) for parts in zip(*warm, strict=True)]
+
+
+def _relative_leans(bores: BoreMotion, coordinates: Coordinates) -> ComplexArray:
+    """Lean of the disc less that of each crank by the pose, shape (positions, cranks, coordinates)."""
+    found = np.zeros(bores.gradient.shape, dtype=complex)
+    found[..., coordinates.lean_place] = (1.0, 1j)
+    for crank in range(coordinates.cranks):
+        place = coordinates.crank_lean(crank)
+        found[:, crank, place : place + 2] = (-1.0, -1j)
+    return found

@@ -1,0 +1,362 @@
+"""Contacts that tilt, solved on grids over their whole width: load and moment by approach and tilt, with derivatives.
+
+As `ltca.contact.tracked_grid`, from which cells and ladder of widths come, but without symmetry along the width, and the patch is
+where the undeformed surfaces overlap, [z₁, z₂]: no contact reaches beyond. It moves steadily with approach and tilt, and so do
+load and moment; only widths are on a ladder (every second rung, blended), whose matrices serve patches of every length. Cells
+shrink toward an end of the line that carries more than toward one that the contact does not reach; near the boundary of the two
+load and moment are blended as well.
+
+While the same cells of the same patch touch, pressure is linear in approach, tilt and separation, p = δ A⁻¹1 + θ A⁻¹z − A⁻¹h, and
+needs no further factorisation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from ltca.arrays import BoolArray, FloatArray, freeze
+from ltca.contact.grid_ladder import BLEND, END_GRADING, FREE_GRADING, RUNG, smooth_step
+from ltca.contact.pressure_cells import PatchGrid, expected_half_width, graded_edges
+from ltca.contact.tracked_grid import ContactKind, Separation
+from ltca.contact.unilateral import solve_unilateral_contact
+
+STEP = 2.0 * RUNG
+"""Step of the widths of grids in ln(half-width/length of the patch): matrices without symmetry are four times as large."""
+ROOM = 1.8
+"""Width of the grid by the expected half-width: a tilted line bulges at its end by more than an aligned one."""
+END_DEPTH = 0.1
+"""Overlap at an end of the line, by the deepest, below which it is blended with an end that is not reached."""
+KEPT = 24
+"""Matrices kept, 7 MB each for flanks."""
+SAMPLES = 201
+"""Heights at which the ends of the overlap are looked for before they are refined."""
+_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
+
+
+class GridShape(NamedTuple):
+    """Shape of a grid: its width on the ladder and whether the line carries at its lower and at its upper end."""
+
+    step: int
+    lower_end: bool
+    upper_end: bool
+
+
+class Patch(NamedTuple):
+    """Where undeformed surfaces overlap along the width, mm, how deep at most, mm, and at the ends of the line by the deepest."""
+
+    lower: float
+    upper: float
+    depth: float
+    at_ends: tuple[float, float]
+
+    @property
+    def length(self) -> float:
+        """Length of the patch, mm."""
+        return self.upper - self.lower
+
+    @property
+    def middle(self) -> float:
+        """Its middle, mm."""
+        return 0.5 * (self.lower + self.upper)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TiltedPiece:
+    """Coefficients of a contact on one grid with its contact cells held: linear in approach, tilt and separation.
+
+    Attributes
+    ----------
+    shape : GridShape
+        Of the grid.
+    place : int
+        Place of the separation, see `ltca.contact.tracked_grid.Separation`.
+    patch : Patch
+        Where it lies; its depth does not matter.
+    active : array of bool, shape (cells,)
+        Contact cells.
+    rate, opening_rate : array, shape (cells, 2)
+        Pressure by E*, and opening, per approach in the middle of the patch by its length, and per tilt.
+    taken, opening_taken : array, shape (cells, places)
+        Both due to the separation at each place, to be subtracted.
+    """
+
+    shape: GridShape
+    place: int
+    patch: Patch
+    active: BoolArray
+    rate: FloatArray
+    opening_rate: FloatArray
+    taken: FloatArray
+    opening_taken: FloatArray
+
+    def pressure(self, closing: FloatArray, weights: FloatArray) -> FloatArray:
+        """Return pressures by E*."""
+        return np.asarray(self.rate @ closing - self.taken[:, : weights.size] @ weights)
+
+    def holds(self, closing: FloatArray, weights: FloatArray, slack: float) -> bool:
+        """Return whether the same cells touch: no tension inside, no overlap outside."""
+        if self.taken.shape[1] < weights.size:
+            return False
+        pressure = self.pressure(closing, weights)
+        if np.min(pressure) < -1e-11 * np.max(pressure):
+            return False
+        opening = self.opening_rate @ closing - self.opening_taken[:, : weights.size] @ weights
+        return bool(np.min(opening) >= -slack)
+
+
+TiltedPieces = tuple[TiltedPiece, ...]
+
+
+class TiltedPress(NamedTuple):
+    """A pressed contact: load and moment with their derivatives, N, mm and rad, its energy, N·mm, and what is behind it.
+
+    `edges` are those of the cells along the width, mm, `line_load` is what they carry, N/mm: of the grid with the largest share.
+    """
+
+    load: float
+    moment: float
+    by_approach: float
+    by_tilt: float
+    moment_by_tilt: float
+    energy: float
+    edges: FloatArray
+    line_load: FloatArray
+    pieces: TiltedPieces
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TiltedPatch:
+    """Pressure over a patch.
+
+    Attributes
+    ----------
+    x_edges, z_edges : array
+        Edges of the cells along the profile (from 0 where symmetric) and along the width, mm.
+    pressure : array, shape (nx, nz)
+        Mean pressure of each cell, MPa.
+    symmetric : bool
+        Whether the cells are the positive half along the profile.
+    """
+
+    x_edges: FloatArray
+    z_edges: FloatArray
+    pressure: FloatArray
+    symmetric: bool
+
+
+@lru_cache(maxsize=KEPT)
+def whole_grid(shape: GridShape, cells: int, symmetric: bool) -> PatchGrid:
+    """Return the grid of unit length of a shape; its influence matrix is kept with it."""
+    x = float(np.exp(shape.step * STEP)) / cells * np.arange(int(np.ceil(ROOM * cells)) + 1.0)
+    lower, upper = (
+        graded_edges(1.0, cells, END_GRADING if end else FREE_GRADING) for end in (shape.lower_end, shape.upper_end)
+    )
+    return PatchGrid(
+        x_edges=x if symmetric else np.concatenate([-x[:0:-1], x]),
+        y_edges=np.concatenate([-lower[:0:-1], upper]),
+        symmetric_x=symmetric,
+        symmetric_y=False,
+    )
+
+
+def find_patch(kind: ContactKind, approach: float, tilt: float) -> Patch | None:
+    """Return where the undeformed surfaces overlap, None where they do nowhere; approach in mm, tilt in rad."""
+    half = 0.5 * kind.length
+
+    def free(z: FloatArray | float) -> FloatArray:
+        # Logarithmic profiles have no end.
+        return np.asarray(np.maximum(approach + tilt * np.asarray(z) - kind.relief(z), -1.0))
+
+    heights = np.linspace(-half, half, SAMPLES)
+    depth = free(heights)
+    deepest = int(np.argmax(depth))
+    if 0 < deepest < SAMPLES - 1:
+        # The top between samples: by a parabola, as smooth reliefs have.
+        before, most, after = depth[deepest - 1 : deepest + 2]
+        bend = before - 2.0 * most + after
+        top = most - 0.125 * (after - before) ** 2 / bend if bend < 0.0 else most
+    else:
+        top = depth[deepest]
+    pressed = np.flatnonzero(depth > 0.0)
+    if not pressed.size or not top > 0.0:
+        return None
+    from scipy.optimize import brentq  # 0.2 s to import; contacts that overlap all along need it not
+
+    lower, upper = -half, half
+    if pressed[0] > 0:
+        lower = float(brentq(free, heights[pressed[0] - 1], heights[pressed[0]], xtol=1e-15 * half, rtol=1e-14))
+    if pressed[-1] < SAMPLES - 1:
+        upper = float(brentq(free, heights[pressed[-1]], heights[pressed[-1] + 1], xtol=1e-15 * half, rtol=1e-14))
+    return Patch(lower, upper, float(top), (float(depth[0] / top), float(depth[-1] / top)))
+
+
+def press_tilted(
+    kind: ContactKind, separation: Separation, approach: float, tilt: float, start: Sequence[TiltedPiece] = ()
+) -> TiltedPress | None:
+    """Return load and moment of a contact at an approach in the middle of its width, mm, and a tilt, rad; None where open.
+
+    `start` are the pieces of a neighbouring pose: they save time and do not change the result.
+    """
+    patch = find_patch(kind, approach, tilt)
+    if patch is None:
+        return None
+    shares = _find_shares(patch, separation.effective_radius)
+    found = []
+    for shape, share in shares.items():
+        piece = _settle(kind, shape, patch, separation, approach, tilt, start)
+        found.append((share, piece, *_press_piece(kind, piece, separation, approach, tilt)))
+    values = np.sum([share * numbers for share, _, numbers, *_ in found], axis=0)
+    if len(found) > 1:
+        # Shares differ in what multiplies 1e-4 of the load: differences do.
+        sizes = np.array((1e-6 * patch.depth, 1e-6 * patch.depth / kind.length))
+        for column, (by_approach, by_tilt) in enumerate(((1.0, 0.0), (0.0, 1.0))):
+            ends = []
+            for sign in (-1.0, 1.0):
+                moved = find_patch(kind, approach + sign * by_approach * sizes[0], tilt + sign * by_tilt * sizes[1])
+                ends.append({} if moved is None else _find_shares(moved, separation.effective_radius))
+            for _, piece, numbers, *_ in found:
+                slope = (ends[1].get(piece.shape, 0.0) - ends[0].get(piece.shape, 0.0)) / (2.0 * sizes[column])
+                values[2 + column] += slope * numbers[0]
+                if column:
+                    values[4] += slope * numbers[1]
+    most = max(found, key=lambda each: each[0])
+    load, moment, by_approach, by_tilt, turning, energy = (float(value) for value in values)
+    return TiltedPress(load, moment, by_approach, by_tilt, turning, energy, *most[3:], tuple(each[1] for each in found))
+
+
+def recover_tilted(
+    kind: ContactKind, separation: Separation, approach: float, tilt: float, start: Sequence[TiltedPiece] = ()
+) -> TiltedPatch | None:
+    """Return the pressure over a contact on the grid that fits it best, None where it is open; as for `press_tilted`."""
+    patch = find_patch(kind, approach, tilt)
+    if patch is None:
+        return None
+    shares = _find_shares(patch, separation.effective_radius)
+    shape = max(shares, key=lambda each: shares[each])
+    piece = _settle(kind, shape, patch, separation, approach, tilt, start)
+    grid = whole_grid(shape, kind.cells, kind.symmetric)
+    closing = np.array(((approach + tilt * patch.middle) / patch.length, tilt))
+    pressure = np.maximum(piece.pressure(closing, separation.weights), 0.0).reshape(grid.shape)
+    return TiltedPatch(
+        x_edges=grid.x_edges * patch.length,
+        z_edges=patch.middle + grid.y_edges * patch.length,
+        pressure=kind.contact_modulus * pressure,
+        symmetric=kind.symmetric,
+    )
+
+
+def _width_place(patch: Patch, effective_radius: float) -> float:
+    """ln(expected half-width/length of the patch) in steps of the ladder."""
+    return float(np.log(expected_half_width(patch.length, effective_radius, patch.depth) / patch.length)) / STEP
+
+
+def _find_shares(patch: Patch, effective_radius: float) -> dict[GridShape, float]:
+    place = _width_place(patch, effective_radius)
+    below = int(np.floor(place))
+    above = smooth_step((place - below - 0.5) / BLEND + 0.5)
+    lower, upper = (smooth_step(end / END_DEPTH) for end in patch.at_ends)
+    found = {}
+    for step, of_width in ((below, 1.0 - above), (below + 1, above)):
+        for at_lower, of_lower in ((True, lower), (False, 1.0 - lower)):
+            for at_upper, of_upper in ((True, upper), (False, 1.0 - upper)):
+                share = of_width * of_lower * of_upper
+                if share > 0.0:
+                    found[GridShape(step, at_lower, at_upper)] = share
+    return found
+
+
+def _press_piece(
+    kind: ContactKind, piece: TiltedPiece, separation: Separation, approach: float, tilt: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Load, moment, ∂F/∂δ, ∂F/∂θ, ∂M/∂θ and energy on one grid; edges along the width and line loads."""
+    patch, grid = piece.patch, whole_grid(piece.shape, kind.cells, kind.symmetric)
+    length, weights = patch.length, separation.weights
+    closing = np.array(((approach + tilt * patch.middle) / length, tilt))
+    areas = grid.areas
+    pressure = np.maximum(piece.pressure(closing, weights), 0.0)
+    scale = grid.images * kind.contact_modulus * length**2
+    # About the middle of the width, mm.
+    arm = (patch.middle + length * grid.y_centres) * np.ones(grid.shape)
+    flat = areas.ravel()
+    load, moment = scale * (pressure @ flat), scale * (pressure @ (flat * arm.ravel()))
+    # The rates are by δ/length in the middle of the patch and by θ about it.
+    by_approach = piece.rate[:, 0] / length
+    by_tilt = piece.rate[:, 1] + piece.rate[:, 0] * (patch.middle / length)
+    arms = flat * arm.ravel()
+    gap = (_unit_separations(kind, piece.shape, patch, separation) @ weights) * length
+    penetration = approach + tilt * arm.ravel() - gap
+    numbers = np.array(
+        (load, moment, scale * (by_approach @ flat), scale * (by_tilt @ flat), scale * (by_tilt @ arms),
+         0.5 * scale * (pressure @ (penetration * flat)))
+    )  # fmt: skip
+    line = grid.images * kind.contact_modulus * length * (np.diff(grid.x_edges) @ pressure.reshape(grid.shape))
+    return numbers, patch.middle + length * grid.y_edges, line
+
+
+def _settle(
+    kind: ContactKind,
+    shape: GridShape,
+    patch: Patch,
+    separation: Separation,
+    approach: float,
+    tilt: float,
+    start: Sequence[TiltedPiece],
+) -> TiltedPiece:
+    """Return the piece of one grid that holds: one of `start` if it does, otherwise solved from it."""
+    grid = whole_grid(shape, kind.cells, kind.symmetric)
+    weights, areas = separation.weights, np.pi * grid.areas.ravel()
+    closing = np.array(((approach + tilt * patch.middle) / patch.length, tilt))
+    active = None
+    for piece in start:
+        if piece.shape == shape:
+            active = piece.active
+            slack = 1e-13 * float(np.max(areas)) * patch.depth / patch.length
+            if (
+                piece.place == separation.place
+                and piece.patch[:2] == patch[:2]
+                and piece.holds(closing, weights, slack)
+            ):
+                return piece
+    units = _unit_separations(kind, shape, patch, separation)
+    arm = np.tile(grid.y_centres, grid.shape[0])
+    penetration = closing[0] + closing[1] * arm - units @ weights
+    if active is None:
+        near = [piece for piece in start if abs(piece.shape.step - shape.step) <= 1]
+        active = near[0].active if near else penetration > 0.5 * np.max(penetration)
+    directions = np.column_stack((areas, areas * arm, units * areas[:, None]))
+    found = solve_unilateral_contact(grid.influence, penetration * areas, start=active, load_direction=directions)
+    inside = np.flatnonzero(found.active)
+    opening = grid.influence[:, inside] @ found.rate[inside] - directions
+    opening[inside] = 0.0
+    piece = TiltedPiece(
+        shape=shape,
+        place=separation.place,
+        patch=patch,
+        active=found.active,
+        rate=found.rate[:, :2],
+        opening_rate=opening[:, :2],
+        taken=found.rate[:, 2:],
+        opening_taken=opening[:, 2:],
+    )
+    return freeze(piece)
+
+
+def _unit_separations(kind: ContactKind, shape: GridShape, patch: Patch, separation: Separation) -> FloatArray:
+    """Mean separation of every cell at the places of a separation, by the length of the patch, shape (cells, places)."""
+    grid, length = whole_grid(shape, kind.cells, kind.symmetric), patch.length
+    points = grid.x_centres[:, None] + 0.5 * np.diff(grid.x_edges)[:, None] * _POINTS
+    across = np.stack(
+        [
+            separation.departure(separation.place + number, points * length) @ _WEIGHTS / (2.0 * length)
+            for number in range(separation.weights.size)
+        ],
+        axis=-1,
+    )
+    heights = grid.y_centres[:, None] + 0.5 * np.diff(grid.y_edges)[:, None] * _POINTS
+    along = kind.relief(patch.middle + length * heights) @ _WEIGHTS / (2.0 * length)
+    return np.asarray((across[:, None] + along[None, :, None]).reshape(-1, separation.weights.size))

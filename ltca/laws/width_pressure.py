@@ -1,0 +1,233 @@
+"""Pressures of contacts along their width: over the heights, the largest anywhere with its place, and at the ends.
+
+Two ways. `solve_along_width` solves the half-space grid of every contact at its approach and tilt, ends included. Within
+iterations and for many drives `estimate_along_width` takes the pressure of a long line under each line load,
+:math:`p = E^* b/(2\\rho)`, and at the ends that carry the ratio of an aligned end to its line (`ltca.contact.end_pressure`).
+
+At an unrelieved end the pressure of half-spaces is singular: as in the plane, pressures are means over a hundredth of the length.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+
+from ltca.arrays import BoolArray, FloatArray
+from ltca.contact.end_pressure import find_cylinder_ratio
+from ltca.contact.tilted_grid import TiltedPatch, recover_tilted
+from ltca.contact.tracked_grid import ContactKind, Separation
+from ltca.laws.sliced_line import POINTS, SlicedLine, slice_heights
+
+HEIGHTS = 33
+"""Heights at which pressures are given where none are asked for."""
+_PEAK_BIAS = 0.114
+"""Of the first of n cells over a half-width, by 1/n² (`ltca.contact.pressure_cells`)."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WidthPressures:
+    """Pressures along the width of contacts, zero where open.
+
+    Attributes
+    ----------
+    height : array, shape (heights,)
+        z above the middle of the width, mm.
+    line_load : array, shape (…, heights)
+        N/mm.
+    pressure : array, shape (…, heights)
+        Largest pressure over the profile at each height, MPa.
+    largest : array, shape (…)
+        Largest pressure anywhere, ends included, MPa.
+    place : array, shape (…)
+        Its height, mm.
+    end_load : array, shape (…, 2)
+        Line load at the lower and at the upper end of the width, N/mm: zero where the contact ends before.
+    """
+
+    height: FloatArray
+    line_load: FloatArray
+    pressure: FloatArray
+    largest: FloatArray
+    place: FloatArray
+    end_load: FloatArray
+
+    @property
+    def runs_off(self) -> BoolArray:
+        """Whether a contact carries right up to the lower and the upper end, shape (…, 2)."""
+        return np.asarray(self.end_load > 0.0)
+
+
+def estimate_along_width(kind: ContactKind, line_load: FloatArray, effective_radius: FloatArray) -> WidthPressures:
+    """Return pressures of contacts in slices by their line loads, at the middles of the slices.
+
+    Parameters
+    ----------
+    kind : ContactKind
+        Kind of the contacts.
+    line_load : array, shape (…, slices, points)
+        Of the contacts at the points of their slices (`ltca.laws.sliced_line.SlicedContact`), N/mm.
+    effective_radius : array
+        ρ, mm, broadcasts to (…).
+    """
+    line = line_load
+    radius = np.broadcast_to(effective_radius, line.shape[:-2])
+    z = slice_heights(kind.length, line.shape[-2])
+    even = line @ (0.5 * np.polynomial.legendre.leggauss(line.shape[-1])[1])
+
+    def pressure_of(load: FloatArray, more: int) -> FloatArray:
+        return np.asarray(np.sqrt(kind.contact_modulus * load / (np.pi * radius[(..., *(None,) * more)])))
+
+    inner = pressure_of(line, 2)
+    # What end slices carry beyond the line beside them is the bulge at an end, by aligned lines of as many slices.
+    nodes, bulges = _end_bulges(line.shape[-2])
+    size = kind.length / line.shape[-2]
+    carried = []
+    for last, beside, outermost in (
+        (even[..., 0], even[..., 1], line[..., 0, 0]),
+        (even[..., -1], even[..., -2], line[..., -1, -1]),
+    ):
+        own = last
+        for _ in range(3):
+            wide = np.sqrt(4.0 * own * radius / (np.pi * kind.contact_modulus)) / size
+            own = last / np.interp(np.log(np.maximum(wide, 1e-300)), nodes, bulges)
+        carried.append(np.where(outermost > 0.0, np.maximum(own + 0.5 * (own - beside), 0.0), 0.0))
+    ends = np.stack(carried, axis=-1)
+    # An end carries as one of a line that is even and long has its peak by the half-width there.
+    half_width = np.sqrt(4.0 * ends * radius[..., None] / (np.pi * kind.contact_modulus))
+    at_ends = pressure_of(ends, 1) * find_cylinder_ratio(kind, half_width)
+    flat = inner.reshape(*radius.shape, -1)
+    every = np.concatenate((flat, at_ends), axis=-1)
+    places = np.concatenate((z.ravel(), (-0.5 * kind.length, 0.5 * kind.length)))
+    top = np.argmax(every, axis=-1)
+    closed = (even > 0.0).any(axis=-1)
+    return WidthPressures(
+        height=z.mean(axis=1),
+        line_load=even,
+        pressure=pressure_of(even, 1),
+        largest=np.take_along_axis(every, top[..., None], axis=-1)[..., 0],
+        place=np.where(closed, places[top], 0.0),
+        end_load=ends,
+    )
+
+
+def solve_along_width(
+    kind: ContactKind,
+    approach: FloatArray,
+    tilt: FloatArray,
+    effective_radius: FloatArray,
+    heights: FloatArray | None = None,
+    separations: Callable[..., Separation] | None = None,
+) -> WidthPressures:
+    """Return pressures of contacts from half-space grids at their approaches and tilts, one solution for each that is closed.
+
+    Parameters
+    ----------
+    kind : ContactKind
+        Kind of the contacts.
+    approach, tilt, effective_radius : array, shape (…)
+        δ in the middle of the width, mm; θ, rad, positive presses positive z; ρ, mm.
+    heights : array, shape (heights,), optional
+        z, mm; default `HEIGHTS` even ones from end to end.
+    separations : callable, optional
+        Separation of the surfaces of a contact by its indices in the arrays; default the parabola x²/(2ρ).
+    """
+    half = 0.5 * kind.length
+    z = np.linspace(-half, half, HEIGHTS) if heights is None else np.asarray(heights, dtype=float)
+    delta, theta, radius = np.broadcast_arrays(approach, tilt, effective_radius)
+    lines, pressures = np.zeros((*delta.shape, z.size)), np.zeros((*delta.shape, z.size))
+    largest, place, end_load = np.zeros(delta.shape), np.zeros(delta.shape), np.zeros((*delta.shape, 2))
+    # A line that reaches nowhere is open: no tilt brings its ends further than that.
+    for index in zip(*np.nonzero(delta + half * np.abs(theta) > 0.0), strict=True):
+        size = float(radius[index])
+        separation = (
+            Separation(effective_radius=size, departure=lambda _, x, size=size: x**2 / (2.0 * size))  # type: ignore[misc]
+            if separations is None
+            else separations(*index)
+        )
+        patch = recover_tilted(kind, separation, float(delta[index]), float(theta[index]))
+        if patch is None:
+            continue
+        along = _Along.of_patch(patch, kind)
+        lines[index], pressures[index] = along.means(along.line_load, z), along.means(along.peak, z)
+        largest[index], place[index] = along.largest()
+        end_load[index] = along.means(along.line_load, np.array((-half, half)))
+    return WidthPressures(
+        height=z, line_load=lines, pressure=pressures, largest=largest, place=place, end_load=end_load
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Along:
+    """A contact by its cells along the width: line load and largest pressure over the profile of each."""
+
+    edges: FloatArray
+    line_load: FloatArray
+    peak: FloatArray
+    half: float
+    stretch: float
+
+    @classmethod
+    def of_patch(cls, patch: TiltedPatch, kind: ContactKind) -> _Along:
+        """Return those of a patch."""
+        width = float(patch.x_edges[1] - patch.x_edges[0])
+        images = 2.0 if patch.symmetric else 1.0
+        return cls(
+            edges=patch.z_edges,
+            line_load=images * width * patch.pressure.sum(axis=0),
+            peak=_peaks(patch.pressure, patch.symmetric),
+            half=0.5 * kind.length,
+            stretch=kind.end_cell,
+        )
+
+    def means(self, values: FloatArray, heights: FloatArray) -> FloatArray:
+        """Return means over the stretch about heights, within the width."""
+        start = (heights - 0.5 * self.stretch).clip(-self.half, self.half - self.stretch)
+        sums = np.concatenate(([0.0], np.cumsum(values * np.diff(self.edges))))
+        # Beyond the patch nothing carries.
+        within = np.interp(start + self.stretch, self.edges, sums) - np.interp(start, self.edges, sums)
+        return np.asarray(within / self.stretch)
+
+    def largest(self) -> tuple[float, float]:
+        """Return the largest mean over the stretch and the height of the largest; of equal ends the upper one."""
+        starts = np.concatenate(
+            (self.edges, self.edges - self.stretch, 0.5 * (self.edges[1:] + self.edges[:-1] - self.stretch))
+        )
+        middles = starts.clip(-self.half, self.half - self.stretch) + 0.5 * self.stretch
+        means = self.means(self.peak, middles)
+        top, ends = float(np.max(means)), self.means(self.peak, np.array((-self.half, self.half)))
+        if np.max(ends) >= (1.0 - 1e-9) * top:
+            return top, self.half if ends[1] > (1.0 - 1e-9) * top else -self.half
+        # A parabola through the cells next to the largest.
+        centres = 0.5 * (self.edges[1:] + self.edges[:-1])
+        cell = int(np.argmax(self.peak).clip(1, self.peak.size - 2))
+        bend, slope, _ = np.polyfit(centres[cell - 1 : cell + 2] - centres[cell], self.peak[cell - 1 : cell + 2], 2)
+        away = -0.5 * slope / bend if bend < 0.0 else 0.0
+        return top, float((centres[cell] + away).clip(self.edges[0], self.edges[-1]))
+
+
+def _peaks(pressure: FloatArray, symmetric: bool) -> FloatArray:
+    """Largest pressure over the profile in each column of cells, from cell means: those of a Hertz profile fall short of it."""
+    if symmetric:
+        # Cells over the half-width of each column, by its load and its peak: q = π p b/2.
+        peak = pressure[0]
+        cells = np.divide(4.0 * pressure.sum(axis=0), np.pi * peak, out=np.ones(peak.shape), where=peak > 0.0)
+        return np.asarray(np.where(peak > 0.0, peak * (1.0 + _PEAK_BIAS / np.maximum(cells, 1.0) ** 2), 0.0))
+    top = np.argmax(pressure, axis=0).clip(1, pressure.shape[0] - 2)
+    columns = np.arange(pressure.shape[1])
+    before, centre, after = (pressure[top + step, columns] for step in (-1, 0, 1))
+    bend = before - 2.0 * centre + after
+    crest = np.divide((after - before) ** 2, -8.0 * bend, out=np.zeros(bend.shape), where=bend < 0.0)
+    return np.asarray(np.maximum(centre + (0.125 - _PEAK_BIAS) * bend + crest, pressure.max(axis=0)))
+
+
+@cache
+def _end_bulges(slices: int) -> tuple[FloatArray, FloatArray]:
+    """Nodes of ln(b/l) and the load of an end slice by that of the middle one, of aligned straight lines."""
+    line = SlicedLine(length=1.0, contact_modulus=1.0, slices=slices, relief=np.zeros((slices, POINTS)))
+    approach = np.geomspace(1e-8, 0.1 / slices, 15)
+    load = line.respond(approach, np.zeros(15), np.ones(15)).slice_load
+    middle = load[:, slices // 2] * slices
+    return 0.5 * np.log(4.0 * middle / np.pi) + np.log(slices), load[:, 0] / load[:, slices // 2]
