@@ -112,11 +112,6 @@ REFUSALS = (
     Refusal("contact.slices", ("clearance-free",), "discs do not tilt in the model"),
     # What contacts in slices do not go together with.
     Refusal("friction", _SLICES, "they are frictionless"),
-    Refusal("pin_wheel.seat", _SLICES, "pins are fixed then"),
-    Refusal("pin_wheel.beam", _SLICES, "pins do not bend then"),
-    Refusal("pin_shaft.seat", _SLICES, "pins are fixed then"),
-    Refusal("pin_shaft.beam", _SLICES, "pins do not slope then", "give pin_shaft.stiffness in its place"),
-    Refusal("ring", _SLICES, "the wheel pins stand in a rigid ring then"),
     Refusal("crank.support", _SLICES, "cranks do not slope then"),
     Refusal("carrier.posts", _SLICES, "the carrier does not slope then"),
     Refusal("main_bearing.tilt_stiffness", _SLICES, "the wheel does not tilt then"),
