@@ -21,7 +21,7 @@ the roller and the inner contacts of the other rollers; the place of the roller 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,8 +48,16 @@ from ltca.drive.hole_contact import shaft_pins_yield
 from ltca.drive.parts import Drive
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.pairs import ContactGeometry
-from ltca.laws.backed import back_shaft_pins, shaft_pin_beam, shaft_pin_stiffness, tip_share, tip_slope
+from ltca.laws.backed import (
+    back_shaft_pins,
+    shaft_pin_beam,
+    shaft_pin_seat,
+    shaft_pin_stiffness,
+    tip_share,
+    tip_slope,
+)
 from ltca.laws.contact_law import ContactLaw
+from ltca.laws.sliced_seat import back_line
 from ltca.laws.sliced_spring import SlicedSpring
 from ltca.laws.spring import SpringLaw
 
@@ -142,12 +150,16 @@ class CoupledCompliance:
         slices, width = drive.contact.slices, drive.disc.thickness
         # In slices a beam bends behind its contact, under the forces of all discs (`ltca.equilibrium.pin_displacements`).
         bends_behind = slices > 1 and shaft_pin_beam(drive) is not None
-        at_hole = laws.hole
+        at_hole: Any = laws.hole
         if not hole_near_field and not bends_behind:
             at_hole = (
                 SpringLaw(stiffness=stiffness)
                 if slices == 1
-                else SlicedSpring(stiffness=stiffness, length=width, slices=slices)
+                else back_line(
+                    SlicedSpring(stiffness=stiffness, length=width, slices=slices),
+                    shaft_pin_seat(drive),
+                    place.shaft_pin_plays,
+                )
             )
         # A sleeve's own law has all that it yields (`ltca.laws.backed`).
         bare = drive.pin_shaft is not None and drive.pin_shaft.seat.kind == "fixed"
@@ -157,7 +169,9 @@ class CoupledCompliance:
             geometry=geometry,
             coefficients=body,
             near_field=laws,
-            hole_law=back_shaft_pins(drive, at_hole, place.shaft_pin_plays, laws.depth if hole_near_field else None),
+            hole_law=at_hole
+            if slices > 1
+            else back_shaft_pins(drive, at_hole, place.shaft_pin_plays, laws.depth if hole_near_field else None),
             hole_spring=1.0 / stiffness if hole_near_field and not bends_behind else 0.0,
             race=race + own.inner * np.eye(race.shape[0]),
             outer_radius=place.outer_effective_radii,
@@ -175,7 +189,9 @@ class CoupledCompliance:
         leans: ComplexArray | None = None,
         again: DiscResponse | None = None,
     ) -> DiscResponse:
-        """Return the contact forces at the poses of a batch of positions; see `ltca.compliance.uncoupled`. Contacts that feel each other all
+        """Return the contact forces at the poses of a batch of positions; see `ltca.compliance.uncoupled`.
+
+        Contacts that feel each other all
         move with displaced pins: `again` is of no use.
 
         Raises

@@ -15,7 +15,7 @@ less :math:`G^T (C^{-1} + K)^{-1} G`, G being how loads follow the pose.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -63,10 +63,12 @@ class _State:
     def __init__(self, bodies: _Bodies, given: FloatArray, near: list[FloatArray] | None) -> None:
         pins, outer, holes, inner = bodies.split(given)
         here, laws = bodies.here, bodies.laws
+        of_pins: Any = bodies.model.near_field.pin
+        of_holes: Any = bodies.model.hole_law
         self.given = given
         self.pairs: tuple[LeaningPairs, LeaningPairs] = (
-            here.pair(0, bodies.model.near_field.pin, None if near is None else near[0], pins),
-            here.pair(1, bodies.model.hole_law, None if near is None else near[1], holes),
+            here.pair(0, of_pins, None if near is None else near[0], pins),
+            here.pair(1, of_holes, None if near is None else near[1], holes),
         )
         self.rollers: RollerState = here.rollers(laws, None if near is None else roller_start(near), (outer, inner))
         self.load = np.concatenate(

@@ -163,7 +163,7 @@ class DiscResponse:
             assert pairs is not None
             found.append(pairs.contact.moment * (motion.gradient[..., X] + 1j * motion.gradient[..., Y]))
             along.append(pairs.contact.moment * (motion.along[..., X] + 1j * motion.along[..., Y]))
-        moments = np.concatenate(found, axis=1)
+        moments: ComplexArray = np.concatenate(found, axis=1)
         return moments if self.friction is None else moments + self.rubs * np.concatenate(along, axis=1)
 
     @property

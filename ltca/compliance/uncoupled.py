@@ -26,7 +26,7 @@ from ltca.compliance.response import (
     resultant,
     split_shifts,
 )
-from ltca.compliance.rollers import Law, RollerLaws, RollerState, balance_rollers
+from ltca.compliance.rollers import AnyLaw, Law, RollerLaws, RollerState, balance_rollers
 from ltca.contact.tracked_grid import ContactKind, ContactKinds
 from ltca.geometry.pair_motion import BoreMotion, FlankMotion, PairMotion
 from ltca.geometry.pairs import ContactGeometry
@@ -35,11 +35,11 @@ from ltca.laws.sliced_line import SlicedContact
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PairLaws(Generic[Law]):
+class PairLaws(Generic[AnyLaw]):
     """Laws of the contacts of wheel pins and of rollers at some poses."""
 
-    pins: Law
-    rollers: RollerLaws[Law]
+    pins: AnyLaw
+    rollers: RollerLaws[AnyLaw]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -164,7 +164,8 @@ class UncoupledContacts(ABC, Generic[Law]):
         starts = (None, None) if near is None else (near[0], near[1])
         if again is not None and again.leaning_pins is not None and again.leaning_holes is not None:
             starts = again.leaning_pins.contact.slice_load, again.leaning_holes.contact.slice_load
-        pairs = here.pair(0, laws.pins, starts[0]), here.pair(1, self.hole_law, starts[1])
+        holes: Any = self.hole_law
+        pairs = here.pair(0, laws.pins, starts[0]), here.pair(1, holes, starts[1])
         begin = None if near is None else roller_start(near)
         rollers = here.rollers(laws.rollers, begin) if again is None else again.rollers
         return here.response(pairs, rollers, warm_rows(pairs, rollers))
