@@ -21,7 +21,7 @@ own disc and in a drive of one disc, and laws are those of the contacts alone. A
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -612,13 +612,16 @@ class LeaningPins(DisplacedPins):
         a, b = self._by_member(rows, row, pair)
         load, moment = self._loads(rows, row, pair), np.where(lean, 0.0, self._moments(rows, disc, pair))
         found = np.zeros((*a.shape, self.coordinates.size))
-        own = self.coordinates.lean_place
+        one, on_flank = replace(self.coordinates, discs=1), self._on_flank(pair)[..., None, None]
         for number, slopes in enumerate(self.slopes):
             assert slopes.moment_by_pose is not None
             turned = self._turning(rows, disc, pair, number, 1.0)
             block = load[..., None, None] * turned
-            # Leans of the disc turn the contact as its displacements do.
-            block[..., own] += moment[..., None, None] * turned[..., DISC_PLACE]
+            # Tilts by the disc's lean turn as gaps by its displacement do, and by the wheel's the other way.
+            moved = moment[..., None, None] * turned[..., DISC_PLACE]
+            block[..., one.lean_place] += moved
+            if one.wheel_leans:
+                block[..., one.wheel_lean_place] -= on_flank * moved
             block += a[..., :, None] * slopes.by_pose[rows, pair][..., None, :]
             block += b[..., :, None] * slopes.moment_by_pose[rows, pair][..., None, :]
             found[..., self.coordinates.columns(number)] += (disc == number)[..., None, None] * block

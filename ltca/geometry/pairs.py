@@ -222,7 +222,10 @@ class ContactGeometry:
             return 0.0
         place = self.placement
         own = np.abs(place.wheel_pin_leans if leans is None else place.wheel_pin_leans + leans)
-        return np.asarray(self.half_width * (np.abs(self.lean(pose) - place.wheel_lean) + own) + self.end_metal)
+        return np.asarray(
+            self.half_width * (np.abs(self.lean(pose) - place.wheel_lean - self.wheel_lean(pose)) + own)
+            + self.end_metal
+        )
 
     def complete_flank(
         self, crank_angle: FloatArray, pose: FloatArray, motion: FlankMotion, shifts: ComplexArray | None = None
