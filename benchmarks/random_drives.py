@@ -3,7 +3,8 @@
 ``--practical`` generates drives with practical proportions (`ltca.testing.practical_drives`), ``--preloaded`` drives whose parts
 overlap as drawn, ``--cranks`` reducers of all kinds (`ltca.testing.crank_drives`), ``--pins`` reducers with loose, sleeved or
 bending pins, ``--friction`` reducers with friction, also with reversed motion (`ltca.testing.pin_drives`). All of these must
-be solved. Up to half of the drives have an elastic ring, free, bolted or built in.
+be solved. ``--tilted`` generates random reducers with contacts in slices, leads and inclinations. Up
+to half of the others have an elastic ring, free, bolted or built in.
 
 A solution has to be confirmed by `ltca.testing.balance_check` (residual, complementarity, minimum of the potential) or be a
 `ConvergenceError` with its history; anything else counts as wrong and is reported with its seed. Results are written as JSON
@@ -33,7 +34,7 @@ from ltca.testing.balance_check import find_imbalance
 from ltca.testing.crank_drives import crank_drive
 from ltca.testing.pin_drives import friction_drive, pin_drive
 from ltca.testing.practical_drives import practical_drive, preloaded_drive
-from ltca.testing.random_drives import random_reducer
+from ltca.testing.random_drives import random_reducer, tilted_reducer
 
 
 def try_friction_drive(seed: int) -> tuple[str, str, int]:
@@ -91,6 +92,7 @@ def main() -> int:
     kind.add_argument("--preloaded", action="store_true", help="practical drives whose parts overlap as drawn")
     kind.add_argument("--pins", action="store_true", help="reducers with loose, sleeved and bending pins")
     kind.add_argument("--friction", action="store_true", help="reducers with friction, driven in both directions")
+    kind.add_argument("--tilted", action="store_true", help="random reducers with slices, leads and inclinations")
     parser.add_argument("--first", type=int, default=0, help="first seed; default 0")
     parser.add_argument("--out", type=Path, default=Path("out/random_drives.json"))
     arguments = parser.parse_args()
@@ -103,6 +105,8 @@ def main() -> int:
         if arguments.pins
         else friction_drive
         if arguments.friction
+        else tilted_reducer
+        if arguments.tilted
         else draw
     )
     outcomes: Counter[str] = Counter()

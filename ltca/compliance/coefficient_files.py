@@ -20,8 +20,8 @@ from pathlib import Path
 from typing import Any
 
 from ltca.compliance.coefficients import InfluenceCoefficients, load_coefficients
-from ltca.compliance.near_field import NearField
-from ltca.drive.engine_support import require
+from ltca.compliance.near_field import NEAR_FIELDS, NearField
+from ltca.drive.engine_support import require_engine
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
 from ltca.errors import CycloError, DamagedFileError
@@ -45,6 +45,8 @@ SECONDS, SECONDS_PER_TOOTH, SECONDS_PER_HOLE, SECONDS_PER_BORE = 0.8, 0.28, 0.45
 """Time of a derivation on one core, s: the mesh is fine along the boundaries and the rest follows its size."""
 GIGABYTES, GIGABYTES_PER_TOOTH, MUCH = 0.55, 0.026, 2.0
 """Its memory, GB, and from where on it is told beforehand."""
+_ENGINES = {near_field: engine for engine, near_field in NEAR_FIELDS.items()}
+"""What coefficients are wanted for."""
 
 
 def cached_file(drive: Drive) -> Path:
@@ -143,8 +145,7 @@ def find_coefficients(
     CycloError
         When no file fits the drive, plane strain cannot say what the drive has, or nothing is installed that derives.
     """
-    if near_field == "plane-strain":
-        require(drive, "fe")
+    require_engine(drive, _ENGINES[near_field])
     if files is not None:
         return _load_first_that_fits(files, drive)[1]
     found = _kept(drive)
@@ -183,8 +184,7 @@ def find_case_coefficients(
         As `find_coefficients`; before anything is derived.
     """
     for drive in cases.values():
-        if near_field == "plane-strain":
-            require(drive, "fe")
+        require_engine(drive, _ENGINES[near_field])
     cases = {label: single for name, drive in cases.items() for label, single in _discs(name, drive)}
     if files:
         return _load_each(cases, files)

@@ -6,6 +6,7 @@ frame of the body with the deviation, at crank angle zero.
 
 from __future__ import annotations
 
+from dataclasses import fields
 from typing import Annotated
 
 from pydantic import ConfigDict, Field
@@ -36,7 +37,7 @@ class PlacementErrors:
     diameter : tuple of float
         Actual less nominal diameter, mm.
     inclination_x, inclination_y : tuple of float
-        Rotation of the part's axis about the x and y axes of the body that carries it, rad.
+        Rotation of the part's axis about the x and y axes of the body that carries it, as those of the whole circle, rad.
     """
 
     radial: Errors = ()
@@ -183,6 +184,14 @@ class OneDisc:
         Replaces ``crank_bearing.roller_errors``, at every crank.
     bore_errors : BoreErrors or None
         Errors of the places of the bores, one number per bore.
+    lead_crown_drop : float or None
+        Replaces ``disc.lead_crown_drop``, mm.
+    lead_relief_length : float or None
+        Replaces ``disc.lead_relief_length``, mm.
+    lead_relief_depth : float or None
+        Replaces ``disc.lead_relief_depth``, mm.
+    lead_slope : float or None
+        Replaces ``disc.lead_slope``, rad.
     """
 
     runout: Annotated[Runout | None, grows("disc")] = None
@@ -191,11 +200,15 @@ class OneDisc:
     clearance: Annotated[DiscClearance | None, grows("disc")] = None
     roller_errors: Annotated[RollerErrors | None, grows("roller")] = None
     bore_errors: Annotated[BoreErrors | None, grows("disc", radial=grows("disc", upon="crank.circle_radius"))] = None
+    lead_crown_drop: Annotated[NonNegativeLength | None, grows("disc")] = None
+    lead_relief_length: Annotated[NonNegativeLength | None, grows("disc")] = None
+    lead_relief_depth: Annotated[NonNegativeLength | None, grows("disc")] = None
+    lead_slope: Angle | None = None
 
     @property
     def of_bores_alone(self) -> bool:
         """Whether only places of bores are given, which replace no common value."""
-        return (self.runout, self.profile_errors, self.hole_errors, self.clearance, self.roller_errors) == (None,) * 5
+        return all(getattr(self, item.name) is None for item in fields(self) if item.name != "bore_errors")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)

@@ -13,6 +13,7 @@ from operator import attrgetter
 from typing import Any
 
 from ltca.drive.declaration import ANY, declared_fields
+from ltca.drive.members.width import needs_slices
 from ltca.drive.parts import Drive
 from ltca.drive.units.table import label
 from ltca.errors import DriveError
@@ -30,11 +31,14 @@ _IN_MESSAGES = {
     "direct": "method direct",
     "paper": "method paper",
     "fe": "compliance fe",
+    "hybrid": "compliance hybrid",
     "full FE": "full finite elements",
     "FE mesh": "meshes of full finite elements",
     "clearance-free": "the clearance-free analysis",
+    "slices": "contacts in slices (contact.slices > 1)",
 }
-"""Names of engines in messages. The last two are no choice of an analysis: ``cyclo mesh`` and a reference of the tests."""
+"""Names of engines in messages. The last three are no choice of an analysis: ``cyclo mesh``, a reference of the tests, and what
+every engine is for contacts in slices (`require_engine`)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,8 +75,10 @@ _TWO_DIMENSIONS = (
 )
 _RIGID = ("paper", "full FE", "FE mesh", "clearance-free")
 _FIXED = ("direct", *_RIGID)
+_SLICES = ("slices",)
 _ONE_BORE = ("paper", "clearance-free")
 _HYBRID = "use --compliance hybrid"
+_HALF_SPACE, _TABLES = "use --compliance half-space", "use --method tables"
 
 REFUSALS = (
     Refusal("crank.number", _ONE_BORE, "the model has one crank"),
@@ -99,6 +105,21 @@ REFUSALS = (
     Refusal("installation.first_stage_ratio", _ONE_BORE, "the model has one crank"),
     Refusal("ring", _ONE_BORE, "the wheel pins stand in a rigid ring in the model"),
     Refusal("friction", _FIXED, "the model is frictionless"),
+    Refusal("contact.slices", ("fe",), _TWO_DIMENSIONS, _HALF_SPACE),
+    Refusal("contact.slices", ("hybrid",), "discs do not tilt in the model", _HALF_SPACE),
+    Refusal("contact.slices", ("direct", "paper"), "discs do not tilt in the model", _TABLES),
+    Refusal("contact.slices", ("full FE", "FE mesh"), _TWO_DIMENSIONS),
+    Refusal("contact.slices", ("clearance-free",), "discs do not tilt in the model"),
+    # What contacts in slices do not go together with.
+    Refusal("friction", _SLICES, "they are frictionless"),
+    Refusal("pin_wheel.seat", _SLICES, "pins are fixed then"),
+    Refusal("pin_wheel.beam", _SLICES, "pins do not bend then"),
+    Refusal("pin_shaft.seat", _SLICES, "pins are fixed then"),
+    Refusal("pin_shaft.beam", _SLICES, "pins do not slope then", "give pin_shaft.stiffness in its place"),
+    Refusal("ring", _SLICES, "the wheel pins stand in a rigid ring then"),
+    Refusal("crank.support", _SLICES, "cranks do not slope then"),
+    Refusal("carrier.posts", _SLICES, "the carrier does not slope then"),
+    Refusal("main_bearing.tilt_stiffness", _SLICES, "the wheel does not tilt then"),
 )
 """Everything that an engine refuses, in the order of the definition of a drive."""
 ROUNDING = 1e-9
@@ -117,6 +138,15 @@ def require(drive: Drive, engine: str) -> None:
     problems = [problem for row in REFUSALS if engine in row.engines for problem in _problems(drive, row, engine)]
     if problems:
         raise DriveError(problems)
+
+
+def require_engine(drive: Drive, engine: str) -> None:
+    """Refuse a drive with anything that an engine of an analysis cannot represent (`require`), nor contacts in slices where it
+    has them.
+    """
+    require(drive, engine)
+    if drive.contact.slices > 1:
+        require(drive, "slices")
 
 
 def refusal(engine: str, path: str) -> str | None:
@@ -141,17 +171,18 @@ def refusals(path: str) -> dict[str, list[str]]:
 
 
 def _covers(row: Refusal, path: str) -> bool:
-    return path == row.path or path.startswith(f"{row.path}.")
+    of_slices = row.path == "contact.slices" and needs_slices(path)
+    return path == row.path or path.startswith(f"{row.path}.") or of_slices
 
 
 def _problems(drive: Drive, row: Refusal, engine: str) -> Iterator[str]:
     """One sentence for every place where a drive gives what a row refuses."""
-    for path, value, default in _given(drive, row.path.split(".")):
-        bound, unit = "left out", _unit(row.path)
+    for path, value, default in given(drive, row.path.split(".")):
+        bound, unit = "left out", unit_of(row.path)
         if row.equals and value is None:
             continue
         if row.equals:
-            ((_, accepted, _),) = _given(drive, row.equals.split("."))
+            ((_, accepted, _),) = given(drive, row.equals.split("."))
             if abs(value - accepted) <= ROUNDING * accepted:
                 continue
             bound = f"{accepted:g}{unit} ({row.equals})"
@@ -160,14 +191,14 @@ def _problems(drive: Drive, row: Refusal, engine: str) -> Iterator[str]:
         elif default is not None and not is_dataclass(default):
             bound = f"{default:g}{unit}"
         named = (
-            f"{path} ({_contents(path, value, row.path)})" if is_dataclass(value) else f"{path} = {_shown(value)}{unit}"
+            f"{path} ({_contents(path, value, row.path)})" if is_dataclass(value) else f"{path} = {shown(value)}{unit}"
         )
         instead = f"; {row.instead}" if row.instead else ""
         yield f"{named}: must be {bound} for {_IN_MESSAGES[engine]} ({row.reason}){instead}"
 
 
-def _given(part: Any, names: Sequence[str], above: str = "") -> Iterator[tuple[str, Any, Any]]:
-    """Path, value and default of a field, of every entry where its path has ``N``; nothing where its table is left out."""
+def given(part: Any, names: Sequence[str], above: str = "") -> Iterator[tuple[str, Any, Any]]:
+    """Yield path, value and default of a field, of every entry where its path has ``N``; nothing where its table is left out."""
     name, *below = names
     value, path = getattr(part, name), f"{above}{name}"
     if not below:
@@ -175,11 +206,11 @@ def _given(part: Any, names: Sequence[str], above: str = "") -> Iterator[tuple[s
     elif below[0] == ANY:
         for number, entry in enumerate(value):
             if below[1:]:
-                yield from _given(entry, below[1:], f"{path}.{number}.")
+                yield from given(entry, below[1:], f"{path}.{number}.")
             else:
                 yield f"{path}.{number}", entry, None
     elif value is not None:
-        yield from _given(value, below, f"{path}.")
+        yield from given(value, below, f"{path}.")
 
 
 def _default(part: Any, name: str) -> Any:
@@ -205,18 +236,19 @@ def _changes(path: str, table: Any, declared: str) -> Iterator[str]:
             for number, entry in enumerate(value):
                 yield from _changes(f"{own}.{number}", entry, f"{name}.{ANY}")
         else:
-            yield f"{own} = {_shown(value)}{_unit(name)}"
+            yield f"{own} = {shown(value)}{unit_of(name)}"
 
 
-def _shown(value: Any) -> str:
+def shown(value: Any) -> str:
+    """Return a value of a field as messages print it."""
     if is_dataclass(value):
-        return f"{{{', '.join(f'{item.name} = {_shown(getattr(value, item.name))}' for item in fields(value))}}}"
+        return f"{{{', '.join(f'{item.name} = {shown(getattr(value, item.name))}' for item in fields(value))}}}"
     if isinstance(value, tuple):
-        return f"[{', '.join(_shown(each) for each in value)}]"
+        return f"[{', '.join(shown(each) for each in value)}]"
     return f'"{value}"' if isinstance(value, str) else f"{value:g}"
 
 
-def _unit(path: str) -> str:
-    """Unit of a field as it stands behind its value."""
+def unit_of(path: str) -> str:
+    """Return the unit of a field as it stands behind its value."""
     declared = declared_fields().get(path)
     return f" {label(declared.unit)}".rstrip() if declared is not None else ""

@@ -16,6 +16,7 @@ from functools import cache, lru_cache
 from typing import Any
 
 from ltca.drive.declaration import ANY as ANY, INDICES, LEFT_OUT, Field, declared_fields, naming_fields
+from ltca.drive.members.width import FEWEST_SLICES, needs_slices
 from ltca.drive.parts import Drive, Friction
 from ltca.drive.single_discs import single_discs
 from ltca.errors import DriveError, nearest
@@ -24,6 +25,10 @@ OWN = {
     "disc.runout": "disc.of.N.runout",
     "disc.profile_errors": "disc.of.N.profile_errors",
     "disc.hole_errors": "disc.of.N.hole_errors",
+    "disc.lead_crown_drop": "disc.of.N.lead_crown_drop",
+    "disc.lead_relief_length": "disc.of.N.lead_relief_length",
+    "disc.lead_relief_depth": "disc.of.N.lead_relief_depth",
+    "disc.lead_slope": "disc.of.N.lead_slope",
     "clearance": "disc.of.N.clearance",
     "crank_bearing.roller_errors": "disc.of.N.roller_errors",
     "crank.eccentricity_error": "crank.of.N.eccentricity_error",
@@ -227,6 +232,13 @@ def absence(drive: Drive, path: str) -> str | None:
     if drive.crank.number == 1 and (path in _OF_SEVERAL_CRANKS or name.startswith("bore_errors.")):
         return "must be left out with one crank (crank.number = 1), which stands in the centre"
     return None
+
+
+def lacks_slices(drive: Drive, path: str) -> str | None:
+    """Return why a field of the width cannot vary in a plane drive; None where it can, and for other fields."""
+    if drive.contact.slices >= FEWEST_SLICES or not needs_slices(path):
+        return None
+    return f"needs slices along the width, contact.slices = {FEWEST_SLICES} or more (it is {drive.contact.slices})"
 
 
 def no_entry(drive: Drive, table: str, number: int) -> str | None:

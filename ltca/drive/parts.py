@@ -93,13 +93,15 @@ class Disc:
     runout : Runout
         Centre of the flank against the bore.
     lead_crown_drop : float
-        Drop of the crowned flank at its two ends, mm.
-    lead_relief_length, lead_relief_depth : float
-        Length of the relieved flank at each end, and drop at the very end, mm.
+        Crown of the flank along its width: by how much its two ends fall short of the middle, parabolic, mm.
+    lead_relief_length : float
+        Length of the parabolic end relief of the flank at each end of its width, mm; needs ``disc.lead_relief_depth``.
+    lead_relief_depth : float
+        Depth of the end relief at the very ends, mm; needs ``disc.lead_relief_length``.
     lead_slope : float
-        Slope of the flank along its width, mm/mm; positive leaves metal at positive z.
+        Slope of the flank along its width, rad; positive leaves metal at positive z.
     axial_play : float or None
-        Distance by which the disc is free along the axis, mm, for the check of its tilt.
+        By how much the disc is free along the axis, for the check of its tilt; not checked when left out, mm.
     of : tuple of OneDisc
         Values per disc, one entry for every disc; left out where all discs are alike.
     """

@@ -110,6 +110,10 @@ def _alone(disc: Disc, own: OneDisc, number: int) -> Disc:
         runout=disc.runout if own.runout is None else own.runout,
         profile_errors=disc.profile_errors if own.profile_errors is None else own.profile_errors,
         hole_errors=disc.hole_errors if own.hole_errors is None else own.hole_errors,
+        lead_crown_drop=disc.lead_crown_drop if own.lead_crown_drop is None else own.lead_crown_drop,
+        lead_relief_length=disc.lead_relief_length if own.lead_relief_length is None else own.lead_relief_length,
+        lead_relief_depth=disc.lead_relief_depth if own.lead_relief_depth is None else own.lead_relief_depth,
+        lead_slope=disc.lead_slope if own.lead_slope is None else own.lead_slope,
     )
 
 

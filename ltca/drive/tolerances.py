@@ -21,6 +21,7 @@ from ltca.drive.fields import (
     element_count,
     field_kind,
     field_kinds,
+    lacks_slices,
     may_be_left_out,
     not_a_field,
     own_paths,
@@ -147,6 +148,8 @@ def _entries(table: Any, prefix: str, problems: list[str]) -> list[tuple[str, Ma
 def nothing_scatters(drive: Drive, path: str) -> str | None:
     """Return why a field cannot scatter in a drive that is without it; None where it can."""
     if (problem := absence(drive, path)) is not None:
+        return problem
+    if (problem := lacks_slices(drive, path)) is not None:
         return problem
     try:
         if may_be_left_out(path):

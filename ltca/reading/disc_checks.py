@@ -15,6 +15,7 @@ from ltca.drive.parts import Drive, LengthProfile, PlacementErrors, RollerErrors
 from ltca.geometry.flank import CurveFrame, FlankProfile
 from ltca.geometry.interference import ROUNDING, drawn_interference
 from ltca.geometry.rotation import unit
+from ltca.reading.width_checks import LARGEST_SLOPE, find_lead_problems, slope_bound
 
 ELASTIC = "a tenth of the smallest pin or roller radius, beyond what bodies yield elastically"
 """Bound of overlaps in words: bodies strained by a tenth are no longer linear-elastic; sharper limits need a load."""
@@ -335,6 +336,7 @@ def find_deviation_problems(drive: Drive) -> Iterator[str]:
                 f"{path} = {value:g} mm: must be at most {limit:g} mm in size, a tenth of the smallest pin or "
                 "roller radius and half the eccentricity"
             )
+    yield from find_lead_problems(drive.disc, bound)
     yield from _profile_errors(drive, bound)
 
 
@@ -352,6 +354,13 @@ def part_errors(
                 f"{path}.{name} holds {worst:g} mm: must be at most {bound:g} mm in size, "
                 "a tenth of the smallest pin or roller radius"
             )
+    for name in ("inclination_x", "inclination_y"):
+        values = getattr(errors, name, ())
+        if values and len(values) != count:
+            yield f"{path}.{name} has {len(values)} values: must have {count}, one for each of the {things}"
+        worst = max(values, key=abs, default=0.0)
+        if abs(worst) > LARGEST_SLOPE:
+            yield f"{path}.{name} holds {worst:g} rad: {slope_bound()}"
 
 
 def _profile_errors(drive: Drive, bound: float) -> Iterator[str]:

@@ -15,6 +15,7 @@ from ltca.drive.mistakes import entry_words
 from ltca.drive.parts import BearingRow, CrankSupport, Drive, MainBearing, Material, Preload
 from ltca.drive.ring_shape import ring_mesh_problems, seat_radius
 from ltca.reading.disc_checks import deviation_bound, part_errors
+from ltca.reading.width_checks import find_width_problems
 
 SHARE_ROUNDING = 1e-9
 """Round-off accepted in the sum of the shares of a duty."""
@@ -34,6 +35,7 @@ LARGEST_BOLT_CIRCLE = 1.5
 
 def find_member_problems(drive: Drive) -> Iterator[str]:
     """Yield the problems of cranks, supports, pins, duty and values per disc, one sentence each."""
+    yield from find_width_problems(drive)
     yield from _installation(drive)
     yield from _per_disc(drive)
 
@@ -372,11 +374,6 @@ def _main_bearing(drive: Drive) -> Iterator[str]:
         yield (
             f"{path}.tilt_stiffness = {bearing.tilt_stiffness:g} N·mm/rad: must be left out beside {path}.bearings, whose "
             "pressure centres bring it"
-        )
-    elif bearing.tilt_stiffness is not None and drive.contact.slices == 1:
-        yield (
-            f"{path}.tilt_stiffness = {bearing.tilt_stiffness:g} N·mm/rad: needs contact.slices of 3 or more; with 1 the wheel "
-            "does not tilt"
         )
     yield from _loose_or_tight(path, bearing.clearance, bearing.preload, drive.crank.eccentricity)
     if not bearing.bearings:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from ltca.analysis.engines import Engine, HalfSpace
 from ltca.arrays import FloatArray
-from ltca.drive.fields import ANY, field_kind, field_kinds, not_a_field, read_field
+from ltca.drive.fields import ANY, field_kind, field_kinds, lacks_slices, not_a_field, read_field
 from ltca.drive.members.bearings import bought_size
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import label, parse_quantity
@@ -81,6 +81,8 @@ def parse_variable(text: str, drive: Drive) -> Variable:
         raise DriveError([f"--vary {path}: is not a single quantity"])
     if refused := bought_size(drive.crank_bearing, path):
         raise DriveError([f"--vary {refused}"])
+    if refused := lacks_slices(drive, path):
+        raise DriveError([f"--vary {path}: {refused}"])
     if span:
         ends = span.split(":")
         if len(ends) != 2:

@@ -14,6 +14,7 @@ import numpy as np
 from ltca.arrays import FloatArray
 from ltca.drive.fields import ANY, element_count, field_kind, field_kinds, missing_part, read_field
 from ltca.drive.materials import JUDGED_BY, PARTS
+from ltca.drive.members.width import needs_slices
 from ltca.drive.parts import Drive
 from ltca.errors import DriveError
 from ltca.reading.changes import with_fields
@@ -97,6 +98,7 @@ _LEFT_OUT = {
     "crank_bearing.static_load_rating": 6e4,
     "carrier.stiffness_torsion": 2e8,
     "carrier.flange": (8.0, 6.0),
+    "disc.axial_play": 0.2,
 }
 _LEFT_OUT |= {
     f"materials.{part}.{name}": value
@@ -127,11 +129,13 @@ _FIRST_STAGE = {
 _EXTERNAL = {f"load.external.0.{name}": 300.0 for name in ("force.x", "force.y", "force.z", "at.z")}
 _FROM_ZERO = {"mm": 1e-3, "rad": 0.3, "dimensionless": 0.5}
 _RELIEF = {"end_relief_length": 0.8, "end_relief_depth": 0.002}
+_LEAD_RELIEF = {"lead_relief_length": 0.8, "lead_relief_depth": 0.002}
 ROUND_OFF = 1e-6
 """Relative change of a number above which an answer differs: a thousand times the tolerance of equilibrium."""
 
 DIAMETERS = tuple(path for path in field_kinds() if path.endswith("_errors.diameter") and ANY not in path.split("."))
 _NAME = {
+    "disc.axial_play": "the tilt of discs is judged by it, nothing moves",
     "name": "names a drive and its files, nothing else",
     "analysis.compliance": "chooses the engine where none is named; here one is",
     "disc.planes": "axial places have no effect where neither pins nor cranks bend",
@@ -220,6 +224,8 @@ def sensible_change(drive: Drive, path: str) -> Any:
         return value  # of one disc there is no other, and none has an effect yet
     if path == "name":
         return f"{value} too"
+    if path == "contact.slices":
+        return 5
     if kind.choices:
         return kind.choices[(kind.choices.index(value) + 1) % len(kind.choices)]
     if isinstance(value, bool):
@@ -234,6 +240,8 @@ def sensible_change(drive: Drive, path: str) -> Any:
         return 0.8 * value
     if path.endswith("phase_error"):
         return 1e-3
+    if value == 0.0 and needs_slices(path):
+        return 2e-4 if kind.unit == "rad" else 1e-3
     if value == 0.0:
         return _FROM_ZERO.get(kind.unit, 1.0)
     return 0.9 * value
@@ -254,7 +262,7 @@ def _changed_array(drive: Drive, path: str, values: list[Any]) -> tuple[Any, ...
         return tuple(1.1 * value for value in values)
     count = element_count(drive, path)
     # Different amounts for the parts: a circle that shifts or grows as a whole could be hidden by a free motion.
-    step = _FROM_ZERO["mm"]
+    step = 1e-3
     return tuple(value + step * (1.0 if number % 2 else -0.6) for number, value in enumerate(values[: count or 0]))
 
 
@@ -319,6 +327,11 @@ def _carrier(drive: Drive, path: str, span: float) -> dict[str, Any]:
 
 def _beside(drive: Drive, path: str) -> dict[str, Any]:
     """Further fields that a field needs to have an effect, where the drive is without them."""
+    if needs_slices(path):
+        bearing = _of_main_bearing(path) if path.startswith("main_bearing.") and drive.main_bearing is None else {}
+        return bearing | ({"contact.slices": 5} if drive.contact.slices == 1 else {})
+    if path == "contact.slices":
+        return {path: 3}
     if path.startswith("ring.") and drive.ring is None:
         return _ring(drive, path) | (_warmth(drive, path) if path.endswith(".thermal_expansion") else {})
     span = 3.0 * (2.0 * max(map(abs, drive.disc.disc_planes)) + drive.disc.thickness)
@@ -403,7 +416,9 @@ def is_refused_by_name(path: str, told: str) -> bool:
 
 
 def goes_with(path: str) -> str:
-    """Return the name in the refusal of a field: the field, or the table that it belongs to."""
+    """Return the name in the refusal of a field: the field, or the table or field that it belongs to."""
+    if needs_slices(path):
+        return "contact.slices"
     return GOES_WITH.get(path) or GOES_WITH.get(path.rpartition(".")[0], path)
 
 
@@ -430,6 +445,9 @@ def change_of(drive: Drive, path: str) -> tuple[Drive, dict[str, Any]]:
     if name in _RELIEF:
         other = next(relief for relief in _RELIEF if relief != name)
         return with_fields(drive, {f"{parent}.{other}": _RELIEF[other]}), {path: _RELIEF[name]}
+    if name in _LEAD_RELIEF:  # refused one without the other
+        given = {f"{parent}.{relief}": value for relief, value in _LEAD_RELIEF.items()}
+        return with_fields(drive, given), {path: 0.5 * _LEAD_RELIEF[name]}
     if path == "disc.thickness":  # rollers no longer than the disc; in plane strain as long as it is
         return drive, {path: 1.1 * read_field(drive, path)} | (
             {"crank_bearing.roller_length": 1.1 * read_field(drive, "crank_bearing.roller_length")}

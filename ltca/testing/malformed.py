@@ -212,6 +212,24 @@ def _array(draw: random.Random) -> Malformed:
     return Malformed(about=f"pin_errors.radial = {errors[:50]}", content=text.encode())
 
 
+def _width(draw: random.Random) -> Malformed:
+    """Slices that are none, and leads and inclinations that are none or that no slices see."""
+    value = draw.choice([value for value in NO_QUANTITY if "\n" not in value])
+    slices = draw.choice((*NO_COUNT, "2", "4", "66", "67"))
+    place, line = draw.choice(
+        (
+            ("[disc]", f"lead_slope = {value}"), ("[disc]", f"lead_crown_drop = {value}"), ("[disc]", "lead_slope = 1e-4"),
+            ("[disc]", "lead_crown_drop = -1e-3"), ("[disc]", "lead_relief_depth = 1e-3"), ("[disc]", f"axial_play = {value}"),
+            ("[pin_wheel]", f"inclination.x = {value}"), ("[pin_wheel]", "inclination = { z = 0.0 }"),
+            ("[crank]", "inclination = 1e-4"), ("[crank]", 'inclination.y = "1 mrad"'), ("[pin_shaft]", "inclination.x = 0.5"),
+            ("[pin_shaft]", f"pin_errors.inclination_x = [{value}]"), ("[disc]", "hole_errors.inclination_y = [1e-4]"),
+            ("", f"[contact]\nslices = {slices}"),
+        )
+    )  # fmt: skip
+    text = BASE.replace(f"{place}\n", f"{place}\n{line}\n", 1) if place else f"{BASE}\n{line}\n"
+    return Malformed(about=f"{place} {line[:60]}", content=text.encode())
+
+
 def _name(draw: random.Random) -> Malformed:
     name = draw.choice(NO_NAME)
     return Malformed(about=f"name = {name[:40]}", content=BASE.replace('name = "paper"', f"name = {name}", 1).encode())
@@ -219,7 +237,7 @@ def _name(draw: random.Random) -> Malformed:
 
 DRIVES: tuple[Callable[[random.Random], Malformed], ...] = (
     _value, _value, _value, _value, _tiny, _misspelt, _left_out, _table_as_value, _deep, _bytes, _bytes, _cut, _noise, _case,
-    _case, _tolerance, _array, _name,
+    _case, _tolerance, _array, _name, _width,
 )  # fmt: skip
 
 SOUND_STUDY = {

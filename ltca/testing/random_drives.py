@@ -14,7 +14,8 @@ import numpy as np
 from numpy.random import Generator
 
 from ltca.drive.deviations import DiscClearance, OneDisc, OneEccentric, PlacementErrors, RollerErrors, Runout
-from ltca.drive.parts import Drive, Installation
+from ltca.drive.members.width import LARGEST_SLOPE
+from ltca.drive.parts import Contact, Drive, Inclination, Installation
 from ltca.errors import DriveError
 from ltca.geometry.flank import FlankProfile
 from ltca.reading.drive_file import build_drive
@@ -179,6 +180,60 @@ def random_reducer(seed: int) -> tuple[Drive, float] | None:
     held: Any = str(random.choice(["pin-shaft", "pin-wheel"]))
     found = replace(drive, disc=disc, crank=crank, load=load, installation=Installation(held=held))
     return None if find_contradictions(found) else (with_ring(seed, found), angle)
+
+
+def tilted_reducer(seed: int) -> tuple[Drive, float] | None:
+    """Return a random reducer (`random_reducer`) with a rigid ring and contacts in slices, and a crank angle in rad; None where
+    none fits.
+    """
+    drawn = random_reducer(seed)
+    if drawn is None:
+        return None
+    return with_width(seed, replace(drawn[0], ring=None)), drawn[1]
+
+
+def with_width(seed: int, drive: Drive) -> Drive:
+    """Return a drive with contacts in slices, and with leads and inclinations by a seed (not negative).
+
+    A third of the inclinations and leads are zero; edges move by up to a thousandth of the pin radius, a few times what contacts
+    approach. A tenth of the drives are as drawn, in another tenth all that leans has the inclination of the wheel, so that
+    nothing tilts against anything else but the crank. Flanks slope and pins lean alike in some.
+    """
+    random = np.random.default_rng((seed, 30))
+    contact = Contact(slices=int(random.choice([3, 5, 9, 9])))
+    kind = random.uniform()
+    size = 1e-3 * drive.pin_wheel.pin_radius * float(random.choice([0.3, 1.0]))
+    slope = min(2.0 * size / drive.disc.thickness, 0.3 * LARGEST_SLOPE)
+    if kind < 0.1:
+        return replace(drive, contact=contact)
+
+    def angle() -> float:
+        return 0.0 if random.uniform() < 1.0 / 3.0 else float(slope * random.uniform(-1.0, 1.0))
+
+    def drop() -> float:
+        return 0.0 if random.uniform() < 1.0 / 3.0 else float(size * random.uniform())
+
+    def leaning(errors: PlacementErrors, count: int) -> PlacementErrors:
+        rows = [() if random.uniform() < 1.0 / 3.0 else tuple(angle() for _ in range(count)) for _ in range(2)]
+        return replace(errors, inclination_x=rows[0], inclination_y=rows[1])
+
+    wheel, shaft, disc, crank = drive.pin_wheel, drive.pin_shaft, drive.disc, drive.crank
+    own = Inclination(x=angle(), y=angle())
+    wheel, crank = replace(wheel, inclination=own), replace(crank, inclination=Inclination(x=angle(), y=angle()))
+    disc = replace(disc, lead_crown_drop=drop(), lead_slope=angle(), axial_play=2.0 * size)
+    if relief := drop():
+        length = float(random.choice([0.1, 0.3, 0.5])) * disc.thickness
+        disc = replace(disc, lead_relief_length=length, lead_relief_depth=relief)
+    if disc.of and random.uniform() < 0.5:
+        disc = replace(disc, of=tuple(replace(entry, lead_slope=angle(), lead_crown_drop=drop()) for entry in disc.of))
+    if shaft is not None and kind < 0.2:
+        shaft, disc = replace(shaft, inclination=own), replace(disc, lead_slope=0.0, of=())
+    elif shaft is not None:
+        shaft = replace(shaft, inclination=Inclination(x=angle(), y=disc.lead_slope if kind < 0.4 else angle()))
+        shaft = replace(shaft, pin_errors=leaning(shaft.pin_errors, shaft.number_of_pins))
+        disc = replace(disc, hole_errors=leaning(disc.hole_errors, shaft.number_of_pins))
+        wheel = replace(wheel, pin_errors=leaning(wheel.pin_errors, wheel.number_of_pins))
+    return replace(drive, contact=contact, pin_wheel=wheel, pin_shaft=shaft, disc=disc, crank=crank)
 
 
 def _own_errors(random: Generator, drive: Drive, size: float) -> OneDisc:

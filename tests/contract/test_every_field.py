@@ -60,6 +60,12 @@ def numbers(analysis):
 
 
 def tables(drive):
+    if drive.contact.slices > 1:
+        # Whatever is told of contacts in slices follows from how they balance.
+        found = HalfSpace().prepare(drive).balance(ANGLES, drive.load.torque)
+        part = found.response
+        loads = (part.pin_load, part.hole_load, part.rollers.outer_load, part.rollers.inner_load)
+        return np.concatenate([found.pose.ravel(), *(load.ravel() for load in loads)])
     return numbers(analyse(drive, ANGLES))
 
 

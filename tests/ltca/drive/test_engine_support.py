@@ -64,6 +64,8 @@ def test_every_problem_is_named_at_once(engine):
             "load.external.0.force.x": 100.0,
             "pin_wheel.support_stiffness": 5e5,
             "main_bearing.clearance": 0.01,
+            "main_bearing.tilt_stiffness": 1e9,
+            "contact.slices": 5,
             "pin_wheel.axis_offset.y": 0.01,
             "pin_wheel.pin_profile.crown_drop": 0.002,
             "crank_bearing.roller_length": 8.0,

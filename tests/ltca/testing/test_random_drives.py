@@ -5,13 +5,17 @@ import pytest
 
 from ltca.analysis.engines import HalfSpace
 from ltca.compliance.half_space import HalfSpaceCompliance
+from ltca.drive.declaration import declared_fields
+from ltca.drive.engine_support import given
+from ltca.drive.members.width import needs_slices
 from ltca.equilibrium.balance import Equilibrium, solve_equilibrium
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError
 from ltca.reading.drive_file import load_drive
+from ltca.reading.physical_checks import find_contradictions
 from ltca.testing.balance_check import find_imbalance
-from ltca.testing.random_drives import COORDINATES, random_drive, random_reducer
+from ltca.testing.random_drives import COORDINATES, random_drive, random_reducer, tilted_reducer
 
 
 def outcome(point):
@@ -68,6 +72,24 @@ def test_random_reducers(first, count):
     """
     found = [reducer_outcome(seed) for seed in range(first, first + count)]
     assert found.count("balanced") > 0.75 * count
+
+
+def test_tilted_reducers_are_sound_and_have_all_of_the_width():
+    """Every field that needs slices is given by some of them, and left at zero by others."""
+    drives = [drawn[0] for drawn in map(tilted_reducer, range(40)) if drawn is not None]
+    paths = [path for path in declared_fields() if needs_slices(path) and path != "main_bearing.tilt_stiffness"]
+    own = [path for path in paths if ".of." in path and "hole_errors" not in path]
+    seen = {path: set() for path in paths if ".of." not in path} | {path: set() for path in own}
+    for drive in drives:
+        assert drive.contact.slices >= 3
+        assert find_contradictions(drive) == []
+        for path, kinds in seen.items():
+            kinds |= {bool(np.any(value)) for _, value, _ in given(drive, path.split("."))}
+    relief = [path for path in own if "relief" in path]
+    assert {path for path, kinds in seen.items() if True not in kinds} == set(relief)
+    assert all(False in kinds for path, kinds in seen.items() if path != "disc.axial_play")
+    assert len({drive.contact.slices for drive in drives}) == 3
+    assert any(drive.pin_wheel.inclination == drive.pin_shaft.inclination for drive in drives)
 
 
 @pytest.mark.slow

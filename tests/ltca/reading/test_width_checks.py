@@ -1,0 +1,198 @@
+"""Slices along the width, what needs them, and how far parts may lean: one clear line each."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+import pytest
+
+from ltca.drive.declaration import declared_fields
+from ltca.drive.engine_support import require_engine
+from ltca.drive.fields import field_kinds, own_paths, read_field
+from ltca.drive.members.temperatures import warm_drive
+from ltca.drive.members.width import needs_slices
+from ltca.drive.single_discs import single_discs
+from ltca.errors import DriveError
+from ltca.reading.changes import with_fields
+from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
+from ltca.reading.physical_checks import is_sound
+from ltca.reading.writing import drive_text
+from ltca.studies.optimiser import parse_variable
+from ltca.testing.field_changes import sensible_change
+
+SLICES = {"contact.slices": 5}
+NEEDING = sorted(path.replace(".N.", ".0.") for path in declared_fields() if needs_slices(path))
+
+
+@pytest.fixture(scope="module")
+def paper():
+    return load_drive("paper").cases["CS-1"]
+
+
+def test_the_fields_of_the_width_are_those_of_the_issue():
+    parts = ("pin_wheel.pin_errors", "pin_shaft.pin_errors", "disc.hole_errors", "disc.of.0.hole_errors")
+    leads = ("lead_crown_drop", "lead_relief_length", "lead_relief_depth", "lead_slope")
+    assert (
+        sorted(
+            [
+                *(f"{part}.inclination.{axis}" for part in ("pin_wheel", "pin_shaft", "crank") for axis in "xy"),
+                *(f"{part}.inclination_{axis}" for part in parts for axis in "xy"),
+                *(f"{table}.{lead}" for table in ("disc", "disc.of.0") for lead in leads),
+                "disc.axial_play",
+                "main_bearing.tilt_stiffness",
+            ]
+        )
+        == NEEDING
+    )
+
+
+@pytest.mark.parametrize("path", NEEDING)
+def test_what_tilts_or_is_crowned_needs_slices(path, paper):
+    """Refused by the name of the slices, also where cheap checks look alone; zeros mean the same as leaving it out."""
+    given = {"main_bearing.radial_stiffness": 1e6} if path.startswith("main_bearing.") else {}
+    base = with_fields(paper, given)
+    value = 1e9 if given else 0.1 if path.endswith("play") else sensible_change(base, path)
+    with pytest.raises(DriveError) as refused:
+        with_fields(base, {path: value})
+    (problem,) = (one for one in refused.value.problems if one.startswith("contact.slices"))
+    assert re.match(rf"contact\.slices = 1: must be odd, 3 to 65, with {re.escape(path)} = .*: nothing varies", problem)
+    assert not is_sound(with_fields(base, {path: value}, check=False))
+    if value != 1e9 and not path.endswith("play"):
+        nothing = tuple(0.0 for _ in value) if isinstance(value, tuple) else 0.0
+        assert is_sound(with_fields(base, {path: nothing}))
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ({"contact.slices": 4}, "contact.slices = 4: must be odd, 1 for the plane model or 3 to 65"),
+        ({"contact.slices": 2}, "contact.slices = 2: must be odd, 1 for the plane model or 3 to 65"),
+        ({"contact.slices": 67}, "contact.slices = 67: must be less than or equal to 65"),
+        ({"contact.slices": 0}, "contact.slices = 0: must be greater than or equal to 1"),
+        ({"contact.slices": 2.5}, "contact.slices = 2.5: must be a whole number"),
+        (SLICES | {"disc.lead_slope": 0.02}, "disc.lead_slope = 0.02 rad: must be at most 0.01 rad in size"),
+        (SLICES | {"crank.inclination.y": -0.02}, "crank.inclination.y = -0.02 rad: must be at most 0.01 rad in size"),
+        (SLICES | {"pin_shaft.inclination.x": "2°"}, "pin_shaft.inclination.x = 0.0349066 rad: must be at most 0.01 rad"),
+        (
+            SLICES | {"pin_wheel.pin_errors.inclination_x": (0.0, 1e-4)},
+            "pin_wheel.pin_errors.inclination_x has 2 values: must have 14, one for each of the pins",
+        ),
+        (
+            SLICES | {"disc.hole_errors.inclination_y.3": 0.02},
+            "disc.hole_errors.inclination_y holds 0.02 rad: must be at most 0.01 rad in size",
+        ),
+        (SLICES | {"disc.lead_crown_drop": 0.6}, "disc.lead_crown_drop = 0.6 mm: must be at most 0.5 mm, a tenth of"),
+        (SLICES | {"disc.lead_crown_drop": -0.001}, "disc.lead_crown_drop = -0.001: must be at least 0 mm"),
+        (
+            SLICES | {"disc.lead_relief_length": 6.0, "disc.lead_relief_depth": 0.01},
+            "disc.lead_relief_length = 6 mm: must be at most 5.9 mm, half the thickness of the disc",
+        ),
+        (
+            SLICES | {"disc.lead_relief_length": "2 mm"},
+            "disc.lead_relief_depth = 0 mm: must be greater than 0 with disc.lead_relief_length = 2 mm",
+        ),
+        (
+            SLICES | {"disc.lead_relief_depth": "5 µm"},
+            "disc.lead_relief_length = 0 mm: must be greater than 0 with disc.lead_relief_depth = 0.005 mm",
+        ),
+        (SLICES | {"disc.axial_play": 12.0}, "disc.axial_play = 12 mm: must be at most 11.8 mm, the thickness of the disc"),
+        (
+            SLICES | {"disc.number_of_discs": 2, "disc.of.1.lead_slope": 0.02},
+            "disc.of.1.lead_slope = 0.02 rad: must be at most 0.01 rad in size",
+        ),
+    ],
+)  # fmt: skip
+def test_bad_input_is_one_clear_line(words, message, paper):
+    with pytest.raises(DriveError) as caught:
+        with_fields(paper, words)
+    assert len(caught.value.problems) == 1, caught.value.problems
+    assert caught.value.problems[0].startswith(message)
+
+
+@pytest.mark.parametrize(
+    ("text", "angle"), [("0.5 mrad", 5e-4), ("500 µrad", 5e-4), ("0.5 mm/m", 5e-4), ("2'", 2 * 2.908882086657216e-4)]
+)
+def test_angles_as_drawings_give_them(text, angle, paper):
+    """2.9088820866e-4 rad are a minute of arc."""
+    drive = with_fields(paper, SLICES | {"pin_shaft.inclination.x": text, "disc.lead_slope": text})
+    assert drive.pin_shaft.inclination.x == pytest.approx(angle, rel=1e-12)
+    assert drive.disc.lead_slope == drive.pin_shaft.inclination.x
+
+
+def test_every_field_is_written_and_read_back(paper):
+    sizes = {path: sensible_change(paper, path) for path in NEEDING if not path.startswith(("main_", "disc.axial"))}
+    drive = with_fields(paper, SLICES | sizes | {"disc.axial_play": 0.2, "disc.lead_relief_length": 2.0})
+    assert parse_drive(drive_text(drive)).cases["nominal"] == drive
+
+
+def test_each_disc_may_have_a_lead_of_its_own(paper):
+    two = with_fields(
+        paper, SLICES | {"disc.number_of_discs": 2, "disc.lead_slope": 1e-4, "disc.of.1.lead_slope": -1e-4}
+    )
+    two = with_fields(two, {"disc.of.0.lead_crown_drop": 0.004})
+    first, second = single_discs(two)
+    assert (first.disc.lead_slope, second.disc.lead_slope) == (1e-4, -1e-4)
+    assert (first.disc.lead_crown_drop, second.disc.lead_crown_drop) == (0.004, 0.0)
+    assert read_field(two, "disc.of.0.lead_slope") == 1e-4
+    assert own_paths(two, "disc.lead_slope") == ("disc.of.0.lead_slope", "disc.of.1.lead_slope")
+
+
+def test_leads_grow_with_their_disc_and_angles_do_not(paper):
+    lead = {
+        "disc.lead_crown_drop": 0.01,
+        "disc.lead_relief_length": 2.0,
+        "disc.lead_relief_depth": 0.02,
+        "disc.lead_slope": 1e-4,
+    }
+    warmth = {
+        f"materials.{part}.thermal_expansion": 1e-5
+        for part in ("disc", "roller", "wheel_pin", "inner_race", "shaft_pin")
+    }
+    drive = with_fields(paper, SLICES | lead | warmth | {"pin_wheel.inclination.x": 1e-4, "temperature.disc": 120.0})
+    warm = warm_drive(drive)
+    for path, value in lead.items():
+        factor = 1.0 if path.endswith("slope") else 1.001  # 100 K at 1e-5/K
+        assert read_field(warm, path) == pytest.approx(factor * value, rel=1e-12), path
+    assert warm.pin_wheel.inclination == drive.pin_wheel.inclination
+
+
+@pytest.mark.parametrize(
+    ("engine", "words"),
+    [
+        ("direct", "method direct (discs do not tilt in the model); use --method tables"),
+        ("paper", "method paper (discs do not tilt in the model); use --method tables"),
+        ("hybrid", "compliance hybrid (discs do not tilt in the model); use --compliance half-space"),
+        ("full FE", "full finite elements (the model is two-dimensional: "),
+    ],
+)
+def test_engines_of_one_plane_refuse_slices_by_name(engine, words, paper):
+    drive = with_fields(paper, SLICES)
+    with pytest.raises(DriveError) as refused:
+        require_engine(drive, engine)
+    assert refused.value.problems[0].startswith(f"contact.slices = 5: must be 1 for {words}")
+    require_engine(replace(drive, contact=paper.contact), engine)
+    require_engine(drive, "tables")
+
+
+def test_a_misspelt_lead_is_told_in_a_plane_drive(paper):
+    """What needs slices is a field of a plane drive too: its name is found."""
+    with pytest.raises(DriveError, match=r"did you mean `disc\.lead_slope`"):
+        with_fields(paper, {"disc.lead_slop": 1e-4})
+
+
+def test_shipped_drives_are_plane():
+    for name in ("paper", "robot-joint", "rv", "sleeved"):
+        for drive in parse_drive(shipped_drive(name), name).cases.values():
+            assert drive.contact.slices == 1
+    assert all(kind.unit in ("rad", "mm", "N*mm/rad") for path, kind in field_kinds().items() if needs_slices(path))
+
+
+def test_nothing_of_the_width_is_varied_in_a_plane_drive(paper):
+    """An optimisation ended with "none of 87 candidates is sound"."""
+    with pytest.raises(
+        DriveError, match=r"^--vary disc\.lead_crown_drop: needs slices along the width, contact\.slices = 3"
+    ):
+        parse_variable("disc.lead_crown_drop=0:0.01", paper)
+    found = parse_variable("lead_crown_drop=0:10 um", with_fields(paper, SLICES))
+    assert (found.path, found.low, found.high) == ("disc.lead_crown_drop", 0.0, 0.01)
