@@ -78,7 +78,7 @@ _FIXED = ("direct", *_RIGID)
 _SLICES = ("slices",)
 _ONE_BORE = ("paper", "clearance-free")
 _HYBRID = "use --compliance hybrid"
-_HALF_SPACE, _TABLES = "use --compliance half-space", "use --method tables"
+_TABLES = "use --method tables"
 
 REFUSALS = (
     Refusal("crank.number", _ONE_BORE, "the model has one crank"),
@@ -105,21 +105,15 @@ REFUSALS = (
     Refusal("installation.first_stage_ratio", _ONE_BORE, "the model has one crank"),
     Refusal("ring", _ONE_BORE, "the wheel pins stand in a rigid ring in the model"),
     Refusal("friction", _FIXED, "the model is frictionless"),
-    Refusal("contact.slices", ("fe",), _TWO_DIMENSIONS, _HALF_SPACE),
-    Refusal("contact.slices", ("hybrid",), "discs do not tilt in the model", _HALF_SPACE),
     Refusal("contact.slices", ("direct", "paper"), "discs do not tilt in the model", _TABLES),
     Refusal("contact.slices", ("full FE", "FE mesh"), _TWO_DIMENSIONS),
     Refusal("contact.slices", ("clearance-free",), "discs do not tilt in the model"),
     # What contacts in slices do not go together with.
     Refusal("friction", _SLICES, "they are frictionless"),
     Refusal("pin_wheel.seat", _SLICES, "pins are fixed then"),
-    Refusal("pin_wheel.beam", _SLICES, "pins do not bend then"),
     Refusal("pin_shaft.seat", _SLICES, "pins are fixed then"),
-    Refusal("pin_shaft.beam", _SLICES, "pins do not slope then", "give pin_shaft.stiffness in its place"),
     Refusal("ring", _SLICES, "the wheel pins stand in a rigid ring then"),
-    Refusal("crank.support", _SLICES, "cranks do not slope then"),
     Refusal("carrier.posts", _SLICES, "the carrier does not slope then"),
-    Refusal("main_bearing.tilt_stiffness", _SLICES, "the wheel does not tilt then"),
 )
 """Everything that an engine refuses, in the order of the definition of a drive."""
 ROUNDING = 1e-9
