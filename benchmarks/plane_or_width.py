@@ -1,0 +1,62 @@
+"""How far the plane is off: shipped drives with pins that bend, cranks and discs that tilt, in one plane and in 9 slices.
+
+    OPENBLAS_NUM_THREADS=1 python benchmarks/plane_or_width.py
+
+prints the table of ``docs/theory/plane_or_width.md`` (half-space tables, 24 positions, lives over four turns): largest pressure of
+flank and roller at mid-width and anywhere, the least life of a crank bearing, the stiffness of the cycloid stage, the largest part
+of the torque that one disc carries, and what the discs tilt by.
+"""
+
+from __future__ import annotations
+
+from math import pi
+
+import ltca
+from ltca import Drive
+
+POSITIONS, TURNS, SLICES = 24, 4, 9
+ARCMIN = pi / 10800.0
+
+
+def drives() -> dict[str, Drive]:
+    """Return the drives by what they are called in the table."""
+    paper, joint, rv = (next(iter(ltca.load_drive(name).cases.values())) for name in ("paper", "robot-joint", "rv"))
+    bent = {"pin_wheel.beam.ends": "supported"}
+    return {
+        "paper, wheel pins supported, shaft pins tied": paper.with_fields({**bent, "pin_shaft.beam.tip": "tied-clamped"}),
+        "paper, wheel pins supported, shaft pins free": paper.with_fields({**bent, "pin_shaft.beam.tip": "free"}),
+        "robot-joint": joint,
+        "robot-joint, shaft pins tied": joint.with_fields({"pin_shaft.beam.tip": "tied-clamped"}),
+        "robot-joint, shaft pins free": joint.with_fields({"pin_shaft.beam.tip": "free"}),
+        "rv": rv,
+        "rv, second bearing of the cranks half as stiff": rv.with_fields({"crank.support.stiffness": [4e5, 2e5]}),
+    }
+
+
+def numbers(drive: Drive) -> list[float]:
+    """Return the numbers of one row."""
+    found = ltca.analyse(drive, POSITIONS, compliance="half-space").summary
+    life = ltca.curves(drive, TURNS, compliance="half-space").content["bearing_life"]["million_turns"]
+    shares = [value for key, value in found.items() if key.startswith("max_torque_share_disc")]
+    return [
+        found["max_pin_pressure_mid_MPa"],
+        found["max_pin_pressure_max_MPa"],
+        found["max_roller_pressure_mid_MPa"],
+        found["max_roller_pressure_max_MPa"],
+        life,
+        found["cycloid_stage_stiffness_Nmm_per_rad"] * ARCMIN / 1e3,
+        100.0 * max(shares),
+        1e3 * found.get("max_disc_tilt_rad", 0.0),
+    ]
+
+
+def main() -> None:
+    """Print the table."""
+    for name, drive in drives().items():
+        for slices in (1, SLICES):
+            values = numbers(drive.with_fields({"contact.slices": slices}))
+            print(f"{name:50} {slices}  " + "  ".join(f"{value:8.4g}" for value in values), flush=True)
+
+
+if __name__ == "__main__":
+    main()
