@@ -117,7 +117,7 @@ def _parameters(curve: FlankSpline, chord: float) -> FloatArray:
     edges = np.minimum(edges, MAX_EDGE_BY_LOBE * lengths.sum() / flank.lobes)
     needed = np.concatenate([[0.0], np.cumsum(lengths / edges)])
     count = int(np.ceil(needed[-1]))
-    return np.interp(np.arange(count) * needed[-1] / count, needed, fine)
+    return np.asarray(np.interp(np.arange(count) * needed[-1] / count, needed, fine))
 
 
 def _fill_round(body: Body, loops: list[ComplexArray]) -> IntArray | None:

@@ -11,11 +11,12 @@ import numpy as np
 
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.drive.deviations import BoreErrors
+from ltca.drive.members.width import LARGEST_SLOPE
 from ltca.drive.parts import Drive, LengthProfile, PlacementErrors, RollerErrors
 from ltca.geometry.flank import CurveFrame, FlankProfile
 from ltca.geometry.interference import ROUNDING, drawn_interference
 from ltca.geometry.rotation import unit
-from ltca.reading.width_checks import LARGEST_SLOPE, find_lead_problems, slope_bound
+from ltca.reading.width_checks import find_lead_problems, slope_bound
 
 ELASTIC = "a tenth of the smallest pin or roller radius, beyond what bodies yield elastically"
 """Bound of overlaps in words: bodies strained by a tenth are no longer linear-elastic; sharper limits need a load."""
