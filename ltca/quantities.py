@@ -260,7 +260,7 @@ def _anywhere(title: str, judged: str) -> tuple[Scalar, ...]:
 
 
 def _along(part: str, of: str, name: str, sides: tuple[tuple[str, str, str], ...]) -> tuple[Quantity, ...]:
-    """What contacts of one kind in slices have along their width: sides are endings of line load and of pressure, and who meets."""
+    """What contacts of one kind in slices have along their width, by the sides of a pair."""
     found: tuple[Quantity, ...] = ()
     largest = (Scalar(f"max_{part}_line_load", f"largest line load of a {name}", "N/mm"),)
     for line, pressure, pair in sides:

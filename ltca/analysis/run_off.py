@@ -29,7 +29,7 @@ def run_off_warning(drive: Drive, pressures: ContactPressures) -> str | None:
     if not told:
         return None
     return (
-        f"the patch of pressure runs off the end of modified contacts: {', '.join(told)}; pressure peaks there, a larger crown or "
+        f"the patch of pressure runs off the end of modified contacts: {', '.join(told)}; it peaks there, a larger crown or "
         "relief takes it in"
     )
 

@@ -71,7 +71,7 @@ def face_load_factor(kind: AlongWidth, groups: int = 1) -> FloatArray:
     if not each.shape[2]:
         return np.full(each.shape[:2], np.nan)
     mean = each.mean(axis=3).max(axis=2)
-    return np.divide(each.max(axis=(2, 3)), mean, out=np.full(mean.shape, np.nan), where=mean > 0.0)
+    return np.asarray(np.divide(each.max(axis=(2, 3)), mean, out=np.full(mean.shape, np.nan), where=mean > 0.0))
 
 
 def width_coordinates(drives: Mapping[str, Drive]) -> dict[str, Any]:

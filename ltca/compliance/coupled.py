@@ -21,7 +21,7 @@ the roller and the inner contacts of the other rollers; the place of the roller 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,7 +30,7 @@ from ltca.arrays import ComplexArray, FloatArray, join_positions, take_positions
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.compliance.coupled_slices import respond_in_slices
 from ltca.compliance.near_field import NearField, NearFieldLaws, OwnParts
-from ltca.compliance.pressures import pressures_of_law
+from ltca.compliance.pressures import pressures_in_slices, pressures_of_law
 from ltca.compliance.response import (
     ContactPressures,
     DiscResponse,
@@ -48,8 +48,16 @@ from ltca.drive.hole_contact import shaft_pins_yield
 from ltca.drive.parts import Drive
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.pairs import ContactGeometry
-from ltca.laws.backed import back_shaft_pins, shaft_pin_beam, shaft_pin_stiffness, tip_share, tip_slope
+from ltca.laws.backed import (
+    back_shaft_pins,
+    shaft_pin_beam,
+    shaft_pin_seat,
+    shaft_pin_stiffness,
+    tip_share,
+    tip_slope,
+)
 from ltca.laws.contact_law import ContactLaw
+from ltca.laws.sliced_seat import back_line
 from ltca.laws.sliced_spring import SlicedSpring
 from ltca.laws.spring import SpringLaw
 
@@ -142,12 +150,16 @@ class CoupledCompliance:
         slices, width = drive.contact.slices, drive.disc.thickness
         # In slices a beam bends behind its contact, under the forces of all discs (`ltca.equilibrium.pin_displacements`).
         bends_behind = slices > 1 and shaft_pin_beam(drive) is not None
-        at_hole = laws.hole
+        at_hole: Any = laws.hole
         if not hole_near_field and not bends_behind:
             at_hole = (
                 SpringLaw(stiffness=stiffness)
                 if slices == 1
-                else SlicedSpring(stiffness=stiffness, length=width, slices=slices)
+                else back_line(
+                    SlicedSpring(stiffness=stiffness, length=width, slices=slices),
+                    shaft_pin_seat(drive),
+                    place.shaft_pin_plays,
+                )
             )
         # A sleeve's own law has all that it yields (`ltca.laws.backed`).
         bare = drive.pin_shaft is not None and drive.pin_shaft.seat.kind == "fixed"
@@ -157,7 +169,9 @@ class CoupledCompliance:
             geometry=geometry,
             coefficients=body,
             near_field=laws,
-            hole_law=back_shaft_pins(drive, at_hole, place.shaft_pin_plays, laws.depth if hole_near_field else None),
+            hole_law=at_hole
+            if slices > 1
+            else back_shaft_pins(drive, at_hole, place.shaft_pin_plays, laws.depth if hole_near_field else None),
             hole_spring=1.0 / stiffness if hole_near_field and not bends_behind else 0.0,
             race=race + own.inner * np.eye(race.shape[0]),
             outer_radius=place.outer_effective_radii,
@@ -175,8 +189,10 @@ class CoupledCompliance:
         leans: ComplexArray | None = None,
         again: DiscResponse | None = None,
     ) -> DiscResponse:
-        """Return the contact forces at the poses of a batch of positions; see `ltca.compliance.uncoupled`. Where contacts feel each
-        other nothing of `again` stands where it stood.
+        """Return the contact forces at the poses of a batch of positions; see `ltca.compliance.uncoupled`.
+
+        Contacts that feel each other all
+        move with displaced pins: `again` is of no use.
 
         Raises
         ------
@@ -216,8 +232,15 @@ class CoupledCompliance:
         raise AssertionError("all contacts are taken, none is left out")
 
     def pressures(self, response: DiscResponse) -> ContactPressures:
-        """Return pressures and half-widths from the near fields."""
-        laws, near = self.near_field, np.stack(list(response.warm_start))
+        """Return pressures and half-widths from the near fields, of contacts in slices from their line loads."""
+        laws = self.near_field
+        if response.leaning_pins is not None:
+            place, rigid = self.geometry.placement, laws.rigid_shaft_pins
+            at_hole: Any = laws.hole
+            modulus = getattr(at_hole, "contact", at_hole).contact_modulus
+            kinds = replace(laws.kinds, holes=replace(laws.kinds.holes, contact_modulus=modulus))
+            return pressures_in_slices(response, kinds, place, has_ends=laws.has_ends, rigid_shaft_pins=rigid)
+        near = np.stack(list(response.warm_start))
         pins, rollers = response.pin_load.shape[1], self.outer_radius.size
         inner, _ = laws.inner.approach_at_load(response.rollers.inner_load, self.inner_radius)
         hole, _ = laws.hole.approach_at_load(response.hole_load, self.hole_radius)

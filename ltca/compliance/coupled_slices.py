@@ -1,7 +1,7 @@
 r"""Contacts in slices that feel each other through the bodies (`fe` and `hybrid` with slices).
 
-Walls and supports of the bodies yield evenly along the width: coefficients of plane bodies know of no other way. What the loads of
-all contacts take off the approach of each is
+Walls and supports of the bodies yield evenly along the width: coefficients of plane bodies know of no other way. What the loads
+of all contacts take off the approach of each is
 
 .. math:: y = C F(\delta(q) - y, \theta(q)),
 
@@ -15,7 +15,7 @@ less :math:`G^T (C^{-1} + K)^{-1} G`, G being how loads follow the pose.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -23,8 +23,8 @@ from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.in_slices import ContactsInSlices, roller_start, stacked, warm_rows
 from ltca.compliance.response import DiscResponse, LeaningPairs, PairSlopes, Start
 from ltca.compliance.rollers import RollerLaws, RollerState
-from ltca.geometry.coordinates import DISC_ROTATION, X, Y
 from ltca.errors import ConvergenceError
+from ltca.geometry.coordinates import DISC_ROTATION, X, Y
 
 if TYPE_CHECKING:
     from ltca.compliance.coupled import CoupledCompliance
@@ -52,7 +52,9 @@ def respond_in_slices(
     here = ContactsInSlices(model.geometry, crank_angle, pose, flank, shifts, leans)
     bodies = _Bodies(model, here, pose)
     near = stacked(None if start is None else start.warm_start)
-    state = _settled(bodies, np.zeros(bodies.shape) if near is None else near[-1], near)
+    # Contacts found by tables know nothing of the bodies.
+    begin = np.zeros(bodies.shape) if near is None or near[-1].shape != bodies.shape else near[-1]
+    state = _settled(bodies, begin, near)
     found = here.response(state.pairs, state.rollers, warm_rows(state.pairs, state.rollers, state.given))
     return bodies.with_coupling(found, state)
 
@@ -63,10 +65,12 @@ class _State:
     def __init__(self, bodies: _Bodies, given: FloatArray, near: list[FloatArray] | None) -> None:
         pins, outer, holes, inner = bodies.split(given)
         here, laws = bodies.here, bodies.laws
+        of_pins: Any = bodies.model.near_field.pin
+        of_holes: Any = bodies.model.hole_law
         self.given = given
         self.pairs: tuple[LeaningPairs, LeaningPairs] = (
-            here.pair(0, bodies.model.near_field.pin, None if near is None else near[0], pins),
-            here.pair(1, bodies.model.hole_law, None if near is None else near[1], holes),
+            here.pair(0, of_pins, None if near is None else near[0], pins),
+            here.pair(1, of_holes, None if near is None else near[1], holes),
         )
         self.rollers: RollerState = here.rollers(laws, None if near is None else roller_start(near), (outer, inner))
         self.load = np.concatenate(
@@ -170,7 +174,9 @@ class _Bodies:
 def _coupled_slopes(pairs: PairSlopes, between: FloatArray, given: FloatArray) -> PairSlopes:
     """How loads and moments of wheel pins and shaft pins follow approaches, tilts and pose where contacts feel each other."""
     k, x, m = pairs.by_approach, pairs.by_tilt, pairs.moment_by_tilt
-    assert x is not None and m is not None and pairs.moment_by_pose is not None
+    assert x is not None
+    assert m is not None
+    assert pairs.moment_by_pose is not None
     one = np.eye(k.shape[1])
     return PairSlopes(
         by_approach=k[:, :, None] * one - k[:, :, None] * between * k[:, None, :],

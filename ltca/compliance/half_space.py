@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -118,16 +118,6 @@ class HalfSpaceCompliance(UncoupledContacts[ContactLaw]):
         """Return the model with contacts in slices."""
         parts, bearing, place, slices = drive.materials, drive.crank_bearing, geometry.placement, drive.contact.slices
 
-        def line(
-            length: float, modulus: float, relief: FloatArray | float, part: PinWheel | PinShaft | None = None
-        ) -> SlicedLine:
-            held = np.zeros(slice_heights(length, slices).shape) + relief
-            found = SlicedLine(length=length, contact_modulus=modulus, slices=slices, relief=held)
-            if part is None or part.seat.kind != "sleeve":
-                return found
-            twice = sleeve_overlap(drive, part, HALF_SPACE_DATUM * length)
-            return replace(found, sleeve=parts.sleeve.plane_strain_compliance * modulus, overlap=twice)
-
         def profile(given: LengthProfile, length: float, radius: float) -> FloatArray | float:
             found = generator_profile(given, length, radius)
             return 0.0 if found is None else found.relief(slice_heights(length, slices))
@@ -136,29 +126,32 @@ class HalfSpaceCompliance(UncoupledContacts[ContactLaw]):
         wide, long = drive.disc.thickness, drive.roller_length
         of_pin = profile(drive.pin_wheel.pin_profile, wide, drive.pin_wheel.pin_radius)
         of_roller = profile(bearing.roller_profile, long, bearing.roller_radius)
-        flank = line(
+        flank = _line(
+            drive,
             wide,
             contact_modulus(parts.disc, drive.flank_pin),
             of_pin + lead_relief(drive.disc, slice_heights(wide, slices)),
             drive.pin_wheel,
         )
-        hole: SlicedLine | SlicedSpring
+        pins: Any = back_line(flank, wheel_pin_seat(drive), place.wheel_pin_plays)
         if shaft_pin_beam(drive) is None:
-            hole = SlicedSpring(stiffness=shaft_pin_stiffness(drive), length=wide, slices=slices)
+            spring = SlicedSpring(stiffness=shaft_pin_stiffness(drive), length=wide, slices=slices)
+            hole: Any = back_line(spring, shaft_pin_seat(drive), place.shaft_pin_plays)
         else:
             # A beam bends behind its contact, which says how its load lies along the width.
-            modulus = hole_modulus(drive, rigid_shaft_pins=not shaft_pins_yield(drive))
-            hole = line(wide, modulus, 0.0, drive.pin_shaft)
+            hole = hole_in_slices(
+                drive, hole_modulus(drive, rigid_shaft_pins=not shaft_pins_yield(drive)), place.shaft_pin_plays
+            )
         return cls(
             geometry=geometry,
-            pin_law=back_line(flank, wheel_pin_seat(drive), place.wheel_pin_plays),
+            pin_law=pins,
             roller_laws=RollerLaws(
-                inner=line(long, contact_modulus(parts.inner_race, parts.roller), of_roller),
-                outer=line(long, contact_modulus(parts.disc, parts.roller), of_roller),
+                inner=_line(drive, long, contact_modulus(parts.inner_race, parts.roller), of_roller),
+                outer=_line(drive, long, contact_modulus(parts.disc, parts.roller), of_roller),
                 inner_radius=place.inner_effective_radii,
                 outer_radius=place.outer_effective_radii,
             ),
-            hole_law=back_line(hole, shaft_pin_seat(drive), place.shaft_pin_plays),
+            hole_law=hole,
             kinds=replace(kinds, pins=replace(kinds.pins, lead=None)),
         )
 
@@ -171,6 +164,32 @@ class HalfSpaceCompliance(UncoupledContacts[ContactLaw]):
     ) -> KindPressures:
         """Return pressures and half-widths of contacts of one kind at their approaches, shape (positions, pairs)."""
         return pressures_of_law(law, kind, approach, effective_radius)
+
+
+def _line(
+    drive: Drive,
+    length: float,
+    modulus: float,
+    relief: FloatArray | float,
+    part: PinWheel | PinShaft | None = None,
+) -> Any:
+    """Law in slices of a contact of a length, mm, with what it falls short by; of pins under sleeves with these."""
+    slices = drive.contact.slices
+    held = np.zeros(slice_heights(length, slices).shape) + relief
+    found = SlicedLine(length=length, contact_modulus=modulus, slices=slices, relief=held)
+    if part is None or part.seat.kind != "sleeve":
+        return found
+    twice = sleeve_overlap(drive, part, HALF_SPACE_DATUM * length)
+    return replace(found, sleeve=drive.materials.sleeve.plane_strain_compliance * modulus, overlap=twice)
+
+
+def hole_in_slices(drive: Drive, modulus: float, play: FloatArray) -> Any:
+    """Return the half-space law of shaft pins and holes in slices with a contact modulus, MPa, sleeves behind it.
+
+    `play` is that of the sleeves on their pins, mm.
+    """
+    line = _line(drive, drive.disc.thickness, modulus, 0.0, drive.pin_shaft)
+    return back_line(line, shaft_pin_seat(drive), play)
 
 
 def _effective_radii(profile: FlankProfile, pin_radii: FloatArray, turn: FloatArray) -> FloatArray:

@@ -74,8 +74,8 @@ def balance_leaning_rollers(
     pressed = total - (given[0] + given[1]) + highest * np.abs(race_lean - bore_lean) > 0.0
     rows, numbers = np.nonzero(pressed)
 
-    def each(values: FloatArray | ComplexArray) -> FloatArray | ComplexArray:
-        return np.broadcast_to(values, shape)[rows, numbers]
+    def each(values: NDArray[Any]) -> NDArray[Any]:
+        return np.asarray(np.broadcast_to(values, shape)[rows, numbers])
 
     ray, moved, outermost, play = (each(one) for one in (rays.direction, displacement, rays.outermost, rays.bore_play))
     inner_radius, outer_radius = each(laws.inner_radius), each(laws.outer_radius)
@@ -124,7 +124,7 @@ def balance_leaning_rollers(
     else:
         raise ConvergenceError("leaning rollers do not balance between the races; force left over by the load", history)
     cosine = outward.real * ray.real + outward.imag * ray.imag
-    found = {
+    found: dict[str, NDArray[Any]] = {
         "share": np.divide(inward, overlap, out=np.full(overlap.shape, 0.5), where=overlap > 0.0),
         "inner_approach": inward,
         "outer_approach": np.abs((outermost - inward) * ray - moved) - play,
@@ -142,19 +142,19 @@ def balance_leaning_rollers(
     }
     arm = rays.outermost * rays.direction - displacement
     rest = np.abs(arm)
-    free = {
+    free: dict[str, NDArray[Any]] = {
         "share": np.full(shape, 0.5), "outer_approach": rest - rays.bore_play, "outer_direction": arm / rest,
         "tangent": np.zeros((*shape, 6, 6)),
         "inner_slices": np.zeros((*shape, laws.inner.slices)), "outer_slices": np.zeros((*shape, laws.outer.slices)),
         "inner_lines": np.zeros((*shape, laws.inner.slices, POINTS)),
         "outer_lines": np.zeros((*shape, laws.outer.slices, POINTS)),
     }  # fmt: skip
-    whole = {}
+    everywhere: dict[str, Any] = {}
     for name, values in found.items():
         full = free[name] if name in free else np.zeros(shape)
         full[rows, numbers] = values
-        whole[name] = full
-    return RollerState(**whole)
+        everywhere[name] = full
+    return RollerState(**everywhere)
 
 
 def _imbalance(
@@ -182,7 +182,7 @@ def _downhill(
 ) -> tuple[_Contacts, tuple[FloatArray, FloatArray]]:
     """Newton's step of the rollers that go on, shortened where the energy rises again steeply at its end.
 
-    The energy is convex along a step: its slope says how far the least of it is, also where differences of energies are round-off.
+    The energy is convex along a step: its slope says how far its least is, also where differences of energies are round-off.
     """
     first, second = inner.take(going), outer.take(going)
     n, towards, arm = ray[going], outward[going], length[going]
@@ -236,8 +236,8 @@ def _eliminated(
     outer: SlicedContact,
     half: float,
 ) -> FloatArray:
-    """Second derivative of the eliminated energy by displacement (x, y) and lean (x, y) of the bore and what the bodies take of the
-    approaches in the bore and on the race, shape (rollers, 6, 6).
+    """Second derivative of the eliminated energy by displacement (x, y) and lean (x, y) of the bore and what the bodies take of
+    the approaches in the bore and on the race, shape (rollers, 6, 6).
     """
     slant = ray.imag * outward.real - ray.real * outward.imag
     bend = outer.load / length
@@ -262,10 +262,7 @@ def _eliminated(
     direct[:, 2:4, 2:4] = m[..., None] * n[:, :, None] * n[:, None]
     direct[:, :2, 4], direct[:, 2:4, 4] = k * normal, x * n
     direct[:, 4, 4], direct[:, 5, 5] = outer.by_approach, inner.by_approach
-    for own, other in ((slice(0, 2), slice(2, 4)), (slice(0, 2), 4), (slice(2, 4), 4)):
-        direct[:, other, own] = (
-            direct[:, own, other].swapaxes(1, -1) if isinstance(other, slice) else direct[:, own, other]
-        )
+    direct[:, 2:4, :2], direct[:, 4, :4] = direct[:, :2, 2:4].swapaxes(1, 2), direct[:, :4, 4]
     stiff, mixed, turning = _own_stiffness(inner, outer, cosine, length)
     turning = turning + 1e-9 * half**2 * stiff
     own = np.empty((ray.size, 2, 2))

@@ -17,9 +17,9 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from ltca.compliance.coefficients import InfluenceCoefficients, logarithm_factor
-from ltca.compliance.half_space import HalfSpaceCompliance
-from ltca.contact.length_profile import lead_relief
+from ltca.compliance.half_space import HalfSpaceCompliance, hole_in_slices
 from ltca.contact.hertz import effective_radius, line_half_width
+from ltca.contact.length_profile import lead_relief
 from ltca.contact.tracked_grid import ContactKinds
 from ltca.drive.engine_support import require
 from ltca.drive.hole_contact import hole_modulus
@@ -30,9 +30,9 @@ from ltca.geometry.placement import Placement
 from ltca.laws.backed import HALF_SPACE_DATUM, back_wheel_pins
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.line_contact import LineContactLaw
-from ltca.laws.sliced_line import SlicedLine, slice_heights
-from ltca.laws.sliced_plane import SlicedPlane
 from ltca.laws.plane_strain import SELF_ENERGY, PlaneContactLaw
+from ltca.laws.sliced_line import slice_heights
+from ltca.laws.sliced_plane import SlicedPlane
 
 NearField = Literal["plane-strain", "half-space"]
 
@@ -100,7 +100,9 @@ class NearFieldLaws:
                 pin=half_space.pin_law,
                 outer=half_space.roller_laws.outer,
                 inner=half_space.roller_laws.inner,
-                hole=_hole_line(drive, at_hole),
+                hole=LineContactLaw(thickness, at_hole)
+                if drive.contact.slices == 1
+                else hole_in_slices(drive, at_hole, Placement.of_drive(drive).shaft_pin_plays),
                 rigid_shaft_pins=rigid_shaft_pins,
                 datum=datum,
                 kinds=half_space.kinds,
@@ -116,9 +118,10 @@ class NearFieldLaws:
             relief = lead_relief(drive.disc, z) if lead else np.zeros(z.shape)
             return SlicedPlane(length=thickness, contact_modulus=modulus, datum=datum, slices=slices, relief=relief)
 
+        flank = law(contact_modulus(parts.disc, drive.flank_pin), lead=True)
         return cls(
             kind=kind,
-            pin=back_wheel_pins(drive, law(contact_modulus(parts.disc, drive.flank_pin), lead=True), plays, datum),
+            pin=flank if drive.contact.slices > 1 else back_wheel_pins(drive, flank, plays, datum),
             outer=law(contact_modulus(parts.disc, parts.roller)),
             inner=law(contact_modulus(parts.inner_race, parts.roller)),
             hole=law(at_hole),
@@ -136,15 +139,6 @@ class NearFieldLaws:
     def has_ends(self) -> bool:
         """Whether contacts end somewhere: in plane strain they do not."""
         return self.kind == "half-space"
-
-
-def _hole_line(drive: Drive, modulus: float) -> Any:
-    """Half-space law of shaft pins and holes, in slices where contacts have them."""
-    length, slices = drive.disc.thickness, drive.contact.slices
-    if slices == 1:
-        return LineContactLaw(length, modulus)
-    straight = np.zeros(slice_heights(length, slices).shape)
-    return SlicedLine(length=length, contact_modulus=modulus, slices=slices, relief=straight)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

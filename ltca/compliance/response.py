@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.compliance.rollers import RollerState
-from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION, X, Y
+from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION, Coordinates, X, Y
 from ltca.geometry.pair_motion import BoreMotion, FlankMotion, KnownPins, PairMotion, PairTilt, RollerRays
 from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.sliced_line import SlicedContact
@@ -151,16 +151,35 @@ class DiscResponse:
         force = load[..., None] * normal
         if self.friction is not None:
             force = force + self.friction[..., None] * along
+        if self.leaning_pins is not None and self.leaning_holes is not None:
+            # Normals of slices turn along the width, so that a moment has a force across.
+            turned = [
+                pairs.contact.moment[..., None] * pairs.tilt.gradient[..., DISC_PLACE]
+                for pairs in (self.leaning_pins, self.leaning_holes)
+            ]
+            force = force + np.concatenate(turned, axis=1)
         return np.asarray(force[..., 0] + 1j * force[..., 1])
 
     @property
     def pin_moments(self) -> ComplexArray:
-        """Moment of the disc on each pin in slices as an arrow that works along leans, N·mm, shape (positions, pairs)."""
-        found = []
+        """Moment of the disc on each pin in slices as an arrow that works along leans, with friction, N·mm, shape (positions,
+        pairs).
+        """
+        found, along = [], []
         for motion, pairs in ((self.flank, self.leaning_pins), (self.holes, self.leaning_holes)):
             assert pairs is not None
             found.append(pairs.contact.moment * (motion.gradient[..., X] + 1j * motion.gradient[..., Y]))
-        return np.concatenate(found, axis=1)
+            along.append(pairs.contact.moment * (motion.along[..., X] + 1j * motion.along[..., Y]))
+        moments: ComplexArray = np.concatenate(found, axis=1)
+        return moments if self.friction is None else moments + self.rubs * np.concatenate(along, axis=1)
+
+    @property
+    def rubs(self) -> FloatArray:
+        """Friction of wheel pins and shaft pins by their loads, shape (positions, pairs)."""
+        load = np.concatenate((self.pin_load, self.hole_load), axis=1)
+        if self.friction is None:
+            return np.zeros_like(load)
+        return np.asarray(np.divide(self.friction, load, out=np.zeros_like(load), where=load > 0.0))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -382,6 +401,25 @@ def resultant(
     force += np.einsum("bi,bij->bj", hole_load, holes.gradient)
     force -= np.einsum("bc,bcj->bj", bearing_pushes(rollers, bores.arm.shape[1]).conjugate(), bores.gradient).real
     return np.asarray(force)
+
+
+def with_tilting_friction(part: DiscResponse, coordinates: Coordinates) -> DiscResponse:
+    """Return contacts in slices whose friction presses the leans as well: it lies along the width as the loads do."""
+    if part.leaning_pins is None or part.leaning_holes is None:
+        return part
+    pins = part.pin_load.shape[1]
+    moment = np.concatenate((part.leaning_pins.contact.moment, part.leaning_holes.contact.moment), axis=1)
+    along = np.concatenate((part.flank.along, part.holes.along), axis=1)[..., DISC_PLACE]
+    force, tangent = part.force.copy(), part.tangent.copy()
+    rubbed = part.rubs[..., None] * along
+    leans = [(coordinates.lean_place, rubbed, slice(None))]
+    if coordinates.wheel_leans:
+        leans.append((coordinates.wheel_lean_place, -rubbed, slice(0, pins)))
+    for place, direction, which in leans:
+        force[:, place] += np.einsum("bp,bpj->bj", moment[:, which], direction[:, which])
+        if part.slopes is not None and part.slopes.moment_by_pose is not None:
+            tangent[:, place] += np.matmul(direction[:, which].swapaxes(1, 2), part.slopes.moment_by_pose[:, which])
+    return replace(part, force=force, tangent=tangent)
 
 
 def bearing_pushes(rollers: RollerState, cranks: int) -> ComplexArray:

@@ -25,10 +25,11 @@ BISECTION_TOLERANCE = 1e-11
 """Last change of a share where the step was a bisection."""
 
 Law = TypeVar("Law", bound=ContactLaw)
+AnyLaw = TypeVar("AnyLaw")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RollerLaws(Generic[Law]):
+class RollerLaws(Generic[AnyLaw]):
     """Load laws of the two contacts of every roller.
 
     Attributes
@@ -41,8 +42,8 @@ class RollerLaws(Generic[Law]):
         Whether the laws know their contacts by their places, shape (positions, rollers), as grids do.
     """
 
-    inner: Law
-    outer: Law
+    inner: AnyLaw
+    outer: AnyLaw
     inner_radius: FloatArray = by_drive(1)
     outer_radius: FloatArray = by_drive(1)
     by_place: bool = False

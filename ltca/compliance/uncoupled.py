@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.in_slices import ContactsInSlices, roller_start, stacked, warm_rows
-from ltca.compliance.pressures import elastic_hole_pressures, pressures_of_slices
+from ltca.compliance.pressures import elastic_hole_pressures, pressures_in_slices
 from ltca.compliance.response import (
     ContactPressures,
     DiscResponse,
@@ -26,20 +26,19 @@ from ltca.compliance.response import (
     resultant,
     split_shifts,
 )
-from ltca.compliance.rollers import Law, RollerLaws, RollerState, balance_rollers
+from ltca.compliance.rollers import AnyLaw, Law, RollerLaws, RollerState, balance_rollers
 from ltca.contact.tracked_grid import ContactKind, ContactKinds
 from ltca.geometry.pair_motion import BoreMotion, FlankMotion, PairMotion
 from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.contact_law import ContactLaw
-from ltca.laws.sliced_line import SlicedContact
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PairLaws(Generic[Law]):
+class PairLaws(Generic[AnyLaw]):
     """Laws of the contacts of wheel pins and of rollers at some poses."""
 
-    pins: Law
-    rollers: RollerLaws[Law]
+    pins: AnyLaw
+    rollers: RollerLaws[AnyLaw]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -164,17 +163,16 @@ class UncoupledContacts(ABC, Generic[Law]):
         starts = (None, None) if near is None else (near[0], near[1])
         if again is not None and again.leaning_pins is not None and again.leaning_holes is not None:
             starts = again.leaning_pins.contact.slice_load, again.leaning_holes.contact.slice_load
-        pairs = here.pair(0, laws.pins, starts[0]), here.pair(1, self.hole_law, starts[1])
-        if again is None:
-            rollers = here.rollers(laws.rollers, None if near is None else roller_start(near))
-        else:
-            rollers = again.rollers
+        holes: Any = self.hole_law
+        pairs = here.pair(0, laws.pins, starts[0]), here.pair(1, holes, starts[1])
+        begin = None if near is None else roller_start(near)
+        rollers = here.rollers(laws.rollers, begin) if again is None else again.rollers
         return here.response(pairs, rollers, warm_rows(pairs, rollers))
 
     def pressures(self, response: DiscResponse) -> ContactPressures:
         """Return pressures and half-widths from the laws, those of the shaft pins from their loads."""
-        if response.leaning_pins is not None and response.leaning_holes is not None:
-            return self._pressures_of_slices(response, response.leaning_pins.contact, response.leaning_holes.contact)
+        if response.leaning_pins is not None:
+            return pressures_in_slices(response, self.kinds, self.geometry.placement)
         flank, rollers, kinds = response.flank, response.rollers, self.kinds
         laws = self.laws(flank, response.warm_start)
         of_rollers = laws.rollers
@@ -183,20 +181,6 @@ class UncoupledContacts(ABC, Generic[Law]):
             outer=self.read_pressures(of_rollers.outer, kinds.outer, rollers.outer_approach, of_rollers.outer_radius),
             inner=self.read_pressures(of_rollers.inner, kinds.inner, rollers.inner_approach, of_rollers.inner_radius),
             holes=elastic_hole_pressures(kinds.holes, response.hole_load, self.geometry.placement),
-            rigid_shaft_pins=False,
-        )
-
-    def _pressures_of_slices(
-        self, response: DiscResponse, pins: SlicedContact, holes: SlicedContact
-    ) -> ContactPressures:
-        """The same of contacts in slices, from their line loads."""
-        rollers, kinds, place = response.rollers, self.kinds, self.geometry.placement
-        outer, inner = np.asarray(rollers.outer_lines), np.asarray(rollers.inner_lines)
-        return ContactPressures(
-            pins=pressures_of_slices(kinds.pins, pins.line_load, response.flank.effective_radius),
-            outer=pressures_of_slices(kinds.outer, outer, place.outer_effective_radii),
-            inner=pressures_of_slices(kinds.inner, inner, place.inner_effective_radii),
-            holes=pressures_of_slices(kinds.holes, holes.line_load, place.hole_effective_radii),
             rigid_shaft_pins=False,
         )
 

@@ -35,8 +35,10 @@ _IN_MESSAGES = {
     "full FE": "full finite elements",
     "FE mesh": "meshes of full finite elements",
     "clearance-free": "the clearance-free analysis",
+    "fe in slices": "compliance fe with contacts in slices (contact.slices > 1)",
 }
-"""Names of engines in messages. The last two are no choice of an analysis: ``cyclo mesh`` and a reference of the tests."""
+"""Names of engines in messages. The last three are no choice of an analysis: ``cyclo mesh``, a reference of the tests, and what
+an engine is for contacts in slices (`require_engine`)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,9 +75,10 @@ _TWO_DIMENSIONS = (
 )
 _RIGID = ("paper", "full FE", "FE mesh", "clearance-free")
 _FIXED = ("direct", *_RIGID)
+_PLANE_SLICES = ("fe in slices",)
 _ONE_BORE = ("paper", "clearance-free")
 _HYBRID = "use --compliance hybrid"
-_HALF_SPACE, _TABLES = "use --compliance half-space", "use --method tables"
+_TABLES = "use --method tables"
 
 REFUSALS = (
     Refusal("crank.number", _ONE_BORE, "the model has one crank"),
@@ -102,11 +105,12 @@ REFUSALS = (
     Refusal("installation.first_stage_ratio", _ONE_BORE, "the model has one crank"),
     Refusal("ring", _ONE_BORE, "the wheel pins stand in a rigid ring in the model"),
     Refusal("friction", _FIXED, "the model is frictionless"),
-    Refusal("contact.slices", ("fe",), _TWO_DIMENSIONS, _HALF_SPACE),
-    Refusal("contact.slices", ("hybrid",), "discs do not tilt in the model", _HALF_SPACE),
     Refusal("contact.slices", ("paper",), "discs do not tilt in the model", _TABLES),
     Refusal("contact.slices", ("full FE", "FE mesh"), _TWO_DIMENSIONS),
     Refusal("contact.slices", ("clearance-free",), "discs do not tilt in the model"),
+    # What contacts in slices do not go together with.
+    Refusal("pin_wheel.seat", _PLANE_SLICES, "pins are fixed then", _HYBRID),
+    Refusal("pin_shaft.seat", _PLANE_SLICES, "pins are fixed then", _HYBRID),
 )
 """Everything that an engine refuses, in the order of the definition of a drive."""
 ROUNDING = 1e-9
@@ -125,6 +129,15 @@ def require(drive: Drive, engine: str) -> None:
     problems = [problem for row in REFUSALS if engine in row.engines for problem in _problems(drive, row, engine)]
     if problems:
         raise DriveError(problems)
+
+
+def require_engine(drive: Drive, engine: str) -> None:
+    """Refuse a drive with anything that an engine of an analysis cannot represent (`require`), nor contacts in slices where it
+    has them.
+    """
+    require(drive, engine)
+    if drive.contact.slices > 1 and engine == "fe":
+        require(drive, "fe in slices")
 
 
 def refusal(engine: str, path: str) -> str | None:

@@ -397,8 +397,8 @@ class Drive:
 
     @property
     def wheel_tilts(self) -> bool:
-        """Whether the main bearing of the wheel yields in tilt and contacts have slices, which feel it: by its own stiffness, or by
-        rows with pressure centres apart.
+        """Whether the main bearing of the wheel yields in tilt, by its own stiffness or by rows with pressure centres apart, and
+        contacts have slices, which feel it.
         """
         bearing = self.main_bearing
         if bearing is None or self.contact.slices == 1:

@@ -132,7 +132,7 @@ class StageMesh:
                 [*planes, place], support.positions, crank_springs(drive), support.diameter, shaft.youngs_modulus,
                 [*slopes, place],
             )  # fmt: skip
-            at_planet = [discs, count + 1]
+            at_planet = np.array([discs, count + 1])
             held = np.setdiff1d(np.arange(count + 2), at_planet)
             bending = np.asarray(
                 np.linalg.solve(whole[np.ix_(held, held)], whole[np.ix_(held, at_planet)]), dtype=float
@@ -194,12 +194,12 @@ class StageMesh:
         return sign * self.forces(moments).in_plane.sum(axis=1), sign * self._slope(np.sign(moments))[0]
 
     def tilting_on_wheel(self, moments: FloatArray) -> ComplexArray:
-        """Return what the sun presses the lean of the wheel with relative to the carrier, z F − i M, N·mm, shape (positions,); zero
-        where the carrier is held.
+        """Return what the sun presses the lean of the wheel with relative to the carrier, z F − i M, N·mm, shape (positions,);
+        zero where the carrier is held.
         """
         sign, forces = -1.0 if self.carried else 0.0, self.forces(moments)
         along = (self.sun_radius * self.outward * forces.axial).sum(axis=1)
-        return sign * (np.asarray(self.plane)[..., None] * forces.in_plane).sum(axis=1) - sign * along
+        return np.asarray(sign * ((np.asarray(self.plane)[..., None] * forces.in_plane).sum(axis=1) - along))
 
     def on_bearings(self, moments: FloatArray) -> ComplexArray:
         """Return what bearings of the cranks carry of the forces of the teeth, N, shape (positions, cranks, supports)."""

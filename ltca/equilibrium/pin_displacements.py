@@ -15,8 +15,7 @@ less :math:`H^T (1 + S K)^{-1} S H`.
 In slices a disc presses a pin with a moment as well, and the pin leans where it stands in the disc. Leans are kept as
 displacements at half the thickness of the disc and moments as forces there, behind those of all discs, so that S stays one
 symmetric matrix: the slope under a force is the deflection under a moment. All that a beam bends is in S then, also under its
-own disc and in a drive of one disc, and laws are those of the contacts alone. A ring of the wheel moves seats and leaves them
-upright.
+own disc and in a drive of one disc, and laws are those of the contacts alone. A ring moves seats and does not lean them.
 """
 
 from __future__ import annotations
@@ -628,14 +627,14 @@ class LeaningPins(DisplacedPins):
             found[..., self.coordinates.columns(number)] += (disc == number)[..., None, None] * block
         return np.asarray(found.reshape(*found.shape[:2], -1, self.coordinates.size))
 
+    def _by_shift(self, rows: NDArray[np.intp], disc: NDArray[np.intp], pair: NDArray[np.intp]) -> FloatArray:
+        """As without friction: Newton's steps take what friction adds to the slopes a few more."""
+        return self._by_pose(rows, disc, pair)
+
 
 def _friction_by_load(parts: tuple[DiscResponse, ...]) -> FloatArray | None:
     """Friction of contacts by their loads, shape (positions, discs, pairs); None without friction."""
-    if parts[0].friction is None:
-        return None
-    load = np.stack([np.concatenate((part.pin_load, part.hole_load), axis=1) for part in parts], axis=1)
-    friction = np.stack([np.asarray(part.friction) for part in parts], axis=1)
-    return np.asarray(np.divide(friction, load, out=np.zeros_like(load), where=load > 0.0))
+    return None if parts[0].friction is None else np.stack([part.rubs for part in parts], axis=1)
 
 
 def _times(stiffness: FloatArray, moved: FloatArray) -> FloatArray:

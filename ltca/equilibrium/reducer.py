@@ -27,6 +27,7 @@ from ltca.compliance.response import (
     bearing_moments,
     bearing_pushes,
     split_shifts,
+    with_tilting_friction,
 )
 from ltca.drive.parts import Drive
 from ltca.equilibrium.external_force import ExternalForce
@@ -203,6 +204,8 @@ class Reducer:
                     rubbing = self.friction.of_disc(disc.geometry, crank_angle, pose[:, own], part, number)
                     force, tangent = part.force + rubbing.force, part.tangent + rubbing.tangent
                     part = replace(part, force=force, tangent=tangent, friction=rubbing.tangential)
+                    if coordinates.leans:
+                        part = with_tilting_friction(part, replace(coordinates, discs=1))
                 parts.append(part)
             latest[:] = parts
             return tuple(parts)

@@ -2,11 +2,10 @@ r"""What holds wheel and cranks: springs on coordinates, linear ones and those o
 
 Every crank is a beam on two bearings (`ltca.laws.beam`); its stiffness ties x and y of the crank in the planes of the discs,
 alike in every direction. Where it twists its stiffness in torsion ties the angles of its eccentrics against the splined planet.
-The wheel's main bearing holds its x and y, and its
-lean where it yields in tilt: rows each at its pressure centre. A ring that ties the tips of the shaft pins is held by what the pins resist when it
-moves all tips; as the far flange of a carrier it is held by the posts as well (`ltca.laws.carrier`), and the far bearings of the
-cranks stand in it: a crank bends by its displacement relative to the straight line between its bearings. Linear springs are one
-matrix.
+The wheel's main bearing holds its x and y, and its lean where it yields in tilt: rows each at its pressure centre. A ring that
+ties the tips of the shaft pins is held by what the pins resist when it moves all tips; as the far flange of a carrier it is held
+by the posts as well (`ltca.laws.carrier`), and the far bearings of the cranks stand in it: a crank bends by its displacement
+relative to the straight line between its bearings. Linear springs are one matrix.
 
 A bearing with clearance, or one of whose sides lifts off, is a spring in series with a displacement w along its reaction R
 (`ltca.laws.bearing_pair.SideLaw`). With the stiffness K of the shaft on its springs and the parts L of a force that each

@@ -4,11 +4,11 @@ A pose of one disc at a held crank angle is q = (x, y, disc rotation, …, wheel
 the disc from its nominal place in the fixed frame, the angles in rad; the wheel angle is its deviation from φ_C/u. Between
 them stand x and y of each crank in the plane of the disc, if cranks yield, and the angle by which each eccentric is ahead of
 the crank, if they twist; if contacts have slices, the leans of these cranks and of the disc; x and y of the wheel, if its bearing
-yields, and its lean, if it yields in tilt; and x, y and rotation of the ring that ties the tips of the shaft pins, or of the far flange of the carrier, if there is
-one. The poses of several discs follow each other, with one wheel.
+yields, and its lean, if it yields in tilt; and x, y and rotation of the ring that ties the tips of the shaft pins, or of the far
+flange of the carrier, if there is one. The poses of several discs follow each other, with one wheel.
 
-A lean is what x and y of a part change by along its axis, dx/dz and dy/dz about the middle of the disc: with the rotation vector ω of a
-small tilt it is (ω_y, −ω_x). As an arrow of the plane it turns as displacements do.
+A lean is what x and y of a part change by along its axis, dx/dz and dy/dz about the middle of the disc: with the rotation
+vector ω of a small tilt it is (ω_y, −ω_x). As an arrow of the plane it turns as displacements do.
 """
 
 from __future__ import annotations
@@ -124,7 +124,7 @@ class Coordinates:
 
     def crank_lean(self, crank: int) -> int:
         """Return the first of the two places of the lean of a crank in the pose of one disc, where discs lean."""
-        return self.lean_place.start - 2 * (self.cranks - crank)
+        return self.own - 2 * (1 + self.cranks - crank)
 
     def journals(self, crank: int) -> Columns:
         """Return the places of x of a crank at every disc, followed by those of its lean there if discs lean; each has its y

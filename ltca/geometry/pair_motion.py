@@ -86,8 +86,8 @@ class PairMotion:
         normal = self.gradient[..., 0] + 1j * self.gradient[..., 1]
         across = dot(self.along[..., 0] + 1j * self.along[..., 1], lean)
         gradient = self._bent_by(across)
-        for place, sign in self._leans(coordinates):
-            gradient[..., place] += sign * self.gradient[..., DISC_PLACE]
+        for leans, sign in self._leans(coordinates):
+            gradient[..., leans] += sign * self.gradient[..., DISC_PLACE]
         for place, turn in turns.items():
             gradient[..., place] += dot(normal, turn)
         return PairTilt(tilt=dot(normal, lean), gradient=gradient)

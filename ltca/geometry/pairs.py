@@ -405,7 +405,8 @@ class ContactGeometry:
     def journal_leans(self, pose: FloatArray) -> ComplexArray:
         """Return the lean of every crank in the plane of the disc, rad, shape (positions, cranks)."""
         coordinates, place = self.coordinates_of(pose), self.placement
-        found = np.zeros((pose.shape[0], place.cranks), dtype=complex) + np.asarray(place.crank_lean)[..., None]
+        found: ComplexArray = np.zeros((pose.shape[0], place.cranks), dtype=complex)
+        found += np.asarray(place.crank_lean)  # of a batch a column
         for crank in range(coordinates.cranks):
             first = coordinates.crank_lean(crank)
             found[:, crank] += pose[:, first] + 1j * pose[:, first + 1]

@@ -184,7 +184,7 @@ class BackedLine:
         if closed.size:
             near = None if start is None else start.reshape(-1, self.slices)[closed]
             found, travel[closed], lean[closed] = self._closed(
-                *(each[closed] for each in (delta, theta, radius, play)), near
+                delta[closed], theta[closed], radius[closed], play[closed], near
             )
             for name, values in whole.items():
                 values[closed] = getattr(found, name)

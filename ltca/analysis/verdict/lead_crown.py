@@ -50,7 +50,7 @@ class LeadCrown:
             return ""
         return (
             f"{FIELD}: {self.now:.3g} → {self.drop:.3g} mm takes the largest flank pressure anywhere along the width from "
-            f"{self.pressure_now:.4g} to {self.pressure:.4g} MPa, the least that a crown gives (half-spaces, {POSITIONS} positions)"
+            f"{self.pressure_now:.4g} to {self.pressure:.4g} MPa, the least by a crown (half-spaces, {POSITIONS} positions)"
         )
 
 

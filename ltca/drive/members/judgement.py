@@ -174,9 +174,10 @@ ANYWHERE = {
     "roller_pressure_max_inner": "roller_pressure_mid_inner",
     "pin_shaft_pressure_max": "pin_shaft_pressure_mid",
 }
-"""Largest pressures anywhere along the width, with those at mid-width of the same joints. Where a contact ends before its line does
-the allowable pressure of the joint holds for them; at a straight end that carries the pressure is singular in any drive, and first
-yield holds, unless the file limits it."""
+"""Largest pressures anywhere along the width, with those at mid-width of the same joints.
+
+Where a contact ends before its line does the allowable pressure of the joint holds for them; at a straight end that carries the
+pressure is singular in any drive, and first yield holds, unless the file limits it."""
 OF_WIDTH = (
     "disc_tilt",
     "pin_face_load_factor",

@@ -8,9 +8,9 @@ import pytest
 from ltca.contact.hertz import line_peak_pressure
 from ltca.contact.length_profile import CircularCrown, SummedProfile
 from ltca.contact.tracked_grid import ContactKind
-from ltca.laws.width_pressure import estimate_along_width, solve_along_width
 from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.sliced_line import SlicedLine, slice_heights
+from ltca.laws.width_pressure import estimate_along_width, solve_along_width
 
 LENGTH, MODULUS, RADIUS = 12.0, 115e3, 3.0
 
