@@ -4,8 +4,8 @@
 overlap as drawn, ``--cranks`` reducers of all kinds (`ltca.testing.crank_drives`), ``--pins`` reducers with loose, sleeved or
 bending pins, ``--friction`` reducers with friction, also with reversed motion (`ltca.testing.pin_drives`). All of these must
 be solved. ``--tilted`` generates random reducers with contacts in slices, leads and inclinations, ``--sloping`` reducers of all
-kinds with them, whose pins and cranks bend and whose wheels tilt; they are checked in six directions (`ltca.testing.width_check`).
-Up to half of the others have an elastic ring, free, bolted or built in.
+kinds with them, whose pins and cranks bend and whose wheels tilt; they are checked in six directions
+(`ltca.testing.width_check`). Up to half of the others have an elastic ring, free, bolted or built in.
 
 A solution has to be confirmed by `ltca.testing.balance_check` (residual, complementarity, minimum of the potential) or be a
 `ConvergenceError` with its history; anything else counts as wrong and is reported with its seed. Results are written as JSON

@@ -35,10 +35,8 @@ _IN_MESSAGES = {
     "full FE": "full finite elements",
     "FE mesh": "meshes of full finite elements",
     "clearance-free": "the clearance-free analysis",
-    "fe in slices": "compliance fe with contacts in slices (contact.slices > 1)",
 }
-"""Names of engines in messages. The last three are no choice of an analysis: ``cyclo mesh``, a reference of the tests, and what
-an engine is for contacts in slices (`require_engine`)."""
+"""Names of engines in messages. The last two are no choice of an analysis: ``cyclo mesh`` and a reference of the tests."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,6 +57,8 @@ class Refusal:
         Path of the field whose value is accepted; by default the value of a drive that leaves the field out is.
     accepts : callable, optional
         Further values that are accepted, because they mean the same as leaving the field out.
+    where : callable, optional
+        Drives of which the field is refused; all by default.
     """
 
     path: str
@@ -67,6 +67,7 @@ class Refusal:
     instead: str = ""
     equals: str = ""
     accepts: Callable[[Any], bool] | None = None
+    where: Callable[[Drive], bool] | None = None
 
 
 _PLANE = ("fe", "full FE")
@@ -75,10 +76,15 @@ _TWO_DIMENSIONS = (
 )
 _RIGID = ("paper", "full FE", "FE mesh", "clearance-free")
 _FIXED = ("direct", *_RIGID)
-_PLANE_SLICES = ("fe in slices",)
 _ONE_BORE = ("paper", "clearance-free")
 _HYBRID = "use --compliance hybrid"
 _TABLES = "use --method tables"
+_SEATS = "pins are fixed in the model where contacts have slices (contact.slices)"
+
+
+def _in_slices(drive: Drive) -> bool:
+    return drive.contact.slices > 1
+
 
 REFUSALS = (
     Refusal("crank.number", _ONE_BORE, "the model has one crank"),
@@ -108,9 +114,8 @@ REFUSALS = (
     Refusal("contact.slices", ("paper",), "discs do not tilt in the model", _TABLES),
     Refusal("contact.slices", ("full FE", "FE mesh"), _TWO_DIMENSIONS),
     Refusal("contact.slices", ("clearance-free",), "discs do not tilt in the model"),
-    # What contacts in slices do not go together with.
-    Refusal("pin_wheel.seat", _PLANE_SLICES, "pins are fixed then", _HYBRID),
-    Refusal("pin_shaft.seat", _PLANE_SLICES, "pins are fixed then", _HYBRID),
+    Refusal("pin_wheel.seat", ("fe",), _SEATS, _HYBRID, where=_in_slices),
+    Refusal("pin_shaft.seat", ("fe",), _SEATS, _HYBRID, where=_in_slices),
 )
 """Everything that an engine refuses, in the order of the definition of a drive."""
 ROUNDING = 1e-9
@@ -126,22 +131,14 @@ def require(drive: Drive, engine: str) -> None:
     >>> from ltca.reading.drive_file import load_drive
     >>> require(with_fields(load_drive("paper").cases["CS-1"], {"crank_bearing.roller_length": 8.0}), "hybrid")
     """
-    problems = [problem for row in REFUSALS if engine in row.engines for problem in _problems(drive, row, engine)]
+    rows = [row for row in REFUSALS if engine in row.engines and (row.where is None or row.where(drive))]
+    problems = [problem for row in rows for problem in _problems(drive, row, engine)]
     if problems:
         raise DriveError(problems)
 
 
-def require_engine(drive: Drive, engine: str) -> None:
-    """Refuse a drive with anything that an engine of an analysis cannot represent (`require`), nor contacts in slices where it
-    has them.
-    """
-    require(drive, engine)
-    if drive.contact.slices > 1 and engine == "fe":
-        require(drive, "fe in slices")
-
-
 def refusal(engine: str, path: str) -> str | None:
-    """Return why an engine refuses a field; None where it takes it.
+    """Return why an engine refuses a field; None where it takes it, be it of some drives alone.
 
     Examples
     --------
@@ -149,7 +146,8 @@ def refusal(engine: str, path: str) -> str | None:
     'the model is frictionless'
     >>> refusal("fe", "disc.thickness")
     """
-    return next((row.reason for row in REFUSALS if engine in row.engines and _covers(row, path)), None)
+    rows = (row for row in REFUSALS if row.where is None and engine in row.engines)
+    return next((row.reason for row in rows if _covers(row, path)), None)
 
 
 def refusals(path: str) -> dict[str, list[str]]:

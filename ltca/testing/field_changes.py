@@ -330,8 +330,8 @@ def _beside(drive: Drive, path: str) -> dict[str, Any]:
     if needs_slices(path):
         bearing = _of_main_bearing(path) if path.startswith("main_bearing.") and drive.main_bearing is None else {}
         return bearing | ({"contact.slices": 5} if drive.contact.slices == 1 else {})
-    if path == "contact.slices":
-        return {path: 3}
+    if path == "contact.slices":  # in plane strain straight contacts are the same with any number of them
+        return {path: 3, "disc.lead_crown_drop": 1e-3}
     if path.startswith("ring.") and drive.ring is None:
         return _ring(drive, path) | (_warmth(drive, path) if path.endswith(".thermal_expansion") else {})
     span = 3.0 * (2.0 * max(map(abs, drive.disc.disc_planes)) + drive.disc.thickness)

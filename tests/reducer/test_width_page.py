@@ -47,7 +47,13 @@ def test_every_field_of_the_width_is_on_the_page():
 def test_engines_of_the_page_are_those_of_the_table():
     """A row for what takes slices, one for what refuses them."""
     (refusing,) = [line for line in PAGE.splitlines() if line.endswith("| refused by the name `contact.slices` |")]
-    names = {"hybrid": "hybrid", "fe": "--compliance fe", "paper": "paper", "full FE": "full FE", "direct": "direct"}
+    names = {
+        "hybrid": "--compliance hybrid",
+        "fe": "--compliance fe",
+        "paper": "paper",
+        "full FE": "full FE",
+        "direct": "direct",
+    }
     for engine in set(ENGINES) - {"tables"}:
         assert (refusal(engine, "contact.slices") is not None) == (names[engine] in refusing), engine
 

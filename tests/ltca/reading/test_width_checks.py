@@ -161,7 +161,6 @@ def test_leads_grow_with_their_disc_and_angles_do_not(paper):
     ("engine", "words"),
     [
         ("paper", "method paper (discs do not tilt in the model); use --method tables"),
-        ("hybrid", "compliance hybrid (discs do not tilt in the model); use --compliance half-space"),
         ("full FE", "full finite elements (the model is two-dimensional: "),
     ],
 )
@@ -171,7 +170,33 @@ def test_engines_of_one_plane_refuse_slices_by_name(engine, words, paper):
         require(drive, engine)
     assert refused.value.problems[0].startswith(f"contact.slices = 5: must be 1 for {words}")
     require(replace(drive, contact=paper.contact), engine)
-    require(drive, "direct")
+    for other in ("direct", "hybrid", "fe"):
+        require(drive, other)
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (
+            {"pin_wheel.seat.kind": "slot", "pin_wheel.seat.radius": 6.51},
+            'pin_wheel.seat (pin_wheel.seat.kind = "slot", pin_wheel.seat.radius = 6.51 mm): must be left out for compliance fe '
+            "(pins are fixed in the model where contacts have slices (contact.slices)); use --compliance hybrid",
+        ),
+        (
+            {"pin_shaft.seat.kind": "sleeve", "pin_shaft.seat.pin_radius": 7.0, "pin_shaft.seat.bore_radius": 7.01}
+            | {"pin_shaft.elastic_contact": True},
+            "pin_shaft.seat (",
+        ),
+    ],
+)
+def test_seats_are_refused_in_plane_strain_with_slices(words, told, paper):
+    """They were left out in silence: a slot of 10 µm moved nothing."""
+    require(with_fields(paper, words), "fe")
+    drive = with_fields(paper, SLICES | words)
+    require(drive, "hybrid")
+    with pytest.raises(DriveError) as refused:
+        require(drive, "fe")
+    assert refused.value.problems[0].startswith(told)
 
 
 def test_a_misspelt_lead_is_told_in_a_plane_drive(paper):
