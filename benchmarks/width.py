@@ -46,13 +46,13 @@ def contact_kind(drop: float, cells: int) -> ContactKind:
 
 def print_case(name: str, radius: float, drop: float, approach: float, tilt: float) -> None:
     """Print one line of the table."""
-    given = [np.array([value]) for value in (approach, tilt, radius)]
+    delta, theta, rho = (np.array([value]) for value in (approach, tilt, radius))
     separation = Separation(effective_radius=radius, departure=lambda _, x: x**2 / (2.0 * radius))
     found = {cells: press_tilted(contact_kind(drop, cells), separation, approach, tilt) for cells in (12, 20)}
     coarse, fine = found[12], found[20]
     if coarse is None or fine is None:
         return
-    peak = {cells: solve_along_width(contact_kind(drop, cells), *given).largest[0] for cells in (12, 20)}
+    peak = {cells: solve_along_width(contact_kind(drop, cells), delta, theta, rho).largest[0] for cells in (12, 20)}
     arm = max(abs(fine.moment), fine.load * LENGTH / 6.0)
     numbers = [
         f"{100.0 * (coarse.load / fine.load - 1.0):+.2f} {100.0 * (coarse.moment - fine.moment) / arm:+.2f} "
@@ -64,11 +64,11 @@ def print_case(name: str, radius: float, drop: float, approach: float, tilt: flo
             length=LENGTH, contact_modulus=MODULUS, slices=slices, relief=kind.relief(slice_heights(LENGTH, slices))
         )
         try:
-            contact = line.respond(*given)
+            contact = line.respond(delta, theta, rho)
         except ConvergenceError:
             numbers.append("does not settle")
             continue
-        largest = estimate_along_width(kind, contact, given[2]).largest[0]
+        largest = estimate_along_width(kind, contact.line_load, rho).largest[0]
         numbers.append(
             f"{100.0 * (contact.load[0] / fine.load - 1.0):+.2f} {100.0 * (contact.moment[0] - fine.moment) / arm:+.2f} "
             f"{100.0 * (largest / peak[20] - 1.0):+.1f}"

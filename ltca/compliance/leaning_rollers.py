@@ -135,6 +135,8 @@ def balance_leaning_rollers(
         "outer_moment": outer.moment,
         "inner_moment": inner.moment,
         "lean": lean,
+        "inner_tilt": at_race - lean,
+        "outer_tilt": lean - at_bore,
         "inner_slices": inner.slice_load,
         "outer_slices": outer.slice_load,
         "inner_lines": inner.line_load,

@@ -21,7 +21,7 @@ from ltca.contact.tracked_grid import ContactKind
 from ltca.geometry.placement import Placement
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.line_contact import LineContactLaw
-from ltca.laws.width_pressure import estimate_along_width
+from ltca.laws.width_pressure import WidthPressures, estimate_along_width
 
 
 def pressures_of_law(
@@ -59,7 +59,11 @@ def pressures_of_slices(kind: ContactKind, line_load: FloatArray, effective_radi
     Line loads have the shape (positions, pairs, slices, points); the number of slices is odd, and mid-width is the middle one.
     Effective radii, mm, are broadcast to the contacts.
     """
-    found = estimate_along_width(kind, line_load, effective_radius)
+    return along_width(kind, estimate_along_width(kind, line_load, effective_radius), effective_radius)
+
+
+def along_width(kind: ContactKind, found: WidthPressures, effective_radius: FloatArray) -> KindPressures:
+    """Return pressures and half-widths of contacts in slices from what is known along their width at the middles of these."""
     half_width = 2.0 / kind.contact_modulus * found.pressure * np.asarray(effective_radius)[..., None]
     middle = found.pressure.shape[-1] // 2
     return KindPressures(
