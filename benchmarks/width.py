@@ -9,6 +9,8 @@ times length where that is more) and of its largest pressure; the grid's own is 
 
 from __future__ import annotations
 
+import argparse
+
 import numpy as np
 
 from ltca.contact.length_profile import CircularCrown, SummedProfile
@@ -78,6 +80,7 @@ def print_case(name: str, radius: float, drop: float, approach: float, tilt: flo
 
 def main() -> None:
     """Print the tables."""
+    argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter).parse_args()
     for radius, deep in SLENDER:
         half_width = 0.5 * np.sum(np.diff(_active_width(radius, deep)))
         print(
