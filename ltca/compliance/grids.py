@@ -248,14 +248,13 @@ class GridCompliance(UncoupledContacts[_KindGrids]):
         """Return pressures and half-widths of contacts of one kind at their approaches, shape (positions, pairs)."""
         return law.pressures(approach)
 
-    def _pressures_of_slices(
-        self, response: DiscResponse, pins: SlicedContact, holes: SlicedContact
-    ) -> ContactPressures:
-        """Pressures of contacts in slices, those of grids as the grids found them."""
-        by_lines = UncoupledContacts._pressures_of_slices(self, response, pins, holes)
-        rollers, laws = response.rollers, self._tilted_laws(response.flank)
-        flank, leaning = response.flank, response.leaning_pins
-        assert leaning is not None  # asked for in slices alone
+    def pressures(self, response: DiscResponse) -> ContactPressures:
+        """Return pressures and half-widths as the grids found them, those of the shaft pins from their loads."""
+        by_lines = UncoupledContacts.pressures(self, response)
+        leaning = response.leaning_pins
+        if leaning is None:
+            return by_lines
+        rollers, laws, flank = response.rollers, self._tilted_laws(response.flank), response.flank
         found = {}
         for name, law, approach, tilt, radius in (
             ("pins", laws.pins, flank.approach, leaning.tilt.tilt, flank.effective_radius),
