@@ -9,6 +9,8 @@ times length where that is more) and of its largest pressure; the grid's own is 
 
 from __future__ import annotations
 
+import argparse
+
 import numpy as np
 
 from ltca.contact.length_profile import CircularCrown, SummedProfile
@@ -46,13 +48,13 @@ def contact_kind(drop: float, cells: int) -> ContactKind:
 
 def print_case(name: str, radius: float, drop: float, approach: float, tilt: float) -> None:
     """Print one line of the table."""
-    given = [np.array([value]) for value in (approach, tilt, radius)]
+    delta, theta, rho = (np.array([value]) for value in (approach, tilt, radius))
     separation = Separation(effective_radius=radius, departure=lambda _, x: x**2 / (2.0 * radius))
     found = {cells: press_tilted(contact_kind(drop, cells), separation, approach, tilt) for cells in (12, 20)}
     coarse, fine = found[12], found[20]
     if coarse is None or fine is None:
         return
-    peak = {cells: solve_along_width(contact_kind(drop, cells), *given).largest[0] for cells in (12, 20)}
+    peak = {cells: solve_along_width(contact_kind(drop, cells), delta, theta, rho).largest[0] for cells in (12, 20)}
     arm = max(abs(fine.moment), fine.load * LENGTH / 6.0)
     numbers = [
         f"{100.0 * (coarse.load / fine.load - 1.0):+.2f} {100.0 * (coarse.moment - fine.moment) / arm:+.2f} "
@@ -64,11 +66,11 @@ def print_case(name: str, radius: float, drop: float, approach: float, tilt: flo
             length=LENGTH, contact_modulus=MODULUS, slices=slices, relief=kind.relief(slice_heights(LENGTH, slices))
         )
         try:
-            contact = line.respond(*given)
+            contact = line.respond(delta, theta, rho)
         except ConvergenceError:
             numbers.append("does not settle")
             continue
-        largest = estimate_along_width(kind, contact, given[2]).largest[0]
+        largest = estimate_along_width(kind, contact.line_load, rho).largest[0]
         numbers.append(
             f"{100.0 * (contact.load[0] / fine.load - 1.0):+.2f} {100.0 * (contact.moment[0] - fine.moment) / arm:+.2f} "
             f"{100.0 * (largest / peak[20] - 1.0):+.1f}"
@@ -78,6 +80,7 @@ def print_case(name: str, radius: float, drop: float, approach: float, tilt: flo
 
 def main() -> None:
     """Print the tables."""
+    argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter).parse_args()
     for radius, deep in SLENDER:
         half_width = 0.5 * np.sum(np.diff(_active_width(radius, deep)))
         print(

@@ -13,7 +13,7 @@ whatever position: where an iteration starts alters no answer.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -21,7 +21,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from ltca.arrays import FloatArray
 from ltca.compliance.half_space import HalfSpaceCompliance
-from ltca.compliance.response import KindPressures
+from ltca.compliance.pressures import along_width
+from ltca.compliance.response import ContactPressures, DiscResponse, KindPressures
 from ltca.compliance.rollers import RollerLaws
 from ltca.compliance.uncoupled import PairLaws, UncoupledContacts
 from ltca.contact.end_pressure import largest_pressure
@@ -34,6 +35,7 @@ from ltca.geometry.separation import circle_departure, flank_departure
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.sliced_line import SlicedContact, slice_heights
 from ltca.laws.spring import SpringLaw
+from ltca.laws.width_pressure import solve_along_width
 
 STATIONS_PER_WAVE = 4096
 """Stations on the flank, per wave, at which separations are computed; between them they are interpolated,
@@ -111,6 +113,18 @@ class _TiltedGrids:
         self.length, self.contact_modulus = kind.length, kind.contact_modulus
         self.separation, self.kept, self.alike = separation, kept, alike
 
+    def known(self, radius: FloatArray) -> Callable[..., tuple[Separation, TiltedPieces]]:
+        """Return the separation of contacts of effective radii, mm, by their indices, and the pieces known of them."""
+
+        def of_contact(*index: int) -> tuple[Separation, TiltedPieces]:
+            size = float(radius[index])
+            return self.separation(index, size), self.kept.get(self._key(index, size), ())
+
+        return of_contact
+
+    def _key(self, index: tuple[int, ...], effective_radius: float) -> tuple[float, ...]:
+        return (effective_radius,) if self.alike else tuple(float(number) for number in index)
+
     def respond(
         self, approach: FloatArray, tilt: FloatArray, effective_radius: FloatArray, start: FloatArray | None = None
     ) -> SlicedContact:
@@ -120,6 +134,7 @@ class _TiltedGrids:
         )
         z = slice_heights(self.length, self.slices)
         edges = np.linspace(-0.5 * self.length, 0.5 * self.length, self.slices + 1)
+        weights = 0.5 * np.polynomial.legendre.leggauss(z.shape[1])[1]
         values = np.zeros((6, *delta.shape))
         slice_load, line_load = np.zeros((*delta.shape, self.slices)), np.zeros((*delta.shape, *z.shape))
         for index in np.ndindex(delta.shape):
@@ -138,7 +153,11 @@ class _TiltedGrids:
             # Of blended grids the larger tells how the load lies.
             slice_load[index] = shares * (found.load / shares.sum())
             centres = 0.5 * (found.edges[1:] + found.edges[:-1])
-            line_load[index] = np.interp(z, centres, found.line_load) * ((z > found.edges[0]) & (z < found.edges[-1]))
+            points = np.interp(z, centres, found.line_load) * ((z > found.edges[0]) & (z < found.edges[-1]))
+            # Points carry together what their slice does: the bulge at an end lies between them.
+            means = points @ weights
+            even = slice_load[index] * (self.slices / self.length)
+            line_load[index] = points * np.divide(even, means, out=np.zeros(even.shape), where=means > 0.0)[:, None]
         load, moment, by_approach, by_tilt, turning, energy = values
         return SlicedContact(
             load=load,
@@ -228,6 +247,25 @@ class GridCompliance(UncoupledContacts[_KindGrids]):
     ) -> KindPressures:
         """Return pressures and half-widths of contacts of one kind at their approaches, shape (positions, pairs)."""
         return law.pressures(approach)
+
+    def pressures(self, response: DiscResponse) -> ContactPressures:
+        """Return pressures and half-widths as the grids found them, those of the shaft pins from their loads."""
+        by_lines = UncoupledContacts.pressures(self, response)
+        leaning = response.leaning_pins
+        if leaning is None:
+            return by_lines
+        rollers, laws, flank = response.rollers, self._tilted_laws(response.flank), response.flank
+        found = {}
+        for name, law, approach, tilt, radius in (
+            ("pins", laws.pins, flank.approach, leaning.tilt.tilt, flank.effective_radius),
+            ("inner", laws.rollers.inner, rollers.inner_approach, rollers.inner_tilt, laws.rollers.inner_radius),
+            ("outer", laws.rollers.outer, rollers.outer_approach, rollers.outer_tilt, laws.rollers.outer_radius),
+        ):
+            size = np.broadcast_to(radius, approach.shape)
+            heights = slice_heights(law.length, law.slices).mean(axis=1)
+            patches = solve_along_width(law.kind, approach, np.asarray(tilt), size, heights, law.known(size))
+            found[name] = along_width(law.kind, patches, size)
+        return replace(by_lines, pins=found["pins"], inner=found["inner"], outer=found["outer"])
 
     def warm_start(self, laws: PairLaws[_KindGrids], positions: int) -> NDArray[np.object_]:
         """Return the contacts of each position as values (`PositionContacts`)."""

@@ -97,6 +97,8 @@ def balance_leaning_rollers(
     near: _Near = (None, None)
     if start is not None:
         known = start.inner[rows, numbers].sum(axis=1) > 0.0
+        # One that leaned by more than what presses it now is better begun anew.
+        known &= half * np.abs(start.lean[rows, numbers] - lean) <= np.abs(overlap) + half * np.abs(at_race - at_bore)
         inward = np.where(known, start.inward[rows, numbers] * overlap, inward)
         lean = np.where(known, start.lean[rows, numbers], lean)
         near = start.inner[rows, numbers], start.outer[rows, numbers]
@@ -135,6 +137,8 @@ def balance_leaning_rollers(
         "outer_moment": outer.moment,
         "inner_moment": inner.moment,
         "lean": lean,
+        "inner_tilt": at_race - lean,
+        "outer_tilt": lean - at_bore,
         "inner_slices": inner.slice_load,
         "outer_slices": outer.slice_load,
         "inner_lines": inner.line_load,
@@ -195,7 +199,8 @@ def _downhill(
     turn = -(stiff * moment - mixed * force) / determinant
     slope = force * step + moment * turn
     fraction = np.ones(step.shape)
-    start = (first.slice_load, second.slice_load)
+    across = dot(towards, n)
+    start = (first.ahead(step, -turn), second.ahead(-across * step, turn))
     there = contacts(going, inward[going] + step, lean[going] + turn, start)
     for _ in range(MAX_HALVINGS):
         ahead = _along(_imbalance(*there[:3], n), (step, turn))
@@ -209,7 +214,7 @@ def _downhill(
             again,
             inward[again] + fraction[long] * step[long],
             lean[again] + fraction[long] * turn[long],
-            (start[0][long], start[1][long]),
+            (first.slice_load[long], second.slice_load[long]),
         )
         there[0].put(long, part[0])
         there[1].put(long, part[1])

@@ -21,7 +21,7 @@ from ltca.contact.tracked_grid import ContactKind, ContactKinds
 from ltca.geometry.placement import Placement
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.line_contact import LineContactLaw
-from ltca.laws.width_pressure import estimate_along_width
+from ltca.laws.width_pressure import WidthPressures, estimate_along_width
 
 
 def pressures_of_law(
@@ -82,6 +82,13 @@ def _of_slices(kind: ContactKind, line_load: FloatArray, effective_radius: Float
     The number of slices is odd, and mid-width is the middle one.
     """
     found = estimate_along_width(kind, line_load, effective_radius)
+    return along_width(kind, found, effective_radius, has_ends=has_ends)
+
+
+def along_width(
+    kind: ContactKind, found: WidthPressures, effective_radius: FloatArray, *, has_ends: bool = True
+) -> KindPressures:
+    """Return pressures and half-widths of contacts in slices from what is known along their width at the middles of these."""
     half_width = 2.0 / kind.contact_modulus * found.pressure * np.asarray(effective_radius)[..., None]
     middle = found.pressure.shape[-1] // 2
     largest, place, end_load = found.largest, found.place, found.end_load

@@ -70,6 +70,8 @@ class RollerState:
         Of leaning rollers about mid-length, N·mm; that on the disc acts along the ray.
     lean : array, shape (positions, rollers), or None
         Of leaning rollers along their rays, rad.
+    inner_tilt, outer_tilt : array, shape (positions, rollers), or None
+        Tilts of their contacts, rad, positive presses positive z.
     inner_slices, outer_slices : array, shape (positions, rollers, slices), or None
         Loads of the slices of leaning rollers, N.
     inner_lines, outer_lines : array, shape (positions, rollers, slices, points), or None
@@ -86,6 +88,8 @@ class RollerState:
     inner_moment: FloatArray | None = None
     outer_moment: FloatArray | None = None
     lean: FloatArray | None = None
+    inner_tilt: FloatArray | None = None
+    outer_tilt: FloatArray | None = None
     inner_slices: FloatArray | None = None
     outer_slices: FloatArray | None = None
     inner_lines: FloatArray | None = None

@@ -10,6 +10,8 @@ slenderness_curve      Smooth curves over the slenderness of a line contact: qui
 line_contact           Load–approach law of an uncrowned line contact between two half-spaces
 sliced_line            Line contacts in slices along their width: load and moment by approach and tilt
 sliced_spring          Springs even along the width, in slices
+sliced_plane           Plane strain in slices that do not feel each other
+sliced_seat            Conforming seats in slices behind a contact
 width_pressure         Pressures along the width, from slices and from grids that tilt
 shipped_tables         Makes the tables of cylinders that ship with the package
 profiled_line_contact  Load–approach law of line contacts that are crowned or relieved along their length

@@ -155,6 +155,8 @@ class SlicedContact:
         F_i, N.
     line_load : array, shape (…, slices, points)
         q at the points of the slices, N/mm.
+    slice_slopes : array, shape (…, 2, slices), or None
+        ∂F_i/∂δ and ∂F_i/∂θ, N/mm and N/rad, where slices feel each other.
     """
 
     load: FloatArray
@@ -165,15 +167,28 @@ class SlicedContact:
     energy: FloatArray
     slice_load: FloatArray
     line_load: FloatArray
+    slice_slopes: FloatArray | None = None
 
     def take(self, rows: NDArray[np.intp]) -> SlicedContact:
         """Return some of a row of contacts."""
-        return SlicedContact(**{name: getattr(self, name)[rows] for name in self.__slots__})
+        return SlicedContact(**{name: values[rows] for name, values in self._arrays()})
 
     def put(self, rows: NDArray[np.intp], part: SlicedContact) -> None:
         """Write what some of a row of contacts are now."""
-        for name in self.__slots__:
-            getattr(self, name)[rows] = getattr(part, name)
+        for name, values in self._arrays():
+            values[rows] = getattr(part, name)
+
+    def ahead(self, approach: FloatArray, tilt: FloatArray) -> FloatArray:
+        """Return loads of the slices to start from where approaches and tilts are so much larger, shape (…, slices)."""
+        if self.slice_slopes is None:
+            return self.slice_load
+        moved = approach[..., None] * self.slice_slopes[..., 0, :] + tilt[..., None] * self.slice_slopes[..., 1, :]
+        # Slopes tell nothing beyond a change of the loads themselves.
+        near = (np.abs(moved) < 0.3 * self.slice_load.max(axis=-1, keepdims=True)).all(axis=-1, keepdims=True)
+        return np.asarray(np.where(near, np.maximum(self.slice_load + moved, 0.0), self.slice_load))
+
+    def _arrays(self) -> list[tuple[str, FloatArray]]:
+        return [(name, values) for name in self.__slots__ if (values := getattr(self, name)) is not None]
 
 
 @cache
@@ -419,6 +434,7 @@ class SlicedLine:
         going, before, fraction = np.arange(count), np.full(count, np.inf), np.ones(count)
         way = np.zeros(load.shape)
         scalars, by_slice, by_point = np.zeros((6, count)), np.zeros((n, count)), np.zeros((*free.shape[:2], count))
+        slopes = np.zeros((2, n, count))
         for _ in range(MAX_ITERATIONS):
             now, here = load[:, going], radius[going]
             coupled = self._coupling(now, here)
@@ -459,6 +475,7 @@ class SlicedLine:
                 by_approach, by_tilt = moved[:, 1, some], moved[:, 2, some]
                 own = (carried[..., some] * z**2).sum(axis=(0, 1)) - (m * middle).sum(axis=0)
                 by_slice[:, kept], by_point[..., kept] = loads_of(settled), settled
+                slopes[:, :, kept] = by_approach, by_tilt
                 scalars[:, kept] = (
                     by_slice[:, kept].sum(axis=0),
                     loads_of(settled * z).sum(axis=0),
@@ -480,7 +497,7 @@ class SlicedLine:
                 break
         else:
             raise ConvergenceError(self._why_not(load[:, going], radius[going]), history)
-        return (*scalars, by_slice, by_point)
+        return (*scalars, by_slice, by_point, slopes)
 
     def _why_not(self, load: FloatArray, effective_radius: FloatArray) -> str:
         """What to tell of contacts that do not settle."""

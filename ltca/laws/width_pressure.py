@@ -9,7 +9,7 @@ At an unrelieved end the pressure of half-spaces is singular: as in the plane, p
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
 
@@ -17,7 +17,7 @@ import numpy as np
 
 from ltca.arrays import BoolArray, FloatArray
 from ltca.contact.end_pressure import find_cylinder_ratio
-from ltca.contact.tilted_grid import TiltedPatch, recover_tilted
+from ltca.contact.tilted_grid import TiltedPatch, TiltedPiece, recover_tilted
 from ltca.contact.tracked_grid import ContactKind, Separation
 from ltca.laws.sliced_line import POINTS, SlicedLine, slice_heights
 
@@ -119,7 +119,7 @@ def solve_along_width(
     tilt: FloatArray,
     effective_radius: FloatArray,
     heights: FloatArray | None = None,
-    separations: Callable[..., Separation] | None = None,
+    separations: Callable[..., tuple[Separation, Sequence[TiltedPiece]]] | None = None,
 ) -> WidthPressures:
     """Return pressures of contacts from half-space grids at their approaches and tilts, one solution for each that is closed.
 
@@ -132,7 +132,8 @@ def solve_along_width(
     heights : array, shape (heights,), optional
         z, mm; default `HEIGHTS` even ones from end to end.
     separations : callable, optional
-        Separation of the surfaces of a contact by its indices in the arrays; default the parabola x²/(2ρ).
+        Separation of the surfaces of a contact by its indices in the arrays, and pieces to start from
+        (`ltca.contact.tilted_grid`); default the parabola x²/(2ρ) and none.
     """
     half = 0.5 * kind.length
     z = np.linspace(-half, half, HEIGHTS) if heights is None else np.asarray(heights, dtype=float)
@@ -142,12 +143,8 @@ def solve_along_width(
     # A line that reaches nowhere is open: no tilt brings its ends further than that.
     for index in zip(*np.nonzero(delta + half * np.abs(theta) > 0.0), strict=True):
         size = float(radius[index])
-        separation = (
-            Separation(effective_radius=size, departure=lambda _, x, size=size: x**2 / (2.0 * size))  # type: ignore[misc]
-            if separations is None
-            else separations(*index)
-        )
-        patch = recover_tilted(kind, separation, float(delta[index]), float(theta[index]))
+        separation, known = _parabola(size) if separations is None else separations(*index)
+        patch = recover_tilted(kind, separation, float(delta[index]), float(theta[index]), known)
         if patch is None:
             continue
         along = _Along.of_patch(patch, kind)
@@ -157,6 +154,10 @@ def solve_along_width(
     return WidthPressures(
         height=z, line_load=lines, pressure=pressures, largest=largest, place=place, end_load=end_load
     )
+
+
+def _parabola(radius: float) -> tuple[Separation, tuple[TiltedPiece, ...]]:
+    return Separation(effective_radius=radius, departure=lambda _, x: x**2 / (2.0 * radius)), ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -123,6 +123,19 @@ def test_contacts_do_not_know_of_each_other():
     assert not nothing.line_load.any()
 
 
+def test_reliefs_of_a_batch_of_drives():
+    z = slice_heights(LENGTH, 5)
+    crowns = np.array([0.0, 5e-3])[:, None, None] * (2.0 * z / LENGTH) ** 2
+    approach, tilt = np.array([[0.01, 0.002], [0.01, 0.002]]), np.array([1e-3, -1e-4])
+    batch = SlicedLine(length=LENGTH, contact_modulus=MODULUS, slices=5, relief=crowns)
+    found = batch.respond(approach, tilt, np.full(2, 5.0))
+    for number in range(2):
+        own = SlicedLine(length=LENGTH, contact_modulus=MODULUS, slices=5, relief=crowns[number])
+        np.testing.assert_allclose(
+            found.load[number], own.respond(approach[number], tilt, np.full(2, 5.0)).load, rtol=1e-12
+        )
+
+
 def test_aligned_lines_have_the_load_of_the_line_law():
     """The softer ends are those of nine slices; with others the load is within what the ends of slices lose."""
     law = LineContactLaw(LENGTH, MODULUS)
