@@ -239,8 +239,10 @@ def pin_deflections(drive: Drive, model: Reducer, found: Equilibrium) -> dict[st
         ("shaft_pin_deflection", shaft_pin_beam(drive), contacts.hole_load, contacts.holes, (moved[1], by_tips)),
     ):
         if beam is not None:
-            # The pin yields to its own disc against the direction in which it would be pressed in.
-            own = own_flexibility(drive, beam) * load * (motion.gradient[..., X] + 1j * motion.gradient[..., Y])
+            # The pin yields to its own disc against the direction in which it would be pressed in; in slices this is in its
+            # displacement.
+            flexibility = own_flexibility(drive, beam) if contacts.leans is None else 0.0
+            own = flexibility * load * (motion.gradient[..., X] + 1j * motion.gradient[..., Y])
             values[name] = np.abs(sum((part for part in beside if part is not None), own))
     return values
 

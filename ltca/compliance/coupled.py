@@ -236,7 +236,10 @@ class CoupledCompliance:
         laws = self.near_field
         if response.leaning_pins is not None:
             place, rigid = self.geometry.placement, laws.rigid_shaft_pins
-            return pressures_in_slices(response, laws.kinds, place, has_ends=laws.has_ends, rigid_shaft_pins=rigid)
+            at_hole: Any = laws.hole
+            modulus = getattr(at_hole, "contact", at_hole).contact_modulus
+            kinds = replace(laws.kinds, holes=replace(laws.kinds.holes, contact_modulus=modulus))
+            return pressures_in_slices(response, kinds, place, has_ends=laws.has_ends, rigid_shaft_pins=rigid)
         near = np.stack(list(response.warm_start))
         pins, rollers = response.pin_load.shape[1], self.outer_radius.size
         inner, _ = laws.inner.approach_at_load(response.rollers.inner_load, self.inner_radius)

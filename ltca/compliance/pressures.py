@@ -93,7 +93,7 @@ def _of_slices(kind: ContactKind, line_load: FloatArray, effective_radius: Float
         mid=found.pressure[..., middle],
         largest=largest,
         half_width=half_width[..., middle],
-        end_cell=kind.end_cell,
+        end_cell=kind.end_cell if has_ends else np.nan,
         along=AlongWidth(
             line_load=found.line_load, pressure=found.pressure, half_width=half_width, place=place, end_load=end_load
         ),

@@ -169,7 +169,7 @@ class PinBeam:
         return np.asarray(0.5 * (found + found.T))
 
     def _alone(self, width: float) -> FloatArray:
-        """What force and moment of a disc do to its own deflection and slope without ends."""
+        """What force and moment of a disc do to its own deflection and slope without ends: integrals of |z − s|³ and |z − s|."""
         bending, shear = self._rigidity
         of_force = width**3 / (120.0 * bending) - width / (6.0 * shear)
         of_moment = -9.0 * width / (70.0 * bending) + 6.0 / (5.0 * width * shear)
@@ -217,10 +217,11 @@ class PinBeam:
         held = self._held_with_moments(middle, width) if slopes else self._held(middle, width)
         return np.asarray(-held[2])
 
-    def moments(self, at: FloatArray, planes: Sequence[float], width: float) -> FloatArray:
+    def moments(self, at: FloatArray, planes: Sequence[float], width: float, *, slopes: bool = False) -> FloatArray:
         """Return bending moments at places under unit forces of the discs, mm, shape (places, discs + 1).
 
         Places are in mm from the start of the pin. The last column is the moment when the far end is moved by one, N (by mm).
+        With `slopes` those under unit moments of the discs stand before it.
 
         Examples
         --------
@@ -228,27 +229,37 @@ class PinBeam:
         >>> print(f"{abs(pin.moments(np.array([10.0]), [10.0], 1e-3)[0, 0]):.3f}")  # F L/4
         5.000
         """
-        held, low, high = self._internal(planes, width)
+        held, low, high = self._internal(planes, width, slopes)
         place = np.asarray(at, dtype=float)[:, None]
         covered = np.clip(place - low, 0.0, high - low)
-        spread = np.zeros((place.shape[0], held.shape[1]))
-        spread[:, :-1] = covered * (place - low - 0.5 * covered) / width
+        spread, discs = np.zeros((place.shape[0], held.shape[1])), low.size
+        spread[:, :discs] = covered * (place - low - 0.5 * covered) / width
+        if slopes:
+            above, half = covered - 0.5 * width, 0.5 * width
+            turned = 6.0 * (place - low - half) * (above**2 - half**2) - 4.0 * (above**3 + half**3)
+            spread[:, discs:-1] = turned / width**3
         return np.asarray(held[0] * place + held[1] + spread)
 
-    def shears(self, at: FloatArray, planes: Sequence[float], width: float) -> FloatArray:
-        """Return shear forces as `moments` returns moments, N by N, and N/mm for the far end."""
-        held, low, high = self._internal(planes, width)
+    def shears(self, at: FloatArray, planes: Sequence[float], width: float, *, slopes: bool = False) -> FloatArray:
+        """Return shear forces as `moments` returns moments: N by N, 1/mm by N·mm, and N/mm for the far end."""
+        held, low, high = self._internal(planes, width, slopes)
         place = np.asarray(at, dtype=float)[:, None]
-        spread = np.zeros((place.shape[0], held.shape[1]))
-        spread[:, :-1] = np.clip(place - low, 0.0, high - low) / width
+        covered = np.clip(place - low, 0.0, high - low)
+        spread, discs = np.zeros((place.shape[0], held.shape[1])), low.size
+        spread[:, :discs] = covered / width
+        if slopes:
+            spread[:, discs:-1] = 6.0 * covered * (covered - width) / width**3
         return np.asarray(held[0] + spread)
 
-    def _internal(self, planes: Sequence[float], width: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def _internal(
+        self, planes: Sequence[float], width: float, slopes: bool
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Forces and couples of the ends, for each disc and for the far end moved by one; start and end of each force."""
         middle, moved = np.asarray(planes, dtype=float), np.zeros(6)
         moved[4] = 1.0
         tip = np.linalg.solve(self._conditions(), moved) if self.ends[1] != "free" else np.zeros(6)
-        held = np.concatenate([self._held(middle, width), tip[:, None]], axis=1)
+        own = self._held_with_moments(middle, width) if slopes else self._held(middle, width)
+        held = np.concatenate([own, tip[:, None]], axis=1)
         return held, middle - 0.5 * width, middle + 0.5 * width
 
     @property

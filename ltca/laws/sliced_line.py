@@ -49,6 +49,8 @@ STRIP = float(np.exp(1.25 - np.log(4.0)))
 strip, 1/4 − ln(b/2) of the semi-ellipse."""
 DATUM = 4.0
 """Datum of the plane law by the length of the line; what it is makes no difference but to slices that carry unevenly."""
+SLEEVE_DATUM = 0.685
+"""The same of a sleeve's part, whose slices do not feel each other: as deep as an aligned line counts at usual loads."""
 MAX_ITERATIONS = 60
 NEAR = 1e-8
 """What may be left over of a slice's load, by the largest, before the last step, which squares it."""
@@ -275,7 +277,9 @@ class SlicedLine:
         given = (np.asarray(each, dtype=float) for each in (approach, tilt, effective_radius))
         delta, theta, radius = np.broadcast_arrays(*given)
         shape, z = delta.shape, slice_heights(self.length, self.slices)
-        relief = self.relief if self.relief.ndim == 2 else self.relief[:, None]
+        relief = self.relief
+        if relief.ndim > z.ndim:  # of several drives, the first axis of the approaches
+            relief = relief.reshape(-1, *(1,) * (delta.ndim - 1), *z.shape)
         free = (delta[..., None, None] + theta[..., None, None] * z - relief).reshape(-1, *z.shape)
         closed = np.flatnonzero((free > TOUCHING * self.length).any(axis=(1, 2)))
         begin = None if start is None else start.reshape(-1, self.slices)[closed].T
@@ -313,8 +317,8 @@ class SlicedLine:
         lags, ends = self._coefficients(place)
         lags[0, 0] -= 2.0 * np.log(DATUM * n)
         if self.sleeve:
-            lags, ends = (1.0 - self.sleeve) * lags, (1.0 - self.sleeve) * ends
-            lags[0, 0] -= 2.0 * self.sleeve * np.log(DATUM / HALF_SPACE_DATUM)
+            lags = (1.0 - self.sleeve) * lags
+            lags[0, 0] -= 2.0 * self.sleeve * np.log(DATUM / SLEEVE_DATUM)
         # Products of the matrix and of its first two derivatives by ln b with the loads: a lag each way.
         beside = np.zeros((3 * n - 2, place.size))
         beside[n - 1 : 2 * n - 1] = load

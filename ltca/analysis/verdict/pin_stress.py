@@ -92,9 +92,13 @@ def pin_stress(analysis: LoadedAnalysis, pins: Literal["wheel", "shaft"]) -> Pin
     if pins == "shaft" and coordinates.ring:
         by_ring = analysis.model.discs[0].geometry.tips_by_ring
         tip = np.einsum("pj,bj->bp", by_ring, analysis.full.pose[:, coordinates.ring_place])
+    slopes = parts[0].leaning_pins is not None
+    if slopes:
+        moments = [part.pin_moments for part in parts]
+        forces += [each[:, :count] if pins == "wheel" else each[:, count:] for each in moments]
     acting = np.stack([*forces, tip], axis=-1)
-    moment = np.matmul(acting, beam.moments(at, planes, width).T.astype(complex))
-    shear = np.abs(np.matmul(acting, beam.shears(at, planes, width).T.astype(complex))).max(axis=-1)
+    moment = np.matmul(acting, beam.moments(at, planes, width, slopes=slopes).T.astype(complex))
+    shear = np.abs(np.matmul(acting, beam.shears(at, planes, width, slopes=slopes).T.astype(complex))).max(axis=-1)
     section = 32.0 / (pi * beam.diameter**3)
     place = analysis.model.discs[0].geometry.placement
     if pins == "wheel":

@@ -179,3 +179,24 @@ def test_the_far_end_slopes_discs_as_it_carries_their_moments():
     x = 12.0 / 30.0
     # v (3 x² − 2 x³) of a sway, and its slope; 1e-6 of a thin disc
     np.testing.assert_allclose(shape, [3.0 * x**2 - 2.0 * x**3, 6.0 * x * (1.0 - x) / 30.0], rtol=1e-6)
+
+
+@pytest.mark.parametrize("ends", [("clamped", "free"), ("clamped", "clamped"), ("supported", "supported")])
+def test_bending_under_moments_of_discs_is_in_balance(ends):
+    """Bending moments and shears under forces and moments of two discs: their work on the pin is the flexibility of `slopes`.
+
+    Σ of both by EI and κGA along the pin, Gauss points between all kinks: 1e-9.
+    """
+    beam = PinBeam(span=30.0, ends=ends, diameter=8.0, youngs_modulus=2e5, poisson_ratio=0.3)
+    planes, width = [9.0, 21.0], 10.0
+    edges = np.array([0.0, 4.0, 14.0, 16.0, 26.0, 30.0])
+    nodes, weights = np.polynomial.legendre.leggauss(6)
+    halves = 0.5 * np.diff(edges)[:, None]
+    z, weights = (edges[:-1, None] + halves + halves * nodes).ravel(), (halves * weights).ravel()
+    bending, shear = beam._rigidity
+    moment, force = (each(z, planes, width, slopes=True)[:, :-1] for each in (beam.moments, beam.shears))
+    found = (moment.T * weights) @ moment / bending + (force.T * weights) @ force / shear
+    expected = beam.flexibility(planes, width, slopes=True)
+    scale = np.sqrt(np.diag(expected))
+    np.testing.assert_allclose(found / np.outer(scale, scale), expected / np.outer(scale, scale), atol=1e-9)
+    np.testing.assert_allclose(moment[:, :2], beam.moments(z, planes, width)[:, :2], rtol=1e-9, atol=1e-9)

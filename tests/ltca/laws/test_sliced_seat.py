@@ -1,0 +1,131 @@
+"""Contacts in slices on loose pins and sleeves: against the plane laws, their energy, and statics."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ltca.compliance.half_space import HalfSpaceCompliance
+from ltca.drive.parts import WheelPinSeat
+from ltca.drive.single_discs import single_discs
+from ltca.laws.backed import BackedLaw, wheel_pin_seat
+from ltca.laws.line_contact import LineContactLaw
+from ltca.laws.sliced_line import SlicedLine
+from ltca.laws.sliced_seat import BackedLine, SlicedSeat
+from ltca.laws.sliced_spring import SlicedSpring
+from ltca.reading.drive_file import load_drive
+
+MODULUS, LENGTH, SLICES = 113186.8, 10.0, 9
+
+
+def loose(slices=SLICES, **seat):
+    """One disc of the shipped drive with loose pins, its wheel pins in other seats."""
+    whole = next(iter(load_drive("sleeved").cases.values())).with_fields({"contact.slices": slices})
+    drive = single_discs(whole)[0]
+    if seat:
+        drive = replace(drive, pin_wheel=replace(drive.pin_wheel, seat=WheelPinSeat(**seat)))
+    return drive
+
+
+SLEEVE = {"kind": "sleeve", "pin_radius": 2.2, "bore_radius": 2.22}
+
+
+@pytest.mark.parametrize("play", [1e-5, 0.01, 1.0])
+@pytest.mark.parametrize("seat", [{}, SLEEVE])
+def test_slices_of_a_seat_are_the_plane_law(play, seat):
+    """Even along the width: load, stiffness and energy of the conforming law at its own approach, from a microgram to a ton.
+
+    1e-8: a quintic spline of 60 e-folds of the travel.
+    """
+    law = wheel_pin_seat(loose(**seat))
+    load = np.array([1e-5, 1.0, 100.0, 3e3, 1e4])
+    approach, compliance = law.approach_and_compliance(load, play)
+    sliced = SlicedSeat.of_law(law, SLICES)
+    found = sliced.press(approach, np.zeros(5), np.full(5, play))
+    np.testing.assert_allclose(found.load, load, rtol=1e-8)
+    np.testing.assert_allclose(found.by_travel * compliance, 1.0, rtol=1e-7)
+    np.testing.assert_allclose(sliced.energy(found.line_load, np.full(5, play)), law.energy(load, play), rtol=1e-8)
+
+
+@pytest.mark.parametrize("seat", [{}, SLEEVE])
+def test_aligned_slices_carry_what_the_plane_law_of_loose_pins_does(seat):
+    """Contact and seat in series without tilt, to 0.5 % of the load: a part of a sleeve's compliance is a logarithm of length."""
+    law, drive = HalfSpaceCompliance.of_drive(loose(**seat)).pin_law, loose(1, **seat)
+    plane = HalfSpaceCompliance.of_drive(replace(drive, pin_wheel=replace(drive.pin_wheel, beam=None))).pin_law
+    assert isinstance(plane, BackedLaw)
+    approach = np.tile(np.array([[1e-3], [5e-3], [0.02], [0.04]]), (1, 30))
+    found = law.respond(approach, np.zeros_like(approach), np.full_like(approach, 6.0))
+    load, stiffness = plane.load_and_stiffness(approach, np.full_like(approach, 6.0))
+    np.testing.assert_allclose(found.load, load, rtol=5e-3)
+    np.testing.assert_allclose(found.by_approach, stiffness, rtol=1e-2)
+    assert np.max(np.abs(found.moment)) < 1e-9 * load.max()
+
+
+@pytest.mark.parametrize("seat", [{}, SLEEVE])
+def test_loads_and_moments_of_loose_pins_are_the_slopes_of_their_energy(seat):
+    """From full lines to corners that carry alone: differences of the energy against load and moment, and of load and moment
+    against their derivatives, which are symmetric.
+
+    1e-7 of the largest: differences over 1e-7 of numbers good to 1e-13 and their third derivatives.
+    """
+    law = HalfSpaceCompliance.of_drive(loose(**seat)).pin_law
+    rng = np.random.default_rng(3)
+    shape = (2, 30)
+    delta, theta, radius = rng.uniform(-0.004, 0.02, shape), rng.normal(size=shape) * 1.5e-3, np.full(shape, 6.0)
+    found, step = law.respond(delta, theta, radius), 1e-7
+    assert (found.load == 0.0).any()
+    assert ((found.slice_load > 0.0).sum(axis=-1) < SLICES).any()
+
+    def slope(name, by_tilt):
+        ends = [law.respond(delta + side * (not by_tilt), theta + side * by_tilt, radius) for side in (step, -step)]
+        return (getattr(ends[0], name) - getattr(ends[1], name)) / (2.0 * step)
+
+    for name, expected, by_tilt, bound in (
+        ("energy", "load", False, 1e-8), ("energy", "moment", True, 1e-8), ("load", "by_approach", False, 1e-5),
+        ("load", "by_tilt", True, 1e-5), ("moment", "by_tilt", False, 1e-5), ("moment", "moment_by_tilt", True, 1e-5),
+    ):  # fmt: skip
+        values = getattr(found, expected)
+        np.testing.assert_allclose(slope(name, by_tilt), values, atol=bound * np.max(np.abs(values)))
+
+
+def test_a_pin_leans_in_its_seat_until_both_sides_carry_the_same():
+    """Forces and moments of contact and seat at the place and lean found, by each law alone: 1e-9."""
+    law = HalfSpaceCompliance.of_drive(loose()).pin_law
+    delta, theta = np.array([[0.01, 0.02, 0.004]]), np.array([[1e-3, -5e-4, 2e-3]])
+    radius = np.full_like(delta, 6.0)
+    law = BackedLine(contact=law.contact, seat=law.seat, play=np.full(3, 0.01))
+    found, travel, lean = law.solve(delta, theta, radius)
+    outside = law.contact.respond(delta - travel, theta - lean, radius)
+    inside = law.seat.press(travel[0], lean[0], np.full(3, 0.01))
+    for one in (outside.load[0], inside.load):
+        np.testing.assert_allclose(one, found.load[0], rtol=1e-9)
+    for one in (outside.moment[0], inside.moment):
+        np.testing.assert_allclose(one, found.moment[0], rtol=1e-9)
+    # From what was answered, the same answer.
+    again = law.respond(delta, theta, radius, found.slice_load)
+    np.testing.assert_allclose(again.slice_load, found.slice_load, rtol=1e-8, atol=1e-8)
+
+
+def test_a_spring_before_a_neat_seat_is_two_springs():
+    """Without play a seat is a spring, even along the width: F = δ/(1/k + c), M = θ w²/12/(1/k + c), to 1e-6 (none is 1 pm)."""
+    law = wheel_pin_seat(loose())
+    spring, compliance = 2e5, float(law.approach_and_compliance(1.0, 0.0)[1])
+    contact = SlicedSpring(stiffness=spring, length=LENGTH, slices=SLICES)
+    both = BackedLine(contact=contact, seat=SlicedSeat.of_law(law, SLICES), play=np.zeros(1))
+    delta, theta = np.array([[0.02]]), np.array([[1e-3]])
+    found = both.respond(delta, theta, np.ones((1, 1)))
+    stiffness = 1.0 / (1.0 / spring + compliance)
+    assert found.load[0, 0] == pytest.approx(0.02 * stiffness, rel=1e-6)
+    assert found.moment[0, 0] == pytest.approx(1e-3 * stiffness * LENGTH**2 / 12.0, rel=1e-6)
+
+
+def test_a_sleeve_counts_its_wall_once():
+    """A line whose second body is a sleeve, aligned: the plane law less what its own law has of it, to 0.5 % of the approach."""
+    overlap = 6.7e-7
+    law = SlicedLine(
+        length=LENGTH, contact_modulus=MODULUS, slices=SLICES, relief=np.zeros((SLICES, 4)), sleeve=0.5, overlap=overlap
+    )
+    plane = LineContactLaw(LENGTH, MODULUS)
+    load = np.array([100.0, 1000.0, 3000.0])
+    approach = plane.approach_at_load(load, np.full(3, 6.0))[0] - overlap * load
+    np.testing.assert_allclose(law.respond(approach, np.zeros(3), np.full(3, 6.0)).load, load, rtol=1e-2)
