@@ -6,7 +6,6 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ltca.drive.members.width import needs_slices
 from ltca.errors import DriveError
 from ltca.reading.arguments import (
     add_case_argument,
@@ -108,6 +107,8 @@ def _require_libraries(kind: str) -> None:
 
 def _require_straight(part: Part, kind: str) -> None:
     """Refuse profiles along the length and inclinations, which straight and upright bodies do not have."""
+    from ltca.drive.members.width import needs_slices
+
     if kind in SOLID and part.profiled:
         raise DriveError(
             [
