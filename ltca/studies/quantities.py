@@ -125,9 +125,8 @@ class SampleBatch:
         """Largest face load factor of contacts in slices of each sample, of which every disc has some groups."""
         if kind.along is None:
             raise ValueError("contacts have no slices")
-        return np.asarray(
-            np.nanmax(self.by_sample(face_load_factor(kind.along, groups * len(self.model.discs))), axis=1)
-        )
+        found = face_load_factor(kind.along, groups * len(self.model.discs), self.samples)
+        return np.asarray(np.nanmax(self.by_sample(found), axis=1))
 
     def tilts(self) -> FloatArray:
         """Tilts of all discs at all positions, rad."""

@@ -106,6 +106,11 @@ def test_the_face_load_factor_of_a_wedge():
     kind = AlongWidth(line_load=line, pressure=line, half_width=line, place=line[..., 0], end_load=line[..., :2])
     assert face_load_factor(kind) == pytest.approx(1.6)
     assert face_load_factor(kind, 2) == pytest.approx(np.array([[1.6, 1.0]]))
+    # What carries less than a tenth of another has none; two drives one after another are judged each by its own.
+    light = np.concatenate((line, 0.05 * line))
+    kind = AlongWidth(line_load=light, pressure=light, half_width=light, place=light[..., 0], end_load=light[..., :2])
+    assert np.isnan(face_load_factor(kind)).tolist() == [[False], [True]]
+    assert face_load_factor(kind, series=2) == pytest.approx(1.6)
 
 
 def test_the_plane_has_nothing_of_this(drive):
