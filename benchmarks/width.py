@@ -68,7 +68,7 @@ def print_case(name: str, radius: float, drop: float, approach: float, tilt: flo
         except ConvergenceError:
             numbers.append("does not settle")
             continue
-        largest = estimate_along_width(kind, contact, given[2]).largest[0]
+        largest = estimate_along_width(kind, contact.line_load, given[2]).largest[0]
         numbers.append(
             f"{100.0 * (contact.load[0] / fine.load - 1.0):+.2f} {100.0 * (contact.moment[0] - fine.moment) / arm:+.2f} "
             f"{100.0 * (largest / peak[20] - 1.0):+.1f}"

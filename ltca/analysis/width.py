@@ -79,7 +79,7 @@ def face_load_factor(kind: AlongWidth, groups: int = 1, series: int = 1) -> Floa
     known = np.where(np.isfinite(mean), mean, 0.0).reshape(series, -1)
     least = np.repeat(CARRYING * known.max(axis=1), mean.shape[0] // series)[:, None]
     carries = (mean > 0.0) & (mean >= least)
-    return np.divide(each.max(axis=(2, 3)), mean, out=np.full(mean.shape, np.nan), where=carries)
+    return np.asarray(np.divide(each.max(axis=(2, 3)), mean, out=np.full(mean.shape, np.nan), where=carries))
 
 
 def width_coordinates(drives: Mapping[str, Drive]) -> dict[str, Any]:

@@ -38,7 +38,7 @@ def compare(radius, slices, approach, tilt, drop=0.0):
     given = [np.array([value]) for value in (delta, theta, radius)]
     found = line.respond(*given)
     arm = max(abs(grid.moment), grid.load * LENGTH / 6.0)
-    largest = estimate_along_width(kind, found, given[2]).largest[0]
+    largest = estimate_along_width(kind, found.line_load, given[2]).largest[0]
     return np.array(
         (
             found.load[0] / grid.load - 1.0,

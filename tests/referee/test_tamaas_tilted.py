@@ -79,5 +79,5 @@ def test_load_moment_and_pressure(drop, tilt, load, span, slices):
     assert found.moment[0] == pytest.approx(moment, abs=0.02 * arm)
     if drop:
         largest = float(pressure.max())
-        assert estimate_along_width(kind, found, given[2]).largest[0] == pytest.approx(largest, rel=0.03)
+        assert estimate_along_width(kind, found.line_load, given[2]).largest[0] == pytest.approx(largest, rel=0.03)
         assert solve_along_width(kind, *given).largest[0] == pytest.approx(largest, rel=0.01)
