@@ -156,7 +156,9 @@ def coordinates(analyses: Mapping[str, LoadedAnalysis]) -> dict[str, Any]:
 
 
 def check_common_shape(cases: Mapping[str, Drive], mend: str = "run it alone with --case") -> None:
-    """Refuse cases with different numbers of pins, rollers, holes, discs or slices: they do not fit one dataset; `mend` says what to do.
+    """Refuse cases with different numbers of pins, rollers, holes, discs or slices, which do not fit one dataset.
+
+    `mend` says what to do.
 
     Raises
     ------
