@@ -17,6 +17,7 @@ from ltca.analysis.width import face_load_factor
 from ltca.compliance.response import AlongWidth
 from ltca.drive.members.limits import parse_limits
 from ltca.errors import DriveError
+from ltca.figures.run_figures import draw_figure, figures_of
 from ltca.geometry.coordinates import DISC_PLACE
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
@@ -171,6 +172,18 @@ def test_pressures_anywhere_are_judged_by_yield_at_straight_ends_and_as_allowed_
     )
     assert "pin_pressure_max" not in plane
     assert "contact.slices = 1" in plane["disc_tilt"].value.reason
+
+
+def test_the_figure_shows_the_most_loaded_pin_and_roller(data):
+    """Steps over the slices, line load above and pressure below."""
+    up = data["up"]
+    assert "along_width" in figures_of(up)
+    axes = draw_figure("along_width", up).axes
+    for column, (load, line) in enumerate((("pin_load", "pin_line_load"), ("roller_load", "roller_line_load"))):
+        most = np.unravel_index(int(np.argmax(up[load].values)), up[load].shape)
+        (steps,) = axes[column].patches
+        assert steps.get_data().values == pytest.approx(up[line].values[most])
+        assert steps.get_data().edges[[0, -1]] == pytest.approx([-5.9, 5.9])
 
 
 def test_only_a_crown_that_is_too_small_is_said_to_run_off(drive):
