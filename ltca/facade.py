@@ -243,6 +243,18 @@ class Plots:
         """Draw the part of the torque that each disc carries over the crank angle; 1 throughout of one disc."""
         return self._drawn("torque_share")
 
+    def along_width(self) -> Figure:
+        """Draw line load and pressure along the width of the most loaded wheel pin and roller, of contacts in slices.
+
+        Raises
+        ------
+        DriveError
+            In the plane (``contact.slices = 1``).
+        """
+        if "slice" not in self.dataset.sizes:
+            raise DriveError(["contact.slices = 1: must be at least 3 for a figure along the width"])
+        return self._drawn("along_width")
+
     def cranks(self) -> Figure:
         """Draw the moment that holds each crank, and where they yield how far each does."""
         return self._drawn("cranks")

@@ -16,7 +16,7 @@ all cases are held together, their working memory once."""
 PER_SLICE = 800.0
 """Memory for each slice of a pair at one position beside that, bytes: 0.4 kB measured for the paper's drive with 9 and 17."""
 DISC_PER_PAIR, DISC_PER_SLICE = 60.0, 32.0
-"""Of results.nc, 2 kB for each position of the paper's drive, and for each slice of a pair line loads and pressures (27 measured)."""
+"""Of results.nc, 2 kB for each position of the paper's drive; for each slice of a pair line loads and pressures, 27 measured."""
 
 
 MEMORY_PER_PART, PART_PER_PAIR = 2e8, 900.0

@@ -156,14 +156,16 @@ def coordinates(analyses: Mapping[str, LoadedAnalysis]) -> dict[str, Any]:
 
 
 def check_common_shape(cases: Mapping[str, Drive], mend: str = "run it alone with --case") -> None:
-    """Refuse cases with different numbers of pins, rollers, holes or discs: they do not fit one dataset; `mend` says what to do.
+    """Refuse cases with different numbers of pins, rollers, holes, discs or slices, which do not fit one dataset.
+
+    `mend` says what to do.
 
     Raises
     ------
     DriveError
         Naming the case and the numbers.
     """
-    shapes = {
+    shapes: dict[str, tuple[int, ...]] = {
         name: (
             d.pin_wheel.number_of_pins,
             d.crank_bearing.number_of_rollers,
@@ -175,7 +177,9 @@ def check_common_shape(cases: Mapping[str, Drive], mend: str = "run it alone wit
         for name, d in cases.items()
     }
     first = next(iter(shapes))
-    things = ("wheel pins", "rollers", "shaft pins", "discs", "cranks", "slices")
+    things: tuple[str, ...] = ("wheel pins", "rollers", "shaft pins", "discs", "cranks", "slices (contact.slices)")
+    if len({drive.contact.slices for drive in cases.values()}) == 1:  # which goes without saying
+        shapes, things = {name: shape[:-1] for name, shape in shapes.items()}, things[:-1]
     problems = [
         f"case {name}: has {_counted(shape, things)}: must be {_counted(shapes[first], things)} as in case {first} to share "
         f"one result ({mend})"

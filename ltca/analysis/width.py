@@ -62,16 +62,24 @@ def moments_of(leverage: ComplexArray) -> FloatArray:
     return np.stack((-leverage.imag, leverage.real), axis=-1)
 
 
-def face_load_factor(kind: AlongWidth, groups: int = 1) -> FloatArray:
+CARRYING = 0.1
+"""Part of the largest load of its kind from which a joint has a face load factor: what barely touches does so at a corner."""
+
+
+def face_load_factor(kind: AlongWidth, groups: int = 1, series: int = 1) -> FloatArray:
     """Return K_Hβ of groups of pairs, shape (positions, groups): the largest line load by the largest mean one.
 
-    It is that of the pair that carries most, where that has the largest line load as well; not a number where none carries.
+    It is that of the pair that carries most, where that has the largest line load as well; not a number where a group carries
+    less than `CARRYING` of the most that any does at one of the positions, of `series` drives one after another.
     """
     each = kind.line_load.reshape(kind.line_load.shape[0], groups, -1, kind.line_load.shape[-1])
     if not each.shape[2]:
         return np.full(each.shape[:2], np.nan)
     mean = each.mean(axis=3).max(axis=2)
-    return np.asarray(np.divide(each.max(axis=(2, 3)), mean, out=np.full(mean.shape, np.nan), where=mean > 0.0))
+    known = np.where(np.isfinite(mean), mean, 0.0).reshape(series, -1)
+    least = np.repeat(CARRYING * known.max(axis=1), mean.shape[0] // series)[:, None]
+    carries = (mean > 0.0) & (mean >= least)
+    return np.asarray(np.divide(each.max(axis=(2, 3)), mean, out=np.full(mean.shape, np.nan), where=carries))
 
 
 def width_coordinates(drives: Mapping[str, Drive]) -> dict[str, Any]:

@@ -34,7 +34,7 @@ def draw_along_width(figure: Figure, data: xr.Dataset, _: Any = None) -> None:
     names, lines = case_names(data), lines_of(data)
     figure.set_figheight(4.6 + 0.16 * (min(len(names), MOST_NAMES) if len(names) > 1 else 0))
     grid = figure.subplots(2, len(PARTS), sharex="col", sharey="row", squeeze=False)
-    for column, (part, load, height, line_load, pressure, name) in enumerate(PARTS):
+    for column, (_, load, height, line_load, pressure, name) in enumerate(PARTS):
         told = []
         for case, line in enumerate(lines):
             loads = data[load].values[case]

@@ -98,7 +98,7 @@ def estimate_along_width(kind: ContactKind, line_load: FloatArray, effective_rad
     # An end carries as one of a line that is even and long has its peak by the half-width there.
     half_width = np.sqrt(4.0 * ends * radius[..., None] / (np.pi * kind.contact_modulus))
     at_ends = pressure_of(ends, 1) * find_cylinder_ratio(kind, half_width)
-    flat = inner.reshape(*radius.shape, -1)
+    flat = inner.reshape(*radius.shape, line.shape[-2] * line.shape[-1])
     every = np.concatenate((flat, at_ends), axis=-1)
     places = np.concatenate((z.ravel(), (-0.5 * kind.length, 0.5 * kind.length)))
     top = np.argmax(every, axis=-1)

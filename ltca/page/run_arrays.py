@@ -51,9 +51,10 @@ def run_arrays(dataset: Labelled, light: Labelled | None, rows: NDArray[np.intp]
     ``angle``, rad; by number of the case, torque and name, as ``0/full/pin/load``: loads in N, pressures at mid-width in MPa,
     half-widths in mm of shape (discs, contacts, positions), the parameter of each contact on the flank, rad; ``radial`` and
     ``tangential`` of each disc, mm, its ``rotation``, rad, the ``wheel`` angle, rad, and the transmission error ``te`` in
-    arc seconds; of contacts in slices, at the torque of the run, ``pin/line`` and ``pin/along``, N/mm and MPa, of shape (discs,
-    contacts, slices, positions), and the ``tilt`` of each disc, rad; further curves of the whole drive (`_curves`). The dataset is `ltca.analysis.results.labelled_results`, or
-    ``results.nc`` read back, `light` the same at the light torque: without it that torque has its transmission error alone.
+    arc seconds; further curves of the whole drive (`_curves`). Of contacts in slices, at the torque of the run, ``pin/line`` and
+    ``pin/along``, N/mm and MPa, of shape (discs, contacts, slices, positions), and the ``tilt`` of each disc, rad. The dataset is
+    `ltca.analysis.results.labelled_results`, or ``results.nc`` read back, `light` the same at the light torque: without it that
+    torque has its transmission error alone.
     `rows` are the positions that are shown (`shown_positions`).
     """
     arrays: dict[str, FloatArray] = {"angle": dataset["crank_angle"].values}

@@ -122,16 +122,17 @@ class SampleBatch:
         return self.model.discs[0].geometry.placement.cranks
 
     def face_load_factor(self, kind: KindPressures, groups: int = 1) -> FloatArray:
-        """Largest face load factor of contacts in slices of each sample, of which every disc has some groups."""
+        """Largest face load factor of each sample, of which every disc has some groups; not a number without slices."""
         if kind.along is None:
-            raise ValueError("contacts have no slices")
-        return np.asarray(
-            np.nanmax(self.by_sample(face_load_factor(kind.along, groups * len(self.model.discs))), axis=1)
-        )
+            return np.full(self.samples, np.nan)
+        found = face_load_factor(kind.along, groups * len(self.model.discs), self.samples)
+        return np.asarray(np.nanmax(self.by_sample(found), axis=1))
 
     def tilts(self) -> FloatArray:
-        """Tilts of all discs at all positions, rad."""
+        """Tilts of all discs at all positions, rad; none without slices."""
         coordinates, pose = self.model.coordinates, self.full.pose
+        if not coordinates.leans:
+            return np.zeros((self.samples, 1))
         leans = [pose[:, coordinates.columns(disc)[coordinates.lean_place]] for disc in range(coordinates.discs)]
         return self.by_sample(np.stack([np.hypot(*lean.T) for lean in leans], axis=1))
 

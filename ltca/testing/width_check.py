@@ -324,15 +324,15 @@ class WidthCheck:
         rows = []
         for kind in ("load", "moment"):
             for part in parts:
-                pairs, motion = (
-                    (part.leaning_pins, part.flank) if name == "wheel" else (part.leaning_holes, part.holes)
-                )
+                pairs, motion = (part.leaning_pins, part.flank) if name == "wheel" else (part.leaning_holes, part.holes)
                 assert pairs is not None
                 normal = motion.gradient[row, :, 0] + 1j * motion.gradient[row, :, 1]
                 rows.append(-getattr(pairs.contact, kind)[row] * normal)
         return np.stack(rows)
 
-    def _bent(self, name: str, part: PinWheel | PinShaft, material: Material) -> list[tuple[ComplexArray, ComplexArray]]:
+    def _bent(
+        self, name: str, part: PinWheel | PinShaft, material: Material
+    ) -> list[tuple[ComplexArray, ComplexArray]]:
         stiffness, force = beam_stiffness(self.drive, part, material, slopes=True), self._on_pins(name)
         count = 2 * self.discs
         if stiffness is None:
@@ -440,7 +440,12 @@ class WidthCheck:
             moved[self.discs :] *= half
             size = float(np.max(np.abs(stands)))
             # As the forces are known to a ten-thousandth.
-            told(f"crank {crank}: displacement or slope of a journal off", _most(np.abs(moved - stands)), 3e-4 * size, "mm")
+            told(
+                f"crank {crank}: displacement or slope of a journal off",
+                _most(np.abs(moved - stands)),
+                3e-4 * size,
+                "mm",
+            )
         outside, tilting = outside_on_wheel(drive, self.crank_angle), self._tilting_outside()
         wheel = np.array([-disc.on_flank[0].force.sum() for disc in self.each])
         couples = np.array([-disc.on_flank[0].couple.sum() for disc in self.each])

@@ -27,9 +27,9 @@ from ltca.testing.practical_drives import practical_drive
 def check(drive, radius, pin=(0.0, 0.0), outer=0.0, inner=0.0):
     """Check one position: effective radii and half-widths of two pins, half-widths of a roller on bore and race."""
     pressures = SimpleNamespace(
-        pins=SimpleNamespace(half_width=np.array([pin])),
-        outer=SimpleNamespace(half_width=np.array([[0.0, outer]])),
-        inner=SimpleNamespace(half_width=np.array([[inner, 0.0]])),
+        pins=SimpleNamespace(half_width=np.array([pin]), widest=np.array([pin])),
+        outer=SimpleNamespace(half_width=np.array([[0.0, outer]]), widest=np.array([[0.0, outer]])),
+        inner=SimpleNamespace(half_width=np.array([[inner, 0.0]]), widest=np.array([[inner, 0.0]])),
     )
     contacts = SimpleNamespace(flank=SimpleNamespace(effective_radius=np.array([radius])))
     check_half_widths([drive], contacts, pressures, 377_300.0)

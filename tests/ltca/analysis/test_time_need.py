@@ -16,6 +16,8 @@ def test_the_time_of_a_solution_is_told_beforehand(tmp_path, capsys, monkeypatch
         assert expected_seconds([drive, drive], 10, engine) == 2.0 * expected_seconds([drive], 10, engine)
     assert expected_seconds([drive], 1, Hybrid()) < 0.01  # no extremes between positions of one angle
     assert time_words([drive], 360, HalfSpace()) == ""
+    sliced = with_fields(drive, {"contact.slices": 9})
+    assert time_words([sliced], 360, HalfSpace()).endswith("(360 positions, half-space, 9 slices)")
     monkeypatch.setattr("ltca.analysis.time_need.TOLD_FROM", 0.0)
     assert main(["run", "paper", "--case", "CS-1", "--angles", "0.3", "--no-page", "--out", str(tmp_path / "out")]) == 0
     told = capsys.readouterr().err

@@ -17,6 +17,7 @@ from ltca.analysis.width import face_load_factor
 from ltca.compliance.response import AlongWidth
 from ltca.drive.members.limits import parse_limits
 from ltca.errors import DriveError
+from ltca.figures.run_figures import draw_figure, figures_of
 from ltca.geometry.coordinates import DISC_PLACE
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
@@ -106,6 +107,11 @@ def test_the_face_load_factor_of_a_wedge():
     kind = AlongWidth(line_load=line, pressure=line, half_width=line, place=line[..., 0], end_load=line[..., :2])
     assert face_load_factor(kind) == pytest.approx(1.6)
     assert face_load_factor(kind, 2) == pytest.approx(np.array([[1.6, 1.0]]))
+    # What carries less than a tenth of another has none; two drives one after another are judged each by its own.
+    light = np.concatenate((line, 0.05 * line))
+    kind = AlongWidth(line_load=light, pressure=light, half_width=light, place=light[..., 0], end_load=light[..., :2])
+    assert np.isnan(face_load_factor(kind)).tolist() == [[False], [True]]
+    assert face_load_factor(kind, series=2) == pytest.approx(1.6)
 
 
 def test_the_plane_has_nothing_of_this(drive):
@@ -116,7 +122,7 @@ def test_the_plane_has_nothing_of_this(drive):
 
 
 def test_cases_with_other_slices_share_no_dataset(drive):
-    with pytest.raises(DriveError, match="5 slices"):
+    with pytest.raises(DriveError, match=r"5 slices \(contact"):
         check_common_shape({"one": with_fields(drive, {"contact.slices": 1}), "two": drive})
 
 
@@ -166,6 +172,18 @@ def test_pressures_anywhere_are_judged_by_yield_at_straight_ends_and_as_allowed_
     )
     assert "pin_pressure_max" not in plane
     assert "contact.slices = 1" in plane["disc_tilt"].value.reason
+
+
+def test_the_figure_shows_the_most_loaded_pin_and_roller(data):
+    """Steps over the slices, line load above and pressure below."""
+    up = data["up"]
+    assert "along_width" in figures_of(up)
+    axes = draw_figure("along_width", up).axes
+    for column, (load, line) in enumerate((("pin_load", "pin_line_load"), ("roller_load", "roller_line_load"))):
+        most = np.unravel_index(int(np.argmax(up[load].values)), up[load].shape)
+        (steps,) = axes[column].patches
+        assert steps.get_data().values == pytest.approx(up[line].values[most])
+        assert steps.get_data().edges[[0, -1]] == pytest.approx([-5.9, 5.9])
 
 
 def test_only_a_crown_that_is_too_small_is_said_to_run_off(drive):
