@@ -3,8 +3,9 @@
 ``--practical`` generates drives with practical proportions (`ltca.testing.practical_drives`), ``--preloaded`` drives whose parts
 overlap as drawn, ``--cranks`` reducers of all kinds (`ltca.testing.crank_drives`), ``--pins`` reducers with loose, sleeved or
 bending pins, ``--friction`` reducers with friction, also with reversed motion (`ltca.testing.pin_drives`). All of these must
-be solved. ``--tilted`` generates random reducers with contacts in slices, leads and inclinations. Up
-to half of the others have an elastic ring, free, bolted or built in.
+be solved. ``--tilted`` generates random reducers with contacts in slices, leads and inclinations, ``--sloping`` reducers of all
+kinds with them, whose pins and cranks bend and whose wheels tilt; they are checked in six directions (`ltca.testing.width_check`).
+Up to half of the others have an elastic ring, free, bolted or built in.
 
 A solution has to be confirmed by `ltca.testing.balance_check` (residual, complementarity, minimum of the potential) or be a
 `ConvergenceError` with its history; anything else counts as wrong and is reported with its seed. Results are written as JSON
@@ -32,7 +33,7 @@ from ltca.equilibrium.output_torque import solve_at_output
 from ltca.errors import ConvergenceError
 from ltca.testing.balance_check import find_imbalance
 from ltca.testing.crank_drives import crank_drive
-from ltca.testing.pin_drives import friction_drive, pin_drive
+from ltca.testing.pin_drives import friction_drive, pin_drive, sloping_drive
 from ltca.testing.practical_drives import practical_drive, preloaded_drive
 from ltca.testing.random_drives import random_reducer, tilted_reducer
 
@@ -93,6 +94,7 @@ def main() -> int:
     kind.add_argument("--pins", action="store_true", help="reducers with loose, sleeved and bending pins")
     kind.add_argument("--friction", action="store_true", help="reducers with friction, driven in both directions")
     kind.add_argument("--tilted", action="store_true", help="random reducers with slices, leads and inclinations")
+    kind.add_argument("--sloping", action="store_true", help="these of all kinds: beams, supports, wheels that tilt")
     parser.add_argument("--first", type=int, default=0, help="first seed; default 0")
     parser.add_argument("--out", type=Path, default=Path("out/random_drives.json"))
     arguments = parser.parse_args()
@@ -107,6 +109,8 @@ def main() -> int:
         if arguments.friction
         else tilted_reducer
         if arguments.tilted
+        else sloping_drive
+        if arguments.sloping
         else draw
     )
     outcomes: Counter[str] = Counter()

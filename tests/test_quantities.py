@@ -47,7 +47,7 @@ contamination = 0.5
 [temperature]
 disc = 30.0
 """
-INDEXES = {"case", "disc", "crank", "position", "pin", "roller", "hole"}
+INDEXES = {"case", "disc", "crank", "position", "pin", "roller", "hole", "slice", "axis"}
 INFORMATION = {
     "torque_share", "disc_displacement", "disc_displacement_area", "pose_iterations", "dof", "size", "plane_state", "held",
     "fingerprint", "seconds", "seconds_by_stage",
@@ -96,7 +96,7 @@ def test_scalars_have_the_unit_of_what_they_sum_up():
 @pytest.fixture(scope="module")
 def drives():
     """The shipped drives; one that rubs, is warm, has an elastic ring and carrier, a soft bearing and a hardened case; one with
-    teeth and an arm; one with cranks that twist.
+    teeth and an arm; one with cranks that twist; one in slices.
     """
     files = {name: parse_drive(shipped_drive(name), name) for name in SHIPPED}
     text = re.sub(r"(?m)^(torque = .*)$", r"\1\nspeed = 1000.0", shipped_drive("sleeved")).replace(
@@ -109,13 +109,15 @@ def drives():
              "first_stage.plane": 40.0}  # fmt: skip
     teeth |= {"main_bearing.radial_stiffness": 1e6, "main_bearing.axial_stiffness": 1e6}
     twisting = {"crank.support.torsion": True, "crank.support.spline_plane": 40.0}
-    return found | {"geared": with_fields(found["rv"], teeth), "twisting": with_fields(found["rv"], twisting)}
+    wide = {"contact.slices": 5, "disc.lead_slope": 1e-4, "disc.axial_play": 0.1}
+    sliced = {"sliced": with_fields(found["paper"], wide)}
+    return found | sliced | {"geared": with_fields(found["rv"], teeth), "twisting": with_fields(found["rv"], twisting)}
 
 
 @pytest.mark.slow
 def test_runs_write_what_is_declared_and_nothing_else(drives):
     kept = json.loads(SCHEMA.read_text(encoding="utf-8"))
-    arrays, keys, judged = set(), set(), {"carried_torque", "roller_pressure_mid"}
+    arrays, keys, judged = set(), set(), {"carried_torque", "roller_pressure_mid", "roller_pressure_max"}
     for name, drive in drives.items():
         analysis = analyse(drive, np.array([0.1, 1.9]))
         summary = summarise(analysis)

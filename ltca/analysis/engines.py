@@ -21,7 +21,7 @@ from ltca.compliance.grids import GridCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.near_field import NEAR_FIELDS
 from ltca.compliance.response import Start
-from ltca.drive.engine_support import require_engine
+from ltca.drive.engine_support import require
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Compliance, Drive
 from ltca.drive.ring_shape import has_ring_of_elements, nearly_same_ring, ring_fingerprint
@@ -217,7 +217,8 @@ class HalfSpace:
     def prepare(self, drive: Drive) -> PreparedEngine:
         """Return the engine built for a drive."""
         drive = warm_drive(drive)
-        require_engine(drive, self.method)
+        if self.method != "tables":
+            require(drive, self.method)
         singles = single_discs(drive)
         tables = model = _on_tables(drive, singles, self.rings)
         if self.contacts == "grids":
@@ -232,7 +233,6 @@ class HalfSpace:
     def model(self, drive: Drive, *, in_batch: bool = False) -> Reducer:
         """Return the tables of a drive."""
         drive = warm_drive(drive)
-        require_engine(drive, "tables")
         return _on_tables(drive, single_discs(drive), self.rings, in_batch=in_batch)
 
 
@@ -303,7 +303,7 @@ class CoupledEngine:
 
         Raises `DriveError` for what the engine cannot represent, before anything is derived.
         """
-        require_engine(drive, self.compliance)
+        require(drive, self.compliance)
         if self._of_discs:
             return self
         singles = single_discs(warm_drive(drive))
@@ -347,7 +347,7 @@ class CoupledEngine:
         Raises `DriveError` for what the engine cannot represent, of those that are served as of those that lend.
         """
         for each in singles:
-            require_engine(each, self.compliance)
+            require(each, self.compliance)
         found = tuple(own.lent_to(each) for own, each in zip(self._of_discs, singles, strict=True))
         return replace(self, coefficients=found[0] if len(found) == 1 else found)
 
@@ -379,7 +379,7 @@ class CoupledEngine:
     def prepare(self, drive: Drive) -> PreparedEngine:
         """Return the engine built for a drive; finds or derives its coefficients."""
         drive = warm_drive(drive)
-        require_engine(drive, self.compliance)
+        require(drive, self.compliance)
         singles = single_discs(drive)
         tables = _on_tables(drive, singles, self.rings)
         return _FromTables(drive=drive, tables=tables, model=self._model(drive, singles))

@@ -13,8 +13,10 @@ MEMORY_PER_PAIR, SEVERAL_DISCS, DISPLACED_PINS = 1300.0, 2.0, 1.65
 pins are displaced, whose forces and slopes are solved together. At the most: by position and pair 0.6 kB (half-space) and 1.3 kB
 (hybrid) for the paper's drive, 1.6 and 2.6 kB for the joint, 2.3 and 4.1 kB for it on a ring, 4.3 kB with friction. Analyses of
 all cases are held together, their working memory once."""
-DISC_PER_PAIR = 60.0
-"""Of results.nc, 2 kB for each position of the paper's drive."""
+PER_SLICE = 800.0
+"""Memory for each slice of a pair at one position beside that, bytes: 0.4 kB measured for the paper's drive with 9 and 17."""
+DISC_PER_PAIR, DISC_PER_SLICE = 60.0, 32.0
+"""Of results.nc, 2 kB for each position of the paper's drive, and for each slice of a pair line loads and pressures (27 measured)."""
 
 
 MEMORY_PER_PART, PART_PER_PAIR = 2e8, 900.0
@@ -28,14 +30,20 @@ KEPT_PER_POSITION = 1e3
 
 def positions_together(drive: Drive) -> int:
     """Return how many positions of a drive are solved at once where an analysis is solved part by part."""
-    each = PART_PER_PAIR * (DISPLACED_PINS if _displaces_pins(drive) else 1.0)
+    each = (PART_PER_PAIR + _of_slices(drive)) * (DISPLACED_PINS if _displaces_pins(drive) else 1.0)
     return max(1, int(MEMORY_PER_PART / (each * pairs_of(drive))))
 
 
 def memory_per_position(drive: Drive) -> float:
     """Return the memory for one position of an analysis at the most, bytes."""
     several = SEVERAL_DISCS if drive.disc.number_of_discs > 1 else 1.0
-    return MEMORY_PER_PAIR * pairs_of(drive) * several * (DISPLACED_PINS if _displaces_pins(drive) else 1.0)
+    each = (MEMORY_PER_PAIR + _of_slices(drive)) * (DISPLACED_PINS if _displaces_pins(drive) else 1.0)
+    return each * pairs_of(drive) * several
+
+
+def _of_slices(drive: Drive) -> float:
+    """Memory for the slices of a pair at one position, bytes: none in the plane."""
+    return PER_SLICE * drive.contact.slices if drive.contact.slices > 1 else 0.0
 
 
 def _displaces_pins(drive: Drive) -> bool:
@@ -73,7 +81,10 @@ def require_room_for_parts(drive: Drive, positions: int, folder: Path, option: s
         With the numbers.
     """
     require_room_for([drive], min(positions, positions_together(drive)), folder, option)
-    require_room(0.0, memory=KEPT_PER_POSITION * positions, folder=folder, option=option)
+    # Rollers that tilt are kept with the loads of their slices on both races.
+    rollers = drive.disc.number_of_discs * drive.crank.number * drive.crank_bearing.number_of_rollers
+    kept = KEPT_PER_POSITION + (16.0 * rollers * drive.contact.slices if drive.contact.slices > 1 else 0.0)
+    require_room(0.0, memory=kept * positions, folder=folder, option=option)
 
 
 def require_room_for(drives: Iterable[Drive], positions: int, folder: Path, option: str) -> None:
@@ -96,5 +107,8 @@ def require_room_for(drives: Iterable[Drive], positions: int, folder: Path, opti
         With the numbers.
     """
     cases = list(drives)
-    kept = DISC_PER_PAIR * sum(map(pairs_of, cases)) * positions
+    each = [
+        DISC_PER_PAIR + (DISC_PER_SLICE * case.contact.slices if case.contact.slices > 1 else 0.0) for case in cases
+    ]
+    kept = sum(size * pairs_of(case) for size, case in zip(each, cases, strict=True)) * positions
     require_room(kept, memory=sum(map(memory_per_position, cases)) * positions, folder=folder, option=option)

@@ -21,6 +21,10 @@ SECONDS_PER_PAIR = {
 friction is there. Measured on the shipped drives (``benchmarks/study_costs.py``)."""
 
 
+PER_SLICE = {"positions": (10.0, 1.6), "extremes": (1.0, 1.4)}
+"""Factors of contacts in slices on that: the first number plus the second times the slices (5, 9 and 17 of the paper's drive)."""
+
+
 def expected_seconds(drives: Iterable[Drive], positions: int, engine: Engine) -> float:
     """Return about how long the analysis of drives at some positions each takes on one core, coefficients left out, s.
 
@@ -30,6 +34,11 @@ def expected_seconds(drives: Iterable[Drive], positions: int, engine: Engine) ->
     found = 0.0
     for drive in drives:
         each, extremes = SECONDS_PER_PAIR[kind, drive.friction is not None]
+        if (slices := drive.contact.slices) > 1:
+            each, extremes = (
+                seconds * (fixed + more * slices)
+                for seconds, (fixed, more) in zip((each, extremes), PER_SLICE.values(), strict=True)
+            )
         found += pairs_of(drive) * (each * positions + (extremes if positions > 1 else 0.0))
     return found
 
@@ -53,6 +62,8 @@ def time_words(drives: Iterable[Drive], positions: int, engine: Engine) -> str:
     if seconds < TOLD_FROM:
         return ""
     rubs = ", with friction" if any(drive.friction is not None for drive in cases) else ""
+    slices = max(drive.contact.slices for drive in cases)
+    rubs += f", {slices} slices" if slices > 1 else ""
     several = f"{len(cases)} cases, " if len(cases) > 1 else ""
     many = f"{positions} position{'s' * (positions > 1)}"
     return f"the solution takes {told_seconds(seconds)} on one core ({several}{many}, {engine.compliance}{rubs})"

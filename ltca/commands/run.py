@@ -160,8 +160,8 @@ def _files(arguments: argparse.Namespace, cases: Mapping[str, Drive]) -> Iterato
         from ltca.figures.run_figures import figure_names
         from ltca.output.run_folder import figure_files
 
-        drive = next(iter(cases.values()))  # all cases of a run have as many discs, holes and cranks
-        numbers = drive.disc.number_of_discs, drive.number_of_holes, drive.crank.number
+        drive = next(iter(cases.values()))  # all cases of a run have as many discs, holes, cranks and slices
+        numbers = drive.disc.number_of_discs, drive.number_of_holes, drive.crank.number, drive.contact.slices
         yield from figure_files(arguments.figures, *figure_names(*numbers))
         if arguments.pressure is not None:
             yield from figure_files(arguments.figures, *PRESSURE_FIGURES)

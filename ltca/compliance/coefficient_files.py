@@ -21,7 +21,7 @@ from typing import Any
 
 from ltca.compliance.coefficients import InfluenceCoefficients, load_coefficients
 from ltca.compliance.near_field import NEAR_FIELDS, NearField
-from ltca.drive.engine_support import require_engine
+from ltca.drive.engine_support import require
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
 from ltca.errors import CycloError, DamagedFileError
@@ -145,7 +145,7 @@ def find_coefficients(
     CycloError
         When no file fits the drive, plane strain cannot say what the drive has, or nothing is installed that derives.
     """
-    require_engine(drive, _ENGINES[near_field])
+    require(drive, _ENGINES[near_field])
     if files is not None:
         return _load_first_that_fits(files, drive)[1]
     found = _kept(drive)
@@ -184,7 +184,7 @@ def find_case_coefficients(
         As `find_coefficients`; before anything is derived.
     """
     for drive in cases.values():
-        require_engine(drive, _ENGINES[near_field])
+        require(drive, _ENGINES[near_field])
     cases = {label: single for name, drive in cases.items() for label, single in _discs(name, drive)}
     if files:
         return _load_each(cases, files)

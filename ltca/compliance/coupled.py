@@ -30,7 +30,7 @@ from ltca.arrays import ComplexArray, FloatArray, join_positions, take_positions
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.compliance.coupled_slices import respond_in_slices
 from ltca.compliance.near_field import NearField, NearFieldLaws, OwnParts
-from ltca.compliance.pressures import pressures_of_law
+from ltca.compliance.pressures import pressures_in_slices, pressures_of_law
 from ltca.compliance.response import (
     ContactPressures,
     DiscResponse,
@@ -232,8 +232,15 @@ class CoupledCompliance:
         raise AssertionError("all contacts are taken, none is left out")
 
     def pressures(self, response: DiscResponse) -> ContactPressures:
-        """Return pressures and half-widths from the near fields."""
-        laws, near = self.near_field, np.stack(list(response.warm_start))
+        """Return pressures and half-widths from the near fields, of contacts in slices from their line loads."""
+        laws = self.near_field
+        if response.leaning_pins is not None:
+            place, rigid = self.geometry.placement, laws.rigid_shaft_pins
+            at_hole: Any = laws.hole
+            modulus = getattr(at_hole, "contact", at_hole).contact_modulus
+            kinds = replace(laws.kinds, holes=replace(laws.kinds.holes, contact_modulus=modulus))
+            return pressures_in_slices(response, kinds, place, has_ends=laws.has_ends, rigid_shaft_pins=rigid)
+        near = np.stack(list(response.warm_start))
         pins, rollers = response.pin_load.shape[1], self.outer_radius.size
         inner, _ = laws.inner.approach_at_load(response.rollers.inner_load, self.inner_radius)
         hole, _ = laws.hole.approach_at_load(response.hole_load, self.hole_radius)

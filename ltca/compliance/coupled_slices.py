@@ -52,7 +52,9 @@ def respond_in_slices(
     here = ContactsInSlices(model.geometry, crank_angle, pose, flank, shifts, leans)
     bodies = _Bodies(model, here, pose)
     near = stacked(None if start is None else start.warm_start)
-    state = _settled(bodies, np.zeros(bodies.shape) if near is None else near[-1], near)
+    # Contacts found by tables know nothing of the bodies.
+    begin = np.zeros(bodies.shape) if near is None or near[-1].shape != bodies.shape else near[-1]
+    state = _settled(bodies, begin, near)
     found = here.response(state.pairs, state.rollers, warm_rows(state.pairs, state.rollers, state.given))
     return bodies.with_coupling(found, state)
 

@@ -5,9 +5,9 @@ surfaces: exact circles for rollers and races, exact flank and exact circle for 
 The warm start that travels with each position holds its contacts as values, so that one iteration starts from the
 contact cells of the last.
 
-With ``contact.slices`` above 1 contacts tilt: their grids cover the width without symmetry (`ltca.contact.tilted_grid`), and
-slices are what their line loads are told by. Cells found are then kept by contact for the next time it is pressed, at whichever
-position that is of: where an iteration starts alters no answer.
+With ``contact.slices`` above 1 contacts tilt: their grids cover the whole width without symmetry (`ltca.contact.tilted_grid`),
+and slices are what their line loads are told by. Cells found are then kept by contact for the next time it is pressed, at
+whatever position: where an iteration starts alters no answer.
 """
 
 from __future__ import annotations

@@ -122,6 +122,7 @@ class HalfSpaceCompliance(UncoupledContacts[ContactLaw]):
             found = generator_profile(given, length, radius)
             return 0.0 if found is None else found.relief(slice_heights(length, slices))
 
+        kinds = ContactKinds.of_drive(drive)  # the law has the lead, in which drives of a batch may differ
         wide, long = drive.disc.thickness, drive.roller_length
         of_pin = profile(drive.pin_wheel.pin_profile, wide, drive.pin_wheel.pin_radius)
         of_roller = profile(bearing.roller_profile, long, bearing.roller_radius)
@@ -151,7 +152,7 @@ class HalfSpaceCompliance(UncoupledContacts[ContactLaw]):
                 outer_radius=place.outer_effective_radii,
             ),
             hole_law=hole,
-            kinds=ContactKinds.of_drive(drive),
+            kinds=replace(kinds, pins=replace(kinds.pins, lead=None)),
         )
 
     def laws(self, flank: FlankMotion, warm_start: NDArray[np.object_] | None) -> PairLaws[ContactLaw]:

@@ -15,9 +15,9 @@ from __future__ import annotations
 import numpy as np
 
 from ltca.arrays import FloatArray
-from ltca.compliance.response import AlongWidth, KindPressures
+from ltca.compliance.response import AlongWidth, ContactPressures, DiscResponse, KindPressures
 from ltca.contact.end_pressure import largest_pressure_ratio
-from ltca.contact.tracked_grid import ContactKind
+from ltca.contact.tracked_grid import ContactKind, ContactKinds
 from ltca.geometry.placement import Placement
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.line_contact import LineContactLaw
@@ -53,25 +53,48 @@ def elastic_hole_pressures(kind: ContactKind, load: FloatArray, place: Placement
     return pressures_of_law(law, kind, approach, radius)
 
 
-def pressures_of_slices(kind: ContactKind, line_load: FloatArray, effective_radius: FloatArray) -> KindPressures:
-    """Return pressures and half-widths of contacts in slices by their line loads at the points of these, N/mm.
+def pressures_in_slices(
+    response: DiscResponse,
+    kinds: ContactKinds,
+    place: Placement,
+    *,
+    has_ends: bool = True,
+    rigid_shaft_pins: bool = False,
+) -> ContactPressures:
+    """Return pressures and half-widths of contacts in slices by their line loads; those of plane strain have no ends."""
+    rollers, pins, holes = response.rollers, response.leaning_pins, response.leaning_holes
+    if pins is None or holes is None or rollers.outer_lines is None or rollers.inner_lines is None:
+        raise ValueError("contacts have no slices")
+    found = (
+        _of_slices(kinds.pins, pins.contact.line_load, response.flank.effective_radius, has_ends),
+        _of_slices(kinds.outer, rollers.outer_lines, place.outer_effective_radii, has_ends),
+        _of_slices(kinds.inner, rollers.inner_lines, place.inner_effective_radii, has_ends),
+        _of_slices(kinds.holes, holes.contact.line_load, place.hole_effective_radii, has_ends),
+    )
+    return ContactPressures(
+        pins=found[0], outer=found[1], inner=found[2], holes=found[3], rigid_shaft_pins=rigid_shaft_pins
+    )
 
-    Line loads have the shape (positions, pairs, slices, points); the number of slices is odd, and mid-width is the middle one.
-    Effective radii, mm, are broadcast to the contacts.
+
+def _of_slices(kind: ContactKind, line_load: FloatArray, effective_radius: FloatArray, has_ends: bool) -> KindPressures:
+    """Pressures of one kind by line loads at the points of the slices, N/mm, shape (positions, pairs, slices, points).
+
+    The number of slices is odd, and mid-width is the middle one.
     """
     found = estimate_along_width(kind, line_load, effective_radius)
     half_width = 2.0 / kind.contact_modulus * found.pressure * np.asarray(effective_radius)[..., None]
     middle = found.pressure.shape[-1] // 2
+    largest, place, end_load = found.largest, found.place, found.end_load
+    if not has_ends:
+        at = np.argmax(found.pressure, axis=-1)
+        largest, end_load = found.pressure.max(axis=-1), np.zeros(end_load.shape)
+        place = np.where(largest > 0.0, found.height[at], 0.0)
     return KindPressures(
         mid=found.pressure[..., middle],
-        largest=found.largest,
+        largest=largest,
         half_width=half_width[..., middle],
-        end_cell=kind.end_cell,
+        end_cell=kind.end_cell if has_ends else np.nan,
         along=AlongWidth(
-            line_load=found.line_load,
-            pressure=found.pressure,
-            half_width=half_width,
-            place=found.place,
-            end_load=found.end_load,
+            line_load=found.line_load, pressure=found.pressure, half_width=half_width, place=place, end_load=end_load
         ),
     )

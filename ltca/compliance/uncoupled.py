@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.in_slices import ContactsInSlices, roller_start, stacked, warm_rows
-from ltca.compliance.pressures import elastic_hole_pressures, pressures_of_slices
+from ltca.compliance.pressures import elastic_hole_pressures, pressures_in_slices
 from ltca.compliance.response import (
     ContactPressures,
     DiscResponse,
@@ -31,7 +31,6 @@ from ltca.contact.tracked_grid import ContactKind, ContactKinds
 from ltca.geometry.pair_motion import BoreMotion, FlankMotion, PairMotion
 from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.contact_law import ContactLaw
-from ltca.laws.sliced_line import SlicedContact
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -172,8 +171,8 @@ class UncoupledContacts(ABC, Generic[Law]):
 
     def pressures(self, response: DiscResponse) -> ContactPressures:
         """Return pressures and half-widths from the laws, those of the shaft pins from their loads."""
-        if response.leaning_pins is not None and response.leaning_holes is not None:
-            return self._pressures_of_slices(response, response.leaning_pins.contact, response.leaning_holes.contact)
+        if response.leaning_pins is not None:
+            return pressures_in_slices(response, self.kinds, self.geometry.placement)
         flank, rollers, kinds = response.flank, response.rollers, self.kinds
         laws = self.laws(flank, response.warm_start)
         of_rollers = laws.rollers
@@ -182,20 +181,6 @@ class UncoupledContacts(ABC, Generic[Law]):
             outer=self.read_pressures(of_rollers.outer, kinds.outer, rollers.outer_approach, of_rollers.outer_radius),
             inner=self.read_pressures(of_rollers.inner, kinds.inner, rollers.inner_approach, of_rollers.inner_radius),
             holes=elastic_hole_pressures(kinds.holes, response.hole_load, self.geometry.placement),
-            rigid_shaft_pins=False,
-        )
-
-    def _pressures_of_slices(
-        self, response: DiscResponse, pins: SlicedContact, holes: SlicedContact
-    ) -> ContactPressures:
-        """The same of contacts in slices, from their line loads."""
-        rollers, kinds, place = response.rollers, self.kinds, self.geometry.placement
-        outer, inner = np.asarray(rollers.outer_lines), np.asarray(rollers.inner_lines)
-        return ContactPressures(
-            pins=pressures_of_slices(kinds.pins, pins.line_load, response.flank.effective_radius),
-            outer=pressures_of_slices(kinds.outer, outer, place.outer_effective_radii),
-            inner=pressures_of_slices(kinds.inner, inner, place.inner_effective_radii),
-            holes=pressures_of_slices(kinds.holes, holes.line_load, place.hole_effective_radii),
             rigid_shaft_pins=False,
         )
 

@@ -34,6 +34,7 @@ from ltca.figures.curve_panels import (
 from ltca.figures.house_style import CRANK, INK, MARK, OTHERS, STYLE, formula, save_figure
 from ltca.figures.mesh_range import elements_shown, loaded_window
 from ltca.figures.shared_axes import Axis, deviation, run_axes, run_values, torque_shares
+from ltca.figures.width_figures import draw_along_width
 
 Axes: TypeAlias = Mapping[str, Axis]
 """By the names of `ltca.figures.shared_axes.run_values`."""
@@ -241,6 +242,7 @@ FIGURES: dict[str, Draw] = {
         "pin_shaft_load", "pin_shaft_load", "load [N]", "Load of shaft pin{}", 35, "full/hole/load"
     ),
     "fig36_loaded_shaft_pins": _number_loaded("pin_shaft_load", "Number of loaded shaft pins", 36),
+    "along_width": draw_along_width,
     "torque_share": _torque_share,
     "cranks": draw_cranks,
 }
@@ -257,18 +259,28 @@ OF_THE_CRANKS = (
     "fig29_tangential_bearing_load",
     "fig30_radial_bearing_load",
     "fig34_roller_load",
+    "along_width",
 )
 """What every crank has of its own."""
+OF_SLICES = ("along_width",)
+"""What a drive has whose contacts have slices."""
 OF_THE_PIN_SHAFT = ("fig35_pin_shaft_load", "fig36_loaded_shaft_pins")
 """What a drive without pin shaft has not."""
 
 
-def figure_names(discs: int, holes: int, cranks: int = 1) -> list[str]:
+def figure_names(discs: int, holes: int, cranks: int = 1, slices: int = 1) -> list[str]:
     """Return the names of the figures of a run, keys of `FIGURES`; `holes` is 0 without a pin shaft."""
     missing: tuple[str, ...] = OF_SEVERAL_DISCS if discs == 1 else ()
     missing += OF_SEVERAL_CRANKS if cranks == 1 else ()
     missing += OF_THE_PIN_SHAFT if holes == 0 else ()
+    missing += OF_SLICES if slices == 1 else ()
     return [name for name in FIGURES if name not in missing]
+
+
+def figures_of(dataset: xr.Dataset) -> list[str]:
+    """Return the names of the figures of the dataset of a run."""
+    sizes = dataset.sizes
+    return figure_names(sizes["disc"], sizes["hole"], sizes["crank"], sizes.get("slice", 1))
 
 
 def draw_figure(name: str, dataset: xr.Dataset) -> Figure:
@@ -303,5 +315,5 @@ def _answered(dataset: xr.Dataset) -> xr.Dataset:
 
 def write_figures(dataset: xr.Dataset, folder: Path, kind: str = "svg") -> Iterator[Path]:
     """Write every figure of a run as ``svg``, ``png`` or ``pdf`` and yield each file."""
-    for name in figure_names(dataset.sizes["disc"], dataset.sizes["hole"], dataset.sizes["crank"]):
+    for name in figures_of(dataset):
         yield save_figure(draw_figure(name, dataset), folder / f"{name}.{kind}")

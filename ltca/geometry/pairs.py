@@ -406,7 +406,7 @@ class ContactGeometry:
         """Return the lean of every crank in the plane of the disc, rad, shape (positions, cranks)."""
         coordinates, place = self.coordinates_of(pose), self.placement
         found: ComplexArray = np.zeros((pose.shape[0], place.cranks), dtype=complex)
-        found += np.asarray(place.crank_lean)[..., None]
+        found += np.asarray(place.crank_lean)  # of a batch a column
         for crank in range(coordinates.cranks):
             first = coordinates.crank_lean(crank)
             found[:, crank] += pose[:, first] + 1j * pose[:, first + 1]

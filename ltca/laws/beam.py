@@ -169,7 +169,7 @@ class PinBeam:
         return np.asarray(0.5 * (found + found.T))
 
     def _alone(self, width: float) -> FloatArray:
-        """What force and moment of a disc do to its own deflection and slope without ends."""
+        """What force and moment of a disc do to its own deflection and slope without ends: integrals of |z − s|³ and |z − s|."""
         bending, shear = self._rigidity
         of_force = width**3 / (120.0 * bending) - width / (6.0 * shear)
         of_moment = -9.0 * width / (70.0 * bending) + 6.0 / (5.0 * width * shear)

@@ -277,7 +277,9 @@ class SlicedLine:
         given = (np.asarray(each, dtype=float) for each in (approach, tilt, effective_radius))
         delta, theta, radius = np.broadcast_arrays(*given)
         shape, z = delta.shape, slice_heights(self.length, self.slices)
-        relief = self.relief if self.relief.ndim == 2 else self.relief[:, None]
+        relief = self.relief
+        if relief.ndim > z.ndim:  # of several drives, the first axis of the approaches
+            relief = relief.reshape(-1, *(1,) * (delta.ndim - 1), *z.shape)
         free = (delta[..., None, None] + theta[..., None, None] * z - relief).reshape(-1, *z.shape)
         closed = np.flatnonzero((free > TOUCHING * self.length).any(axis=(1, 2)))
         begin = None if start is None else start.reshape(-1, self.slices)[closed].T

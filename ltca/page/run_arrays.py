@@ -27,10 +27,20 @@ CONTACTS = {
 """Load, pressure and half-width in ``results.nc``, by kind of contact."""
 
 
+ALONG_WIDTH = {
+    "pin": ("pin_line_load", "pin_pressure_along_width"),
+    "outer": ("roller_line_load", "roller_pressure_along_width_outer"),
+    "hole": ("pin_shaft_line_load", "pin_shaft_pressure_along_width"),
+}
+"""Line load and pressure along the width of contacts in slices, by kind."""
+
+
 def shown_positions(dataset: Labelled) -> NDArray[np.intp]:
     """Return which positions of a run a page shows: all of them, or evenly chosen ones of many."""
     sizes = dataset.sizes
     each = 2 * (4 * sizes["pin"] + 6 * sizes["crank"] * sizes["roller"]) + 2 * 3 * sizes["hole"] + 30
+    contacts = sizes["pin"] + sizes["crank"] * sizes["roller"] + sizes["hole"]
+    each += 2 * contacts * sizes["slice"] if "slice" in sizes else 0
     values = each * sizes["disc"] * sizes["position"] * sizes["case"]
     return np.arange(0, sizes["position"], ceil(values / MOST_VALUES))
 
@@ -41,14 +51,15 @@ def run_arrays(dataset: Labelled, light: Labelled | None, rows: NDArray[np.intp]
     ``angle``, rad; by number of the case, torque and name, as ``0/full/pin/load``: loads in N, pressures at mid-width in MPa,
     half-widths in mm of shape (discs, contacts, positions), the parameter of each contact on the flank, rad; ``radial`` and
     ``tangential`` of each disc, mm, its ``rotation``, rad, the ``wheel`` angle, rad, and the transmission error ``te`` in
-    arc seconds; further curves of the whole drive (`_curves`). The dataset is `ltca.analysis.results.labelled_results`, or
+    arc seconds; of contacts in slices, at the torque of the run, ``pin/line`` and ``pin/along``, N/mm and MPa, of shape (discs,
+    contacts, slices, positions), and the ``tilt`` of each disc, rad; further curves of the whole drive (`_curves`). The dataset is `ltca.analysis.results.labelled_results`, or
     ``results.nc`` read back, `light` the same at the light torque: without it that torque has its transmission error alone.
     `rows` are the positions that are shown (`shown_positions`).
     """
     arrays: dict[str, FloatArray] = {"angle": dataset["crank_angle"].values}
     for number in range(dataset.sizes["case"]):
         case = dataset.isel(case=number)
-        found = {f"full/{name}": values for name, values in _state(case).items()}
+        found = {f"full/{name}": values for name, values in (_state(case) | width_arrays(case)).items()}
         if light is None:
             found["light/te"] = case["transmission_error_light"].values * ARCSEC
         else:
@@ -72,6 +83,21 @@ def by_contact(values: LabelledArray | xr.DataArray) -> FloatArray:
     order = [name for name in ("disc", "crank", last, "position") if name in values.dims]
     found = np.asarray(values.transpose(*order).values)
     return found.reshape(found.shape[0], int(np.prod(found.shape[1:-1])), found.shape[-1])
+
+
+def width_arrays(case: Labelled) -> dict[str, FloatArray]:
+    """Return what contacts in slices carry along their width and the tilts of the discs; nothing in the plane."""
+    if "disc_tilt" not in case:
+        return {}
+    found = {"tilt": np.asarray(case["disc_tilt"].transpose("disc", "axis", "position").values)}
+    for kind, names in ALONG_WIDTH.items():
+        for quantity, name in zip(("line", "along"), names, strict=True):
+            values = case[name]
+            (last,) = (each for each in ("pin", "roller", "hole") if each in values.dims)
+            order = [each for each in ("disc", "crank", last, "slice", "position") if each in values.dims]
+            each = np.asarray(values.transpose(*order).values)
+            found[f"{kind}/{quantity}"] = each.reshape(each.shape[0], -1, *each.shape[-2:])
+    return found
 
 
 def ring_arrays(case: Labelled) -> dict[str, FloatArray]:

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from ltca.output.labelled import Labelled
 
 PAGE = "report.html"
-SCRIPTS = ("drawing", "plots", "motion", "stage", "run")
+SCRIPTS = ("drawing", "plots", "motion", "stage", "width", "run")
 LOSSES = {kind: SCALARS[f"power_loss_{kind}"].title.removeprefix("power lost: ") for kind in KINDS}
 
 
@@ -118,6 +118,7 @@ def run_page(run: Run) -> str:
             "sections": list(zip(("wind_up", "life"), sections, strict=True)),
             "friction": has_friction(dataset.isel(case=0)),
             "several": len(cases) > 1,
+            "sliced": "slice" in dataset.sizes,
             "comparison": _comparison(run),
             "compared": run.compared,
             "warnings": [line.removeprefix("warning: ") for line in run.sampling if line.startswith("warning: ")],
@@ -166,6 +167,12 @@ def _case(dataset: Labelled, place: int, drive: Drive) -> dict[str, Any]:
         "scenes": [moving_scene(single) for single in single_discs(drive)],
         "torque": _torque(dataset, place) / 1000.0,
         "light": drive.load.light_torque / 1000.0,
+        "widths": {
+            "pin": drive.disc.thickness,
+            "outer": drive.roller_length,
+            "hole": drive.disc.thickness,
+            "play": drive.disc.axial_play,
+        },
         "direction": drive.load.direction,
         "sign": int(drive.driving_sign),
     }

@@ -10,8 +10,9 @@ import numpy as np
 
 from ltca.analysis.friction.losses import Losses, losses
 from ltca.analysis.summary import LOADED_FRACTION
+from ltca.analysis.width import face_load_factor
 from ltca.arrays import FloatArray
-from ltca.compliance.response import ContactPressures
+from ltca.compliance.response import ContactPressures, KindPressures
 from ltca.drive.parts import Drive, Friction
 from ltca.drive.units.quantities import ARCMIN, ARCSEC
 from ltca.equilibrium.balance import Equilibrium
@@ -115,6 +116,25 @@ class SampleBatch:
         output = np.array([abs(drive.output_per_wheel_angle) for drive in self.drives])
         return np.asarray(output[:, None] * self.by_sample(play_of_input(self.model, self.play)) * ARCMIN)
 
+    @property
+    def cranks(self) -> int:
+        """Cranks of each disc."""
+        return self.model.discs[0].geometry.placement.cranks
+
+    def face_load_factor(self, kind: KindPressures, groups: int = 1) -> FloatArray:
+        """Largest face load factor of contacts in slices of each sample, of which every disc has some groups."""
+        if kind.along is None:
+            raise ValueError("contacts have no slices")
+        return np.asarray(
+            np.nanmax(self.by_sample(face_load_factor(kind.along, groups * len(self.model.discs))), axis=1)
+        )
+
+    def tilts(self) -> FloatArray:
+        """Tilts of all discs at all positions, rad."""
+        coordinates, pose = self.model.coordinates, self.full.pose
+        leans = [pose[:, coordinates.columns(disc)[coordinates.lean_place]] for disc in range(coordinates.discs)]
+        return self.by_sample(np.stack([np.hypot(*lean.T) for lean in leans], axis=1))
+
     def loaded(self, load: FloatArray) -> FloatArray:
         """Mean number of loaded pairs over the positions."""
         largest = self.by_sample(load).max(axis=1)
@@ -131,14 +151,25 @@ EVALUATORS: dict[Stage, dict[str, Evaluate]] = {
         "mean_transmission_error": lambda b: b.transmission_error().mean(axis=1),
         "max_pin_load": lambda b: b.by_sample(b.full.response.pin_load).max(axis=1),
         "max_pin_pressure_mid": lambda b: b.by_sample(b.pressures.pins.mid).max(axis=1),
+        "max_pin_pressure_max": lambda b: b.by_sample(b.pressures.pins.largest).max(axis=1),
         "max_roller_load": lambda b: b.by_sample(b.full.response.rollers.outer_load).max(axis=1),
         "max_roller_pressure_mid": lambda b: np.maximum(
             b.by_sample(b.pressures.outer.mid).max(axis=1), b.by_sample(b.pressures.inner.mid).max(axis=1)
+        ),
+        "max_roller_pressure_max": lambda b: np.maximum(
+            b.by_sample(b.pressures.outer.largest).max(axis=1), b.by_sample(b.pressures.inner.largest).max(axis=1)
         ),
         "max_roller_pressure_mid_outer": lambda b: b.by_sample(b.pressures.outer.mid).max(axis=1),
         "max_roller_pressure_mid_inner": lambda b: b.by_sample(b.pressures.inner.mid).max(axis=1),
         "max_pin_shaft_load": lambda b: b.by_sample(b.full.response.hole_load).max(axis=1),
         "max_pin_shaft_pressure_mid": lambda b: b.by_sample(b.pressures.holes.mid).max(axis=1),
+        "max_pin_shaft_pressure_max": lambda b: b.by_sample(b.pressures.holes.largest).max(axis=1),
+        "max_pin_face_load_factor": lambda b: b.face_load_factor(b.pressures.pins),
+        "max_roller_face_load_factor": lambda b: np.maximum(
+            b.face_load_factor(b.pressures.outer, b.cranks), b.face_load_factor(b.pressures.inner, b.cranks)
+        ),
+        "max_pin_shaft_face_load_factor": lambda b: b.face_load_factor(b.pressures.holes),
+        "max_disc_tilt": lambda b: b.tilts().max(axis=1),
         "mean_bearing_load": lambda b: np.hypot(*b.bearing).mean(axis=(1, 2)),
         "max_bearing_load": lambda b: np.hypot(*b.bearing).max(axis=(1, 2)),
         "mean_radial_bearing_load": lambda b: b.bearing[0].mean(axis=(1, 2)),
@@ -168,12 +199,21 @@ STAGES: dict[str, Stage] = {name: stage for stage, evaluators in EVALUATORS.item
 """Every scalar of a study, by name in `ltca.quantities.SCALARS`, and what has to be solved for it."""
 OF_RACES = ("max_roller_pressure_mid_outer", "max_roller_pressure_mid_inner")
 """Pressures of single races, which come when named or limited: `max_roller_pressure_mid` is the larger."""
-DEFAULT_QUANTITIES = tuple(name for name in EVALUATORS["full"] if name not in OF_RACES)
+OF_ENDS = ("max_pin_pressure_max", "max_roller_pressure_max", "max_pin_shaft_pressure_max")
+"""Largest pressures anywhere along the width, which come when named or limited, and of contacts in slices always."""
+DEFAULT_QUANTITIES = tuple(name for name in EVALUATORS["full"] if name not in (*OF_RACES, *OF_ENDS))
 """What the solution at the torque of the drive gives; those of other stages cost another solution and come when named."""
 
 
-OF_THE_PIN_SHAFT = ("max_pin_shaft_load", "max_pin_shaft_pressure_mid", "mean_loaded_pin_shaft_pins")
+OF_THE_PIN_SHAFT = (
+    "max_pin_shaft_load", "max_pin_shaft_pressure_mid", "max_pin_shaft_pressure_max", "max_pin_shaft_face_load_factor",
+    "mean_loaded_pin_shaft_pins",
+)  # fmt: skip
 """What a drive without pin shaft has not."""
+OF_WIDTH = (
+    "max_pin_face_load_factor", "max_roller_face_load_factor", "max_pin_shaft_face_load_factor", "max_disc_tilt",
+)  # fmt: skip
+"""What a drive without slices has not."""
 OF_FRICTION = ("mean_efficiency", "mean_input_torque", "power_loss")
 """What a drive without friction has not; the last needs a speed as well."""
 
@@ -187,7 +227,8 @@ def quantities_for(drive: Drive, names: tuple[str, ...] | None) -> tuple[str, ..
         names = check_quantities(names)
     if names is None or names == tuple(STAGES):
         missing = missing_quantities(drive)
-        return tuple(name for name in (names or DEFAULT_QUANTITIES) if name not in missing)
+        ends = OF_ENDS if drive.contact.slices > 1 else ()
+        return tuple(name for name in (names or (*DEFAULT_QUANTITIES, *ends)) if name not in missing)
     require_quantities(drive, names)
     return names
 
@@ -218,7 +259,8 @@ def require_quantities(drive: Drive, names: Iterable[str]) -> None:
 
 def missing_quantities(drive: Drive) -> dict[str, str]:
     """Return the quantities that a drive has not, with what it would need for them."""
-    missing = dict.fromkeys(OF_THE_PIN_SHAFT, "pin shaft (pin_shaft)") if drive.pin_shaft is None else {}
+    missing = dict.fromkeys(OF_WIDTH, "slices (contact.slices)") if drive.contact.slices == 1 else {}
+    missing |= dict.fromkeys(OF_THE_PIN_SHAFT, "pin shaft (pin_shaft)") if drive.pin_shaft is None else {}
     if drive.friction is None:
         missing |= dict.fromkeys(OF_FRICTION, "friction ([friction])")
     elif drive.load.speed is None:

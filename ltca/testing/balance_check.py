@@ -38,6 +38,7 @@ from ltca.testing.bearing_springs import (
 from ltca.testing.first_stage_check import outside_on_wheel, teeth_on_shafts, teeth_on_supports, tooth_forces
 from ltca.testing.friction_check import FrictionCheck
 from ltca.testing.ring_statics import ring_by_statics
+from ltca.testing.width_check import find_imbalance_in_slices
 from ltca.testing.yielding_pins import (
     EnergyLaw,
     SeatEnergy,
@@ -456,8 +457,10 @@ def find_imbalance(
 
     The geometry with all deviations comes from the drive, the energies of the laws from the model (half-spaces on tables).
     `seed` is that of the random displacements. With the output torque (N·mm) the balance of the moments of wheel, crank and
-    output is checked as well.
+    output is checked as well. Contacts in slices are checked by the loads of their slices (`ltca.testing.width_check`).
     """
+    if drive.contact.slices > 1:
+        return find_imbalance_in_slices(drive, model, balanced, position, torque=torque)
     pose, contacts = balanced.pose[position], balanced.response
     moment = float(balanced.wheel_moment[position])
     potential = potential_of(drive, model, balanced, position)

@@ -18,6 +18,7 @@ from ltca.drive.parts import Drive, Friction
 from ltca.reading.physical_checks import is_sound
 from ltca.testing.crank_drives import crank_drive, with_carrier
 from ltca.testing.practical_drives import with_ring
+from ltca.testing.random_drives import with_width
 from ltca.testing.yielding_pins import beam_stiffness
 
 PLAYS = (0.001, 0.004, 0.01, 0.01, 0.02, 0.05)
@@ -56,6 +57,35 @@ def pin_drive(seed: int) -> tuple[Drive, float]:
         drive = drive if drive.carrier is not None else with_carrier(of_carrier, drive)
         if largest_deflection(drive) < SOFTEST * drive.crank.eccentricity and is_sound(drive):
             return with_ring(number, drive), angle
+
+
+def sloping_drive(seed: int) -> tuple[Drive, float]:
+    """Return a reducer of any kind with contacts in slices, leads and inclinations, and a crank angle in rad, by a seed.
+
+    Its pins bend or are rigid, cranks stand on bearings that yield, and half of the main bearings yield in tilt. Pins are fixed, the
+    ring of the wheel and the carrier rigid, and first stages without teeth.
+    """
+    random = np.random.default_rng((seed, 31))
+    while True:
+        number = int(random.integers(2**32))
+        drive, angle = pin_drive(number)
+        wheel, shaft, bearing = replace(drive.pin_wheel, seat=WheelPinSeat()), drive.pin_shaft, drive.main_bearing
+        installation, materials = drive.installation, replace(drive.materials, wheel_seat=Material(), sleeve=Material())
+        if drive.first_stage is not None and installation.first_stage_ratio is None:
+            installation = replace(installation, first_stage_ratio=drive.first_stage.ratio)
+        if shaft is not None:
+            shaft = replace(shaft, seat=ShaftPinSeat())
+        if bearing is not None and not bearing.bearings and random.uniform() < 0.5:
+            arm = drive.pin_wheel.pin_circle_radius * float(random.choice([0.3, 1.0]))
+            radial = bearing.radial_stiffness or wheel.support_stiffness or 0.0
+            bearing = replace(bearing, tilt_stiffness=radial * arm**2)
+        drive = replace(
+            drive, pin_wheel=wheel, pin_shaft=shaft, main_bearing=bearing, installation=installation, materials=materials,
+            ring=None, carrier=None, first_stage=None,
+        )  # fmt: skip
+        drive = with_width(number, drive)
+        if is_sound(drive):
+            return drive, angle
 
 
 def friction_drive(seed: int) -> tuple[Drive, float]:

@@ -257,9 +257,14 @@ def contact_alone(law: EnergyLaw) -> EnergyLaw:
     return ContactOfSleeves(law=law) if law.overlap else law.contact
 
 
-def beam_stiffness(drive: Drive, part: PinWheel | PinShaft, material: Material) -> FloatArray | None:
+def beam_stiffness(
+    drive: Drive, part: PinWheel | PinShaft, material: Material, *, slopes: bool = False
+) -> FloatArray | None:
     """Return the forces on a pin by its mean displacements along the discs, and that of a tip held by a ring, N/mm; None
     for rigid pins.
+
+    With `slopes` mean slopes and moments of the discs, which press linearly along their width, stand behind displacements and
+    forces of the discs, N and N·mm.
     """
     beam = part.beam
     if beam is None:
@@ -281,8 +286,9 @@ def beam_stiffness(drive: Drive, part: PinWheel | PinShaft, material: Material) 
     half = 0.5 * np.diff(marks)
     at = (0.5 * (marks[1:] + marks[:-1])[:, None] + half[:, None] * nodes).ravel()
     weight = (half[:, None] * weights).ravel()
-    moments, shears = _unit_loads(at, middles, width, span, basis)
-    moments, shears = moments[: len(middles) + held], shears[: len(middles) + held]
+    moments, shears = _unit_loads(at, middles, width, span, basis, slopes=slopes)
+    loads = len(middles) * (1 + slopes)
+    moments, shears, kept = moments[: loads + held], shears[: loads + held], kept + slopes * len(middles)
     bending = material.youngs_modulus * np.pi * diameter**4 / 64.0
     ratio = material.poisson_ratio
     shear = 6.0 * (1.0 + ratio) / (7.0 + 6.0 * ratio) * material.youngs_modulus / (2.0 * (1.0 + ratio))
@@ -293,9 +299,11 @@ def beam_stiffness(drive: Drive, part: PinWheel | PinShaft, material: Material) 
 
 
 def _unit_loads(
-    at: FloatArray, middles: Sequence[float], width: float, span: float, basis: str
+    at: FloatArray, middles: Sequence[float], width: float, span: float, basis: str, *, slopes: bool = False
 ) -> tuple[FloatArray, FloatArray]:
-    """Bending moments and shear forces of unit loads spread along the discs, followed by those of reactions at the ends."""
+    """Bending moments and shear forces of unit loads spread along the discs, with `slopes` of unit moments 12 (z − m)/w³ as well,
+    followed by those of reactions at the ends.
+    """
     moments, shears = [], []
     for middle in middles:
         low, high = middle - 0.5 * width, middle + 0.5 * width
@@ -305,6 +313,14 @@ def _unit_loads(
         shear = inside / width
         if basis == "between":  # less the cantilever's under the reaction at the far wall
             moment, shear = moment - middle / span * (span - at), shear - middle / span
+        moments.append(moment)
+        shears.append(shear)
+    for middle in middles if slopes else ():
+        a, h = np.clip(at - middle, -0.5 * width, 0.5 * width), 0.5 * width
+        moment = np.where(at < middle - h, 1.0, 12.0 / width**3 * ((h**3 - a**3) / 3.0 - 0.5 * a * (h**2 - a**2)))
+        shear = 6.0 * (h**2 - a**2) / width**3
+        if basis == "between":
+            moment, shear = moment - (span - at) / span, shear - 1.0 / span
         moments.append(moment)
         shears.append(shear)
     one = np.ones_like(at)

@@ -60,12 +60,6 @@ def numbers(analysis):
 
 
 def tables(drive):
-    if drive.contact.slices > 1:
-        # Whatever is told of contacts in slices follows from how they balance.
-        found = HalfSpace().prepare(drive).balance(ANGLES, drive.load.torque)
-        part = found.response
-        loads = (part.pin_load, part.hole_load, part.rollers.outer_load, part.rollers.inner_load)
-        return np.concatenate([found.pose.ravel(), *(load.ravel() for load in loads)])
     return numbers(analyse(drive, ANGLES))
 
 
@@ -185,7 +179,7 @@ def test_every_field_is_used_or_refused(model, path, models, answers, coarse_tab
         refused = str(error)
     if refused:
         # What a part is made of goes with what the drive has it for.
-        assert goes_with(path) in refused, f"{path} is refused without its name: {refused}"
+        assert goes_with(path) in refused or path in refused, f"{path} is refused without its name: {refused}"
         if refusal(model, general(path)) is None and refusal(model, goes_with(path)) is None and model != "tables":
             # What `cyclo fields` tells of no engine may be refused of a drive as such: then by the half-space as well.
             with pytest.raises(DriveError):

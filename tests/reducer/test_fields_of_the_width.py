@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ltca.analysis.derivatives import CENTRAL, _Node, _Position
+from ltca.analysis.derivatives import CENTRAL, _Node, _Position, derivatives
 from ltca.analysis.engines import HalfSpace
+from ltca.analysis.loaded_analysis import analyse
+from ltca.analysis.results import case_arrays
 from ltca.arrays import batch_layout, stack_drives
 from ltca.drive.fields import read_field
 from ltca.drive.tolerances import Factors, parse_tolerances
@@ -129,3 +131,22 @@ def test_what_the_width_has_scatters(paper):
         Factors.of_tolerances(paper, tolerances)
     assert len(refused.value.problems) == 4
     assert all("needs slices along the width, contact.slices = 3 or more" in each for each in refused.value.problems)
+
+
+@pytest.mark.slow
+def test_derivatives_of_results_by_leads_and_inclinations(paper):
+    """As a user asks for them, pressures along the width among them: against analyses on both sides."""
+    drive = with_fields(paper, SLICES | TILTED)
+    fields = ("disc.lead_crown_drop", "pin_shaft.inclination.x")
+    found = derivatives(analyse(drive, ANGLES), fields)
+    for path in fields:
+        value = float(read_field(drive, path))
+        places, weights = CENTRAL
+        sides = [analyse(with_fields(drive, {path: value * (1.0 + 1e-3 * place)}), ANGLES) for place in places]
+        arrays = [case_arrays(side) for side in sides]
+        for name in ("transmission_error", "pin_load", "pin_pressure_max"):
+            slope = np.tensordot(weights, np.stack([each[name] for each in arrays]), 1) / (1e-3 * value)
+            own = found[name].sel(field=path).values
+            assert np.abs(slope).max() > 0.0
+            # Steps so small that no point of a slice opens; angles change by 1e-11 rad over one, and are balanced to some 1e-14.
+            np.testing.assert_allclose(own, slope, rtol=0.0, atol=2e-3 * np.abs(slope).max(), err_msg=f"{name}, {path}")

@@ -35,8 +35,8 @@ def balance(drive, angles=ANGLES):
 
 
 def cantilever(length, width, diameter, modulus, ratio):
-    """Flexibility of a cantilever, clamped at zero, under an even load on the width about its middle at `length` and a moment,
-    by the theorem of unit loads.
+    """Flexibility of a cantilever, clamped at zero, under an even load on the width about `length` and a moment there, by the
+    theorem of unit loads.
     """
     rigidity = modulus * np.pi * diameter**4 / 64.0
     factor = 6.0 * (1.0 + ratio) / (7.0 + 6.0 * ratio)
@@ -93,8 +93,8 @@ def test_a_disc_in_the_middle_of_symmetric_pins_does_not_tilt():
 
 
 def test_half_a_turn_with_the_mirror_takes_one_disc_to_the_other():
-    """Two equal discs, even numbers of pins and rollers, pins between two walls: what one disc has at z the other has half a
-    turn further at −z; tilts are equal in the fixed frame. 1e-9 of the largest load: what the balance leaves over.
+    """Two equal discs, even numbers of pins and rollers, wheel pins between two walls: what one disc has at z the other has half
+    a turn further at −z; tilts are equal in the fixed frame. 1e-9 of the largest load: what the balance leaves over.
     """
     drive = in_slices(discs=2, wheel={"ends": "supported"}, **{"crank_bearing.number_of_rollers": 12})
     model, found = balance(drive)
@@ -122,8 +122,8 @@ def test_half_a_turn_with_the_mirror_takes_one_disc_to_the_other():
     [(1, {"tip": "free"}, None), (1, {"tip": "tied-clamped"}, None), (2, {"tip": "free"}, {"ends": "supported"})],
 )
 def test_the_tangent_is_that_of_the_force_with_sloping_pins(discs, shaft, wheel):
-    """Differences of the force against the tangent, by the roots of its diagonal: 3e-4, the effective radius that follows it
-    (1e-4, as in the plane) and differences.
+    """Differences of the force against the tangent, by the roots of its diagonal: 3e-4, the effective radius that follows the
+    pose (1e-4, as in the plane) and differences.
     """
     model, found = balance(in_slices(discs=discs, shaft=shaft, wheel=wheel), ANGLES[:1])
     start, tangent = Start.after(found.response), None

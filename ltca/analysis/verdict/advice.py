@@ -337,6 +337,7 @@ def _inputs(drive: Drive, torque: float) -> list[_Input]:
         field("pin_shaft.pin_radius", hole) if shaft else None,
         field("pin_shaft.pin_circle_radius") if shaft else None,
         field("pin_shaft.stiffness") if shaft and drive.pin_shaft is not None and drive.pin_shaft.stiffness else None,
+        *(field(f"disc.{name}") for name in ("lead_slope", "lead_crown_drop", "lead_relief_depth", "axial_play")),
         field("disc.equidistant_offset"),
         field("disc.shifting_offset"),
         field("clearance.bearing"),

@@ -215,10 +215,10 @@ def _verdicts(checks: dict[str, list[Check]], proportions: dict[str, list[str]])
 
 def _draw(dataset: LabelledDataset, fields: Dataset | None, cases: dict[str, Drive], folder: Path, kind: str) -> None:
     from ltca.figures.pressure_figures import write_pressure_figures
-    from ltca.figures.run_figures import figure_names, write_figures
+    from ltca.figures.run_figures import figures_of, write_figures
 
     drawn = dataset.to_xarray()
-    names = figure_names(dataset.sizes["disc"], dataset.sizes["hole"], dataset.sizes["crank"])
+    names = figures_of(drawn)
     with progress("figures", len(names)) as advance:
         for path in write_figures(drawn, folder, kind):
             advance(path.name)

@@ -9,6 +9,7 @@ bearings         Bought crank bearings by name: ``crank_bearing.bearing = "K20x2
                  clearance class for ``clearance.bearing``
 operation        Installation and use: the fixed member, load, speed, duty, lubricant, friction and temperatures
 preload          Preload of bearings, and the quantities that say how bearings yield
+width            Slices along the width of the contacts, inclined axes, and which fields need slices
 crank            Crankshafts: their eccentrics, the circle they stand on, their supports and their bearings
 first_stage      Teeth of a sun and of the planets on several cranks
 pins             Pins of the pin wheel and of the pin shaft: fixed, loose or sleeved, rigid or bending

@@ -237,7 +237,7 @@ def _of_materials(drive: Drive, value: Value, own: Sequence[Limit]) -> tuple[lis
         return _of_joint(value, joints[quantity], upper)
     if upper is not None:
         return [], ""
-    if quantity in ANYWHERE:
+    if quantity in ANYWHERE and drive.contact.slices > 1:
         bodies = joints[ANYWHERE[quantity]]
         return _of_bodies(value, _yielding(value, bodies), [name for name, _ in bodies], "hardness or yield_strength")
     seats = {

@@ -30,6 +30,7 @@ function draw() {
   el("angle-text").textContent = `${figure(degree, 2)}° = ${figure(row("angle")[view.index], 4)} rad${now.known ? "" : ", no answer here"}`;
   el("angle").setAttribute("aria-valuetext", el("angle-text").textContent);
   for (const name in plots) if (plots[name].spec.pick) plots[name].cursor(view.index);
+  drawWidths(view);
   if (el("contact-details").open && !playing) fillContacts(view, now);
   return now;
 }
@@ -174,7 +175,7 @@ function listen() {
   matchMedia(DARK).addEventListener("change", recolour);
   for (const name of ["beforeprint", "afterprint"]) addEventListener(name, () => { printing = name === "beforeprint"; recolour(); });
   let width = innerWidth;
-  const again = () => { for (const name in plots) plots[name].again(); };
+  const again = () => { for (const name in plots) plots[name].again(); drawWidths(view); };
   addEventListener("resize", () => { if (innerWidth !== width) { width = innerWidth; again(); } });
 }
 

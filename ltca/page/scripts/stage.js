@@ -51,7 +51,7 @@ function tipOf(view, contact) {
   if (beside) add(many ? "bore" : "", content.compared.name, beside.load, beside.pressure, beside.width);
   const lean = row => row.filter((text, i) => i > 1 || rows.some(each => each[i]));
   const head = html("b", {}, null, contact.name);
-  return [head, smallTable(lean(["", "", "load", "pressure", "half-width"]), rows.map(lean))];
+  return [head, smallTable(lean(["", "", "load", "pressure", "half-width"]), rows.map(lean)), ...smallAlong(view, contact)];
 }
 
 function fillContacts(view, now) {

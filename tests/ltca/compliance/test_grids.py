@@ -7,6 +7,7 @@ from dataclasses import fields, is_dataclass, replace
 import numpy as np
 import pytest
 
+from ltca.analysis.engines import HalfSpace
 from ltca.compliance.grids import GridCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.response import Start
@@ -110,3 +111,24 @@ def test_equilibrium_does_not_depend_on_its_start(paper_cases, balanced):
     np.testing.assert_allclose(cold.pose, warm.pose, rtol=0.0, atol=1e-11)
     np.testing.assert_allclose(cold.response.pin_load, warm.response.pin_load, rtol=0.0, atol=1e-5)
     assert warm.iterations.max() < cold.iterations.min()
+
+
+@pytest.mark.slow
+def test_contacts_that_tilt_balance_as_on_tables(paper_cases):
+    """Two codes of one drive: slices with their coupling, grids of the whole surfaces with the exact flank."""
+    drive = paper_cases["CS-1"].with_fields({"contact.slices": 9, "pin_wheel.inclination.x": 2e-4})
+    found = {
+        name: HalfSpace(method=name).prepare(drive).balance(ANGLES, drive.load.torque) for name in ("tables", "direct")
+    }
+    tables, direct = found["tables"].response, found["direct"].response
+    for name in ("pin_load", "hole_load"):
+        before, after = getattr(tables, name), getattr(direct, name)
+        # Bound: 1 %; measured 1e-4 of the largest load.
+        np.testing.assert_allclose(after, before, atol=1e-3 * before.max())
+    assert (
+        abs(found["direct"].pose[0, -1] - found["tables"].pose[0, -1]) < 0.2 * np.pi / 180.0 / 3600.0
+    )  # measured 0.02″
+    by_slices, by_grid = (each.parts[0].leaning_pins.contact for each in (tables, direct))
+    carrying = by_slices.load > 0.05 * by_slices.load.max()
+    arm = by_slices.load * drive.disc.thickness / 6.0
+    assert np.max(np.abs(by_grid.moment - by_slices.moment)[carrying] / arm[carrying]) < 0.02

@@ -129,3 +129,48 @@ def test_arrows_are_the_values_of_the_dataset(kind, run_of, chromium, tmp_path):
         assert {name: load for name, load in seen["second"].items() if load > 0.0} == pytest.approx(last, rel=1e-6)
     else:
         assert np.size(list(seen["second"])) == 0
+
+
+WIDTHS = """<script>
+addEventListener("load", () => {
+  const wait = () => {
+    if (!document.documentElement.dataset.ready) { setTimeout(wait, 20); return; }
+    const slider = document.getElementById("angle");
+    seen.bars = [];
+    for (let k = 0; k <= Number(slider.max); k++) {
+      slider.value = k;
+      slider.dispatchEvent(new Event("input", {bubbles: true}));
+      const heights = [...document.querySelectorAll("#width .bar")].map(bar => Number(bar.getAttribute("height")));
+      seen.bars.push([view.chosen.number, heights, document.getElementById("tilt-keys").textContent]);
+    }
+    const contact = document.querySelector("#picture .contact");
+    contact.dispatchEvent(new MouseEvent("mouseenter", {clientX: 200, clientY: 200}));
+    seen.tip = document.querySelectorAll("#tip .bar").length;
+    document.querySelectorAll("#torques button")[1].click();
+    seen.hidden = document.getElementById("widths").hidden;
+    seen.overflow = document.documentElement.scrollWidth - document.documentElement.clientWidth;
+    leave();
+  };
+  wait();
+});
+</script>"""
+
+
+@pytest.mark.usefixtures("positions_alone")
+def test_bars_and_tilts_are_those_of_the_dataset(run_of, chromium, tmp_path):
+    """Bars of the chosen pin stand in the proportion of its line loads, in single precision and whole positions of the page."""
+    text = shipped_drive("paper").replace("[pin_shaft]", "[contact]\nslices = 5\n\n[pin_shaft]", 1)
+    drive = parse_drive(re.sub(r"(?m)^thickness", "lead_slope = 2e-4\nthickness", text))
+    case = next(iter(drive.cases))
+    drive = replace(drive, cases={case: drive.cases[case]}, limits={case: drive.limits[case]}, text=text)
+    run, dataset = run_of(drive, positions=3)
+    seen, console, _ = chromium(run_page(run), WIDTHS, tmp_path, "500,900")
+    assert (seen["errors"], console) == ([], [])
+    line, tilt = dataset["pin_line_load"].values[0, 0], dataset["disc_tilt"].values[0, 0]
+    for position, (pin, heights, told) in enumerate(seen["bars"]):
+        expected = line[position, pin]
+        assert np.array(heights) / max(heights) == pytest.approx(expected / expected.max(), abs=1e-5)
+        assert float(told.partition(" mrad")[0]) == pytest.approx(1e3 * np.hypot(*tilt[position]), abs=6e-4)
+    assert seen["tip"] == 5
+    assert seen["hidden"]  # at the light torque nothing is known along the width
+    assert seen["overflow"] <= 0

@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from ltca.drive.declaration import declared_fields
-from ltca.drive.engine_support import require_engine
+from ltca.drive.engine_support import require
 from ltca.drive.fields import field_kinds, own_paths, read_field
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.members.width import needs_slices
@@ -160,7 +160,6 @@ def test_leads_grow_with_their_disc_and_angles_do_not(paper):
 @pytest.mark.parametrize(
     ("engine", "words"),
     [
-        ("direct", "method direct (discs do not tilt in the model); use --method tables"),
         ("paper", "method paper (discs do not tilt in the model); use --method tables"),
         ("hybrid", "compliance hybrid (discs do not tilt in the model); use --compliance half-space"),
         ("full FE", "full finite elements (the model is two-dimensional: "),
@@ -169,10 +168,10 @@ def test_leads_grow_with_their_disc_and_angles_do_not(paper):
 def test_engines_of_one_plane_refuse_slices_by_name(engine, words, paper):
     drive = with_fields(paper, SLICES)
     with pytest.raises(DriveError) as refused:
-        require_engine(drive, engine)
+        require(drive, engine)
     assert refused.value.problems[0].startswith(f"contact.slices = 5: must be 1 for {words}")
-    require_engine(replace(drive, contact=paper.contact), engine)
-    require_engine(drive, "tables")
+    require(replace(drive, contact=paper.contact), engine)
+    require(drive, "direct")
 
 
 def test_a_misspelt_lead_is_told_in_a_plane_drive(paper):

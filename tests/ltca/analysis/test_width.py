@@ -1,0 +1,194 @@
+"""Results along the width: what slices carry balances, mirrors, and turns with the whole drive."""
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ltca.analysis.life.bearing_lives import bearing_lives
+from ltca.analysis.loaded_analysis import analyse, analyse_cases
+from ltca.analysis.results import build_dataset, check_common_shape
+from ltca.analysis.run_off import run_off_warning
+from ltca.analysis.summary import summarise
+from ltca.analysis.verdict.lead_crown import best_lead_crown
+from ltca.analysis.verdict.values import judge_analysis
+from ltca.analysis.width import face_load_factor
+from ltca.compliance.response import AlongWidth
+from ltca.drive.members.limits import parse_limits
+from ltca.errors import DriveError
+from ltca.geometry.coordinates import DISC_PLACE
+from ltca.reading.changes import with_fields
+from ltca.reading.drive_file import load_drive
+
+ANGLES = np.array([0.3, 1.7, 3.9])
+SLOPE = 3e-4
+
+
+@pytest.fixture(scope="module")
+def drive():
+    return with_fields(load_drive("paper").cases["CS-1"], {"contact.slices": 5, "load.light_torque": 3e5})
+
+
+@pytest.fixture(scope="module")
+def found(drive):
+    """The drive aligned, with a slope of the flank of either sense, and with everything inclined alike, by name."""
+    alike = {"inclination.x": 2e-4, "inclination.y": -1e-4}
+    inclined = {f"{part}.{name}": size for part in ("pin_wheel", "pin_shaft", "crank") for name, size in alike.items()}
+    drives = {
+        "aligned": drive,
+        "up": with_fields(drive, {"disc.lead_slope": SLOPE}),
+        "down": with_fields(drive, {"disc.lead_slope": -SLOPE}),
+        "inclined": with_fields(drive, inclined),
+    }
+    return dict(analyse_cases(drives, ANGLES))
+
+
+@pytest.fixture(scope="module")
+def data(found):
+    return {name: build_dataset(name, {name: analysis}) for name, analysis in found.items()}
+
+
+def test_slices_add_up_to_loads(data):
+    """Line loads are those of the slices: nothing but round-off lies between."""
+    for name in ("pin", "roller", "pin_shaft"):
+        part = {"pin": "pin", "roller": "roller", "pin_shaft": "hole"}[name]
+        z = data["up"][f"z_{part}"].values[0]
+        total = data["up"][f"{name}_line_load"].sum("slice").values * (z[1] - z[0])
+        load = data["up"][f"{name}_load"].values
+        assert total == pytest.approx(load, rel=1e-9, abs=1e-9 * load.max())
+
+
+def test_moments_on_a_disc_balance(found, data):
+    """Moments of wheel pins, shaft pins and crank bearing about x and y add up to nothing, the search's residual apart."""
+    analysis = found["up"]
+    part = analysis.full.response.parts[0]
+    moment = np.zeros((ANGLES.size, 2))
+    for motion, pairs in ((part.flank, part.leaning_pins), (part.holes, part.leaning_holes)):
+        # The disc is pressed against the gradient of the approach; a force F at the height z has the moment (−F_y z, F_x z).
+        lever = -np.einsum("bi,bij->bj", pairs.contact.moment, motion.gradient[..., DISC_PLACE])
+        moment += np.stack((-lever[:, 1], lever[:, 0]), axis=1)
+    bearing = data["up"]["crank_bearing_moment"].values[0, 0, 0]
+    assert np.abs(bearing).max() > 1000.0
+    assert bearing == pytest.approx(-moment, abs=1e-6 * np.abs(bearing).max())
+
+
+def test_a_slope_of_the_other_sense_is_the_mirror_image(data):
+    """z to −z: slices change places, tilts and moments their sign."""
+    up, down = data["up"], data["down"]
+    for name in ("pin_line_load", "roller_line_load_inner", "pin_pressure_along_width", "pin_shaft_line_load"):
+        # Settled to 1e-9 of the forces by Newton's method from different sides.
+        largest = up[name].values.max()
+        assert up[name].values == pytest.approx(down[name].values[..., ::-1], abs=1e-6 * largest)
+    for name in ("disc_tilt", "crank_bearing_moment"):
+        assert up[name].values == pytest.approx(-down[name].values, abs=1e-6 * np.abs(up[name].values).max())
+    assert np.abs(up["disc_tilt"].values).max() > 0.3 * SLOPE
+
+
+def test_what_is_inclined_as_a_whole_tilts_and_carries_as_before(data):
+    """All axes rotated by one small vector are the same drive, looked at from the side: squares of 2e-4 are left out."""
+    aligned, inclined = data["aligned"], data["inclined"]
+    assert inclined["disc_tilt"].values == pytest.approx(np.broadcast_to([2e-4, -1e-4], (1, 1, 3, 2)), abs=1e-8)
+    for name in ("pin_line_load", "roller_line_load", "pin_shaft_line_load"):
+        assert inclined[name].values == pytest.approx(aligned[name].values, abs=1e-5 * aligned[name].values.max())
+
+
+def test_ends_are_where_the_pressure_of_a_slope_is_largest(data):
+    """Metal left at positive z carries there."""
+    loaded = data["up"]["pin_load"].values > 1000.0
+    assert (data["up"]["pin_pressure_max_place"].values[loaded] > 4.0).all()
+    assert data["up"]["pin_face_load_factor"].values.min() > data["aligned"]["pin_face_load_factor"].values.max()
+
+
+def test_the_face_load_factor_of_a_wedge():
+    """Four slices in the proportion 1 : 2 : 3 : 4 beside an even lighter contact: the largest is 1.6 of the mean."""
+    line = np.array([[[1.0, 2.0, 3.0, 4.0], [2.0, 2.0, 2.0, 2.0]]])
+    kind = AlongWidth(line_load=line, pressure=line, half_width=line, place=line[..., 0], end_load=line[..., :2])
+    assert face_load_factor(kind) == pytest.approx(1.6)
+    assert face_load_factor(kind, 2) == pytest.approx(np.array([[1.6, 1.0]]))
+
+
+def test_the_plane_has_nothing_of_this(drive):
+    plane = analyse(with_fields(drive, {"contact.slices": 1}), ANGLES)
+    names = set(build_dataset("plane", {"plane": plane}).variables)
+    assert not {name for name in names if "line_load" in str(name) or "tilt" in str(name) or str(name) == "slice"}
+    assert "max_disc_tilt_rad" not in summarise(plane)
+
+
+def test_cases_with_other_slices_share_no_dataset(drive):
+    with pytest.raises(DriveError, match="5 slices"):
+        check_common_shape({"one": with_fields(drive, {"contact.slices": 1}), "two": drive})
+
+
+@pytest.mark.slow
+def test_aligned_straight_rollers_live_as_in_the_plane(drive):
+    """What slices carry by what they would carry aligned is one; loads differ by 1e-4."""
+    angle = 2.0 * np.pi * np.arange(24) / 24.0
+    plane, sliced, tilted = (
+        bearing_lives(analyse(with_fields(drive, fields), angle)).shortest.life
+        for fields in ({"contact.slices": 1}, {}, {"disc.lead_slope": 1e-3})
+    )
+    assert sliced == pytest.approx(plane, rel=5e-4)
+    assert tilted < 0.95 * plane
+
+
+def test_tilt_is_checked_against_the_axial_play(found):
+    analysis = found["up"]
+    playing = replace(analysis, drive=with_fields(analysis.drive, {"disc.axial_play": 0.01}))
+    checks = {check.value.quantity: check for check in judge_analysis(playing, summarise(playing), {}, lives=False)}
+    tilt = np.hypot(*np.moveaxis(build_dataset("", {"": analysis})["disc_tilt"].values, -1, 0)).max()
+    profile = analysis.model.discs[0].geometry.profile
+    rim = profile.generating_radius + profile.eccentricity - profile.offset
+    assert checks["axial_play_taken"].value.value == pytest.approx(2.0 * tilt * rim / 0.01)
+    assert checks["axial_play_taken"].fails
+    without = judge_analysis(analysis, summarise(analysis), {}, lives=False)
+    assert "axial_play_taken" not in {check.value.quantity for check in without}
+
+
+def test_pressures_anywhere_are_judged_by_yield_at_straight_ends_and_as_allowed_inside(drive, found):
+    """3 GPa at straight ends are no failure; with a crown that takes them off the allowable pressure holds."""
+
+    def check_of(analysis, limits=None):
+        checks = judge_analysis(analysis, summarise(analysis), limits or {}, lives=False)
+        return {check.value.quantity: check for check in checks}
+
+    straight = check_of(found["up"])["pin_pressure_max"]
+    assert straight.limit.source.startswith("first yield")
+    assert re.search(r"z = 5\.9 mm", straight.value.part)
+    crowned = check_of(analyse(with_fields(drive, {"disc.lead_crown_drop": 0.03}), ANGLES))["pin_pressure_max"]
+    assert crowned.limit.source.endswith("allowable_pressure")
+    limits = parse_limits({"max_pin_pressure_max": 2500.0, "max_disc_tilt": 1e-9}, [])
+    asked = check_of(found["up"], limits)
+    assert asked["pin_pressure_max"].limit.value == 2500.0
+    assert asked["disc_tilt"].fails
+    plane = check_of(
+        analyse(with_fields(drive, {"contact.slices": 1}), ANGLES), parse_limits({"max_disc_tilt": 1e-3}, [])
+    )
+    assert "pin_pressure_max" not in plane
+    assert "contact.slices = 1" in plane["disc_tilt"].value.reason
+
+
+def test_only_a_crown_that_is_too_small_is_said_to_run_off(drive):
+    """The approach is about 0.01 mm: a crown of a tenth of it carries at its ends, one of three times does not."""
+
+    def told(drop):
+        analysis = analyse(with_fields(drive, {"disc.lead_crown_drop": drop}), ANGLES)
+        return run_off_warning(analysis.drive, analysis.pressures)
+
+    assert told(0.0) is None
+    assert "wheel pins (at the lower and the upper end" in told(0.001)
+    assert told(0.03) is None
+
+
+@pytest.mark.slow
+def test_the_crown_told_is_the_best_of_its_neighbours(drive):
+    """Largest pressures with a tenth more or less of it are higher, or equal within the search's halving of a ladder of twos."""
+    sloped = with_fields(drive, {"disc.lead_slope": SLOPE})
+    crown = best_lead_crown(sloped, sloped.load.torque)
+    angle = 2.0 * np.pi * np.arange(12) / 12.0 + 1e-3
+    drives = {str(part): with_fields(sloped, {"disc.lead_crown_drop": part * crown.drop}) for part in (0.5, 1.0, 2.0)}
+    largest = {name: one.pressures.pins.largest.max() for name, one in analyse_cases(drives, angle)}
+    assert largest["1.0"] == pytest.approx(crown.pressure, rel=1e-6)
+    assert largest["1.0"] < 0.95 * min(largest["0.5"], largest["2.0"])
+    assert crown.pressure < 0.7 * crown.pressure_now
+    assert "disc.lead_crown_drop: 0 →" in crown.words
