@@ -26,12 +26,13 @@ LEAST_PLAY = 1e-9
 """Play that stands for none, mm."""
 MAX_ITERATIONS = 60
 MAX_HALVINGS = 12
-SETTLED = 1e-11
+SETTLED = 1e-10
 """Largest force and moment (by half the length) left over, by the load."""
 ROUND_OFF = 1e-7
 """What is left that may be due to what the slices leave over."""
 STEEPEST = 0.5
 """Largest slope of the energy at the end of a step, by that at its start, that is not shortened."""
+_SHARES = np.polynomial.legendre.leggauss(POINTS)[1]
 _LIGHTEST, _HEAVIEST, _KNOTS = -40.0, 20.0, 601
 
 
@@ -83,7 +84,7 @@ class SlicedSeat:
     def press(self, travel: FloatArray, lean: FloatArray, play: FloatArray) -> _Seat:
         """Return what seats carry at travels, mm, and leans, rad, shape (contacts,), zero where open."""
         z = slice_heights(self.law.length, self.slices)
-        weights = 0.5 * self.law.length / self.slices * np.polynomial.legendre.leggauss(POINTS)[1]
+        weights = 0.5 * self.law.length / self.slices * _SHARES
         local = travel[:, None, None] + lean[:, None, None] * z
         pressed = local > 0.0
         unit = (
@@ -119,7 +120,7 @@ class SlicedSeat:
     def energy(self, line_load: FloatArray, play: FloatArray) -> FloatArray:
         """Return the energy of seats under line loads, N·mm, shape (contacts,)."""
         length = self.law.length
-        weights = 0.5 / self.slices * np.polynomial.legendre.leggauss(POINTS)[1]
+        weights = 0.5 / self.slices * _SHARES
         stored = self.law.energy(line_load * length, np.maximum(play, LEAST_PLAY)[:, None, None])
         return np.asarray((stored @ weights).sum(axis=1))
 
