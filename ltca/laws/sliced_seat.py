@@ -105,6 +105,44 @@ class SlicedSeat:
             line_load=line,
         )
 
+    def heaviest(self, load: FloatArray, moment: FloatArray, play: FloatArray) -> FloatArray:
+        """Return the load of the whole width at the line load of the most loaded end of seats, N, from their loads and moments.
+
+        Arrays have the shape (contacts,), N and N·mm; loads are positive.
+
+        Raises
+        ------
+        ConvergenceError
+            When no line of travel carries these.
+        """
+        travel, _ = self.law.approach_and_compliance(load, np.maximum(play, LEAST_PLAY))
+        lean, half = np.zeros_like(travel), 0.5 * self.law.length
+        seat, history = self.press(travel, lean, play), []
+        for _ in range(MAX_ITERATIONS):
+            force, turning = load - seat.load, moment - seat.moment
+            left = np.maximum(np.abs(force), np.abs(turning) / half) / load
+            history.append(float(np.max(left, initial=0.0)))
+            if history[-1] <= 1e-9:
+                break
+            stiff = np.maximum(seat.by_travel, 1e-300)
+            own = seat.moment_by_lean + 1e-9 * half**2 * stiff
+            determinant = stiff * own - seat.by_lean**2
+            step = (own * force - seat.by_lean * turning) / determinant
+            turn = (stiff * turning - seat.by_lean * force) / determinant
+            steep, fraction = force * step + turning * turn, np.ones_like(step)
+            for _ in range(MAX_HALVINGS):
+                seat = self.press(travel + fraction * step, lean + fraction * turn, play)
+                ahead = (seat.load - load) * step + (seat.moment - moment) * turn
+                if not (ahead > STEEPEST * steep).any():
+                    break
+                fraction = np.where(ahead > STEEPEST * steep, 0.5 * fraction, fraction)
+            travel, lean = travel + fraction * step, lean + fraction * turn
+        else:
+            raise ConvergenceError("seats in slices do not carry loads and moments; left over by the load", history)
+        end = travel + half * np.abs(lean)
+        level, _ = self._level(np.log(end / (self.law.series.load_scale * np.maximum(play, LEAST_PLAY))))
+        return np.asarray(self.law.contact_modulus * self.law.length * end / level)
+
     def _level(self, place: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Level at the logarithm of the travel, and its derivative."""
         spacing = (_HEAVIEST - _LIGHTEST) / (_KNOTS - 1)
