@@ -27,6 +27,7 @@ from ltca.errors import DriveError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, disc_displacement
 from ltca.geometry.placement import place_coordinates
 from ltca.laws.backed import shaft_pin_seat, wheel_pin_seat
+from ltca.laws.sliced_seat import SlicedSeat
 from ltca.output.labelled import LabelledDataset
 from ltca.output.provenance import code_hash, code_version
 from ltca.quantities import DIMENSIONS, QUANTITIES, SCHEMA_VERSION
@@ -106,13 +107,18 @@ def _seat_values(analysis: LoadedAnalysis) -> dict[str, FloatArray]:
     drive, contacts = analysis.drive, analysis.full.response
     place = analysis.model.discs[0].geometry.placement
     values: dict[str, FloatArray] = {}
-    for name, seat, load, play in (
-        ("pin", wheel_pin_seat(drive), contacts.pin_load, place.wheel_pin_plays),
-        ("hole", shaft_pin_seat(drive), contacts.hole_load, place.shaft_pin_plays),
+    for name, seat, load, play, leaning in (
+        ("pin", wheel_pin_seat(drive), contacts.pin_load, place.wheel_pin_plays, contacts.leaning_pins),
+        ("hole", shaft_pin_seat(drive), contacts.hole_load, place.shaft_pin_plays, contacts.leaning_holes),
     ):
         if seat is not None:
             each = np.broadcast_to(play, load.shape)
             values[f"{name}_seat_load"] = load
+            if leaning is not None:
+                # Arc and pressure are those of the most loaded end of a seat in which the pin leans.
+                pressed, sliced = load > 0.0, SlicedSeat.of_law(seat, drive.contact.slices)
+                load = load.copy()
+                load[pressed] = sliced.heaviest(load[pressed], leaning.contact.moment[pressed], each[pressed])
             values[f"{name}_seat_arc"] = np.where(load > 0.0, 2.0 * seat.half_angle(load, each), 0.0)
             values[f"{name}_seat_pressure_max"] = np.where(load > 0.0, seat.largest_pressure(load, each), 0.0)
     return values | pin_deflections(drive, analysis.model, analysis.full)

@@ -261,6 +261,9 @@ class DisplacedPins:
         Displacements that the contacts were found at, mm.
     """
 
+    condenses = False
+    """Whether the seats of a ring are found beside the pins, not with all of them at once."""
+
     def __init__(
         self,
         held: PinDisplacements,
@@ -271,7 +274,8 @@ class DisplacedPins:
     ) -> None:
         self.held, self.parts, self.coordinates, self.shifts = held, parts, coordinates, shifts
         self.slopes: list[PairSlopes] = [part.slopes for part in parts if part.slopes is not None]
-        self.coupled = held.ring is not None or any(slopes.by_approach.ndim > 2 for slopes in self.slopes)
+        self.coupled = any(slopes.by_approach.ndim > 2 for slopes in self.slopes)
+        self.coupled |= held.ring is not None and not self.condenses
         wheel, pairs = parts[0].pin_load.shape[1], parts[0].pin_forces.shape[1]
         self.moves = np.any(held.beams != 0.0, axis=(-2, -1)).reshape(-1, pairs).any(axis=0)
         self.moves |= (held.ring is not None) & (np.arange(pairs) < wheel)
@@ -314,7 +318,7 @@ class DisplacedPins:
         for rows, disc, pair in self._groups():
             stiffness, flexibility = self._stiffness(rows, disc, pair), self._flexibility(rows, disc, pair)
             given = self._flat(self.left[rows, disc, pair])
-            moved = np.asarray(np.linalg.solve(_one_plus(flexibility, stiffness), -given), dtype=float)
+            moved = self._solved(rows, flexibility, stiffness, -given)
             change[rows, disc, pair] = _vectors_of(_times(stiffness, moved))[..., 0]
         return self.force + change
 
@@ -329,8 +333,8 @@ class DisplacedPins:
             stiffness, flexibility = self._stiffness(rows, disc, pair), self._flexibility(rows, disc, pair)
             by_pose, own = self._by_pose(rows, disc, pair), rows[:, 0, 0]
             given = self._flat(self.left[rows, disc, pair])
-            right = np.concatenate((np.matmul(flexibility, by_pose), given), axis=-1)
-            moved = -np.linalg.solve(_one_plus(flexibility, stiffness), right)
+            right = np.concatenate((self._moved_by(rows, flexibility, by_pose), given), axis=-1)
+            moved = -self._solved(rows, flexibility, stiffness, right)
             back = by_pose if self.rubs is None else self._by_shift(rows, disc, pair)
             onto = np.matmul(back.swapaxes(2, 3), moved).sum(axis=1)
             tangent[own], added[own] = onto[..., :-1], onto[..., -1]
@@ -350,6 +354,16 @@ class DisplacedPins:
             by_pose=-np.stack(by_pose_of_all, axis=-1),
             left=np.where(stepped <= SHIFT_TOLERANCE + 1e-12 * most, unbalanced, stiffest * self.size),
         )
+
+    def _solved(
+        self, rows: NDArray[np.intp], flexibility: FloatArray, stiffness: FloatArray, right: FloatArray
+    ) -> FloatArray:
+        """(1 + S K)⁻¹ of columns, by groups."""
+        return np.asarray(np.linalg.solve(_one_plus(flexibility, stiffness), right), dtype=float)
+
+    def _moved_by(self, rows: NDArray[np.intp], flexibility: FloatArray, force: FloatArray) -> FloatArray:
+        """S of columns of forces, by groups."""
+        return np.asarray(np.matmul(flexibility, force))
 
     @staticmethod
     def _flat(values: ComplexArray) -> FloatArray:
@@ -394,7 +408,7 @@ class DisplacedPins:
         if beams.any():
             along = beams[places] * (one == other)
             found[..., ::2, ::2] = found[..., 1::2, 1::2] = along
-        if ring is not None:
+        if ring is not None and self.coupled:
             # Row by row of a matrix with an empty seat in the place of all shaft pins.
             seats = ring.shape[-2]
             own = ring[rows[:, 0, 0]] if ring.ndim > 4 else ring
@@ -530,7 +544,53 @@ class LeaningPins(DisplacedPins):
 
     With :math:`a = \\partial \\delta/\\partial u` and :math:`b = \\partial \\theta/\\partial u` the stiffness is
     :math:`F_\\delta a a^T + F_\\theta (a b^T + b a^T) + M_\\theta b b^T`, and what loads and moments add that turn with the pins.
+
+    Where nothing but a ring couples pins, groups are pins under all discs, and their seats in the ring are found with them:
+    of the forces :math:`y = P^T K u` on the seats, u = A⁻¹(g − P R y) with the A of the beams alone and the R of the ring.
     """
+
+    condenses = True
+
+    def _seats(self, rows: NDArray[np.intp]) -> tuple[FloatArray, FloatArray] | None:
+        """P of a pin, shape (2 members, 2), and R of the ring; None where no ring moves pins or it is in S."""
+        ring = self.held.ring
+        if ring is None or self.coupled:
+            return None
+        count, seats = self.force.shape[1], ring.shape[-2]
+        onto = np.zeros((2 * count, 2))
+        onto[: 2 * self.held.discs] = np.tile(np.eye(2), (self.held.discs, 1))
+        own = ring[rows[:, 0, 0]] if ring.ndim > 4 else ring[None]
+        return onto, own.reshape(-1, 2 * seats, 2 * seats)
+
+    def _solved(
+        self, rows: NDArray[np.intp], flexibility: FloatArray, stiffness: FloatArray, right: FloatArray
+    ) -> FloatArray:
+        held = self._seats(rows)
+        if held is None:
+            return super()._solved(rows, flexibility, stiffness, right)
+        onto, ring = held
+        seats, columns = ring.shape[-1] // 2, right.shape[-1]
+        units = np.broadcast_to(onto, (*right.shape[:2], *onto.shape))
+        found = np.linalg.solve(_one_plus(flexibility, stiffness), np.concatenate((right, units), axis=-1))
+        alone, moved = found[..., :columns], found[:, :seats, :, columns:]
+        press = np.matmul(onto.T, stiffness[:, :seats])
+        system = np.matmul(np.matmul(press, moved), ring.reshape(-1, seats, 2, 2 * seats)).reshape(
+            -1, 2 * seats, 2 * seats
+        )
+        system = system + np.eye(2 * seats)
+        pressed = np.matmul(press, alone[:, :seats]).reshape(-1, 2 * seats, columns)
+        back = np.matmul(ring, np.linalg.solve(system, pressed)).reshape(-1, seats, 2, columns)
+        alone[:, :seats] -= np.matmul(moved, back)
+        return np.asarray(alone)
+
+    def _moved_by(self, rows: NDArray[np.intp], flexibility: FloatArray, force: FloatArray) -> FloatArray:
+        found, held = super()._moved_by(rows, flexibility, force), self._seats(rows)
+        if held is not None:
+            onto, ring = held
+            seats, columns = ring.shape[-1] // 2, force.shape[-1]
+            total = np.matmul(onto.T, force[:, :seats]).reshape(-1, 2 * seats, columns)
+            found[:, :seats] += np.matmul(onto, np.matmul(ring, total).reshape(-1, seats, 2, columns))
+        return found
 
     def _forces(self) -> ComplexArray:
         moments = np.stack([-part.pin_moments * self.frame for part in self.parts], axis=1)

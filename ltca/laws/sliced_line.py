@@ -62,6 +62,7 @@ TOUCHING = 1e-16
 """Deepest approach by the length up to which a contact is open: less is round-off of where parts stand."""
 _KNOTS = 81
 _LIGHTEST, _HEAVIEST, _PLANE_KNOTS = -46.0, -0.3, 4097
+_NODES, _SHARES = np.polynomial.legendre.leggauss(8)
 TABLE = Path(__file__).with_name("sliced_line.json")
 
 
@@ -382,8 +383,7 @@ class SlicedLine:
         """
         if not self.overlap:
             return 0.0, 0.0, 0.0
-        nodes, weights = np.polynomial.legendre.leggauss(8)
-        places, shares = 0.5 * (nodes + 1.0), 0.5 * weights
+        places, shares = 0.5 * (_NODES + 1.0), 0.5 * _SHARES
         at = np.maximum(load, 1e-300) * np.append(places**2, 1.0)[:, None, None]
         datum, ratio = HALF_SPACE_DATUM * self.length, self.overlap * self.length * np.pi * self.contact_modulus
         half_width = np.sqrt(4.0 * at * (self.slices / self.length) * effective_radius / (np.pi * self.contact_modulus))

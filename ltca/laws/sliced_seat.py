@@ -26,12 +26,13 @@ LEAST_PLAY = 1e-9
 """Play that stands for none, mm."""
 MAX_ITERATIONS = 60
 MAX_HALVINGS = 12
-SETTLED = 1e-11
+SETTLED = 1e-10
 """Largest force and moment (by half the length) left over, by the load."""
 ROUND_OFF = 1e-7
 """What is left that may be due to what the slices leave over."""
 STEEPEST = 0.5
 """Largest slope of the energy at the end of a step, by that at its start, that is not shortened."""
+_SHARES = np.polynomial.legendre.leggauss(POINTS)[1]
 _LIGHTEST, _HEAVIEST, _KNOTS = -40.0, 20.0, 601
 
 
@@ -83,7 +84,7 @@ class SlicedSeat:
     def press(self, travel: FloatArray, lean: FloatArray, play: FloatArray) -> _Seat:
         """Return what seats carry at travels, mm, and leans, rad, shape (contacts,), zero where open."""
         z = slice_heights(self.law.length, self.slices)
-        weights = 0.5 * self.law.length / self.slices * np.polynomial.legendre.leggauss(POINTS)[1]
+        weights = 0.5 * self.law.length / self.slices * _SHARES
         local = travel[:, None, None] + lean[:, None, None] * z
         pressed = local > 0.0
         unit = (
@@ -104,6 +105,44 @@ class SlicedSeat:
             line_load=line,
         )
 
+    def heaviest(self, load: FloatArray, moment: FloatArray, play: FloatArray) -> FloatArray:
+        """Return the load of the whole width at the line load of the most loaded end of seats, N, from their loads and moments.
+
+        Arrays have the shape (contacts,), N and N·mm; loads are positive.
+
+        Raises
+        ------
+        ConvergenceError
+            When no line of travel carries these.
+        """
+        travel, _ = self.law.approach_and_compliance(load, np.maximum(play, LEAST_PLAY))
+        lean, half = np.zeros_like(travel), 0.5 * self.law.length
+        seat, history = self.press(travel, lean, play), []
+        for _ in range(MAX_ITERATIONS):
+            force, turning = load - seat.load, moment - seat.moment
+            left = np.maximum(np.abs(force), np.abs(turning) / half) / load
+            history.append(float(np.max(left, initial=0.0)))
+            if history[-1] <= 1e-9:
+                break
+            stiff = np.maximum(seat.by_travel, 1e-300)
+            own = seat.moment_by_lean + 1e-9 * half**2 * stiff
+            determinant = stiff * own - seat.by_lean**2
+            step = (own * force - seat.by_lean * turning) / determinant
+            turn = (stiff * turning - seat.by_lean * force) / determinant
+            steep, fraction = force * step + turning * turn, np.ones_like(step)
+            for _ in range(MAX_HALVINGS):
+                seat = self.press(travel + fraction * step, lean + fraction * turn, play)
+                ahead = (seat.load - load) * step + (seat.moment - moment) * turn
+                if not (ahead > STEEPEST * steep).any():
+                    break
+                fraction = np.where(ahead > STEEPEST * steep, 0.5 * fraction, fraction)
+            travel, lean = travel + fraction * step, lean + fraction * turn
+        else:
+            raise ConvergenceError("seats in slices do not carry loads and moments; left over by the load", history)
+        end = travel + half * np.abs(lean)
+        level, _ = self._level(np.log(end / (self.law.series.load_scale * np.maximum(play, LEAST_PLAY))))
+        return np.asarray(self.law.contact_modulus * self.law.length * end / level)
+
     def _level(self, place: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Level at the logarithm of the travel, and its derivative."""
         spacing = (_HEAVIEST - _LIGHTEST) / (_KNOTS - 1)
@@ -119,7 +158,7 @@ class SlicedSeat:
     def energy(self, line_load: FloatArray, play: FloatArray) -> FloatArray:
         """Return the energy of seats under line loads, N·mm, shape (contacts,)."""
         length = self.law.length
-        weights = 0.5 / self.slices * np.polynomial.legendre.leggauss(POINTS)[1]
+        weights = 0.5 / self.slices * _SHARES
         stored = self.law.energy(line_load * length, np.maximum(play, LEAST_PLAY)[:, None, None])
         return np.asarray((stored @ weights).sum(axis=1))
 

@@ -9,6 +9,7 @@ from ltca.analysis.engines import HalfSpace
 from ltca.compliance.response import Start, bearing_pushes
 from ltca.drive.parts import PlacementErrors, ShaftPinBeam, WheelPinBeam
 from ltca.equilibrium.output_torque import solve_at_output
+from ltca.equilibrium.pin_displacements import LeaningPins
 from ltca.laws.sliced_spring import SlicedSpring
 from ltca.reading.drive_file import load_drive
 
@@ -25,7 +26,7 @@ def in_slices(*, discs=1, shaft=None, wheel=None, **fields):
     if wheel is not None:
         drive = replace(drive, pin_wheel=replace(drive.pin_wheel, beam=WheelPinBeam(span=30.0, **wheel)))
     drive = replace(drive, disc=replace(drive.disc, number_of_discs=discs, gap=2.0))
-    return drive.with_fields({"contact.slices": SLICES, **fields})
+    return drive.with_fields({"contact.slices": SLICES} | fields)
 
 
 def balance(drive, angles=ANGLES):
@@ -222,3 +223,30 @@ def test_forces_on_pins_and_rollers_balance_a_disc_that_tilts():
         left = part.pin_forces.sum(axis=1) - bearing_pushes(part.rollers, 1).sum(axis=1)
         assert np.max(np.abs(left)) < 1e-5
         assert np.max(np.abs(part.leaning_pins.tilt.tilt)) > 1e-5
+
+
+def test_a_ring_moves_sloping_pins_as_one_system_of_all_pins_does():
+    """Seats in the ring found beside pins that bend, against all displacements and leans at once: nothing but round-off apart."""
+    ring = {"ring.inner_radius": 88.0, "ring.outer_radius": 120.0, "ring.width": 30.0}
+    drive = in_slices(shaft={"tip": "tied-pinned"}, wheel={"ends": "supported"}, **ring)
+    model, found = balance(drive, ANGLES[:1])
+    response = model.respond(ANGLES[:1], found.pose, Start.after(found.response))
+    coordinates = model.coordinates
+    turned = np.exp(1j * (ANGLES[:1] / 14.0 + found.pose[:, -1]))
+    shifts = np.concatenate((response.shifts, response.parts[0].leans[:, None] * 0.5 * drive.disc.thickness), axis=1)
+    beside = LeaningPins(model.pins, response.parts, coordinates, turned, shifts)
+    at_once = LeaningPins(model.pins, response.parts, coordinates, turned, shifts)
+    at_once.coupled = True
+    one, other = beside.settled(), at_once.settled()
+    assert np.max(np.abs(other.tangent)) > 1e3
+    np.testing.assert_allclose(one.tangent, other.tangent, atol=1e-9 * np.max(np.abs(other.tangent)))
+    np.testing.assert_allclose(one.by_pose, other.by_pose, atol=1e-9 * np.max(np.abs(other.by_pose)))
+
+
+def test_without_tilt_slices_on_a_ring_are_the_plane():
+    """The ring alone tilts nothing: the wheel turns as in the plane, to 0.2″, loads to 0.5 % (the bounds of a straight line)."""
+    ring = {"ring.inner_radius": 88.0, "ring.outer_radius": 120.0, "ring.width": 30.0}
+    found = [balance(in_slices(**ring, **{"contact.slices": slices}))[1] for slices in (1, SLICES)]
+    assert np.max(np.abs(found[0].pose[:, -1] - found[1].pose[:, -1])) < np.deg2rad(0.2 / 3600.0)
+    loads = [each.response.pin_load for each in found]
+    np.testing.assert_allclose(loads[0], loads[1], atol=5e-3 * np.max(loads[0]))

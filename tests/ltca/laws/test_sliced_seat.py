@@ -129,3 +129,16 @@ def test_a_sleeve_counts_its_wall_once():
     load = np.array([100.0, 1000.0, 3000.0])
     approach = plane.approach_at_load(load, np.full(3, 6.0))[0] - overlap * load
     np.testing.assert_allclose(law.respond(approach, np.zeros(3), np.full(3, 6.0)).load, load, rtol=1e-2)
+
+
+def test_the_most_loaded_end_of_a_seat_follows_from_load_and_moment():
+    """From what seats carry at some travels and leans, open at an end and all along, the plane law of their deepest end: 1e-6."""
+    law = wheel_pin_seat(loose())
+    sliced = SlicedSeat.of_law(law, SLICES)
+    travel, lean = np.array([3e-3, 1e-3, 5e-4, 2e-3]), np.array([2e-4, -2e-4, 4e-4, 0.0])
+    play = np.full(4, 0.01)
+    carried = sliced.press(travel, lean, play)
+    assert (carried.line_load == 0.0).any()
+    found = sliced.heaviest(carried.load, carried.moment, play)
+    deepest, _ = law.approach_and_compliance(found, play)
+    np.testing.assert_allclose(deepest, travel + 5.0 * np.abs(lean), rtol=1e-6)
