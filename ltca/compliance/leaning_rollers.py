@@ -30,6 +30,9 @@ MAX_HALVINGS = 12
 STEEPEST = 0.5
 """Largest slope of the energy at the end of a step, by that at its start, that is not shortened."""
 
+FARTHEST = 1.5
+"""Place of a roller from the middle of its overlap, as a part of the overlap, up to which it is where to start elsewhere."""
+
 _Near = tuple[FloatArray | None, FloatArray | None]
 _Contacts = tuple[SlicedContact, SlicedContact, ComplexArray, FloatArray]
 _ALL = slice(None)
@@ -96,10 +99,11 @@ def balance_leaning_rollers(
     inward, lean = from_race + 0.5 * (overlap - from_race - from_bore), 0.5 * (at_race + at_bore)
     near: _Near = (None, None)
     if start is not None:
-        known = start.inner[rows, numbers].sum(axis=1) > 0.0
+        known, part = start.inner[rows, numbers].sum(axis=1) > 0.0, start.inward[rows, numbers]
         # One that leaned by more than what presses it now is better begun anew.
         known &= half * np.abs(start.lean[rows, numbers] - lean) <= np.abs(overlap) + half * np.abs(at_race - at_bore)
-        inward = np.where(known, start.inward[rows, numbers] * overlap, inward)
+        # Of a roller that touched at its end alone the overlap in the middle was nothing to go by.
+        inward = np.where(known & (np.abs(part - 0.5) < FARTHEST), part * overlap, inward)
         lean = np.where(known, start.lean[rows, numbers], lean)
         near = start.inner[rows, numbers], start.outer[rows, numbers]
     inner, outer, outward, length = contacts(_ALL, inward, lean, near)

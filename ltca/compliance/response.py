@@ -142,13 +142,22 @@ class DiscResponse:
 
     @property
     def pin_forces(self) -> ComplexArray:
-        """Force of the disc on each wheel pin and shaft pin in the fixed frame, with friction, N, shape (positions, pairs)."""
+        """Force of the disc on each wheel pin and shaft pin in the fixed frame, with friction, N, shape (positions, pairs).
+
+        In slices normals turn along the width where pairs tilt across them, by which moments press across as well.
+        """
         load = np.concatenate((self.pin_load, self.hole_load), axis=1)
         normal, along = (
             np.concatenate((getattr(self.flank, name), getattr(self.holes, name)), axis=1)[..., DISC_PLACE]
             for name in ("gradient", "along")
         )
         force = load[..., None] * normal
+        if self.leaning_pins is not None and self.leaning_holes is not None:
+            turned = [
+                pairs.contact.moment[..., None] * pairs.tilt.gradient[..., DISC_PLACE]
+                for pairs in (self.leaning_pins, self.leaning_holes)
+            ]
+            force = force + np.concatenate(turned, axis=1)
         if self.friction is not None:
             force = force + self.friction[..., None] * along
         if self.leaning_pins is not None and self.leaning_holes is not None:

@@ -147,13 +147,14 @@ class ContactGeometry:
     @property
     def tips_by_ring(self) -> ComplexArray:
         """Displacement of the tips of the shaft pins by x, y and rotation of the ring that ties them, shape (…, z_PS, 3)."""
-        places = self.placement.shaft_pin_centres
+        # At the zero of the planes, alike for all discs: inclined pins stand beside there at a disc.
+        places = self.placement.shaft_pin_centres - self.plane * self.placement.shaft_pin_leans
         return np.stack((np.ones_like(places), np.full_like(places, 1j), 1j * places), axis=-1)
 
     @property
     def seats_by_ring(self) -> ComplexArray:
         """Displacement of the bearings of the cranks in the far flange by its x, y and rotation, shape (…, cranks, 3)."""
-        places = self.placement.crank_axes
+        places = self.placement.crank_axes - self.plane * np.asarray(self.placement.crank_lean)
         return np.stack((np.ones_like(places), np.full_like(places, 1j), 1j * places), axis=-1)
 
     @property
