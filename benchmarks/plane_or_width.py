@@ -10,6 +10,7 @@ of the torque that one disc carries, and what the discs tilt by.
 from __future__ import annotations
 
 from math import pi
+from typing import Any
 
 import ltca
 from ltca import Drive
@@ -23,7 +24,9 @@ def drives() -> dict[str, Drive]:
     paper, joint, rv = (next(iter(ltca.load_drive(name).cases.values())) for name in ("paper", "robot-joint", "rv"))
     bent = {"pin_wheel.beam.ends": "supported"}
     return {
-        "paper, wheel pins supported, shaft pins tied": paper.with_fields({**bent, "pin_shaft.beam.tip": "tied-clamped"}),
+        "paper, wheel pins supported, shaft pins tied": paper.with_fields(
+            {**bent, "pin_shaft.beam.tip": "tied-clamped"}
+        ),
         "paper, wheel pins supported, shaft pins free": paper.with_fields({**bent, "pin_shaft.beam.tip": "free"}),
         "robot-joint": joint,
         "robot-joint, shaft pins tied": joint.with_fields({"pin_shaft.beam.tip": "tied-clamped"}),
@@ -35,7 +38,7 @@ def drives() -> dict[str, Drive]:
 
 def numbers(drive: Drive) -> list[float]:
     """Return the numbers of one row."""
-    found = ltca.analyse(drive, POSITIONS, compliance="half-space").summary
+    found: dict[str, Any] = dict(ltca.analyse(drive, POSITIONS, compliance="half-space").summary)
     life = ltca.curves(drive, TURNS, compliance="half-space").content["bearing_life"]["million_turns"]
     shares = [value for key, value in found.items() if key.startswith("max_torque_share_disc")]
     return [

@@ -15,19 +15,20 @@ less :math:`G^T (C^{-1} + K)^{-1} G`, G being how loads follow the pose.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 import numpy as np
 
 from ltca.arrays import ComplexArray, FloatArray
+from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.compliance.in_slices import ContactsInSlices, roller_start, stacked, warm_rows
+from ltca.compliance.near_field import NearFieldLaws, OwnParts
 from ltca.compliance.response import DiscResponse, LeaningPairs, PairSlopes, Start
 from ltca.compliance.rollers import RollerLaws, RollerState
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_ROTATION, X, Y
-
-if TYPE_CHECKING:
-    from ltca.compliance.coupled import CoupledCompliance
+from ltca.geometry.pairs import ContactGeometry
+from ltca.laws.contact_law import ContactLaw
 
 MAX_ITERATIONS = 60
 SETTLED, ROUND_OFF = 1e-13, 1e-11
@@ -35,8 +36,57 @@ SETTLED, ROUND_OFF = 1e-13, 1e-11
 MAX_HALVINGS = 12
 
 
+class CoupledBodies(Protocol):
+    """What contacts in slices need to know of bodies by which they feel each other (`ltca.compliance.coupled`)."""
+
+    @property
+    def geometry(self) -> ContactGeometry:
+        """Of the disc."""
+        ...
+
+    @property
+    def coefficients(self) -> InfluenceCoefficients:
+        """The body part C."""
+        ...
+
+    @property
+    def near_field(self) -> NearFieldLaws:
+        """Laws of the contacts."""
+        ...
+
+    @property
+    def hole_law(self) -> ContactLaw:
+        """That of shaft pins and holes."""
+        ...
+
+    @property
+    def hole_spring(self) -> float:
+        """What a shaft pin yields behind it, mm/N."""
+        ...
+
+    @property
+    def race(self) -> FloatArray:
+        """Between the inner contacts of the rollers, mm/N."""
+        ...
+
+    @property
+    def outer_radius(self) -> FloatArray:
+        """Effective radii in the bore, mm."""
+        ...
+
+    @property
+    def inner_radius(self) -> FloatArray:
+        """Those on the race, mm."""
+        ...
+
+    @property
+    def own(self) -> OwnParts:
+        """What is added to the diagonal of C."""
+        ...
+
+
 def respond_in_slices(
-    model: CoupledCompliance,
+    model: CoupledBodies,
     crank_angle: FloatArray,
     pose: FloatArray,
     start: Start | None,
@@ -44,7 +94,7 @@ def respond_in_slices(
     leans: ComplexArray | None,
     pin_shifts: ComplexArray | None,
 ) -> DiscResponse:
-    """Return the contact forces at the poses of a batch of positions, as `CoupledCompliance.respond` in the plane.
+    """Return the contact forces at the poses of a batch of positions, as `ltca.compliance.coupled` in the plane.
 
     `pin_shifts` are those of `shifts` that concern wheel pins.
     """
@@ -91,7 +141,7 @@ class _State:
 class _Bodies:
     """The body part between all contacts of a disc at a pose, numbered wheel pins, bores, holes, races."""
 
-    def __init__(self, model: CoupledCompliance, here: ContactsInSlices, pose: FloatArray) -> None:
+    def __init__(self, model: CoupledBodies, here: ContactsInSlices, pose: FloatArray) -> None:
         self.model, self.here = model, here
         flank, holes = here.motions
         place, own, body = model.geometry.placement, model.own, model.coefficients

@@ -99,11 +99,11 @@ def balance_leaning_rollers(
     inward, lean = from_race + 0.5 * (overlap - from_race - from_bore), 0.5 * (at_race + at_bore)
     near: _Near = (None, None)
     if start is not None:
-        known, part = start.inner[rows, numbers].sum(axis=1) > 0.0, start.inward[rows, numbers]
+        known, share = start.inner[rows, numbers].sum(axis=1) > 0.0, start.inward[rows, numbers]
         # One that leaned by more than what presses it now is better begun anew.
         known &= half * np.abs(start.lean[rows, numbers] - lean) <= np.abs(overlap) + half * np.abs(at_race - at_bore)
         # Of a roller that touched at its end alone the overlap in the middle was nothing to go by.
-        inward = np.where(known & (np.abs(part - 0.5) < FARTHEST), part * overlap, inward)
+        inward = np.where(known & (np.abs(share - 0.5) < FARTHEST), share * overlap, inward)
         lean = np.where(known, start.lean[rows, numbers], lean)
         near = start.inner[rows, numbers], start.outer[rows, numbers]
     inner, outer, outward, length = contacts(_ALL, inward, lean, near)
