@@ -5,10 +5,14 @@ Modules in the order data passes:
 ===================  ============================================================
 rollers              A roller between the races: two contact laws in series, its radial place eliminated (Eq. 52, 57,
                      66)
+leaning_rollers      Rollers of a crank bearing in slices: place and lean at which both contacts balance in force and
+                     moment
 response             What a compliance model answers: loads of all contact pairs at a pose, their generalised force and
                      its tangent
 pressures            Pressures behind the loads found: read from the laws of the contacts, for shaft pins from their
                      loads
+in_slices            Contacts of a disc in slices at a pose: how they tilt, what they carry, force and tangent of the
+                     disc
 uncoupled            Contacts that do not feel each other: every load follows from its approach alone
 half_space           Half-space compliance: pairs that do not feel each other (the paper's model)
 grids                Contact grids solved inside every iteration of the equilibrium: the ``direct`` method
@@ -25,6 +29,7 @@ undeformed           Overlap of the undeformed bodies at a pose, and where on th
                      start from
 coupled              Loads of all contact pairs at a pose when the pairs feel each other through the bodies (`fe` and
                      `hybrid`)
+coupled_slices       Contacts in slices that feel each other through the bodies
 wall_stress          Stress in the disc under the loads found: along lobe roots, bore and hole walls, and in the wall
                      under each contact
 ===================  ============================================================

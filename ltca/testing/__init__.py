@@ -15,6 +15,8 @@ first_stage_check   First stage and forces from outside: normal forces of teeth,
 bearing_springs     Bearings as one-sided springs, and shafts on them, independently of `ltca.equilibrium.supports`
 friction_check      Friction of a drive that turns: forces, work and moments, independently of `ltca.equilibrium.friction`
 balance_check       Check of an equilibrium by its potential energy, independently of the code that finds it
+slice_law           What contacts in slices carry, by own quadratures, independently of `ltca.laws.sliced_line`
+width_check         Check of contacts in slices in six directions per disc, independently of the code that finds them
 field_changes       A plausible change of every leaf field of a drive, for the test of the contract
 malformed           Malformed drive and study files by a seeded generator: wrong values, texts, structures and bytes
 elastic_cylinder    An elastic cylinder between two rigid planes, solved with its true boundary: a reference for half-spaces
