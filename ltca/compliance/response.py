@@ -160,13 +160,6 @@ class DiscResponse:
             force = force + np.concatenate(turned, axis=1)
         if self.friction is not None:
             force = force + self.friction[..., None] * along
-        if self.leaning_pins is not None and self.leaning_holes is not None:
-            # Normals of slices turn along the width, so that a moment has a force across.
-            turned = [
-                pairs.contact.moment[..., None] * pairs.tilt.gradient[..., DISC_PLACE]
-                for pairs in (self.leaning_pins, self.leaning_holes)
-            ]
-            force = force + np.concatenate(turned, axis=1)
         return np.asarray(force[..., 0] + 1j * force[..., 1])
 
     @property
