@@ -11,6 +11,7 @@ shared_axes       Range and ticks of what figures and pages both draw
 curve_panels      Curves in panels of their own, the others grey behind; discs and cranks as cases of their own
 mesh_range        Which pin is shown over its mesh, and over which crank angles
 crank_figures     Figures of several cranks: moment and deflection of each, and the loads of its rollers
+width_figures     Figure of contacts in slices: line load and pressure along the width of the most loaded pin and roller
 run_figures       Figures of a run, corresponding to the paper's Fig. 23–26, 28–30 and 34–36: a panel for each case
 drive_picture     Picture of a drive at one crank angle: its parts with their numbers, contact normals, loads as arrows
 width_figures     Figure of line load and pressure along the width of the most loaded wheel pin and roller
