@@ -170,14 +170,16 @@ class ContactsInSlices:
 
 def roller_start(near: list[Any]) -> RollerStart:
     """Return the rollers of a warm start (`warm_rows`)."""
-    return RollerStart(inward=near[2], lean=near[3], inner=near[4], outer=near[5])
+    names = ("inward", "lean", "inner", "outer", "place", "stood", "follow")
+    return RollerStart(**dict(zip(names, near[2:9], strict=True)))
 
 
 def warm_rows(pairs: tuple[LeaningPairs, LeaningPairs], rollers: RollerState, *more: FloatArray) -> NDArray[np.object_]:
     """Return what contacts in slices want to find again, row by row: loads of slices of pins and holes, the rollers, and more."""
     found = np.empty(rollers.share.shape[0], dtype=object)
     loads = (pair.contact.slice_load for pair in pairs)
-    each = (*loads, rollers.share, rollers.lean, rollers.inner_slices, rollers.outer_slices, *more)
+    slices = rollers.inner_slices, rollers.outer_slices
+    each = (*loads, rollers.share, rollers.lean, *slices, rollers.inner_approach, rollers.stood, rollers.follow, *more)
     found[:] = list(zip(*(values for values in each if values is not None), strict=True))
     return found
 

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.rollers import RollerLaws, RollerState
 from ltca.errors import ConvergenceError
-from ltca.geometry.pair_motion import RollerRays, dot
+from ltca.geometry.pair_motion import RollerRays, cross, dot
 from ltca.laws.sliced_line import POINTS, SlicedContact, SlicedLine, slice_heights
 
 MAX_ITERATIONS = 80
@@ -48,12 +48,22 @@ class RollerStart:
         Place inward from where the roller rests in the bore alone, as a part of the overlap, and lean, rad.
     inner, outer : array, shape (positions, rollers, slices)
         Loads of the slices, N.
+    place : array, shape (positions, rollers)
+        Place inward, mm.
+    stood : array, shape (positions, rollers, 6)
+        What placed them: displacement of the bore along and across the ray, mm, leans of bore and race along it, rad, and what the
+        bodies took of both approaches, mm.
+    follow : array, shape (positions, rollers, 2, 6)
+        How place outward and lean follow that.
     """
 
     inward: FloatArray
     lean: FloatArray
     inner: FloatArray
     outer: FloatArray
+    place: FloatArray
+    stood: FloatArray
+    follow: FloatArray
 
 
 def balance_leaning_rollers(
@@ -84,7 +94,8 @@ def balance_leaning_rollers(
     inner_radius, outer_radius = each(laws.inner_radius), each(laws.outer_radius)
     at_race, at_bore, overlap = each(race_lean), each(bore_lean), each(total)
     from_bore, from_race = (each(np.asarray(one)) for one in given)
-    along, lowest = ray.real * moved.real + ray.imag * moved.imag, outermost - overlap
+    along, lowest = dot(ray, moved), outermost - overlap
+    stands = np.stack((along, cross(ray, moved), at_bore, at_race, from_bore, from_race), axis=1)
 
     def contacts(which: Any, inward: FloatArray, lean: FloatArray, near: _Near) -> _Contacts:
         place = outermost[which] - inward
@@ -105,6 +116,11 @@ def balance_leaning_rollers(
         # Of a roller that touched at its end alone the overlap in the middle was nothing to go by.
         inward = np.where(known & (np.abs(share - 0.5) < FARTHEST), share * overlap, inward)
         lean = np.where(known, start.lean[rows, numbers], lean)
+        change = stands - start.stood[rows, numbers]
+        outward, turned = np.einsum("rij,rj->ir", start.follow[rows, numbers], change)
+        near_by = np.abs(outward) + half * np.abs(turned) <= 0.5 * (np.abs(overlap) + half * np.abs(at_race - at_bore))
+        inward = np.where(known & near_by, start.place[rows, numbers] - outward, inward)
+        lean = np.where(known & near_by, start.lean[rows, numbers] + turned, lean)
         near = start.inner[rows, numbers], start.outer[rows, numbers]
     inner, outer, outward, length = contacts(_ALL, inward, lean, near)
     # What round-off of places makes of a load.
@@ -130,6 +146,7 @@ def balance_leaning_rollers(
     else:
         raise ConvergenceError("leaning rollers do not balance between the races; force left over by the load", history)
     cosine = outward.real * ray.real + outward.imag * ray.imag
+    tangent, follow = _eliminated(ray, outward, cosine, length, inner, outer, half)
     found: dict[str, NDArray[Any]] = {
         "share": np.divide(inward, overlap, out=np.full(overlap.shape, 0.5), where=overlap > 0.0),
         "inner_approach": inward,
@@ -137,7 +154,9 @@ def balance_leaning_rollers(
         "inner_load": inner.load,
         "outer_load": outer.load,
         "outer_direction": outward,
-        "tangent": _eliminated(ray, outward, cosine, length, inner, outer, half),
+        "tangent": tangent,
+        "stood": stands,
+        "follow": follow,
         "outer_moment": outer.moment,
         "inner_moment": inner.moment,
         "lean": lean,
@@ -152,7 +171,7 @@ def balance_leaning_rollers(
     rest = np.abs(arm)
     free: dict[str, NDArray[Any]] = {
         "share": np.full(shape, 0.5), "outer_approach": rest - rays.bore_play, "outer_direction": arm / rest,
-        "tangent": np.zeros((*shape, 6, 6)),
+        "tangent": np.zeros((*shape, 6, 6)), "stood": np.zeros((*shape, 6)), "follow": np.zeros((*shape, 2, 6)),
         "inner_slices": np.zeros((*shape, laws.inner.slices)), "outer_slices": np.zeros((*shape, laws.outer.slices)),
         "inner_lines": np.zeros((*shape, laws.inner.slices, POINTS)),
         "outer_lines": np.zeros((*shape, laws.outer.slices, POINTS)),
@@ -244,9 +263,10 @@ def _eliminated(
     inner: SlicedContact,
     outer: SlicedContact,
     half: float,
-) -> FloatArray:
+) -> tuple[FloatArray, FloatArray]:
     """Second derivative of the eliminated energy by displacement (x, y) and lean (x, y) of the bore and what the bodies take of
-    the approaches in the bore and on the race, shape (rollers, 6, 6).
+    the approaches in the bore and on the race, shape (rollers, 6, 6); and how place outward and lean follow what places the
+    roller (`RollerStart`).
     """
     slant = ray.imag * outward.real - ray.real * outward.imag
     bend = outer.load / length
@@ -279,4 +299,12 @@ def _eliminated(
     own[:, 0, 1] = own[:, 1, 0] = -mixed
     own[stiff <= 0.0] = np.eye(2)
     both = np.stack((by_place, by_lean), axis=1)
-    return np.asarray(direct - np.matmul(both.swapaxes(1, 2), np.linalg.solve(own, both)))
+    local = np.empty((ray.size, 2, 6))
+    local[:, :, 0] = np.matmul(both[:, :, :2], n[..., None])[..., 0]
+    local[:, :, 1] = np.matmul(both[:, :, :2], np.stack((-n[:, 1], n[:, 0]), axis=-1)[..., None])[..., 0]
+    local[:, :, 2] = np.matmul(both[:, :, 2:4], n[..., None])[..., 0]
+    local[:, 0, 3], local[:, 1, 3] = -inner.by_tilt, -inner.moment_by_tilt
+    local[:, :, 4:] = both[:, :, 4:]
+    solved = np.linalg.solve(own, np.concatenate((both, local), axis=2))
+    tangent = direct - np.matmul(both.swapaxes(1, 2), solved[:, :, :6])
+    return np.asarray(tangent), -solved[:, :, 6:]

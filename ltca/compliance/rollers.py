@@ -72,6 +72,8 @@ class RollerState:
         Of leaning rollers along their rays, rad.
     inner_tilt, outer_tilt : array, shape (positions, rollers), or None
         Tilts of their contacts, rad, positive presses positive z.
+    stood, follow : array, shape (positions, rollers, 6) and (…, 2, 6), or None
+        Of leaning rollers, what placed them and how they follow it (`ltca.compliance.leaning_rollers.RollerStart`).
     inner_slices, outer_slices : array, shape (positions, rollers, slices), or None
         Loads of the slices of leaning rollers, N.
     inner_lines, outer_lines : array, shape (positions, rollers, slices, points), or None
@@ -90,6 +92,8 @@ class RollerState:
     lean: FloatArray | None = None
     inner_tilt: FloatArray | None = None
     outer_tilt: FloatArray | None = None
+    stood: FloatArray | None = None
+    follow: FloatArray | None = None
     inner_slices: FloatArray | None = None
     outer_slices: FloatArray | None = None
     inner_lines: FloatArray | None = None
