@@ -26,7 +26,7 @@ SETTLED = 1e-10
 """Largest force and moment (by half the length) left over, by the larger load of the two contacts."""
 ROUND_OFF = 1e-7
 """What is left that may be due to what the slices leave over."""
-MAX_HALVINGS = 12
+MAX_HALVINGS = 16
 STEEPEST = 0.5
 """Largest slope of the energy at the end of a step, by that at its start, that is not shortened."""
 
@@ -125,6 +125,7 @@ def balance_leaning_rollers(
     inner, outer, outward, length = contacts(_ALL, inward, lean, near)
     # What round-off of places makes of a load.
     lightest = np.spacing(outermost) * laws.outer.contact_modulus * laws.outer.length / SETTLED
+    reach = np.abs(overlap - from_bore - from_race) + half * np.abs(at_race - at_bore)
     history: list[float] = []
     before = np.full(rows.size, np.inf)
     for _ in range(MAX_ITERATIONS):
@@ -137,7 +138,7 @@ def balance_leaning_rollers(
         if not going.size:
             break
         before = left
-        there, moved_by = _downhill(contacts, going, inward, lean, inner, outer, outward, length, ray, half)
+        there, moved_by = _downhill(contacts, going, inward, lean, inner, outer, outward, length, ray, half, reach)
         inward[going] += moved_by[0]
         lean[going] += moved_by[1]
         for whole, part in zip((inner, outer), there[:2], strict=True):
@@ -206,6 +207,7 @@ def _downhill(
     length: FloatArray,
     ray: ComplexArray,
     half: float,
+    reach: FloatArray,
 ) -> tuple[_Contacts, tuple[FloatArray, FloatArray]]:
     """Newton's step of the rollers that go on, shortened where the energy rises again steeply at its end.
 
@@ -218,20 +220,27 @@ def _downhill(
     # A roller that touches at one end alone turns about that end freely.
     turning = turning + 1e-9 * half**2 * stiff
     determinant = np.where(stiff > 0.0, stiff * turning - mixed**2, 1.0)
-    step = -(turning * force - mixed * moment) / determinant
-    turn = -(stiff * moment - mixed * force) / determinant
+    # Beyond half of what is pressed together at the end other slices meet than the slopes know of.
+    most = 0.5 * reach[going] / half
+    turn = np.clip(-(stiff * moment - mixed * force) / determinant, -most, most)
+    step = -(force + mixed * turn) / np.where(stiff > 0.0, stiff, 1.0)
     slope = force * step + moment * turn
     fraction = np.ones(step.shape)
     across = dot(towards, n)
     start = (first.ahead(step, -turn), second.ahead(-across * step, turn))
     there = contacts(going, inward[going] + step, lean[going] + turn, start)
+    low, high = np.zeros(step.shape), np.full(step.shape, np.inf)
     for _ in range(MAX_HALVINGS):
-        ahead = _along(_imbalance(*there[:3], n), (step, turn))
-        long = np.flatnonzero(ahead > STEEPEST * np.abs(slope))
+        ahead, steep = _along(_imbalance(*there[:3], n), (step, turn)), STEEPEST * np.abs(slope)
+        far, near = ahead > steep, (ahead < -steep) & np.isfinite(high)
+        high[far], low[near] = fraction[far], fraction[near]
+        long = np.flatnonzero(far | near)
         if not long.size:
             break
-        cut = np.abs(slope[long]) / (np.abs(slope[long]) + ahead[long])
-        fraction[long] *= np.clip(cut, 0.1, 0.7)
+        # Where a slice begins to carry the slope turns within a little: places are halved by their size then.
+        cut = np.clip(np.abs(slope[long]) / (np.abs(slope[long]) + np.abs(ahead[long])), 0.1, 0.7)
+        between = np.sqrt(low[long] * high[long])
+        fraction[long] = np.where(low[long] > 0.0, between, cut * high[long])
         again = going[long]
         part = contacts(
             again,
