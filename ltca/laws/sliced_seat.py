@@ -25,7 +25,7 @@ from ltca.laws.sliced_spring import SlicedSpring
 LEAST_PLAY = 1e-9
 """Play that stands for none, mm."""
 MAX_ITERATIONS = 60
-MAX_HALVINGS = 12
+MAX_HALVINGS = 16
 SETTLED = 1e-10
 """Largest force and moment (by half the length) left over, by the load."""
 ROUND_OFF = 1e-7
@@ -294,6 +294,7 @@ class BackedLine:
         turn = -(stiff * moment - mixed * force) / determinant
         steep = np.abs(force * step + moment * turn)
         fraction, open_ = np.ones(step.shape), np.arange(going.size)
+        low, high = np.zeros(step.shape), np.full(step.shape, np.inf)
         for halving in range(MAX_HALVINGS):
             rows = going[open_]
             at, leaning = travel[rows] + fraction[open_] * step[open_], lean[rows] + fraction[open_] * turn[open_]
@@ -304,11 +305,16 @@ class BackedLine:
             contact.put(rows, there)
             for values, part in zip(seat, under, strict=True):
                 values[rows] = part
-            long = ahead > STEEPEST * steep[open_]
+            far = ahead > STEEPEST * steep[open_]
+            near = (ahead < -STEEPEST * steep[open_]) & np.isfinite(high[open_])
+            high[open_[far]], low[open_[near]] = fraction[open_[far]], fraction[open_[near]]
+            long = far | near
             if not long.any() or halving == MAX_HALVINGS - 1:
                 break
-            fraction[open_[long]] *= (steep[open_][long] / (steep[open_][long] + ahead[long])).clip(0.1, 0.7)
+            cut = (steep[open_][long] / (steep[open_][long] + np.abs(ahead[long]))).clip(0.1, 0.7)
             open_ = open_[long]
+            # Where a slice begins to carry the slope turns within a little: places are halved by their size then.
+            fraction[open_] = np.where(low[open_] > 0.0, np.sqrt(low[open_] * high[open_]), cut * high[open_])
         travel[going] += fraction * step
         lean[going] += fraction * turn
 
