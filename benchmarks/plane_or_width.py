@@ -2,9 +2,9 @@
 
     OPENBLAS_NUM_THREADS=1 python benchmarks/plane_or_width.py
 
-prints the table of ``docs/theory/plane_or_width.md`` (half-space tables, 24 positions, lives over four turns): largest pressure of
-flank and roller at mid-width and anywhere, the least life of a crank bearing, the stiffness of the cycloid stage, the largest part
-of the torque that one disc carries, and what the discs tilt by.
+prints the table of ``docs/theory/plane_or_width.md`` (half-space tables, 24 positions, lives over four turns): largest pressure
+of flank and roller at mid-width and anywhere, MPa, the least life of a crank bearing, million turns, the stiffness of the cycloid
+stage, N·m/′, the largest part of the torque that one disc carries, %, and what the discs tilt by, mrad.
 """
 
 from __future__ import annotations

@@ -51,8 +51,8 @@ class RollerStart:
     place : array, shape (positions, rollers)
         Place inward, mm.
     stood : array, shape (positions, rollers, 6)
-        What placed them: displacement of the bore along and across the ray, mm, leans of bore and race along it, rad, and what the
-        bodies took of both approaches, mm.
+        What placed them: displacement of the bore along and across the ray, mm, leans of bore and race along it, rad, and what
+        the bodies took of both approaches, mm.
     follow : array, shape (positions, rollers, 2, 6)
         How place outward and lean follow that.
     """
@@ -316,4 +316,4 @@ def _eliminated(
     local[:, :, 4:] = both[:, :, 4:]
     solved = np.linalg.solve(own, np.concatenate((both, local), axis=2))
     tangent = direct - np.matmul(both.swapaxes(1, 2), solved[:, :, :6])
-    return np.asarray(tangent), -solved[:, :, 6:]
+    return np.asarray(tangent), np.asarray(-solved[:, :, 6:], dtype=float)

@@ -62,8 +62,8 @@ def pin_drive(seed: int) -> tuple[Drive, float]:
 def sloping_drive(seed: int) -> tuple[Drive, float]:
     """Return a reducer of any kind with contacts in slices, leads and inclinations, and a crank angle in rad, by a seed.
 
-    Its pins bend or are rigid, cranks stand on bearings that yield, and half of the main bearings yield in tilt. Pins are fixed, the
-    ring of the wheel and the carrier rigid, and first stages without teeth.
+    Its pins bend or are rigid, cranks stand on bearings that yield, and half of the main bearings yield in tilt. Pins are fixed,
+    the ring of the wheel and the carrier rigid, and first stages without teeth.
     """
     random = np.random.default_rng((seed, 31))
     while True:

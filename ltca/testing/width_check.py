@@ -1,7 +1,7 @@
 """Check of an equilibrium of contacts in slices by the loads of their slices, in six directions per disc.
 
-Independent of `ltca.geometry`, `ltca.compliance`, `ltca.equilibrium`, `ltca.laws.sliced_line`, `ltca.laws.beam`: axes are lines in
-space that stand inclined, lean with their bodies and are displaced by the forces of the answer (beams and shafts by the
+Independent of `ltca.geometry`, `ltca.compliance`, `ltca.equilibrium`, `ltca.laws.sliced_line` and `ltca.laws.beam`: axes are
+lines in space that stand inclined, lean with their bodies and are displaced by the forces of the answer (beams and shafts by the
 theorem of unit loads). At the height z of every point of a slice the section of the disc stands where its lean brings it and the
 pin where its axis crosses; normal and lever arm there are those of these two sections, without any derivative of the middle. From
 the answer come the pose, the line loads, and the places and leans of the rollers.
@@ -534,8 +534,8 @@ def find_imbalance_in_slices(
 ) -> list[str]:
     """Return what does not hold of contacts in slices at a position of a solution; empty for an equilibrium.
 
-    Arguments are those of `ltca.testing.balance_check.find_imbalance`. Friction, seats, an elastic ring, a carrier on posts and teeth
-    of a first stage are not known here.
+    Arguments are those of `ltca.testing.balance_check.find_imbalance`. Friction, seats, an elastic ring, a carrier on posts and
+    teeth of a first stage are not known here.
     """
     if not np.all(np.isfinite(balanced.pose[position])):
         return ["the pose is not finite"]
@@ -599,7 +599,7 @@ def _off(
 ) -> float:
     """Largest difference of gap and what plane strain and the coupling of the slices make of the line load, by the gap.
 
-    `rounding` is that of places, mm. Without line loads slices are compared: loads of plane strain at the gaps left, by the largest.
+    `rounding` is that of places, mm. Without line loads slices are compared: loads of plane strain at the gaps left.
     """
     on = slices.sum(axis=1) > 0.0
     if not on.any():

@@ -1,4 +1,4 @@
-"""What must not change an answer in slices: the sense of the axis, of the crank, numbers of parts, units, and whose slope it is."""
+"""What must not change an answer in slices: sense of the axis, of the crank, numbers of parts, units, and whose slope it is."""
 
 from dataclasses import replace
 

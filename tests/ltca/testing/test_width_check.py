@@ -105,6 +105,6 @@ def test_tilted_reducers(seeds):
 def test_sloping_reducers(seeds):
     """Beams, supports and wheels that tilt besides; ``benchmarks/random_drives.py --sloping`` runs more.
 
-    Ring forces of seed 1 were off by a thousandth of the load while pins were displaced by what normals of the middle press alone.
+    Ring forces of seed 1 were off by a thousandth of the load while pins were displaced by what the normals of the middle press.
     """
     check_seeds(sloping_drive, seeds)
