@@ -328,6 +328,7 @@ LEFT_OUT = (
     "installation.first_stage_ratio",
     "crank.circle_radius",
     "load.speed",
+    "disc.axial_play",
     *RATINGS,
 )
 TABLES_LEFT_OUT = (
