@@ -9,6 +9,7 @@ stage, N·m/′, the largest part of the torque that one disc carries, %, and wh
 
 from __future__ import annotations
 
+import argparse
 from math import pi
 from typing import Any
 
@@ -55,6 +56,7 @@ def numbers(drive: Drive) -> list[float]:
 
 def main() -> None:
     """Print the table."""
+    argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter).parse_args()
     for name, drive in drives().items():
         for slices in (1, SLICES):
             values = numbers(drive.with_fields({"contact.slices": slices}))

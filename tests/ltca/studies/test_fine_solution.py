@@ -17,7 +17,7 @@ from ltca.geometry.placement import position_angles
 from ltca.reading.drive_file import load_drive
 from ltca.studies.fine_solution import solve_finely
 from ltca.studies.optimiser import Bound, Problem, broken_limits
-from ltca.studies.quantities import OF_FRICTION, STAGES, quantities_for
+from ltca.studies.quantities import OF_FRICTION, OF_WIDTH, STAGES, quantities_for
 
 ARCMIN, ARCSEC = 10_800.0 / np.pi, 648_000.0 / np.pi
 
@@ -34,7 +34,7 @@ def test_every_quantity_finely(drive):
     found = solve_finely(drive, names, HalfSpace(), 60)
     assert found.positions == 60
     assert tuple(found.values) == names
-    assert set(STAGES) - set(names) == set(OF_FRICTION)
+    assert set(STAGES) - set(names) == {*OF_FRICTION, *OF_WIDTH}
     analysis = analyse(drive, position_angles(60))
     refined = refine_extremes(analysis)
     total = np.hypot(analysis.bearing_radial, analysis.bearing_tangential)

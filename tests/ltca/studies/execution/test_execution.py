@@ -23,7 +23,7 @@ from ltca.reading.drive_file import load_drive
 from ltca.studies.designs import SweepDesign, SweepFactor
 from ltca.studies.execution.storage import StudyFolder
 from ltca.studies.execution.workers import Workers
-from ltca.studies.quantities import OF_FRICTION, STAGES
+from ltca.studies.quantities import OF_FRICTION, OF_WIDTH, STAGES
 from ltca.studies.run_study import run_study
 from ltca.studies.study import Study, run_batch
 from ltca.studies.tolerance_study import tolerance_study
@@ -62,7 +62,7 @@ def test_every_quantity_against_the_run_of_its_sample(paper):
     assert result.messages == ("", "", "")
     drive = study.sample_drive(2)
     found = dict(zip(study.quantities, result.values[2], strict=True))
-    assert set(found) == set(STAGES) - set(OF_FRICTION)
+    assert set(found) == set(STAGES) - {*OF_FRICTION, *OF_WIDTH}
     alone = analyse(drive, position_angles(24))
     from ltca.analysis.summary import summarise
     from ltca.drive.units.quantities import ARCSEC
