@@ -11,7 +11,7 @@ import json
 from functools import cache
 
 import numpy as np
-from scipy.interpolate import CubicSpline
+from scipy.interpolate import BSpline, CubicSpline, make_interp_spline
 
 import ltca.laws.sliced_line as shipped
 from ltca.arrays import FloatArray
@@ -42,9 +42,9 @@ def _kernel(slices: int) -> CubicSpline:
 
 
 @cache
-def _softer() -> CubicSpline:
+def _softer() -> BSpline:
     values = json.loads(shipped.TABLE.read_text(encoding="utf-8"))["softer"]
-    return CubicSpline(shipped.places(), values)
+    return make_interp_spline(shipped.places(), values, k=5)
 
 
 def pressed_in(load: FloatArray, length: float, modulus: float, radius: FloatArray) -> FloatArray:

@@ -160,7 +160,9 @@ class Disc:
         reach = 2.0 * float(np.max(np.abs(section - section[-1]))) + 1e-3 * float(radii[0])
         # Height by height: pieces of the flank about a pin are as wide as it moves.
         each = np.stack([flank.approaches(points + ways, radii, reach)[0] for points in section])
-        normal = (each[:, 1] - each[:, 2] + 1j * (each[:, 3] - each[:, 4])) / (2.0 * step)
+        normal: ComplexArray = np.asarray(
+            (each[:, 1] - each[:, 2] + 1j * (each[:, 3] - each[:, 4])) / (2.0 * step), dtype=complex
+        )
         # Gaps grow linearly along the width in the model: the square of tilt across the normal is left out.
         seen = (self.wheel_pins.lean - self.lean) * np.conj(self.turn)
         turned = step * seen / np.maximum(np.abs(seen), 1e-300)
