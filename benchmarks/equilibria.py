@@ -2,7 +2,7 @@
 
     python benchmarks/equilibria.py [--coefficients FILE] [--positions 360] [--rounds 3]
 
-A second table has other reducers on tables: several discs, fixed wheel, cranks, supports (time relative to the paper's drive).
+A second table has other reducers on tables: several discs, fixed wheel, cranks, supports, slices (time relative to the paper's drive).
 ``fe`` and ``hybrid`` start from the solution on tables as the engines do (included in their time). Without a file of
 ``cyclo derive paper --case CS-1`` closed-form bodies with fewer stations are used (`ltca.testing.closed_form_bodies`).
 Values are the best of several rounds; compare ratios within one run.
@@ -74,6 +74,9 @@ def other_reducers(paper: Drive) -> dict[str, Drive]:
         "rv": rv,
         "rv, one disc": replace(rv, disc=replace(rv.disc, number_of_discs=1, phases=(), planes=())),
         "rv, six cranks": replace(rv, crank=replace(rv.crank, number=6)),
+        "9 slices": paper.with_fields({"contact.slices": 9}),
+        "9 slices, lead slope": paper.with_fields({"contact.slices": 9, "disc.lead_slope": 2e-4}),
+        "rv, 9 slices": rv.with_fields({"contact.slices": 9}),
     }
 
 
