@@ -2,7 +2,7 @@
 
     python benchmarks/equilibria.py [--coefficients FILE] [--positions 360] [--rounds 3]
 
-A second table has other reducers on tables: several discs, fixed wheel, cranks, supports, slices (time relative to the paper's drive).
+A second table has other reducers on tables: discs, fixed wheel, cranks, supports, slices (time relative to the paper's drive).
 ``fe`` and ``hybrid`` start from the solution on tables as the engines do (included in their time). Without a file of
 ``cyclo derive paper --case CS-1`` closed-form bodies with fewer stations are used (`ltca.testing.closed_form_bodies`).
 Values are the best of several rounds; compare ratios within one run.
