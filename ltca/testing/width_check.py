@@ -400,7 +400,7 @@ class WidthCheck:
 
     def _laws(self, disc: Disc, gap: FloatArray, radius: FloatArray, told: Any, name: str) -> None:
         """Whether line loads belong to gaps."""
-        parts, row, drive = drive_materials(self.drive), self.position, self.drive
+        parts, row, drive = contact_moduli(self.drive), self.position, self.drive
         thick, long = drive.disc.thickness, drive.roller_length
         rounding = ROUND_OFF * drive.pin_wheel.pin_circle_radius
         pins, holes = disc.answer.leaning_pins.contact, disc.answer.leaning_holes.contact
@@ -544,7 +544,7 @@ def find_imbalance_in_slices(
     return WidthCheck(drive, model, balanced, position).problems(torque)
 
 
-def drive_materials(drive: Drive) -> dict[str, float]:
+def contact_moduli(drive: Drive) -> dict[str, float]:
     """Return E* of the contacts, MPa."""
     parts = drive.materials
 
