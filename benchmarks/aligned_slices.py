@@ -1,9 +1,9 @@
 """Aligned contacts in slices against the law of finite length: ``python benchmarks/aligned_slices.py [--count 50]``.
 
-Practical drives (`ltca.testing.practical_drives`) without anything along the width are balanced with one slice and with n: loads of
-wheel pins and rollers by the largest of their kind, the wheel angle, and the pressure in the middle of the heaviest pin (Hertz at the
-line load there; with one slice that of the law). The table has the worst drive and the median for every n, and the drift from each n
-to the finest, from which the order of convergence is told.
+Practical drives (`ltca.testing.practical_drives`) without anything along the width are balanced with one slice and with n:
+loads of wheel pins and rollers by the largest of their kind, the wheel angle, and the pressure in the middle of the heaviest
+pin (Hertz at the line load there; with one slice that of the law). The table has the worst drive and the median for every n,
+and the drift from each n to the finest, from which the order of convergence is told.
 """
 
 from __future__ import annotations
