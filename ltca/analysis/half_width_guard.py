@@ -26,7 +26,7 @@ from ltca.drive.unit_mistakes import BORNE
 from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError, DriveError
-from ltca.geometry.coordinates import WHEEL_ANGLE, X, Y
+from ltca.geometry.coordinates import WHEEL_ANGLE, Coordinates, X, Y
 from ltca.geometry.interference import ROUNDING, drawn_interference
 from ltca.geometry.rotation import unit
 from ltca.geometry.separation import circle_departure
@@ -45,6 +45,9 @@ LOAD_DIFFERENCE = 0.01
 SMALL_DISPLACEMENT = 0.1
 """Displacement of a pin, crank or wheel by what holds it, as a part of the eccentricity, from which a warning is given:
 directions of forces change by about that angle, rad."""
+STEEP_TILT = 5e-3
+"""Tilt of a disc, rad, beyond which its square counts: random reducers whose discs tilt by 6 and 9 mrad leave 0.1 and 1 % of the
+largest load unbalanced when forces are summed height by height (`ltca.testing.width_check`)."""
 PIN, OUTER, INNER = "wheel pin", "roller on the bore", "roller on the inner race"
 
 
@@ -263,4 +266,22 @@ def displacement_warning(eccentricity: float, moved: Mapping[str, tuple[str, Flo
     return (
         f"yielding is no small displacement: {'; '.join(told)}; from {SMALL_DISPLACEMENT:g} eccentricities "
         f"({SMALL_DISPLACEMENT * eccentricity:.3g} mm) on forces turn by a tenth of a radian and more, and the answer is rough"
+    )
+
+
+def steep_tilt_warning(coordinates: Coordinates, pose: FloatArray) -> str | None:
+    """Return a warning where discs tilt by more than what is linear in tilts can tell; None elsewhere and in the plane.
+
+    Poses have the shape (positions, coordinates), not a number where there is no answer.
+    """
+    if not coordinates.leans:
+        return None
+    lean = coordinates.own * np.arange(coordinates.discs)[:, None] + np.r_[coordinates.lean_place]
+    tilts = np.hypot(pose[:, lean[:, 0]], pose[:, lean[:, 1]])
+    most = float(np.nanmax(tilts)) if np.any(np.isfinite(tilts)) else 0.0
+    if most <= STEEP_TILT:
+        return None
+    return (
+        f"discs tilt by up to {1e3 * most:.3g} mrad: gaps and forces are linear in tilts, and from {1e3 * STEEP_TILT:g} mrad on "
+        "what is of their square is more than a thousandth of the loads"
     )

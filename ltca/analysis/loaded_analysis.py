@@ -16,6 +16,7 @@ from ltca.analysis.half_width_guard import (
     displacement_warning,
     pin_deflections,
     separation_warning,
+    steep_tilt_warning,
     unborne_warning,
     wide_holes_warning,
 )
@@ -289,6 +290,7 @@ class LoadedAnalysis:
                 "that it is light against: are the two swapped, or is one in N·m?"
             )
         found.append(displacement_warning(self.drive.crank.eccentricity, self._yielding))
+        found.append(steep_tilt_warning(self.model.coordinates, self.full.pose))
         found += [wide_holes_warning(self.drive, self.pressures), unborne_warning(self.pressures)]
         if self.back is not None and np.any(lost := np.isnan(self.back.pose[self.balanced, 0])):
             found.append(

@@ -210,3 +210,16 @@ def test_the_crown_told_is_the_best_of_its_neighbours(drive):
     assert largest["1.0"] < 0.95 * min(largest["0.5"], largest["2.0"])
     assert crown.pressure < 0.7 * crown.pressure_now
     assert "disc.lead_crown_drop: 0 →" in crown.words
+
+
+def test_steep_tilts_are_told(drive):
+    """A drive that is inclined as a whole by 6 mrad tilts its disc by that; by 4 mrad nothing is told, nor in the plane."""
+
+    def told(size):
+        inclined = {f"{part}.inclination.y": size for part in ("pin_wheel", "pin_shaft", "crank")}
+        return [text for text in analyse(with_fields(drive, inclined), ANGLES[:1]).warnings if "discs tilt" in text]
+
+    assert re.match(r"discs tilt by up to 6 mrad: gaps and forces are linear", told(6e-3)[0])
+    assert told(4e-3) == []
+    plane = analyse(with_fields(drive, {"contact.slices": 1}), ANGLES[:1])
+    assert not any("discs tilt" in text for text in plane.warnings)
