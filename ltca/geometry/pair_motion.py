@@ -199,13 +199,12 @@ class KnownPins:
         """Return the pins of pairs of pins and flank."""
         return cls(approach=motion.approach, point=motion.point, turning=motion.turning)
 
-    def may_touch(self, point: ComplexArray, at_ends: FloatArray | float = 0.0) -> BoolArray:
+    def may_touch(self, point: ComplexArray) -> BoolArray:
         """Return which pins may touch the flank, from their centres in the frame of the disc, mm, shape (positions, z_P).
 
-        A distance changes by no more than the displacement of the point from which it is measured. Tilted pairs are closer by
-        `at_ends` at most than in the middle, mm.
+        A distance changes by no more than the displacement of the point from which it is measured.
         """
-        room, moved = -MARGIN - at_ends - self.approach, point - self.point
+        room, moved = -MARGIN - self.approach, point - self.point
         return np.asarray((room < 0.0) | (moved.real**2 + moved.imag**2 > room * room))
 
 

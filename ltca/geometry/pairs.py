@@ -84,8 +84,6 @@ class ContactGeometry:
         Axial place of the middle of the disc, mm: a wheel that leans displaces its pins there.
     half_width : float or array, shape (positions, 1)
         Half the thickness of the disc, mm: what leans are measured by.
-    end_metal : float or array, shape (positions, 1)
-        Metal that the lead of the flank leaves at an end beyond that in the middle, mm.
     tip_share : float or array, shape (positions, 1)
         Displacement of a shaft pin at the disc per displacement of its tip, where a ring ties the tips.
     tip_slope : float or array, shape (positions, 1)
@@ -105,7 +103,6 @@ class ContactGeometry:
     coordinates: Coordinates
     plane: float | FloatArray = by_drive(0, default=0.0)
     half_width: float | FloatArray = by_drive(0, default=1.0)
-    end_metal: float | FloatArray = by_drive(0, default=0.0)
     tip_share: float | FloatArray = by_drive(0, default=0.0)
     tip_slope: float | FloatArray = by_drive(0, default=0.0)
     seat_share: float | FloatArray = by_drive(0, default=0.0)
@@ -132,7 +129,6 @@ class ContactGeometry:
             coordinates=Coordinates.of_drive(drive),
             plane=drive.disc.disc_planes[0],
             half_width=0.5 * drive.disc.thickness,
-            end_metal=0.5 * drive.disc.thickness * abs(drive.disc.lead_slope),
             seat_share=seat_share,
             wheel_gap=0.0 if bearing is None else 0.5 * max(bearing.clearance or 0.0, 0.0),
             crank_gaps=gaps,
@@ -190,7 +186,6 @@ class ContactGeometry:
         start: FloatArray | None = None,
         shifts: ComplexArray | None = None,
         known: KnownPins | None = None,
-        leans: ComplexArray | None = None,
     ) -> FlankMotion:
         """Return the pairs of wheel pin and flank (Eq. 60–64).
 
@@ -206,27 +201,13 @@ class ContactGeometry:
             Displacements of the pins in the turning wheel, mm.
         known : KnownPins, optional
             Of the same drives: pins that cannot touch the flank are left out, see `complete_flank`.
-        leans : array of complex, shape (positions, z_P), optional
-            Leans of the pins at the disc in the turning wheel, rad, by which their ends may touch.
         """
         pins = self._pins(crank_angle, pose, shifts)
         if start is None:
             start = self.nominal_parameter(crank_angle) + pose[:, WHEEL_ANGLE, None] - pose[:, DISC_ROTATION, None]
         if known is None:
             return self._touching(self.profile, pins, start, self.coordinates_of(pose))
-        near = known.may_touch(pins.point, self._closer_at_ends(pose, leans))
-        return self._touching_some(pins, start, near, known, self.coordinates_of(pose))
-
-    def _closer_at_ends(self, pose: FloatArray, leans: ComplexArray | None) -> FloatArray | float:
-        """Bound of how much closer pins and flank may be at their ends than in the middle, mm; nothing in the plane."""
-        if not self.coordinates_of(pose).leans:
-            return 0.0
-        place = self.placement
-        own = np.abs(place.wheel_pin_leans if leans is None else place.wheel_pin_leans + leans)
-        return np.asarray(
-            self.half_width * (np.abs(self.lean(pose) - place.wheel_lean - self.wheel_lean(pose)) + own)
-            + self.end_metal
-        )
+        return self._touching_some(pins, start, known.may_touch(pins.point), known, self.coordinates_of(pose))
 
     def complete_flank(
         self, crank_angle: FloatArray, pose: FloatArray, motion: FlankMotion, shifts: ComplexArray | None = None
