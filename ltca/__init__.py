@@ -42,6 +42,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from ltca.analysis.engines import HalfSpace, Hybrid, PlaneStrain
     from ltca.drive.parts import Drive
+    from ltca.errors import DriveError
     from ltca.facade import analyse, derivatives
     from ltca.front.checks import check
     from ltca.front.curves import curves
@@ -53,6 +54,7 @@ if TYPE_CHECKING:
 # Where each name of the front door lives: loaded when it is first asked for, so that `import ltca` stays light.
 _HOMES = {
     "Drive": "ltca.drive.parts",
+    "DriveError": "ltca.errors",
     "HalfSpace": "ltca.analysis.engines",
     "Hybrid": "ltca.analysis.engines",
     "PlaneStrain": "ltca.analysis.engines",
@@ -65,7 +67,7 @@ _HOMES = {
 }
 
 __all__ = [
-    "Drive", "HalfSpace", "Hybrid", "PlaneStrain", "__version__", "analyse", "check", "concat",
+    "Drive", "DriveError", "HalfSpace", "Hybrid", "PlaneStrain", "__version__", "analyse", "check", "concat",
     "curves", "derivatives", "load_drive",
 ]  # fmt: skip
 

@@ -279,6 +279,29 @@ def _along(part: str, of: str, name: str, sides: tuple[tuple[str, str, str], ...
     return (*found, Quantity(f"{part}_face_load_factor", "crank" if of == "roller" else "disc", "1", told, (limited,)))
 
 
+_ALONG_WIDTH = (
+    *_along("pin", "pin", "wheel pin", (("", "", "wheel pin and flank"),)),
+    *_along(
+        "roller", "roller", "roller", (("", "_outer", "roller and bore"), ("_inner", "_inner", "roller and inner race"))
+    ),
+    *_along("pin_shaft", "hole", "shaft pin", (("", "", "shaft pin and hole"),)),
+    Quantity(
+        "disc_tilt",
+        "axes of a disc",
+        "rad",
+        "small rotation of the disc about x and y of the fixed frame",
+        (Scalar("max_{}", "tilt of a disc, largest", digits=".3g", how="largest length", limit=AT_LEAST_0),),
+    ),
+    Quantity(
+        "crank_bearing_moment",
+        "axes of a crank",
+        "N mm",
+        "moment of the crank bearing on the disc about x and y through the middle of the disc",
+        (Scalar("max_{}", "moment of a crank bearing, largest", digits=".4g", how="largest length"),),
+    ),
+    _checked("axial_play_taken", "1", "part of the axial play of a disc that its tilt takes at the rim"),
+)
+"""Of contacts in slices along their width."""
 _TIP_RING = (
     "displacement of the ring that ties the tips of the shaft pins, or of the far flange of the carrier; not of [ring], the "
     "ring of the wheel (ring_displacement_radial)"
@@ -408,22 +431,7 @@ _DECLARED = (
     ),
     _scalar("1", Scalar("mean_loaded_rollers", "loaded rollers, mean", digits=".2f")),
     _scalar("1", Scalar("mean_loaded_pin_shaft_pins", "loaded shaft pins, mean", digits=".2f")),
-    # along the width of contacts in slices
-    *_along("pin", "pin", "wheel pin", (("", "", "wheel pin and flank"),)),
-    *_along(
-        "roller", "roller", "roller", (("", "_outer", "roller and bore"), ("_inner", "_inner", "roller and inner race"))
-    ),
-    *_along("pin_shaft", "hole", "shaft pin", (("", "", "shaft pin and hole"),)),
-    Quantity(
-        "disc_tilt", "axes of a disc", "rad", "small rotation of the disc about x and y of the fixed frame",
-        (Scalar("max_{}", "tilt of a disc, largest", digits=".3g", how="largest length", limit=AT_LEAST_0),),
-    ),
-    Quantity(
-        "crank_bearing_moment", "axes of a crank", "N mm",
-        "moment of the crank bearing on the disc about x and y through the middle of the disc",
-        (Scalar("max_{}", "moment of a crank bearing, largest", digits=".4g", how="largest length"),),
-    ),
-    _checked("axial_play_taken", "1", "part of the axial play of a disc that its tilt takes at the rim"),
+    *_ALONG_WIDTH,
     # crank bearings
     Quantity(
         "bearing_load", "", "N",
@@ -535,6 +543,8 @@ _DECLARED = (
     _scalar("N mm", Scalar("max_main_bearing_moment", "tilting moment of the main bearing, largest", digits=".0f")),
     Quantity("wheel_x", "drive", "mm", "displacement of the wheel on its bearing in the fixed frame"),
     Quantity("wheel_y", "drive", "mm", "displacement of the wheel on its bearing in the fixed frame"),
+    Quantity("wheel_tilt_x", "drive", "rad", "small rotation of the wheel on its bearing about x of the fixed frame"),
+    Quantity("wheel_tilt_y", "drive", "rad", "small rotation of the wheel on its bearing about y of the fixed frame"),
     _checked("bearing_deflection", "mm", "deflection of the crank bearings"),
     _checked("bearing_deflection_by_clearance", "1", "deflection of crank bearings by their radial clearance"),
     _checked("crank_deflection", "mm", "deflection of cranks"),
@@ -763,6 +773,8 @@ _DECLARED = (
 
 QUANTITIES = {quantity.name: quantity for quantity in _DECLARED}
 """Every quantity by name, arrays in the order of the datasets."""
+NEED_SLICES = frozenset(quantity.name for quantity in _ALONG_WIDTH)
+"""Quantities that only contacts in slices have."""
 SCALARS = {
     scalar.name: scalar
     for quantity in _DECLARED

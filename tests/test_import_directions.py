@@ -14,6 +14,8 @@ from pathlib import Path
 
 import pytest
 
+from ltca.compliance import sliced
+
 pytestmark = pytest.mark.slow
 ROOT = Path(__file__).parents[1]
 PACKAGES = ("ltca", "fem", "validation")
@@ -185,12 +187,17 @@ def test_no_drawer_for_everything():
     assert [path for path in MODULES if path.stem in {"utils", "util", "helpers", "helper", "common", "misc"}] == []
 
 
+def loaded_by(path, tree):
+    """Modules that a file imports as it is loaded: not in functions, not for types alone."""
+    head = ast.Module(body=[n for n in tree.body if isinstance(n, ast.Import | ast.ImportFrom)], type_ignores=[])
+    return imports(path, head)
+
+
 def heavy_imports(path, tree):
     """What the head of a command imports that is not light."""
-    head = ast.Module(body=[n for n in tree.body if isinstance(n, ast.Import | ast.ImportFrom)], type_ignores=[])
     return sorted(
         module
-        for module in imports(path, head)
+        for module in loaded_by(path, tree)
         # modules beside a command are held to the same rule
         if not (module.partition(".")[0] in LIGHT_COMMANDS or module in LIGHT_COMMANDS or ".commands." in module)
     )
@@ -204,6 +211,24 @@ def test_commands_import_lightly():
     assert {path: modules for path, modules in heavy.items() if modules} == {}
     text = "import json\nimport numpy as np\nfrom ltca.commands import program\ndef f():\n    import scipy\n"
     assert heavy_imports(ROOT / "ltca" / "commands" / "any.py", ast.parse(text)) == ["numpy"]
+
+
+def test_a_plane_run_loads_nothing_of_the_width():
+    """What `ltca.compliance.sliced` names is loaded with the first drive in slices."""
+    homes = set(sliced._HOMES)
+    waiting = ["ltca.commands.actions.run", "ltca.commands.actions.check", "ltca.analysis.engines"]
+    reached = set(waiting)
+    while waiting:
+        path = NAMES[waiting.pop()]
+        new = (loaded_by(path, ast.parse(path.read_text(encoding="utf-8"))) & NAMES.keys()) - reached
+        reached |= new
+        waiting += new
+    assert "ltca.compliance.sliced" in reached
+    assert reached & homes == set()
+    assert sorted(name for names in sliced._HOMES.values() for name in names) == sorted(sliced.__all__)
+    assert all(getattr(sliced, name).__module__ in homes for name in sliced.__all__)
+    with pytest.raises(AttributeError, match="no attribute 'SlicedCircle'"):
+        _ = sliced.SlicedCircle
 
 
 def test_every_registered_command_is_there():

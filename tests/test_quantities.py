@@ -109,7 +109,8 @@ def drives():
              "first_stage.plane": 40.0}  # fmt: skip
     teeth |= {"main_bearing.radial_stiffness": 1e6, "main_bearing.axial_stiffness": 1e6}
     twisting = {"crank.support.torsion": True, "crank.support.spline_plane": 40.0}
-    wide = {"contact.slices": 5, "disc.lead_slope": 1e-4, "disc.axial_play": 0.1}
+    wide = {"contact.slices": 5, "disc.lead_slope": 1e-4, "disc.axial_play": 0.1,
+            "main_bearing.radial_stiffness": 1e6, "main_bearing.tilt_stiffness": 1e9}  # fmt: skip
     sliced = {"sliced": with_fields(found["paper"], wide)}
     return found | sliced | {"geared": with_fields(found["rv"], teeth), "twisting": with_fields(found["rv"], twisting)}
 

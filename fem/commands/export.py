@@ -113,7 +113,7 @@ def _require_straight(part: Part, kind: str) -> None:
         raise DriveError(
             [
                 f"{field}: inclinations are not written to {kind.upper()}, whose pins and holes stand upright; --format dxf and "
-                "csv hold the section at mid-length"
+                "csv hold the section at z = 0 of the planes of the discs"
                 if needs_slices(field)
                 else f"{field}: crown and relief along the length are not written to {kind.upper()}, whose pins and rollers are "
                 "straight; --format dxf and csv hold the section at mid-length, --part disc has none of them"

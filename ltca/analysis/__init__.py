@@ -25,6 +25,7 @@ summary_rows               Which of them a table shows, in which order
 derivatives                Derivatives of loads, poses, angles and pressures of a balanced drive with respect to its fields
 pressure_fields            Pressure over every loaded contact at chosen crank angles: solved on grids at the pose
                            found, as one dataset
+tilted_fields              The same over contacts in slices, which tilt
 torque_curve               Torque against wind-up over both directions, and what is read from it: backlash, lost
                            motion, torsional stiffness
 stiffness_by_part          Torsional stiffness with and without each part that a file describes

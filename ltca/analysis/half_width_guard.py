@@ -46,8 +46,11 @@ SMALL_DISPLACEMENT = 0.1
 """Displacement of a pin, crank or wheel by what holds it, as a part of the eccentricity, from which a warning is given:
 directions of forces change by about that angle, rad."""
 STEEP_TILT = 5e-3
-"""Tilt of a disc, rad, beyond which its square counts: random reducers whose discs tilt by 6 and 9 mrad leave 0.1 and 1 % of the
-largest load unbalanced when forces are summed height by height (`ltca.testing.width_check`)."""
+"""Tilt of a disc, rad, beyond which its square counts: among random reducers forces summed height by height leave up to 0.1 % of
+the loads at 6 to 9 mrad (`ltca.testing.width_check`)."""
+TURNED_NORMALS = 0.01
+"""Part of the loads times half the width that moments about x and y may lack because normals turn along the width, from which a
+warning is given: as much as slices leave of the moment of a contact (``docs/theory/width.md``)."""
 PIN, OUTER, INNER = "wheel pin", "roller on the bore", "roller on the inner race"
 
 
@@ -269,19 +272,49 @@ def displacement_warning(eccentricity: float, moved: Mapping[str, tuple[str, Flo
     )
 
 
-def steep_tilt_warning(coordinates: Coordinates, pose: FloatArray) -> str | None:
-    """Return a warning where discs tilt by more than what is linear in tilts can tell; None elsewhere and in the plane.
+def moments_left_out(contacts: Response, half_width: float) -> FloatArray:
+    """Return what moments about x and y lack because normals turn along the width, by the loads times half of it, by disc.
 
-    Poses have the shape (positions, coordinates), not a number where there is no answer.
+    Gaps are linear in tilts, δ + θ z. Of a pair that tilts across its normal this turns by κ s·λ with the height: to first order
+    the forces know that, and the moments lack Σ q z² times it. Shape (positions, discs); zero in the plane.
+    """
+    found = [np.zeros(contacts.pin_load.shape[0])] * len(contacts.parts)
+    for number, part in enumerate(contacts.parts):
+        carried = part.pin_load.sum(axis=1) + part.hole_load.sum(axis=1)
+        for pairs in (part.leaning_pins, part.leaning_holes):
+            if pairs is not None:
+                load = pairs.contact.slice_load
+                size = 2.0 * half_width / load.shape[-1]
+                height = size * (np.arange(load.shape[-1]) - 0.5 * (load.shape[-1] - 1))
+                spread = load @ (height**2 + size**2 / 12.0)
+                turned = np.hypot(pairs.tilt.gradient[..., X], pairs.tilt.gradient[..., Y])
+                found[number] = found[number] + (spread * turned).sum(axis=1)
+        found[number] = np.divide(found[number], carried * half_width, out=np.zeros(carried.shape), where=carried > 0.0)
+    return np.stack(found, axis=1)
+
+
+def steep_tilt_warning(coordinates: Coordinates, full: Equilibrium, half_width: float) -> str | None:
+    """Return a warning where parts tilt by more than what is linear in tilts can tell; None elsewhere and in the plane.
+
+    Poses are not a number where there is no answer; `half_width` is that of the discs, mm.
     """
     if not coordinates.leans:
         return None
+    pose = full.pose
     lean = coordinates.own * np.arange(coordinates.discs)[:, None] + np.r_[coordinates.lean_place]
     tilts = np.hypot(pose[:, lean[:, 0]], pose[:, lean[:, 1]])
     most = float(np.nanmax(tilts)) if np.any(np.isfinite(tilts)) else 0.0
-    if most <= STEEP_TILT:
-        return None
-    return (
-        f"discs tilt by up to {1e3 * most:.3g} mrad: gaps and forces are linear in tilts, and from {1e3 * STEEP_TILT:g} mrad on "
-        "what is of their square is more than a thousandth of the loads"
-    )
+    lacks = moments_left_out(full.response, half_width)
+    lack = float(np.nanmax(lacks)) if np.any(np.isfinite(lacks)) else 0.0
+    told = []
+    if most > STEEP_TILT:
+        told.append(
+            f"discs tilt by up to {1e3 * most:.3g} mrad: gaps and forces are linear in tilts, and from {1e3 * STEEP_TILT:g} mrad "
+            "on what is of their square is more than a thousandth of the loads"
+        )
+    if lack > TURNED_NORMALS:
+        told.append(
+            "pins stand so askew beside roots or in holes that normals turn along the width: moments that tilt a disc lack up to "
+            f"{100.0 * lack:.2g} % of its loads times half the width"
+        )
+    return "; ".join(told) or None

@@ -279,6 +279,16 @@ class LoadedAnalysis:
         return hole_words(self.drive, rigid_shaft_pins=self.pressures.rigid_shaft_pins)
 
     @property
+    def width_words(self) -> str:
+        """What to say of bodies that contacts in slices stand on: influence coefficients are those of the plane."""
+        if self.drive.contact.slices == 1 or self.model.discs[0].coefficients is None:
+            return ""
+        return (
+            "influence coefficients of the bodies are those of the plane: they yield evenly along the width under the loads of "
+            "the slices, and not under their moments"
+        )
+
+    @property
     def warnings(self) -> list[str]:
         """What to know of drive and answer before they are used, one sentence each."""
         units = unit_warnings(self.as_written, self.torque)
@@ -290,7 +300,7 @@ class LoadedAnalysis:
                 "that it is light against: are the two swapped, or is one in N·m?"
             )
         found.append(displacement_warning(self.drive.crank.eccentricity, self._yielding))
-        found.append(steep_tilt_warning(self.model.coordinates, self.full.pose))
+        found.append(steep_tilt_warning(self.model.coordinates, self.full, 0.5 * self.drive.disc.thickness))
         found += [wide_holes_warning(self.drive, self.pressures), unborne_warning(self.pressures)]
         if self.back is not None and np.any(lost := np.isnan(self.back.pose[self.balanced, 0])):
             found.append(

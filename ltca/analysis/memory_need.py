@@ -13,8 +13,9 @@ MEMORY_PER_PAIR, SEVERAL_DISCS, DISPLACED_PINS = 1300.0, 2.0, 1.65
 pins are displaced, whose forces and slopes are solved together. At the most: by position and pair 0.6 kB (half-space) and 1.3 kB
 (hybrid) for the paper's drive, 1.6 and 2.6 kB for the joint, 2.3 and 4.1 kB for it on a ring, 4.3 kB with friction. Analyses of
 all cases are held together, their working memory once."""
-PER_SLICE = 800.0
-"""Memory for each slice of a pair at one position beside that, bytes: 0.4 kB measured for the paper's drive with 9 and 17."""
+PER_SLICE = 1000.0
+"""Memory for each slice of a pair at one position beside that, bytes: 0.6 kB measured for the paper's drive with 9 and 17 at 240
+positions, 0.9 kB at twelve."""
 DISC_PER_PAIR, DISC_PER_SLICE = 60.0, 32.0
 """Of results.nc, 2 kB for each position of the paper's drive; for each slice of a pair line loads and pressures, 27 measured."""
 

@@ -25,7 +25,7 @@ from ltca.analysis.summary import LOADED_FRACTION
 from ltca.arrays import FloatArray
 from ltca.contact.end_pressure import largest_pressure
 from ltca.contact.pressure_cells import PatchSolution
-from ltca.contact.subsurface import find_subsurface_shear
+from ltca.contact.subsurface import SubsurfaceShear, find_subsurface_shear
 from ltca.contact.tracked_grid import ContactKind, ContactKinds, Departure, solve_fitted
 from ltca.drive.hole_contact import hole_modulus
 from ltca.errors import ConvergenceError
@@ -74,23 +74,36 @@ class PressureField:
 
 
 def recover_pressure(
-    kind: ContactKind, load: float, effective_radius: float, departure: Departure, poisson_ratio: float
+    kind: ContactKind,
+    load: float,
+    effective_radius: float,
+    departure: Departure,
+    poisson_ratio: float,
+    moment: float | None = None,
 ) -> PressureField:
     """Solve one contact that carries a load, N, at an effective radius ρ, mm, and unfold its symmetry.
 
     `departure` is the true separation over the distance along the tangent, mm; `poisson_ratio` that of the body whose shear
-    stress is wanted.
+    stress is wanted; `moment` that of a contact in slices about the middle of its width, N·mm, which tilts.
     """
-    solved = _solve_at_load(kind, load, effective_radius, departure)
-    shear = find_subsurface_shear(solved, poisson_ratio)
+    if moment is None:
+        solved = _solve_at_load(kind, load, effective_radius, departure)
+        largest = largest_pressure(solved, kind.end_cell)
+    else:
+        from ltca.analysis.tilted_fields import solve_tilted
+
+        solved, largest = solve_tilted(kind, load, moment, effective_radius, departure)
     x, y, pressure = solved.unfolded()
+    shear, mid, half_width = SubsurfaceShear(max_shear=0.0, depth=0.0, x=0.0), 0.0, 0.0
+    if y[0] < 0.0 < y[-1]:  # what carries beside the middle has nothing there
+        shear, mid, half_width = find_subsurface_shear(solved, poisson_ratio), solved.mid_pressure, solved.half_width
     return PressureField(
         x_edges=x,
         y_edges=y,
         pressure=pressure,
-        mid=solved.mid_pressure,
-        largest=largest_pressure(solved, kind.end_cell),
-        half_width=solved.half_width,
+        mid=mid,
+        largest=largest,
+        half_width=half_width,
         load=solved.load,
         max_shear=shear.max_shear,
         max_shear_depth=shear.depth,
@@ -142,6 +155,21 @@ def loads_of(analysis: LoadedAnalysis, contact: str) -> FloatArray:
     }[contact]
 
 
+def moment_of(analysis: LoadedAnalysis, contact: str, position: int, pair: int) -> float | None:
+    """Return the moment of a contact of one kind of `CONTACTS` in slices of a drive of one disc, N·mm; None in the plane."""
+    (part,) = analysis.full.response.parts
+    if part.leaning_pins is None or part.leaning_holes is None:
+        return None
+    rollers = part.rollers
+    moments = {
+        "pin": part.leaning_pins.contact.moment,
+        "roller_outer": rollers.outer_moment,
+        "roller_inner": rollers.inner_moment,
+        "hole": part.leaning_holes.contact.moment,
+    }[contact]
+    return float(np.asarray(moments)[position, pair])
+
+
 def pressure_field(
     analysis: LoadedAnalysis, contact: str, position: int, pair: int, cells: int = FIELD_CELLS
 ) -> PressureField:
@@ -180,7 +208,8 @@ def pressure_field(
         def departure(x: FloatArray) -> FloatArray:
             return circle_departure(x, own) + circle_departure(x, race)
 
-    return recover_pressure(kind, float(load[position, pair]), float(radius), departure, material.poisson_ratio)
+    moment = moment_of(analysis, contact, position, pair)
+    return recover_pressure(kind, float(load[position, pair]), float(radius), departure, material.poisson_ratio, moment)
 
 
 def pin_fields(analysis: LoadedAnalysis, position: int, cells: int = FIELD_CELLS) -> dict[int, PressureField]:

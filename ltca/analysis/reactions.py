@@ -98,7 +98,7 @@ def _main_bearing(analysis: LoadedAnalysis) -> dict[str, FloatArray]:
     stiffness is known it yields along the axis.
     """
     drive, full = analysis.drive, analysis.full
-    if not (drive.load.external or drive.wheel_yields):
+    if not (drive.load.external or drive.wheel_yields or drive.contact.slices > 1):
         return {}
     wheel = unit(full.crank_angle / drive.reduction_ratio)
     into_housing = wheel.conjugate() if drive.wheel_is_held else np.ones(wheel.shape, dtype=complex)

@@ -19,6 +19,7 @@ from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.analysis.reactions import reaction_values
 from ltca.analysis.width import width_coordinates, width_values
 from ltca.arrays import FloatArray
+from ltca.compliance import sliced
 from ltca.compliance.response import ContactPressures
 from ltca.compliance.wall_stress import WallStresses
 from ltca.contact.subsurface import line_contact_shear
@@ -27,7 +28,6 @@ from ltca.errors import DriveError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, disc_displacement
 from ltca.geometry.placement import place_coordinates
 from ltca.laws.backed import shaft_pin_seat, wheel_pin_seat
-from ltca.laws.sliced_seat import SlicedSeat
 from ltca.output.labelled import LabelledDataset
 from ltca.output.provenance import code_hash, code_version
 from ltca.quantities import DIMENSIONS, QUANTITIES, SCHEMA_VERSION
@@ -72,6 +72,9 @@ def _supports(analysis: LoadedAnalysis) -> dict[str, Any]:
         values["ring_displacement_radial"], values["ring_displacement_tangential"] = ring.real, ring.imag
     if coordinates.wheel:
         values["wheel_x"], values["wheel_y"] = pose[:, coordinates.wheel_place].T
+    if coordinates.wheel_leans:
+        along_x, along_y = pose[:, coordinates.wheel_lean_place].T
+        values["wheel_tilt_x"], values["wheel_tilt_y"] = -along_y, along_x
     if coordinates.cranks:
         yielding = np.moveaxis(analysis.crank_deflections, 0, 2)
         values["crank_deflection_radial"], values["crank_deflection_tangential"] = yielding.real, yielding.imag
@@ -116,9 +119,9 @@ def _seat_values(analysis: LoadedAnalysis) -> dict[str, FloatArray]:
             values[f"{name}_seat_load"] = load
             if leaning is not None:
                 # Arc and pressure are those of the most loaded end of a seat in which the pin leans.
-                pressed, sliced = load > 0.0, SlicedSeat.of_law(seat, drive.contact.slices)
+                pressed, leaned = load > 0.0, sliced.SlicedSeat.of_law(seat, drive.contact.slices)
                 load = load.copy()
-                load[pressed] = sliced.heaviest(load[pressed], leaning.contact.moment[pressed], each[pressed])
+                load[pressed] = leaned.heaviest(load[pressed], leaning.contact.moment[pressed], each[pressed])
             values[f"{name}_seat_arc"] = np.where(load > 0.0, 2.0 * seat.half_angle(load, each), 0.0)
             values[f"{name}_seat_pressure_max"] = np.where(load > 0.0, seat.largest_pressure(load, each), 0.0)
     return values | pin_deflections(drive, analysis.model, analysis.full)

@@ -6,6 +6,7 @@ import numpy as np
 
 from ltca.compliance.response import ContactPressures, KindPressures
 from ltca.drive.parts import Drive
+from ltca.drive.single_discs import single_discs
 
 RUN_OFF = 0.02
 """Line load at an end, by the largest of all contacts of the kind, from which a contact with a crown is said to run off there."""
@@ -16,8 +17,11 @@ def run_off_warning(drive: Drive, pressures: ContactPressures) -> str | None:
 
     Straight lines do so always.
     """
-    told, disc = [], drive.disc
-    leads = disc.lead_crown_drop > 0.0 or (disc.lead_relief_length > 0.0 and disc.lead_relief_depth > 0.0)
+    told = []
+    leads = any(
+        disc.lead_crown_drop > 0.0 or (disc.lead_relief_length > 0.0 and disc.lead_relief_depth > 0.0)
+        for disc in (single.disc for single in single_discs(drive))
+    )
     kinds = (
         ("wheel pins", leads or not drive.pin_wheel.pin_profile.is_cylinder, pressures.pins),
         ("rollers in the bore", not drive.crank_bearing.roller_profile.is_cylinder, pressures.outer),
@@ -39,7 +43,8 @@ def _run_off_words(kind: KindPressures) -> str:
     if along is None or not along.line_load.size:
         return ""
     load = np.where(np.isfinite(along.end_load), along.end_load, 0.0)
-    ends = load.max(axis=(0, 1)) / max(float(np.nanmax(along.line_load, initial=0.0)), 1e-300)
+    largest = max(float(np.nanmax(along.line_load, initial=0.0)), float(np.max(load, initial=0.0)), 1e-300)
+    ends = load.max(axis=(0, 1)) / largest
     sides = [side for side, one in zip(("lower", "upper"), ends, strict=True) if one > RUN_OFF]
     if not sides:
         return ""

@@ -20,7 +20,7 @@ from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.first_contact import backlash, interference
 from ltca.geometry.play import TurnPlay, plays_over_a_turn
-from ltca.quantities import REFINED, SCALARS, scalar_named
+from ltca.quantities import NEED_SLICES, REFINED, SCALARS, scalar_named
 
 LOADED_FRACTION = 1e-3
 """A contact counts as loaded above this part of the largest load of its kind in the case."""
@@ -39,10 +39,7 @@ OF_REACTIONS = (
     *(f"max_first_stage_{which}_force" for which in ("tangential", "radial", "axial")),
 )
 """Largest forces of the teeth of a first stage and on the bearings of cranks."""
-OF_WIDTH = (
-    *(f"max_{part}_{kind}" for part in ("pin", "roller", "pin_shaft") for kind in ("line_load", "face_load_factor")),
-    "max_disc_tilt", "max_crank_bearing_moment",
-)  # fmt: skip
+OF_WIDTH = tuple(name for name, one in SCALARS.items() if one.of in NEED_SLICES and one.in_summary)
 """Of contacts in slices."""
 OF_RANGES = (
     "ptp_tangential_bearing_load",

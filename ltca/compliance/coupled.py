@@ -27,8 +27,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.arrays import ComplexArray, FloatArray, join_positions, take_positions
+from ltca.compliance import sliced
 from ltca.compliance.coefficients import InfluenceCoefficients
-from ltca.compliance.coupled_slices import respond_in_slices
 from ltca.compliance.near_field import NearField, NearFieldLaws, OwnParts
 from ltca.compliance.pressures import pressures_in_slices, pressures_of_law
 from ltca.compliance.response import (
@@ -57,8 +57,6 @@ from ltca.laws.backed import (
     tip_slope,
 )
 from ltca.laws.contact_law import ContactLaw
-from ltca.laws.sliced_seat import back_line
-from ltca.laws.sliced_spring import SlicedSpring
 from ltca.laws.spring import SpringLaw
 
 MAX_ITERATIONS = 60
@@ -155,8 +153,8 @@ class CoupledCompliance:
             at_hole = (
                 SpringLaw(stiffness=stiffness)
                 if slices == 1
-                else back_line(
-                    SlicedSpring(stiffness=stiffness, length=width, slices=slices),
+                else sliced.back_line(
+                    sliced.SlicedSpring(stiffness=stiffness, length=width, slices=slices),
                     shaft_pin_seat(drive),
                     place.shaft_pin_plays,
                 )
@@ -188,11 +186,12 @@ class CoupledCompliance:
         shifts: ComplexArray | None = None,
         leans: ComplexArray | None = None,
         again: DiscResponse | None = None,
+        *,
+        roughly: bool = False,
     ) -> DiscResponse:
         """Return the contact forces at the poses of a batch of positions; see `ltca.compliance.uncoupled`.
 
-        Contacts that feel each other all
-        move with displaced pins: `again` is of no use.
+        Contacts that feel each other all move with displaced pins, and settle together: `again` and `roughly` are of no use.
 
         Raises
         ------
@@ -201,6 +200,8 @@ class CoupledCompliance:
         """
         moved = split_shifts(shifts, self.geometry)
         if self.geometry.coordinates_of(pose).leans:
+            from ltca.compliance.coupled_slices import respond_in_slices
+
             parts = [
                 respond_in_slices(self, *take_positions((crank_angle, pose, start, shifts, leans, moved[0]), rows))
                 for rows in np.array_split(

@@ -14,28 +14,30 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import Any, ClassVar, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ltca.arrays import FloatArray
+from ltca.compliance import sliced
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.pressures import along_width
 from ltca.compliance.response import ContactPressures, DiscResponse, KindPressures
 from ltca.compliance.rollers import RollerLaws
 from ltca.compliance.uncoupled import PairLaws, UncoupledContacts
 from ltca.contact.end_pressure import largest_pressure
-from ltca.contact.tilted_grid import TiltedPieces, press_tilted
 from ltca.contact.tracked_grid import CELLS, ContactKind, ContactKinds, Pieces, Separation, press, recover_patches
 from ltca.drive.parts import Drive
 from ltca.geometry.pair_motion import FlankMotion
 from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.separation import circle_departure, flank_departure
 from ltca.laws.contact_law import ContactLaw
-from ltca.laws.sliced_line import SlicedContact, slice_heights
 from ltca.laws.spring import SpringLaw
-from ltca.laws.width_pressure import solve_along_width
+
+if TYPE_CHECKING:
+    from ltca.contact.tilted_grid import TiltedPieces
+    from ltca.laws.sliced_contact import Exactness, SlicedContact
 
 STATIONS_PER_WAVE = 4096
 """Stations on the flank, per wave, at which separations are computed; between them they are interpolated,
@@ -126,13 +128,18 @@ class _TiltedGrids:
         return (effective_radius,) if self.alike else tuple(float(number) for number in index)
 
     def respond(
-        self, approach: FloatArray, tilt: FloatArray, effective_radius: FloatArray, start: FloatArray | None = None
+        self,
+        approach: FloatArray,
+        tilt: FloatArray,
+        effective_radius: FloatArray,
+        start: FloatArray | None = None,
+        exactness: Exactness | None = None,
     ) -> SlicedContact:
         """Return what contacts carry; loads of the slices nearby are of no use here."""
         delta, theta, radius = np.broadcast_arrays(
             *(np.asarray(each, float) for each in (approach, tilt, effective_radius))
         )
-        z = slice_heights(self.length, self.slices)
+        z = sliced.slice_heights(self.length, self.slices)
         edges = np.linspace(-0.5 * self.length, 0.5 * self.length, self.slices + 1)
         weights = 0.5 * np.polynomial.legendre.leggauss(z.shape[1])[1]
         values = np.zeros((6, *delta.shape))
@@ -141,7 +148,7 @@ class _TiltedGrids:
             size = float(radius[index])
             which = (size,) if self.alike else tuple(float(number) for number in index)
             known = self.kept.get(which, ())
-            found = press_tilted(
+            found = sliced.press_tilted(
                 self.kind, self.separation(index, size), float(delta[index]), float(theta[index]), known
             )
             if found is None:
@@ -158,15 +165,15 @@ class _TiltedGrids:
             means = points @ weights
             even = slice_load[index] * (self.slices / self.length)
             line_load[index] = points * np.divide(even, means, out=np.zeros(even.shape), where=means > 0.0)[:, None]
-        load, moment, by_approach, by_tilt, turning, energy = values
-        return SlicedContact(
+        load, moment, by_approach, by_tilt, turning, _ = values
+        return sliced.SlicedContact(
             load=load,
             moment=moment,
             by_approach=by_approach,
             by_tilt=by_tilt,
             moment_by_tilt=turning,
-            energy=energy,
             slice_load=slice_load,
+            near=np.empty((*delta.shape, 0)),
             line_load=line_load,
         )
 
@@ -262,8 +269,8 @@ class GridCompliance(UncoupledContacts[_KindGrids]):
             ("outer", laws.rollers.outer, rollers.outer_approach, rollers.outer_tilt, laws.rollers.outer_radius),
         ):
             size = np.broadcast_to(radius, approach.shape)
-            heights = slice_heights(law.length, law.slices).mean(axis=1)
-            patches = solve_along_width(law.kind, approach, np.asarray(tilt), size, heights, law.known(size))
+            heights = sliced.slice_heights(law.length, law.slices).mean(axis=1)
+            patches = sliced.solve_along_width(law.kind, approach, np.asarray(tilt), size, heights, law.known(size))
             found[name] = along_width(law.kind, patches, size)
         return replace(by_lines, pins=found["pins"], inner=found["inner"], outer=found["outer"])
 

@@ -9,15 +9,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.arrays import FloatArray
+from ltca.compliance import sliced
 from ltca.compliance.pressures import pressures_of_law
 from ltca.compliance.response import KindPressures
 from ltca.compliance.rollers import RollerLaws
 from ltca.compliance.uncoupled import PairLaws, UncoupledContacts
-from ltca.contact.length_profile import generator_profile, lead_relief
 from ltca.contact.tracked_grid import ContactKind, ContactKinds
 from ltca.drive.hole_contact import hole_modulus, shaft_pins_yield
 from ltca.drive.parts import Drive, LengthProfile, Material, PinShaft, PinWheel, contact_modulus
 from ltca.geometry.flank import FlankProfile
+from ltca.geometry.length_profile import generator_profile, lead_relief
 from ltca.geometry.pair_motion import FlankMotion
 from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.backed import (
@@ -34,9 +35,6 @@ from ltca.laws.backed import (
 )
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.generator_law import law_for_profile
-from ltca.laws.sliced_line import SlicedLine, slice_heights
-from ltca.laws.sliced_seat import back_line
-from ltca.laws.sliced_spring import SlicedSpring
 from ltca.laws.spring import SpringLaw
 
 SAMPLES_PER_LOBE = 180
@@ -120,7 +118,7 @@ class HalfSpaceCompliance(UncoupledContacts[ContactLaw]):
 
         def profile(given: LengthProfile, length: float, radius: float) -> FloatArray | float:
             found = generator_profile(given, length, radius)
-            return 0.0 if found is None else found.relief(slice_heights(length, slices))
+            return 0.0 if found is None else found.relief(sliced.slice_heights(length, slices))
 
         kinds = ContactKinds.of_drive(drive)  # the law has the lead, in which drives of a batch may differ
         wide, long = drive.disc.thickness, drive.roller_length
@@ -130,13 +128,13 @@ class HalfSpaceCompliance(UncoupledContacts[ContactLaw]):
             drive,
             wide,
             contact_modulus(parts.disc, drive.flank_pin),
-            of_pin + lead_relief(drive.disc, slice_heights(wide, slices)),
+            of_pin + lead_relief(drive.disc, sliced.slice_heights(wide, slices)),
             drive.pin_wheel,
         )
-        pins: Any = back_line(flank, wheel_pin_seat(drive), place.wheel_pin_plays)
+        pins: Any = sliced.back_line(flank, wheel_pin_seat(drive), place.wheel_pin_plays)
         if shaft_pin_beam(drive) is None:
-            spring = SlicedSpring(stiffness=shaft_pin_stiffness(drive), length=wide, slices=slices)
-            hole: Any = back_line(spring, shaft_pin_seat(drive), place.shaft_pin_plays)
+            spring = sliced.SlicedSpring(stiffness=shaft_pin_stiffness(drive), length=wide, slices=slices)
+            hole: Any = sliced.back_line(spring, shaft_pin_seat(drive), place.shaft_pin_plays)
         else:
             # A beam bends behind its contact, which says how its load lies along the width.
             hole = hole_in_slices(
@@ -175,8 +173,8 @@ def _line(
 ) -> Any:
     """Law in slices of a contact of a length, mm, with what it falls short by; of pins under sleeves with these."""
     slices = drive.contact.slices
-    held = np.zeros(slice_heights(length, slices).shape) + relief
-    found = SlicedLine(length=length, contact_modulus=modulus, slices=slices, relief=held)
+    held = np.zeros(sliced.slice_heights(length, slices).shape) + relief
+    found = sliced.SlicedLine(length=length, contact_modulus=modulus, slices=slices, relief=held)
     if part is None or part.seat.kind != "sleeve":
         return found
     twice = sleeve_overlap(drive, part, HALF_SPACE_DATUM * length)
@@ -189,7 +187,7 @@ def hole_in_slices(drive: Drive, modulus: float, play: FloatArray) -> Any:
     `play` is that of the sleeves on their pins, mm.
     """
     line = _line(drive, drive.disc.thickness, modulus, 0.0, drive.pin_shaft)
-    return back_line(line, shaft_pin_seat(drive), play)
+    return sliced.back_line(line, shaft_pin_seat(drive), play)
 
 
 def _effective_radii(profile: FlankProfile, pin_radii: FloatArray, turn: FloatArray) -> FloatArray:

@@ -23,17 +23,21 @@ from ltca.compliance.response import (
     split_shifts,
 )
 from ltca.compliance.rollers import RollerLaws, RollerState
-from ltca.geometry.coordinates import Coordinates
-from ltca.geometry.pair_motion import BoreMotion, FlankMotion, PairMotion, dot
+from ltca.geometry.pair_motion import FlankMotion, PairMotion, dot
 from ltca.geometry.pairs import ContactGeometry
-from ltca.laws.sliced_line import SlicedContact
+from ltca.laws.sliced_contact import EXACT, Exactness, SlicedContact
 
 
 class SlicedLaw(Protocol):
     """Law of contacts in slices."""
 
     def respond(
-        self, approach: FloatArray, tilt: FloatArray, effective_radius: FloatArray, start: FloatArray | None = None
+        self,
+        approach: FloatArray,
+        tilt: FloatArray,
+        effective_radius: FloatArray,
+        start: FloatArray | None = None,
+        exactness: Exactness = EXACT,
     ) -> SlicedContact:
         """Return what contacts carry, as `ltca.laws.sliced_line.SlicedLine.respond`."""
         ...
@@ -54,6 +58,8 @@ class ContactsInSlices:
         Wheel pins and flank there.
     shifts, leans : array of complex, shape (positions, z_P + z_PS), or None
         Displacements, mm, and leans, rad, of the pins.
+    exactness : Exactness
+        How close to balance contacts come.
     """
 
     def __init__(
@@ -64,8 +70,9 @@ class ContactsInSlices:
         flank: FlankMotion,
         shifts: ComplexArray | None,
         leans: ComplexArray | None,
+        exactness: Exactness = EXACT,
     ) -> None:
-        self.geometry, self.shifts, self.leans = geometry, shifts, leans
+        self.geometry, self.shifts, self.leans, self.exactness = geometry, shifts, leans, exactness
         self.coordinates = geometry.coordinates_of(pose)
         holes = geometry.holes(crank_angle, pose, split_shifts(shifts, geometry)[1])
         of_pins, of_holes = split_shifts(leans, geometry)
@@ -84,7 +91,7 @@ class ContactsInSlices:
     ) -> LeaningPairs:
         """Return what wheel pins (0) or shaft pins (1) carry, of whose approaches the bodies take `given`, mm."""
         motion, tilt = self.motions[number], self.tilts[number]
-        contact = law.respond(motion.approach - given, tilt.tilt, self.radii[number], start)
+        contact = law.respond(motion.approach - given, tilt.tilt, self.radii[number], start, self.exactness)
         return LeaningPairs(tilt=tilt, contact=contact)
 
     def rollers(
@@ -95,12 +102,13 @@ class ContactsInSlices:
     ) -> RollerState:
         """Return the balanced rollers, of whose approaches in the bore and on the race the bodies take `given`, mm."""
         displacement = self.bores.each(self.bores.displacement, self.rays.direction.shape[1])
-        return balance_leaning_rollers(self.rays, displacement, laws, self.at_race, self.at_bore, start, given)
+        at = self.at_race, self.at_bore
+        return balance_leaning_rollers(self.rays, displacement, laws, at, start, given, self.exactness)
 
     @property
     def moved(self) -> FloatArray:
         """How displacement and lean of the bores follow the pose, shape (positions, cranks, 4, coordinates)."""
-        leans = _relative_leans(self.bores, self.coordinates)
+        leans = self.bores.relative_leans(self.coordinates)
         by_pose = self.bores.gradient
         return np.stack((by_pose.real, by_pose.imag, leans.real, leans.imag), axis=2)
 
@@ -115,7 +123,7 @@ class ContactsInSlices:
         pins, of_holes = pairs[0].contact.load, pairs[1].contact.load
         force = resultant(flank, pins, holes, of_holes, rollers, self.bores)
         tilting = bearing_moments(rollers, self.rays, self.bores.arm.shape[1])
-        leans = _relative_leans(self.bores, self.coordinates)
+        leans = self.bores.relative_leans(self.coordinates)
         force -= np.einsum("bc,bcj->bj", tilting.conjugate(), leans).real
         tangent = self._roller_tangent(rollers)
         for motion, pair in zip(self.motions, pairs, strict=True):
@@ -141,6 +149,7 @@ class ContactsInSlices:
             slopes=None if self.shifts is None else self.slopes(pairs),
             leaning_pins=pairs[0],
             leaning_holes=pairs[1],
+            left=None if self.exactness is EXACT else _largest((*(pair.contact.left for pair in pairs), rollers.left)),
         )
 
     def slopes(self, pairs: tuple[LeaningPairs, LeaningPairs]) -> PairSlopes:
@@ -168,6 +177,12 @@ class ContactsInSlices:
         return np.asarray(tangent)
 
 
+def _largest(forces: tuple[FloatArray | None, ...]) -> FloatArray | None:
+    """Largest force that contacts of each position leave over, N."""
+    left = [force.max(axis=1, initial=0.0) for force in forces if force is not None]
+    return np.max(left, axis=0) if left else None
+
+
 def roller_start(near: list[Any]) -> RollerStart:
     """Return the rollers of a warm start (`warm_rows`)."""
     names = ("inward", "lean", "inner", "outer", "place", "stood", "follow")
@@ -175,11 +190,11 @@ def roller_start(near: list[Any]) -> RollerStart:
 
 
 def warm_rows(pairs: tuple[LeaningPairs, LeaningPairs], rollers: RollerState, *more: FloatArray) -> NDArray[np.object_]:
-    """Return what contacts in slices want to find again, row by row: loads of slices of pins and holes, the rollers, and more."""
+    """Return what contacts want to find again, row by row: pins and holes (`SlicedContact.near`), the rollers, and more."""
     found = np.empty(rollers.share.shape[0], dtype=object)
-    loads = (pair.contact.slice_load for pair in pairs)
-    slices = rollers.inner_slices, rollers.outer_slices
-    each = (*loads, rollers.share, rollers.lean, *slices, rollers.inner_approach, rollers.stood, rollers.follow, *more)
+    near = (pair.contact.near for pair in pairs)
+    own = rollers.inner_near, rollers.outer_near
+    each = (*near, rollers.share, rollers.lean, *own, rollers.inner_approach, rollers.stood, rollers.follow, *more)
     found[:] = list(zip(*(values for values in each if values is not None), strict=True))
     return found
 
@@ -189,13 +204,3 @@ def stacked(warm: NDArray[np.object_] | None) -> list[FloatArray] | None:
     if warm is None or any(each is None for each in warm):
         return None
     return [np.stack(parts) for parts in zip(*warm, strict=True)]
-
-
-def _relative_leans(bores: BoreMotion, coordinates: Coordinates) -> ComplexArray:
-    """Lean of the disc less that of each crank by the pose, shape (positions, cranks, coordinates)."""
-    found = np.zeros(bores.gradient.shape, dtype=complex)
-    found[..., coordinates.lean_place] = (1.0, 1j)
-    for crank in range(coordinates.cranks):
-        place = coordinates.crank_lean(crank)
-        found[:, crank, place : place + 2] = (-1.0, -1j)
-    return found

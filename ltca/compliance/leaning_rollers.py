@@ -8,7 +8,6 @@ angle. s and ψ are where the energy of both contacts is least.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,9 +18,9 @@ from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.rollers import RollerLaws, RollerState
 from ltca.errors import ConvergenceError
 from ltca.geometry.pair_motion import RollerRays, cross, dot
-from ltca.laws.sliced_line import POINTS, SlicedContact, SlicedLine, slice_heights
+from ltca.laws.sliced_contact import EXACT, LAST_STEP_ERROR, Exactness, SlicedContact, slice_heights
+from ltca.laws.sliced_line import SlicedLine
 
-MAX_ITERATIONS = 80
 SETTLED = 1e-10
 """Largest force and moment (by half the length) left over, by the larger load of the two contacts."""
 ROUND_OFF = 1e-7
@@ -46,8 +45,8 @@ class RollerStart:
     ----------
     inward, lean : array, shape (positions, rollers)
         Place inward from where the roller rests in the bore alone, as a part of the overlap, and lean, rad.
-    inner, outer : array, shape (positions, rollers, slices)
-        Loads of the slices, N.
+    inner, outer : array, shape (positions, rollers, 2 + 3 slices) or (…, 0)
+        Contacts on the race and in the bore (`ltca.laws.sliced_contact.SlicedContact.near`).
     place : array, shape (positions, rollers)
         Place inward, mm.
     stood : array, shape (positions, rollers, 6)
@@ -70,99 +69,42 @@ def balance_leaning_rollers(
     rays: RollerRays,
     displacement: ComplexArray,
     laws: RollerLaws[SlicedLine],
-    race_lean: FloatArray,
-    bore_lean: FloatArray,
+    leans: tuple[FloatArray, FloatArray],
     start: RollerStart | None = None,
     given: tuple[FloatArray | float, FloatArray | float] = (0.0, 0.0),
+    exactness: Exactness = EXACT,
 ) -> RollerState:
     """Place every roller so that its contacts balance; arguments as for `ltca.compliance.rollers.balance_rollers`.
 
-    `race_lean` and `bore_lean` are the leans of race and bore along the rays, rad, shape (positions, rollers); `start` is what
-    stood nearby, and `given` what the bodies take of the approaches in the bore and on the race, mm, shape (positions, rollers).
+    `leans` are those of race and bore along the rays, rad, shape (positions, rollers); `start` is what stood nearby, and `given`
+    what the bodies take of the approaches in the bore and on the race, mm, shape (positions, rollers).
     """
     shape = rays.direction.shape
-    half = 0.5 * laws.outer.length
-    total = rays.outermost - rays.touching_distance(displacement)
-    highest = slice_heights(laws.outer.length, laws.outer.slices).max()
-    pressed = total - (given[0] + given[1]) + highest * np.abs(race_lean - bore_lean) > 0.0
-    rows, numbers = np.nonzero(pressed)
-
-    def each(values: NDArray[Any]) -> NDArray[Any]:
-        return np.asarray(np.broadcast_to(values, shape)[rows, numbers])
-
-    ray, moved, outermost, play = (each(one) for one in (rays.direction, displacement, rays.outermost, rays.bore_play))
-    inner_radius, outer_radius = each(laws.inner_radius), each(laws.outer_radius)
-    at_race, at_bore, overlap = each(race_lean), each(bore_lean), each(total)
-    from_bore, from_race = (each(np.asarray(one)) for one in given)
-    along, lowest = dot(ray, moved), outermost - overlap
-    stands = np.stack((along, cross(ray, moved), at_bore, at_race, from_bore, from_race), axis=1)
-
-    def contacts(which: Any, inward: FloatArray, lean: FloatArray, near: _Near) -> _Contacts:
-        place = outermost[which] - inward
-        arm = place * ray[which] - moved[which]
-        length = np.abs(arm)
-        # |s n − d| less the bore play as a product, as for rollers that do not lean.
-        outer = (overlap[which] - inward) * (place + lowest[which] - 2.0 * along[which]) / (length + play[which])
-        first = laws.inner.respond(inward - from_race[which], at_race[which] - lean, inner_radius[which], near[0])
-        second = laws.outer.respond(outer - from_bore[which], lean - at_bore[which], outer_radius[which], near[1])
-        return first, second, arm / length, length
-
-    inward, lean = from_race + 0.5 * (overlap - from_race - from_bore), 0.5 * (at_race + at_bore)
-    near: _Near = (None, None)
-    if start is not None:
-        known, share = start.inner[rows, numbers].sum(axis=1) > 0.0, start.inward[rows, numbers]
-        # One that leaned by more than what presses it now is better begun anew.
-        known &= half * np.abs(start.lean[rows, numbers] - lean) <= np.abs(overlap) + half * np.abs(at_race - at_bore)
-        # Of a roller that touched at its end alone the overlap in the middle was nothing to go by.
-        inward = np.where(known & (np.abs(share - 0.5) < FARTHEST), share * overlap, inward)
-        lean = np.where(known, start.lean[rows, numbers], lean)
-        change = stands - start.stood[rows, numbers]
-        outward, turned = np.einsum("rij,rj->ir", start.follow[rows, numbers], change)
-        near_by = np.abs(outward) + half * np.abs(turned) <= 0.5 * (np.abs(overlap) + half * np.abs(at_race - at_bore))
-        inward = np.where(known & near_by, start.place[rows, numbers] - outward, inward)
-        lean = np.where(known & near_by, start.lean[rows, numbers] + turned, lean)
-        near = start.inner[rows, numbers], start.outer[rows, numbers]
-    inner, outer, outward, length = contacts(_ALL, inward, lean, near)
-    # What round-off of places makes of a load.
-    lightest = np.spacing(outermost) * laws.outer.contact_modulus * laws.outer.length / SETTLED
-    reach = np.abs(overlap - from_bore - from_race) + half * np.abs(at_race - at_bore)
-    history: list[float] = []
-    before = np.full(rows.size, np.inf)
-    for _ in range(MAX_ITERATIONS):
-        force, moment = _imbalance(inner, outer, outward, ray)
-        size = np.maximum(np.maximum(inner.load, outer.load), lightest)
-        left = np.maximum(np.abs(force), np.abs(moment) / half) / size
-        history.append(float(np.max(left, initial=0.0)))
-        # Nothing but what the slices leave over is left where steps no longer help.
-        going = np.flatnonzero((left > SETTLED) & ~((before < ROUND_OFF) & (left >= 0.5 * before)))
-        if not going.size:
-            break
-        before = left
-        there, moved_by = _downhill(contacts, going, inward, lean, inner, outer, outward, length, ray, half, reach)
-        inward[going] += moved_by[0]
-        lean[going] += moved_by[1]
-        for whole, part in zip((inner, outer), there[:2], strict=True):
-            whole.put(going, part)
-        outward[going], length[going] = there[2:]
-    else:
-        raise ConvergenceError("leaning rollers do not balance between the races; force left over by the load", history)
-    cosine = outward.real * ray.real + outward.imag * ray.imag
-    tangent, follow = _eliminated(ray, outward, cosine, length, inner, outer, half)
+    pressed = _PressedRollers(rays, displacement, laws, leans, given, exactness)
+    pressed.begin(start)
+    pressed.balance()
+    rows, numbers, ray = pressed.rows, pressed.numbers, pressed.ray
+    inner, outer, outward, inward, lean = pressed.inner, pressed.outer, pressed.outward, pressed.inward, pressed.lean
+    overlap = pressed.overlap
+    tangent, follow = _eliminated(pressed)
     found: dict[str, NDArray[Any]] = {
-        "share": np.divide(inward, overlap, out=np.full(overlap.shape, 0.5), where=overlap > 0.0),
+        "share": np.divide(inward, overlap, out=np.full(inward.shape, 0.5), where=overlap > 0.0),
         "inner_approach": inward,
-        "outer_approach": np.abs((outermost - inward) * ray - moved) - play,
+        "outer_approach": np.abs((pressed.outermost - inward) * ray - pressed.moved) - pressed.play,
         "inner_load": inner.load,
         "outer_load": outer.load,
         "outer_direction": outward,
         "tangent": tangent,
-        "stood": stands,
+        "stood": pressed.stands,
         "follow": follow,
         "outer_moment": outer.moment,
         "inner_moment": inner.moment,
         "lean": lean,
-        "inner_tilt": at_race - lean,
-        "outer_tilt": lean - at_bore,
+        "inner_tilt": pressed.at_race - lean,
+        "outer_tilt": lean - pressed.at_bore,
+        "left": pressed.left,
+        "inner_near": inner.near,
+        "outer_near": outer.near,
         "inner_slices": inner.slice_load,
         "outer_slices": outer.slice_load,
         "inner_lines": inner.line_load,
@@ -170,19 +112,226 @@ def balance_leaning_rollers(
     }
     arm = rays.outermost * rays.direction - displacement
     rest = np.abs(arm)
-    free: dict[str, NDArray[Any]] = {
-        "share": np.full(shape, 0.5), "outer_approach": rest - rays.bore_play, "outer_direction": arm / rest,
-        "tangent": np.zeros((*shape, 6, 6)), "stood": np.zeros((*shape, 6)), "follow": np.zeros((*shape, 2, 6)),
-        "inner_slices": np.zeros((*shape, laws.inner.slices)), "outer_slices": np.zeros((*shape, laws.outer.slices)),
-        "inner_lines": np.zeros((*shape, laws.inner.slices, POINTS)),
-        "outer_lines": np.zeros((*shape, laws.outer.slices, POINTS)),
-    }  # fmt: skip
+    # Of rollers that nothing presses.
+    free = {"share": 0.5, "outer_approach": rest - rays.bore_play, "outer_direction": arm / rest}
     everywhere: dict[str, Any] = {}
     for name, values in found.items():
-        full = free[name] if name in free else np.zeros(shape)
+        full = np.zeros((*shape, *values.shape[1:]), dtype=values.dtype)
+        full[...] = free.get(name, 0.0)
         full[rows, numbers] = values
         everywhere[name] = full
     return RollerState(**everywhere)
+
+
+class _PressedRollers:
+    """Rollers between race and bore that may be pressed, in a row, where they stand and what they carry.
+
+    ``inward`` and ``lean`` are their places, mm, and leans, rad; ``inner`` and ``outer`` their contacts, ``outward`` the
+    direction of the load in the bore and ``length`` its arm, mm.
+    """
+
+    def __init__(
+        self,
+        rays: RollerRays,
+        displacement: ComplexArray,
+        laws: RollerLaws[SlicedLine],
+        leans: tuple[FloatArray, FloatArray],
+        given: tuple[FloatArray | float, FloatArray | float],
+        exactness: Exactness,
+    ) -> None:
+        self.alike = _are_alike(laws.inner, laws.outer)
+        """Whether one law says what the contacts on race and in bore carry, both asked at once."""
+        self.laws, self.half, self.exactness = laws, 0.5 * laws.outer.length, exactness
+        total = rays.outermost - rays.touching_distance(displacement)
+        highest = slice_heights(laws.outer.length, laws.outer.slices).max()
+        pressed = total - (given[0] + given[1]) + highest * np.abs(leans[0] - leans[1]) > 0.0
+        self.rows, self.numbers = np.nonzero(pressed)
+
+        def each(values: NDArray[Any] | float) -> NDArray[Any]:
+            return np.asarray(np.broadcast_to(values, pressed.shape)[self.rows, self.numbers])
+
+        self.ray, self.moved, self.outermost = each(rays.direction), each(displacement), each(rays.outermost)
+        self.inner_radius, self.outer_radius = each(laws.inner_radius), each(laws.outer_radius)
+        self.at_race, self.at_bore, self.overlap, self.play = (each(one) for one in (*leans, total, rays.bore_play))
+        self.from_bore, self.from_race = (each(one) for one in given)
+        self.along, self.lowest = dot(self.ray, self.moved), self.outermost - self.overlap
+        across = cross(self.ray, self.moved)
+        self.stands = np.stack((self.along, across, self.at_bore, self.at_race, self.from_bore, self.from_race), axis=1)
+        # What leans of race and bore press together at the end.
+        apart = self.half * np.abs(self.at_race - self.at_bore)
+        self.spread, self.reach = (
+            np.abs(self.overlap) + apart,
+            np.abs(self.overlap - self.from_bore - self.from_race) + apart,
+        )
+        # What round-off of places makes of a load.
+        self.last_step = np.zeros(self.rows.size)
+        self.lightest = np.spacing(self.outermost) * laws.outer.contact_modulus * laws.outer.length / SETTLED
+
+    def begin(self, start: RollerStart | None) -> None:
+        """Place the rollers where they stood nearby, moved on by what has changed; otherwise half way."""
+        inward = self.from_race + 0.5 * (self.overlap - self.from_race - self.from_bore)
+        lean = 0.5 * (self.at_race + self.at_bore)
+        near: _Near = (None, None)
+        if start is not None:
+            place, leaned, share, stood, follow, inner, outer = (
+                values[self.rows, self.numbers]
+                for values in (
+                    start.place,
+                    start.lean,
+                    start.inward,
+                    start.stood,
+                    start.follow,
+                    start.inner,
+                    start.outer,
+                )
+            )
+            # One that leaned by more than what presses it now is better begun anew.
+            known = follow.any(axis=(1, 2)) & (self.half * np.abs(leaned - lean) <= self.spread)
+            # Of a roller that touched at its end alone the overlap in the middle was nothing to go by.
+            inward = np.where(known & (np.abs(share - 0.5) < FARTHEST), share * self.overlap, inward)
+            lean = np.where(known, leaned, lean)
+            outward, turned = np.einsum("rij,rj->ir", follow, self.stands - stood)
+            close = known & (np.abs(outward) + self.half * np.abs(turned) <= 0.5 * self.spread)
+            inward, lean = np.where(close, place - outward, inward), np.where(close, leaned + turned, lean)
+            near = inner, outer
+        self.inward, self.lean = inward, lean
+        self.inner, self.outer, self.outward, self.length = self.contacts(_ALL, inward, lean, near)
+
+    def placed(self, which: Any, inward: FloatArray) -> tuple[FloatArray, ComplexArray, FloatArray]:
+        """Approach in the bore, direction and arm of its load with some rollers at other places."""
+        place = self.outermost[which] - inward
+        arm = place * self.ray[which] - self.moved[which]
+        length = np.abs(arm)
+        # |s n − d| less the bore play as a product, as for rollers that do not lean.
+        beyond = place + self.lowest[which] - 2.0 * self.along[which]
+        outer = (self.overlap[which] - inward) * beyond / (length + self.play[which])
+        return outer - self.from_bore[which], arm / length, length
+
+    def contacts(self, which: Any, inward: FloatArray, lean: FloatArray, near: _Near) -> _Contacts:
+        """Contacts of some rollers at other places and leans."""
+        outer, outward, length = self.placed(which, inward)
+        at_race = inward - self.from_race[which], self.at_race[which] - lean, self.inner_radius[which], near[0]
+        in_bore = outer, lean - self.at_bore[which], self.outer_radius[which], near[1]
+        if self.alike:
+            approach, tilt, radius = (
+                np.stack((one, other)) for one, other in zip(at_race[:3], in_bore[:3], strict=True)
+            )
+            begin = None if near[0] is None or near[1] is None else np.stack((near[0], near[1]))
+            contacts = self.laws.inner.respond(approach, tilt, radius, begin, self.exactness).halves
+        else:
+            contacts = (
+                self.laws.inner.respond(*at_race, self.exactness),
+                self.laws.outer.respond(*in_bore, self.exactness),
+            )
+        return (*contacts, outward, length)
+
+    def balance(self) -> None:
+        """Move the rollers until the forces and moments of their contacts balance."""
+        history: list[float] = []
+        before = np.full(self.rows.size, np.inf)
+        for step in range(self.exactness.steps + 1):
+            force, moment = _imbalance(self.inner, self.outer, self.outward, self.ray)
+            size = np.maximum(np.maximum(self.inner.load, self.outer.load), self.lightest)
+            left = np.maximum(np.abs(force), np.abs(moment) / self.half) / size
+            history.append(float(np.max(left, initial=0.0)))
+            # Nothing but what the slices leave over is left where steps no longer help.
+            going = np.flatnonzero((left > SETTLED) & ~((before < ROUND_OFF) & (left >= 0.5 * before)))
+            if not going.size:
+                return
+            if step == self.exactness.steps:
+                break
+            before = left
+            near = left[going] < self.exactness.rollers
+            far = np.concatenate((going[~near], self.along_slopes(going[near])))
+            self.last_step[going] += LAST_STEP_ERROR * left[going] ** 2 * size[going]
+            self.last_step[far] = 0.0
+            if far.size:
+                self.downhill(np.sort(far))
+        if self.exactness is EXACT:
+            raise ConvergenceError(
+                "leaning rollers do not balance between the races; force left over by the load", history
+            )
+        self.last_step[going] += left[going] * size[going]
+
+    @property
+    def left(self) -> FloatArray:
+        """Force that may be left over, N."""
+        inner, outer = (0.0 if contact.left is None else contact.left for contact in (self.inner, self.outer))
+        return np.maximum(self.last_step, np.maximum(inner, outer))
+
+    def newton(self, which: NDArray[np.intp]) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Newton's step of the places and leans of some rollers, and the slope of the energy along it."""
+        force, moment = (values[which] for values in _imbalance(self.inner, self.outer, self.outward, self.ray))
+        stiff, mixed, turning = (values[which] for values in _own_stiffness(self))
+        determinant = np.where(stiff > 0.0, stiff * turning - mixed**2, 1.0)
+        # Beyond half of what is pressed together at the end other slices meet than the slopes know of.
+        most = 0.5 * self.reach[which] / self.half
+        turn = np.clip(-(stiff * moment - mixed * force) / determinant, -most, most)
+        step = -(force + mixed * turn) / np.where(stiff > 0.0, stiff, 1.0)
+        return step, turn, force * step + moment * turn
+
+    def along_slopes(self, which: NDArray[np.intp]) -> NDArray[np.intp]:
+        """Take Newton's step of some rollers along the slopes of their contacts; return those whose contacts change in it."""
+        if not which.size or self.inner.steady is None or self.outer.steady is None:
+            return which
+        step, turn, _ = self.newton(which)
+        before, _, _ = self.placed(which, self.inward[which])
+        after, outward, length = self.placed(which, self.inward[which] + step)
+        bent = self.half * np.abs(turn)
+        part = self.exactness.steady
+        steady = np.abs(step) + bent <= part * self.inner.steady[which]
+        steady &= np.abs(after - before) + bent <= part * self.outer.steady[which]
+        some = which[steady]
+        self.inner.shift(some, step[steady], -turn[steady])
+        self.outer.shift(some, (after - before)[steady], turn[steady])
+        self.inward[some] += step[steady]
+        self.lean[some] += turn[steady]
+        self.outward[some], self.length[some] = outward[steady], length[steady]
+        return which[~steady]
+
+    def downhill(self, going: NDArray[np.intp]) -> None:
+        """Take Newton's step of some rollers, shortened where the energy rises again steeply at its end.
+
+        The energy is convex along a step: its slope says how far its least is, also where differences of energies are
+        round-off.
+        """
+        first, second = self.inner.take(going), self.outer.take(going)
+        step, turn, slope = self.newton(going)
+        fraction = np.ones(step.shape)
+        inward, lean, n = self.inward[going], self.lean[going], self.ray[going]
+        there = self.contacts(going, inward + step, lean + turn, (first.near, second.near))
+        low, high = np.zeros(step.shape), np.full(step.shape, np.inf)
+        for _ in range(MAX_HALVINGS):
+            force, moment = _imbalance(*there[:3], n)
+            ahead, steep = force * step + moment * turn, STEEPEST * np.abs(slope)
+            far, near = ahead > steep, (ahead < -steep) & np.isfinite(high)
+            high[far], low[near] = fraction[far], fraction[near]
+            long = np.flatnonzero(far | near)
+            if not long.size:
+                break
+            # Where a slice begins to carry the slope turns within a little: places are halved by their size then.
+            cut = np.clip(np.abs(slope[long]) / (np.abs(slope[long]) + np.abs(ahead[long])), 0.1, 0.7)
+            between = np.sqrt(low[long] * high[long])
+            fraction[long] = np.where(low[long] > 0.0, between, cut * high[long])
+            part = self.contacts(
+                going[long],
+                inward[long] + fraction[long] * step[long],
+                lean[long] + fraction[long] * turn[long],
+                (first.near[long], second.near[long]),
+            )
+            there[0].put(long, part[0])
+            there[1].put(long, part[1])
+            there[2][long], there[3][long] = part[2:]
+        self.inward[going] += fraction * step
+        self.lean[going] += fraction * turn
+        self.inner.put(going, there[0])
+        self.outer.put(going, there[1])
+        self.outward[going], self.length[going] = there[2:]
+
+
+def _are_alike(inner: Any, outer: Any) -> bool:
+    """Whether two laws say the same of contacts of the same radii."""
+    return isinstance(inner, SlicedLine) and isinstance(outer, SlicedLine) and inner.is_like(outer)
 
 
 def _imbalance(
@@ -192,93 +341,26 @@ def _imbalance(
     return inner.load - outer.load * dot(outward, ray), outer.moment - inner.moment
 
 
-def _along(slopes: tuple[FloatArray, FloatArray], step: tuple[FloatArray, FloatArray]) -> FloatArray:
-    return slopes[0] * step[0] + slopes[1] * step[1]
-
-
-def _downhill(
-    contacts: Callable[..., _Contacts],
-    going: NDArray[np.intp],
-    inward: FloatArray,
-    lean: FloatArray,
-    inner: SlicedContact,
-    outer: SlicedContact,
-    outward: ComplexArray,
-    length: FloatArray,
-    ray: ComplexArray,
-    half: float,
-    reach: FloatArray,
-) -> tuple[_Contacts, tuple[FloatArray, FloatArray]]:
-    """Newton's step of the rollers that go on, shortened where the energy rises again steeply at its end.
-
-    The energy is convex along a step: its slope says how far its least is, also where differences of energies are round-off.
-    """
-    first, second = inner.take(going), outer.take(going)
-    n, towards, arm = ray[going], outward[going], length[going]
-    force, moment = _imbalance(first, second, towards, n)
-    stiff, mixed, turning = _own_stiffness(first, second, dot(towards, n), arm)
-    # A roller that touches at one end alone turns about that end freely.
-    turning = turning + 1e-9 * half**2 * stiff
-    determinant = np.where(stiff > 0.0, stiff * turning - mixed**2, 1.0)
-    # Beyond half of what is pressed together at the end other slices meet than the slopes know of.
-    most = 0.5 * reach[going] / half
-    turn = np.clip(-(stiff * moment - mixed * force) / determinant, -most, most)
-    step = -(force + mixed * turn) / np.where(stiff > 0.0, stiff, 1.0)
-    slope = force * step + moment * turn
-    fraction = np.ones(step.shape)
-    across = dot(towards, n)
-    start = (first.ahead(step, -turn), second.ahead(-across * step, turn))
-    there = contacts(going, inward[going] + step, lean[going] + turn, start)
-    low, high = np.zeros(step.shape), np.full(step.shape, np.inf)
-    for _ in range(MAX_HALVINGS):
-        ahead, steep = _along(_imbalance(*there[:3], n), (step, turn)), STEEPEST * np.abs(slope)
-        far, near = ahead > steep, (ahead < -steep) & np.isfinite(high)
-        high[far], low[near] = fraction[far], fraction[near]
-        long = np.flatnonzero(far | near)
-        if not long.size:
-            break
-        # Where a slice begins to carry the slope turns within a little: places are halved by their size then.
-        cut = np.clip(np.abs(slope[long]) / (np.abs(slope[long]) + np.abs(ahead[long])), 0.1, 0.7)
-        between = np.sqrt(low[long] * high[long])
-        fraction[long] = np.where(low[long] > 0.0, between, cut * high[long])
-        again = going[long]
-        part = contacts(
-            again,
-            inward[again] + fraction[long] * step[long],
-            lean[again] + fraction[long] * turn[long],
-            (first.slice_load[long], second.slice_load[long]),
-        )
-        there[0].put(long, part[0])
-        there[1].put(long, part[1])
-        there[2][long], there[3][long] = part[2:]
-    return there, (fraction * step, fraction * turn)
-
-
-def _own_stiffness(
-    inner: SlicedContact, outer: SlicedContact, cosine: FloatArray, length: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _own_stiffness(rollers: _PressedRollers) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Second derivatives of the energy by place inward and lean."""
-    bend = outer.load * (1.0 - cosine**2) / length
+    inner, outer, cosine = rollers.inner, rollers.outer, dot(rollers.outward, rollers.ray)
+    bend = outer.load * (1.0 - cosine**2) / rollers.length
     stiff = inner.by_approach + outer.by_approach * cosine**2 + bend
     mixed = -(inner.by_tilt + outer.by_tilt * cosine)
-    return stiff, mixed, inner.moment_by_tilt + outer.moment_by_tilt
+    # A roller that touches at one end alone turns about that end freely.
+    turning = inner.moment_by_tilt + outer.moment_by_tilt + 1e-9 * rollers.half**2 * stiff
+    return stiff, mixed, turning
 
 
-def _eliminated(
-    ray: ComplexArray,
-    outward: ComplexArray,
-    cosine: FloatArray,
-    length: FloatArray,
-    inner: SlicedContact,
-    outer: SlicedContact,
-    half: float,
-) -> tuple[FloatArray, FloatArray]:
+def _eliminated(rollers: _PressedRollers) -> tuple[FloatArray, FloatArray]:
     """Second derivative of the eliminated energy by displacement (x, y) and lean (x, y) of the bore and what the bodies take of
     the approaches in the bore and on the race, shape (rollers, 6, 6); and how place outward and lean follow what places the
     roller (`RollerStart`).
     """
+    ray, outward, inner, outer = rollers.ray, rollers.outward, rollers.inner, rollers.outer
+    cosine = dot(outward, ray)
     slant = ray.imag * outward.real - ray.real * outward.imag
-    bend = outer.load / length
+    bend = outer.load / rollers.length
     normal = np.stack((outward.real, outward.imag), axis=-1)
     across = np.stack((-outward.imag, outward.real), axis=-1)
     n = np.stack((ray.real, ray.imag), axis=-1)
@@ -301,8 +383,7 @@ def _eliminated(
     direct[:, :2, 4], direct[:, 2:4, 4] = k * normal, x * n
     direct[:, 4, 4], direct[:, 5, 5] = outer.by_approach, inner.by_approach
     direct[:, 2:4, :2], direct[:, 4, :4] = direct[:, :2, 2:4].swapaxes(1, 2), direct[:, :4, 4]
-    stiff, mixed, turning = _own_stiffness(inner, outer, cosine, length)
-    turning = turning + 1e-9 * half**2 * stiff
+    stiff, mixed, turning = _own_stiffness(rollers)
     own = np.empty((ray.size, 2, 2))
     own[:, 0, 0], own[:, 1, 1] = stiff, turning
     own[:, 0, 1] = own[:, 1, 0] = -mixed

@@ -16,23 +16,22 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
+from ltca.compliance import sliced
 from ltca.compliance.coefficients import InfluenceCoefficients, logarithm_factor
 from ltca.compliance.half_space import HalfSpaceCompliance, hole_in_slices
 from ltca.contact.hertz import effective_radius, line_half_width
-from ltca.contact.length_profile import lead_relief
 from ltca.contact.tracked_grid import ContactKinds
 from ltca.drive.engine_support import require
 from ltca.drive.hole_contact import hole_modulus
-from ltca.drive.parts import Drive, Material, contact_modulus
+from ltca.drive.parts import Drive, Material, PinShaft, PinWheel, contact_modulus
 from ltca.errors import ConvergenceError, DriveError
+from ltca.geometry.length_profile import lead_relief
 from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.placement import Placement
-from ltca.laws.backed import HALF_SPACE_DATUM, back_wheel_pins
+from ltca.laws.backed import HALF_SPACE_DATUM, back_wheel_pins, shaft_pin_seat, sleeve_overlap, wheel_pin_seat
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.plane_strain import SELF_ENERGY, PlaneContactLaw
-from ltca.laws.sliced_line import slice_heights
-from ltca.laws.sliced_plane import SlicedPlane
 
 NearField = Literal["plane-strain", "half-space"]
 
@@ -108,23 +107,33 @@ class NearFieldLaws:
                 kinds=half_space.kinds,
             )
         require(drive, "fe")
-        plays = Placement.of_drive(drive).wheel_pin_plays
+        place, slices = Placement.of_drive(drive), drive.contact.slices
 
-        def law(modulus: float, lead: bool = False) -> Any:
-            slices = drive.contact.slices
+        def law(modulus: float, part: PinWheel | PinShaft | None = None) -> Any:
             if slices == 1:
                 return PlaneContactLaw(thickness=thickness, contact_modulus=modulus, datum=datum)
-            z = slice_heights(thickness, slices)
-            relief = lead_relief(drive.disc, z) if lead else np.zeros(z.shape)
-            return SlicedPlane(length=thickness, contact_modulus=modulus, datum=datum, slices=slices, relief=relief)
+            z = sliced.slice_heights(thickness, slices)
+            return sliced.SlicedPlane(
+                length=thickness,
+                contact_modulus=modulus,
+                datum=datum,
+                slices=slices,
+                relief=lead_relief(drive.disc, z) if part is drive.pin_wheel else np.zeros(z.shape),
+                overlap=0.0 if part is None or part.seat.kind != "sleeve" else sleeve_overlap(drive, part, datum),
+            )
 
-        flank = law(contact_modulus(parts.disc, drive.flank_pin), lead=True)
+        flank, hole = law(contact_modulus(parts.disc, drive.flank_pin), drive.pin_wheel), law(at_hole, drive.pin_shaft)
+        if slices == 1:
+            flank = back_wheel_pins(drive, flank, place.wheel_pin_plays, datum)
+        else:
+            flank = sliced.back_line(flank, wheel_pin_seat(drive), place.wheel_pin_plays)
+            hole = sliced.back_line(hole, shaft_pin_seat(drive), place.shaft_pin_plays)
         return cls(
             kind=kind,
-            pin=flank if drive.contact.slices > 1 else back_wheel_pins(drive, flank, plays, datum),
+            pin=flank,
             outer=law(contact_modulus(parts.disc, parts.roller)),
             inner=law(contact_modulus(parts.inner_race, parts.roller)),
-            hole=law(at_hole),
+            hole=hole,
             rigid_shaft_pins=rigid_shaft_pins,
             datum=datum,
             kinds=ContactKinds.of_drive(drive),

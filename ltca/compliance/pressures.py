@@ -12,16 +12,21 @@ disc, Hertz's as long as its half-width is small against the pin. Who yields the
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from ltca.arrays import FloatArray
+from ltca.compliance import sliced
 from ltca.compliance.response import AlongWidth, ContactPressures, DiscResponse, KindPressures
 from ltca.contact.end_pressure import largest_pressure_ratio
 from ltca.contact.tracked_grid import ContactKind, ContactKinds
 from ltca.geometry.placement import Placement
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.line_contact import LineContactLaw
-from ltca.laws.width_pressure import WidthPressures, estimate_along_width
+
+if TYPE_CHECKING:
+    from ltca.laws.width_pressure import WidthPressures
 
 
 def pressures_of_law(
@@ -60,20 +65,43 @@ def pressures_in_slices(
     *,
     has_ends: bool = True,
     rigid_shaft_pins: bool = False,
+    shaft_pins_on_springs: bool = False,
 ) -> ContactPressures:
-    """Return pressures and half-widths of contacts in slices by their line loads; those of plane strain have no ends."""
+    """Return pressures and half-widths of contacts in slices by their line loads; those of plane strain have no ends.
+
+    Slices of springs carry evenly where nothing tilts: their line loads are those of aligned lines times what the springs have of
+    the mean.
+    """
     rollers, pins, holes = response.rollers, response.leaning_pins, response.leaning_holes
     if pins is None or holes is None or rollers.outer_lines is None or rollers.inner_lines is None:
         raise ValueError("contacts have no slices")
+    of_holes, radius = holes.contact.line_load, place.hole_effective_radii
+    if shaft_pins_on_springs:
+        of_holes = _between_ends(kinds.holes, of_holes, holes.contact.load, radius)
     found = (
         _of_slices(kinds.pins, pins.contact.line_load, response.flank.effective_radius, has_ends),
         _of_slices(kinds.outer, rollers.outer_lines, place.outer_effective_radii, has_ends),
         _of_slices(kinds.inner, rollers.inner_lines, place.inner_effective_radii, has_ends),
-        _of_slices(kinds.holes, holes.contact.line_load, place.hole_effective_radii, has_ends),
+        _of_slices(kinds.holes, of_holes, radius, has_ends),
     )
     return ContactPressures(
         pins=found[0], outer=found[1], inner=found[2], holes=found[3], rigid_shaft_pins=rigid_shaft_pins
     )
+
+
+def _between_ends(
+    kind: ContactKind, line_load: FloatArray, load: FloatArray, effective_radius: FloatArray
+) -> FloatArray:
+    """Line loads that add up to the same loads, shaped as those of aligned lines of finite length."""
+    slices = line_load.shape[-2]
+    approach, _ = LineContactLaw(kind.length, kind.contact_modulus).approach_at_load(load, effective_radius)
+    relief = np.zeros(sliced.slice_heights(kind.length, slices).shape)
+    line = sliced.SlicedLine(length=kind.length, contact_modulus=kind.contact_modulus, slices=slices, relief=relief)
+    shaped = line_load * line.respond(approach, np.zeros(load.shape), effective_radius).line_load
+    weights = 0.5 * kind.length / slices * np.polynomial.legendre.leggauss(shaped.shape[-1])[1]
+    total = (shaped @ weights).sum(axis=-1)
+    scale = np.divide(load, total, out=np.zeros(load.shape), where=total > 0.0)
+    return np.asarray(shaped * scale[..., None, None])
 
 
 def _of_slices(kind: ContactKind, line_load: FloatArray, effective_radius: FloatArray, has_ends: bool) -> KindPressures:
@@ -81,7 +109,7 @@ def _of_slices(kind: ContactKind, line_load: FloatArray, effective_radius: Float
 
     The number of slices is odd, and mid-width is the middle one.
     """
-    found = estimate_along_width(kind, line_load, effective_radius)
+    found = sliced.estimate_along_width(kind, line_load, effective_radius)
     return along_width(kind, found, effective_radius, has_ends=has_ends)
 
 

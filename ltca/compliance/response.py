@@ -7,7 +7,7 @@ contacts exert at this pose, and what is its tangent? `ltca.equilibrium.reducer`
 from __future__ import annotations
 
 from dataclasses import dataclass, field, fields, replace
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +18,9 @@ from ltca.compliance.rollers import RollerState
 from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION, Coordinates, X, Y
 from ltca.geometry.pair_motion import BoreMotion, FlankMotion, KnownPins, PairMotion, PairTilt, RollerRays
 from ltca.geometry.pairs import ContactGeometry
-from ltca.laws.sliced_line import SlicedContact
+
+if TYPE_CHECKING:
+    from ltca.laws.sliced_contact import SlicedContact
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -85,6 +87,11 @@ class LeaningPairs:
     tilt: PairTilt
     contact: SlicedContact
 
+    @property
+    def kept(self) -> LeaningPairs:
+        """The pairs without what a search alone asks for."""
+        return replace(self, contact=self.contact.kept)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DiscResponse:
@@ -121,6 +128,8 @@ class DiscResponse:
         Forces of wheel pins and shaft pins along their tangents, N; None without friction.
     leaning_pins, leaning_holes : LeaningPairs or None
         Wheel pins and shaft pins in slices; None in the plane.
+    left : array, shape (positions,), or None
+        Force that contacts, or displacements of pins, which have not settled amount to, N; None where all have.
     """
 
     force: FloatArray
@@ -139,6 +148,13 @@ class DiscResponse:
     friction: FloatArray | None = None
     leaning_pins: LeaningPairs | None = None
     leaning_holes: LeaningPairs | None = None
+    left: FloatArray | None = None
+
+    @property
+    def kept(self) -> DiscResponse:
+        """The response of balanced positions without what the search alone asks for."""
+        pins, holes = (None if one is None else one.kept for one in (self.leaning_pins, self.leaning_holes))
+        return replace(self, slopes=None, rollers=self.rollers.kept, leaning_pins=pins, leaning_holes=holes)
 
     @property
     def pin_forces(self) -> ComplexArray:
@@ -195,14 +211,11 @@ class Response(DiscResponse):
     ----------
     parts : tuple of DiscResponse
         Of each disc, by its own pose.
-    left : array, shape (positions,), or None
-        Force that displacements which have not settled amount to, N; None where none are displaced.
     contact_stiffness : array, shape (positions, coordinates)
         Diagonal of the tangent without supports.
     """
 
     parts: tuple[DiscResponse, ...]
-    left: FloatArray | None = None
     contact_stiffness: FloatArray = field(default_factory=lambda: np.zeros((0, 0)))
 
     @classmethod
@@ -214,7 +227,8 @@ class Response(DiscResponse):
     def kept(self) -> Response:
         """The response of balanced positions without what the search alone asks for, which is two fifths of one on a ring."""
         follow = None if self.follow is None else replace(self.follow, by_pose=None)
-        return replace(self, follow=follow, parts=tuple(replace(part, slopes=None) for part in self.parts))
+        rollers = self.rollers.kept
+        return replace(self, follow=follow, rollers=rollers, parts=tuple(part.kept for part in self.parts))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -320,9 +334,12 @@ class DiscModel(Protocol):
         shifts: ComplexArray | None = None,
         leans: ComplexArray | None = None,
         again: DiscResponse | None = None,
+        *,
+        roughly: bool = False,
     ) -> DiscResponse:
         """Return the contact forces at the poses of a batch of positions; `shifts` are displacements of the pins, if any, `leans`
-        their leans, and `again` what was answered there with pins displaced otherwise.
+        their leans, and `again` what was answered there with pins displaced otherwise; `roughly` as for `Reducer.respond`, of
+        contacts in slices.
         """
         ...
 

@@ -7,7 +7,7 @@ U_i(δ_i(s)) + U_o(δ_o(s, d)) over s.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Generic, TypeVar
 
 import numpy as np
@@ -76,6 +76,10 @@ class RollerState:
         Of leaning rollers, what placed them and how they follow it (`ltca.compliance.leaning_rollers.RollerStart`).
     inner_slices, outer_slices : array, shape (positions, rollers, slices), or None
         Loads of the slices of leaning rollers, N.
+    inner_near, outer_near : array, shape (positions, rollers, …), or None
+        What their contacts start from nearby (`ltca.laws.sliced_contact.SlicedContact.near`).
+    left : array, shape (positions, rollers), or None
+        Force that may be left over of leaning rollers, N.
     inner_lines, outer_lines : array, shape (positions, rollers, slices, points), or None
         Their line loads at the points of the slices, N/mm.
     """
@@ -96,8 +100,16 @@ class RollerState:
     follow: FloatArray | None = None
     inner_slices: FloatArray | None = None
     outer_slices: FloatArray | None = None
+    inner_near: FloatArray | None = None
+    outer_near: FloatArray | None = None
+    left: FloatArray | None = None
     inner_lines: FloatArray | None = None
     outer_lines: FloatArray | None = None
+
+    @property
+    def kept(self) -> RollerState:
+        """The rollers without what a search alone asks for."""
+        return self if self.inner_near is None else replace(self, inner_near=None, outer_near=None, left=None)
 
 
 def balance_rollers(

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.arrays import ComplexArray, FloatArray
-from ltca.compliance.in_slices import ContactsInSlices, roller_start, stacked, warm_rows
+from ltca.compliance import sliced
 from ltca.compliance.pressures import elastic_hole_pressures, pressures_in_slices
 from ltca.compliance.response import (
     ContactPressures,
@@ -83,6 +83,8 @@ class UncoupledContacts(ABC, Generic[Law]):
         shifts: ComplexArray | None = None,
         leans: ComplexArray | None = None,
         again: DiscResponse | None = None,
+        *,
+        roughly: bool = False,
     ) -> DiscResponse:
         """Return the contact forces at the poses of a batch of positions.
 
@@ -101,6 +103,8 @@ class UncoupledContacts(ABC, Generic[Law]):
             Leans of the pins at the disc in the same frames, rad, of contacts in slices.
         again : DiscResponse, optional
             What was answered at the same poses with pins displaced otherwise, in slices: their rollers stand where they stood.
+        roughly : bool
+            Whether contacts in slices that have nearly settled will do: `DiscResponse.left` tells what is left.
 
         Returns
         -------
@@ -122,7 +126,9 @@ class UncoupledContacts(ABC, Generic[Law]):
         flank = geometry.flank(crank_angle, pose, places, moved[0], None if leaning else known)
         laws = self.laws(flank, warm)
         if leaning:
-            return self._respond_in_slices(crank_angle, pose, flank, laws, shifts, leans, warm, again)
+            return self._respond_in_slices(
+                crank_angle, pose, flank, laws, shifts, leans, warm, again, sliced.ROUGH if roughly else sliced.EXACT
+            )
         pin_load, pin_stiffness = laws.pins.load_and_stiffness(flank.approach, flank.effective_radius)
         holes = geometry.holes(crank_angle, pose, moved[1])
         hole_load, hole_stiffness = self.hole_law.load_and_stiffness(
@@ -156,23 +162,25 @@ class UncoupledContacts(ABC, Generic[Law]):
         leans: ComplexArray | None,
         warm: NDArray[np.object_] | None,
         again: DiscResponse | None,
+        exactness: sliced.Exactness,
     ) -> DiscResponse:
         """The same of contacts in slices, which tilt."""
-        here = ContactsInSlices(self.geometry, crank_angle, pose, flank, shifts, leans)
-        near = stacked(warm)
+        here = sliced.ContactsInSlices(self.geometry, crank_angle, pose, flank, shifts, leans, exactness)
+        near = sliced.stacked(warm)
         starts = (None, None) if near is None else (near[0], near[1])
         if again is not None and again.leaning_pins is not None and again.leaning_holes is not None:
-            starts = again.leaning_pins.contact.slice_load, again.leaning_holes.contact.slice_load
+            starts = again.leaning_pins.contact.near, again.leaning_holes.contact.near
         holes: Any = self.hole_law
         pairs = here.pair(0, laws.pins, starts[0]), here.pair(1, holes, starts[1])
-        begin = None if near is None else roller_start(near)
+        begin = None if near is None else sliced.roller_start(near)
         rollers = here.rollers(laws.rollers, begin) if again is None else again.rollers
-        return here.response(pairs, rollers, warm_rows(pairs, rollers))
+        return here.response(pairs, rollers, sliced.warm_rows(pairs, rollers))
 
     def pressures(self, response: DiscResponse) -> ContactPressures:
         """Return pressures and half-widths from the laws, those of the shaft pins from their loads."""
         if response.leaning_pins is not None:
-            return pressures_in_slices(response, self.kinds, self.geometry.placement)
+            spring = isinstance(getattr(self.hole_law, "contact", self.hole_law), sliced.SlicedSpring)
+            return pressures_in_slices(response, self.kinds, self.geometry.placement, shaft_pins_on_springs=spring)
         flank, rollers, kinds = response.flank, response.rollers, self.kinds
         laws = self.laws(flank, response.warm_start)
         of_rollers = laws.rollers

@@ -7,7 +7,6 @@ influence       Influence coefficients of uniformly pressed rectangles on an ela
 unilateral      Frictionless unilateral contact: pressures that never pull and surfaces that never overlap
 free_end        Free ends: bodies that stop where the contact stops are no half-spaces
 pressure_cells  Contact of two half-spaces over a rectangular patch: grid, solution, loads and pressures
-length_profile  Profiles of rollers and pins along their length: crown, logarithmic relief, end relief, and their sum
 grid_ladder     Shapes of the contact grids, in steps of half-width and reach, and which of them a contact is solved on
 tracked_grid    Contacts solved on grids at every approach of an equilibrium: load, stiffness, pressures
 tilted_grid     Contacts that tilt, on grids over their whole width: load and moment by approach and tilt

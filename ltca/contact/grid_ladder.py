@@ -13,9 +13,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ltca.arrays import BoolArray, freeze
-from ltca.contact.length_profile import SummedProfile
 from ltca.contact.pressure_cells import PatchGrid, expected_half_width, graded_edges
 from ltca.contact.unilateral import solve_unilateral_contact
+from ltca.geometry.length_profile import SummedProfile
 
 RUNG = 0.05
 """Step of the ladder in ln(half-width)."""

@@ -36,10 +36,10 @@ from ltca.contact.grid_ladder import (
     find_width_place,
     unit_grid,
 )
-from ltca.contact.length_profile import SummedProfile, generator_profile, has_lead, lead_relief
 from ltca.contact.pressure_cells import PatchGrid, PatchSolution
 from ltca.contact.unilateral import UnilateralSolution, solve_unilateral_contact
 from ltca.drive.parts import Disc, Drive, contact_modulus
+from ltca.geometry.length_profile import SummedProfile, generator_profile, has_lead, lead_relief
 
 Departure = Callable[[FloatArray], FloatArray]
 

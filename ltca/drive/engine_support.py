@@ -57,8 +57,6 @@ class Refusal:
         Path of the field whose value is accepted; by default the value of a drive that leaves the field out is.
     accepts : callable, optional
         Further values that are accepted, because they mean the same as leaving the field out.
-    where : callable, optional
-        Drives of which the field is refused; all by default.
     """
 
     path: str
@@ -67,7 +65,6 @@ class Refusal:
     instead: str = ""
     equals: str = ""
     accepts: Callable[[Any], bool] | None = None
-    where: Callable[[Drive], bool] | None = None
 
 
 _PLANE = ("fe", "full FE")
@@ -79,13 +76,6 @@ _FIXED = ("direct", *_RIGID)
 _ONE_BORE = ("paper", "clearance-free")
 _HYBRID = "use --compliance hybrid"
 _TABLES = "use --method tables"
-_SEATS = "pins are fixed in the model where contacts have slices (contact.slices)"
-
-
-def _in_slices(drive: Drive) -> bool:
-    return drive.contact.slices > 1
-
-
 REFUSALS = (
     Refusal("crank.number", _ONE_BORE, "the model has one crank"),
     Refusal("crank.circle_radius", _ONE_BORE, "the model has one crank"),
@@ -114,8 +104,6 @@ REFUSALS = (
     Refusal("contact.slices", ("paper",), "discs do not tilt in the model", _TABLES),
     Refusal("contact.slices", ("full FE", "FE mesh"), _TWO_DIMENSIONS),
     Refusal("contact.slices", ("clearance-free",), "discs do not tilt in the model"),
-    Refusal("pin_wheel.seat", ("fe",), _SEATS, _HYBRID, where=_in_slices),
-    Refusal("pin_shaft.seat", ("fe",), _SEATS, _HYBRID, where=_in_slices),
 )
 """Everything that an engine refuses, in the order of the definition of a drive."""
 ROUNDING = 1e-9
@@ -131,14 +119,14 @@ def require(drive: Drive, engine: str) -> None:
     >>> from ltca.reading.drive_file import load_drive
     >>> require(with_fields(load_drive("paper").cases["CS-1"], {"crank_bearing.roller_length": 8.0}), "hybrid")
     """
-    rows = [row for row in REFUSALS if engine in row.engines and (row.where is None or row.where(drive))]
+    rows = [row for row in REFUSALS if engine in row.engines]
     problems = [problem for row in rows for problem in _problems(drive, row, engine)]
     if problems:
         raise DriveError(problems)
 
 
 def refusal(engine: str, path: str) -> str | None:
-    """Return why an engine refuses a field; None where it takes it, be it of some drives alone.
+    """Return why an engine refuses a field; None where it takes it.
 
     Examples
     --------
@@ -146,7 +134,7 @@ def refusal(engine: str, path: str) -> str | None:
     'the model is frictionless'
     >>> refusal("fe", "disc.thickness")
     """
-    rows = (row for row in REFUSALS if row.where is None and engine in row.engines)
+    rows = (row for row in REFUSALS if engine in row.engines)
     return next((row.reason for row in rows if _covers(row, path)), None)
 
 

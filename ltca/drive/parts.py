@@ -121,7 +121,7 @@ class Disc:
     lead_relief_length: Annotated[NonNegativeLength, grows("disc")] = 0.0
     lead_relief_depth: Annotated[NonNegativeLength, grows("disc")] = 0.0
     lead_slope: Angle = 0.0
-    axial_play: Annotated[NonNegativeLength | None, grows("disc")] = None
+    axial_play: Annotated[PositiveLength | None, grows("disc")] = None
     of: tuple[OneDisc, ...] = ()
 
     @property

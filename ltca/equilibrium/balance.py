@@ -198,7 +198,7 @@ def _completed(search: Search, left: NDArray[np.intp], gaps: bool) -> Equilibriu
         crank_angle=angle,
         wheel_moment=np.array(search.moment),
         pose=search.pose,
-        response=complete(model, angle, search.pose, response).kept if gaps else response.kept,
+        response=complete(model, angle, search.pose, response) if gaps else response,
         residual=search.residual,
         iterations=search.iterations,
     )

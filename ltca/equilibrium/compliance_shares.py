@@ -75,7 +75,7 @@ def compliance_shares(model: Reducer, found: Equilibrium, behind: float = 0.0) -
         carried = model.carried_beside_discs(found.crank_angle, found.pose, response.parts)
         stiffness = model.supports.respond(found.pose, carried)[1]
         wheel, ring = np.zeros(size, dtype=bool), np.zeros(size, dtype=bool)
-        wheel[model.coordinates.wheel_place] = True
+        wheel[model.coordinates.wheel_place] = wheel[model.coordinates.wheel_lean_place] = True
         ring[model.coordinates.ring_place] = True
         if model.flange is None:
             work["wheel_bearing"] += _stored(stiffness, np.where(wheel, moved, 0.0))
@@ -109,15 +109,20 @@ def _of_ring(
 
 
 def _against_flanges(model: Reducer, moved: FloatArray) -> FloatArray:
-    """Displacements with those of yielding cranks taken against the straight lines between their bearings."""
+    """Displacements with those of yielding cranks, and their leans, taken against the straight lines between their bearings."""
     coordinates = model.coordinates
     bent = moved.copy()
     for number, disc in enumerate(model.discs):
-        by_flange = np.matmul(disc.geometry.cranks_by_ring, moved[:, coordinates.ring_place, None])[..., 0]
-        for crank in range(coordinates.cranks):
-            x = coordinates.own * number + coordinates.crank(crank)
-            bent[:, x] -= by_flange[:, crank].real
-            bent[:, x + 1] -= by_flange[:, crank].imag
+        geometry, first = disc.geometry, coordinates.own * number
+        seats = np.matmul(geometry.seats_by_ring, moved[:, coordinates.ring_place, None])[..., 0]
+        by_flange = [(coordinates.crank, np.asarray(geometry.seat_share) * seats)]
+        if coordinates.leans:
+            by_flange.append((coordinates.crank_lean, np.asarray(geometry.crank_slopes)[..., 1, None] * seats))
+        for place, given in by_flange:
+            for crank in range(coordinates.cranks):
+                x = first + place(crank)
+                bent[:, x] -= given[:, crank].real
+                bent[:, x + 1] -= given[:, crank].imag
     return bent
 
 

@@ -69,7 +69,7 @@ class ExternalForce:
 
 
 def _pressing(load: ExternalLoad) -> ComplexArray:
-    """Force in the plane, N, and what presses a lean, N·mm: the axial force has its arm from the axis."""
+    """Force in the plane, N, and what presses a lean, N·mm; forces along the axis act on it and press none."""
     force = complex(load.force.x, load.force.y)
     moment = complex(load.moment.x, load.moment.y)
     return np.array([force, load.at.z * force - 1j * moment])

@@ -193,13 +193,15 @@ class StageMesh:
         sign = -1.0 if self.carried else 0.0
         return sign * self.forces(moments).in_plane.sum(axis=1), sign * self._slope(np.sign(moments))[0]
 
-    def tilting_on_wheel(self, moments: FloatArray) -> ComplexArray:
-        """Return what the sun presses the lean of the wheel with relative to the carrier, z F − i M, N·mm, shape (positions,);
-        zero where the carrier is held.
+    def tilting_on_wheel(self, moments: FloatArray) -> tuple[ComplexArray, ComplexArray]:
+        """Return what the sun presses the lean of the wheel with relative to the carrier, z F − i M, N·mm, shape (positions,),
+        and its derivatives by the moments of the cranks, shape (positions, cranks); zero where the carrier is held.
         """
         sign, forces = -1.0 if self.carried else 0.0, self.forces(moments)
-        along = (self.sun_radius * self.outward * forces.axial).sum(axis=1)
-        return np.asarray(sign * ((np.asarray(self.plane)[..., None] * forces.in_plane).sum(axis=1) - along))
+        plane, arm = np.asarray(self.plane)[..., None], self.sun_radius * self.outward
+        found = (plane * forces.in_plane - arm * forces.axial).sum(axis=1)
+        by_moments = plane * self._slope(np.sign(moments))[0] + arm * self.axial / self.pitch_radius
+        return np.asarray(sign * found), np.asarray(sign * by_moments)
 
     def on_bearings(self, moments: FloatArray) -> ComplexArray:
         """Return what bearings of the cranks carry of the forces of the teeth, N, shape (positions, cranks, supports)."""

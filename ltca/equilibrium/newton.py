@@ -103,8 +103,6 @@ class Search:
     ) -> Response:
         """Return the contacts of some positions at poses; `roughly` as for `Reducer.respond`."""
         model = self.model if rows.size == self.angle.size else self.model.take(rows)
-        if model.pins is None:
-            return model.respond(self.angle[rows], pose, start)
         return model.respond(self.angle[rows], pose, start, roughly=roughly)
 
     def scaled(self, rows: NDArray[np.intp], response: Response) -> tuple[FloatArray, FloatArray]:
@@ -198,7 +196,7 @@ class Search:
         gradient, tangent = self.scaled(rows, response)
         damping, size = 1e-10, pose.shape[1]
         for _ in range(MAX_REDUCTION_STEPS):
-            self.residual[row] = np.max(np.abs(gradient))
+            self.residual[row] = _left_over(gradient, response)[0]
             if self.residual[row] <= self.accepted(rows, response)[0]:
                 self.pose[rows] = pose
                 self.keep(rows, response, np.ones(1, dtype=bool))
@@ -245,7 +243,7 @@ class Search:
                 values, modes = np.linalg.eigh(tangent[0])
                 soft = modes[:, np.argmin(np.abs(values))]
                 soft = soft if soft @ last >= 0.0 else -soft
-                self.residual[row] = np.max(np.abs(gradient))
+                self.residual[row] = _left_over(gradient, response)[0]
                 if self.residual[row] <= self.accepted(rows, response)[0]:
                     # A ridge balances as well: steps this long may have left the valley.
                     if self.symmetric and values[0] < -RIDGE * values[-1]:
@@ -270,6 +268,7 @@ class Search:
 
     def keep(self, rows: NDArray[np.intp], response: Response, balanced: NDArray[np.bool_]) -> None:
         """Remember the contacts of those of some positions that balance."""
+        response = response.kept
         if balanced.all():
             self.balanced.append((rows, response))
         elif balanced.any():
@@ -333,7 +332,7 @@ class Search:
 
 
 def _left_over(gradient: FloatArray, response: Response) -> FloatArray:
-    """Largest unbalanced force of every position, N, and what displacements of pins that have not settled amount to."""
+    """Largest unbalanced force of every position, N, and what contacts and pins that have not settled amount to."""
     left: FloatArray = np.max(np.abs(gradient), axis=1)
     return left if response.left is None else np.maximum(left, response.left)
 

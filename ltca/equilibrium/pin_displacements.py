@@ -144,12 +144,26 @@ class PinDisplacements:
         ConvergenceError
             When they do not settle.
         """
-
         kind = LeaningPins if self.leans else DisplacedPins
 
-        def at(moved: ComplexArray) -> DisplacedPins:
+        def together(moved: ComplexArray) -> DisplacedPins:
             return kind(self, respond(moved), coordinates, turned, moved)
 
+        def each(moved: ComplexArray) -> DisplacedPins:
+            return kind(self, respond(moved), coordinates, turned, moved, alone=True)
+
+        try:
+            return self._settle(together, shifts, roughly)
+        except ConvergenceError:
+            # Steps of all pins are as long as the worst of them allows: where nothing but the pose couples pins, each may settle
+            # by itself.
+            if self.ring is not None or not each(shifts).alone:
+                raise
+            return self._settle(each, shifts, roughly)
+
+    @staticmethod
+    def _settle(at: Callable[[ComplexArray], DisplacedPins], shifts: ComplexArray, roughly: bool) -> DisplacedPins:
+        """Settle the displacements by the size of what is left, and by their energy where contacts alternate."""
         history: list[float] = []
         system = at(shifts)
         for _ in range(PLAIN_ITERATIONS):
@@ -160,10 +174,11 @@ class PinDisplacements:
                 return system
             if system.is_settled(most, roughly):
                 return system
-            step, fraction = system.step, np.ones(size.shape)
+            step, each = system.step, system.sizes
+            fraction = system.longest
             for _ in range(10):
-                there = at(system.shifts + fraction[:, None, None] * step)
-                worse = (there.size > size) & (there.size > SHIFT_TOLERANCE + 1e-11 * most)
+                there = at(system.shifts + fraction * step)
+                worse = (there.sizes > each) & (there.sizes > SHIFT_TOLERANCE + 1e-11 * most)
                 if not worse.any():
                     break
                 fraction = np.where(worse, 0.5 * fraction, fraction)
@@ -191,17 +206,18 @@ def _settled_by_energy(
         if settled or system.is_settled(most, roughly):
             return system
         way, step = system.aim - known, system.step
-        steep = np.abs(_along(way, system.left))
-        fraction, there = np.ones(steep.shape), at(system.shifts + step)
+        steep = np.abs(system.along(way, system.left))
+        fraction = system.longest
+        there = at(system.shifts + fraction * step)
         for _ in range(20):
-            uphill = -_along(way, there.left)
-            too_far = (uphill > 0.1 * steep) & (there.size > SHIFT_TOLERANCE + 1e-12 * most)
+            uphill = -system.along(way, there.left)
+            too_far = (uphill > 0.1 * steep) & (there.sizes > SHIFT_TOLERANCE + 1e-12 * most)
             if not too_far.any():
                 break
             shorter = np.divide(steep, steep + uphill, out=np.ones_like(steep), where=too_far).clip(0.1, 0.8)
             fraction = np.where(too_far, shorter * fraction, fraction)
-            there = at(system.shifts + fraction[:, None, None] * step)
-        known, system = known + fraction[:, None, None] * way, there
+            there = at(system.shifts + fraction * step)
+        known, system = known + fraction * way, there
     raise ConvergenceError(
         f"the displacements of the pins do not settle (the largest is {most:.3g} mm): the ring or the beams that hold them are "
         "too soft for these loads; largest change in mm",
@@ -212,11 +228,6 @@ def _settled_by_energy(
 def _is_round_off(left: float, before: float, most: float) -> bool:
     """Whether what is left of displacements, mm, no longer falls because it is nothing but round-off of forces and gaps."""
     return before < 1e-11 * (1.0 + most) and left >= 0.5 * before
-
-
-def _along(way: ComplexArray, left: ComplexArray) -> FloatArray:
-    """Σ of products of components, shape (positions,)."""
-    return np.asarray((way.conjugate() * left).real.sum(axis=(1, 2)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -259,6 +270,8 @@ class DisplacedPins:
         Direction in which the wheel stands.
     shifts : array of complex, shape (positions, discs, pairs)
         Displacements that the contacts were found at, mm.
+    alone : bool
+        Whether pins take steps of their own lengths where none couples them.
     """
 
     condenses = False
@@ -271,11 +284,14 @@ class DisplacedPins:
         coordinates: Coordinates,
         turned: ComplexArray,
         shifts: ComplexArray,
+        *,
+        alone: bool = False,
     ) -> None:
         self.held, self.parts, self.coordinates, self.shifts = held, parts, coordinates, shifts
         self.slopes: list[PairSlopes] = [part.slopes for part in parts if part.slopes is not None]
         self.coupled = any(slopes.by_approach.ndim > 2 for slopes in self.slopes)
         self.coupled |= held.ring is not None and not self.condenses
+        self.alone = alone and not self.coupled
         wheel, pairs = parts[0].pin_load.shape[1], parts[0].pin_forces.shape[1]
         self.moves = np.any(held.beams != 0.0, axis=(-2, -1)).reshape(-1, pairs).any(axis=0)
         self.moves |= (held.ring is not None) & (np.arange(pairs) < wheel)
@@ -287,6 +303,34 @@ class DisplacedPins:
         self.left = shifts + held.under(self.force)
         """Displacements less what the forces make of them, mm, shape (positions, discs, pairs)."""
         self.size = np.max(np.abs(self.left), axis=(1, 2), initial=0.0)
+
+    @property
+    def sizes(self) -> FloatArray:
+        """Largest of what is left of each pin, or of all where they are coupled, mm, shape (positions, 1, pairs or 1)."""
+        return np.asarray(np.max(np.abs(self.left), axis=1 if self.alone else (1, 2), keepdims=True, initial=0.0))
+
+    @property
+    def longest(self) -> FloatArray:
+        """Longest part of Newton's step, shape (positions, 1, pairs or 1), by which a pin moves no farther than twice what
+        displaces and presses it now: steps have no bound where loads on a soft pin turn with it as much as it holds against.
+        """
+        if not self.alone:
+            return np.ones(self.sizes.shape)
+        step = np.max(np.abs(self.step), axis=1)
+        room = np.max(np.abs(self.shifts), axis=1) + np.max([self._pressed(part) for part in self.parts], axis=0)
+        return np.asarray(np.divide(2.0 * room, step, out=np.ones(step.shape), where=step > 2.0 * room)[:, None])
+
+    def _pressed(self, part: DiscResponse) -> FloatArray:
+        """How deep pairs are pressed together anywhere, mm, shape (positions, pairs)."""
+        pressed = np.concatenate((part.flank.approach, part.holes.approach), axis=1)
+        if part.leaning_pins is not None and part.leaning_holes is not None:
+            tilts = [np.abs(pairs.tilt.tilt) for pairs in (part.leaning_pins, part.leaning_holes)]
+            pressed = pressed + np.asarray(self.held.half_width) * np.concatenate(tilts, axis=1)
+        return np.maximum(pressed, 0.0)
+
+    def along(self, way: ComplexArray, left: ComplexArray) -> FloatArray:
+        """Return Σ of products of components of each pin, or of all where they are coupled, shape (positions, 1, pairs or 1)."""
+        return np.asarray((way.conjugate() * left).real.sum(axis=1 if self.alone else (1, 2), keepdims=True))
 
     def _forces(self) -> ComplexArray:
         return np.stack([-part.pin_forces * self.frame for part in self.parts], axis=1)

@@ -180,8 +180,8 @@ class Reducer:
         start : Start, optional
             Inner unknowns of a neighbouring pose, displacements of the pins among them.
         roughly : bool
-            Whether displacements of pins that have nearly settled will do: force and tangent are then those of settled ones to
-            first order, and `Response.left` tells what is left.
+            Whether contacts in slices and displacements of pins that have nearly settled will do: force and tangent are then
+            those of settled ones to first order, and `Response.left` tells what is left.
         """
         count, coordinates = len(self.discs), self.coordinates
         places = [coordinates.columns(number) for number in range(count)]
@@ -195,11 +195,11 @@ class Reducer:
             parts = []
             for number, (own, disc) in enumerate(zip(places, self.discs, strict=True)):
                 shift = None if moved is None else moved[:, number]
+                lean = again = None
                 if moved is not None and self.pins is not None and self.pins.leans:
                     lean, again = self.pins.lean(moved, number), latest[number] if latest else None
-                    part = disc.respond(crank_angle, pose[:, own], starts[number], shift, lean, again)
-                else:
-                    part = disc.respond(crank_angle, pose[:, own], starts[number], shift)
+                at = crank_angle, pose[:, own], starts[number], shift, lean, again
+                part = disc.respond(*at, roughly=roughly)
                 if self.friction is not None:
                     rubbing = self.friction.of_disc(disc.geometry, crank_angle, pose[:, own], part, number)
                     force, tangent = part.force + rubbing.force, part.tangent + rubbing.tangent
@@ -262,7 +262,7 @@ class Reducer:
             shifts=shifts,
             ring=parts[0].ring,
             follow=None if settled is None else FollowingPins(settled.onward, settled.by_pose, pose),
-            left=None if settled is None else settled.left,
+            left=_largest([*(part.left for part in parts), None if settled is None else settled.left]),
             contact_stiffness=contact_stiffness,
         )
 
@@ -323,7 +323,7 @@ class Reducer:
         if self.external is not None:
             total = total + self.external.tilting(crank_angle)
         if self.stage is not None and self.stage.carried:
-            total = total + self.stage.tilting_on_wheel(self.crank_moments(crank_angle, pose, parts))
+            total = total + self.stage.tilting_on_wheel(self.crank_moments(crank_angle, pose, parts))[0]
         return total
 
     def carried_beside_discs(
@@ -359,8 +359,10 @@ class Reducer:
             moved = np.einsum("pc,pcj->pj", by_moments, slopes)
             tangent[:, coordinates.wheel_place] -= np.stack((moved.real, moved.imag), axis=1)
         if coordinates.wheel_leans:
-            tilting = stage.tilting_on_wheel(moments)
+            tilting, by_moments = stage.tilting_on_wheel(moments)
             force[:, coordinates.wheel_lean_place] -= np.stack((tilting.real, tilting.imag), axis=-1)
+            moved = np.einsum("pc,pcj->pj", by_moments, slopes)
+            tangent[:, coordinates.wheel_lean_place] -= np.stack((moved.real, moved.imag), axis=1)
         if not stage.yields:
             return ()
         pressed, by_moment = stage.on_planets(moments)
@@ -483,6 +485,12 @@ def _split_start(start: Start, count: int) -> list[Start]:
     return [
         Start(parameter=parameter, share=share, warm_start=warm, known=pins) for parameter, share, warm, pins in columns
     ]
+
+
+def _largest(forces: Sequence[FloatArray | None]) -> FloatArray | None:
+    """Largest of forces that are left over of each position, N."""
+    left = [force for force in forces if force is not None]
+    return np.max(left, axis=0) if left else None
 
 
 def _beside(values: Sequence[Any]) -> Any:

@@ -17,12 +17,13 @@ from itertools import pairwise
 import numpy as np
 
 from ltca.arrays import FloatArray
-from ltca.contact.length_profile import lead_relief
+from ltca.drive.members.width import needs_slices
 from ltca.drive.parts import Disc, Drive, Inclination, PlacementErrors, Ring
 from ltca.drive.single_discs import single_discs
 from ltca.errors import DriveError
 from ltca.export.flank_outline import FlankSpline, MadeFlank, follow_flank
 from ltca.geometry.flank import FlankProfile
+from ltca.geometry.length_profile import lead_relief
 from ltca.geometry.placement import Placement
 
 PARTS = ("disc", "pin-wheel", "pin-shaft", "carrier", "assembly")
@@ -204,7 +205,9 @@ class Part:
     @property
     def remarks(self) -> tuple[str, ...]:
         """What a reader of the file should know, line by line."""
-        lines = (f"cyclo {self.title}", "lengths in mm, at 20 °C", f"frame: {self.frame}")
+        inclined = ", ".join(field for field in self.profiled if needs_slices(field))
+        section = f"; what is inclined ({inclined}) stands where it is at the zero of disc.planes" if inclined else ""
+        lines = (f"cyclo {self.title}", "lengths in mm, at 20 °C", f"frame: {self.frame}{section}")
         if not self.compensation:
             return lines
         into = self.compensation > 0.0
@@ -385,6 +388,12 @@ def _require_walls(spline: FlankSpline, circles: Sequence[Circle], compensation:
         raise DriveError([f"{why}: {between} cut into each other by {-narrowest:.4g} mm, no disc is left"])
 
 
+def _in_the_middle(drive: Drive) -> Placement:
+    """Where pins stand at z = 0, the zero of the discs' planes, about which they are inclined."""
+    first = single_discs(drive)[0]
+    return Placement.of_drive(replace(first, disc=replace(first.disc, planes=(0.0,))))
+
+
 def _stack(drive: Drive) -> tuple[float, float]:
     """From the lowest to the highest face of the discs, on the axis of their planes, mm."""
     half = 0.5 * drive.disc.thickness
@@ -468,7 +477,7 @@ def _compensated(body: Body, by: float, lift: float) -> Body:
 
 
 def _pin_wheel(drive: Drive, case: str, _: int, compensation: float) -> Part:
-    bodies, walls = _pins_of_wheel(drive, Placement.of_drive(single_discs(drive)[0]))
+    bodies, walls = _pins_of_wheel(drive, _in_the_middle(drive))
     lift = -min(body.bottom for body in bodies)
     return Part(
         name="pin-wheel",
@@ -486,12 +495,12 @@ def _pin_wheel(drive: Drive, case: str, _: int, compensation: float) -> Part:
 
 
 def _pin_shaft(drive: Drive, case: str, _: int, compensation: float) -> Part:
-    bodies = _pins_of_shaft(drive, Placement.of_drive(single_discs(drive)[0]))
+    bodies = _pins_of_shaft(drive, _in_the_middle(drive))
     return _of_bodies(drive, case, "pin-shaft", "pin_shaft", bodies, compensation)
 
 
 def _carrier(drive: Drive, case: str, _: int, compensation: float) -> Part:
-    bodies = _carrier_bodies(drive, Placement.of_drive(single_discs(drive)[0]))
+    bodies = _carrier_bodies(drive, _in_the_middle(drive))
     return _of_bodies(drive, case, "carrier", "carrier.posts", bodies, compensation)
 
 
@@ -591,10 +600,11 @@ def _leaning(path: str, errors: PlacementErrors) -> list[tuple[str, bool]]:
 def _assembly(drive: Drive, case: str, _: int, __: float) -> Part:
     singles = single_discs(drive)
     places = [Placement.of_drive(single) for single in singles]
-    wheel, walls = _pins_of_wheel(drive, places[0])
-    axis = complex(places[0].wheel_axis)
-    bodies = [_moved(body, axis) for body in wheel] + _pins_of_shaft(drive, places[0])
-    bodies += _carrier_bodies(drive, places[0])
+    middle = _in_the_middle(drive)
+    wheel, walls = _pins_of_wheel(drive, middle)
+    axis = complex(middle.wheel_axis)
+    bodies = [_moved(body, axis) for body in wheel] + _pins_of_shaft(drive, middle)
+    bodies += _carrier_bodies(drive, middle)
     for number, (single, place) in enumerate(zip(singles, places, strict=True)):
         bodies += _disc_and_bearings(single, place, _numbered("disc", number, len(singles)))
     return Part(

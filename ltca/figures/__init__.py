@@ -14,7 +14,6 @@ crank_figures     Figures of several cranks: moment and deflection of each, and 
 width_figures     Figure of contacts in slices: line load and pressure along the width of the most loaded pin and roller
 run_figures       Figures of a run, corresponding to the paper's Fig. 23–26, 28–30 and 34–36: a panel for each case
 drive_picture     Picture of a drive at one crank angle: its parts with their numbers, contact normals, loads as arrows
-width_figures     Figure of line load and pressure along the width of the most loaded wheel pin and roller
 curve_figures     Figures of `cyclo curves`: torque against wind-up, orders of the transmission error, flank pressure
                   and its limit
 pressure_figures  Pictures of contact pressure, corresponding to the paper's Fig. 27 and 31–33

@@ -6,6 +6,7 @@ Modules in the order data passes:
 rotation           Points of the unit circle, by products instead of trigonometry where possible: e^{iφ}, its integer
                    powers and small turns
 boundary_stations  Stations of a closed boundary, uniform in a periodic parameter, and the interpolation between them
+length_profile     Profiles of rollers and pins along their length, leads of flanks: crown, reliefs, and their sum
 flank_deviation    Deviation of the flank from its design along the design normal, δ(θ), with two derivatives
 placement          Places and radii of pins, rollers and holes, errors included
 flank              Cycloid flank with equidistant and shifting offset, its normals, curvature and nearest point (Eq. 1)

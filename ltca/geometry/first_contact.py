@@ -1,19 +1,22 @@
 """Tooth contact analysis without load: backlash, unloaded transmission error, pairs that can carry (Eq. 2–6).
 
-The disc is held on the nominal eccentricity without rotation, as bearing and pin holes without clearance hold it;
-what is left is the backlash between flank and pins.
+The disc is held on the nominal eccentricity without rotation, as bearing and pin holes without clearance hold it, and with
+contacts in slices square to its crank; what is left is the backlash between flank and pins, which touch where along their
+width they first do.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ltca.arrays import BoolArray, FloatArray, take_rows
 from ltca.errors import ConvergenceError
-from ltca.geometry.coordinates import WHEEL_ANGLE
+from ltca.geometry.coordinates import RIGID, WHEEL_ANGLE, Coordinates
+from ltca.geometry.length_profile import ACROSS
 from ltca.geometry.pairs import ContactGeometry
 
 LEAST_LEVER = 1e-3
@@ -82,10 +85,10 @@ def turn_to_contact(
     settled = np.zeros(angle.size, dtype=bool)
     pin = np.zeros(angle.size, dtype=np.intp)
     for _ in range(MAX_ITERATIONS):
-        motion = geometry.flank(angle, pose)
-        rate = sense * motion.gradient[..., coordinate]
+        approach, slope = _approaches(geometry, angle, coordinate, pose[:, coordinate])
+        rate = sense * slope
         closing = rate > LEAST_LEVER * lever
-        travel = np.where(closing, -motion.approach / np.where(closing, rate, 1.0), np.inf)
+        travel = np.where(closing, -approach / np.where(closing, rate, 1.0), np.inf)
         pin = np.argmin(travel, axis=1)
         step = np.take_along_axis(travel, pin[:, None], axis=1)[:, 0]
         reachable = np.isfinite(step)
@@ -96,7 +99,7 @@ def turn_to_contact(
         if np.all(settled | ~reachable):
             break
     # Pins whose normal nearly passes through the axis, left out above, are looked for by bisection.
-    others = np.max(motion.approach, axis=1) > TOUCHING * _size(geometry)  # where it settled, at that pose
+    others = np.max(approach, axis=1) > TOUCHING * _size(geometry)  # where it settled, at that pose
     unsure = np.nonzero(~settled | others)[0]
     if unsure.size:
         part = take_rows(geometry, unsure)
@@ -134,11 +137,22 @@ def _quarter_pitch(geometry: ContactGeometry) -> float:
 def _approaches(
     geometry: ContactGeometry, angle: FloatArray, coordinate: int, rotation: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Approach of every pin and its derivative by the rotation."""
-    pose = np.zeros((angle.size, 4))
+    """Approach of every pin where along its width it is largest, and its derivative by the rotation."""
+    askew = geometry.stands_askew
+    if askew:
+        geometry = replace(geometry, coordinates=Coordinates(leans=True))
+    pose = np.zeros((angle.size, RIGID + 2 * askew))
     pose[:, coordinate] = rotation
+    if askew:
+        lean = np.broadcast_to(np.reshape(geometry.placement.crank_lean, -1), angle.shape)
+        pose[:, geometry.coordinates.lean_place] = np.stack((lean.real, lean.imag), axis=1)
     motion = geometry.flank(angle, pose)
-    return motion.approach, motion.gradient[..., coordinate]
+    gap, slope = -motion.approach, -motion.gradient
+    if askew:
+        tilt, shape = geometry.flank_tilt(angle, pose, motion), (angle.size, ACROSS.size)
+        height, drop = (np.broadcast_to(each, shape) for each in (geometry.half_width * ACROSS, geometry.flank_drop))
+        gap, slope = tilt.at(gap, slope, *tilt.deepest(height, drop))
+    return -gap, -slope[..., coordinate]
 
 
 def _largest_approach(

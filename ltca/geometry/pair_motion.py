@@ -130,6 +130,20 @@ class PairTilt:
     tilt: FloatArray
     gradient: FloatArray
 
+    def at(
+        self, gap: FloatArray, slope: FloatArray, height: FloatArray, drop: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return gaps at heights above the middle where bodies fall short by `drop`, mm, and their derivatives by the pose.
+
+        `gap` and `slope` are those of the middles, shapes (positions, pairs) and (positions, pairs, coordinates).
+        """
+        return gap - self.tilt * height + drop, slope - self.gradient * height[..., None]
+
+    def deepest(self, height: FloatArray, drop: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the one of some heights, (positions, heights), at which each pair is pressed furthest, and the drop there."""
+        first = np.argmax(self.tilt[..., None] * height[:, None] - drop[:, None], axis=-1)
+        return np.take_along_axis(height, first, axis=1), np.take_along_axis(drop, first, axis=1)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FlankMotion(PairMotion):
@@ -232,6 +246,15 @@ class BoreMotion:
     gradient: ComplexArray
     lever: ComplexArray
     twists: tuple[int, ...] = ()
+
+    def relative_leans(self, coordinates: Coordinates) -> ComplexArray:
+        """Return how the lean of the disc less that of each crank follows the pose, shape (positions, cranks, coordinates)."""
+        found = np.zeros(self.gradient.shape, dtype=complex)
+        found[..., coordinates.lean_place] = (1.0, 1j)
+        for crank in range(coordinates.cranks):
+            place = coordinates.crank_lean(crank)
+            found[:, crank, place : place + 2] = (-1.0, -1j)
+        return found
 
     def each(self, values: ComplexArray, rollers: int) -> ComplexArray:
         """Return values of the bores, shape (positions, cranks, …), as those of all their rollers, (positions, rollers, …)."""

@@ -16,6 +16,7 @@ from ltca.arrays import BoolArray, ComplexArray, FloatArray, by_drive
 from ltca.drive.parts import Drive
 from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION, RIGID, WHEEL_ANGLE, Coordinates, X, Y
 from ltca.geometry.flank import FlankProfile
+from ltca.geometry.length_profile import ACROSS, lead_relief, profile_across
 from ltca.geometry.pair_motion import (
     BoreMotion,
     FlankMotion,
@@ -96,6 +97,13 @@ class ContactGeometry:
     crank_gaps, crank_shares : array, shape (2,) or (positions, 2)
         Distance by which a crank is free in each of its two bearings, mm, and displacement of the crank in the plane of the
         disc by one there.
+    crank_slopes : array, shape (2,) or (positions, 2)
+        Lean of the crank by such a displacement, 1/mm.
+    flank_drop, roller_drop : array, shape (places,) or (positions, places)
+        By how much wheel pin and flank, and roller and both races, fall short of straight ones, mm, at the places
+        `ltca.geometry.length_profile.ACROSS` of contacts in slices; no places without.
+    roller_half_length : float or array, shape (positions, 1)
+        Half the length of the rollers, mm.
     """
 
     placement: Placement
@@ -109,36 +117,67 @@ class ContactGeometry:
     wheel_gap: float | FloatArray = by_drive(0, default=0.0)
     crank_gaps: FloatArray = by_drive(1, default_factory=lambda: np.zeros(2))
     crank_shares: FloatArray = by_drive(1, default_factory=lambda: np.zeros(2))
+    crank_slopes: FloatArray = by_drive(1, default_factory=lambda: np.zeros(2))
+    flank_drop: FloatArray = by_drive(1, default_factory=lambda: np.zeros(0))
+    roller_drop: FloatArray = by_drive(1, default_factory=lambda: np.zeros(0))
+    roller_half_length: float | FloatArray = by_drive(0, default=1.0)
 
     @classmethod
     def of_drive(cls, drive: Drive) -> ContactGeometry:
         """Return the contact geometry of a drive of one disc."""
         place, profile = Placement.of_drive(drive), FlankProfile.of_drive(drive)
         bearing, support = drive.main_bearing, drive.crank.support
-        gaps, shares, seat_share = np.zeros(2), np.zeros(2), 0.0
+        gaps, shares, slopes, seat_share = np.zeros(2), np.zeros(2), np.zeros(2), 0.0
         if drive.crank_supports is not None:
             near, far = drive.crank_supports
             share = (drive.disc.disc_planes[0] - near) / (far - near)
             if support is not None:
                 gaps, shares = np.full(2, 0.5 * max(support.clearance or 0.0, 0.0)), np.array([1.0 - share, share])
+                slopes = np.array([-1.0, 1.0]) / (far - near)
             if drive.posts is not None:
                 seat_share = share
+        wide, long, across = drive.disc.thickness, drive.roller_length, {}
+        if drive.contact.slices > 1:
+            wheel, rollers = drive.pin_wheel, drive.crank_bearing
+            of_pin = profile_across(wheel.pin_profile, wide, wheel.pin_radius)
+            of_roller = profile_across(rollers.roller_profile, long, rollers.roller_radius)
+            across = {
+                "flank_drop": of_pin + lead_relief(drive.disc, 0.5 * wide * ACROSS),
+                "roller_drop": 2.0 * of_roller,
+            }
         return cls(
             placement=place,
             profile=profile,
             coordinates=Coordinates.of_drive(drive),
             plane=drive.disc.disc_planes[0],
-            half_width=0.5 * drive.disc.thickness,
+            half_width=0.5 * wide,
             seat_share=seat_share,
             wheel_gap=0.0 if bearing is None else 0.5 * max(bearing.clearance or 0.0, 0.0),
             crank_gaps=gaps,
             crank_shares=shares,
+            crank_slopes=slopes,
+            roller_half_length=0.5 * long,
+            **across,
         )
 
     @property
     def has_loose_supports(self) -> bool:
         """Whether wheel or cranks are free in their bearings."""
         return bool(np.any(self.wheel_gap) or np.any(self.crank_gaps))
+
+    @property
+    def stands_askew(self) -> bool:
+        """Whether contacts in slices close elsewhere than in their middle: parts lean, or flanks slope along their width.
+
+        What falls short alike on both sides, a crown or a relief, leaves the middles the first to touch, and so does a disc that
+        leans between upright parts.
+        """
+        place = self.placement
+        leans = (
+            place.wheel_pin_leans, place.hole_leans, place.shaft_pin_leans, place.wheel_lean, place.crank_lean,
+        )  # fmt: skip
+        sloping = np.any(self.flank_drop != self.flank_drop[..., ::-1])
+        return self.coordinates.leans and bool(sloping or any(np.any(each) for each in leans))
 
     @property
     def tips_by_ring(self) -> ComplexArray:
@@ -421,6 +460,21 @@ class ContactGeometry:
             lean = lean - _moved(pose[:, ring], by_ring)
             turns |= {ring.start + number: -by_ring[..., number] for number in range(3)}
         return holes.leaning(lean, coordinates, turns)
+
+    def roller_tilt(self, pose: FloatArray, bores: BoreMotion, rays: RollerRays) -> PairTilt:
+        """Return the tilt of race and bore, by which the sum of both approaches of a roller grows with its height.
+
+        A roller that rests on the race takes whatever lean presses it least.
+        """
+        count = rays.direction.shape[1]
+        arm = rays.outermost * rays.direction - bores.each(bores.displacement, count)
+        length = np.abs(arm)
+        normal = (arm / length)[..., None]
+        lean = bores.each(self.journal_leans(pose) - self.lean(pose), count)[..., None]
+        by_lean = -bores.each(bores.relative_leans(self.coordinates_of(pose)), count)
+        # The normal turns as the bore moves across it.
+        turned = -dot(1j * normal, lean) * dot(1j * normal, bores.each(bores.gradient, count)) / length[..., None]
+        return PairTilt(tilt=dot(normal, lean)[..., 0], gradient=dot(normal, by_lean) + turned)
 
     def bores(self, crank_angle: FloatArray, pose: FloatArray) -> BoreMotion:
         """Return the displacements of the bores; arguments as for `flank`."""

@@ -10,6 +10,11 @@ pose give the next programme. Corners of flanks are reached as by Newton's metho
 farthest pose may lie where an arc and the turning have one tangent, which is no corner: arcs are convex, so their tangents at
 earlier poses remain bounds. The programmes are solved by the dual simplex method, all positions at once.
 
+Contacts in slices of parts that stand askew close at some height first: every pair has a gap at each place along its width where
+it may touch, and the lean of every disc joins its pose. What limits a lean is the contacts: the axial play of a disc is compared
+with its tilt by the checks and holds nothing here, as in the loaded analysis. Where nothing stands askew no lean gains anything,
+and the middles decide.
+
 The wheel is common to all discs: the play is the intersection of the ranges of its angle for all of them. Where wheel or
 cranks have clearance in their bearings, their displacements are common to all discs as well: then one programme has them all,
 with a circle for every bearing (`_JoinedProgramme`). Where parts overlap
@@ -27,11 +32,13 @@ from numpy.typing import NDArray
 
 from ltca.arrays import BoolArray, FloatArray, stack_drives, take_positions, take_rows
 from ltca.errors import ConvergenceError
-from ltca.geometry.coordinates import DISC_ROTATION, RIGID, WHEEL_ANGLE
-from ltca.geometry.pair_motion import KnownPins
+from ltca.geometry.coordinates import DISC_ROTATION, RIGID, WHEEL_ANGLE, Coordinates
+from ltca.geometry.length_profile import ACROSS
+from ltca.geometry.pair_motion import KnownPins, PairTilt
 from ltca.geometry.pairs import ContactGeometry
 
 Rows = NDArray[np.intp]
+_Gap = tuple[FloatArray, FloatArray]
 
 CLOSED = 1e-9
 """Overlap treated as none, mm: a thousandth of the least clearance that counts as one."""
@@ -41,6 +48,8 @@ LEAST_GAIN = 1e-7
 """Displacement of the wheel at e z_P, mm, that a programme must promise to be followed: some 1e-5 arcmin."""
 PENALTY = 1e6
 """Cost of overlap relative to displacement of the wheel: wedges of arcs gain some thousand mm per mm of overlap."""
+STRAIGHT = 1e-12
+"""Bend of a line along its width between three neighbouring places that counts as none, mm."""
 KEPT_GAP = 5e-11
 """Overlap beyond the allowed one at which a pose is accepted, mm; thousands of times the round-off of drives of a metre."""
 TIE_BREAK = 1e-8
@@ -209,7 +218,7 @@ def free_play(discs: Sequence[ContactGeometry], crank_angle: FloatArray, *, over
     preloaded, room = np.zeros(angle.size, dtype=bool), np.broadcast_to(np.asarray(overlap, dtype=float), angle.shape)
     loose = any(disc.has_loose_supports for disc in discs)
     for group in [tuple(discs)] if loose else [(disc,) for disc in discs]:
-        programme = _programme([take_rows(disc, rows) for disc in group], angle[rows], room[rows], loose)
+        programme = _programme([take_rows(disc, rows) for disc in group], angle[rows], room[rows], loose=loose)
         pose, left = programme.farthest(sense)
         turned = pose[:, WHEEL_ANGLE].reshape(2, -1)
         pressed = np.flatnonzero(np.any(left.reshape(2, -1) > CLOSED, axis=0))
@@ -218,7 +227,7 @@ def free_play(discs: Sequence[ContactGeometry], crank_angle: FloatArray, *, over
                 [take_rows(disc, np.tile(pressed, 2)) for disc in group],
                 np.tile(angle[pressed], 2),
                 np.tile(room[pressed], 2),
-                loose,
+                loose=loose,
             )
             turned[:, pressed] = _beside_preload(beside, pose.reshape(2, -1, pose.shape[1])[:, pressed])
             preloaded[pressed] = True
@@ -230,9 +239,14 @@ def free_play(discs: Sequence[ContactGeometry], crank_angle: FloatArray, *, over
     return Play(forward=np.where(shut, middle, forward), backward=np.where(shut, middle, backward), preloaded=preloaded)
 
 
-def _programme(discs: Sequence[ContactGeometry], angle: FloatArray, room: FloatArray, loose: bool) -> _Programme:
+def _programme(discs: Sequence[ContactGeometry], angle: FloatArray, room: FloatArray, *, loose: bool) -> _Programme:
     """The programme of one disc, or of all with wheel and cranks loose in their bearings."""
-    return _JoinedProgramme(discs, angle, room) if loose else _Programme(discs[0], angle, room)
+    if loose:
+        return _JoinedProgramme(discs, angle, room)
+    (disc,) = discs
+    if not disc.stands_askew:
+        return _Programme(disc, angle, room)
+    return _Programme(replace(disc, coordinates=Coordinates(leans=True)), angle, room, leans=True)
 
 
 def _beside_preload(programme: _Programme, poses: FloatArray) -> FloatArray:
@@ -311,16 +325,20 @@ def _reach(geometry: ContactGeometry) -> FloatArray:
 class _Programme:
     """The gaps of a disc at a batch of positions, and the farthest wheel angle that they allow."""
 
-    def __init__(self, geometry: ContactGeometry, angle: FloatArray, room: FloatArray | None = None) -> None:
+    def __init__(
+        self, geometry: ContactGeometry, angle: FloatArray, room: FloatArray | None = None, *, leans: bool = False
+    ) -> None:
         place = geometry.placement
         self.geometry, self.angle = geometry, angle
         self.room = RELIEF + (np.zeros((angle.size, 1)) if room is None else room[:, None])
+        self.heights = _Heights(geometry) if leans else None
         # What scales and bounds a position is its own drive's: no answer depends on the others in the batch.
-        self.lever = np.ones((angle.size, RIGID))
+        self.lever = np.ones((angle.size, RIGID + 2 * leans))
         self.lever[:, [DISC_ROTATION, WHEEL_ANGLE]] = np.reshape(_reach(geometry), (-1, 1))
+        self.lever[:, DISC_ROTATION + 1 : WHEEL_ANGLE] = geometry.half_width
         smallest = np.minimum(place.wheel_pin_radii.min(axis=-1), place.eccentricity.min(axis=-1))
         self.bound = np.broadcast_to(MAX_STEP * smallest, angle.shape)
-        self.pitch, self.size = np.pi / place.reduction_ratio, RIGID
+        self.pitch, self.size = np.pi / place.reduction_ratio, RIGID + 2 * leans
         motion = geometry.flank(angle, np.zeros((angle.size, RIGID)))
         self.known, self.parameter = KnownPins.of(motion), motion.parameter
 
@@ -342,10 +360,20 @@ class _Programme:
         moved = (arm / length).conjugate()[..., None] * bores.each(bores.gradient, count)
         holes = geometry.holes(angle, pose)
         turned = pose[:, WHEEL_ANGLE, None] - pose[:, DISC_ROTATION, None]
-        flank = geometry.flank(angle, pose, self.parameter[rows] + turned, known=take_positions(self.known, rows))
-        gap = np.concatenate([rays.bore_play - length, -holes.approach, -flank.approach], axis=1)
-        slope = np.concatenate([moved.real, -holes.gradient, -flank.gradient], axis=1)
-        return gap, slope, gap.shape[1] - flank.approach.shape[1]
+        # A pin that is open in the middle may touch at its end: none is left out where discs lean.
+        known = None if self.heights else take_positions(self.known, rows)
+        flank = geometry.flank(angle, pose, self.parameter[rows] + turned, known=known)
+        gaps = [rays.bore_play - length, -holes.approach, -flank.approach]
+        slopes = [moved.real, -holes.gradient, -flank.gradient]
+        if self.heights:
+            tilts = (
+                geometry.roller_tilt(pose, bores, rays),
+                geometry.hole_tilt(pose, holes),
+                geometry.flank_tilt(angle, pose, flank),
+            )
+            gaps, slopes = self.heights.along(geometry, gaps, slopes, tilts)
+        arcs = sum(each.shape[1] for each in gaps) - flank.approach.shape[1] * (2 if self.heights else 1)
+        return np.concatenate(gaps, axis=1), np.concatenate(slopes, axis=1), arcs
 
     def farthest(self, sense: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the poses of the farthest wheel angles in these senses, and the overlap of parts there, mm."""
@@ -377,7 +405,7 @@ class _Programme:
             found = np.where(
                 least > CLOSED,
                 overlap - least <= CLOSED + 1e-3 * least,
-                (overlap <= KEPT_GAP) & (np.abs(gain) <= LEAST_GAIN),
+                (overlap - least <= KEPT_GAP) & (np.abs(gain) <= LEAST_GAIN),
             )
             history.append(float(np.max(np.abs(np.where(found[:, None], 0.0, step)))))
             stay = ~found
@@ -409,38 +437,90 @@ class _Programme:
         )
 
 
+class _Heights:
+    """Heights at which pairs may touch: both ends, and where one that is crowned or relieved is pressed furthest at its tilt.
+
+    What rollers, pins and flanks fall short by is convex: of a straight line the ends are the first.
+    """
+
+    def __init__(self, geometry: ContactGeometry) -> None:
+        drops = geometry.roller_drop, np.zeros(ACROSS.size), geometry.flank_drop
+        self.ends, self.bent = zip(*map(_shape, drops), strict=True)
+
+    def along(
+        self,
+        geometry: ContactGeometry,
+        gaps: Sequence[FloatArray],
+        slopes: Sequence[FloatArray],
+        tilts: Sequence[PairTilt],
+    ) -> tuple[list[FloatArray], list[FloatArray]]:
+        """Return gaps and their derivatives by the pose of rollers, shaft pins and wheel pins at these heights: all that are
+        convex and those of bent flanks, of which tangents are kept as well, before the ends of the flanks.
+        """
+        halves = geometry.roller_half_length, geometry.half_width, geometry.half_width
+        drops = geometry.roller_drop, np.zeros(ACROSS.size), geometry.flank_drop
+        size = (gaps[0].shape[0], ACROSS.size)
+        ends, bent = list[list[_Gap]](), list[_Gap]()
+        for places, bends, half, drop, *pairs in zip(
+            self.ends, self.bent, halves, drops, gaps, slopes, tilts, strict=True
+        ):
+            gap, slope, tilt = pairs
+            z, short = np.broadcast_to(half * ACROSS, size), np.broadcast_to(drop, size)
+            ends.append([tilt.at(gap, slope, z[:, [place]], short[:, [place]]) for place in places])
+            if bends:
+                bent.append(tilt.at(gap, slope, *tilt.deepest(z, short)))
+        found = [*ends[0], *ends[1], *bent, *ends[2]]
+        return [gap for gap, _ in found], [slope for _, slope in found]
+
+
+def _shape(drop: FloatArray) -> tuple[Rows, bool]:
+    """The outermost places of a line that falls short so far, mm, and whether it bends, in any row."""
+    known = np.flatnonzero(np.isfinite(np.atleast_2d(drop)).all(axis=0))
+    inner = np.atleast_2d(drop)[:, known]
+    return known[[0, -1]], bool(np.any(inner[:, :-2] + inner[:, 2:] - 2.0 * inner[:, 1:-1] > STRAIGHT))
+
+
 class _JoinedProgramme(_Programme):
     """The gaps of all discs, with wheel and cranks free within circles in their bearings.
 
-    Its poses are x, y and rotation of disc after disc, the displacements in each bearing that is loose anywhere, crank after
-    crank, those of the wheel, by the radius of their circles, and the angle of the wheel.
+    Its poses are x, y, rotation and lean, if they lean, of disc after disc, the displacements in each bearing that is loose
+    anywhere, crank after crank, those of the wheel, by the radius of their circles, and the angle of the wheel.
     """
 
     def __init__(self, discs: Sequence[ContactGeometry], angle: FloatArray, room: FloatArray) -> None:
         super().__init__(discs[0], angle, room)
-        self.discs, first = tuple(_Programme(disc, angle, room) for disc in discs), discs[0]
+        first = discs[0]
+        # Journals of a crank that stands askew in its clearances lean where there are others beside them.
+        askew = any(disc.stands_askew for disc in discs) or (len(discs) > 1 and bool(np.any(first.crank_gaps)))
+        self.leans = askew and first.coordinates.leans
+        self.discs = tuple(_Programme(disc, angle, room, leans=self.leans) for disc in discs)
+        self.own = DISC_ROTATION + 1 + 2 * self.leans
+        """Number of coordinates of each disc."""
         cranks = first.coordinates.cranks if np.any(first.crank_gaps) else 0
         wheel = bool(np.any(first.wheel_gap))
         gaps = np.broadcast_to(first.crank_gaps, (angle.size, 2))
         radii = [np.tile(gaps, (1, cranks))] + wheel * [np.broadcast_to(first.wheel_gap, (angle.size, 1))]
         self.radii = np.concatenate(radii, axis=1)
         """Of the circles, mm, shape (positions, circles)."""
-        self.circles = 3 * len(discs)
+        self.circles = self.own * len(discs)
         """First coordinate of the circles."""
         self.size = self.circles + 2 * self.radii.shape[1] + 1
         # Displacements in a bearing are counted by the radius of its circle; a circle of none moves nothing.
         self.scale = np.where(self.radii > 0.0, self.radii, CIRCLE)
         reach = self.lever[:, WHEEL_ANGLE]
         self.lever = np.ones((angle.size, self.size))
-        self.lever[:, np.r_[2 : self.circles : 3, -1]] = reach[:, None]
+        self.lever[:, np.r_[DISC_ROTATION : self.circles : self.own, -1]] = reach[:, None]
+        for number, disc in enumerate(discs):
+            self.lever[:, self.own * number + DISC_ROTATION + 1 : self.own * (number + 1)] = disc.half_width
         self.maps = [self._map(disc, number, cranks, wheel) for number, disc in enumerate(discs)]
 
     def _map(self, disc: ContactGeometry, number: int, cranks: int, wheel: bool) -> FloatArray:
         """Pose of one disc, with cranks and wheel, by the joined pose, shape (positions, coordinates, joined)."""
         coordinates, positions = replace(disc.coordinates, discs=1), self.angle.size
         found = np.zeros((positions, coordinates.size, self.size))
-        found[:, [0, 1, 2], [3 * number, 3 * number + 1, 3 * number + 2]] = 1.0
-        shares = np.broadcast_to(disc.crank_shares, (positions, 2))
+        each = np.r_[: DISC_ROTATION + 1, np.arange(coordinates.size)[coordinates.lean_place] if self.leans else []]
+        found[:, each.astype(np.intp), self.own * number + np.arange(self.own)] = 1.0
+        shares, slopes = (np.broadcast_to(values, (positions, 2)) for values in (disc.crank_shares, disc.crank_slopes))
         part = self.radii / self.scale
         for crank in range(cranks):
             for bearing in (0, 1):
@@ -448,6 +528,8 @@ class _JoinedProgramme(_Programme):
                 for axis in (0, 1):
                     x, own = coordinates.crank(crank) + axis, self.circles + 2 * circle + axis
                     found[:, x, own] = shares[:, bearing] * part[:, circle]
+                    if self.leans:
+                        found[:, coordinates.crank_lean(crank) + axis, own] = slopes[:, bearing] * part[:, circle]
         if wheel:
             for axis in (0, 1):
                 found[:, coordinates.wheel_place.start + axis, self.size - 3 + axis] = part[:, -1]

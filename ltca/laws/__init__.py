@@ -8,6 +8,7 @@ spring                 A contact that yields like a linear spring
 slenderness_curve      Smooth curves over the slenderness of a line contact: quintic splines on uniform knots, fast
                        to evaluate
 line_contact           Load–approach law of an uncrowned line contact between two half-spaces
+sliced_contact         What contacts in slices carry, whatever their law, and where a neighbour starts from
 sliced_line            Line contacts in slices along their width: load and moment by approach and tilt
 sliced_spring          Springs even along the width, in slices
 sliced_plane           Plane strain in slices that do not feel each other

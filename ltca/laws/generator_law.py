@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from ltca.arrays import FloatArray
-from ltca.contact.length_profile import generator_profile
 from ltca.drive.parts import LengthProfile
+from ltca.geometry.length_profile import generator_profile
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.profiled_line_contact import ProfiledLineContactLaw

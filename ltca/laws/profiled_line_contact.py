@@ -18,9 +18,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ltca.arrays import BoolArray, FloatArray
-from ltca.contact.length_profile import Relief
 from ltca.contact.pressure_cells import PatchSolution, end_grading, solve_cylinder_patch
 from ltca.errors import CycloError
+from ltca.geometry.length_profile import Relief
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.slenderness_curve import quintic_hermite_pieces, quintic_spline_pieces
 

@@ -8,13 +8,14 @@ processors would find other last digits.
 
 The nodes of the line contact are solutions of `ltca.contact.pressure_cells` on two grids, extrapolated to zero cell size
 (Richardson) with the orders measured in ``tests/analytic/test_line_contact_table.py``. The softer ends of contacts in slices
-follow from that law: they give an aligned straight line of `END_SLICES` slices its load.
+follow from that law: they give an aligned straight line its load, for every number of slices.
 """
 
 from __future__ import annotations
 
 import json
 import os
+from collections.abc import Callable
 
 import numpy as np
 
@@ -22,17 +23,23 @@ from ltca.arrays import FloatArray
 from ltca.contact import end_pressure
 from ltca.contact.pressure_cells import expected_half_width, solve_cylinder_patch
 from ltca.contact.tracked_grid import CELLS as TRACKED_CELLS
-from ltca.laws import line_contact, sliced_line
+from ltca.drive.members.width import FEWEST_SLICES, MOST_SLICES
+from ltca.laws import line_contact, sliced_contact, sliced_line
 from ltca.laws.line_contact import LONGEST, SHORTEST, LineContactLaw, LineContactTable
 from ltca.laws.slenderness_curve import SlendernessCurve, quintic_spline_pieces
-from ltca.laws.sliced_line import SlicedContact, SlicedLine
+from ltca.laws.sliced_contact import SlicedContact
+from ltca.laws.sliced_line import SlicedLine
 
 NODES = 31
 CELLS = 16
-END_SLICES = 9
+NUMBERS = tuple(range(FEWEST_SLICES, MOST_SLICES + 1, 2))
+"""Numbers of slices that have a table."""
 _END_NODES = 65
 _LONGEST_CUT, _SHORTEST_CUT = 5.0e4, 4.0
 """L/√(ρδ) at the ends of the lines that give the softer ends."""
+_WIDEST_SLICED = 8.0
+"""Half-width by the length of a slice about up to which they are found: loads of narrower slices hardly settle."""
+_END_REACH = 0.05
 _END_DIGITS = 7
 _END_PASSES = 3
 # Orders of convergence when both cell counts are doubled, as measured: energy 2.7, half-width and pressure 2.2 to 2.9.
@@ -71,22 +78,22 @@ def tabulate_line_contact(
     )
 
 
-def tabulate_softer_ends(slices: int = END_SLICES, nodes: int = _END_NODES) -> FloatArray:
-    """Return by how much the end slices of a line are softer, at `ltca.laws.sliced_line.places`.
+def tabulate_softer_ends(slices: int, nodes: int = _END_NODES) -> FloatArray:
+    """Return by how much the end slices of a line of so many are softer, at `ltca.laws.sliced_line.places`.
 
-    An aligned straight line of so many slices then has the load of `ltca.laws.line_contact`, found at so many L/√(ρδ).
+    An aligned straight line then has the load of `ltca.laws.line_contact`, found at so many L/√(ρδ) `nodes`.
     """
     from scipy.interpolate import make_interp_spline
     from scipy.optimize import brentq
 
     law = LineContactLaw(1.0, 1.0)
-    relief, knots = np.zeros((slices, sliced_line.POINTS)), sliced_line.places()
+    relief, knots = np.zeros((slices, sliced_contact.POINTS)), sliced_line.places()
     table = np.full(knots.size, 0.1)
     for _ in range(_END_PASSES):
         # The width of the ends follows the loads, and ε with it: the curve of the last pass is shifted as a whole.
         pieces = quintic_spline_pieces(table)
         found, shift = [], 0.0
-        for slenderness in np.geomspace(_LONGEST_CUT, _SHORTEST_CUT, nodes):
+        for slenderness in np.geomspace(_LONGEST_CUT, max(_SHORTEST_CUT, slices / _WIDEST_SLICED), nodes):
             approach = np.array(slenderness**-2)
             load = float(law.load_and_stiffness(approach, 1.0)[0])
 
@@ -96,7 +103,13 @@ def tabulate_softer_ends(slices: int = END_SLICES, nodes: int = _END_NODES) -> F
                 line = SlicedLine(length=1.0, contact_modulus=1.0, slices=slices, relief=relief, ends=ends)
                 return line.respond(approach, np.array(0.0), np.array(1.0))
 
-            shift = brentq(lambda by: float(press(by).load) / load - 1.0, shift - 0.05, shift + 0.05, xtol=1e-12)  # noqa: B023
+            def left(by: float, load: float = load, press: Callable[[float], SlicedContact] = press) -> float:
+                return float(press(by).load) / load - 1.0
+
+            reach = _END_REACH
+            while left(shift - reach) * left(shift + reach) > 0.0:
+                reach *= 2.0
+            shift = brentq(left, shift - reach, shift + reach, xtol=1e-12)
             carried = press(shift).slice_load
             mean = (carried**2).sum() / carried.sum() * slices
             place = 0.5 * np.log(4.0 * mean / np.pi) + np.log(slices)
@@ -114,7 +127,7 @@ def write_tables() -> None:
     contents = {
         line_contact.TABLE: tabulate_line_contact().content(),
         end_pressure.TABLE: {name: values.tolist() for name, values in ratio.items()},
-        sliced_line.TABLE: {"softer": tabulate_softer_ends().tolist()},
+        sliced_line.TABLE: {"softer": {str(slices): tabulate_softer_ends(slices).tolist() for slices in NUMBERS}},
     }
     for path, content in contents.items():
         path.write_text(json.dumps(content, indent=0) + "\n", encoding="utf-8")

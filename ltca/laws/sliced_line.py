@@ -18,9 +18,9 @@ what q counts of it. Strips are as wide as makes their own energy that of the se
 .. math:: E = \sum \int \varphi(\delta + \theta z - h - u_i)\,dz + \sum F_i u_i - V, \qquad \varphi' = q .
 
 Slices are integrated at `POINTS` points each, so that a contact that ends within a slice moves on smoothly. Where the ends of
-the line carry, pressure bulges there within some half-widths: the end slices are softer in V by :math:`\varepsilon(b/l)`,
-tabulated once so that an aligned straight line has the load of `ltca.laws.line_contact`. A line of one slice is that law itself
-and not made here. ``docs/theory/width.md`` has the sources and the measured errors.
+the line carry, pressure bulges there within some half-widths: the end slices are softer in V by :math:`\varepsilon_n(b/l)`,
+tabulated for every n so that an aligned straight line has the load of `ltca.laws.line_contact`. A line of one slice is that law
+itself and not made here. ``docs/theory/width.md`` has the sources and the measured errors.
 
 Newton's method on the loads squares what is left over: its last step is taken along the slopes without another evaluation, to
 round-off.
@@ -29,7 +29,7 @@ round-off.
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
@@ -41,9 +41,16 @@ from ltca.contact.influence import lagged_influence
 from ltca.errors import ConvergenceError
 from ltca.laws.backed import HALF_SPACE_DATUM, MAX_OVERLAP, OVERLAP_SHARPNESS
 from ltca.laws.slenderness_curve import SlendernessCurve, quintic_spline_pieces
+from ltca.laws.sliced_contact import (
+    EXACT,
+    LAST_STEP_ERROR,
+    POINTS,
+    Exactness,
+    SlicedContact,
+    loads_nearby,
+    slice_heights,
+)
 
-POINTS = 4
-"""Points of a slice at which its surfaces' approach is taken (Gauss)."""
 STRIP = float(np.exp(1.25 - np.log(4.0)))
 """Half-width of an evenly pressed strip by that of a semi-elliptic one of the same energy: ⟨−ln|x − x′|⟩ = 3/2 − ln 2b of the
 strip, 1/4 − ln(b/2) of the semi-ellipse."""
@@ -52,8 +59,8 @@ DATUM = 4.0
 SLEEVE_DATUM = 0.685
 """The same of a sleeve's part, whose slices do not feel each other: as deep as an aligned line counts at usual loads."""
 MAX_ITERATIONS = 60
-NEAR = 1e-8
-"""What may be left over of a slice's load, by the largest, before the last step, which squares it."""
+TOGETHER = 2048
+"""Contacts solved at once: many enough for arrays over them, few enough for memory."""
 ROUND_OFF = 1e-13
 """What is left over by round-off alone."""
 NARROWEST, WIDEST = 1e-4, 40.0
@@ -64,13 +71,6 @@ _KNOTS = 81
 _LIGHTEST, _HEAVIEST, _PLANE_KNOTS = -46.0, -0.3, 4097
 _NODES, _SHARES = np.polynomial.legendre.leggauss(8)
 TABLE = Path(__file__).with_name("sliced_line.json")
-
-
-@cache
-def slice_heights(length: float, slices: int) -> FloatArray:
-    """Return z of the points of the slices of a line of a length in mm, shape (slices, points)."""
-    middle = (np.arange(slices) - 0.5 * (slices - 1)) * length / slices
-    return np.asarray(middle[:, None] + 0.5 * length / slices * np.polynomial.legendre.leggauss(POINTS)[0])
 
 
 @cache
@@ -135,61 +135,9 @@ def places() -> FloatArray:
 
 
 @cache
-def softer_ends() -> FloatArray:
-    """Return pieces of ε over ln(b/l) that ship with the package, shape (6, pieces)."""
-    return quintic_spline_pieces(np.array(json.loads(TABLE.read_text(encoding="utf-8"))["softer"]))
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SlicedContact:
-    """Contacts in slices at some approaches and tilts, zero where open.
-
-    Attributes
-    ----------
-    load, moment : array, shape (…)
-        Σ F and Σ ∫ q z dz, N and N·mm: moments turn positive z into the other body.
-    by_approach, by_tilt, moment_by_tilt : array, shape (…)
-        ∂F/∂δ, ∂F/∂θ = ∂M/∂δ and ∂M/∂θ, N/mm, N/rad and N·mm/rad.
-    energy : array, shape (…)
-        E, N·mm.
-    slice_load : array, shape (…, slices)
-        F_i, N.
-    line_load : array, shape (…, slices, points)
-        q at the points of the slices, N/mm.
-    slice_slopes : array, shape (…, 2, slices), or None
-        ∂F_i/∂δ and ∂F_i/∂θ, N/mm and N/rad, where slices feel each other.
-    """
-
-    load: FloatArray
-    moment: FloatArray
-    by_approach: FloatArray
-    by_tilt: FloatArray
-    moment_by_tilt: FloatArray
-    energy: FloatArray
-    slice_load: FloatArray
-    line_load: FloatArray
-    slice_slopes: FloatArray | None = None
-
-    def take(self, rows: NDArray[np.intp]) -> SlicedContact:
-        """Return some of a row of contacts."""
-        return SlicedContact(**{name: values[rows] for name, values in self._arrays()})
-
-    def put(self, rows: NDArray[np.intp], part: SlicedContact) -> None:
-        """Write what some of a row of contacts are now."""
-        for name, values in self._arrays():
-            values[rows] = getattr(part, name)
-
-    def ahead(self, approach: FloatArray, tilt: FloatArray) -> FloatArray:
-        """Return loads of the slices to start from where approaches and tilts are so much larger, shape (…, slices)."""
-        if self.slice_slopes is None:
-            return self.slice_load
-        moved = approach[..., None] * self.slice_slopes[..., 0, :] + tilt[..., None] * self.slice_slopes[..., 1, :]
-        # Slopes tell nothing beyond a change of the loads themselves.
-        near = (np.abs(moved) < 0.3 * self.slice_load.max(axis=-1, keepdims=True)).all(axis=-1, keepdims=True)
-        return np.asarray(np.where(near, np.maximum(self.slice_load + moved, 0.0), self.slice_load))
-
-    def _arrays(self) -> list[tuple[str, FloatArray]]:
-        return [(name, values) for name in self.__slots__ if (values := getattr(self, name)) is not None]
+def softer_ends(slices: int) -> FloatArray:
+    """Return pieces of ε over ln(b/l) of lines of so many slices that ship with the package, shape (6, pieces)."""
+    return quintic_spline_pieces(np.array(json.loads(TABLE.read_text(encoding="utf-8"))["softer"][str(slices)]))
 
 
 @cache
@@ -202,9 +150,17 @@ def _bends(slices: int) -> tuple[NDArray[np.intp], NDArray[np.intp], FloatArray]
 
 
 @cache
-def _weights(length: float, slices: int) -> FloatArray:
-    """Weights of the points of a slice of a line of a length in mm, shape (points, 1)."""
-    return np.asarray(0.5 * length / slices * np.polynomial.legendre.leggauss(POINTS)[1][:, None])
+def _moments(length: float, slices: int) -> FloatArray:
+    """Weights of the points of each slice of a line of a length in mm for ∫ dz, ∫ z dz and ∫ z² dz, shape (slices, 3, points)."""
+    z = slice_heights(length, slices)
+    weights = 0.5 * length / slices * np.polynomial.legendre.leggauss(POINTS)[1]
+    return np.ascontiguousarray(np.stack((np.broadcast_to(weights, z.shape), weights * z, weights * z**2), axis=1))
+
+
+@cache
+def _between(slices: int) -> NDArray[np.intp]:
+    """Lag of each pair of slices."""
+    return np.asarray(np.abs(np.arange(slices)[:, None] - np.arange(slices)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -228,15 +184,18 @@ class _Coupling:
     def by_load(self) -> FloatArray:
         """Return ∂u/∂F, shape (slices, slices, contacts)."""
         n = self.grow.shape[0]
-        found = self.across[:, None] * self.grow
-        found += found.swapaxes(0, 1).copy()
-        found += self.lags[np.abs(np.arange(n)[:, None] - np.arange(n))]
+        found = self.lags.take(_between(n), axis=0)
+        both = self.across[:, None] * self.grow
+        found += both
+        found += both.swapaxes(0, 1)
         rows, columns, bends = _bends(n)
         found[rows, columns] += bends[:, None] * self.smooth
-        found[np.arange(n), np.arange(n)] += self.diagonal
+        own = np.arange(n)
+        found[own, own] += self.diagonal
         found[0, 0] -= self.ends
         found[-1, -1] -= self.ends
-        return np.asarray(self.scale * found)
+        found *= self.scale
+        return np.asarray(found)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -258,7 +217,7 @@ class SlicedLine:
     overlap : float
         Compliance of the whole line that the law of that sleeve has as well, mm/N (`ltca.laws.backed.BackedLaw`).
     ends : array, shape (6, pieces), optional
-        By how much end slices are softer, ε over ln(b/l); default `softer_ends`.
+        By how much end slices are softer, ε over ln(b/l); default `softer_ends` of as many slices.
     """
 
     length: float
@@ -267,7 +226,7 @@ class SlicedLine:
     relief: FloatArray = by_drive(2)
     sleeve: float = 0.0
     overlap: float = 0.0
-    ends: FloatArray = field(default_factory=softer_ends)
+    ends: FloatArray | None = None
 
     def respond(
         self,
@@ -275,6 +234,7 @@ class SlicedLine:
         tilt: FloatArray,
         effective_radius: FloatArray,
         start: FloatArray | None = None,
+        exactness: Exactness = EXACT,
     ) -> SlicedContact:
         """Return loads, moments and their derivatives.
 
@@ -282,8 +242,10 @@ class SlicedLine:
         ----------
         approach, tilt, effective_radius : array, shape (…)
             δ in the middle, mm; θ, rad, positive presses positive z; ρ, mm.
-        start : array, shape (…, slices), optional
-            Loads of the slices nearby, N.
+        start : array, shape (…, 2 + 3 slices), optional
+            What the same contacts were nearby (`SlicedContact.near`).
+        exactness : Exactness
+            How close to balance the slices come.
 
         Raises
         ------
@@ -292,34 +254,86 @@ class SlicedLine:
         """
         given = (np.asarray(each, dtype=float) for each in (approach, tilt, effective_radius))
         delta, theta, radius = np.broadcast_arrays(*given)
-        shape, z = delta.shape, slice_heights(self.length, self.slices)
-        relief = self.relief
-        if relief.ndim > z.ndim:  # of several drives, the first axis of the approaches
-            relief = relief.reshape(-1, *(1,) * (delta.ndim - 1), *z.shape)
-        free = (delta[..., None, None] + theta[..., None, None] * z - relief).reshape(-1, *z.shape)
-        closed = np.flatnonzero((free > TOUCHING * self.length).any(axis=(1, 2)))
-        begin = None if start is None else start.reshape(-1, self.slices)[closed].T
-        # Contacts come last: every step is one on arrays over them.
-        found = self._closed(np.ascontiguousarray(free[closed].transpose(1, 2, 0)), radius.reshape(-1)[closed], begin)
-        whole = []
-        for values in found:
-            full = np.zeros((delta.size, *values.shape[:-1]))
-            full[closed] = np.moveaxis(values, -1, 0)
-            whole.append(full.reshape((*shape, *values.shape[:-1])))
-        return SlicedContact(**dict(zip(SlicedContact.__slots__, whole, strict=True)))
+        shape, z, n = delta.shape, slice_heights(self.length, self.slices), self.slices
+        delta, theta, radius = delta.reshape(-1), theta.reshape(-1), radius.reshape(-1)
+        deepest = delta + z.max() * np.abs(theta) - self.relief.min(initial=0.0)
+        closed = np.flatnonzero(deepest > TOUCHING * self.length)
+        relief = self.relief.reshape(-1, *z.shape).transpose(1, 2, 0)
+        if relief.shape[2] not in (1, *shape[:1]):
+            raise ValueError(f"reliefs of {relief.shape[2]} positions do not fit approaches of the shape {shape}")
+        drive = closed * relief.shape[2] // max(delta.size, 1)  # the first axis of the approaches
+        found = {name: np.zeros((delta.size, *size)) for name, size in self._sizes().items()}
+        near = None if start is None else start.reshape(-1, 2 + 3 * n)
+        for some in np.array_split(np.arange(closed.size), -(-closed.size // TOGETHER)) if closed.size else ():
+            rows, fall = closed[some], relief if relief.shape[2] == 1 else relief[..., drive[some]]
+            # Contacts come last: every step is one on arrays over them.
+            free = delta[rows] + theta[rows] * z[..., None] - fall
+            begin = None if near is None else loads_nearby(near[rows], delta[rows], theta[rows]).T
+            pressed = (free > TOUCHING * self.length).any(axis=(0, 1)) if self.relief.any() else np.ones(1, dtype=bool)
+            if not pressed.all():
+                rows, free, begin = rows[pressed], free[..., pressed], None if begin is None else begin[:, pressed]
+            if not rows.size:
+                continue
+            part = self._closed(free, radius[rows], begin, exactness)
+            for name, values in part.items():
+                found[name][rows] = np.moveaxis(values, -1, 0)
+            slopes = part["slopes"].reshape(2 * n, -1)
+            found["near"][rows] = np.concatenate(((delta[rows], theta[rows]), part["slice_load"], slopes)).T
+        del found["slopes"]
+        return SlicedContact(**{name: values.reshape((*shape, *values.shape[1:])) for name, values in found.items()})
+
+    def is_like(self, other: SlicedLine) -> bool:
+        """Tell whether another law says the same of contacts."""
+        numbers = ("length", "contact_modulus", "slices", "sleeve", "overlap")
+        return all(getattr(self, name) == getattr(other, name) for name in numbers) and (
+            self.ends is other.ends and self.relief.ndim == 2 and np.array_equal(self.relief, other.relief)
+        )
+
+    def _sizes(self) -> dict[str, tuple[int, ...]]:
+        """Shapes of what is found of each contact."""
+        n = self.slices
+        scalars = ("load", "moment", "by_approach", "by_tilt", "moment_by_tilt", "steady", "left")
+        return {
+            **dict.fromkeys(scalars, ()),
+            "slice_load": (n,),
+            "slopes": (2, n),
+            "near": (2 + 3 * n,),
+            "line_load": (n, POINTS),
+            "line_slopes": (2, n, POINTS),
+        }
+
+    def energy(self, contact: SlicedContact, effective_radius: FloatArray) -> FloatArray:
+        """Return the energy E of contacts, N·mm, shape (…)."""
+        n, shape = self.slices, contact.load.shape
+        radius = np.broadcast_to(effective_radius, shape).reshape(-1)
+        load, q = contact.slice_load.reshape(-1, n).T, contact.line_load.reshape(-1, n, POINTS).transpose(1, 2, 0)
+        carries = contact.load.reshape(-1) > 0.0
+        coupled = self._coupling(load[:, carries], radius[carries])
+        # φ = q δ − ∫ δ dq with δ by q in closed form.
+        q, here = q[..., carries], radius[carries]
+        pressed = np.where(q > 0.0, q, 1.0)
+        scale = 2.0 / (np.pi * self.contact_modulus)
+        deep = np.log(2.0 * DATUM * self.length / np.sqrt(2.0 * scale * pressed * here))
+        stored = np.where(q > 0.0, scale * q**2 * (0.5 * deep + 0.125), 0.0)
+        own = np.matmul(_moments(self.length, n)[:, :1], stored).sum(axis=(0, 1))
+        found = np.zeros(radius.shape)
+        found[carries] = own + (load[:, carries] * coupled.pressed_in).sum(axis=0) - coupled.energy
+        return found.reshape(shape)
 
     def _line_load(
         self, approach: FloatArray, effective_radius: FloatArray, datum: float
     ) -> tuple[FloatArray, FloatArray]:
         """q and dq/dδ of the plane law, zero where open, shape (slices, points, contacts)."""
-        load, slope = np.zeros(approach.shape), np.zeros(approach.shape)
         pressed = approach > 0.0
-        radius = np.broadcast_to(effective_radius, approach.shape)[pressed]
-        scaled = (2.0 / datum**2) * approach[pressed] * radius
-        w, first = _inverse_of_plane_load(np.log(scaled))
-        inverse = (np.pi * self.contact_modulus) / w
-        load[pressed] = (0.25 * datum**2) * scaled * inverse / radius
-        slope[pressed] = inverse * (0.5 - 0.5 * first / w)
+        everywhere = pressed.all()
+        # Where open any depth will do.
+        at = approach if everywhere else np.where(pressed, approach, 1e-6 * self.length)
+        w, first = _inverse_of_plane_load(np.log((2.0 / datum**2) * effective_radius * at))
+        half = (0.5 * np.pi * self.contact_modulus) / w
+        load, slope = at * half, half * (1.0 - first / w)
+        if not everywhere:
+            load *= pressed
+            slope *= pressed
         return load, slope
 
     def _coupling(self, load: FloatArray, effective_radius: FloatArray) -> _Coupling:
@@ -397,7 +411,8 @@ class SlicedLine:
 
     def _coefficients(self, place: FloatArray) -> tuple[FloatArray, FloatArray]:
         """a_k and ε with first and second derivatives by ln(b/l), shapes (3, slices, contacts) and (3, contacts)."""
-        pieces = np.concatenate((_lags(self.slices), self.ends[:, None]), axis=1)
+        ends = softer_ends(self.slices) if self.ends is None else self.ends
+        pieces = np.concatenate((_lags(self.slices), ends[:, None]), axis=1)
         start, stop = np.log(NARROWEST), np.log(WIDEST)
         spacing = (stop - start) / (_KNOTS - 1)
         held = place.clip(start, stop)
@@ -416,14 +431,15 @@ class SlicedLine:
             curve[2][:, beyond] = 0.0
         return curve[:, :-1], curve[:, -1]
 
-    def _closed(self, free: FloatArray, radius: FloatArray, start: FloatArray | None) -> tuple[FloatArray, ...]:
-        """The arrays of `SlicedContact` in its order, of contacts with something pressed together, which come last."""
+    def _closed(
+        self, free: FloatArray, radius: FloatArray, start: FloatArray | None, exactness: Exactness
+    ) -> dict[str, FloatArray]:
+        """What contacts with something pressed together carry (`_sizes`); contacts come last."""
         n, datum, count = self.slices, DATUM * self.length, radius.size
-        z = slice_heights(self.length, n)[..., None]
-        weights = _weights(self.length, n)
+        moments, z = _moments(self.length, n), slice_heights(self.length, n)[..., None]
 
         def loads_of(line: FloatArray) -> FloatArray:
-            return np.asarray((line * weights).sum(axis=1))
+            return np.asarray(np.matmul(moments[:, :1], line)[:, 0])
 
         # With the length as datum an aligned line has about the load that it has with its slices coupled.
         load = loads_of(self._line_load(free, radius, self.length)[0]) if start is None else start.copy()
@@ -433,71 +449,82 @@ class SlicedLine:
         history: list[float] = []
         going, before, fraction = np.arange(count), np.full(count, np.inf), np.ones(count)
         way = np.zeros(load.shape)
-        scalars, by_slice, by_point = np.zeros((6, count)), np.zeros((n, count)), np.zeros((*free.shape[:2], count))
-        slopes = np.zeros((2, n, count))
+        found: dict[str, FloatArray] = {}
         for _ in range(MAX_ITERATIONS):
-            now, here = load[:, going], radius[going]
-            coupled = self._coupling(now, here)
-            local = free[..., going] - coupled.pressed_in[:, None]
-            line, slope = self._line_load(local, here, datum)
-            left = loads_of(line) - now
-            size, largest = np.max(np.abs(left), axis=0), np.max(now, axis=0)
+            coupled = self._coupling(load, radius)
+            local = free - coupled.pressed_in[:, None]
+            line, slope = self._line_load(local, radius, datum)
+            left = loads_of(line) - load
+            size, largest = np.max(np.abs(left), axis=0), np.max(load, axis=0)
             history.append(float(np.max(size / largest, initial=0.0)))
-            worse = (size > before[going]) & (fraction[going] > 1e-3) & (size > ROUND_OFF * largest)
-            # Back to a part of the last step where it made things worse.
-            back = going[worse]
-            fraction[back] *= 0.4
-            load[:, back] = np.maximum(load[:, back] - 1.5 * fraction[back] * way[:, back], 0.0)
-            carried = slope * weights
-            stiff, leaning = carried.sum(axis=1), (carried * z).sum(axis=1)
+            worse = (size > before) & (fraction > 1e-3) & (size > ROUND_OFF * largest)
+            done = size <= exactness.slices * largest
+            stiff, leaning, own = np.matmul(moments, slope).swapaxes(0, 1)
             by_load = coupled.by_load()
-            # Of what is left over, of the approach and of the tilt.
-            right = np.stack((left, stiff, leaning), axis=-1).swapaxes(0, 1)
-            system = np.moveaxis(by_load * stiff[:, None], -1, 0) + np.eye(n)
-            moved = np.moveaxis(np.linalg.solve(system, right), 0, -1)
-            step = moved[:, 0]
-            done = size <= NEAR * largest
+            # Of what is left over and, at the end, of the approach and of the tilt.
+            right = np.stack((left, stiff, leaning) if done.any() else (left,), axis=1)
+            moved = _eliminated(by_load * stiff[:, None], right)
             if done.any():
                 # The last step is taken along the slopes, unless points open or close in it.
-                some = np.flatnonzero(done)
-                shift = -(by_load[..., some] * step[:, some]).sum(axis=1)[:, None]
-                at = local[..., some]
-                steady = (np.abs(shift) <= 1e-3 * np.abs(at)).all(axis=(0, 1)) | (
-                    size[some] <= ROUND_OFF * largest[some]
-                )
-                done[some[~steady]] = False
-                some, shift, at = some[steady], shift[..., steady], at[..., steady]
-                kept = going[some]
-                settled = np.maximum(line[..., some] + slope[..., some] * shift, 0.0)
-                stored = loads_of(self._plane_energy(at, line[..., some], here[some])).sum(axis=0)
-                k, m = stiff[:, some], leaning[:, some]
-                middle = np.divide(m, k, out=np.zeros(k.shape), where=k > 0.0)
-                by_approach, by_tilt = moved[:, 1, some], moved[:, 2, some]
-                own = (carried[..., some] * z**2).sum(axis=(0, 1)) - (m * middle).sum(axis=0)
-                by_slice[:, kept], by_point[..., kept] = loads_of(settled), settled
-                slopes[:, :, kept] = by_approach, by_tilt
-                scalars[:, kept] = (
-                    by_slice[:, kept].sum(axis=0),
-                    loads_of(settled * z).sum(axis=0),
-                    by_approach.sum(axis=0),
-                    by_tilt.sum(axis=0),
-                    own + (middle * by_tilt).sum(axis=0),
-                    stored + (now[:, some] * coupled.pressed_in[:, some]).sum(axis=0) - coupled.energy[some],
-                )
-            on = ~worse & ~done
-            ahead = going[on]
-            before[ahead], fraction[ahead] = size[on], 1.0
-            target = np.maximum(now[:, on] + step[:, on], 0.0)
+                shift = -np.einsum("ijc,jc->ic", by_load, moved[:, 0])[:, None]
+                at = np.abs(local).min(axis=(0, 1))
+                done &= (np.abs(shift[:, 0]).max(axis=0) <= exactness.steady * at) | (size <= ROUND_OFF * largest)
+                settled = np.maximum(line + slope * shift, 0.0)
+                last_step = LAST_STEP_ERROR * (size / largest) ** 2 * load.sum(axis=0)
+                values = settled, slope, moved[:, 1:], stiff, leaning, own, at, last_step
+                part = self._carried((moments, z), values if done.all() else tuple(each[..., done] for each in values))
+                if part["load"].size == count:
+                    return part
+                if not found:
+                    found = {name: np.zeros((*each.shape[:-1], count)) for name, each in part.items()}
+                for name, each in part.items():
+                    found[name][..., going[done]] = each
+            for kept, now in ((before, size), (fraction, 1.0)):
+                kept[...] = np.where(worse, kept, now)
+            # Back to a part of the last step where it made things worse.
+            fraction[worse] *= 0.4
+            target = np.maximum(load + moved[:, 0], 0.0)
             # Something carries on.
-            target = np.where(target.any(axis=0), target, 0.1 * now[:, on])
-            way[:, ahead] = target - now[:, on]
-            load[:, ahead] = target
-            going = going[~done]
-            if not going.size:
+            target = np.where(target.any(axis=0), target, 0.1 * load)
+            back = np.maximum(load - 1.5 * fraction * way, 0.0)
+            way = np.where(worse, way, target - load)
+            load = np.where(worse, back, target)
+            if done.all():
                 break
+            if done.any():
+                on = ~done
+                going, before, fraction, radius = going[on], before[on], fraction[on], radius[on]
+                load, way, free = load[:, on], way[:, on], free[..., on]
         else:
-            raise ConvergenceError(self._why_not(load[:, going], radius[going]), history)
-        return (*scalars, by_slice, by_point, slopes)
+            raise ConvergenceError(self._why_not(load, radius), history)
+        return found
+
+    def _carried(self, heights: tuple[FloatArray, FloatArray], values: tuple[FloatArray, ...]) -> dict[str, FloatArray]:
+        """What contacts carry that are done (`_sizes`), contacts last."""
+        line, slope, moved, stiff, leaning, own, steady, left = values
+        moments, z = heights
+        both = np.matmul(moments[:, :2], line)
+        loads = both[:, 0]
+        # Of a slice's points as its load follows, ∂F/∂δ = k (1 − ∂u/∂δ).
+        inverse = np.divide(1.0, stiff, out=np.zeros(stiff.shape), where=stiff > 0.0)
+        by_approach, by_tilt = moved[:, 0], moved[:, 1]
+        turned = by_tilt - leaning
+        of_points = np.empty((2, *line.shape))
+        np.multiply(slope, (by_approach * inverse)[:, None], out=of_points[0])
+        np.multiply(slope, z + (turned * inverse)[:, None], out=of_points[1])
+        return {
+            "load": loads.sum(axis=0),
+            "moment": both[:, 1].sum(axis=0),
+            "by_approach": by_approach.sum(axis=0),
+            "by_tilt": by_tilt.sum(axis=0),
+            "moment_by_tilt": (own + leaning * inverse * turned).sum(axis=0),
+            "steady": steady,
+            "left": left,
+            "slice_load": loads,
+            "slopes": moved.swapaxes(0, 1),
+            "line_load": line,
+            "line_slopes": of_points,
+        }
 
     def _why_not(self, load: FloatArray, effective_radius: FloatArray) -> str:
         """What to tell of contacts that do not settle."""
@@ -513,10 +540,23 @@ class SlicedLine:
             f"{half_width:.3g} mm, choose at most {most}; {told}"
         )
 
-    def _plane_energy(self, approach: FloatArray, line_load: FloatArray, radius: FloatArray) -> FloatArray:
-        """∫ q dδ = q δ − ∫ δ dq, N."""
-        q = np.where(line_load > 0.0, line_load, 1.0)
-        scale = 2.0 / (np.pi * self.contact_modulus)
-        half_width = np.sqrt(2.0 * scale * q * radius)
-        spent = scale * q**2 * 0.5 * (np.log(2.0 * DATUM * self.length / half_width) + 0.75)
-        return np.where(line_load > 0.0, q * approach - spent, 0.0)
+
+def _eliminated(matrix: FloatArray, right: FloatArray) -> FloatArray:
+    """Solve (1 + A) x = b for many small A at once, contacts last, in place.
+
+    By elimination without pivoting: A is a positive diagonal by a positive definite matrix, whose pivots are all above one.
+    Solvers for stacks of matrices take them first and would have every array copied there and back.
+    """
+    n = matrix.shape[0]
+    own = np.arange(n)
+    matrix[own, own] += 1.0
+    for k in range(n):
+        pivot = 1.0 / matrix[k, k]
+        factor = matrix[k + 1 :, k] * pivot
+        matrix[k + 1 :, k + 1 :] -= factor[:, None] * matrix[k, k + 1 :]
+        right[k + 1 :] -= factor[:, None] * right[k]
+        matrix[k, k] = pivot
+    for k in range(n - 1, -1, -1):
+        right[k] *= matrix[k, k]
+        right[:k] -= matrix[:k, k, None] * right[k]
+    return right

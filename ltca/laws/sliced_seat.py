@@ -9,21 +9,24 @@ with its seat.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import NamedTuple
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.arrays import FloatArray, by_drive
+from ltca.arrays import FloatArray, by_drive, take_rows
 from ltca.errors import ConvergenceError
 from ltca.laws.conforming import ConformingLaw
 from ltca.laws.slenderness_curve import quintic_spline_pieces
-from ltca.laws.sliced_line import POINTS, TOUCHING, SlicedContact, SlicedLine, slice_heights
+from ltca.laws.sliced_contact import EXACT, POINTS, Exactness, SlicedContact, slice_heights
+from ltca.laws.sliced_line import TOUCHING, SlicedLine
+from ltca.laws.sliced_plane import SlicedPlane
 from ltca.laws.sliced_spring import SlicedSpring
 
 LEAST_PLAY = 1e-9
 """Play that stands for none, mm."""
+_ALL = slice(None)
 MAX_ITERATIONS = 60
 MAX_HALVINGS = 16
 SETTLED = 1e-10
@@ -169,7 +172,7 @@ class BackedLine:
 
     Attributes
     ----------
-    contact : SlicedLine or SlicedSpring
+    contact : SlicedLine, SlicedPlane or SlicedSpring
         Law of the surfaces in contact.
     seat : SlicedSeat
         Law of the seats.
@@ -177,7 +180,7 @@ class BackedLine:
         Radial play of the seats, shape (pairs,) or (positions, pairs), mm.
     """
 
-    contact: SlicedLine | SlicedSpring
+    contact: SlicedLine | SlicedPlane | SlicedSpring
     seat: SlicedSeat
     play: FloatArray = by_drive(1)
 
@@ -192,11 +195,16 @@ class BackedLine:
         return self.contact.slices
 
     def respond(
-        self, approach: FloatArray, tilt: FloatArray, effective_radius: FloatArray, start: FloatArray | None = None
+        self,
+        approach: FloatArray,
+        tilt: FloatArray,
+        effective_radius: FloatArray,
+        start: FloatArray | None = None,
+        exactness: Exactness = EXACT,
     ) -> SlicedContact:
         """Return loads, moments and their derivatives of contact and seat, as `ltca.laws.sliced_line.SlicedLine.respond`.
 
-        Loads of the slices are those of the contact outside.
+        Loads of the slices are those of the contact outside. What is left over is nothing, whatever would do.
         """
         return self.solve(approach, tilt, effective_radius, start)[0]
 
@@ -217,17 +225,20 @@ class BackedLine:
         # An open contact that a relief keeps open is found so by its law.
         metal = 0.0 if isinstance(self.contact, SlicedSpring) else max(0.0, -float(self.contact.relief.min()))
         closed = np.flatnonzero(delta + highest * np.abs(theta) + metal > TOUCHING * self.length)
-        sizes = {"slice_load": (self.slices,), "line_load": (self.slices, POINTS)}
-        whole = {name: np.zeros((delta.size, *sizes.get(name, ()))) for name in SlicedContact.__slots__}
+        sizes = {"slice_load": (self.slices,), "line_load": (self.slices, POINTS), "near": (2 + 3 * self.slices,)}
+        names = ("load", "moment", "by_approach", "by_tilt", "moment_by_tilt", *sizes)
+        whole = {name: np.zeros((delta.size, *sizes.get(name, ()))) for name in names}
         travel, lean = np.zeros(delta.size), np.zeros(delta.size)
         if closed.size:
-            near = None if start is None else start.reshape(-1, self.slices)[closed]
-            found, travel[closed], lean[closed] = self._closed(
+            near = None if start is None else start.reshape(-1, start.shape[-1])[closed]
+            # Drives of a batch may have reliefs and springs of their own.
+            own = replace(self, contact=take_rows(self.contact, np.unravel_index(closed, shape)[0]))
+            found, travel[closed], lean[closed] = own._closed(
                 delta[closed], theta[closed], radius[closed], play[closed], near
             )
             for name, values in whole.items():
                 values[closed] = getattr(found, name)
-        answer = SlicedContact(**{name: values.reshape(*shape, *values.shape[1:]) for name, values in whole.items()})
+        answer = SlicedContact(**{name: values.reshape((*shape, *values.shape[1:])) for name, values in whole.items()})
         return answer, travel.reshape(shape), lean.reshape(shape)
 
     def _closed(
@@ -236,17 +247,18 @@ class BackedLine:
         travel, lean = 0.5 * delta, 0.5 * theta
         half = 0.5 * self.length
         if start is not None:
-            known = np.count_nonzero(start > 0.0, axis=1) > 2  # a line through two slices says little
-            near = self._seat_under(start[known], play[known])
+            loads = start[:, 2 : 2 + self.slices]
+            known = np.count_nonzero(loads > 0.0, axis=1) > 2  # a line through two slices says little
+            near = self._seat_under(loads[known], play[known])
             travel[known], lean[known] = near
             # What was there may leave nothing pressed outside here.
             lost = np.zeros(delta.shape, dtype=bool)
             lost[known] = (delta - travel)[known] + half * np.abs(theta - lean)[known] <= 0.0
             travel[lost], lean[lost] = 0.5 * delta[lost], 0.5 * theta[lost]
-        contact = self.contact.respond(delta - travel, theta - lean, radius, start)
+        contact = self._outside(_ALL, delta - travel, theta - lean, radius, start)
         seat = self.seat.press(travel, lean, play)
-        # What round-off of places makes of a load.
-        lightest = np.spacing(64.0) * self.seat.law.contact_modulus * self.length / SETTLED
+        # What round-off of places, some eight lengths away, makes of a load.
+        lightest = np.spacing(8.0 * self.length) * self.seat.law.contact_modulus * self.length / SETTLED
         before, history = np.full(delta.shape, np.inf), []
         for _ in range(MAX_ITERATIONS):
             force, moment = seat.load - contact.load, seat.moment - contact.moment
@@ -264,6 +276,14 @@ class BackedLine:
                 "loose pins or sleeves do not settle in their seats; force left over by the load", history
             )
         return self._in_series(contact, seat, play), travel, lean
+
+    def _outside(
+        self, rows: Any, approach: FloatArray, tilt: FloatArray, radius: FloatArray, start: FloatArray | None
+    ) -> SlicedContact:
+        """Some of the contacts outside at what the seats leave them; each is a row of its own."""
+        contact = take_rows(self.contact, rows)
+        near = None if start is None else start[:, None]
+        return contact.respond(approach[:, None], tilt[:, None], radius[:, None], near).squeezed()
 
     def _seat_under(self, loads: FloatArray, play: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Travel and lean under the loads of slices, by least squares over what carries."""
@@ -299,7 +319,7 @@ class BackedLine:
             rows = going[open_]
             at, leaning = travel[rows] + fraction[open_] * step[open_], lean[rows] + fraction[open_] * turn[open_]
             delta, theta, radius, play = (values[rows] for values in given)
-            there = self.contact.respond(delta - at, theta - leaning, radius, first.slice_load[open_])
+            there = self._outside(rows, delta - at, theta - leaning, radius, first.near[open_])
             under = self.seat.press(at, leaning, play)
             ahead = (under.load - there.load) * step[open_] + (under.moment - there.moment) * turn[open_]
             contact.put(rows, there)
@@ -326,6 +346,8 @@ class BackedLine:
         both = np.empty_like(own)
         both[:, 0, 0], both[:, 0, 1], both[:, 1, 1] = _together(contact, seat, self.length)
         both[:, 1, 0] = both[:, 0, 1]
+        # What a relief keeps open although middle or ends overlap carries nothing and has no stiffness.
+        both[both[:, 0, 0] <= 0.0] = np.eye(2)
         found = own - np.matmul(own, np.linalg.solve(both, own))
         return SlicedContact(
             load=contact.load,
@@ -333,9 +355,9 @@ class BackedLine:
             by_approach=found[:, 0, 0],
             by_tilt=0.5 * (found[:, 0, 1] + found[:, 1, 0]),
             moment_by_tilt=found[:, 1, 1],
-            energy=contact.energy + self.seat.energy(seat.line_load, play),
             slice_load=contact.slice_load,
             line_load=contact.line_load,
+            near=contact.near,
         )
 
 
@@ -347,8 +369,8 @@ def _together(contact: SlicedContact, seat: _Seat, length: float) -> tuple[Float
 
 
 def back_line(
-    contact: SlicedLine | SlicedSpring, seat: ConformingLaw | None, play: FloatArray
-) -> SlicedLine | SlicedSpring | BackedLine:
+    contact: SlicedLine | SlicedPlane | SlicedSpring, seat: ConformingLaw | None, play: FloatArray
+) -> SlicedLine | SlicedPlane | SlicedSpring | BackedLine:
     """Return the law of contacts in slices with the seats behind them; that of the contacts alone for fixed pins."""
     if seat is None:
         return contact

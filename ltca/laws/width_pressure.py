@@ -17,9 +17,10 @@ import numpy as np
 
 from ltca.arrays import BoolArray, FloatArray
 from ltca.contact.end_pressure import find_cylinder_ratio
-from ltca.contact.tilted_grid import TiltedPatch, TiltedPiece, recover_tilted
+from ltca.contact.tilted_grid import SAMPLES, TiltedPatch, TiltedPiece, recover_tilted
 from ltca.contact.tracked_grid import ContactKind, Separation
-from ltca.laws.sliced_line import POINTS, SlicedLine, slice_heights
+from ltca.laws.sliced_contact import POINTS, slice_heights
+from ltca.laws.sliced_line import SlicedLine
 
 HEIGHTS = 33
 """Heights at which pressures are given where none are asked for."""
@@ -81,7 +82,7 @@ def estimate_along_width(kind: ContactKind, line_load: FloatArray, effective_rad
         return np.asarray(np.sqrt(kind.contact_modulus * load / (np.pi * radius[(..., *(None,) * more)])))
 
     inner = pressure_of(line, 2)
-    # What end slices carry beyond the line beside them is the bulge at an end, by aligned lines of as many slices.
+    # What the two slices at an end carry beyond the line is the bulge there, by aligned lines of as many slices.
     nodes, bulges = _end_bulges(line.shape[-2])
     size = kind.length / line.shape[-2]
     carried = []
@@ -89,11 +90,13 @@ def estimate_along_width(kind: ContactKind, line_load: FloatArray, effective_rad
         (even[..., 0], even[..., 1], line[..., 0, 0]),
         (even[..., -1], even[..., -2], line[..., -1, -1]),
     ):
-        own = last
+        own, second = last, beside
         for _ in range(3):
-            wide = np.sqrt(4.0 * own * radius / (np.pi * kind.contact_modulus)) / size
-            own = last / np.interp(np.log(np.maximum(wide, 1e-300)), nodes, bulges)
-        carried.append(np.where(outermost > 0.0, np.maximum(own + 0.5 * (own - beside), 0.0), 0.0))
+            wide = np.log(np.maximum(np.sqrt(4.0 * own * radius / (np.pi * kind.contact_modulus)) / size, 1e-300))
+            own, second = (
+                carries / np.interp(wide, nodes, bulge) for carries, bulge in zip((last, beside), bulges, strict=True)
+            )
+        carried.append(np.where(outermost > 0.0, np.maximum(own + 0.5 * (own - second), 0.0), 0.0))
     ends = np.stack(carried, axis=-1)
     # An end carries as one of a line that is even and long has its peak by the half-width there.
     half_width = np.sqrt(4.0 * ends * radius[..., None] / (np.pi * kind.contact_modulus))
@@ -140,8 +143,9 @@ def solve_along_width(
     delta, theta, radius = np.broadcast_arrays(approach, tilt, effective_radius)
     lines, pressures = np.zeros((*delta.shape, z.size)), np.zeros((*delta.shape, z.size))
     largest, place, end_load = np.zeros(delta.shape), np.zeros(delta.shape), np.zeros((*delta.shape, 2))
-    # A line that reaches nowhere is open: no tilt brings its ends further than that.
-    for index in zip(*np.nonzero(delta + half * np.abs(theta) > 0.0), strict=True):
+    # A line that reaches nowhere is open: no tilt brings its ends further than that, and no lead its metal.
+    metal = max(0.0, -float(kind.relief(np.linspace(-half, half, SAMPLES)).min()))
+    for index in zip(*np.nonzero(delta + half * np.abs(theta) + metal > 0.0), strict=True):
         size = float(radius[index])
         separation, known = _parabola(size) if separations is None else separations(*index)
         patch = recover_tilted(kind, separation, float(delta[index]), float(theta[index]), known)
@@ -158,6 +162,11 @@ def solve_along_width(
 
 def _parabola(radius: float) -> tuple[Separation, tuple[TiltedPiece, ...]]:
     return Separation(effective_radius=radius, departure=lambda _, x: x**2 / (2.0 * radius)), ()
+
+
+def largest_along(patch: TiltedPatch, kind: ContactKind) -> float:
+    """Return the largest pressure of a patch as a mean over a stretch along the width, MPa, whatever ends it has."""
+    return _Along.of_patch(patch, kind).largest()[0]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -226,9 +235,10 @@ def _peaks(pressure: FloatArray, symmetric: bool) -> FloatArray:
 
 @cache
 def _end_bulges(slices: int) -> tuple[FloatArray, FloatArray]:
-    """Nodes of ln(b/l) and the load of an end slice by that of the middle one, of aligned straight lines."""
+    """Nodes of ln(b/l), and loads of the two slices at an end by the middle one, of aligned straight lines, (2, nodes)."""
     line = SlicedLine(length=1.0, contact_modulus=1.0, slices=slices, relief=np.zeros((slices, POINTS)))
-    approach = np.geomspace(1e-8, 0.1 / slices, 15)
-    load = line.respond(approach, np.zeros(15), np.ones(15)).slice_load
-    middle = load[:, slices // 2] * slices
-    return 0.5 * np.log(4.0 * middle / np.pi) + np.log(slices), load[:, 0] / load[:, slices // 2]
+    # Up to lines four half-widths long, or slices a quarter of one.
+    approach = np.geomspace(1e-8, min(1.0 / 16.0, 16.0 / slices**2), 31)
+    load = line.respond(approach, np.zeros(31), np.ones(31)).slice_load.T
+    middle = load[slices // 2]
+    return 0.5 * np.log(4.0 * middle * slices / np.pi) + np.log(slices), load[:2] / middle

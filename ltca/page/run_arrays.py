@@ -28,11 +28,11 @@ CONTACTS = {
 
 
 ALONG_WIDTH = {
-    "pin": ("pin_line_load", "pin_pressure_along_width"),
-    "outer": ("roller_line_load", "roller_pressure_along_width_outer"),
-    "hole": ("pin_shaft_line_load", "pin_shaft_pressure_along_width"),
+    "pin": ("pin_line_load", "pin_pressure_along_width", "pin_pressure_max"),
+    "outer": ("roller_line_load", "roller_pressure_along_width_outer", "roller_pressure_max_outer"),
+    "hole": ("pin_shaft_line_load", "pin_shaft_pressure_along_width", "pin_shaft_pressure_max"),
 }
-"""Line load and pressure along the width of contacts in slices, by kind."""
+"""Line load and pressure along the width of contacts in slices, and their largest pressure with that at the ends, by kind."""
 
 
 def shown_positions(dataset: Labelled) -> NDArray[np.intp]:
@@ -52,7 +52,8 @@ def run_arrays(dataset: Labelled, light: Labelled | None, rows: NDArray[np.intp]
     half-widths in mm of shape (discs, contacts, positions), the parameter of each contact on the flank, rad; ``radial`` and
     ``tangential`` of each disc, mm, its ``rotation``, rad, the ``wheel`` angle, rad, and the transmission error ``te`` in
     arc seconds; further curves of the whole drive (`_curves`). Of contacts in slices, at the torque of the run, ``pin/line`` and
-    ``pin/along``, N/mm and MPa, of shape (discs, contacts, slices, positions), and the ``tilt`` of each disc, rad. The dataset is
+    ``pin/along``, N/mm and MPa, of shape (discs, contacts, slices, positions), ``pin/most``, MPa, ends included, and the
+    ``tilt`` of each disc, rad. The dataset is
     `ltca.analysis.results.labelled_results`, or ``results.nc`` read back, `light` the same at the light torque: without it that
     torque has its transmission error alone.
     `rows` are the positions that are shown (`shown_positions`).
@@ -91,8 +92,9 @@ def width_arrays(case: Labelled) -> dict[str, FloatArray]:
     if "disc_tilt" not in case:
         return {}
     found = {"tilt": np.asarray(case["disc_tilt"].transpose("disc", "axis", "position").values)}
-    for kind, names in ALONG_WIDTH.items():
-        for quantity, name in zip(("line", "along"), names, strict=True):
+    for kind, (line, along, most) in ALONG_WIDTH.items():
+        found[f"{kind}/most"] = by_contact(case[most])
+        for quantity, name in (("line", line), ("along", along)):
             values = case[name]
             (last,) = (each for each in ("pin", "roller", "hole") if each in values.dims)
             order = [each for each in ("disc", "crank", last, "slice", "position") if each in values.dims]

@@ -19,6 +19,7 @@ from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.output_angle import play_of_input, wheel_angle_of_input
 from ltca.equilibrium.reducer import Reducer, bearing_forces
 from ltca.errors import DriveError, did_you_mean, shortened, told_twice
+from ltca.quantities import NEED_SLICES, SCALARS
 
 Stage = Literal["full", "light", "backlash", "play"]
 
@@ -211,9 +212,7 @@ OF_THE_PIN_SHAFT = (
     "mean_loaded_pin_shaft_pins",
 )  # fmt: skip
 """What a drive without pin shaft has not."""
-OF_WIDTH = (
-    "max_pin_face_load_factor", "max_roller_face_load_factor", "max_pin_shaft_face_load_factor", "max_disc_tilt",
-)  # fmt: skip
+OF_WIDTH = tuple(name for name in STAGES if SCALARS[name].of in NEED_SLICES)
 """What a drive without slices has not."""
 OF_FRICTION = ("mean_efficiency", "mean_input_torque", "power_loss")
 """What a drive without friction has not; the last needs a speed as well."""

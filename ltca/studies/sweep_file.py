@@ -133,8 +133,14 @@ def parse_sweep(
     several = {name: with_what_varies(drive, factors_table) for name, drive in file.cases.items()}
     swept = {str(name): several[str(name)] for factor in factors if factor.path == "case" for name in factor.levels}
     studied = swept or {next(iter(selected)): base}
+    in_plane = any(factor.path == "contact.slices" and 1 in factor.levels for factor in factors)
+    plane = {
+        f"{name} with contact.slices = 1": replace(drive, contact=replace(drive.contact, slices=1))
+        for name, drive in studied.items()
+        if in_plane
+    }
     try:
-        names = quantities_for_all(studied, names if "quantities" in table else None)
+        names = quantities_for_all(studied | plane, names if "quantities" in table else None)
     except DriveError as error:
         reader.problems += [f"quantities: {problem}" for problem in error.problems]
     design = _design(table.get("design", {}), factors, reader)

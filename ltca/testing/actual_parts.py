@@ -250,7 +250,14 @@ class DeviatedFlank:
         return lambda theta: np.asarray(spline(np.mod(theta - knots[0], 2.0 * np.pi) + knots[0]))
 
     def approaches(self, point: ComplexArray, radius: FloatArray, reach: float) -> tuple[FloatArray, FloatArray]:
-        """Return approaches and effective radii of pins about points, mm.
+        """Return approaches and effective radii of pins about points, mm; arguments and values as for `contacts`."""
+        approach, effective, _ = self.contacts(point, radius, reach)
+        return approach, effective
+
+    def contacts(
+        self, point: ComplexArray, radius: FloatArray, reach: float
+    ) -> tuple[FloatArray, FloatArray, ComplexArray]:
+        """Return approaches and effective radii of pins about points, mm, and normals of the flank there.
 
         Parameters
         ----------
@@ -267,11 +274,14 @@ class DeviatedFlank:
             Positive where pressed together; minus the reach for pins farther off.
         effective_radius : array, shape (pins,)
             In the first pose; the pin's own for pins farther off.
+        normal : array of complex, shape (poses, pins)
+            Out of the disc; zero for pins farther off.
         """
         theta, spacing, near = self._search(point[0], radius + reach)
         approach, effective = np.full(point.shape, -reach), radius.copy()
+        normal = np.zeros(point.shape, dtype=complex)
         if near.size == 0:
-            return approach, effective
+            return approach, effective, normal
         point, radius = point[:, near], radius[near]
         # From here on a polynomial stands for the flank, as wide as the poses move the contact.
         ends = self.points(theta + spacing * np.array([[-1.0], [1.0]]))
@@ -292,7 +302,8 @@ class DeviatedFlank:
         approach[:, near] = radius - (np.conj(outward) * (point - _value(curve, t))).real
         bend = (np.conj(along[0]) * _value(second, t)[0]).imag / np.abs(along[0]) ** 3
         effective[near] = 1.0 / (1.0 / radius + bend)
-        return approach, effective
+        normal[:, near] = outward
+        return approach, effective, normal
 
     def _search(self, point: ComplexArray, reach: FloatArray) -> tuple[FloatArray, float, NDArray[np.intp]]:
         """Parameters of the nearest points of the flank to those points that it reaches, their spacing, and which points."""

@@ -65,16 +65,29 @@ def sloping_drive(seed: int) -> tuple[Drive, float]:
     Its pins bend or are rigid, cranks stand on bearings that yield, and half of the main bearings yield in tilt. Pins are fixed,
     the ring of the wheel and the carrier rigid, and first stages without teeth.
     """
-    random = np.random.default_rng((seed, 31))
+    return _in_slices(seed, seated=False)
+
+
+def seated_drive(seed: int) -> tuple[Drive, float]:
+    """Return the same with wheel pins loose in slots or under sleeves, shaft pins under sleeves, or both."""
+    return _in_slices(seed, seated=True)
+
+
+def _in_slices(seed: int, *, seated: bool) -> tuple[Drive, float]:
+    random = np.random.default_rng((seed, 32 if seated else 31))
     while True:
         number = int(random.integers(2**32))
         drive, angle = pin_drive(number)
-        wheel, shaft, bearing = replace(drive.pin_wheel, seat=WheelPinSeat()), drive.pin_shaft, drive.main_bearing
-        installation, materials = drive.installation, replace(drive.materials, wheel_seat=Material(), sleeve=Material())
+        wheel, shaft, bearing, materials = drive.pin_wheel, drive.pin_shaft, drive.main_bearing, drive.materials
+        installation = drive.installation
         if drive.first_stage is not None and installation.first_stage_ratio is None:
             installation = replace(installation, first_stage_ratio=drive.first_stage.ratio)
-        if shaft is not None:
-            shaft = replace(shaft, seat=ShaftPinSeat())
+        if not seated:
+            wheel, materials = (
+                replace(wheel, seat=WheelPinSeat()),
+                replace(materials, wheel_seat=Material(), sleeve=Material()),
+            )
+            shaft = None if shaft is None else replace(shaft, seat=ShaftPinSeat())
         if bearing is not None and not bearing.bearings and random.uniform() < 0.5:
             arm = drive.pin_wheel.pin_circle_radius * float(random.choice([0.3, 1.0]))
             radial = bearing.radial_stiffness or wheel.support_stiffness or 0.0
@@ -84,7 +97,8 @@ def sloping_drive(seed: int) -> tuple[Drive, float]:
             ring=None, carrier=None, first_stage=None,
         )  # fmt: skip
         drive = with_width(number, drive)
-        if is_sound(drive):
+        seats = {wheel.seat.kind, "fixed" if shaft is None else shaft.seat.kind}
+        if is_sound(drive) and (not seated or seats != {"fixed"}):
             return drive, angle
 
 

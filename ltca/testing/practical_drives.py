@@ -373,18 +373,24 @@ def _limit(discs: Sequence[ContactGeometry], angle: FloatArray) -> float:
 
 
 def _pressed(model: Reducer, loaded: Equilibrium) -> float:
-    """Largest approach of any contact, and displacement of any bearing beyond its clearance, mm."""
+    """Largest approach of any contact at either end, and displacement of any bearing beyond its clearance, mm."""
     contacts, held = loaded.response, 0.0
-    whole = contacts.rollers.inner_approach + contacts.rollers.outer_approach
     carried = model.carried_beside_discs(loaded.crank_angle, loaded.pose, contacts.parts)
     bearings, cranks = ((), 0) if model.supports is None else (model.supports.bearings, model.supports.cranks)
     for number, support in enumerate(bearings):
         of_teeth = None if carried is None or number >= cranks else carried[:, number]
         yields = np.linalg.inv(support.stiffness).diagonal(axis1=-2, axis2=-1).max()
         held = max(held, float(np.abs(support.reactions(loaded.pose, of_teeth)).max() * yields))
-    return held + max(
-        float(np.max(each, initial=0.0)) for each in (contacts.flank.approach, contacts.holes.approach, whole)
-    )
+    approaches = []
+    for disc, own in zip(model.geometries, contacts.parts, strict=True):
+        rollers, pins, holes = own.rollers, own.leaning_pins, own.leaning_holes
+        found = [own.flank.approach, own.holes.approach, rollers.inner_approach + rollers.outer_approach]
+        if pins is not None and holes is not None:
+            leant = pins.tilt.tilt, holes.tilt.tilt, np.asarray(rollers.inner_tilt) + np.asarray(rollers.outer_tilt)
+            arms = disc.half_width, disc.half_width, disc.roller_half_length
+            found = [each + np.abs(tilt) * arm for each, tilt, arm in zip(found, leant, arms, strict=True)]
+        approaches += found
+    return held + max(float(np.max(each, initial=0.0)) for each in approaches)
 
 
 def compare_with_load(seed: int, draw: Callable[[int], tuple[Drive, float]] = practical_drive) -> list[Comparison]:
@@ -401,13 +407,14 @@ def compare(drive: Drive, crank_angle: FloatArray) -> list[Comparison]:
     discs, scale = model.geometries, abs(drive.output_per_wheel_angle) * ARCMIN
     found, before = free_play(discs, crank_angle), scale * float(play_of_input(model, np.zeros(())))
     answers, own, loose = [], model.coordinates.own, any(disc.has_loose_supports for disc in discs)
+    known = not loose and not any(disc.stands_askew for disc in discs)
     for row, angle in enumerate(crank_angle):
         free = float(found.play[row]) * scale + before
         if found.preloaded[row]:
             answers.append(Comparison(outcome="preloaded", free=free))
             continue
-        # The bound knows rigid members alone.
-        limit = free if loose else _limit(discs, np.array([angle])) * scale + before
+        # The bound knows rigid members in the plane alone.
+        limit = _limit(discs, np.array([angle])) * scale + before if known else free
         for part in (*PARTS, 1e-3) if loose else PARTS:  # what floats in clearances is balanced under more alone
             torque = part * drive.load.torque * np.array([1.0, -1.0])
             try:
@@ -417,7 +424,7 @@ def compare(drive: Drive, crank_angle: FloatArray) -> list[Comparison]:
             turned = abs(float(np.diff(wheel_angle_of_input(model, loaded))[0])) * scale
             overlap = (
                 _pressed(model, loaded)
-                if loose
+                if not known
                 else np.max(
                     [
                         largest_overlap(

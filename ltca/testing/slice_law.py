@@ -42,9 +42,16 @@ def _kernel(slices: int) -> CubicSpline:
 
 
 @cache
-def _softer() -> BSpline:
-    values = json.loads(shipped.TABLE.read_text(encoding="utf-8"))["softer"]
+def _softer_table(slices: int) -> BSpline:
+    values = json.loads(shipped.TABLE.read_text(encoding="utf-8"))["softer"][str(slices)]
     return make_interp_spline(shipped.places(), values, k=5)
+
+
+def _softer(slices: int, place: FloatArray) -> FloatArray:
+    """By how much the end slices are softer at ln(b/l): the table, and straight on beyond it."""
+    table, knots = _softer_table(slices), shipped.places()
+    held = np.clip(place, knots[0], knots[-1])
+    return np.asarray(table(held) + table(held, 1) * (place - held))
 
 
 def pressed_in(load: FloatArray, length: float, modulus: float, radius: FloatArray) -> FloatArray:
@@ -72,7 +79,7 @@ def _together(load: FloatArray, length: float, modulus: float, radius: FloatArra
     lag = np.abs(np.arange(n)[:, None] - np.arange(n))
     form = np.einsum("ci,cij,cj->c", load, kernel[:, lag], load)
     form += ratio**2 / (1.0 + ratio**2) * (np.diff(load, 2, axis=1) ** 2).sum(axis=1)
-    form -= _softer()(np.log(ratio)) * (load[:, 0] ** 2 + load[:, -1] ** 2)
+    form -= _softer(n, np.log(ratio)) * (load[:, 0] ** 2 + load[:, -1] ** 2)
     return np.asarray(form / (2.0 * np.pi * modulus * size))
 
 

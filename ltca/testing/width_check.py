@@ -8,7 +8,14 @@ the answer come the pose, the line loads, and the places and leans of the roller
 
 Checked are the forces along x and y and the moments about x, y and z of every disc; along z nothing presses without friction.
 Then rollers in force and moment, journals, pins, the ring that ties their tips and the wheel on its bearing; and that every line
-load belongs to its gap (`ltca.testing.slice_law`). Rotations are small: what is left out is their square.
+load belongs to its gap (`ltca.testing.slice_law`).
+
+The model is linear in tilts: a gap grows by θ along the width, δ + θ z, and what presses on bodies are the derivatives of the
+energy of such gaps. Sections as they stand tell more: normals turn along the width by n' z + n'' z²/2 …, of which the
+derivatives of the energy have n' in the forces, Σ q (n + n' z), and n alone in the couples, Σ q z n. What sections have beyond
+that, Σ q (n(z) − n − n' z) and Σ q z (n(z) − n), is summed here from n(z) itself and taken off, so that what is left is to vanish
+to Newton's tolerance at any tilt; how much it is, `WidthCheck.left_out` tells: an error of the model, no imbalance. Leans
+themselves are small rotations, by which sections stay circles and heights heights: the square of leans is left out on both sides.
 """
 
 from __future__ import annotations
@@ -32,19 +39,16 @@ from ltca.testing.yielding_pins import beam_stiffness, has_ring
 
 POINTS = 4
 """Points of a slice (Gauss)."""
-SHIFT = 1e-4
-"""Step of the differences that give normals, by the radius of the pin: distances are round-off of 1e-15 of the circle."""
-FORCES = 1e-4
-"""What may be left of forces, by the load of the drive, and of couples by it times half the width: normals along the width differ
-from linear ones by the square of angles of 1e-3."""
-LEFT_OUT = 1e-2
-"""What the model may leave out of couples, by the load of the drive times half the width."""
-ROUND_OFF = 2e-13
-"""Of places, by the radius of the pin circle: pieces of the flank that are followed are known to a thousand round-offs."""
-GAPS = 1e-4
-"""What may be left of an approach, by the largest of its contact."""
-SETTLED = 1e-6
-"""What may be left of displacements of beams, shafts and bearings, by the largest."""
+FORCES = 1e-8
+"""What may be left of forces, by the load of the drive, and of couples by it times half the width: ten times what Newton's method
+leaves (`ltca.equilibrium.newton.TOLERANCE`), beside `ROUND_OFF` of every gap times the stiffness of its contact."""
+ROUND_OFF = 1e-13
+"""Of places, by the radius of the pin circle: some ten terms of a few units of round-off each (2e-16), and displacements of
+beams, a hundredth of the circle at most, from matrices that lose up to four digits."""
+GAPS = 5e-6
+"""What may be left of an approach, by the largest of its contact: the kernels of `ltca.testing.slice_law` and of the laws are
+interpolated to 1e-6 of it each, and what slices press in by differences to 1e-10 of the largest load; effective radii, of whose
+error an approach takes a twentieth, are known to 1e-5, the round-off of second derivatives."""
 
 
 @dataclass(frozen=True)
@@ -68,17 +72,32 @@ class Pressed:
     force : array of complex, shape (parts,)
         On the disc, N.
     couple : array of complex, shape (parts,)
-        Σ z times the load at z along the normal of the middle, N·mm.
-    left_out : array, shape (parts,)
-        What normals along the width would add to it, N·mm.
+        Their moments about x and y: Σ z times the force at z, N·mm.
     turning : array, shape (parts,)
         Moment about z at the centre of the disc, N·mm.
     """
 
     force: ComplexArray
     couple: ComplexArray
-    left_out: FloatArray
     turning: FloatArray
+
+    def __sub__(self, other: Pressed) -> Pressed:
+        """What is between two sums."""
+        return Pressed(self.force - other.force, self.couple - other.couple, self.turning - other.turning)
+
+
+@dataclass(frozen=True)
+class Left:
+    """Something that should vanish, and what may be left of it."""
+
+    what: str
+    left: float
+    bound: float
+    unit: str
+
+    def __str__(self) -> str:
+        """Both in a line."""
+        return f"{self.what}: {self.left:.3g} {self.unit} beside {self.bound:.3g} {self.unit}"
 
 
 class Disc:
@@ -149,31 +168,31 @@ class Disc:
         return Lines(at=places + self.plane * lean + bent, lean=lean + sloped)
 
     @cached_property
-    def on_flank(self) -> tuple[Pressed, FloatArray, FloatArray]:
+    def on_flank(self) -> tuple[tuple[Pressed, Pressed], FloatArray, FloatArray]:
         """What wheel pins press, the gaps at the points, mm, shape (pins, points), and effective radii."""
         line, length = self.answer.leaning_pins.contact.line_load[self.check.position], self.drive.disc.thickness
         load = line.reshape(line.shape[0], -1)
         z, weights = self.heights(length)
         section, (_, radii) = self._seen(self.wheel_pins, np.append(z, 0.0)), self.parts.wheel_pins
-        step, flank = SHIFT * float(radii[0]), DeviatedFlank(self.drive, self.number)
-        ways = step * np.array([0.0, 1.0, -1.0, 1j, -1j])[:, None]
+        flank = DeviatedFlank(self.drive, self.number)
         reach = 2.0 * float(np.max(np.abs(section - section[-1]))) + 1e-3 * float(radii[0])
         # Height by height: pieces of the flank about a pin are as wide as it moves.
-        each = np.stack([flank.approaches(points + ways, radii, reach)[0] for points in section])
-        normal: ComplexArray = np.asarray(
-            (each[:, 1] - each[:, 2] + 1j * (each[:, 3] - each[:, 4])) / (2.0 * step), dtype=complex
-        )
+        each = [flank.contacts(points[None], radii, reach) for points in section]
+        normal = -np.stack([one[2][0] for one in each])
+        there, effective, _ = each[-1]
         # Gaps grow linearly along the width in the model: the square of tilt across the normal is left out.
         seen = (self.wheel_pins.lean - self.lean) * np.conj(self.turn)
-        turned = step * seen / np.maximum(np.abs(seen), 1e-300)
-        there, effective = flank.approaches(section[-1] + turned * np.array([[0.0], [1.0], [-1.0]]), radii, reach)
-        slope = (there[1] - there[2]) / (2.0 * step) * np.abs(seen)
+        slope = (np.conj(normal[-1]) * seen).real
         gap = there[0] + z[:, None] * slope - self.lead(z)[:, None]
         gap -= _fallen(self.drive.pin_wheel.pin_profile, z, length, self.drive.pin_wheel.pin_radius)[:, None]
-        return self._pressed(normal[:-1], normal[-1], load.T * weights[:, None], section[:-1], z), gap.T, effective
+        # Of the path of the centre of a pin that keeps its distance from the flank.
+        flank_bend = 1.0 / effective - 1.0 / radii
+        bend = flank_bend / (1.0 + flank_bend * (radii - there[0]))
+        turned = -bend * 1j * normal[-1] * (np.conj(1j * normal[-1]) * seen).real
+        return self._pressed(normal, load.T * weights[:, None], section, z, turned), gap.T, effective
 
     @cached_property
-    def in_holes(self) -> tuple[Pressed, FloatArray] | None:
+    def in_holes(self) -> tuple[tuple[Pressed, Pressed], FloatArray] | None:
         """What shaft pins press, and the gaps at the points, mm, shape (pins, points)."""
         if self.drive.pin_shaft is None:
             return None
@@ -184,35 +203,42 @@ class Disc:
         _, radii = self.parts.shaft_pins
         errors = disc_own(self.drive, self.number, "hole_errors", self.drive.disc.hole_errors)
         inclined = _leans(errors, holes.size)
-        pin = self._seen(self.shaft_pins, z)
-        apart = pin - holes - z[:, None] * inclined
-        middle = (self.shaft_pins.at - self.centre) * np.conj(self.turn) - holes
+        heights = np.append(z, 0.0)
+        pin = self._seen(self.shaft_pins, heights)
+        apart = pin - holes - heights[:, None] * inclined
+        normal, middle = apart / np.abs(apart), np.abs(apart[-1])
         seen = (self.shaft_pins.lean - self.lean) * np.conj(self.turn) - inclined
-        slope = (np.conj(middle) * seen).real / np.abs(middle)
-        gap = np.abs(middle) - (hole_radii - radii) + z[:, None] * slope
-        normals = apart / np.abs(apart), middle / np.abs(middle)
-        return self._pressed(*normals, load.T * weights[:, None], pin, z), gap.T
+        gap = middle - (hole_radii - radii) + z[:, None] * (np.conj(normal[-1]) * seen).real
+        turned = 1j * normal[-1] * (np.conj(1j * normal[-1]) * seen).real / middle
+        return self._pressed(normal, load.T * weights[:, None], pin, z, turned), gap.T
 
     def _seen(self, lines: Lines, z: FloatArray) -> ComplexArray:
         """Points of axes at heights in the section of the disc there, shape (heights, parts)."""
         return np.asarray((lines.points(z) - self.centre - z[:, None] * self.lean) * np.conj(self.turn))
 
     def _pressed(
-        self, normal: ComplexArray, middle: ComplexArray, load: FloatArray, point: ComplexArray, z: FloatArray
-    ) -> Pressed:
+        self, normal: ComplexArray, load: FloatArray, point: ComplexArray, z: FloatArray, turned: ComplexArray
+    ) -> tuple[Pressed, Pressed]:
         """Sums of loads along normals in the frame of the disc, at points there, as they are in the fixed frame.
 
-        A gap that grows linearly along the width has couples along the normal of the middle: with normals along the width belongs
-        the square of the tilt across them, which the model leaves out.
+        Normals and points are those at the heights and, last, in the middle, where normals turn by `turned` per height. Second
+        comes what the sums have that is no derivative of the energy of gaps which grow linearly along the width, δ + θ z: forces
+        of the square and couples of the first power of what normals turn by along it.
         """
-        push = normal * load
-        by_height = (z[:, None] * load).sum(axis=0)
-        return Pressed(
+        push, middle, arm = normal[:-1] * load, normal[-1], point[-1]
+        total, tilting = load.sum(axis=0), (z[:, None] * load).sum(axis=0)
+        arm_turned = (point[:-1] - arm)[-1] / z[-1]
+        exact = Pressed(
             force=push.sum(axis=0) * self.turn,
-            couple=by_height * middle * self.turn,
-            left_out=np.abs((z[:, None] * push).sum(axis=0) - by_height * middle),
-            turning=(np.conj(point) * push).imag.sum(axis=0),
+            couple=(z[:, None] * push).sum(axis=0) * self.turn,
+            turning=(np.conj(point[:-1]) * push).imag.sum(axis=0),
         )
+        linear = Pressed(
+            force=(total * middle + tilting * turned) * self.turn,
+            couple=tilting * middle * self.turn,
+            turning=(np.conj(arm) * (total * middle + tilting * turned) + np.conj(arm_turned) * tilting * middle).imag,
+        )
+        return exact, exact - linear
 
     def lead(self, z: FloatArray) -> FloatArray:
         """By how much the flank falls short, mm."""
@@ -259,26 +285,30 @@ class Disc:
             profile = drive.crank_bearing.roller_profile
             fallen = _fallen(profile, z, length, drive.crank_bearing.roller_radius)
             pressed_inner, pressed_outer = pressed_inner - fallen, pressed_outer - fallen
-            # Free rollers stand and lean as they like: both gaps together are open.
-            free, between = (state.outer_load[row, own] <= 0.0)[:, None], 0.5 * (pressed_inner + pressed_outer)
+            # A free roller stands and leans as it likes: what is left between race and bore along its ray is open.
+            moved, play = in_bore - race, bore - radii
+            touching = (np.conj(ray) * moved).real + np.sqrt(play**2 - (np.conj(ray) * moved).imag ** 2)
+            between = (inner_race + radii - touching)[:, None]
+            between = 0.5 * (between + np.outer((np.conj(ray) * (race_lean - self.lean)).real, z)) - fallen
+            free = (state.outer_load[row, own] <= 0.0)[:, None]
             found["gap"].append((np.where(free, between, pressed_inner), np.where(free, between, pressed_outer)))
             found["radius"].append((1.0 / (1.0 / radii + 1.0 / inner_race), 1.0 / (1.0 / radii - 1.0 / bore)))
             found["load"].append((inner_slices[own], outer_slices[own]))
             inner, outer = inner_slices[own].sum(axis=1), outer_slices[own].sum(axis=1)
             middle = inner - outer * (np.conj(ray) * normal).real
             found["left"].append((middle, state.inner_moment[row, own] - state.outer_moment[row, own]))
-            # The lever of a slice is where its load stands, which the gap along it knows.
+            # Rollers lean along their rays in the model, and so do the couples that belong to their gaps.
             force = (outer * normal).sum()
-            couple = (state.outer_moment[row, own] * normal).sum()
+            couple = (state.outer_moment[row, own] * ray).sum()
             found["force"].append(force)
             found["couple"].append(couple)
             # By the angle of the crank the race moves and the cage turns with its rays.
             speed = inner_race / (inner_race + self.drive.crank_bearing.outer_race_radius)
-            moved = 1j * self.parts.eccentrics[crank] * np.exp(1j * self.twist[crank]) + speed * 1j * place * ray
-            found["crank"] += float((outer * (np.conj(normal) * moved).real).sum())
+            turned = 1j * self.parts.eccentrics[crank] * np.exp(1j * self.twist[crank]) + speed * 1j * place * ray
+            found["crank"] += float((outer * (np.conj(normal) * turned).real).sum())
             seen = (np.conj(1j * ray) * (race_lean - self.lean)).real
             found["crank"] += float(speed * (state.outer_moment[row, own] * seen).sum())
-            # Rollers lean along their rays, couples in the bore press along its normals.
+            # In the bore they press along its normals.
             found["left out"] += float((np.abs(state.outer_moment[row, own]) * np.abs(normal - ray)).sum())
             turning += float((np.conj(self.parts.bores[crank] * self.turn) * force).imag)
         found["turning"] = turning
@@ -364,39 +394,85 @@ class WidthCheck:
 
     def problems(self, torque: float | None) -> list[str]:
         """Return what does not hold."""
-        moment, drive = float(self.balanced.wheel_moment[self.position]), self.drive
-        lever = drive.crank.eccentricity * float(drive.reduction_ratio)
-        load, half = abs(moment) / lever, 0.5 * drive.disc.thickness
-        found: list[str] = []
+        return [str(each) for each in self.measured(torque) if not each.left <= each.bound]
+
+    def measured(self, torque: float | None) -> list[Left]:
+        """Return all that should vanish, with its bound."""
+        drive, found = self.drive, list[Left]()
+        half, lever = 0.5 * drive.disc.thickness, self.lever
 
         def told(what: str, left: float, bound: float, unit: str) -> None:
-            if not left <= bound:
-                found.append(f"{what}: {left:.3g} {unit} beside {bound:.3g} {unit}")
+            found.append(Left(what, float(left), float(bound), unit))
 
         for disc in self.each:
             name = f"disc {disc.number}"
             pressed, gap, radius = disc.on_flank
             kinds = [pressed, *([] if disc.in_holes is None else [disc.in_holes[0]])]
             rollers = disc.of_rollers
-            force = sum(one.force.sum() for one in kinds) + sum(rollers["force"])
-            couple = sum(one.couple.sum() for one in kinds) + sum(rollers["couple"])
-            turning = sum(one.turning.sum() for one in kinds) + rollers["turning"]
-            carried = sum(float(np.abs(one.force).sum()) for one in kinds) + load
-            told(f"{name}: forces along x and y left", abs(force), FORCES * carried, "N")
-            slanted = rollers["left out"]
-            told(f"{name}: moments about x and y left", abs(couple), FORCES * carried * half + slanted, "N·mm")
-            beside = sum(one.left_out.sum() for one in kinds) + slanted
-            told(f"{name}: moments that the model leaves out", beside, LEFT_OUT * carried * half, "N·mm")
-            told(f"{name}: moment about z left", abs(turning), FORCES * carried * lever, "N·mm")
-            pushed = -np.concatenate([one.force for one in kinds])
+            force = sum(one.force.sum() for one, _ in kinds) + sum(rollers["force"])
+            couple = sum(one.couple.sum() for one, _ in kinds) + sum(rollers["couple"])
+            turning = sum(one.turning.sum() for one, _ in kinds) + rollers["turning"]
+            for _, steep in kinds:
+                force, couple, turning = (
+                    force - steep.force.sum(),
+                    couple - steep.couple.sum(),
+                    turning - steep.turning.sum(),
+                )
+            bound = self.known
+            told(f"{name}: forces along x and y left", abs(force), bound, "N")
+            told(f"{name}: moments about x and y left", abs(couple), bound * half, "N·mm")
+            told(f"{name}: moment about z left", abs(turning), bound * lever, "N·mm")
+            pushed = -np.concatenate([one.force - steep.force for one, steep in kinds])
             off = _most(pushed - disc.answer.pin_forces[self.position])
-            told(f"{name}: force on a pin beside what presses on the disc", off, FORCES * carried, "N")
+            told(f"{name}: force on a pin beside what presses on the disc", off, bound, "N")
+            tilted = -np.concatenate([one.couple - steep.couple for one, steep in kinds])
+            off = _most(tilted - disc.answer.pin_moments[self.position])
+            told(f"{name}: moment on a pin beside what presses on the disc", off, bound * half, "N·mm")
             self._laws(disc, gap, radius, told, name)
             for force_left, moment_left in rollers["left"]:
-                told(f"{name}: force left on a roller", _most(force_left), 1e-8 * carried, "N")
-                told(f"{name}: moment left on a roller", _most(moment_left), 1e-8 * carried * half, "N·mm")
-        self._members(told, load, torque)
+                told(f"{name}: force left on a roller", _most(force_left), bound, "N")
+                told(f"{name}: moment left on a roller", _most(moment_left), bound * half, "N·mm")
+        self._members(told, torque)
         return found
+
+    @property
+    def left_out(self) -> tuple[float, float]:
+        """What linear tilts leave out on the disc where it is most: of forces, by the loads of its pins and that of the drive,
+        and of moments about x and y, by these times half the width.
+        """
+        forces, moments = [], []
+        for disc in self.each:
+            kinds = [disc.on_flank[0], *([] if disc.in_holes is None else [disc.in_holes[0]])]
+            carried = self.load + sum(float(np.abs(one.force).sum()) for one, _ in kinds)
+            forces.append(sum(float(np.abs(steep.force).sum()) for _, steep in kinds) / carried)
+            beside = disc.of_rollers["left out"] + sum(float(np.abs(steep.couple).sum()) for _, steep in kinds)
+            moments.append(beside / (0.5 * self.drive.disc.thickness * carried))
+        return max(forces), max(moments)
+
+    @property
+    def lever(self) -> float:
+        """Lever of a load of the drive, mm."""
+        return self.drive.crank.eccentricity * float(self.drive.reduction_ratio)
+
+    @property
+    def load(self) -> float:
+        """Load of the drive, T/(e z_P), N."""
+        return abs(float(self.balanced.wheel_moment[self.position])) / self.lever
+
+    @cached_property
+    def known(self) -> float:
+        """How well forces are known, N: Newton's method leaves some on any disc, and gaps are known to round-off."""
+        row, total = self.position, 0.0
+        # E* L bounds the stiffness of a line that is longer than wide; a roller has two in series.
+        softer = 0.5 * min(contact_moduli(self.drive)[name] for name in ("inner", "outer")) * self.drive.roller_length
+        for disc in self.each:
+            answer = disc.answer
+            stiffness = softer * int((answer.rollers.outer_load[row] > 0.0).sum())
+            for pairs in (answer.leaning_pins, answer.leaning_holes):
+                stiffness += float(pairs.contact.by_approach[row].sum())
+            carried = self.load + float(answer.pin_load[row].sum() + answer.hole_load[row].sum())
+            total += FORCES * carried + ROUND_OFF * self.drive.pin_wheel.pin_circle_radius * stiffness
+        return total
 
     def _laws(self, disc: Disc, gap: FloatArray, radius: FloatArray, told: Any, name: str) -> None:
         """Whether line loads belong to gaps."""
@@ -404,9 +480,11 @@ class WidthCheck:
         thick, long = drive.disc.thickness, drive.roller_length
         rounding = ROUND_OFF * drive.pin_wheel.pin_circle_radius
         pins, holes = disc.answer.leaning_pins.contact, disc.answer.leaning_holes.contact
-        off = _off(pins.line_load[row], pins.slice_load[row], gap, thick, parts["flank"], radius, rounding)
-        told(f"{name}: gap of a wheel pin beside its line load", off, GAPS, "of its approach")
-        if disc.in_holes is not None:
+        # Of loose pins and sleeves gaps are those of both sides of the seat.
+        if drive.pin_wheel.seat.kind == "fixed":
+            off = _off(pins.line_load[row], pins.slice_load[row], gap, thick, parts["flank"], radius, rounding)
+            told(f"{name}: gap of a wheel pin beside its line load", off, GAPS, "of its approach")
+        if disc.in_holes is not None and drive.pin_shaft is not None and drive.pin_shaft.seat.kind == "fixed":
             law: Any = self.model.discs[disc.number].hole_law  # type: ignore[attr-defined]
             line, there = holes.line_load[row], disc.in_holes[1]
             if hasattr(law, "contact_modulus"):
@@ -426,7 +504,7 @@ class WidthCheck:
                 off = _off(None, loads[kind], gaps[kind], long, modulus, radii[kind], rounding)
                 told(f"{name}: load of a slice of a roller {where} beside its gap", off, GAPS, "of the largest")
 
-    def _members(self, told: Any, load: float, torque: float | None) -> None:
+    def _members(self, told: Any, torque: float | None) -> None:
         """Journals, wheel, ring of tips and the torque of the output."""
         drive, planes = self.drive, np.asarray(self.drive.disc.disc_planes)
         half = 0.5 * drive.disc.thickness
@@ -442,39 +520,41 @@ class WidthCheck:
             )
             moved[self.discs :] *= half
             size = float(np.max(np.abs(stands)))
-            # As the forces are known to a ten-thousandth.
-            bound = 3e-4 * size + ROUND_OFF * drive.pin_wheel.pin_circle_radius
+            bound = FORCES * size + ROUND_OFF * drive.pin_wheel.pin_circle_radius
             told(f"crank {crank}: displacement or slope of a journal off", _most(np.abs(moved - stands)), bound, "mm")
         outside, tilting = outside_on_wheel(drive, self.crank_angle), self._tilting_outside()
-        wheel = np.array([-disc.on_flank[0].force.sum() for disc in self.each])
-        couples = np.array([-disc.on_flank[0].couple.sum() for disc in self.each])
-        carried = load + sum(float(np.abs(disc.on_flank[0].force).sum()) for disc in self.each)
+        flanks = [one - steep for one, steep in (disc.on_flank[0] for disc in self.each)]
+        wheel = np.array([-one.force.sum() for one in flanks])
+        couples = np.array([-one.couple.sum() for one in flanks])
+        bound = self.known
         lean = (planes * wheel).sum() + couples.sum() + tilting
         held, against = self._wheel_bearing()
         if held is not None:
-            told("force left on the wheel", abs(wheel.sum() + outside - held), FORCES * carried, "N")
+            told("force left on the wheel", abs(wheel.sum() + outside - held), bound, "N")
         if drive.wheel_tilts:
             arm = half + float(np.max(np.abs(planes)))
-            told("moments about x and y left on the wheel", abs(lean - against), FORCES * carried * arm, "N·mm")
+            told("moments about x and y left on the wheel", abs(lean - against), bound * arm, "N·mm")
         turning = 0.0
-        for disc in self.each:
+        for disc, pressed in zip(self.each, flanks, strict=True):
             axis = disc.parts.wheel_axis + disc.plane * (_lean(drive.pin_wheel.inclination) + self.wheel_lean)
             axis += self.wheel_place
-            pressed = disc.on_flank[0]
+            # About the axis of the wheel, from which that of the disc departs along the width.
+            apart = np.conj(disc.lean - self.wheel_lean - _lean(drive.pin_wheel.inclination))
             turning -= float(pressed.turning.sum() + (np.conj(disc.centre - axis) * pressed.force.sum()).imag)
-        lever = drive.crank.eccentricity * float(drive.reduction_ratio)
-        told("moment about z left on the wheel", abs(turning + moment), FORCES * carried * lever, "N·mm")
+            turning -= float((apart * pressed.couple.sum()).imag)
+        told("moment about its axis left on the wheel", abs(turning + moment), bound * self.lever, "N·mm")
         if self.ring is not None and drive.posts is None:
-            self._floating_ring(told, carried)
+            self._floating_ring(told, bound)
         if torque is not None and (drive.crank.number == 1 or not drive.wheel_is_held):
             output = drive.driving_sign * torque
             left = moment + output
             if drive.wheel_is_held:
                 left += sum(disc.of_rollers["crank"] for disc in self.each)
-                left -= (np.conj(self.wheel_place) * outside).imag
-            told("torque of the output off", abs(left), 1e-3 * abs(output), "N·mm")
+                # Forces from outside turn where they press the displaced wheel, which leans.
+                left += (np.conj(self.wheel_place) * outside + np.conj(self.wheel_lean) * tilting).imag
+            told("torque of the output off", abs(left), bound * self.lever, "N·mm")
 
-    def _floating_ring(self, told: Any, carried: float) -> None:
+    def _floating_ring(self, told: Any, bound: float) -> None:
         """Forces of the tips on the ring, which nothing else holds."""
         drive, count = self.drive, 2 * self.discs
         assert drive.pin_shaft is not None
@@ -484,8 +564,8 @@ class WidthCheck:
         tips = (stiffness[count:, :count] @ bent + stiffness[count:, count:] @ self._tips[None])[0]
         places, _ = ActualParts(drive, 0.0).shaft_pins
         turning = float((np.conj(places) * tips).imag.sum())
-        told("force left on the ring of the tips", abs(tips.sum()), FORCES * carried, "N")
-        told("moment left on the ring of the tips", abs(turning), FORCES * carried * float(np.abs(places[0])), "N·mm")
+        told("force left on the ring of the tips", abs(tips.sum()), bound, "N")
+        told("moment left on the ring of the tips", abs(turning), bound * float(np.abs(places[0])), "N·mm")
 
     def _wheel_bearing(self) -> tuple[complex | None, complex]:
         """Force that the main bearing carries, N, and what presses its lean, N·mm."""
@@ -536,8 +616,8 @@ def find_imbalance_in_slices(
 ) -> list[str]:
     """Return what does not hold of contacts in slices at a position of a solution; empty for an equilibrium.
 
-    Arguments are those of `ltca.testing.balance_check.find_imbalance`. Friction, seats, an elastic ring, a carrier on posts and
-    teeth of a first stage are not known here.
+    Arguments are those of `ltca.testing.balance_check.find_imbalance`. Friction, an elastic ring, a carrier on posts and teeth
+    of a first stage are not known here, and gaps of loose pins and sleeves beside their loads are not checked.
     """
     if not np.all(np.isfinite(balanced.pose[position])):
         return ["the pose is not finite"]
@@ -601,7 +681,9 @@ def _off(
 ) -> float:
     """Largest difference of gap and what plane strain and the coupling of the slices make of the line load, by the gap.
 
-    `rounding` is that of places, mm. Without line loads slices are compared: loads of plane strain at the gaps left.
+    `rounding` is that of places, mm: what it makes of a gap or, times E* L, of a load, which bounds the stiffness of a line, is
+    no difference. Without line loads slices are compared: loads of plane strain at the gaps left. Contacts that the answer has
+    open are wrong where they overlap by more than round-off.
     """
     on = slices.sum(axis=1) > 0.0
     if not on.any():

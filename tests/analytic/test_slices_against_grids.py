@@ -10,10 +10,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ltca.contact.length_profile import CircularCrown, SummedProfile
 from ltca.contact.tilted_grid import press_tilted
 from ltca.contact.tracked_grid import ContactKind, Separation
-from ltca.laws.sliced_line import SlicedLine, slice_heights
+from ltca.geometry.length_profile import CircularCrown, SummedProfile
+from ltca.laws.sliced_contact import slice_heights
+from ltca.laws.sliced_line import SlicedLine
 from ltca.laws.width_pressure import estimate_along_width, solve_along_width
 
 LENGTH, MODULUS, DEEP = 12.0, 115e3, 3e-3
@@ -58,7 +59,7 @@ def compare(radius, slices, approach, tilt, drop=0.0):
         pytest.param(9, 1.0, 2.0, id="three quarters of the line"),
         pytest.param(9, 0.0, 1.0, id="half of the line"),
         pytest.param(17, -1.0, 2.0, id="a quarter, seventeen slices"),
-        pytest.param(33, -1.5, 2.0, id="an eighth, thirty-three slices"),
+        pytest.param(49, -1.5, 2.0, id="an eighth, forty-nine slices"),
     ],
 )
 def test_straight_lines(radius, slices, approach, tilt):
@@ -98,6 +99,7 @@ def test_corners_of_fewer_than_four_slices_are_too_soft(radius):
 @pytest.mark.parametrize(("approach", "tilt", "drop"), [(0.0, 1.0, 0.0), (-1.0, 2.0, 0.0), (1.0, 0.5, 1.0)])
 def test_more_slices_come_closer(approach, tilt, drop):
     errors = [np.max(np.abs(compare(3.0, slices, approach, tilt, drop)[:2])) for slices in (5, 9, 17)]
-    # Order one at least, two at crowns: half of the error with twice the slices, down to what the grids leave open.
-    assert errors[1] < 0.85 * errors[0]
-    assert errors[2] < 0.6 * errors[1]
+    # Order one at least: half of the error with twice the slices, twice, down to what the grids leave open. Of a single contact
+    # one step may bring little: it is where its end falls within a slice (`test_sliced_line.test_tilted_lines_converge`).
+    assert errors[1] < errors[0]
+    assert errors[2] < 0.5 * errors[0]

@@ -45,7 +45,7 @@ def test_memory_that_is_not_there(words, free, option, tmp_path, capsys, monkeyp
 def test_memory_of_slices_is_told_before():
     """Slices take six times the memory of the plane and more; the estimate is at most three times what it takes."""
     drive = with_fields(load_drive("paper").cases["CS-1"], {"contact.slices": 9})
-    positions = position_angles(40)
+    positions = position_angles(12)
     analyse(drive, positions[:4])  # what is made once
     tracemalloc.start()
     try:
@@ -64,7 +64,7 @@ def test_memory_is_told_before(ring):
     """
     drive = load_drive("robot-joint").cases["nominal"]
     drive = drive if ring is None else with_fields(drive, {"ring": ring})
-    positions = position_angles(40)
+    positions = position_angles(12)
     analyse(drive, positions[:4])  # what is made once
     tracemalloc.start()
     try:

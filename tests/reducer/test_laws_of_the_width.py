@@ -161,9 +161,9 @@ def test_work_of_a_small_turn_of_the_wheel_is_that_of_its_moment(held):
     found = solve_at_output(model, [drive], ANGLES[:1], drive.load.torque)
 
     def energy(pose):
-        part = model.respond(ANGLES[:1], pose).parts[0]
-        stored = part.leaning_pins.contact.energy.sum() + part.leaning_holes.contact.energy.sum()
-        return float(stored)
+        part, disc = model.respond(ANGLES[:1], pose).parts[0], model.discs[0]
+        on_pins = disc.laws(part.flank, None).pins.energy(part.leaning_pins.contact, part.flank.effective_radius)
+        return float(on_pins.sum() + disc.hole_law.energy(part.leaning_holes.contact, 0.0).sum())
 
     ends = []
     for side in (1.0, -1.0):

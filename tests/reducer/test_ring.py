@@ -345,6 +345,7 @@ def test_derivatives_by_fields_of_the_ring():
         np.testing.assert_allclose(found.sel(field=path).values.squeeze(), slope, atol=1e-4 * np.abs(slope).max())
 
 
+@pytest.mark.slow
 def test_a_soft_ring_settles_by_its_step():
     """A plastic ring 6 mm high: what is left of displacements is its flexibility times the round-off of loads, 1e-10 mm; told not
     to settle, or after 300 iterations, before."""
@@ -357,6 +358,7 @@ def test_a_soft_ring_settles_by_its_step():
     drive = with_fields(
         load_drive("robot-joint").cases["nominal"], {"ring": ring, "load.torque": 2e4, "load.light_torque": 600.0}
     )
-    found = solve_at_output(HalfSpace().prepare(drive).model, [drive], np.array([1.2]), drive.load.torque)
+    model = HalfSpace().prepare(drive).model
+    found = solve_at_output(model, [drive], np.array([1.2]), drive.load.torque)
     assert found.iterations[0] < 50
-    assert find_imbalance(drive, HalfSpace().prepare(drive).model, found, torque=drive.load.torque) == []
+    assert find_imbalance(drive, model, found, torque=drive.load.torque) == []

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from ltca.contact.hertz import line_half_width, line_peak_pressure
-from ltca.contact.length_profile import LogarithmicRelief
 from ltca.drive.parts import Material, contact_modulus
+from ltca.geometry.length_profile import LogarithmicRelief
 from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.profiled_line_contact import ProfiledLineContactLaw, solve_profiled_patch
 

@@ -9,10 +9,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ltca.contact.length_profile import CircularCrown, SummedProfile
 from ltca.contact.tilted_grid import press_tilted
 from ltca.contact.tracked_grid import ContactKind, Separation
-from ltca.laws.sliced_line import SlicedLine, slice_heights
+from ltca.geometry.length_profile import CircularCrown, SummedProfile
+from ltca.laws.sliced_contact import slice_heights
+from ltca.laws.sliced_line import SlicedLine
 from ltca.laws.width_pressure import estimate_along_width, solve_along_width
 
 tamaas = pytest.importorskip("tamaas", reason="tamaas (pip install cyclo-ltca[referee]) is not installed")

@@ -24,10 +24,10 @@ from fem.options import SolutionOptions
 from fem.referee.calculix import ask_calculix
 from fem.referee.calculix_deck import PENALTY_FACTOR, find_calculix, pair_name, write_deck
 from ltca.arrays import FloatArray
-from ltca.contact.length_profile import LogarithmicRelief
 from ltca.drive.materials import elastic_alone
 from ltca.drive.parts import Drive, Material, contact_modulus
 from ltca.errors import CycloError
+from ltca.geometry.length_profile import LogarithmicRelief
 from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.profiled_line_contact import ProfiledLineContactLaw
 from ltca.reading.drive_file import load_drive

@@ -29,9 +29,9 @@ from typing import Protocol
 import numpy as np
 
 from ltca.arrays import FloatArray
-from ltca.contact.length_profile import Relief
+from ltca.compliance import sliced
 from ltca.contact.pressure_cells import PatchGrid, PatchSolution, expected_half_width, solve_patch
-from ltca.laws.sliced_line import SlicedLine, slice_heights
+from ltca.geometry.length_profile import Relief
 
 LAMINAE = 31
 """n_s, odd: one in the middle and pairs beside it."""
@@ -181,11 +181,11 @@ class SolvedLaminae:
 
     def slice_shares(self, load: FloatArray, slices: int) -> FloatArray:
         """Return what the law of slices gives each of them, interpolated between loads."""
-        law = SlicedLine(
+        law = sliced.SlicedLine(
             length=self.length,
             contact_modulus=self.contact_modulus,
             slices=slices,
-            relief=np.zeros_like(slice_heights(self.length, slices)),
+            relief=np.zeros_like(sliced.slice_heights(self.length, slices)),
         )
         rungs = self._height * APPROACH_RATIO ** np.array(RUNGS)
         found = law.respond(rungs, np.zeros(rungs.size), np.full(rungs.size, self.effective_radius))

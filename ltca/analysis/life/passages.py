@@ -10,9 +10,9 @@ import numpy as np
 from ltca.analysis.life.laminae import EvenLaminae, Laminae, SolvedLaminae
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.arrays import FloatArray
-from ltca.contact.length_profile import generator_profile
 from ltca.drive.parts import Drive, contact_modulus
 from ltca.geometry.coordinates import DISC_ROTATION
+from ltca.geometry.length_profile import generator_profile
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -10,7 +10,6 @@ places       Where a quantity is largest: part and crank angle
 assembly     Plays at temperature; deflections of bearings and supports against the clearance
 duty         Entries of a duty that ask more than the load
 values       What is judged: values with the part and the crank angle where they are reached
-lead_crown   The crown of the flank that takes the load off the ends of the contacts
 advice       Which inputs drive a value, and how much of which would mend it
 lead_crown   The crown of the flank that takes the load off the ends of the contacts
 drive_check  The verdict on one drive: checks, advice and notes together

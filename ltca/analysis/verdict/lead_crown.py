@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
+from math import inf
 
 import numpy as np
 
 from ltca.analysis.loaded_analysis import analyse, analyse_cases
 from ltca.arrays import FloatArray
+from ltca.compliance.response import ContactPressures
 from ltca.drive.parts import Drive
-from ltca.errors import ConvergenceError
+from ltca.drive.single_discs import single_discs
+from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.placement import position_angles
 from ltca.reading.changes import with_fields
 
@@ -54,32 +58,67 @@ class LeadCrown:
         )
 
 
-def best_lead_crown(drive: Drive, torque: float) -> LeadCrown | None:
-    """Return the crown of the flank with the least largest pressure at an output torque, N·mm; None where nothing balances.
+def best_lead_crown(
+    drive: Drive, torque: float, within: tuple[float, float] = (0.0, inf), most_mid: float = inf
+) -> LeadCrown | None:
+    """Return the crown of the flank with the least largest pressure at an output torque, N·mm; None where nothing balances, and
+    where discs have crowns that differ.
 
-    A ladder of drops, then twice the middles between the best and its neighbours.
+    A ladder of drops, then twice the middles between the best and its neighbours; only drops `within` two, mm, are tried. Crowns
+    press the middle of the line more: those beyond `most_mid` there, MPa, are taken only where none is below.
     """
     angle = position_angles(POSITIONS) + OFFSET
-    now = drive.disc.lead_crown_drop
+    of_discs = {single.disc.lead_crown_drop for single in single_discs(drive)}
+    if len(of_discs) > 1:
+        return None
+    (now,) = of_discs
     try:
         near = analyse(drive, angle, torque)
     except ConvergenceError:
         return None
-    pressures = {now: float(np.max(near.pressures.pins.largest))}
+    pressures = {now: _largest_and_mid(near.pressures)}
+
+    def worth(drop: float) -> tuple[float, float]:
+        largest, mid = pressures[drop]
+        return max(mid - most_mid, 0.0), largest
+
     deepest = float(np.max(near.full.response.flank.approach))
-    _try(drive, [part * deepest for part in LADDER], torque, angle, pressures)
+    _try(drive, sorted({float(np.clip(part * deepest, *within)) for part in LADDER}), torque, angle, pressures)
     for _ in range(2):
         drops = np.array(sorted(pressures))
-        best = int(np.argmin([pressures[drop] for drop in drops.tolist()]))
+        best = int(np.searchsorted(drops, min(pressures, key=worth)))
         low, high = drops[max(best - 1, 0)], drops[min(best + 1, drops.size - 1)]
         _try(drive, [0.5 * (low + drops[best]), 0.5 * (drops[best] + high)], torque, angle, pressures)
-    least = min(pressures, key=lambda drop: pressures[drop])
-    return LeadCrown(drop=least, now=now, pressure=pressures[least], pressure_now=pressures[now])
+    least = min(pressures, key=worth)
+    return LeadCrown(drop=least, now=now, pressure=pressures[least][0], pressure_now=pressures[now][0])
 
 
-def _try(drive: Drive, drops: Sequence[float], torque: float, angle: FloatArray, pressures: dict[float, float]) -> None:
+def _largest_and_mid(pressures: ContactPressures) -> tuple[float, float]:
+    """Largest pressures of the flank anywhere and at mid-width, MPa."""
+    return float(np.max(pressures.pins.largest)), float(np.nanmax(pressures.pins.mid))
+
+
+def _try(
+    drive: Drive, drops: Sequence[float], torque: float, angle: FloatArray, pressures: dict[float, tuple[float, float]]
+) -> None:
     """Add the largest pressures at some drops, of drives that balance."""
-    drives = {f"{drop:.17g}": with_fields(drive, {FIELD: drop}) for drop in drops if drop not in pressures}
-    for name, found in analyse_cases(drives, angle, torque):
-        if not isinstance(found, ConvergenceError):
-            pressures[float(name)] = float(np.max(found.pressures.pins.largest))
+    drives = {}
+    for drop in drops:
+        if drop not in pressures:
+            with suppress(DriveError):  # beyond the bound of the field
+                drives[f"{drop:.17g}"] = _crowned(drive, drop)
+    groups = [drives]
+    while groups:
+        group = groups.pop()
+        try:
+            for name, found in analyse_cases(group, angle, torque):
+                if not isinstance(found, ConvergenceError):
+                    pressures[float(name)] = _largest_and_mid(found.pressures)
+        except DriveError:  # contacts too wide for their bodies: one of the crowns is no choice
+            groups += [{name: each} for name, each in group.items()] if len(group) > 1 else []
+
+
+def _crowned(drive: Drive, drop: float) -> Drive:
+    """The drive with a crown of all its discs."""
+    own = [number for number, one in enumerate(drive.disc.of, start=1) if one.lead_crown_drop is not None]
+    return with_fields(drive, {FIELD: drop} | {f"disc.of.{number}.lead_crown_drop": drop for number in own})

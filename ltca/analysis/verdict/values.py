@@ -142,9 +142,7 @@ def _of_tilt(analysis: LoadedAnalysis) -> Iterator[Value]:
     play = analysis.drive.disc.axial_play
     if play is not None:
         rims = [model.geometry.profile.tip_radius for model in analysis.model.discs]
-        taken = 2.0 * float(np.max(rims)) * tilt
-        taken = np.divide(taken, play, out=np.where(taken > 0.0, np.inf, 0.0), where=play > 0.0)
-        yield largest_value(analysis, "axial_play_taken", taken, "")
+        yield largest_value(analysis, "axial_play_taken", 2.0 * float(np.max(rims)) * tilt / play, "")
 
 
 STIFF_PINS = 10.0
@@ -155,7 +153,7 @@ def notes(analysis: LoadedAnalysis) -> list[str]:
     """Return what to know beside the checks, one sentence each: warnings, odd sizes, pins that dwarf the disc."""
     drive, shaft = analysis.drive, analysis.drive.pin_shaft
     found = [*analysis.warnings, *odd_proportions(analysis.as_written), yielding_parts(drive).words]
-    found += [words for words in (analysis.engine_words, analysis.hole_words) if words]
+    found += [words for words in (analysis.engine_words, analysis.width_words, analysis.hole_words) if words]
     if shaft is not None and shaft.stiffness is not None and analysis.engine.compliance == "half-space":
         disc = drive.materials.disc.youngs_modulus * drive.disc.thickness
         if shaft.stiffness > STIFF_PINS * disc:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -118,7 +118,7 @@ def solve_and_write(task: RunTask, out: Path) -> int:
     print(run_table(analyses, summaries, lives, loads if others else {}))
     print("\n".join([*whose_stiffness(analyses), *lives_told(lives), *sampling]))
     if task.page:
-        told = [*sampling, *dict.fromkeys(f"warning: {one}" for each in proportions.values() for one in each)]
+        told = [*sampling, *(f"warning: {one}" for one in told_of_cases(proportions))]
         with steps() as show:
             show("page")
             files.append(_write_page(task, analyses, dataset, summaries, checks, lives, told, out))
@@ -209,7 +209,7 @@ def _verdicts(checks: dict[str, list[Check]], proportions: dict[str, list[str]])
     width = max(map(len, checks))
     told = ["verdict, with the check nearest to its limit"]
     told += [f"  {name:<{width}}  {verdict_line(each)}" for name, each in checks.items()]
-    told += [f"  note: {note}" for note in dict.fromkeys(note for each in proportions.values() for note in each)]
+    told += [f"  note: {note}" for note in told_of_cases(proportions)]
     return "\n".join([*told, "  every check, what drives it and would mend it: cyclo check", ""])
 
 
@@ -242,20 +242,32 @@ def _sampling(analyses: Analyses, summaries: Summaries, angles: FloatArray) -> l
     parts = [part for case in summaries.values() if (part := with_residual_part(case)["residual_part"]) is not None]
     if parts:
         lines[0] += f"; forces balance within {max(parts):.1e} of the largest bearing load"
-    lines += sorted({words for one in analyses.values() for words in (one.engine_words, one.hole_words)} - {""})
-    warnings = {
-        warning
-        for analysis in analyses.values()
-        for warning in (
-            sampling_warning(analysis.drive, angles),
-            relieved_rows_warning(analysis),
-            *analysis.warnings,
-        )
-        if warning is not None
-    }
-    # Told before the work began.
-    warnings -= {warning for one in analyses.values() for warning in unit_warnings(one.as_written, one.torque)}
-    for name, case in summaries.items():
-        if whole and analyses[name].is_complete and case["refined_max_pin_load_N"] is None:
-            warnings.add(f"extremes of case {name} are those of its positions: one between them has no answer")
-    return [*lines, *(f"warning: {text}" for text in sorted(warnings))]
+    lines += sorted(
+        {words for one in analyses.values() for words in (one.engine_words, one.width_words, one.hole_words)} - {""}
+    )
+    warnings: dict[str, list[str]] = {}
+    for name, analysis in analyses.items():
+        found = [sampling_warning(analysis.drive, angles), relieved_rows_warning(analysis), *analysis.warnings]
+        if whole and analysis.is_complete and summaries[name]["refined_max_pin_load_N"] is None:
+            found.append("extremes are those of the positions: one between them has no answer")
+        before = unit_warnings(analysis.as_written, analysis.torque)  # told before the work began
+        warnings[name] = [warning for warning in found if warning is not None and warning not in before]
+    return [*lines, *(f"warning: {text}" for text in told_of_cases(warnings))]
+
+
+def told_of_cases(texts: Mapping[str, Sequence[str]]) -> list[str]:
+    """Return texts of cases with the names of those that each is about, none where it is about all of them.
+
+    Examples
+    --------
+    >>> told_of_cases({"CS-1": ["few positions", "edges"], "CS-2": ["few positions"], "CS-3": ["few positions"]})
+    ['few positions', 'case CS-1: edges']
+    >>> told_of_cases({"CS-1": ["edges"], "CS-2": [], "CS-3": ["edges"]}), told_of_cases({"CS-1": ["edges"]})
+    (['cases CS-1, CS-3: edges'], ['edges'])
+    """
+    found = []
+    for text in dict.fromkeys(text for each in texts.values() for text in each):
+        of = [name for name, each in texts.items() if text in each]
+        named = f"case{'s' * (len(of) > 1)} {', '.join(of)}: " if len(of) < len(texts) else ""
+        found.append(named + text)
+    return found

@@ -18,7 +18,7 @@ from typing import Literal
 from ltca.drive.materials import Material
 from ltca.drive.members.limits import SENSES, Limit
 from ltca.drive.parts import Drive
-from ltca.quantities import LIMITED
+from ltca.quantities import LIMITED, NEED_SLICES
 
 Verdict = Literal["pass", "fail", "no limit", "not known"]
 
@@ -137,7 +137,7 @@ def judge(
             reason = "not in this drive, or not computed by this engine"
             if drive.pin_shaft is None and limit.quantity.startswith(OF_SHAFT_PINS):
                 reason = "this drive has no shaft pins"
-            elif drive.contact.slices == 1 and limit.quantity in OF_WIDTH:
+            elif drive.contact.slices == 1 and limit.quantity in NEED_SLICES:
                 reason = "nothing tilts in the plane model (contact.slices = 1)"
             elif limit.quantity == "axial_play_taken":
                 reason = "disc.axial_play is left out"
@@ -178,14 +178,6 @@ ANYWHERE = {
 
 Where a contact ends before its line does the allowable pressure of the joint holds for them; at a straight end that carries the
 pressure is singular in any drive, and first yield holds, unless the file limits it."""
-OF_WIDTH = (
-    "disc_tilt",
-    "pin_face_load_factor",
-    "roller_face_load_factor",
-    "pin_shaft_face_load_factor",
-    "axial_play_taken",
-)
-"""What only contacts in slices have."""
 
 
 def allowable_anywhere(drive: Drive, value: Value) -> Limit | None:

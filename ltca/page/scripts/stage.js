@@ -51,12 +51,12 @@ function tipOf(view, contact) {
   if (beside) add(many ? "bore" : "", content.compared.name, beside.load, beside.pressure, beside.width);
   const lean = row => row.filter((text, i) => i > 1 || rows.some(each => each[i]));
   const head = html("b", {}, null, contact.name);
-  return [head, smallTable(lean(["", "", "load", "pressure", "half-width"]), rows.map(lean)), ...smallAlong(view, contact)];
+  return [head, smallTable(lean(["", "", "load", hasWidth(view) ? "mid pressure" : "pressure", "half-width"]), rows.map(lean)), ...smallAlong(view, contact)];
 }
 
 function fillContacts(view, now) {
   const table = el("contacts"), scale = content.compared && content.compared.cases.length;
-  const head = ["contact", "load, N", "pressure, MPa", "half-width, µm", ...(scale ? [`${content.compared.name}: load, N`, "pressure, MPa"] : [])];
+  const head = ["contact", "load, N", hasWidth(view) ? "pressure at mid-width, MPa" : "pressure, MPa", "half-width, µm", ...(scale ? [`${content.compared.name}: load, N`, "pressure, MPa"] : [])];
   const rows = now.contacts.map(contact => {
     const beside = besideAt(view, contact);
     const cells = [[contact.load, 1], [contact.pressureValue, 1], [1000 * contact.width, 2], ...(scale ? [[beside && beside.load, 1], [beside && beside.pressure, 1]] : [])];

@@ -19,7 +19,7 @@ const wideBox = svg => ({ ...WIDE, width: Math.max(260, svg.clientWidth || WIDE.
 function alongWidth(view, kind, number) {
   const name = `${view.kase}/full/${kind}/`, count = shapeOf(name + "line")[2];
   const of = quantity => Array.from({ length: count }, (_, i) => row(name + quantity, view.disc, number, i)[view.index]);
-  return { line: of("line"), pressure: of("along"), length: content.cases[view.kase].widths[kind], mostLine: largestAlong(name + "line"), mostPressure: largestAlong(name + "along") };
+  return { line: of("line"), pressure: of("along"), most: row(name + "most", view.disc, number)[view.index], length: content.cases[view.kase].widths[kind], mostLine: largestAlong(name + "line"), mostPressure: largestAlong(name + "along") };
 }
 
 function drawAlong(svg, view, kind, number, box) {
@@ -44,13 +44,19 @@ function drawAlong(svg, view, kind, number, box) {
   node("text", { class: "axis-text", x: box.left + inside / 2, y: box.height - 2, "text-anchor": "middle" }, svg, "height above mid-width, mm");
 }
 
+// The largest pressure of a line, and beside it that of its ends, where it peaks within the last slice.
+function pressureWords({ pressure, most }) {
+  const middle = Math.max(...pressure);
+  return `up to ${figure(middle, 0)} MPa${known(most) && most > 1.005 * middle ? `, ${figure(most, 0)} MPa at the very end` : ""}`;
+}
+
 // A small picture for the tip of a contact; none in the plane and at the light torque.
 function smallAlong(view, contact) {
   if (!hasWidth(view)) return [];
   const svg = node("svg", { class: "small-width", width: SMALL.width, height: SMALL.height, role: "img", "aria-label": "line load and pressure along the width" });
   drawAlong(svg, view, contact.kind, contact.number, SMALL);
-  const { line, pressure } = alongWidth(view, contact.kind, contact.number);
-  return [svg, html("div", { class: "note" }, null, `along the width: up to ${figure(Math.max(...line), 0)} N/mm (bars), ${figure(Math.max(...pressure), 0)} MPa (line)`)];
+  const along = alongWidth(view, contact.kind, contact.number);
+  return [svg, html("div", { class: "note" }, null, `along the width: line load (bars) up to ${figure(Math.max(...along.line), 0)} N/mm, pressure (line) ${pressureWords(along)}`)];
 }
 
 // How much larger a tilt is drawn: the largest of the case by some eight degrees, rounded.
@@ -99,10 +105,10 @@ function drawWidths(view) {
   const { kind, number } = view.chosen, of = content.discs > 1 ? `, disc ${view.disc}` : "";
   el("width-title").textContent = `Along the width of ${contactName(kind, number)}${kind === "outer" ? " in the bore" : ""}${of}: line load, N/mm, and pressure, MPa`;
   drawAlong(el("width"), view, kind, number, wideBox(el("width")));
-  const { line, pressure, length } = alongWidth(view, kind, number), mean = line.reduce((sum, value) => sum + value, 0) / line.length;
+  const along = alongWidth(view, kind, number), { line, length } = along, mean = line.reduce((sum, value) => sum + value, 0) / line.length;
   const most = line.indexOf(Math.max(...line)), z = ((most + 0.5) / line.length - 0.5) * length;
-  el("width-keys").textContent = mean > 0 ? `bars: line load, up to ${figure(line[most], 0)} N/mm at ${figure(z, 2)} mm, ${figure(line[most] / mean, 2)} times its mean; line: pressure, up to ${figure(Math.max(...pressure), 0)} MPa` : "it is open here";
+  el("width-keys").textContent = mean > 0 ? `bars: line load, up to ${figure(line[most], 0)} N/mm at ${figure(z, 2)} mm, ${figure(line[most] / mean, 2)} times its mean; line: pressure, ${pressureWords(along)}` : "it is open here";
   place(el("width"), { "aria-label": `${el("width-title").textContent}; ${el("width-keys").textContent}` });
-  el("tilt-title").textContent = `The disc${content.discs > 1 ? ` ${view.disc}` : ""} from the side, its tilt enlarged`;
+  el("tilt-title").textContent = `${content.discs > 1 ? `Disc ${view.disc}` : "The disc"} from the side, its tilt enlarged`;
   drawTilt(view);
 }

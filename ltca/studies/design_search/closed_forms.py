@@ -16,6 +16,7 @@ import numpy as np
 from ltca.analysis.life.ratings import BEARING_STEEL, STATIC_RATING_FACTOR
 from ltca.analysis.torque_curve import LOST_MOTION
 from ltca.arrays import FloatArray
+from ltca.drive.members.judgement import ANYWHERE
 from ltca.drive.parts import contact_modulus
 from ltca.drive.units.quantities import ARCMIN
 from ltca.studies.design_search.requirements import CLEARANCES, Requirements
@@ -361,7 +362,9 @@ def lives_by_loads(sizes: Sizes, setting: Setting, most: FloatArray, mean: Float
 def closed_forms(sizes: Sizes, setting: Setting) -> dict[str, FloatArray]:
     """Return the closed-form values of candidates of one number of pins.
 
-    Names are those of `ltca.quantities.LIMITED` where there is one. Units are mm, N, MPa, h, arcmin and N·mm/rad.
+    Names are those of `ltca.quantities.LIMITED` where there is one. Units are mm, N, MPa, h, arcmin and N·mm/rad. Pressures
+    anywhere along the width are those of an even line: what ends and tilts add is left to the solution.
     """
     flank = flank_values(sizes, setting)
-    return shape_values(sizes, setting) | flank | inner_values(sizes, setting, flank)
+    found = shape_values(sizes, setting) | flank | inner_values(sizes, setting, flank)
+    return found | {name: found[middle] for name, middle in ANYWHERE.items() if middle in found}

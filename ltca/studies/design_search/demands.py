@@ -16,7 +16,7 @@ import numpy as np
 from ltca.analysis.life.ratings import not_rated
 from ltca.analysis.verdict.values import DEMANDED
 from ltca.arrays import FloatArray
-from ltca.drive.members.judgement import Value, judge
+from ltca.drive.members.judgement import ANYWHERE, Value, judge
 from ltca.drive.members.limits import Limit, Limits
 from ltca.drive.units.quantities import ARCMIN
 from ltca.drive.units.table import label
@@ -186,7 +186,8 @@ def find_demands(requirements: Requirements) -> tuple[Demand, ...]:
             continue  # judged for each race below
         add(f"limits.{limit.key}", limit.quantity, limit.sense, limit.value, "limit", limit.source)
     drive = prototype(requirements)
-    values = [Value(quantity=name, value=1.0) for name in OF_MATERIALS if _is_of(name, requirements)]
+    judged = (*OF_MATERIALS, *(ANYWHERE if asked.contact.slices > 1 else ()))
+    values = [Value(quantity=name, value=1.0) for name in judged if _is_of(name, requirements)]
     for check in judge(drive, values, written_limits(requirements), DEMANDED):
         if check.limit is not None and check.value.value is not None:
             add(
@@ -223,7 +224,7 @@ def _is_of(quantity: str, requirements: Requirements) -> bool:
     asked = requirements.asked
     if quantity.startswith("shaft_pin_"):
         return asked.kind == "discs" and asked.shop.shaft_pin_stiffness is None
-    return quantity != "pin_shaft_pressure_mid" or asked.kind == "discs"
+    return not quantity.startswith("pin_shaft_") or asked.kind == "discs"
 
 
 def margins(demands: Sequence[Demand], values: Mapping[str, FloatArray]) -> FloatArray:

@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 from ltca.analysis.engines import describe_engine, engine_named
+from ltca.drive.members.judgement import ANYWHERE
 from ltca.drive.members.limits import Limits
 from ltca.drive.parts import Analysis, Drive
 from ltca.reading.writing import drive_text
@@ -38,14 +39,15 @@ SIZES = {
     "shifting_offset": "shifting offset, mm",
     "bearing_clearance": "clearance of the crank bearing, mm",
     "pin_hole_clearance": "clearance of the holes, mm",
+    "lead_crown_drop": "lead crown drop of the flank, mm",
 }
 """Sizes as they are told."""
 REACHED = (
     "outer_diameter", "length", "torque", "bearing_life_hours", "bearing_life_million_turns", "static_safety_S0", "stiffness",
     "disc_share", "backlash_output", "lost_motion", "mean_efficiency", "pin_pressure_mid", "pin_shaft_pressure_mid",
-    "roller_pressure_mid_outer", "roller_pressure_mid_inner", "ptp_transmission_error",
+    "roller_pressure_mid_outer", "roller_pressure_mid_inner", *ANYWHERE, "disc_tilt", "ptp_transmission_error",
 )  # fmt: skip
-"""What is told of each design, where it is known."""
+"""What is told of each design, where it is known; pressures anywhere along the width with slices or where they are asked for."""
 
 
 def named_design(refined: Refined, requirements: Requirements, name: str) -> Drive:

@@ -192,7 +192,7 @@ def _flanks(
     wider = MAX_ROOM_FACTOR if "outer_diameter" in relaxed else 1.0
     longer = MAX_ROOM_FACTOR if "length" in relaxed else 1.0
     circles = np.geomspace(0.9, wider, 10) if wider > 1.0 else PIN_CIRCLE_RATIOS
-    given = {"torque": asked.torque, **shop.tightest, **at}
+    given = {"torque": asked.torque, **asked.starting, **at}
     if asked.kind == "rv":
         given["pin_hole_clearance"] = 0.0
     for discs in asked.numbers_of_discs:

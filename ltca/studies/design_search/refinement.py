@@ -8,8 +8,8 @@ counts in the end.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from math import asin, ceil, exp, floor, log, pi
+from dataclasses import dataclass, replace
+from math import asin, ceil, exp, floor, inf, isfinite, log, pi
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from ltca.analysis.verdict.values import LIVES
 from ltca.arrays import FloatArray
 from ltca.compliance.coefficient_files import expected_seconds
+from ltca.drive.members.judgement import ANYWHERE
 from ltca.drive.members.limits import Limits
 from ltca.drive.parts import Compliance
 from ltca.errors import CycloError
@@ -25,7 +26,7 @@ from ltca.studies.design_search.demands import SAFETY, Demand, margins, written_
 from ltca.studies.design_search.enumeration import size_of
 from ltca.studies.design_search.requirements import CLEARANCES, FINEST_CLEARANCE, Requirements
 from ltca.studies.design_search.sizes import CONTINUOUS, Sizes, drive_of
-from ltca.studies.design_search.solution import Solution, solve_coarsely, solve_finely
+from ltca.studies.design_search.solution import Solution, solve_coarsely, solve_finely, with_lead_crown
 from ltca.studies.shapes import shapes_of
 
 MAX_COARSE_SOLUTIONS = 6
@@ -126,6 +127,7 @@ def refine(task: Task, most: int = MAX_COARSE_SOLUTIONS) -> Refined:
     life: float | None = None
     broken = np.inf
     row["rollers"] = float(max(most_rollers(row, task), row["rollers"]))
+    row = with_lead_crown(row, task.requirements, _most_mid(task))
     for _ in range(min(most, MAX_COARSE_SOLUTIONS)):
         row = _rounded(row, task)
         solution, solved = solve_coarsely(row, task.requirements, task.demands, life), solved + 1
@@ -151,7 +153,8 @@ def refine(task: Task, most: int = MAX_COARSE_SOLUTIONS) -> Refined:
         moved = _improve(row, each, task)
         if max(abs(_place(name, moved, task) - _place(name, row, task)) for name in _varied(task)) < LEAST_SIZE_STEP:
             break
-        row = moved
+        # A crown gives way before the drive does.
+        row = with_lead_crown(moved, task.requirements, _most_mid(task)) if _presses_mid(each, task) else moved
     if best is None:
         row, solution = last or (row, Solution(values={}))
         return _told(row, solution, task, solved, fits=False)
@@ -160,7 +163,8 @@ def refine(task: Task, most: int = MAX_COARSE_SOLUTIONS) -> Refined:
 
 def finish(task: Task, solved: int = 0) -> Refined:
     """Return a refined candidate solved finely; where that finds larger values, sizes step back by as much."""
-    row, solution = dict(task.row), Solution(values={})
+    # Sizes have moved since the crown was chosen.
+    row, solution = with_lead_crown(dict(task.row), task.requirements, _most_mid(task)), Solution(values={})
     last = row
     # A life that gives way has no limit in the file any more, and has to be known all the same.
     lives = not task.relaxed or any(one.quantity in LIVES for one in task.demands)
@@ -185,8 +189,30 @@ def finish(task: Task, solved: int = 0) -> Refined:
         each = _actual(solution, task)
         if solution.passes and _keeps(each, task):
             return _told(row, solution, task, solved, fits=True)
-        row = _rounded(_improve(row, each, task), task)
+        task = _as_judged(task, solution)
+        row = _rounded(_improve(row, _actual(solution, task), task), task)
     return _told(last, solution, task, solved, fits=False)
+
+
+def _as_judged(task: Task, solution: Solution) -> Task:
+    """A task with the limits of pressures anywhere along the width that its solution fails: where contacts end decides which."""
+    found = {(one.quantity, one.sense): one for one in task.demands}
+    for check in solution.checks:
+        value, limit = check.value, check.limit
+        if limit is None or not check.fails or value.quantity not in ANYWHERE:
+            continue
+        before = found.get((value.quantity, limit.sense))
+        known = before or Demand(
+            name=value.quantity,
+            quantity=value.quantity,
+            sense=limit.sense,
+            value=limit.value,
+            kind="material",
+            source="",
+        )
+        if known.name not in task.relaxed:
+            found[value.quantity, limit.sense] = replace(known, value=limit.value, source=limit.source)
+    return replace(task, demands=tuple(found.values()))
 
 
 def relaxed_limits(limits: Limits, task: Task) -> Limits:
@@ -245,6 +271,18 @@ def _actual(solution: Solution, task: Task) -> FloatArray:
     """Margins by the solution; not a number where it has no value."""
     values = {name: np.array([value]) for name, value in solution.values.items()}
     return np.asarray(margins(task.demands, values)[0])
+
+
+def _most_mid(task: Task) -> float:
+    """Largest flank pressure at mid-width that is held, MPa."""
+    held = (one for one in task.demands if one.name not in task.relaxed)
+    return min((one.value for one in held if (one.quantity, one.sense) == ("pin_pressure_mid", "max")), default=inf)
+
+
+def _presses_mid(each: FloatArray, task: Task) -> bool:
+    """Whether margins say that the flank is pressed too much at mid-width."""
+    found = [margin for one, margin in zip(task.demands, each, strict=True) if one.quantity == "pin_pressure_mid"]
+    return any(margin < -1e-9 for margin in found) and isfinite(_most_mid(task))
 
 
 def _held(task: Task) -> NDArray[np.bool_]:

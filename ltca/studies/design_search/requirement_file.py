@@ -12,8 +12,10 @@ from ltca.drive.materials import PARTS, STEEL, Materials
 from ltca.drive.members.limits import Limits, parse_limits
 from ltca.drive.members.named_materials import with_named_materials
 from ltca.drive.members.operation import Friction, Lubricant, Temperature
+from ltca.drive.members.width import FEWEST_SLICES, MOST_SLICES, Contact
 from ltca.drive.mistakes import describe_mistakes
 from ltca.errors import DriveError, did_you_mean, shortened
+from ltca.quantities import NEED_SLICES
 from ltca.reading.toml_text import parse_toml, read_text
 from ltca.studies.design_search.requirements import (
     CLEARANCES,
@@ -80,6 +82,7 @@ FIELDS: dict[str, tuple[str, ...]] = {
     "friction": tuple(Friction.__dataclass_fields__),
     "temperature": tuple(Temperature.__dataclass_fields__),
     "lubricant": tuple(Lubricant.__dataclass_fields__),
+    "contact": tuple(Contact.__dataclass_fields__),
     **TABLES,
 }
 """Names of fields, by table."""
@@ -185,6 +188,24 @@ def _contradictions(asked: Asked, materials: Materials, limits: Limits, shop: tu
             found.append(
                 f"shop.{name} = [{low:g}, {high:g}]: must start at {FINEST_CLEARANCE:g} mm, to which sizes are rounded, or more"
             )
+    if asked.contact.slices == 1:
+        if asked.lead_crowns[1] > 0.0:
+            low, high = asked.lead_crowns
+            given = f"{low:g}" if low == high else f"[{low:g}, {high:g}]"
+            found.append(
+                f"contact.slices = 1: must be odd, {FEWEST_SLICES} to {MOST_SLICES}, with shop.lead_crown_drop = {given} mm: "
+                "nothing varies along the width of one slice"
+            )
+        found += [
+            f"limits.{key}: nothing tilts in the plane model (contact.slices = 1)"
+            for key, limit in limits.items()
+            if limit.quantity in NEED_SLICES
+        ]
+    found += [
+        f"limits.{key}: designs have no disc.axial_play"
+        for key, limit in limits.items()
+        if asked.contact.slices > 1 and limit.quantity == "axial_play_taken"
+    ]
     wanted_lives = [key for key in limits if "bearing_life" in key or "static_safety" in key]
     for part in ("inner_race", "roller", "disc"):
         modulus = getattr(materials, part).youngs_modulus

@@ -15,6 +15,7 @@ from ltca.drive.materials import Materials
 from ltca.drive.members.limits import Limits
 from ltca.drive.members.main_bearing import MainBearing
 from ltca.drive.members.operation import Friction, Lubricant, Temperature
+from ltca.drive.members.width import Contact
 from ltca.drive.names import Name
 from ltca.drive.units.quantities import COUNT, QuantityCheck, check_count, quantity
 from ltca.studies.design_search.stock import Stock
@@ -30,6 +31,8 @@ STOCK = ("eccentricities", "wheel_pins", "shaft_pins", "rollers")
 MOST_DISCS = 3
 CLEARANCES = ("equidistant_offset", "shifting_offset", "bearing_clearance", "pin_hole_clearance")
 """Lengths of `Shop` that are held as numbers and searched as ranges."""
+LEAD_CROWNS = (0.0, 0.02)
+"""Drops of the lead crown that are searched with slices where the shop says nothing, mm."""
 FINEST_CLEARANCE = 1e-3
 """Step to which sizes are rounded, below which no range of clearances starts, mm."""
 
@@ -80,6 +83,8 @@ class Shop:
         Of the flank, least and most that the shop makes, mm; equal where one number is given, which is held.
     bearing_clearance, pin_hole_clearance : (float, float)
         As in a drive file, least and most, mm.
+    lead_crown_drop : (float, float) or None
+        Of the crown of the flank along its width, least and most, mm; `LEAD_CROWNS` when left out with slices, none in the plane.
     least_wall : float
         Between holes, bores and roots, mm.
     least_pin_gap : float
@@ -108,6 +113,7 @@ class Shop:
     shifting_offset: SignedRange = (0.0, 0.0)
     bearing_clearance: NonNegativeRange = (0.002, 0.005)
     pin_hole_clearance: NonNegativeRange = (0.002, 0.005)
+    lead_crown_drop: NonNegativeRange | None = None
     least_wall: PositiveLength = 2.0
     least_pin_gap: PositiveLength = 0.5
     housing_wall: NonNegativeLength = 4.0
@@ -180,6 +186,8 @@ class Asked:
         What else holds the contacts; sizes that are left out of them follow those that are searched.
     load : WantedLoad
         Forces from outside.
+    contact : Contact
+        As in a drive file: slices along the width of every contact.
     """
 
     name: Name = "design"
@@ -208,11 +216,25 @@ class Asked:
     main_bearing: MainBearing | None = None
     first_stage: WantedStage | None = None
     load: WantedLoad = field(default_factory=WantedLoad)
+    contact: Contact = field(default_factory=Contact)
 
     @property
     def numbers_of_discs(self) -> tuple[int, ...]:
         """Numbers of discs to choose from; one or two where nothing is asked, of an RV reducer two."""
         return self.discs or ((2,) if self.kind == "rv" else (1, 2))
+
+    @property
+    def lead_crowns(self) -> tuple[float, float]:
+        """Least and most drop of the lead crown, mm; equal where it is held, zero in the plane."""
+        if self.shop.lead_crown_drop is None:
+            return LEAD_CROWNS if self.contact.slices > 1 else (0.0, 0.0)
+        low, high = self.shop.lead_crown_drop
+        return float(low), float(high)
+
+    @property
+    def starting(self) -> dict[str, float]:
+        """Clearances and crown from which candidates start: `Shop.tightest`, and the least crown."""
+        return self.shop.tightest | {"lead_crown_drop": self.lead_crowns[0]}
 
     @property
     def number_of_cranks(self) -> int:

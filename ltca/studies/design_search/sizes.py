@@ -55,6 +55,8 @@ class Sizes:
         Δr_P and ΔR_C of the flank.
     bearing_clearance, pin_hole_clearance : array
         As in a drive file; the latter without effect in RV reducers.
+    lead_crown_drop : array
+        Drop of the crown of the flank along its width.
     torque : array
         On the output, N·mm: that asked for, or less where it stands in the way.
     """
@@ -79,6 +81,7 @@ class Sizes:
     shifting_offset: FloatArray
     bearing_clearance: FloatArray
     pin_hole_clearance: FloatArray
+    lead_crown_drop: FloatArray
     torque: FloatArray
 
     @property
@@ -155,6 +158,7 @@ def drive_table(row: dict[str, float], requirements: Requirements, name: str) ->
             "number_of_discs": discs,
             "equidistant_offset": row["equidistant_offset"],
             "shifting_offset": row["shifting_offset"],
+            "lead_crown_drop": row["lead_crown_drop"],
         },
         "crank_bearing": {
             "inner_race_radius": inner,
@@ -165,6 +169,7 @@ def drive_table(row: dict[str, float], requirements: Requirements, name: str) ->
         },
         "load": {"torque": row["torque"], "light_torque": LIGHT * row["torque"], "speed": asked.speed * turned},
         "clearance": {"bearing": row["bearing_clearance"]},
+        "contact": asked.contact,
         "materials": materials,
     }
     if discs > 1:
@@ -217,7 +222,7 @@ def prototype(requirements: Requirements, scale: float = 1.0) -> Drive:
     row = dict.fromkeys(Sizes.__dataclass_fields__, scale) | {
         "pins": 20.0, "discs": float(requirements.asked.numbers_of_discs[0]), "rollers": 10.0, "holes": 8.0,
         "pin_circle": 10.0 * scale, "eccentricity": 0.4 * scale, "bore": 9.0 * scale, "stage": 2.0, "sun": 20.0, "planet": 40.0,
-        "torque": requirements.asked.torque, **requirements.asked.shop.tightest,
+        "torque": requirements.asked.torque, **requirements.asked.starting,
     }  # fmt: skip
     return TypeAdapter(Drive).validate_python(drive_table(row, requirements, "prototype"))
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import gcd
+from math import gcd, inf
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,7 @@ from ltca.analysis.friction.hysteresis import hysteresis_loop
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse
 from ltca.analysis.summary import summarise
 from ltca.analysis.torque_curve import LOST_MOTION, torque_curve, torsional_stiffness
+from ltca.analysis.verdict.lead_crown import best_lead_crown
 from ltca.analysis.verdict.values import LIVES, find_values, judge_analysis
 from ltca.drive.members.judgement import Check
 from ltca.drive.members.limits import Limits
@@ -32,6 +33,8 @@ COARSE_POSITIONS = 24
 TURNS, HOURS = "bearing_life_million_turns", "bearing_life_hours"
 CHECK_POSITIONS = 360
 """Of `cyclo check`."""
+CROWN_DECIMALS = 3
+"""Decimals of the drop of a crown in mm, as of all sizes."""
 OFFSET = 1e-3
 """Offset of positions from those of a whole turn, between which extremes would be refined, rad."""
 CURVE_ANGLES = np.array([0.0, 0.1])
@@ -101,6 +104,26 @@ def solve_coarsely(
         return Solution(values=found, life_factor=life_factor)
     except CycloError as error:
         return Solution(values={}, message=" ".join(str(error).split()))
+
+
+def with_lead_crown(row: dict[str, float], requirements: Requirements, most_mid: float = inf) -> dict[str, float]:
+    """Return a candidate with the crown of the flank that `cyclo check` would advise, within what the shop makes.
+
+    The least that it makes where another one takes too little off the ends to be told, and where the drive cannot be built;
+    `most_mid` is what the flank may have at mid-width, MPa.
+    """
+    low, high = requirements.asked.lead_crowns
+    if low == high:
+        return row
+    least = row | {"lead_crown_drop": low}
+    try:
+        drive = _on_beam(drive_of(least, requirements))
+        crown = best_lead_crown(drive, drive.load.torque, (low, high), most_mid)
+    except CycloError:
+        return least
+    if crown is None or not crown.words:
+        return least
+    return row | {"lead_crown_drop": min(max(round(crown.drop, CROWN_DECIMALS), low), high)}
 
 
 def _on_beam(drive: Drive) -> Drive:

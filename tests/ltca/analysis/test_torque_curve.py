@@ -50,7 +50,7 @@ class SpringsWithPlay:
     def take(self, rows):
         return self
 
-    def respond(self, crank_angle, pose, start=None, shifts=None):
+    def respond(self, crank_angle, pose, start=None, shifts=None, *_, **__):
         response = self.real.respond(crank_angle, pose, start)
         wheel = pose[:, WHEEL_ANGLE]
         beyond = np.sign(wheel) * np.maximum(np.abs(wheel) - 0.5 * self.play, 0.0)

@@ -8,6 +8,7 @@ import pytest
 
 from ltca.analysis.life.bearing_lives import bearing_lives
 from ltca.analysis.loaded_analysis import analyse, analyse_cases
+from ltca.analysis.pressure_fields import loads_of, moment_of, pressure_field
 from ltca.analysis.results import build_dataset, check_common_shape
 from ltca.analysis.run_off import run_off_warning
 from ltca.analysis.summary import summarise
@@ -223,3 +224,27 @@ def test_steep_tilts_are_told(drive):
     assert told(4e-3) == []
     plane = analyse(with_fields(drive, {"contact.slices": 1}), ANGLES[:1])
     assert not any("discs tilt" in text for text in plane.warnings)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("contact", ["pin", "roller_outer", "hole"])
+def test_pressure_fields_tilt_as_their_contacts_do(found, contact):
+    """They were those of aligned straight contacts, the same at both ends. Loads and moments of cells are those of the slices.
+
+    1e-3 of the load by half the length: from one grid to the next loads jump by some 1e-4. The largest pressure of wheel pins
+    and rollers is estimated by the slices within 4 % (`docs/theory/width.md`); shaft pins, springs here, have no ends to tell it.
+    """
+    analysis = found["up"]
+    loads = loads_of(analysis, contact)[0]
+    pair = int(np.argmax(loads))
+    field = pressure_field(analysis, contact, 0, pair, cells=8)
+    area = np.diff(field.x_edges)[:, None] * np.diff(field.y_edges)
+    heights = 0.5 * (field.y_edges[1:] + field.y_edges[:-1])
+    assert (field.pressure * area).sum() == pytest.approx(loads[pair], rel=1e-9)
+    moment = moment_of(analysis, contact, 0, pair)
+    half = 0.5 * analysis.drive.disc.thickness
+    assert abs(moment) > 0.005 * half * loads[pair]
+    assert (field.pressure * area * heights).sum() == pytest.approx(moment, abs=1e-3 * half * loads[pair])
+    if contact != "hole":
+        kinds = {"pin": analysis.pressures.pins, "roller_outer": analysis.pressures.outer}
+        assert field.largest == pytest.approx(kinds[contact].largest[0, pair], rel=0.04)

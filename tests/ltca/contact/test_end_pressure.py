@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from ltca.contact.end_pressure import largest_pressure_ratio
-from ltca.contact.length_profile import generator_profile
 from ltca.contact.tracked_grid import ContactKind
 from ltca.drive.parts import LengthProfile
+from ltca.geometry.length_profile import generator_profile
 
 
 def test_contacts_of_one_radius_are_those_of_nearly_one():

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from ltca.contact.grid_ladder import BLEND, RUNG, find_patch_length, unit_grid
-from ltca.contact.length_profile import generator_profile
 from ltca.contact.pressure_cells import PatchGrid, solve_patch
 from ltca.contact.tracked_grid import (
     ContactKind,
@@ -19,6 +18,7 @@ from ltca.contact.tracked_grid import (
     solve_fitted,
 )
 from ltca.drive.parts import LengthProfile, Material, Materials
+from ltca.geometry.length_profile import generator_profile
 
 LENGTH, MODULUS, RADIUS = 11.8, 113e3, 4.0
 PROFILES = {

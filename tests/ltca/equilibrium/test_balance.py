@@ -149,7 +149,7 @@ def test_stagnation_is_an_error_with_its_history(models):
         geometry = real.geometry
         looks = 0
 
-        def respond(self, crank_angle, pose, start=None, shifts=None):
+        def respond(self, crank_angle, pose, start=None, shifts=None, *_, **__):
             response = self.real.respond(crank_angle, pose, start, shifts)
             self.looks += 1
             return replace(response, force=response.force + np.array([0.0, 1e5 * (-1.0) ** self.looks, 0.0, 0.0]))

@@ -198,3 +198,15 @@ def test_flanges_stand_on_their_posts(kinds_of_drives):
     assert {hole.radius for hole in circles(part, "flange-hole") if abs(hole.centre) > 1.0} == {4.6}
     with pytest.raises(DriveError, match=r"--part carrier: there is no carrier\.posts in this drive"):
         make_parts(kinds_of_drives["paper"], "CS-1", "carrier")
+
+
+def test_inclined_pins_stand_where_they_are_at_the_zero_of_the_planes(kinds_of_drives):
+    """They stood where they are in the plane of the first disc, 0.09 mm beside the middle, and nothing was said of it."""
+    upright = with_fields(kinds_of_drives["robot-joint"], {"contact.slices": 3})
+    inclined = with_fields(upright, {"pin_wheel.inclination.x": 8e-3})
+    for kind in ("pin-wheel", "assembly"):
+        (one,), (other,) = (make_parts(drive, "nominal", kind) for drive in (upright, inclined))
+        expected = [circle.centre for circle in circles(one, "pin")]
+        assert [circle.centre for circle in circles(other, "pin")] == pytest.approx(expected, abs=1e-12)
+        assert "pin_wheel.inclination" in " ".join(other.remarks)
+        assert "inclined" not in " ".join(one.remarks)

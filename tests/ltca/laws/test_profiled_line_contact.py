@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from ltca.contact.hertz import solve_point_contact
-from ltca.contact.length_profile import CircularCrown, EndRelief, LogarithmicRelief
 from ltca.errors import CycloError
+from ltca.geometry.length_profile import CircularCrown, EndRelief, LogarithmicRelief
 from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.profiled_line_contact import ProfiledLineContactLaw, profiled_table, solve_profiled_patch
 

@@ -14,6 +14,7 @@ import pytest
 
 from ltca.contact import end_pressure
 from ltca.contact.tracked_grid import CELLS, ContactKind
+from ltca.drive.members.width import FEWEST_SLICES, MOST_SLICES
 from ltca.laws import line_contact, sliced_line
 from ltca.laws.line_contact import LONGEST, SHORTEST, LineContactTable, line_contact_table
 from ltca.laws.shipped_tables import tabulate_line_contact, tabulate_softer_ends
@@ -42,9 +43,15 @@ def test_end_pressure_remade():
 
 
 @pytest.mark.slow
-def test_softer_ends_remade():
+@pytest.mark.parametrize("slices", [9, 33])
+def test_softer_ends_remade(slices):
+    stored = json.loads(sliced_line.TABLE.read_text(encoding="utf-8"))["softer"][str(slices)]
+    np.testing.assert_allclose(stored, tabulate_softer_ends(slices), atol=2e-7)  # seven digits are kept
+
+
+def test_every_number_of_slices_has_its_softer_ends():
     stored = json.loads(sliced_line.TABLE.read_text(encoding="utf-8"))["softer"]
-    np.testing.assert_allclose(stored, tabulate_softer_ends(), atol=2e-7)  # seven digits are kept
+    assert [int(slices) for slices in stored] == list(range(FEWEST_SLICES, MOST_SLICES + 1, 2))
 
 
 def test_a_table_written_and_read_is_the_same_to_the_last_bit():

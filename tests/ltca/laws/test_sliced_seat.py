@@ -5,11 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from ltca.arrays import stack_drives
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.drive.parts import WheelPinSeat
 from ltca.drive.single_discs import single_discs
 from ltca.laws.backed import BackedLaw, wheel_pin_seat
 from ltca.laws.line_contact import LineContactLaw
+from ltca.laws.sliced_contact import slice_heights
 from ltca.laws.sliced_line import SlicedLine
 from ltca.laws.sliced_seat import BackedLine, SlicedSeat
 from ltca.laws.sliced_spring import SlicedSpring
@@ -76,9 +78,16 @@ def test_loads_and_moments_of_loose_pins_are_the_slopes_of_their_energy(seat):
     assert (found.load == 0.0).any()
     assert ((found.slice_load > 0.0).sum(axis=-1) < SLICES).any()
 
+    def value(name, side, by_tilt):
+        contact, travel, lean = law.solve(delta + side * (not by_tilt), theta + side * by_tilt, radius)
+        if name != "energy":
+            return getattr(contact, name)
+        play = np.broadcast_to(law.play, shape).reshape(-1)
+        seat = law.seat.press(travel.reshape(-1), lean.reshape(-1), play)
+        return law.contact.energy(contact, radius) + law.seat.energy(seat.line_load, play).reshape(shape)
+
     def slope(name, by_tilt):
-        ends = [law.respond(delta + side * (not by_tilt), theta + side * by_tilt, radius) for side in (step, -step)]
-        return (getattr(ends[0], name) - getattr(ends[1], name)) / (2.0 * step)
+        return (value(name, step, by_tilt) - value(name, -step, by_tilt)) / (2.0 * step)
 
     for name, expected, by_tilt, bound in (
         ("energy", "load", False, 1e-8), ("energy", "moment", True, 1e-8), ("load", "by_approach", False, 1e-5),
@@ -102,8 +111,20 @@ def test_a_pin_leans_in_its_seat_until_both_sides_carry_the_same():
     for one in (outside.moment[0], inside.moment):
         np.testing.assert_allclose(one, found.moment[0], rtol=1e-9)
     # From what was answered, the same answer.
-    again = law.respond(delta, theta, radius, found.slice_load)
+    again = law.respond(delta, theta, radius, found.near)
     np.testing.assert_allclose(again.slice_load, found.slice_load, rtol=1e-8, atol=1e-8)
+
+
+def test_what_a_lead_keeps_open_carries_nothing():
+    """Metal of a lead at the end that tilts away beside a contact that carries: neither side touches, and nothing is singular."""
+    law = HalfSpaceCompliance.of_drive(loose()).pin_law
+    half = 0.5 * law.length
+    sloped = replace(law.contact, relief=3e-4 * slice_heights(law.length, law.slices) / half)
+    law = BackedLine(contact=sloped, seat=law.seat, play=np.full(2, 0.01))
+    found = law.respond(np.array([[-7.4e-4, 0.01]]), np.array([[6.4e-4 / half, 0.0]]), np.full((1, 2), 6.0))
+    for name in ("load", "moment", "by_approach", "by_tilt", "moment_by_tilt"):
+        assert getattr(found, name)[0, 0] == 0.0
+    assert found.load[0, 1] > 0.0
 
 
 def test_a_spring_before_a_neat_seat_is_two_springs():
@@ -142,3 +163,26 @@ def test_the_most_loaded_end_of_a_seat_follows_from_load_and_moment():
     found = sliced.heaviest(carried.load, carried.moment, play)
     deepest, _ = law.approach_and_compliance(found, play)
     np.testing.assert_allclose(deepest, travel + 5.0 * np.abs(lean), rtol=1e-6)
+
+
+def test_an_open_pin_beside_metal_at_its_other_end_is_open():
+    """A slope of the flank adds metal at one end, the tilt presses the other: a singular matrix ended the run."""
+    law = HalfSpaceCompliance.of_drive(loose()).pin_law
+    sloped = replace(law.contact, relief=-2e-4 * slice_heights(LENGTH, SLICES))
+    law = BackedLine(contact=sloped, seat=law.seat, play=np.full(1, 0.01))
+    found = law.respond(np.array([[-0.0019]]), np.array([[-3e-4]]), np.full((1, 1), 2.1))
+    assert (found.load[0, 0], found.by_approach[0, 0], found.moment_by_tilt[0, 0]) == (0.0, 0.0, 0.0)
+
+
+def test_loose_pins_of_a_batch_have_the_leads_of_their_own_drives():
+    """Contacts were flattened before their law was asked: each took the lead of another drive. 1e-12, round-off."""
+    drives = [loose().with_fields({"disc.lead_crown_drop": drop}) for drop in (1e-3, 6e-3)]
+    laws = [HalfSpaceCompliance.of_drive(drive).pin_law for drive in drives]
+    both = stack_drives(laws, 1)
+    shape, rng = (2, laws[0].play.shape[-1]), np.random.default_rng(2)
+    delta, theta, radius = rng.uniform(-0.01, 0.02, shape), 1e-3 * rng.normal(size=shape), np.full(shape, 6.0)
+    together = both.respond(delta, theta, radius)
+    for row, law in enumerate(laws):
+        alone = law.respond(delta[row : row + 1], theta[row : row + 1], radius[row : row + 1])
+        for name in ("load", "moment", "by_approach", "slice_load"):
+            np.testing.assert_allclose(getattr(together, name)[row], getattr(alone, name)[0], rtol=1e-12, atol=1e-9)

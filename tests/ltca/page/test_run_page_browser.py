@@ -141,7 +141,9 @@ addEventListener("load", () => {
       slider.value = k;
       slider.dispatchEvent(new Event("input", {bubbles: true}));
       const heights = [...document.querySelectorAll("#width .bar")].map(bar => Number(bar.getAttribute("height")));
-      seen.bars.push([view.chosen.number, heights, document.getElementById("tilt-keys").textContent]);
+      seen.bars.push([
+        view.chosen.number, heights, ...["tilt-keys", "width-keys"].map(key => document.getElementById(key).textContent),
+      ]);
     }
     const contact = document.querySelector("#picture .contact");
     contact.dispatchEvent(new MouseEvent("mouseenter", {clientX: 200, clientY: 200}));
@@ -166,11 +168,12 @@ def test_bars_and_tilts_are_those_of_the_dataset(run_of, chromium, tmp_path):
     run, dataset = run_of(drive, positions=3)
     seen, console, _ = chromium(run_page(run), WIDTHS, tmp_path, "500,900")
     assert (seen["errors"], console) == ([], [])
-    line, tilt = dataset["pin_line_load"].values[0, 0], dataset["disc_tilt"].values[0, 0]
-    for position, (pin, heights, told) in enumerate(seen["bars"]):
+    line, tilt, most = (dataset[name].values[0, 0] for name in ("pin_line_load", "disc_tilt", "pin_pressure_max"))
+    for position, (pin, heights, told, keys) in enumerate(seen["bars"]):
         expected = line[position, pin]
         assert np.array(heights) / max(heights) == pytest.approx(expected / expected.max(), abs=1e-5)
         assert float(told.partition(" mrad")[0]) == pytest.approx(1e3 * np.hypot(*tilt[position]), abs=6e-4)
+        assert f" {most[position, pin]:.0f} MPa at the very end" in keys  # a straight line peaks there
     assert seen["tip"] == 5
     assert seen["hidden"]  # at the light torque nothing is known along the width
     assert seen["overflow"] <= 0

@@ -174,31 +174,6 @@ def test_engines_of_one_plane_refuse_slices_by_name(engine, words, paper):
         require(drive, other)
 
 
-@pytest.mark.parametrize(
-    ("words", "told"),
-    [
-        (
-            {"pin_wheel.seat.kind": "slot", "pin_wheel.seat.radius": 6.51},
-            'pin_wheel.seat (pin_wheel.seat.kind = "slot", pin_wheel.seat.radius = 6.51 mm): must be left out for compliance fe '
-            "(pins are fixed in the model where contacts have slices (contact.slices)); use --compliance hybrid",
-        ),
-        (
-            {"pin_shaft.seat.kind": "sleeve", "pin_shaft.seat.pin_radius": 7.0, "pin_shaft.seat.bore_radius": 7.01}
-            | {"pin_shaft.elastic_contact": True},
-            "pin_shaft.seat (",
-        ),
-    ],
-)
-def test_seats_are_refused_in_plane_strain_with_slices(words, told, paper):
-    """They were left out in silence: a slot of 10 µm moved nothing."""
-    require(with_fields(paper, words), "fe")
-    drive = with_fields(paper, SLICES | words)
-    require(drive, "hybrid")
-    with pytest.raises(DriveError) as refused:
-        require(drive, "fe")
-    assert refused.value.problems[0].startswith(told)
-
-
 def test_a_misspelt_lead_is_told_in_a_plane_drive(paper):
     """What needs slices is a field of a plane drive too: its name is found."""
     with pytest.raises(DriveError, match=r"did you mean `disc\.lead_slope`"):

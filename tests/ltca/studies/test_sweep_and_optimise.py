@@ -94,6 +94,18 @@ def test_numbers_of_parts_are_factors_too():
         assert found.values[row, 0] == pytest.approx(alone, rel=1e-6)
 
 
+def test_a_sweep_over_slices_has_what_the_plane_has_too(tmp_path):
+    """Of a drive in slices its sample in the plane failed over quantities of the width that nobody had named."""
+    path = tmp_path / "wide.toml"
+    path.write_text(drive_text(load_drive("paper").cases["CS-1"].with_fields({"contact.slices": 5})))
+    table = tomllib.loads('positions = 3\n[factors]\n"contact.slices" = [1, 5]')
+    study = parse_sweep(table, str(path))
+    assert "max_pin_face_load_factor" not in study.quantities
+    assert "max_pin_load" in study.quantities
+    with pytest.raises(DriveError, match=r"max_pin_face_load_factor: .* with contact.slices = 1"):
+        parse_sweep(table | {"quantities": ["max_pin_face_load_factor"]}, str(path))
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [

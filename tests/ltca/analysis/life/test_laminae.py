@@ -17,8 +17,8 @@ from ltca.analysis.life.laminae import (
     straight_rollers,
 )
 from ltca.contact.hertz import solve_point_contact
-from ltca.contact.length_profile import generator_profile
 from ltca.drive.parts import LengthProfile
+from ltca.geometry.length_profile import generator_profile
 from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.profiled_line_contact import solve_profiled_patch
 

@@ -48,7 +48,7 @@ ROW = {
     "discs": 1.0, "pins": 14.0, "stage": 1.0, "sun": 0.0, "planet": 0.0, "eccentricity": 4.0, "pin_circle": 88.0,
     "pin_radius": 6.5, "thickness": 11.8, "bore": 29.5, "roller_radius": 5.0, "roller_length": 11.8, "rollers": 11.0,
     "holes": 8.0, "hole_circle": 56.0, "hole_pin": 10.075, "torque": 377_300.0, "equidistant_offset": 0.15,
-    "shifting_offset": 0.09, "bearing_clearance": 0.0, "pin_hole_clearance": 0.0,
+    "shifting_offset": 0.09, "bearing_clearance": 0.0, "pin_hole_clearance": 0.0, "lead_crown_drop": 0.0,
 }  # fmt: skip
 WITHOUT_OFFSETS = {"equidistant_offset": 0.0, "shifting_offset": 0.0}
 

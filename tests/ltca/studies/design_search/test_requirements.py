@@ -68,6 +68,25 @@ def test_texts_carry_units():
         ("[load]\ntorque = 3.0", "load.torque: must be left out of requirements: the key torque says it"),
         ("[[load.external]]\nforce = { r = 3.0 }", "load.external.0.force.r: is not a field of such a table"),
         ('[materials]\ncarrier = "100Cr6"', "materials.carrier: must be left out without carrier.posts"),
+        (
+            '[shop]\nlead_crown_drop = "4 µm"',
+            "contact.slices = 1: must be odd, 3 to 65, with shop.lead_crown_drop = 0.004 mm: nothing varies",
+        ),
+        ("[shop]\nlead_crown_drop = [0.0, 0.01]", "with shop.lead_crown_drop = [0, 0.01] mm: nothing varies"),
+        (
+            "[contact]\nslices = 5\n[shop]\nlead_crown_drop = -0.01",
+            "shop.lead_crown_drop = -0.01: must be at least 0 mm",
+        ),
+        ("[contact]\nslices = 8", "contact.slices = 8: must be odd, 1 for the plane model or 3 to 65"),
+        ("[contact]\nslice = 5", "contact.slice: is not a field of such a table; did you mean `slices`?"),
+        (
+            "[limits]\nmax_disc_tilt = 1e-3",
+            "limits.max_disc_tilt: nothing tilts in the plane model (contact.slices = 1)",
+        ),
+        (
+            "[contact]\nslices = 5\n[limits]\nmax_axial_play_taken = 1.0",
+            "limits.max_axial_play_taken: designs have no disc.axial_play",
+        ),
         ("[limits]\nmax_pin_pressur = 3.0", "did you mean `max_pin_pressure_mid`?"),
     ],
 )
@@ -121,3 +140,12 @@ def test_a_number_is_held_and_a_range_is_searched():
     assert shop.range_of("equidistant_offset") == pytest.approx((0.008, 0.03), rel=1e-12)
     assert shop.range_of("bearing_clearance") == (0.005, 0.005)
     assert shop.tightest["equidistant_offset"] == pytest.approx(0.008, rel=1e-12)
+
+
+def test_a_crown_is_searched_with_slices_alone():
+    """Left out it is a variable with slices and none in the plane; a number is held, as clearances are."""
+    assert parse_requirements(SOUND).asked.lead_crowns == (0.0, 0.0)
+    assert parse_requirements(SOUND + "[contact]\nslices = 5\n").asked.lead_crowns == (0.0, 0.02)
+    held = parse_requirements(SOUND + '[contact]\nslices = 5\n[shop]\nlead_crown_drop = "4 µm"\n').asked
+    assert held.lead_crowns == pytest.approx((0.004, 0.004), rel=1e-12)
+    assert held.starting["lead_crown_drop"] == pytest.approx(0.004, rel=1e-12)

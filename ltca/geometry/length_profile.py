@@ -15,6 +15,10 @@ from numpy.typing import ArrayLike
 from ltca.arrays import FloatArray
 from ltca.drive.parts import Disc, LengthProfile
 
+ACROSS = np.linspace(-1.0, 1.0, 257)
+"""Places along a contact, by half its length, at which bodies that do not yield are looked at for where they touch: what a crown
+falls short by is missed by no more than 2e-5 of its drop."""
+
 
 class Relief(Protocol):
     """Crowning or relief along the width; hashable, since tables are cached by it."""
@@ -182,3 +186,9 @@ def lead_relief(disc: Disc, z: FloatArray) -> FloatArray:
         ends = EndRelief(length=length, relief_length=disc.lead_relief_length, depth=disc.lead_relief_depth)
         total = total + ends.relief(z)
     return np.asarray(total)
+
+
+def profile_across(profile: LengthProfile, length: float, radius: float) -> FloatArray:
+    """Return by how much a roller or pin falls short of a cylinder, mm, at `ACROSS`."""
+    found = generator_profile(profile, length, radius)
+    return np.zeros(ACROSS.size) if found is None else found.relief(0.5 * length * ACROSS)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from ltca.contact.length_profile import generator_profile
 from ltca.drive.parts import LengthProfile
+from ltca.geometry.length_profile import generator_profile
 
 LENGTH, RADIUS = 11.8, 5.0
 ALL = LengthProfile(crown_drop=0.004, logarithmic_factor=1.2, end_relief_length=1.5, end_relief_depth=0.02)

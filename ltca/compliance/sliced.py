@@ -1,0 +1,47 @@
+"""What contacts in slices are made of, loaded when a drive has them: ``sliced.SlicedLine``.
+
+The plane model, ``contact.slices = 1``, needs nothing of it, and a run of it should not wait for some ten modules. Whatever
+chooses between the two takes the width from here.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from ltca.compliance.in_slices import ContactsInSlices, roller_start, stacked, warm_rows
+    from ltca.contact.tilted_grid import press_tilted
+    from ltca.laws.sliced_contact import EXACT, ROUGH, Exactness, SlicedContact, slice_heights
+    from ltca.laws.sliced_line import SlicedLine
+    from ltca.laws.sliced_plane import SlicedPlane
+    from ltca.laws.sliced_seat import SlicedSeat, back_line
+    from ltca.laws.sliced_spring import SlicedSpring
+    from ltca.laws.width_pressure import estimate_along_width, solve_along_width
+
+_HOMES = {
+    "ltca.compliance.in_slices": ("ContactsInSlices", "roller_start", "stacked", "warm_rows"),
+    "ltca.contact.tilted_grid": ("press_tilted",),
+    "ltca.laws.sliced_contact": ("EXACT", "ROUGH", "Exactness", "SlicedContact", "slice_heights"),
+    "ltca.laws.sliced_line": ("SlicedLine",),
+    "ltca.laws.sliced_plane": ("SlicedPlane",),
+    "ltca.laws.sliced_seat": ("SlicedSeat", "back_line"),
+    "ltca.laws.sliced_spring": ("SlicedSpring",),
+    "ltca.laws.width_pressure": ("estimate_along_width", "solve_along_width"),
+}
+
+__all__ = [
+    "EXACT", "ROUGH", "ContactsInSlices", "Exactness", "SlicedContact", "SlicedLine", "SlicedPlane", "SlicedSeat",
+    "SlicedSpring", "back_line", "estimate_along_width", "press_tilted", "roller_start", "slice_heights",
+    "solve_along_width", "stacked", "warm_rows",
+]  # fmt: skip
+
+
+def __getattr__(name: str) -> Any:
+    """Load a name and keep it."""
+    from importlib import import_module
+
+    for module, names in _HOMES.items():
+        if name in names:
+            value = globals()[name] = getattr(import_module(module), name)
+            return value
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

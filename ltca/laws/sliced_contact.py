@@ -1,0 +1,143 @@
+"""What contacts in slices carry, whatever their law, and where a neighbour of theirs starts from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.arrays import FloatArray
+
+POINTS = 4
+"""Points of a slice at which its surfaces' approach is taken (Gauss)."""
+LARGEST_EXTRAPOLATION = 0.3
+"""Change of a slice's load by the largest up to which slopes tell it."""
+LAST_STEP_ERROR = 1e4
+"""Bound of what a last step along slopes leaves over, by the square of what was left before it."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Exactness:
+    """How close contacts come to balance before their last step, which is taken along slopes and squares what is left.
+
+    Attributes
+    ----------
+    slices : float
+        Load of a slice that is left over by the largest of its contact.
+    rollers : float
+        Force or moment of a roller that is left over by its load.
+    steady : float
+        Change of a point's approach by itself in the last step.
+    steps : int
+        Steps that a roller takes; what is left then is told.
+    """
+
+    slices: float
+    rollers: float
+    steady: float
+    steps: int
+
+
+EXACT = Exactness(slices=1e-8, rollers=1e-5, steady=1e-3, steps=80)
+"""To round-off: line loads follow their slopes so far."""
+ROUGH = Exactness(slices=3e-3, rollers=3e-3, steady=0.3, steps=3)
+"""While a search is on its way: 1e-5 of a load."""
+
+
+@cache
+def slice_heights(length: float, slices: int) -> FloatArray:
+    """Return z of the points of the slices of a line of a length in mm, shape (slices, points)."""
+    middle = (np.arange(slices) - 0.5 * (slices - 1)) * length / slices
+    return np.asarray(middle[:, None] + 0.5 * length / slices * np.polynomial.legendre.leggauss(POINTS)[0])
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SlicedContact:
+    """Contacts in slices at some approaches and tilts, zero where open.
+
+    Attributes
+    ----------
+    load, moment : array, shape (…)
+        Σ F and Σ ∫ q z dz, N and N·mm: moments turn positive z into the other body.
+    by_approach, by_tilt, moment_by_tilt : array, shape (…)
+        ∂F/∂δ, ∂F/∂θ = ∂M/∂δ and ∂M/∂θ, N/mm, N/rad and N·mm/rad.
+    slice_load : array, shape (…, slices)
+        F_i, N.
+    line_load : array, shape (…, slices, points)
+        q at the points of the slices, N/mm.
+    near : array, shape (…, 2 + 3 slices) or (…, 0)
+        δ, θ, F_i, ∂F_i/∂δ and ∂F_i/∂θ: what a neighbour starts from (`loads_nearby`); nothing where no start is needed.
+    line_slopes : array, shape (…, 2, slices, points), or None
+        ∂q/∂δ and ∂q/∂θ; None where contacts are not moved along them.
+    steady : array, shape (…), or None
+        Least approach or gap of a point: what changes approaches by a part of it everywhere moves contacts along slopes, mm.
+    left : array, shape (…), or None
+        Force that may be left over of the slices, N; None of laws that leave none.
+    """
+
+    load: FloatArray
+    moment: FloatArray
+    by_approach: FloatArray
+    by_tilt: FloatArray
+    moment_by_tilt: FloatArray
+    slice_load: FloatArray
+    line_load: FloatArray
+    near: FloatArray
+    line_slopes: FloatArray | None = None
+    steady: FloatArray | None = None
+    left: FloatArray | None = None
+
+    def take(self, rows: NDArray[np.intp]) -> SlicedContact:
+        """Return some of a row of contacts."""
+        return SlicedContact(**{name: values[rows] for name, values in self._arrays()})
+
+    def put(self, rows: NDArray[np.intp], part: SlicedContact) -> None:
+        """Write what some of a row of contacts are now."""
+        for name, values in self._arrays():
+            values[rows] = getattr(part, name)
+
+    @property
+    def kept(self) -> SlicedContact:
+        """The contacts without what a search alone asks for."""
+        return replace(self, near=self.near[..., :0], line_slopes=None, steady=None, left=None)
+
+    @property
+    def halves(self) -> tuple[SlicedContact, SlicedContact]:
+        """Contacts of the shape (2, n) as twice n contacts."""
+        one, other = ({name: values[half] for name, values in self._arrays()} for half in (0, 1))
+        return SlicedContact(**one), SlicedContact(**other)
+
+    def squeezed(self) -> SlicedContact:
+        """Return contacts of the shape (n, 1) as n contacts."""
+        return SlicedContact(**{name: values[:, 0] for name, values in self._arrays()})
+
+    def shift(self, rows: NDArray[np.intp], approach: FloatArray, tilt: FloatArray) -> None:
+        """Move some of a row of contacts along their slopes, in place."""
+        assert self.line_slopes is not None
+        slices = self.slice_load.shape[-1]
+        by_approach, by_tilt = self.by_approach[rows], self.by_tilt[rows]
+        self.load[rows] += by_approach * approach + by_tilt * tilt
+        self.moment[rows] += by_tilt * approach + self.moment_by_tilt[rows] * tilt
+        slopes, of_lines = self.near[rows, 2 + slices :], self.line_slopes[rows]
+        moved = approach[:, None] * slopes[:, :slices] + tilt[:, None] * slopes[:, slices:]
+        self.slice_load[rows] += moved
+        self.line_load[rows] += approach[:, None, None] * of_lines[:, 0] + tilt[:, None, None] * of_lines[:, 1]
+        self.near[rows, :2] += np.stack((approach, tilt), axis=1)
+        self.near[rows, 2 : 2 + slices] += moved
+
+    def _arrays(self) -> list[tuple[str, FloatArray]]:
+        return [(name, values) for name in self.__slots__ if (values := getattr(self, name)) is not None]
+
+
+def loads_nearby(near: FloatArray, approach: FloatArray, tilt: FloatArray) -> FloatArray:
+    """Return loads of slices to start from at approaches and tilts, N, shape (contacts, slices).
+
+    `near` are rows of `SlicedContact.near`; slopes tell nothing beyond a change of the loads themselves.
+    """
+    slices = (near.shape[1] - 2) // 3
+    load, by_approach, by_tilt = (near[:, 2 + number * slices : 2 + (number + 1) * slices] for number in range(3))
+    moved = (approach - near[:, 0])[:, None] * by_approach + (tilt - near[:, 1])[:, None] * by_tilt
+    trusted = (np.abs(moved) < LARGEST_EXTRAPOLATION * load.max(axis=1, keepdims=True)).all(axis=1, keepdims=True)
+    return np.asarray(np.where(trusted, np.maximum(load + moved, 0.0), load))
