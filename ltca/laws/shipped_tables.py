@@ -13,6 +13,7 @@ follow from that law: they give an aligned straight line its load, for every num
 
 from __future__ import annotations
 
+import argparse
 import json
 import os
 from collections.abc import Callable
@@ -134,6 +135,7 @@ def write_tables() -> None:
 
 
 if __name__ == "__main__":
+    argparse.ArgumentParser(description="Writes the tables of cylinders that ship with the package anew.").parse_args()
     if os.environ.get("OPENBLAS_NUM_THREADS") != "1":
         raise SystemExit("set OPENBLAS_NUM_THREADS=1: the last digits of the tables depend on it")
     write_tables()
