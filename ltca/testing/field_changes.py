@@ -101,6 +101,15 @@ _LEFT_OUT = {
     "disc.axial_play": 0.2,
 }
 _LEFT_OUT |= {
+    "inertia.input": 1e-3,
+    "inertia.output": 0.2,
+    "inertia.output_mass": 10.0,
+    "inertia.crank": 1e-3,
+    "inertia.crank_mass": 2.0,
+    "damping.ratio": 0.02,
+    "damping.loss_factor": 0.04,
+}
+_LEFT_OUT |= {
     f"materials.{part}.{name}": value
     for part in PARTS
     for name, value in {
@@ -155,6 +164,11 @@ _OF_LIFE = dict.fromkeys(
 _OF_LIFE |= dict.fromkeys(
     ("crank_bearing.dynamic_load_rating", "crank_bearing.static_load_rating"),
     "ratings of the maker concern lives of bearings alone, and here none is told",
+)
+_NAME |= dict.fromkeys(
+    [f"inertia.{name}" for name in ("input", "output", "output_mass", "crank", "crank_mass")]
+    + [f"damping.{name}" for name in ("ratio", "loss_factor")],
+    "inertias and damping concern vibrations alone, and here the drive stands or turns slowly",
 )
 _EVERYWHERE = _NAME | _OF_LIFE
 _TILTING = dict.fromkeys(
@@ -366,6 +380,8 @@ def _beside(drive: Drive, path: str) -> dict[str, Any]:
         if path == "friction.seat" and wheel.seat.kind == "fixed":
             needed |= _seat(drive, "pin_wheel", "slot") | {path: 0.02}
         return needed
+    if path == "inertia.output_mass" and not drive.wheel_yields:
+        return {"pin_wheel.support_stiffness": 5e5}
     if path.startswith("first_stage.") and drive.first_stage is None:
         return _FIRST_STAGE
     if path.startswith("load.external.") and not drive.load.external:
