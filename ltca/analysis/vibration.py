@@ -1,7 +1,7 @@
 """Vibrations of a drive about its loaded positions: modes over a turn and over torque, orders that excite them, critical speeds.
 
-The drive is balanced without friction at crank angles of one turn and at several torques; about each position it vibrates with the
-stiffness and the masses that it has there, as if the crank stood (`ltca.dynamics`). Orders of the transmission error, counted by
+The drive is balanced without friction at crank angles of one turn and at several torques; about each position it vibrates with
+the stiffness and the masses that it has there, as if the crank stood (`ltca.dynamics`). Orders of the transmission error, counted by
 turn of the crank against the pin shaft, meet an eigenfrequency at the critical speeds.
 """
 
@@ -26,7 +26,7 @@ from ltca.dynamics.masses import drive_masses
 from ltca.dynamics.modes import Modes, free_coordinates, mode_words, solve_modes
 from ltca.dynamics.stiffness import levers, stiffness_matrices
 from ltca.equilibrium.balance import lever_arms
-from ltca.equilibrium.output_angle import wheel_angle_of_input
+from ltca.equilibrium.output_angle import crank_lag, wheel_angle_of_input
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.reducer import Reducer
 from ltca.errors import DriveError
@@ -92,13 +92,19 @@ class Vibration:
     shapes : array, shape (coordinates, modes)
         The same as coordinates, mm and rad, mass-normalised (t·mm²).
     mean_stiffness, mean_mass : array, shape (coordinates, coordinates)
-        K and M at the load, mean over the turn.
+        K and M at the load in the frame that turns with the crank (`Motion.turned`), mean over the turn.
     basis : array, shape (coordinates, free coordinates)
-        Motions that are free.
+        Motions that are free in that frame.
     spectrum : Spectrum
         Orders of the transmission error at the load.
     turns : int
         Crank turns behind it.
+    walked_angle : array, shape (walked,)
+        φ_C over these turns, rad.
+    walked_pose : array, shape (walked, pose)
+        Balanced poses there.
+    walked_lag : array, shape (walked,)
+        Angle of the cranks less the one that the held input gives them, rad.
     """
 
     drive: Drive
@@ -114,6 +120,9 @@ class Vibration:
     basis: FloatArray
     spectrum: Spectrum
     turns: int
+    walked_angle: FloatArray
+    walked_pose: FloatArray
+    walked_lag: FloatArray
 
     @property
     def input_is_held(self) -> bool:
@@ -123,7 +132,7 @@ class Vibration:
     @property
     def at_load(self) -> FloatArray:
         """Eigenfrequencies at the load, Hz, shape (positions, modes)."""
-        return self.frequency[-1]
+        return np.asarray(self.frequency[-1])
 
     @property
     def input_orders(self) -> FloatArray:
@@ -225,7 +234,8 @@ def vibration(
     model = replace(engine.prepare(drive).model, friction=None)
     angles, parts = position_angles(positions), np.unique([*torque_parts, 1.0])
     row = motion.input_turns if holds_input(drive) else np.zeros(motion.size)
-    basis = free_coordinates(row, levers(model, motion, np.atleast_2d(lever_arms(model))[0]))
+    lever = levers(model, motion, np.atleast_2d(lever_arms(model))[0])
+    basis, turned = free_coordinates(row, lever), motion.turned(angles)
     rigid = None if holds_input(drive) else motion.rigid
     bodies = [moving_bodies(motion, masses, float(angle)) for angle in angles]
     mass = np.array([mass_matrix(each, motion.size) for each in bodies])
@@ -244,7 +254,11 @@ def vibration(
     first, at_zero = int(rigid is not None), found[0]
     shown = first + np.argsort(at_zero.frequency[first:], kind="stable")
     ahead = np.array([disc.geometry.placement.eccentric_direction(angles[:1])[0] for disc in model.discs])
-    spectrum = _spectrum(model, warm, turns, advance)
+    walked_angle, error, pose, lag = _walk(model, warm, turns, advance)
+    try:
+        spectrum = fit_orders(walked_angle, error, known_orders_of(warm))
+    except ValueError as problem:
+        raise DriveError([f"turns = {turns}: {problem}"]) from problem
     return Vibration(
         drive=warm,
         engine=engine,
@@ -254,27 +268,31 @@ def vibration(
         frequency=np.array(frequency[::-1]),
         words=tuple(mode_words(motion, bodies[0], at_zero.shapes[:, mode], ahead) for mode in shown),
         shapes=at_zero.shapes[:, shown],
-        mean_stiffness=stiffness.mean(axis=0),
-        mean_mass=mass.mean(axis=0),
-        basis=basis,
+        mean_stiffness=np.mean(turned.swapaxes(1, 2) @ stiffness @ turned, axis=0),
+        mean_mass=np.mean(turned.swapaxes(1, 2) @ mass @ turned, axis=0),
+        basis=free_coordinates(np.mean(row @ turned, axis=0), lever),
         spectrum=spectrum,
         turns=turns,
+        walked_angle=walked_angle,
+        walked_pose=pose,
+        walked_lag=lag,
     )
 
 
-def _spectrum(model: Reducer, drive: Drive, turns: int, advance: Callable[[int], None]) -> Spectrum:
-    """Orders of the transmission error at the load."""
+def _walk(
+    model: Reducer, drive: Drive, turns: int, advance: Callable[[int], None]
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Crank angles of some turns, and there, at the load, transmission error, poses and lags of the cranks."""
     each, torque = positions_per_turn(drive), drive.load.torque
     angle = 2.0 * np.pi * np.arange(turns * each) / each
-    error = []
+    parts = []
     for rows in np.array_split(angle, -(-angle.size // positions_together(drive))):
         found = solve_at_output(model, [drive], rows, torque, gaps=False)
-        error.append(drive.output_deviation(wheel_angle_of_input(model, found), np.full(rows.size, torque)))
+        error = drive.output_deviation(wheel_angle_of_input(model, found), np.full(rows.size, torque))
+        parts.append((error, found.pose, crank_lag(model, found)))
         advance(rows.size)
-    try:
-        return fit_orders(angle, np.concatenate(error), known_orders_of(drive))
-    except ValueError as problem:
-        raise DriveError([f"turns = {turns}: {problem}"]) from problem
+    error, pose, lag = (np.concatenate(values) for values in zip(*parts, strict=True))
+    return angle, error, pose, lag
 
 
 def vibration_content(found: Vibration, fastest: float | None = None) -> dict[str, Any]:
@@ -308,7 +326,12 @@ def vibration_content(found: Vibration, fastest: float | None = None) -> dict[st
         "transmission_error_orders": {
             "turns": found.turns,
             "orders": [
-                {"order": one.value, "by_turn_of_input": float(by_input), "name": one.name, "amplitude_rad": float(size)}
+                {
+                    "order": one.value,
+                    "by_turn_of_input": float(by_input),
+                    "name": one.name,
+                    "amplitude_rad": float(size),
+                }
                 for one, by_input, size in zip(spectrum.orders, found.input_orders, spectrum.amplitude, strict=True)
             ],
             "residual_rms_rad": spectrum.residual,

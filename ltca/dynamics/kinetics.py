@@ -1,16 +1,16 @@
 r"""Kinetic energy of a drive over the coordinates of its reducer, and what it comes to at input and output.
 
 Velocities are those in the frame of the held member. In the frame of the pin shaft stand discs, cranks and wheel
-(`ltca.geometry.coordinates`); the crank angle :math:`\varphi_C` is a coordinate as well, the sun where teeth of a first stage yield,
-and the twist of the carrier where it has one. The frame itself turns by the twist where the pin shaft is held, and by
-:math:`-(\varphi_C/u + w)` where the wheel is held, whose displacements and angle w are those relative to the shaft. Each body brings
-a row of its velocity z and one of its rotation, and the mass matrix is
+(`ltca.geometry.coordinates`); the crank angle :math:`\varphi_C` is a coordinate as well, the sun where teeth of a first stage
+yield, and the twist of the carrier where it has one. The frame itself turns by the twist where the pin shaft is held, and by
+:math:`-(\varphi_C/u + w)` where the wheel is held, whose displacements and angle w are those relative to the shaft. Each body
+brings a row of its velocity z and one of its rotation, and the mass matrix is
 
 .. math:: M = \sum m\, \mathrm{Re}(z^H z) + \sum J\, r^T r .
 
-Rollers move by the mean of race and bore; their cage turns by `cage_speed`, they roll on the bore. Pins, sleeves, ring and posts are
-rigid with wheel and shaft, shafts of cranks bend as their stiffness lets them. Frozen at a crank angle: accelerations by the square
-of the speed (centrifugal and Coriolis terms) are no part of it.
+Rollers move by the mean of race and bore; their cage turns by `cage_speed`, they roll on the bore. Pins, sleeves, ring and posts
+are rigid with wheel and shaft, shafts of cranks bend as their stiffness lets them. Frozen at a crank angle: accelerations by the
+square of the speed (centrifugal and Coriolis terms) are no part of it.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ from ltca.dynamics.masses import (
 from ltca.equilibrium.first_stage import StageMesh
 from ltca.equilibrium.supports import crank_springs
 from ltca.errors import DriveError
-from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, X, Y, Coordinates
+from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, Coordinates, X, Y
 from ltca.laws.beam import shaft_flexibility
 
 OF_WHEEL = (WHEEL_PINS, SLEEVES[WHEEL_PINS], RING)
@@ -172,6 +172,30 @@ class Motion:
         """Row of the displacement of the output, x + iy."""
         return self.frame_moves + (0.0 if self.drive.wheel_is_held else self.wheel_moves)
 
+    def turned(self, crank_angle: FloatArray) -> FloatArray:
+        """Return the matrices that take coordinates in the frame that turns with the crank to those at rest, shape
+        (positions, n, n).
+
+        Parameters
+        ----------
+        crank_angle : array, shape (positions,)
+            φ_C, rad.
+        """
+        found = np.tile(np.eye(self.size), (crank_angle.size, 1, 1))
+        cosine, sine = np.cos(crank_angle), np.sin(crank_angle)
+        for x in self.pose.displacements:
+            found[:, x, x] = found[:, x + 1, x + 1] = cosine
+            found[:, x, x + 1], found[:, x + 1, x] = -sine, sine
+        return found
+
+    @property
+    def spin(self) -> FloatArray:
+        """Derivative of `turned` by the crank angle, in the frame that turns, shape (n, n)."""
+        found = np.zeros((self.size, self.size))
+        for x in self.pose.displacements:
+            found[x, x + 1], found[x + 1, x] = -1.0, 1.0
+        return found
+
     @property
     def rigid(self) -> FloatArray:
         """Motion of all parts as rigid ones while the crank turns by 1 rad."""
@@ -209,9 +233,7 @@ def require_masses(masses: DriveMasses) -> DriveMasses:
     """Return the masses themselves; DriveError with every density that is not given."""
     missing = masses.without_density
     if missing:
-        raise DriveError(
-            [f"{path}: must be given for inertias, kg/m³ (a named material has it)" for path in missing]
-        )
+        raise DriveError([f"{path}: must be given for inertias, kg/m³ (a named material has it)" for path in missing])
     return masses
 
 
@@ -404,17 +426,28 @@ def _bent(motion: Motion, crank: int, height: float) -> ComplexArray:
 def _members(motion: Motion, masses: DriveMasses) -> Iterator[Body]:
     """What is rigid with the wheel, and what with the pin shaft."""
     axis = complex(masses.places[0].wheel_axis)
-    for solid in (each for group in OF_WHEEL for each in masses.of(group)):
-        centre = complex(solid.centre[0], solid.centre[1])
-        row = motion.wheel_moves + 1j * (centre - axis) * motion.wheel_turns
-        yield Body(name=WHEEL, turns=False, size=_mass(solid), row=_at(motion, centre, row))
-        turns = _turning(motion, motion.wheel_turns)
-        yield Body(name=WHEEL, turns=True, size=solid.about_own_axis or 0.0, row=turns)
-    for solid in (each for group in OF_SHAFT for each in masses.of(group)):
-        centre = complex(solid.centre[0], solid.centre[1])
-        nothing = np.zeros(motion.size, dtype=complex)
-        yield Body(name=CARRIER, turns=False, size=_mass(solid), row=_at(motion, centre, nothing))
-        yield Body(name=CARRIER, turns=True, size=solid.about_own_axis or 0.0, row=_turning(motion, nothing.real))
+    mass, centre, inertia = _together([each for group in OF_WHEEL for each in masses.of(group)])
+    row = motion.wheel_moves + 1j * (centre - axis) * motion.wheel_turns
+    yield Body(name=WHEEL, turns=False, size=mass, row=_at(motion, centre, row))
+    yield Body(name=WHEEL, turns=True, size=inertia, row=_turning(motion, motion.wheel_turns))
+    mass, centre, inertia = _together([each for group in OF_SHAFT for each in masses.of(group)])
+    nothing = np.zeros(motion.size)
+    yield Body(name=CARRIER, turns=False, size=mass, row=_at(motion, centre, nothing.astype(complex)))
+    yield Body(name=CARRIER, turns=True, size=inertia, row=_turning(motion, nothing))
+
+
+def _together(solids: Sequence[Solid]) -> tuple[float, complex, float]:
+    """Mass, t, centre of mass, mm, and moment of inertia about it, t·mm², of parts that are rigid with each other."""
+    mass = sum(map(_mass, solids))
+    if not mass:
+        return 0.0, 0j, 0.0
+    places = [complex(solid.centre[0], solid.centre[1]) for solid in solids]
+    centre = sum(_mass(solid) * place for solid, place in zip(solids, places, strict=True)) / mass
+    about = [
+        (solid.about_own_axis or 0.0) + _mass(solid) * abs(place - centre) ** 2
+        for solid, place in zip(solids, places, strict=True)
+    ]
+    return mass, centre, sum(about)
 
 
 def _given(motion: Motion) -> Iterator[Body]:

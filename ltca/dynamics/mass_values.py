@@ -82,7 +82,10 @@ def mass_rows(drive: Drive) -> list[tuple[str, str]]:
         off = complex(disc.centre[0], disc.centre[1]) - complex(masses.places[0].race_centre(np.zeros(1))[0])
         about = f"{disc.about_own_axis / INERTIA:.5g} kg·m²"
         rows.append(
-            (f"inertia of disc{of} about its centre of mass", about + (f", {abs(off):.4g} mm off" if abs(off) > 1e-9 else ""))
+            (
+                f"inertia of disc{of} about its centre of mass",
+                about + (f", {abs(off):.4g} mm off" if abs(off) > 1e-9 else ""),
+            )
         )
     if (crank := masses.crank_inertia) is not None:
         rows.append(("inertia of a crank about its axis", f"{crank / INERTIA:.5g} kg·m²"))
@@ -138,4 +141,3 @@ def _inertia_rows(drive: Drive) -> list[tuple[str, str]]:
         beside = f", with the given {given / INERTIA:.5g} kg·m² beside it" if given else ""
         rows.append((f"inertia of the drive referred to the {side}", f"{own / INERTIA:.5g} kg·m²{beside}"))
     return rows
-

@@ -1,7 +1,7 @@
 r"""Eigenfrequencies and modes of stiffness and mass matrices, and what moves in them.
 
-Solved is :math:`M x = \mu (K + s M) x` with :math:`\omega^2 = 1/\mu - s`: parts without mass yield as springs do, and a shift s makes
-the matrix on the right positive where the drive turns freely. Where nothing is given of the input its rotation is held, and the
+Solved is :math:`M x = \mu (K + s M) x` with :math:`\omega^2 = 1/\mu - s`: parts without mass yield as springs do, and a shift s
+makes the matrix on the right positive where the drive turns freely. Where nothing is given of the input its rotation is held, and the
 coordinates are those that leave it still.
 """
 
@@ -181,10 +181,11 @@ def _of_discs(motion: Motion, shape: FloatArray, eccentric: ComplexArray, turns:
     words = f"{names} {verb}"
     if not turns and sizes.max() > 0.0:
         along = np.sum((moved * eccentric.conjugate()).real ** 2) / np.sum(sizes**2)
-        words += " along its eccentricity" if along > ALONG else " across its eccentricity" if along < 1.0 - ALONG else ""
+        words += (
+            " along its eccentricity" if along > ALONG else " across its eccentricity" if along < 1.0 - ALONG else ""
+        )
         words = words.replace("its eccentricity", "their eccentricities") if names == "discs" else words
     if names == "discs":
         pair = (moved[0].conjugate() * moved[1:]).real.sum() / max(sizes[0] * sizes[1:].sum(), 1e-300)
         words += " together" if pair > ALIKE else " against each other" if pair < -ALIKE else ""
     return words
-

@@ -1,8 +1,8 @@
 r"""Stiffness of a drive about balanced positions, over the coordinates of its motion.
 
-Beside the tangent of the pose stand the derivatives by the crank angle, with which contacts move along: the forces on the members and
-the moment that holds the cranks, differenced beside the balanced position. The mesh of a first stage and the twist of a carrier are
-springs on these coordinates. Friction is left out: what it takes from a vibration is said by ``[damping]``.
+Beside the tangent of the pose stand the derivatives by the crank angle, with which contacts move along: the forces on the members
+and the moment that holds the cranks, differenced beside the balanced position. The mesh of a first stage and the twist of a
+carrier are springs on these coordinates. Friction is left out: what it takes from a vibration is said by ``[damping]``.
 
 The tangent takes radii of curvature and influence coefficients as they stand, which is 1e-5 of it (`ltca.analysis.derivatives`);
 stiffnesses are made symmetric, which is as much.

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import pairwise
 from math import cos, degrees, fsum, pi, sin
 

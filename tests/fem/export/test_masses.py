@@ -43,7 +43,11 @@ def of_export(name, drive):
             if name == f"eccentric {disc} of crank {crank}":
                 of = f"disc {disc}" if several else "disc"
                 return f"inner race of {of}" + (f" {crank}" if drive.crank.number > 1 else "")
-    for mine, theirs in (("sleeve of wheel pin", "sleeve"), ("sleeve of shaft pin", "shaft sleeve"), ("wheel pin", "pin")):
+    for mine, theirs in (
+        ("sleeve of wheel pin", "sleeve"),
+        ("sleeve of shaft pin", "shaft sleeve"),
+        ("wheel pin", "pin"),
+    ):
         if name.startswith(mine):
             return name.replace(mine, theirs)
     if name == "ring":
@@ -86,7 +90,9 @@ def test_volume_centre_and_inertia_are_those_of_the_solids(which, tmp_path):
     solids = {of_export(solid.name, drive): solid for solid in drive_masses(drive).solids}
     exported = [body.name for body in part.bodies]
     # Shafts beside the eccentrics are in no assembly.
-    assert {name for name in solids if not name.startswith("shaft") or "pin" in name or "sleeve" in name} == set(exported)
+    assert {name for name in solids if not name.startswith("shaft") or "pin" in name or "sleeve" in name} == set(
+        exported
+    )
     with gmsh_model("masses"):
         found = gmsh.model.occ.importShapes(str(path))
         tags = [tag for dimension, tag in found if dimension == VOLUME]
