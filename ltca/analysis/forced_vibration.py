@@ -1,7 +1,7 @@
 r"""Response of a drive to its transmission error over speed, order by order, and what it does to contacts.
 
 Seen from the crank, the contacts of a drive stand nearly still. In that frame (`Motion.turned`), which turns at the speed
-:math:`\dot\varphi` of the crank, the drive would follow its quasi-static motion :math:`X_s(\varphi_C)`, whose orders m are fitted,
+:math:`\dot\varphi` of the crank, the drive would follow its quasi-static motion :math:`X_s(\varphi_C)`, whose orders are fitted
 with the input turning evenly; its masses do not let it, and it departs by Y:
 
 .. math:: M D^2 Y + C \dot Y + K Y = -M D^2 X_s - f_0, \quad D = \frac{d}{dt} + \dot\varphi J
@@ -25,7 +25,6 @@ from ltca.analysis.transmission_error_orders import order_amplitudes
 from ltca.analysis.vibration import Vibration, speed_range
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.response import Response, Start
-from ltca.drive.parts import Drive
 from ltca.dynamics.kinetics import moving_bodies
 from ltca.dynamics.masses import drive_masses
 from ltca.dynamics.modes import solve_modes
@@ -124,7 +123,7 @@ def forced_vibration(found: Vibration, *, fastest: float | None = None) -> Force
 def _departures(
     found: Vibration, crank: FloatArray, orders: FloatArray, resting: ComplexArray
 ) -> tuple[ComplexArray, FloatArray]:
-    """Amplitudes of the departure by speed, coordinate and order, and what centrifugal forces displace, by speed and coordinate."""
+    """Amplitudes of the departure by speed, coordinate and order; what centrifugal forces displace, by speed and coordinate."""
     motion, basis = found.motion, found.basis
     mass, stiffness = found.mean_mass, found.mean_stiffness
     damping, losses = _damping(found)

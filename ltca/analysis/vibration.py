@@ -1,8 +1,8 @@
 """Vibrations of a drive about its loaded positions: modes over a turn and over torque, orders that excite them, critical speeds.
 
 The drive is balanced without friction at crank angles of one turn and at several torques; about each position it vibrates with
-the stiffness and the masses that it has there, as if the crank stood (`ltca.dynamics`). Orders of the transmission error, counted by
-turn of the crank against the pin shaft, meet an eigenfrequency at the critical speeds.
+the stiffness and the masses that it has there, as if the crank stood (`ltca.dynamics`). Orders of the transmission error,
+counted by turn of the crank against the pin shaft, meet an eigenfrequency at the critical speeds.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 r"""Eigenfrequencies and modes of stiffness and mass matrices, and what moves in them.
 
 Solved is :math:`M x = \mu (K + s M) x` with :math:`\omega^2 = 1/\mu - s`: parts without mass yield as springs do, and a shift s
-makes the matrix on the right positive where the drive turns freely. Where nothing is given of the input its rotation is held, and the
-coordinates are those that leave it still.
+makes the matrix on the right positive where the drive turns freely. Where nothing is given of the input its rotation is held,
+and the coordinates are those that leave it still.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_ROTATION, X, Y
 
 MASSLESS = 1e-10
-"""Mass by the largest one, coordinates as displacements, below which a combination of coordinates has none."""
+"""Mass by the largest one, each coordinate by its own, below which a combination of coordinates has none."""
 FIRST_SHIFT, SHIFT_STEP, SHIFTS = 1e-8, 10.0, 12
 """First shift by the mean square frequency (traces of K and M), its growth, and how many are tried."""
 TOLD = 0.05
@@ -93,7 +93,9 @@ def solve_modes(stiffness: FloatArray, mass: FloatArray, basis: FloatArray, rigi
         When the drive is not stable where it stands.
     """
     k, m = basis.T @ stiffness @ basis, basis.T @ mass @ basis
-    sizes = np.linalg.eigvalsh(m)
+    own = np.sqrt(np.maximum(np.diag(m), 0.0))
+    own[own == 0.0] = 1.0
+    sizes = np.linalg.eigvalsh(m / np.outer(own, own))
     count = int(np.count_nonzero(sizes > MASSLESS * sizes[-1]))
     # A loaded drive that turns freely is pulled on or back by its own transmission error.
     first, shift = FIRST_SHIFT * np.trace(k) / np.trace(m), 0.0

@@ -1,8 +1,8 @@
 r"""Stiffness of a drive about balanced positions, over the coordinates of its motion.
 
-Beside the tangent of the pose stand the derivatives by the crank angle, with which contacts move along: the forces on the members
-and the moment that holds the cranks, differenced beside the balanced position. The mesh of a first stage and the twist of a
-carrier are springs on these coordinates. Friction is left out: what it takes from a vibration is said by ``[damping]``.
+Beside the tangent of the pose stand the derivatives by the crank angle, with which discs and wheel go along as they nominally do:
+those of the forces on the members, and of the force on that motion, differenced beside the balanced position. The mesh of a
+first stage and the twist of a carrier are springs on these coordinates. Friction is left out: what it takes from a vibration is said by ``[damping]``.
 
 The tangent takes radii of curvature and influence coefficients as they stand, which is 1e-5 of it (`ltca.analysis.derivatives`);
 stiffnesses are made symmetric, which is as much.
@@ -15,10 +15,11 @@ from dataclasses import replace
 import numpy as np
 
 from ltca.arrays import FloatArray
-from ltca.compliance.response import Start
+from ltca.compliance.response import Response, Start
 from ltca.dynamics.kinetics import Motion
 from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.reducer import Reducer
+from ltca.geometry.coordinates import WHEEL_ANGLE, X, Y
 
 STEP = 1e-5
 """Step of the crank angle, rad: contacts move by some nanometres then, and round-off of the forces is 1e-6 of their change."""
@@ -49,8 +50,7 @@ def stiffness_matrices(model: Reducer, motion: Motion, found: Equilibrium) -> Fl
     for sense in (-1.0, 1.0):
         turned = angle + sense * STEP
         response = contacts.respond(turned, pose, start)
-        moment = contacts.crank_moments(turned, pose, response.parts).sum(axis=1)
-        ends.append(np.concatenate((response.force, moment[:, None]), axis=1))
+        ends.append(np.concatenate((response.force, _crank_force(contacts, turned, pose, response)[:, None]), axis=1))
     by_crank = (ends[1] - ends[0]) / (2.0 * STEP)
     stiffness = np.zeros((angle.size, motion.size, motion.size))
     pose_size = motion.pose.size
@@ -65,6 +65,18 @@ def stiffness_matrices(model: Reducer, motion: Motion, found: Equilibrium) -> Fl
     if motion.twist is not None and carrier is not None:
         stiffness[:, motion.twist, motion.twist] += carrier.stiffness_torsion or 0.0
     return stiffness
+
+
+def _crank_force(model: Reducer, crank_angle: FloatArray, pose: FloatArray, response: Response) -> FloatArray:
+    """∂U/∂φ_C at a held pose, with which discs and wheel go along, N·mm: the moments that hold the cranks, and the work of the
+    forces on discs and wheel on their nominal motion.
+    """
+    moment = model.crank_moments(crank_angle, pose, response.parts).sum(axis=1)
+    for number, disc in enumerate(model.discs):
+        own, velocity = model.coordinates.columns(number), disc.geometry.placement.race_velocity(crank_angle)
+        moment = moment + response.force[:, own[X]] * velocity.real + response.force[:, own[Y]] * velocity.imag
+    ratio = model.discs[0].geometry.placement.reduction_ratio
+    return np.asarray(moment + response.force[:, WHEEL_ANGLE] / ratio)
 
 
 def levers(model: Reducer, motion: Motion, lever: FloatArray) -> FloatArray:
