@@ -2,7 +2,8 @@ r"""Stiffness of a drive about balanced positions, over the coordinates of its m
 
 Beside the tangent of the pose stand the derivatives by the crank angle, with which discs and wheel go along as they nominally do:
 those of the forces on the members, and of the force on that motion, differenced beside the balanced position. The mesh of a
-first stage and the twist of a carrier are springs on these coordinates. Friction is left out: what it takes from a vibration is said by ``[damping]``.
+first stage and the twist of a carrier are springs on these coordinates. Friction is left out: what it takes from a
+vibration is said by ``[damping]``.
 
 The tangent takes radii of curvature and influence coefficients as they stand, which is 1e-5 of it (`ltca.analysis.derivatives`);
 stiffnesses are made symmetric, which is as much.
