@@ -55,6 +55,7 @@ SMALLER = {
     "sweep": "--no-figures",
     "optimise": "--generations 1 --positions 4 --no-figures",
     "curves": "--no-figures",
+    "dynamics": "--positions 4",
     "design": "--best 1",
     "derive": "--stations 0.25 --size 2",
     "fem": "--size 4",
@@ -568,7 +569,7 @@ def test_every_printed_command_runs_small(kind, tmp_path):
             start_page(folder)
         if words[1] == "init":
             (folder / words[2]).unlink(missing_ok=True)
-        if words[1] in ("run", "check", "curves", "optimise", "tolerance") and "--out" not in words:
+        if words[1] in ("run", "check", "curves", "dynamics", "optimise", "tolerance") and "--out" not in words:
             words += ["--out", f"out/{len(done)}"]
         began = time.monotonic()
         trouble = run_here(words, folder)

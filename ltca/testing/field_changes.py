@@ -190,7 +190,34 @@ _SPRINGS = (
     }
     | _BODIES
 )
+_SPRINGS_ALONE = {path: reason for path, reason in _SPRINGS.items() if path not in _EVERYWHERE}
 _SHAFT_PIN = ("materials.shaft_pin.youngs_modulus", "materials.shaft_pin.poisson_ratio", "pin_shaft.elastic_contact")
+_VIBRATIONS = {
+    "name": _NAME["name"],
+    **{
+        path: reason
+        for path, reason in _NAME.items()
+        if path.startswith("materials.") and not path.endswith(".density")
+    },
+    **{
+        path: reason
+        for path, reason in _NAME.items()
+        if path.startswith("ring.material.") and not path.endswith(".density")
+    },
+    **{path: _NAME[path] for path in ("disc.axial_play", "analysis.compliance", "disc.planes", "disc.gap")},
+    **{path: _NAME[path] for path in _NAME if path.startswith("main_bearing.")},
+    **{path: reason for path, reason in _OF_LIFE.items() if path != "duty.0.speed"},
+    **dict.fromkeys(
+        ("duty.0.torque", "duty.0.share"),
+        "vibrations are those about the load; of the duty its speeds bound critical ones",
+    ),
+    **dict.fromkeys(
+        [path for path in field_kinds() if path.startswith("friction.")] + ["load.driven_by"],
+        "vibrations are those without friction, whose place damping takes",
+    ),
+    "load.light_torque": "vibrations are those about the load and parts of it",
+}
+"""Of vibrations, on half-spaces."""
 EXCEPTIONS: Mapping[str, Mapping[str, str]] = {
     "tables": _SPRINGS,
     "direct": _SPRINGS | _TILTING | {"load.light_torque": "direct is walked at full load alone"},
@@ -203,6 +230,11 @@ EXCEPTIONS: Mapping[str, Mapping[str, str]] = {
     | {"load.light_torque": "curves are those of full load"}
     | dict.fromkeys(_SHAFT_PIN, "curves tell no pressure of the holes, and in half-spaces nothing else sees it"),
     "studies": _SPRINGS | _TILTING,
+    "dynamics": _VIBRATIONS
+    | _SPRINGS_ALONE
+    | _TILTING
+    | dict.fromkeys(_SHAFT_PIN, "vibrations tell no pressure of the holes, and in half-spaces nothing else sees it")
+    | {"materials.wheel_seat.density": "slots are in the housing, whose size no file gives and which has no mass"},
     "full FE": _EVERYWHERE
     | {
         "load.light_torque": "a full solution is one of full load",
