@@ -69,6 +69,7 @@ GOES_WITH = {
     "ring.bolts": "ring",
     "first_stage": "first_stage",
     "load.external.0": "load.external",
+    "inertia.output_mass": "pin_wheel.support_stiffness",
     "load.external.0.force": "load.external",
     "load.external.0.moment": "load.external",
     "load.external.0.at": "load.external",

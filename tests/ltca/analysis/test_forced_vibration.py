@@ -155,3 +155,31 @@ def test_the_command_refuses_by_name_and_leaves_nothing(tmp_path, capsys):
     assert main(["dynamics", str(drive), "--case", "CS-1", "--out", str(tmp_path / "out")]) == 2
     assert "materials.roller.density: must be given for inertias" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
+
+
+def test_seen_from_the_crank_orders_are_one_apart(usual):
+    """A disc on springs alike in all directions answers at the frequency it has at rest: turning with order 3 in the frame of the
+    crank, the way this turns, it turns with order 4, and with order 2 the other way.
+    """
+    size, mass, stiffness, speed = usual.motion.size, 2e-3, 5e4, 400.0
+    alike = replace(
+        usual,
+        mean_mass=mass * np.eye(size),
+        mean_stiffness=stiffness * np.eye(size),
+        drive=with_fields(PAPER, {"damping.ratio": 1e-9}),
+    )
+    for sense, order in ((1.0, 4.0), (-1.0, 2.0)):
+        turning = np.zeros((size, 1), dtype=complex)
+        turning[:2, 0] = 1.0, -1j * sense
+        found, _ = _departures(alike, np.array([speed]), np.array([3.0]), turning)
+        square = (order * speed) ** 2
+        # Damping of 1e-9 is nothing beside the resonance.
+        assert found[0, :2] == pytest.approx(turning[:2] * square / (stiffness / mass - square), rel=1e-6)
+
+
+def test_the_frame_of_the_crank_spins(usual):
+    motion, step = usual.motion, 1e-6
+    ends = motion.turned(np.array([0.4 - step, 0.4 + step]))
+    assert (ends[1] - ends[0]) / (2.0 * step) == pytest.approx(
+        motion.turned(np.array([0.4]))[0] @ motion.spin, abs=1e-9
+    )
