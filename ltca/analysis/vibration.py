@@ -130,6 +130,14 @@ class Vibration:
         return holds_input(self.drive)
 
     @property
+    def ends_words(self) -> str:
+        """What stands in front of the drive and behind it, in words."""
+        given = self.drive.inertia
+        before = "input turns evenly" if self.input_is_held else "input turns freely with inertia.input"
+        behind = given is not None and given.output is not None
+        return f"{before}, {'inertia.output behind the output' if behind else 'nothing behind the output (inertia.output)'}"
+
+    @property
     def at_load(self) -> FloatArray:
         """Eigenfrequencies at the load, Hz, shape (positions, modes)."""
         return np.asarray(self.frequency[-1])

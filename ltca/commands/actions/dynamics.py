@@ -110,11 +110,10 @@ def solve_and_write(
 def _lines(found: Found, title: str) -> list[str]:
     """Results as lines for the terminal."""
     shaken, drive = found.vibration, found.vibration.drive
-    held = "input turns evenly" if shaken.input_is_held else "input turns freely with inertia.input"
     least = shaken.torque[0] / shaken.torque[-1]
     lines = [
         f"{title}, {drive.load_words()}, {describe_engine(shaken.engine)}: modes at {shaken.crank_angle.size} crank angles, "
-        f"{held}",
+        f"{shaken.ends_words}",
         *(f"  {words}" for words in [half_space_words(shaken.engine, drive)] if words),
         f"  mode   Hz over a turn      at {least:.0%} of it  what moves (part of the kinetic energy)",
     ]

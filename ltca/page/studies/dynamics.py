@@ -58,13 +58,10 @@ def _modes(case: str, ending: str, found: Vibration) -> Section:
         x=found.torque / 1e3,
         lines={f"mode {mode + 1}": found.frequency[:, :, mode].mean(axis=1) for mode in range(len(found.words))},
     )  # fmt: skip
-    held = (
-        "The input turns evenly: its inertia (inertia.input) is left out."
-        if found.input_is_held
-        else "The input turns freely with the inertia that is given; the turning of the whole drive is no vibration and left out."
-    )
+    ends = found.ends_words
     notes = [
-        f"At the load, over {found.crank_angle.size} crank angles of a turn; shapes at crank angle 0. Without friction. {held}"
+        f"At the load, over {found.crank_angle.size} crank angles of a turn; shapes at crank angle 0. Without friction; "
+        f"{ends}. The turning of the whole drive is no vibration and left out."
     ]
     table = Table(name=f"modes{ending}", caption="", columns=columns, rows=rows)
     return Section(heading=_heading(case, "Modes"), notes=notes, curves=[by_torque], tables=[table])
