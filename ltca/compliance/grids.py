@@ -141,7 +141,6 @@ class _TiltedGrids:
         )
         z = sliced.slice_heights(self.length, self.slices)
         edges = np.linspace(-0.5 * self.length, 0.5 * self.length, self.slices + 1)
-        weights = 0.5 * np.polynomial.legendre.leggauss(z.shape[1])[1]
         values = np.zeros((6, *delta.shape))
         slice_load, line_load = np.zeros((*delta.shape, self.slices)), np.zeros((*delta.shape, *z.shape))
         for index in np.ndindex(delta.shape):
@@ -162,7 +161,7 @@ class _TiltedGrids:
             centres = 0.5 * (found.edges[1:] + found.edges[:-1])
             points = np.interp(z, centres, found.line_load) * ((z > found.edges[0]) & (z < found.edges[-1]))
             # Points carry together what their slice does: the bulge at an end lies between them.
-            means = points @ weights
+            means = points @ sliced.SHARES
             even = slice_load[index] * (self.slices / self.length)
             line_load[index] = points * np.divide(even, means, out=np.zeros(even.shape), where=means > 0.0)[:, None]
         load, moment, by_approach, by_tilt, turning, _ = values

@@ -275,8 +275,8 @@ class _PressedRollers:
         steady = np.abs(step) + bent <= part * self.inner.steady[which]
         steady &= np.abs(after - before) + bent <= part * self.outer.steady[which]
         some = which[steady]
-        self.inner.shift(some, step[steady], -turn[steady])
-        self.outer.shift(some, (after - before)[steady], turn[steady])
+        self.inner.shift(some, step[steady], -turn[steady], 2.0 * self.half)
+        self.outer.shift(some, (after - before)[steady], turn[steady], 2.0 * self.half)
         self.inward[some] += step[steady]
         self.lean[some] += turn[steady]
         self.outward[some], self.length[some] = outward[steady], length[steady]

@@ -98,8 +98,7 @@ def _between_ends(
     relief = np.zeros(sliced.slice_heights(kind.length, slices).shape)
     line = sliced.SlicedLine(length=kind.length, contact_modulus=kind.contact_modulus, slices=slices, relief=relief)
     shaped = line_load * line.respond(approach, np.zeros(load.shape), effective_radius).line_load
-    weights = 0.5 * kind.length / slices * np.polynomial.legendre.leggauss(shaped.shape[-1])[1]
-    total = (shaped @ weights).sum(axis=-1)
+    total = kind.length / slices * (shaped @ sliced.SHARES).sum(axis=-1)
     scale = np.divide(load, total, out=np.zeros(load.shape), where=total > 0.0)
     return np.asarray(shaped * scale[..., None, None])
 

@@ -20,7 +20,7 @@ from ltca.errors import ConvergenceError
 from ltca.laws.between_contacts import SETTLED, PartStiffness, newton_step, shorten_steps, unbalanced
 from ltca.laws.conforming import ConformingLaw
 from ltca.laws.slenderness_curve import quintic_spline_pieces
-from ltca.laws.sliced_contact import EXACT, POINTS, Exactness, SlicedContact, slice_heights
+from ltca.laws.sliced_contact import EXACT, POINTS, SHARES, Exactness, SlicedContact, slice_heights
 from ltca.laws.sliced_line import TOUCHING, SlicedLine
 from ltca.laws.sliced_plane import SlicedPlane
 from ltca.laws.sliced_spring import SlicedSpring
@@ -29,7 +29,6 @@ LEAST_PLAY = 1e-9
 """Play that stands for none, mm."""
 _ALL = slice(None)
 MAX_ITERATIONS = 60
-_SHARES = np.polynomial.legendre.leggauss(POINTS)[1]
 _LIGHTEST, _HEAVIEST, _KNOTS = -40.0, 20.0, 601
 
 
@@ -85,7 +84,7 @@ class SlicedSeat:
     def press(self, travel: FloatArray, lean: FloatArray, play: FloatArray) -> _Seat:
         """Return what seats carry at travels, mm, and leans, rad, shape (contacts,), zero where open."""
         z = slice_heights(self.law.length, self.slices)
-        weights = 0.5 * self.law.length / self.slices * _SHARES
+        weights = self.law.length / self.slices * SHARES
         local = travel[:, None, None] + lean[:, None, None] * z
         pressed = local > 0.0
         unit = (
@@ -168,7 +167,7 @@ class SlicedSeat:
     def energy(self, line_load: FloatArray, play: FloatArray) -> FloatArray:
         """Return the energy of seats under line loads, N·mm, shape (contacts,)."""
         length = self.law.length
-        weights = 0.5 / self.slices * _SHARES
+        weights = SHARES / self.slices
         stored = self.law.energy(line_load * length, np.maximum(play, LEAST_PLAY)[:, None, None])
         return np.asarray((stored @ weights).sum(axis=1))
 

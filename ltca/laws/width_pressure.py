@@ -19,7 +19,7 @@ from ltca.arrays import BoolArray, FloatArray
 from ltca.contact.end_pressure import find_cylinder_ratio
 from ltca.contact.tilted_grid import SAMPLES, TiltedPatch, TiltedPiece, recover_tilted
 from ltca.contact.tracked_grid import ContactKind, Separation
-from ltca.laws.sliced_contact import POINTS, slice_heights
+from ltca.laws.sliced_contact import POINTS, SHARES, slice_heights
 from ltca.laws.sliced_line import SlicedLine
 
 HEIGHTS = 33
@@ -76,7 +76,7 @@ def estimate_along_width(kind: ContactKind, line_load: FloatArray, effective_rad
     line = line_load
     radius = np.broadcast_to(effective_radius, line.shape[:-2])
     z = slice_heights(kind.length, line.shape[-2])
-    even = line @ (0.5 * np.polynomial.legendre.leggauss(line.shape[-1])[1])
+    even = line @ SHARES
 
     def pressure_of(load: FloatArray, more: int) -> FloatArray:
         return np.asarray(np.sqrt(kind.contact_modulus * load / (np.pi * radius[(..., *(None,) * more)])))
