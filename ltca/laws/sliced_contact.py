@@ -56,6 +56,11 @@ def slice_heights(length: float, slices: int) -> FloatArray:
     return np.asarray(middle[:, None] + 0.5 * length / slices * _NODES)
 
 
+def slice_means(values: FloatArray) -> FloatArray:
+    """Return the means over slices of values at their points, shape (…, slices, points)."""
+    return np.asarray(values @ SHARES)
+
+
 @cache
 def _sums(length: float, slices: int) -> FloatArray:
     """Weights of all points of a line for ∫ z dz, for ∫ dz and ∫ z dz of each slice, and for ∫ z² dz, shape (points, 2 n + 2)."""

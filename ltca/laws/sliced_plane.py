@@ -10,7 +10,7 @@ from ltca.arrays import FloatArray, by_drive
 from ltca.laws.backed import BackedLaw
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.plane_strain import PlaneContactLaw
-from ltca.laws.sliced_contact import EXACT, SHARES, Exactness, SlicedContact, slice_heights
+from ltca.laws.sliced_contact import EXACT, Exactness, SlicedContact, slice_heights, slice_means
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -76,4 +76,4 @@ class SlicedPlane:
         """Return the energy of contacts, N·mm, shape (…)."""
         local = self._local(contact.near[..., 0], contact.near[..., 1])
         radius = np.broadcast_to(np.asarray(effective_radius)[..., None, None], local.shape)
-        return np.asarray((self.plane.energy(local, radius) @ SHARES).sum(axis=-1) / self.slices)
+        return np.asarray(slice_means(self.plane.energy(local, radius)).sum(axis=-1) / self.slices)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ltca.arrays import FloatArray, by_drive
-from ltca.laws.sliced_contact import EXACT, SHARES, Exactness, SlicedContact, slice_heights
+from ltca.laws.sliced_contact import EXACT, Exactness, SlicedContact, slice_heights, slice_means
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,5 +46,5 @@ class SlicedSpring:
 
     def energy(self, contact: SlicedContact, effective_radius: FloatArray | float) -> FloatArray:
         """Return the energy of contacts, N·mm, shape (…), whatever the radius."""
-        stored = (contact.line_load**2 @ SHARES).sum(axis=-1)
+        stored = slice_means(contact.line_load**2).sum(axis=-1)
         return np.asarray(0.5 * self.length**2 / self.slices * stored / self.stiffness)
