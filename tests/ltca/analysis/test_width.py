@@ -119,7 +119,7 @@ def test_face_load_factors_settle_with_the_number_of_slices(drive):
     for name, most in (("tilted", 0.02), ("crowned", 0.03)):
         assert found[name, 5] > 1.02
         assert abs(found[name, 17] - found[name, 9]) < most * found[name, 17]
-    # Nothing is taken off lines whose ends do not carry: a parabola of line loads has 3/2, one to the power 1 + 1/ln less.
+    # Nothing is taken off lines whose ends do not carry: a parabola of line loads over the whole width has 3/2.
     assert 1.4 < found["crowned", 17] < 1.6
 
 

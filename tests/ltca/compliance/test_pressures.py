@@ -168,7 +168,7 @@ def test_beams_in_slices_touch_their_holes(drive):
     """Rigid shaft pins were said to be without effect, and their pressures were those of elastic ones."""
     bent = {
         "pin_shaft.stiffness": None,
-        "pin_shaft.beam.diameter": 20.0,
+        "pin_shaft.beam.tip": "free",
         "pin_shaft.beam.span": 20.0,
         "contact.slices": 3,
     }
