@@ -81,6 +81,10 @@ class ErrorEstimate:
         """On the finest mesh."""
         return self.values[-1]
 
+    def bar_at(self, mesh: int) -> float:
+        """Return the bar of the value on one of the meshes: its distance from the finest value and the bar of that."""
+        return abs(self.values[mesh] - self.value) + self.bar
+
     @property
     def relative_bar(self) -> float:
         """The bar as a part of the finest value, infinite where that is zero."""

@@ -53,8 +53,8 @@ class CoarseSolution:
 
     @property
     def refined_unknowns(self) -> int:
-        """Displacement unknowns of the refined meshes, from above."""
-        return CHILDREN * self.meshes.unknowns
+        """Displacement unknowns of the refined meshes that are factorised, about."""
+        return CHILDREN * self.meshes.factorised_unknowns
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -76,6 +76,11 @@ class RoundGrading:
     halvings: int = 0
 
     @property
+    def touches(self) -> bool:
+        """Whether a contact is expected at either end."""
+        return any(end.half_width > 0.0 for end in self.ends)
+
+    @property
     def refinements(self) -> tuple[Refinement, ...]:
         """Small elements at the contacts."""
         return tuple(
@@ -117,7 +122,7 @@ class RoundMesh:
 
     def refined(self, known: dict[RoundGrading, BodyMesh]) -> RoundMesh:
         """Return the mesh refined uniformly, from those `known` or added to them; a body without contact keeps its own."""
-        if not any(end.half_width > 0.0 for end in self.grading.ends):
+        if not self.grading.touches:
             return self
         grading = replace(self.grading, halvings=self.grading.halvings + 1)
         if grading not in known:
@@ -158,6 +163,13 @@ class DriveMeshes:
     def unknowns(self) -> int:
         """Displacement unknowns of all bodies."""
         return sum(body.unknowns for body in self.bodies)
+
+    @property
+    def factorised_unknowns(self) -> int:
+        """Displacement unknowns of the meshes that are factorised: of pins and rollers those with contacts, equal ones once."""
+        rounds = (*self.unturned_pins, *self.unturned_rollers, *self.unturned_shaft_pins)
+        distinct = {mesh.grading: mesh.body.unknowns for mesh in rounds if mesh.grading.touches}
+        return self.disc.unknowns + self.inner_race.unknowns + sum(distinct.values())
 
     def refined(self, shapes: DriveShapes, report: Callable[[BodyMesh], None] | None = None) -> DriveMeshes:
         """Return the meshes with every triangle divided into four; `report` is called with each as soon as it is made."""

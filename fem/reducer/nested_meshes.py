@@ -25,6 +25,7 @@ from fem.discretisation_error import ErrorEstimate, estimate_error
 from fem.drive.contact_kinds import CONTACT_KINDS
 from fem.drive.contact_results import ContactResults
 from fem.drive.disc_stress import DiscStress, recover_disc_stress
+from fem.drive.fields import bore_motion
 from fem.drive.grading import FINE_SHARE
 from fem.errors import MeshError
 from fem.mesh.memory_need import require_memory, solution_memory
@@ -71,6 +72,8 @@ class MeshLevel:
         rad.
     bearing : array, shape (discs, cranks, 2)
         Bearing forces on the discs along the eccentric and 90° ahead, N.
+    motion : array, shape (discs, 3)
+        Displacement x, y (mm) and rotation (rad) of each disc fitted to its bores.
     contacts : tuple of ContactResults
         Of each disc.
     stresses : tuple of DiscStress
@@ -82,18 +85,21 @@ class MeshLevel:
     seconds: float
     wheel_angle: float
     bearing: FloatArray
+    motion: FloatArray
     contacts: tuple[ContactResults, ...]
     stresses: tuple[DiscStress, ...]
 
     @classmethod
     def of_solution(cls, solution: ReducerSolution) -> MeshLevel:
         """Return the level of a solution."""
+        motions = [bore_motion(disc) for disc in solution.discs]
         return cls(
             size=solution.discs[0].options.refined_size,
             unknowns=solution.unknowns,
             seconds=solution.seconds["total"],
             wheel_angle=solution.wheel_angle,
             bearing=np.array([disc.bearing_components for disc in solution.discs]),
+            motion=np.array([(shift.real, shift.imag, rotation) for shift, rotation in motions]),
             contacts=tuple(disc.contacts for disc in solution.discs),
             stresses=tuple(recover_disc_stress(disc) for disc in solution.discs),
         )
@@ -141,7 +147,8 @@ class NestedSolution:
     levels : tuple of MeshLevel
         From the coarsest.
     figures : tuple of NestedFigure
-        With their error bars: wheel angle, bearing forces, contacts above 5 % of the largest load of their kind, walls.
+        With their error bars: wheel angle, contacts above 5 % of the largest load of their kind, bearing
+        forces, motion of the discs, walls.
     references : tuple of WallReference
         Stress along walls against closed forms, on meshes of the same edges.
     """
@@ -160,11 +167,6 @@ class NestedSolution:
             if known is None or abs(figure.estimate.value) > abs(known.estimate.value):
                 found[figure.quantity] = figure
         return list(found.values())
-
-    def largest_relative_bar(self, quantity: str) -> float:
-        """Return the largest error bar of a quantity as a part of the largest value of the quantity."""
-        own = [figure.estimate for figure in self.figures if figure.quantity == quantity]
-        return max(each.bar for each in own) / max(abs(each.value) for each in own)
 
 
 @names_unit_mistakes
@@ -223,10 +225,7 @@ def solve_nested(
         slow = replace(coarsest, growth=options.growth)
         solution = solve_reducer(drive, crank_angle, slow, torque=torque, progress=spoken(1))
     solution = settle_pose(solution, spoken(1))
-    finest = CHILDREN ** (meshes - 1) * solution.unknowns
-    needed = finest_memory(solution, meshes)
-    require_memory(finest, needed, "the finest of the nested meshes")
-    spoken(1)(f"solved; the finest will take about {finest:,} unknowns and {needed / 1e9:.1f} GB")
+    _require_finest(solution, meshes, spoken(1))
     levels = [MeshLevel.of_solution(solution)]
     for number in range(2, meshes + 1):
         coarse, torque = solution.coarse, solution.torque
@@ -248,10 +247,13 @@ def solve_nested(
     )
 
 
-def finest_memory(solution: ReducerSolution, meshes: int) -> float:
-    """Return the bytes that the finest of nested meshes will need, from the solution on the coarsest."""
+def _require_finest(solution: ReducerSolution, meshes: int, say: Callable[[str], None]) -> None:
+    """Raise MemoryLimitError when the finest of nested meshes would not fit into memory, told from the coarsest."""
     times = CHILDREN ** (meshes - 1)
-    return sum(solution_memory(times * disc.unknowns) for disc in solution.discs)
+    unknowns = [times * disc.meshes.factorised_unknowns for disc in solution.coarse]
+    needed = sum(solution_memory(count) for count in unknowns)
+    require_memory(sum(unknowns), needed, "the finest of the nested meshes")
+    say(f"solved; the finest will take about {sum(unknowns):,} factorised unknowns and {needed / 1e9:.1f} GB")
 
 
 def _figures(drive: Drive, levels: Sequence[MeshLevel]) -> Iterator[NestedFigure]:
@@ -282,6 +284,9 @@ def _figures(drive: Drive, levels: Sequence[MeshLevel]) -> Iterator[NestedFigure
                     disc=disc,
                     part=crank,
                 )
+        for column, quantity in enumerate(("disc_x", "disc_y", "disc_rotation")):
+            values = [float(level.motion[disc, column]) for level in levels]
+            yield figure(quantity, values, ENERGY_ORDER, place="disc" + of, disc=disc)
         yield from _stress_figures(single, levels, disc, of, figure)
 
 
