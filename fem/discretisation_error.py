@@ -1,44 +1,44 @@
 r"""Error of a figure by the size of the elements, from solutions on at least three meshes.
 
 With :math:`\varphi_1` on the finest mesh, :math:`\varphi_2, \varphi_3` on coarser ones, ratios of their edges
-:math:`r_{21} = h_2/h_1, r_{32} = h_3/h_2` and changes :math:`\varepsilon_{21} = \varphi_2 - \varphi_1, \varepsilon_{32} = \varphi_3 -
-\varphi_2`, the observed order p solves (Celik et al. 2008, Eq. 3; ASME V&V 20-2009, 2-4)
+:math:`r_{21} = h_2/h_1, r_{32} = h_3/h_2` and changes :math:`\varepsilon_{21} = \varphi_2 - \varphi_1`,
+:math:`\varepsilon_{32} = \varphi_3 - \varphi_2`, the observed order p solves (Celik et al. 2008; ASME V&V 20-2009)
 
-.. math:: p = \frac{1}{\ln r_{21}} \left| \ln\left|\frac{\varepsilon_{32}}{\varepsilon_{21}}\right| + q(p) \right|, \quad
-          q(p) = \ln\frac{r_{21}^p - s}{r_{32}^p - s}, \quad s = \operatorname{sign}\frac{\varepsilon_{32}}{\varepsilon_{21}},
+.. math:: p = \frac{1}{\ln r_{21}} \left| \ln\left|\frac{\varepsilon_{32}}{\varepsilon_{21}}\right|
+          + \ln\frac{r_{21}^p - 1}{r_{32}^p - 1} \right|,
 
-and the bar of the finest value, the grid convergence index as a length of the figure's own unit, is
+and the bar of the finest value, the grid convergence index as a length in the figure's own unit, is
 
 .. math:: U = F_s \frac{|\varepsilon_{21}|}{r_{21}^{p} - 1}, \qquad F_s = 1.25 .
 
 The bar is half the width of an interval about the finest value that holds the value on infinitely fine meshes in about 95 % of
-cases (V&V 20). What does not converge evenly has no order, and its bar is a multiple of the spread
+cases (V&V 20). What does not converge evenly has no order; its bar is a multiple of the spread
 :math:`\Delta_M = \max |\varphi_i - \varphi_j|` of the three values:
 
-================  ===========================================================================================  =====================
-state             when                                                                                         bar
-================  ===========================================================================================  =====================
-``monotone``      changes keep their sign and shrink, p ≥ 0.5; in U an order above that of theory counts as    GCI, F_s = 1.25
-                  that of theory (Oberkampf & Roy 2010, 8.6.3): it is chance
-``slow``          likewise, but p < 0.5                                                                        1.25 Δ_M (Eça &
-                                                                                                               Hoekstra 2006)
-``oscillating``   changes alternate and shrink                                                                 Δ_M (Stern et al. 2001
-                                                                                                               take ½ Δ_M)
-``unsettled``     changes do not shrink                                                                        3 Δ_M (Eça & Hoekstra
-                                                                                                               2006)
-================  ===========================================================================================  =====================
+===========  ===========================================================  ======================================================
+state        when                                                         bar
+===========  ===========================================================  ======================================================
+monotone     changes keep their sign and shrink, p ≥ 0.5; an order above  U
+             that of theory is chance and counts as that of theory
+             (Oberkampf & Roy 2010, 8.6)
+slow         likewise, but p < 0.5                                        1.25 Δ_M (Eça & Hoekstra 2006)
+oscillating  changes alternate and shrink                                 Δ_M (Stern et al. 2001 take half of it)
+unsettled    changes do not shrink                                        3 Δ_M (Eça & Hoekstra 2006)
+===========  ===========================================================  ======================================================
 
-Literature: I. B. Celik et al., J. Fluids Eng. 130 (2008) 078001; ASME V&V 20-2009; W. L. Oberkampf, C. J. Roy, *Verification and
-Validation in Scientific Computing*, 2010; L. Eça, M. Hoekstra, *2nd Workshop on CFD Uncertainty Analysis*, Lisbon 2006; F. Stern
-et al., J. Fluids Eng. 123 (2001) 793.
+Literature: I. B. Celik et al., J. Fluids Eng. 130 (2008) 078001; ASME V&V 20-2009; W. L. Oberkampf, C. J. Roy, *Verification
+and Validation in Scientific Computing*, 2010; L. Eça, M. Hoekstra, *2nd Workshop on CFD Uncertainty Analysis*, Lisbon 2006;
+F. Stern et al., J. Fluids Eng. 123 (2001) 793.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import inf, isfinite, log, nan
+from math import expm1, inf, isfinite, log, nan
 from typing import Literal
+
+from scipy.optimize import brentq
 
 SAFETY_FACTOR = 1.25
 """F_s for three or more meshes (ASME V&V 20-2009)."""
@@ -46,8 +46,6 @@ UNSETTLED_FACTOR = 3.0
 """Multiple of the spread where changes do not shrink (Eça & Hoekstra 2006)."""
 SLOWEST_ORDER = 0.5
 """Observed order below which Richardson's value is not used (Eça & Hoekstra 2006: the bar is then a multiple of the spread)."""
-ORDER_TOLERANCE, ORDER_STEPS = 1e-12, 200
-"""Relative change at which the fixed point of p has settled, and its largest number of steps."""
 
 State = Literal["monotone", "slow", "oscillating", "unsettled"]
 
@@ -134,7 +132,7 @@ def estimate_error(
     state: State
     if spread == 0.0:
         state, bar = "monotone", 0.0
-    elif abs(fine) >= abs(coarse):
+    elif abs(coarse) * log(steps[-1]) <= abs(fine) * log(steps[-2]):
         state, bar = "unsettled", UNSETTLED_FACTOR * spread
     elif fine * coarse < 0.0:
         state, bar = "oscillating", spread
@@ -142,7 +140,7 @@ def estimate_error(
         state, bar, extrapolated = "monotone", 0.0, finest
     else:
         order = observed_order(coarse / fine, steps[-1], steps[-2])
-        if not order >= SLOWEST_ORDER:
+        if order < SLOWEST_ORDER:
             state, bar = "slow", SAFETY_FACTOR * spread
         else:
             step = fine / (steps[-1] ** min(order, formal_order) - 1.0)
@@ -151,17 +149,18 @@ def estimate_error(
 
 
 def observed_order(change_ratio: float, fine_ratio: float, coarse_ratio: float) -> float:
-    """Return the observed order from ε₃₂/ε₂₁ > 1 and the ratios r₂₁, r₃₂ of the edges, by the fixed point of Celik et al. 2008.
+    r"""Return the observed order from ε₃₂/ε₂₁ > ln r₃₂/ln r₂₁ and the ratios r₂₁, r₃₂ of the edges.
 
-    Not a number when it does not settle.
+    The equation of Celik et al. 2008 as :math:`r_{21}^p (r_{32}^p - 1)/(r_{21}^p - 1) = \varepsilon_{32}/\varepsilon_{21}`, whose
+    left side grows with p: bracketed, because their fixed point leaves for infinity where the ratios are far apart.
     """
-    plain = abs(log(change_ratio))
-    order = plain / log(fine_ratio)
     if fine_ratio == coarse_ratio:
-        return order
-    for _ in range(ORDER_STEPS):
-        before = order
-        order = abs(log(change_ratio) + log((fine_ratio**order - 1.0) / (coarse_ratio**order - 1.0))) / log(fine_ratio)
-        if abs(order - before) <= ORDER_TOLERANCE * order:
-            return order
-    return nan
+        return log(change_ratio) / log(fine_ratio)
+
+    def beyond(order: float) -> float:
+        return expm1(order * log(coarse_ratio)) / -expm1(-order * log(fine_ratio)) - change_ratio
+
+    highest = 1.0
+    while beyond(highest) < 0.0:
+        highest *= 2.0
+    return float(brentq(beyond, 1e-9, highest, xtol=1e-13, rtol=1e-13))

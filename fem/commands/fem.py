@@ -60,7 +60,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "observed order and error bar (grid convergence index) of every figure, results of the finest",
     )
     parser.add_argument(
-        "--meshes", metavar="N", type=count_argument("--meshes", 3, 5), help="nested meshes of --error, 3 (default) to 5"
+        "--meshes",
+        metavar="N",
+        type=count_argument("--meshes", 3, 5),
+        help="nested meshes of --error, 3 (default) to 5",
     )
     add_out_argument(parser, "fem")
     drawn = parser.add_mutually_exclusive_group()

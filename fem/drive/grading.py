@@ -106,9 +106,7 @@ def _gaps_left(gaps: RigidGaps, deformed: DeformedContacts | None) -> tuple[Floa
     return tuple(np.where(np.isnan(gap), plain, gap) for gap, plain in zip(known, rigid, strict=True))
 
 
-def find_shortcoming(
-    model: DriveModel, solution: PoseSolution, results: ContactResults, size: float = np.inf
-) -> str:
+def find_shortcoming(model: DriveModel, solution: PoseSolution, results: ContactResults, size: float = np.inf) -> str:
     """Return why the meshes do not serve a solution with these contacts, "" when they do.
 
     Elements are measured against those of `size`, a multiple of the default edge; at infinity any will do.

@@ -411,9 +411,7 @@ def refine_solution(
         by_others=coarse.by_others,
     )
     watch.lap("assembly and factorisation")
-    found = solve_pose(
-        model, coarse.wheel_moment, start=coarse.pose, pose_tolerance=pose_tolerance, progress=progress
-    )
+    found = solve_pose(model, coarse.wheel_moment, start=coarse.pose, pose_tolerance=pose_tolerance, progress=progress)
     watch.lap("contact and pose")
     results = summarise_contacts(model, found)
     _require_zones(model, found, results)

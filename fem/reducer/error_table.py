@@ -1,7 +1,7 @@
 """Error bars of a drive on nested meshes for ``summary.json``, for print and for the page.
 
-All three say numerical uncertainty: what smaller elements would change. Uncertainty of the input (dimensions, materials) and of the
-model (plane strain, supports) are none of it (ASME V&V 10, V&V 20).
+All three say numerical uncertainty: what smaller elements would change. Uncertainty of the input (dimensions, materials) and of
+the model (plane strain, supports) are none of it (ASME V&V 10, V&V 20).
 """
 
 from __future__ import annotations
@@ -35,9 +35,7 @@ def error_content(nested: NestedSolution) -> dict[str, Any]:
     """Return the key ``error`` of ``summary.json``: meshes, figures with error bars, stresses against closed forms."""
     return {
         "safety_factor": SAFETY_FACTOR,
-        "meshes": [
-            {"size": level.size, "dof": level.unknowns, "seconds": level.seconds} for level in nested.levels
-        ],
+        "meshes": [{"size": level.size, "dof": level.unknowns, "seconds": level.seconds} for level in nested.levels],
         "figures": [
             {
                 "quantity": figure.quantity,
@@ -154,10 +152,17 @@ def _columns(rows: Sequence[tuple[str, ...]]) -> list[str]:
 
 def error_section(nested: NestedSolution) -> Section:
     """Return the section of the page: largest figures, every figure, closed forms."""
-    columns = ["", "where", "finest mesh", "observed order", "extrapolated", "error bar", "part of value", "convergence"]
-    largest, every = (
-        [_cells(figure) for figure in figures] for figures in (nested.largest, nested.figures)
-    )
+    columns = [
+        "",
+        "where",
+        "finest mesh",
+        "observed order",
+        "extrapolated",
+        "error bar",
+        "part of value",
+        "convergence",
+    ]
+    largest, every = ([_cells(figure) for figure in figures] for figures in (nested.largest, nested.figures))
     closed = [
         [
             word(reference.name),

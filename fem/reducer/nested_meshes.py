@@ -33,7 +33,6 @@ from fem.mesh.uniform_refinement import CHILDREN
 from fem.options import DEFAULT_OPTIONS, SolutionOptions
 from fem.reducer.solution import ReducerSolution, settle_pose, solve_reducer, solve_refined
 from fem.reducer.wall_references import STRESS_ORDER, WallReference, wall_references
-from fem.shapes import DiscShape
 from ltca.arrays import FloatArray
 from ltca.drive.members.verdict_words import part_words
 from ltca.drive.parts import Drive
@@ -43,7 +42,7 @@ from ltca.quantities import QUANTITIES
 
 FEWEST_MESHES, MOST_MESHES = 3, 5
 COARSEST_SIZE = 2.0
-"""Edge of the coarsest meshes by the size asked for: with four elements to a half-width at a size of 1 its pressure has a shape."""
+"""Edge of the coarsest meshes by the size asked for: at a size of 1 four elements to a half-width, which give its pressure."""
 NESTED_GROWTH = 0.5
 """Growth of the edge by distance from a contact: all of it is refined, and 0.3 would take half as much memory again."""
 ENERGY_ORDER = 3.0
@@ -228,10 +227,10 @@ def solve_nested(
     _require_finest(solution, meshes, spoken(1))
     levels = [MeshLevel.of_solution(solution)]
     for number in range(2, meshes + 1):
-        coarse, torque = solution.coarse, solution.torque
+        coarse, output = solution.coarse, solution.torque
         # Its factors would stay in memory until those of the finer meshes are there.
         del solution
-        solution = solve_refined(drive, torque, coarse, progress=spoken(number))
+        solution = solve_refined(drive, output, coarse, progress=spoken(number))
         levels.append(MeshLevel.of_solution(solution))
     say("closed forms")
     disc, plane = solution.discs[0].model, options.plane
@@ -336,10 +335,9 @@ def _stress_figures(
                 place = wall.parameter[node : node + 1]
                 best = float(finest[node]), wall.name, [float(each.walls[number].at(place)[0]) for each in stresses]
         if best is not None:
-            place = best[1].replace("_", " ")
-            yield figure(quantity, best[2], STRESS_ORDER, place=place + of, disc=disc)
+            yield figure(quantity, best[2], STRESS_ORDER, place=best[1].replace("_", " ") + of, disc=disc)
     for quantity, part in SHEARS.items():
         values = np.array([getattr(stress, quantity) for stress in stresses])
         for index in np.flatnonzero(np.all(values > 0.0, axis=0)).tolist():
-            place = "below " + part_words(drive, part, index, values.shape[1], 0)
-            yield figure(quantity, values[:, index].tolist(), STRESS_ORDER, place=place + of, disc=disc, part=index)
+            below = "below " + part_words(drive, part, index, values.shape[1], 0) + of
+            yield figure(quantity, values[:, index].tolist(), STRESS_ORDER, place=below, disc=disc, part=index)

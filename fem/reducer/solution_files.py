@@ -216,8 +216,8 @@ def write_solution(
     write_multi_block(bodies, index)
     checks = judge_solution(solution, stresses, limits or {})
     verdict = {"verdict": [check_content(check, case) for check in checks]}
-    error = {} if nested is None else {"error": error_content(nested)}
-    write_json(folder / "summary.json", summarise(solution) | summarise_stress(stresses) | verdict | error)
+    bars = {} if nested is None else {"error": error_content(nested)}
+    write_json(folder / "summary.json", summarise(solution) | summarise_stress(stresses) | verdict | bars)
     return checks
 
 

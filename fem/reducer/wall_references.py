@@ -86,7 +86,9 @@ def wall_references(
     lame = RingShape(inner_radius=bore, outer_radius=shape.flank.profile.root_radius, name="ring")
     thin = RingShape(inner_radius=bore, outer_radius=bore * (THIN_RING + 0.5) / (THIN_RING - 0.5), name="thin ring")
 
-    def values(ring: RingShape, coarse: float, load: Callable[[BodyMesh], FloatArray], angle: float) -> tuple[float, ...]:
+    def values(
+        ring: RingShape, coarse: float, load: Callable[[BodyMesh], FloatArray], angle: float
+    ) -> tuple[float, ...]:
         """Return the stress along the inner wall on every mesh, at the node of the coarsest nearest to a polar angle."""
         body, found, place = mesh_ring(ring, coarse_size=coarse), [], None
         for halving in range(meshes):
@@ -107,15 +109,19 @@ def wall_references(
     pressed = values(
         lame,
         edge,
-        lambda body: traction_load(
-            body, "inner", lambda x, n: (-PRESSURE * n[0], -PRESSURE * n[1]), thickness=1.0
-        ),
+        lambda body: traction_load(body, "inner", lambda x, n: (-PRESSURE * n[0], -PRESSURE * n[1]), thickness=1.0),
         0.0,
     )
     pulled = values(thin, default_coarse_size(thin, size), lambda body: _two_forces(body, bore), 0.5 * np.pi)
     bent = pulled_ring_stress(LINE_LOAD, bore, thin.outer_radius, bore, places[2] - 0.5 * np.pi)
     found = (
-        ("hole in a plate under tension", "Kirsch", plate, float(kirsch_hoop_stress(TENSION, np.array(places[0]))), 0.0),
+        (
+            "hole in a plate under tension",
+            "Kirsch",
+            plate,
+            float(kirsch_hoop_stress(TENSION, np.array(places[0]))),
+            0.0,
+        ),
         (
             "bore under pressure",
             "Lamé",

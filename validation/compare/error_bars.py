@@ -1,10 +1,10 @@
 """Error bars of the full finite-element solutions of a case, from nested meshes at one of its positions.
 
-The middle one of three nested meshes (`fem.reducer.nested_meshes`) has the edges of the compared solutions: the bar of a figure is the
-distance of its value there from that on the finest, and the bar of that. Walls, which compared solutions mesh finely, have such
-edges on the finest of the three, whose own bar is theirs. Bars are parts of what the differences are parts of
-(`validation.compare.comparison`, `validation.compare.disc_stresses`), the largest over the contacts of a kind and over the discs, so
-that those of one position serve all positions of the case.
+The middle one of three nested meshes (`fem.reducer.nested_meshes`) has the edges of the compared solutions: the bar of a figure
+is the distance of its value there from that on the finest, and the bar of that. Walls, which compared solutions mesh finely, have
+such edges on the finest of the three, whose own bar is theirs. Bars are parts of what the differences are parts of
+(`validation.compare.comparison`, `validation.compare.disc_stresses`), the largest over the contacts of a kind and over the discs,
+so that those of one position serve all positions of the case.
 
 They are numerical uncertainty alone: of input and model they say nothing (ASME V&V 10, V&V 20).
 """

@@ -16,7 +16,6 @@ from fem.mesh.element_size import Refinement
 from fem.mesh.triangulation import mesh_circle, mesh_ring
 from fem.shapes import CircleShape, RingShape
 from ltca.analysis.loaded_analysis import analyse
-from ltca.arrays import FloatArray
 from ltca.contact.hertz import (
     effective_radius,
     line_contact_stress,
@@ -76,9 +75,7 @@ def _ring() -> list[Row]:
 
 def _hole() -> list[Row]:
     far, radius = 80.0, 3.0
-    stress, nodes = _solve_ring(
-        radius, 5.0 * radius, 0.36, "outer", lambda x, n: kirsch_traction(far, radius, x)
-    )
+    stress, nodes = _solve_ring(radius, 5.0 * radius, 0.36, "outer", lambda x, n: kirsch_traction(far, radius, x))
     side = int(np.argmin(np.abs(nodes - 1j * radius)))
     return [
         relative_row(

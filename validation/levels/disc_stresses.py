@@ -28,14 +28,26 @@ def disc_stress_rows(compared: ComparedPosition, bars: ErrorBars | None = None) 
     walls: dict[Region, float] = {} if bars is None else bars.walls
     for model, difference in compared.stress.items():
         rows += [
-            _row(compared, model, f"stress along {NAMES[region]}, worst station", difference.stations[region], "wall",
-                 error_bar=walls.get(region))
+            _row(
+                compared,
+                model,
+                f"stress along {NAMES[region]}, worst station",
+                difference.stations[region],
+                "wall",
+                error_bar=walls.get(region),
+            )
             for region in REGIONS
             if region in difference.stations  # a disc without holes, or a wall under contacts all along
         ]
         rows += [
-            _row(compared, model, f"largest tensile stress, {PARTS[region]}, worst", difference.largest[region], "wall",
-                 error_bar=walls.get(region))
+            _row(
+                compared,
+                model,
+                f"largest tensile stress, {PARTS[region]}, worst",
+                difference.largest[region],
+                "wall",
+                error_bar=walls.get(region),
+            )
             for region in REGIONS
             if region in difference.largest
         ]
