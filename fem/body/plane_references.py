@@ -6,8 +6,8 @@ r"""Closed forms of plane elasticity that stresses along walls are held against,
   :math:`\sigma_\theta = S (1 - 2 \cos 2\theta)`. Exact; tractions of the infinite plate act on the circle where the mesh
   ends.
 - A thin ring pulled apart by two opposite forces P (Timoshenko, *Strength of Materials* II, 80; Winkler's curved bar): at the
-  angle φ from the middle between the forces, with the wall t = b − a, the mean radius R, the neutral radius :math:`r_n = t/\ln(b/a)`
-  and :math:`e = R - r_n`,
+  angle φ from the middle between the forces, with the wall t = b − a, the mean radius R, the neutral radius
+  :math:`r_n = t/\ln(b/a)` and :math:`e = R - r_n`,
 
   .. math:: N = \tfrac{P}{2} \cos\varphi, \quad
             M = \tfrac{PR}{2}\left(\cos\varphi - \tfrac{2}{\pi} + \tfrac{2 e}{\pi R}\right), \quad
