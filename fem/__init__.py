@@ -7,6 +7,7 @@ errors                what the package raises on purpose
 shapes                Exact shape of each body of a drive: closed curves with names, in the frame of the body
 mesh                  Meshes of single bodies: size field, triangulation, quality, files
 body                  One meshed body: elasticity, its boundary zones, its compliance, its stresses
+solid                 Extruded bodies in three dimensions: layers, stiffness, factors
 options               Options of a full solution: element size, plane state, fine walls
 discretisation_error  Error of a figure by the size of the elements, from solutions on at least three meshes
 contact               Contact between condensed bodies: mortar integrals of a pair and pressures that never pull
