@@ -168,7 +168,7 @@ def run_validation(plan: Plan, folder: Path, step: Callable[[str], None], say: C
     with asked_codes(folder / "other_codes.json") as answers:
         one, three, coefficients, four = _before_positions(plan, folder / "coefficients", step, say)
         full = _solve_positions(plan, folder / "positions", step, say)
-        bars = _error_bars(plan, folder / "errors", step, say)
+        bars = _error_bars(plan, full, folder / "errors", step, say)
         step("other codes")
         two = answers()
     compared = {case: compare_case(plan.drives[case], full[case], coefficients[case]) for case in plan.drives}
@@ -190,14 +190,19 @@ def run_validation(plan: Plan, folder: Path, step: Callable[[str], None], say: C
 
 
 def _error_bars(
-    plan: Plan, folder: Path, step: Callable[[str], None], say: Callable[[str], None]
+    plan: Plan,
+    full: dict[str, list[FullPosition]],
+    folder: Path,
+    step: Callable[[str], None],
+    say: Callable[[str], None],
 ) -> dict[str, ErrorBars | None]:
     """Return the error bars of all cases, at the position that has pictures; nothing on level quick."""
     found: dict[str, ErrorBars | None] = {}
     if plan.level == "full":
         for case, drive in plan.drives.items():
             step(f"error bars of {case}")
-            found[case] = error_bars_of(drive, case, plan.pictured, folder, plan.options, progress=say)
+            own = [position for position in full[case] if position.crank_angle == plan.pictured]
+            found[case] = error_bars_of(drive, case, plan.pictured, folder, plan.options, compared=own, progress=say)
     return found
 
 

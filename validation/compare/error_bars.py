@@ -1,17 +1,18 @@
 """Error bars of the full finite-element solutions of a case, from nested meshes at one of its positions.
 
-The middle one of three nested meshes (`fem.reducer.nested_meshes`) has the edges of the compared solutions: the bar of a figure
-is the distance of its value there from that on the finest, and the bar of that. Walls, which compared solutions mesh finely, have
-such edges on the finest of the three, whose own bar is theirs. Bars are parts of what the differences are parts of
-(`validation.compare.comparison`, `validation.compare.disc_stresses`), the largest over the contacts of a kind and over the discs,
-so that those of one position serve all positions of the case.
+A bar is the distance of the compared solution of that position from the finest of three nested meshes
+(`fem.reducer.nested_meshes`), or of the middle one, which has the edges of the compared solutions, whichever is larger, and the
+bar of the finest. Two distances, because meshes of equal edges differ by where the end of a contact lies in an edge: one may be
+small by chance. Walls, which compared solutions mesh finely, have such edges on the finest of the three, whose own bar is theirs.
+Bars are parts of what the differences are parts of (`validation.compare.comparison`, `validation.compare.disc_stresses`), the
+largest over the contacts of a kind and over the discs, so that those of one position serve all positions of the case.
 
 They are numerical uncertainty alone: of input and model they say nothing (ASME V&V 10, V&V 20).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
@@ -27,7 +28,7 @@ from ltca.drive.units.quantities import ARCSEC
 from ltca.output.files import write_json
 from validation.compare.comparison import Kind
 from validation.compare.disc_stresses import Region
-from validation.compare.finite_element_positions import position_key, position_name, read_kept, sealed
+from validation.compare.finite_element_positions import FullPosition, position_key, position_name, read_kept, sealed
 
 COMPARED_MESH = 1
 """Which of the nested meshes has the edges of the compared solutions."""
@@ -94,18 +95,22 @@ class ErrorBars:
         return max(bars.load for bars in self.kinds.values() if bars.load is not None)
 
     @classmethod
-    def of_nested(cls, nested: NestedSolution) -> ErrorBars:
-        """Return the bars of a drive on nested meshes."""
+    def of_nested(cls, nested: NestedSolution, compared: Sequence[FullPosition] = ()) -> ErrorBars:
+        """Return the bars of a drive on nested meshes, with the compared solution of the same position, disc by disc."""
         of: dict[str, list[NestedFigure]] = {}
         for figure in nested.figures:
             of.setdefault(figure.quantity, []).append(figure)
 
+        def own_bar(figure: NestedFigure) -> float:
+            found, value = figure.estimate, _compared_value(figure, compared)
+            away = 0.0 if value is None else abs(value - found.value) + found.bar
+            return max(found.bar_at(COMPARED_MESH), away)
+
         def bar(name: str) -> float:
-            return max(figure.estimate.bar_at(COMPARED_MESH) for figure in of[name])
+            return max(own_bar(figure) for figure in of[name])
 
         def relative(name: str) -> float | None:
-            own = [figure.estimate for figure in of.get(name, [])]
-            return max((each.bar_at(COMPARED_MESH) / abs(each.value) for each in own), default=None)
+            return max((own_bar(figure) / abs(figure.estimate.value) for figure in of.get(name, [])), default=None)
 
         def of_largest(name: str) -> float | None:
             own = [figure.estimate for figure in of.get(name, [])]
@@ -140,6 +145,27 @@ class ErrorBars:
         return cls(**(content | {"kinds": {kind: KindBars(**bars) for kind, bars in content["kinds"].items()}}))
 
 
+def _compared_value(figure: NestedFigure, compared: Sequence[FullPosition]) -> float | None:
+    """Return a figure in the compared solution; None where it is not among what that keeps, or at another place."""
+    if not compared:
+        return None
+    own, name, part = compared[figure.disc or 0], figure.quantity, figure.part
+    if name in ("wheel_angle", "disc_rotation"):
+        return float(getattr(own.answer, name))
+    if part is None:
+        return None
+    if name in ("bearing_radial", "bearing_tangential"):
+        return float(getattr(own.answer, name)[part])
+    for kind, names in CONTACT_KINDS.items():
+        contacts = own.answer.kinds[kind]
+        arrays = {names.load: contacts.load, names.pressure: contacts.pressure, names.half_width: contacts.half_width}
+        if kind in SHEARS:
+            arrays[SHEARS[kind]] = own.stress.shear[kind]
+        if name in arrays:
+            return float(arrays[name][part])
+    return None
+
+
 def error_bars_of(
     drive: Drive,
     case: str,
@@ -147,11 +173,13 @@ def error_bars_of(
     folder: Path,
     options: SolutionOptions,
     *,
+    compared: Sequence[FullPosition] = (),
     progress: Callable[[str], None] | None = None,
 ) -> ErrorBars | None:
     """Return the error bars of a case at a crank angle (rad), from a kept file where it fits; None where memory is too small.
 
-    The element edges are those of `options`; `progress` is called with a line for each step, among them why there are none.
+    The element edges are those of `options`, and of the solution `compared` at that angle, disc by disc. `progress` is called
+    with a line for each step, among them why there are none.
     """
     key = position_key(drive, case, crank_angle, options)
     path = folder / f"{position_name(drive, case, crank_angle, options)}.json"
@@ -163,7 +191,7 @@ def error_bars_of(
             if progress is not None:
                 progress(f"no error bars: {error}")
             return None
-        write_json(path, sealed(key, {"bars": asdict(ErrorBars.of_nested(nested))}))
+        write_json(path, sealed(key, {"bars": asdict(ErrorBars.of_nested(nested, compared))}))
         content = read_kept(path, key, ("bars",))
     assert content is not None
     return ErrorBars.of_content(content["bars"])

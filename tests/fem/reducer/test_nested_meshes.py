@@ -88,9 +88,14 @@ def test_error_bars_of_the_command(folder, paper_cases):
     figures = {(figure["quantity"], figure["place"]): figure for figure in error["figures"]}
     wheel = figures["wheel_angle", None]
     assert wheel["values"][-1] == summary["wheel_angle_rad"]
-    # Finer meshes of another family, which share no node: their wheel angle is within the bars of both, the larger twice.
-    finer = solve_reducer(paper_cases["CS-1"], ANGLE, SolutionOptions(size=1.0))
-    assert abs(finer.wheel_angle - wheel["values"][-1]) <= 3.0 * wheel["error_bar"]
+    # On the same mesh the middle value; theory gives the order 3, two elements to a half-width scatter by one.
+    assert abs(wheel["values"][1] - wheel["values"][2]) > 0.0
+    assert 2.0 < wheel["observed_order"] < 4.0
+    # Another family with a third of the edges of the middle mesh leaves less than twice its error: where ends of contacts lie in
+    # their edges differs.
+    other = solve_reducer(paper_cases["CS-1"], ANGLE, SolutionOptions(size=1.0))
+    of_middle = abs(wheel["values"][1] - wheel["values"][2]) + wheel["error_bar"]
+    assert abs(other.wheel_angle - wheel["values"][2]) <= 2.0 * of_middle
     pins = [figure for (name, _), figure in figures.items() if name == "pin_load"]
     assert max(figure["values"][-1] for figure in pins) == max(summary["pin_load_N"][0])
     for name in ("roller_load", "pin_shaft_load", "pin_pressure_mid", "root_stress", "bore_stress", "hole_stress"):

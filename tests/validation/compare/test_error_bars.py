@@ -53,6 +53,26 @@ def test_bars_are_those_of_the_compared_mesh(nested):
     assert bars.largest_load == pins.load
 
 
+def test_a_compared_solution_farther_off_widens_the_bars(nested):
+    """Its distance from the finest counts where it is larger than that of the middle mesh."""
+    contacts = SimpleNamespace(load=np.array([1004.0]), pressure=np.array([200.1]), half_width=np.array([200.0]))
+    answer = SimpleNamespace(
+        wheel_angle=1e-3 + 3e-4,
+        disc_rotation=1e-3,
+        bearing_radial=np.array([30.0]),
+        bearing_tangential=np.array([40.0]),
+        kinds=dict.fromkeys(error_bars.CONTACT_KINDS, contacts),
+    )
+    position = SimpleNamespace(
+        answer=answer, stress=SimpleNamespace(shear={kind: [202.0] for kind in error_bars.SHEARS})
+    )
+    plain, bars = ErrorBars.of_nested(nested), ErrorBars.of_nested(nested, [position])
+    assert bars.wheel_angle == pytest.approx(ARCSEC * (3e-4 + 1e-4 * FINEST))
+    assert bars.kinds["pin"].shear == pytest.approx((2.0 + FINEST) / 200.0)
+    assert bars.kinds["pin"].pressure == plain.kinds["pin"].pressure
+    assert bars.disc_rotation == plain.disc_rotation
+
+
 def test_bars_are_found_once(nested, paper_cases, tmp_path, monkeypatch):
     """A kept file gives the same bars; another element size is another problem."""
     solved = []
