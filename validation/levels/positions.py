@@ -83,7 +83,7 @@ class _Maker:
         )
 
 
-def _contact_rows(compared: ComparedPosition, model: str, bars: ErrorBars | None) -> list[Row]:
+def _contact_rows(compared: ComparedPosition, model: str, bars: ErrorBars | None = None) -> list[Row]:
     make = _Maker(compared, model)
     answer, reference, difference = compared.answers[model], compared.full.answer, compared.differences[model]
     rows = []
@@ -112,7 +112,7 @@ def _contact_rows(compared: ComparedPosition, model: str, bars: ErrorBars | None
     return rows
 
 
-def _body_rows(compared: ComparedPosition, model: str, bars: ErrorBars | None) -> list[Row]:
+def _body_rows(compared: ComparedPosition, model: str, bars: ErrorBars | None = None) -> list[Row]:
     make = _Maker(compared, model)
     answer, reference, difference = compared.answers[model], compared.full.answer, compared.differences[model]
     wheel = compared.drive.pin_wheel.pin_circle_radius
@@ -207,7 +207,7 @@ def _faint(answer: PositionAnswer, kind: Kind) -> int:
     return int(np.count_nonzero((load > 0.0) & (load <= LOADED_SHARE * np.max(load, initial=0.0))))
 
 
-def _interpolation_row(compared: ComparedPosition, bars: ErrorBars | None) -> Row:
+def _interpolation_row(compared: ComparedPosition, bars: ErrorBars | None = None) -> Row:
     """Return the worst load among contacts well between stations, where the coefficients are interpolated."""
     worst, name, ours, theirs = 0.0, "", 0.0, 0.0
     for kind, distance in compared.station_distance.items():
