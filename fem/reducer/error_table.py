@@ -77,7 +77,10 @@ def _estimate(estimate: ErrorEstimate) -> dict[str, Any]:
 def told_title(figure: NestedFigure) -> str:
     """Return a quantity in words, that of ``fem.nc``."""
     quantity = QUANTITIES[figure.quantity]
-    return (quantity.in_fem or quantity.description).partition(",")[0]
+    words = quantity.in_fem or quantity.description
+    for rest in (", clear of contacts", ", ccw positive"):
+        words = words.removesuffix(rest)
+    return words
 
 
 def told_unit(figure: NestedFigure) -> tuple[float, str]:
