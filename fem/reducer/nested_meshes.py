@@ -285,7 +285,8 @@ def _figures(drive: Drive, levels: Sequence[MeshLevel]) -> Iterator[NestedFigure
                 )
         for column, quantity in enumerate(("disc_x", "disc_y", "disc_rotation")):
             values = [float(level.motion[disc, column]) for level in levels]
-            yield figure(quantity, values, ENERGY_ORDER, place="disc" + of, disc=disc)
+            along = ", x" if column == 0 else ", y" if column == 1 else ""
+            yield figure(quantity, values, ENERGY_ORDER, place="disc" + of + along, disc=disc)
         yield from _stress_figures(single, levels, disc, of, figure)
 
 
