@@ -41,7 +41,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "over one period of the flank",
     )
     parser.add_argument(
-        "--level", choices=("quick", "full"), default="quick", help="how many angles; full also halves meshes"
+        "--level",
+        choices=("quick", "full"),
+        default="quick",
+        help="how many angles; full also halves meshes and finds error bars of the full solutions",
     )
     add_size_argument(parser, "element edges of the full solutions as a multiple of the default (limits are for 1)")
     add_out_argument(parser, "validate", "folder of report and kept solutions")
