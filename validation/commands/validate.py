@@ -55,7 +55,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--manual",
         nargs="*",
         metavar="CASE",
-        help="write the verification manual instead, a page for each case and an index: all cases, or these. It needs no DRIVE and "
+        help="write the verification manual instead, a page for each case and an index: all cases, or these. It needs "
+        "no DRIVE and "
         f"takes no other option than --out (default {MANUAL_FOLDER}); exit status 1 when a verdict is FAILED",
     )
     add_out_argument(parser, "validate", "folder of report and kept solutions")
@@ -138,7 +139,9 @@ def _write_manual(arguments: argparse.Namespace) -> int:
     for outcome, spent in zip(outcomes, seconds, strict=True):
         print(f"{verdict_word(outcome)}  {outcome.case.name:<22}{len(outcome.figures):>4} figures {spent:>6.1f} s")
         for figure in outcome.failed:
-            print(f"        {figure.quantity}: {figure.value:.6g} {figure.unit}, difference {printed_difference(figure)}")
+            print(
+                f"        {figure.quantity}: {figure.value:.6g} {figure.unit}, difference {printed_difference(figure)}"
+            )
     failed = sum(not outcome.passed for outcome in outcomes)
     print(f"{len(outcomes)} cases, {failed} failed")
     print(f"written: {len(paths)} pages in {out}, first {out / 'index.md'}")

@@ -174,12 +174,14 @@ def _iso_16281() -> list[Figure]:
     quadrature = "quadrature, 1e-9"
     return [
         relative_figure(
-            "0.378, load of a race that turns by the load integral", INNER_SHARE, radial / _zone_mean(1.1 * 4.0) ** 0.25, "", 4e-3,
-            tabulated, numerical_error=1e-9, numerical_origin=quadrature, reference_error=3e-3,
+            "0.378, load of a race that turns by the load integral", INNER_SHARE, radial / _zone_mean(1.1 * 4.0) ** 0.25, "",
+            4e-3, tabulated, numerical_error=1e-9, numerical_origin=quadrature, reference_error=3e-3,
         ),
         relative_figure(
-            "0.364, load of a race that stands by the load integral", OUTER_SHARE, radial / _zone_mean(1.1 * 4.5) ** (1 / 4.5), "",
-            4e-3, tabulated, numerical_error=1e-9, numerical_origin=quadrature, reference_error=3e-3,
+            "0.364, load of a race that stands by the load integral", OUTER_SHARE,
+            radial / _zone_mean(1.1 * 4.5) ** (1 / 4.5), "",
+            4e-3, tabulated, numerical_error=1e-9,
+            numerical_origin=quadrature, reference_error=3e-3,
         ),
         absolute_figure(
             "life at P = C without edges", lives[1], 1.0, "million turns", 0.02,
@@ -210,11 +212,13 @@ CASES = (
     Case(
         name="bearing_load_zone",
         title="Load zone of a roller bearing",
-        problem="Rigid races displaced against each other, line contacts with F ∝ δ^1.1 on both races: load integral J_r and largest roller load by "
+        problem="Rigid races displaced against each other, line contacts with F ∝ δ^1.1 on both races: load integral "
+        "J_r and largest roller load by "
         "the extent ε of the zone.",
         references=(
             Reference(
-                source="T. A. Harris, M. N. Kotzalas, *Essential Concepts of Bearing Technology* (5th ed.), ch. 7, table 7.1; "
+                source="T. A. Harris, M. N. Kotzalas, *Essential Concepts of Bearing Technology* (5th ed.), ch. 7, "
+                "table 7.1; "
                 "Sjövall: J_r(ε) = 1/(2π) ∮ [1 − (1 − cos ψ)/(2ε)]ⁿ cos ψ dψ",
                 uncertainty="Half a unit of the last printed digit; n = 1.1 (10/9 gives 5e-4 less).",
             ),
@@ -226,9 +230,12 @@ CASES = (
     Case(
         name="iso_281_ratings",
         title="ISO 281 and ISO 76: ratings of roller bearings",
-        problem="f_c for all rows of the standard's table; dynamic and static rating and fatigue load limit of the paper's crank bearing.",
+        problem="f_c for all rows of the standard's table; dynamic and static rating and fatigue load limit of the "
+        "paper's crank bearing.",
         references=(
-            Reference(source="ISO 281:2007, Table 7, and B.3.3; ISO 76", uncertainty="Three digits, smoothed: 0.05 to 0.1."),
+            Reference(
+                source="ISO 281:2007, Table 7, and B.3.3; ISO 76", uncertainty="Three digits, smoothed: 0.05 to 0.1."
+            ),
         ),
         model="`ltca.analysis.life.ratings.RollerBearing`: the formula of ISO/TR 1281-1.",
         run=_ratings,
@@ -236,7 +243,8 @@ CASES = (
     Case(
         name="iso_16281_limits",
         title="ISO 16281: rating life in its limits",
-        problem="What ISO 16281:2025 must give in limits that are known: constants of the races from the load zone, a million turns at the rating, the "
+        problem="What ISO 16281:2025 must give in limits that are known: constants of the races from the load zone, a "
+        "million turns at the rating, the "
         "fourth power of the load, edge factors and the logarithmic profile by hand.",
         references=(
             Reference(

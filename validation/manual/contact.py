@@ -130,7 +130,8 @@ def _punch() -> list[Figure]:
         each.append((*np.interp([0.0, 0.5 * half], place, pressure), shared))
     middle = PUNCH_LINE_LOAD / (np.pi * half)
     reason = (
-        "pressure is infinite at the corners, which even elements do not resolve: their error falls with the first power of "
+        "pressure is infinite at the corners, which even elements do not resolve: their error falls with the first "
+        "power of "
         "the size, 3 % of the half-width here, and reaches the places compared weakened"
     )
     origin = f"{HALVED} (8, 16, 32 elements for the half-width)"
@@ -159,16 +160,14 @@ def _on_smooth_support(body: BodyMesh) -> IntArray:
 
 
 def press_blocks(edges_below: int, edges_above: int) -> tuple[FloatArray, float]:
-    """Press two equal blocks together whose meshes have so many edges on half the width; return pressure (MPa) and approach (mm)."""
+    """Press two equal blocks together, with so many edges on half the width; return pressure (MPa) and approach (mm)."""
     half, height, thickness, load = 5.0, 6.0, 3.0, 900.0
     lower = mesh_block(half, height, half / edges_below, zone=half)
     upper = mesh_block(half, height, half / edges_above, zone=half)
     zone = PressureZone.on_boundary(lower, FLAT, 0j, half, thickness=thickness, loaded_ends=True)
     opposite = OppositeZone.on_flat(upper, "perimeter", 0j, half)
     bodies = [
-        condense_body(
-            body, assemble_stiffness(body, STEEL, thickness=thickness), loads, fixed=_on_smooth_support(body)
-        )
+        condense_body(body, assemble_stiffness(body, STEEL, thickness=thickness), loads, fixed=_on_smooth_support(body))
         for body, loads in ((lower, zone.load_shapes(lower.unknowns)), (upper, opposite.unit_loads(upper.unknowns)))
     ]
     contact = press_together(
@@ -324,15 +323,18 @@ CASES = (
                 uncertainty="None as numbers. Bodies are half-planes in it: (b/R)² = 0.03 % for the smaller cylinder.",
             ),
         ),
-        model="Plane strain, quadratic triangles, meshes that do not match (ratio 0.7), rigid cores of radius 2 mm; mortar contact "
+        model="Plane strain, quadratic triangles, meshes that do not match (ratio 0.7), rigid cores of radius 2 mm; "
+        "mortar contact "
         "(`fem.contact.two_bodies.press_together`), half-width from the second moment of the pressure.",
-        model_uncertainty="Cylinders instead of half-planes, (b/R)², and rigid cores, which hold the cylinders far from the contact.",
+        model_uncertainty="Cylinders instead of half-planes, (b/R)², and rigid cores, which hold the cylinders far "
+        "from the contact.",
         run=lambda: figures_by_size(cylinder_rows, SIZES, "4, 8, 16 elements for the half-width"),
     ),
     Case(
         name="hertz_line_half_space",
         title="Hertz' line contact and the stress below it on half-space cells",
-        problem="A steel roller of radius 2 mm and 40 mm length on a flat, pressed by 5 µm: half-width, largest pressure and largest "
+        problem="A steel roller of radius 2 mm and 40 mm length on a flat, pressed by 5 µm: half-width, largest "
+        "pressure and largest "
         "shear stress in the middle of its length. The line load there is that of the pressure found.",
         references=(
             Reference(
@@ -340,22 +342,27 @@ CASES = (
                 uncertainty="None as numbers; of an infinitely long contact, 40 mm are 800 half-widths.",
             ),
         ),
-        model="Boussinesq's half-space, cells of constant pressure (`ltca.contact.pressure_cells`, `ltca.contact.subsurface`).",
+        model="Boussinesq's half-space, cells of constant pressure (`ltca.contact.pressure_cells`, "
+        "`ltca.contact.subsurface`).",
         model_uncertainty="Finite length: plane strain holds in the middle within 0.3 %.",
         run=_line_on_cells,
     ),
     Case(
         name="lundberg_strip",
         title="Approach of a line contact of finite length at vanishing load",
-        problem="A steel roller of radius 2 mm and 11.8 mm length on a flat: approach at a given load as the load goes to zero.",
+        problem="A steel roller of radius 2 mm and 11.8 mm length on a flat: approach at a given load as the load "
+        "goes to zero.",
         references=(
             Reference(
-                source="Lundberg (1939): strip of even load along its length, mean approach (`ltca.contact.hertz.strip_approach`; a "
+                source="Lundberg (1939): strip of even load along its length, mean approach "
+                "(`ltca.contact.hertz.strip_approach`; a "
                 "test integrates Boussinesq's solution)",
-                uncertainty="Holds in the limit; at finite loads the true load is not even along the length, which informing rows show.",
+                uncertainty="Holds in the limit; at finite loads the true load is not even along the length, which "
+                "informing rows show.",
             ),
         ),
-        model="Table of half-space grids with its continuation (`ltca.laws.line_contact.LineContactLaw`). Loads are far below "
+        model="Table of half-space grids with its continuation (`ltca.laws.line_contact.LineContactLaw`). Loads are "
+        "far below "
         "any in a drive: they show the limit.",
         model_uncertainty="The limit is reached as the inverse logarithm of length by width.",
         run=_strip,
@@ -363,34 +370,41 @@ CASES = (
     Case(
         name="hertz_point",
         title="Hertz' point contact: a crowned roller",
-        problem="A steel roller of radius 2 mm, crowned with 40 mm along its length, pressed on a flat by 2 µm: load and largest pressure.",
+        problem="A steel roller of radius 2 mm, crowned with 40 mm along its length, pressed on a flat by 2 µm: load "
+        "and largest pressure.",
         references=(
             Reference(
-                source="Hertz, elliptical contact (`ltca.contact.hertz.solve_point_contact`; a test shows that its pressure displaces "
+                source="Hertz, elliptical contact (`ltca.contact.hertz.solve_point_contact`; a test shows that its "
+                "pressure displaces "
                 "the surface by approach less separation)",
                 uncertainty="None beyond round-off: elliptic integrals to 1e-12.",
             ),
         ),
-        model="Boussinesq's half-space, rectangular cells of constant pressure (`ltca.contact.pressure_cells`); the contact ends inside "
+        model="Boussinesq's half-space, rectangular cells of constant pressure (`ltca.contact.pressure_cells`); the "
+        "contact ends inside "
         "the roller.",
         run=_sphere,
     ),
     Case(
         name="nafems_1",
         title="NAFEMS contact benchmark 1: cylinder on a block",
-        problem="A cylinder of diameter 100 mm (E 210 000 MPa) is pressed on a block of 200 × 200 mm (E 70 000 MPa, fixed below) by "
+        problem="A cylinder of diameter 100 mm (E 210 000 MPa) is pressed on a block of 200 × 200 mm (E 70 000 MPa, "
+        "fixed below) by "
         "35 000 N on a width of 1 mm; ν 0.3, plane strain, no friction: half-width and largest pressure.",
         references=(
             Reference(
-                source="A. W. A. Konter, *Advanced Finite Element Contact Benchmarks*, NAFEMS R0094 (2006), benchmark 1; also "
+                source="A. W. A. Konter, *Advanced Finite Element Contact Benchmarks*, NAFEMS R0094 (2006), benchmark "
+                "1; also "
                 "code_aster SSNP154. Hertz: E* 57 692.3 MPa, b 6.2146 mm, p₀ 3585.36 MPa",
                 uncertainty="Half a unit of the last printed digit, 1e-5. Half-planes are assumed while b/R = 0.124.",
             ),
         ),
         model="Whole cylinder and block, quadratic triangles, meshes that do not match; mortar contact "
-        "(`fem.contact.two_bodies.press_together`). The load acts on the cylinder as a body force over its section. Half-width from the "
+        "(`fem.contact.two_bodies.press_together`). The load acts on the cylinder as a body force over its section. "
+        "Half-width from the "
         "second moment of the pressure.",
-        model_uncertainty="The gap is that of the circle, not of Hertz' parabola, and the cylinder is not a half-plane: both of the "
+        model_uncertainty="The gap is that of the circle, not of Hertz' parabola, and the cylinder is not a "
+        "half-plane: both of the "
         "order (b/R)² = 1.5 %. Where the load acts on the cylinder is 16 half-widths away.",
         run=_nafems,
     ),
@@ -399,10 +413,9 @@ CASES = (
         title="Rigid flat punch on a half-plane",
         problem="A rigid flat punch 10 mm wide is pressed on a steel half-plane by 1000 N/mm without friction: pressure "
         "p(x) = P/(π √(a² − x²)), infinite at the corners.",
-        references=(
-            Reference(source="Sadowsky (1928); Johnson (1985), Eq. 2.64", uncertainty=CLOSED_FORM),
-        ),
-        model="Block 600 mm wide and 300 mm high, fixed below, quadratic triangles of even size below the punch; the pressure is "
+        references=(Reference(source="Sadowsky (1928); Johnson (1985), Eq. 2.64", uncertainty=CLOSED_FORM),),
+        model="Block 600 mm wide and 300 mm high, fixed below, quadratic triangles of even size below the punch; the "
+        "pressure is "
         "piecewise linear up to the corners and finite there.",
         model_uncertainty="A block instead of a half-plane: (a/300 mm)² = 0.03 %.",
         run=_punch,
@@ -410,16 +423,21 @@ CASES = (
     Case(
         name="patch_test",
         title="Contact patch test across meshes that do not match",
-        problem="Two steel blocks of equal width, 10 × 6 mm, 3 mm thick, pressed together by 900 N between smooth supports: the pressure is "
+        problem="Two steel blocks of equal width, 10 × 6 mm, 3 mm thick, pressed together by 900 N between smooth "
+        "supports: the pressure is "
         "even and so is the strain, whatever the meshes.",
-        references=(Reference(source="Hooke's law in plane strain: p = F/(w t), δ = 2 h p (1 − ν²)/E", uncertainty=CLOSED_FORM),),
-        model="Quadratic triangles with 7 edges on 10, 9 on 4 and 5 on 5 on half the width; mortar contact with loaded ends.",
+        references=(
+            Reference(source="Hooke's law in plane strain: p = F/(w t), δ = 2 h p (1 − ν²)/E", uncertainty=CLOSED_FORM),
+        ),
+        model="Quadratic triangles with 7 edges on 10, 9 on 4 and 5 on 5 on half the width; mortar contact with "
+        "loaded ends.",
         run=_patch,
     ),
     Case(
         name="roller_between_flats",
         title="Roller between two flats: approach",
-        problem="A steel roller of radius 5 mm between two large steel flats, 150 N/mm: approach of the points 2 mm deep in both flats.",
+        problem="A steel roller of radius 5 mm between two large steel flats, 150 N/mm: approach of the points 2 mm "
+        "deep in both flats.",
         references=(
             Reference(
                 source="Johnson (1985), Eqs. 5.56 (a flat down to a depth) and 5.57 (a cylinder between two contacts)",

@@ -10,7 +10,8 @@ CASES = (
     Case(
         name="lame_ring",
         title="Lamé's ring under inner pressure",
-        problem="A steel ring, radii 10 and 20 mm, under an inner pressure of 100 MPa: hoop stress at all nodes. The row is the worst "
+        problem="A steel ring, radii 10 and 20 mm, under an inner pressure of 100 MPa: hoop stress at all nodes. The "
+        "row is the worst "
         "node; its difference is relative to the largest stress.",
         references=(
             Reference(
@@ -24,7 +25,8 @@ CASES = (
     Case(
         name="kirsch_hole",
         title="Kirsch's hole in a plate under tension",
-        problem="A hole of radius 3 mm in a plate under 80 MPa: largest stress at its wall, three times as large at the side and "
+        problem="A hole of radius 3 mm in a plate under 80 MPa: largest stress at its wall, three times as large at "
+        "the side and "
         "σ (1 − 2 cos 2θ) at the node nearest to it.",
         references=(
             Reference(
@@ -32,7 +34,8 @@ CASES = (
                 uncertainty="None beyond round-off: a closed form.",
             ),
         ),
-        model="A ring of radii 3 and 15 mm whose outside carries the exact tractions of the infinite plate; quadratic triangles, "
+        model="A ring of radii 3 and 15 mm whose outside carries the exact tractions of the infinite plate; quadratic "
+        "triangles, "
         "stresses averaged at the nodes.",
         run=lambda: figures_by_size(hole_rows, (0.72, 0.36, 0.18), "elements of 0.72, 0.36, 0.18 mm"),
         long=True,

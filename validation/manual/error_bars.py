@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from itertools import pairwise
 from typing import TypeVar
 
 from validation.manual.case import Figure
@@ -34,12 +35,19 @@ def change_by_halving(values: Sequence[float]) -> float:
     >>> change_by_halving([1.0, 1.1, 1.4, 1.3])
     0.2999999999999998
     """
-    changes = [abs(after - before) for before, after in zip(values, values[1:], strict=False)]
-    falling = all(after <= before for before, after in zip(changes, changes[1:], strict=False))
+    changes = [abs(after - before) for before, after in pairwise(values)]
+    falling = all(after <= before for before, after in pairwise(changes))
     return changes[-1] if falling else max(changes)
 
 
-def figures_by_size(rows_at: Callable[[Size], Sequence[Row]], sizes: Sequence[Size], of: str) -> list[Figure]:
+def figures_by_size(
+    rows_at: Callable[[Size], Sequence[Row]],
+    sizes: Sequence[Size],
+    of: str,
+    *,
+    least_error: Callable[[Row], float] = lambda row: 0.0 if row.difference_unit else ROUND_OFF,
+    reference_error: Callable[[Row], float] = lambda row: 0.0,
+) -> list[Figure]:
     """Return rows of the validation report as figures, with error bars from elements or cells halved each time.
 
     Parameters
@@ -50,13 +58,21 @@ def figures_by_size(rows_at: Callable[[Size], Sequence[Row]], sizes: Sequence[Si
         Coarsest first; the figures are those of the last.
     of : str
         What the sizes are, for the pages: "4, 8, 16 elements for the half-width".
+    least_error : callable
+        Least error bar of a row, whatever its changes, in the unit of its difference; round-off of ratios by default.
+    reference_error : callable
+        Error of the reference of a row, in the unit of its difference; none by default.
     """
     figures = []
     for found in zip(*(rows_at(size) for size in sizes), strict=True):
         # Of a row that must only have a sign the difference is zero as soon as it has it.
         error = change_by_halving([row.value if row.reference is None else row.difference for row in found])
-        least = 0.0 if found[-1].difference_unit else ROUND_OFF
         figures.append(
-            Figure.of_row(found[-1], numerical_error=max(error, least), numerical_origin=f"{HALVED} ({of})")
+            Figure.of_row(
+                found[-1],
+                numerical_error=max(error, least_error(found[-1])),
+                numerical_origin=f"{HALVED} ({of})",
+                reference_error=reference_error(found[-1]),
+            )
         )
     return figures

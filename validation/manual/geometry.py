@@ -39,7 +39,7 @@ def _levers() -> list[Figure]:
         return np.where(carrying_pins(geometry, at), lever, 0.0)
 
     squares = (loaded(64) ** 2).sum(axis=1)
-    largest = [float(np.mean((found.max(axis=1) / (found**2).sum(axis=1)))) for found in (loaded(1000), loaded(2000))]
+    largest = [float(np.mean(found.max(axis=1) / (found**2).sum(axis=1))) for found in (loaded(1000), loaded(2000))]
     scale = 4.0 / (e * z**2)
     return [
         absolute_figure(
@@ -88,7 +88,10 @@ def studio_geometry() -> ContactGeometry:
 
 
 def studio_crank_angle(psi: FloatArray) -> FloatArray:
-    """Return φ_C at their crank angles: with the wheel held ψ puts the disc's centre at −e (cos ψ, sin ψ), ψ + π = φ_C (1 − 1/19)."""
+    """Return φ_C at their crank angles.
+
+    With the wheel held ψ puts the disc's centre at −e (cos ψ, sin ψ), so ψ + π = φ_C (1 − 1/19).
+    """
     return (psi + np.pi) * STUDIO_PINS / 18.0
 
 
@@ -118,17 +121,18 @@ def small_turns(gap: FloatArray, lever: FloatArray) -> FloatArray:
 def _studio() -> list[Figure]:
     geometry = studio_geometry()
     # 48 angles of the crank over a period, as theirs; the first is ψ = 0.
-    angle = studio_crank_angle(2.0 * np.pi / 18.0 * np.arange(48) / 48.0)
+    angle = studio_crank_angle(np.linspace(0.0, 2.0 * np.pi / 18.0, 48, endpoint=False))
     gaps, levers = gaps_and_levers_at_points(geometry, angle, STUDIO_POINTS)
     found = geometry.flank(angle, np.zeros((48, 4)))
     exact_gaps, exact_levers = -found.approach, found.gradient[..., DISC_ROTATION]
-    figures = []
-    for number, printed in enumerate(STUDIO_GAPS):
-        for pin in sorted({number, -number % STUDIO_PINS}):
-            figures.append(_printed(f"gap at pin {pin}", 1e3 * gaps[0, pin], printed, "µm", 1e-3))
-    for number, printed in enumerate(STUDIO_LEVERS):
-        for pin in sorted({number, -number % STUDIO_PINS}):
-            figures.append(_printed(f"lever of pin {pin} about the disc", abs(levers[0, pin]), printed, "mm", 1e-4))
+    mirrored = [(number, pin) for number in range(10) for pin in sorted({number, -number % STUDIO_PINS})]
+    figures = [
+        _printed(f"gap at pin {pin}", 1e3 * gaps[0, pin], STUDIO_GAPS[number], "µm", 1e-3) for number, pin in mirrored
+    ]
+    figures += [
+        _printed(f"lever of pin {pin} about the disc", abs(levers[0, pin]), STUDIO_LEVERS[number], "mm", 1e-4)
+        for number, pin in mirrored
+    ]
     turns, largest = small_turns(gaps, levers), small_turns(exact_gaps, exact_levers)
     figures += [
         _printed("backlash of the disc at ψ = 0", turns[0], STUDIO_BACKLASH, "′", 1e-4),
@@ -144,7 +148,8 @@ def _studio() -> list[Figure]:
             reference_error=1e-5,
         ),
         relative_figure(
-            "largest backlash of the disc, turned until pins touch", float(backlash(geometry, angle, DISC_ROTATION).max()) * ARCMIN,
+            "largest backlash of the disc, turned until pins touch",
+            float(backlash(geometry, angle, DISC_ROTATION).max()) * ARCMIN,
             float(largest.max()), "′", 2.5e-3,
             "turned by 0.76 mrad pins also slide 0.02 mm along a flank that bends with 5 mm and more: 0.04 µm of 18 µm",
             numerical_error=1e-8, numerical_origin="tolerance of the search for first contact",
@@ -211,13 +216,14 @@ def gap_and_levers_of_four_bar(error: str, direction: float) -> tuple[float, flo
 
 def _four_bar() -> list[Figure]:
     second = (
-        "half a unit of the last digit, and the second order, which the reference leaves out: an error moves the pin by up to 0.02 mm "
+        "half a unit of the last digit, and the second order, which the reference leaves out: an error moves the pin "
+        "by up to 0.02 mm "
         "along a trochoid that bends with 30 mm and more, 0.02²/60 mm = 0.007 µm; of the turn 6e-6°"
     )
     figures = []
     for direction, (disc, wheel, *printed) in FOUR_BAR.items():
         gap, lever, other = gap_and_levers_of_four_bar("", direction)
-        at = f"at {direction:g}°"
+        at = f"at −{-direction:g}°"
         figures += [
             absolute_figure(
                 f"gap without errors {at}", 1e3 * gap, 0.0, "µm", 1e-6, "an unmodified flank: round-off of 130 mm",
@@ -292,11 +298,13 @@ CASES = (
     Case(
         name="cycloid_levers",
         title="Levers of an unmodified cycloid",
-        problem="The paper's drive (14 pins on 88 mm, 13 lobes, e 4 mm) without offsets: contact normals, levers about the wheel's axis, and the "
+        problem="The paper's drive (14 pins on 88 mm, 13 lobes, e 4 mm) without offsets: contact normals, levers "
+        "about the wheel's axis, and the "
         "load sharing of equal linear springs with the disc's centre held.",
         references=(
             Reference(
-                source="Conjugate profiles: contact normals pass the pitch point, e z_P from the wheel's axis on the eccentric's side; with it "
+                source="Conjugate profiles: contact normals pass the pitch point, e z_P from the wheel's axis on the "
+                "eccentric's side; with it "
                 "∮ (p R sin β)²/(R² + p² − 2pR cos β) dβ/2π = p²/2, so Σ l² = z_P (e z_P)²/4 in the mean",
                 uncertainty="None: closed forms.",
             ),
@@ -312,46 +320,58 @@ CASES = (
         name="cycloidal_studio",
         title="Cycloidal Studio: 19 pins and a harmonic flank",
         problem="18 lobes, 19 pins of radius 2.5 mm on 34 mm, e 1.5 mm; the flank is moved along its normal by "
-        "−0.0254 − 0.0034 cos 18θ' − 0.0081 cos 36θ' mm: gaps and levers of all pins with the disc's centre on the eccentric, and the backlash "
+        "−0.0254 − 0.0034 cos 18θ' − 0.0081 cos 36θ' mm: gaps and levers of all pins with the disc's centre on the "
+        "eccentric, and the backlash "
         "of the disc with crank and wheel held.",
         references=(
             Reference(
-                source="SHKinsem/cycloidal-studio (MIT), commit 52a00d1, optimizer/model.py, re-run: search over 8000 points of the flank",
-                uncertainty="Printed to 0.001 µm, 0.0001 mm and 0.0001′. The nearest of 8000 points is up to 0.1 µm farther than the flank and "
+                source="SHKinsem/cycloidal-studio (MIT), commit 52a00d1, optimizer/model.py, re-run: search over 8000 "
+                "points of the flank",
+                uncertainty="Printed to 0.001 µm, 0.0001 mm and 0.0001′. The nearest of 8000 points is up to 0.1 µm "
+                "farther than the flank and "
                 "its normal off by up to 1 %, the same in rows that search points of our flank.",
             ),
         ),
-        model="Shapes and places of `ltca`; rows of printed digits search 8000 points of our flank as they do, the last four rows are "
-        "those of `ltca.geometry` with the flank itself. Here θ = 0 is a root: equidistant offset 0.0254, harmonics +0.0034 and −0.0081; "
+        model="Shapes and places of `ltca`; rows of printed digits search 8000 points of our flank as they do, the "
+        "last four rows are "
+        "those of `ltca.geometry` with the flank itself. Here θ = 0 is a root: equidistant offset 0.0254, harmonics "
+        "+0.0034 and −0.0081; "
         "ψ = 0 is φ_C = 19π/18.",
         run=_studio,
     ),
     Case(
         name="four_errors_of_a_pin",
         title="Four errors of a pin",
-        problem="15 pins of radius 18 mm on 130 mm, 14 lobes, e 5 mm; the pin at 0° with the disc's centre at −60, −90, −120°: change of the "
-        "normal gap by errors of pin circle, pin radius and eccentricity, one at a time, and the turn of the disc that restores contact.",
+        problem="15 pins of radius 18 mm on 130 mm, 14 lobes, e 5 mm; the pin at 0° with the disc's centre at −60, "
+        "−90, −120°: change of the "
+        "normal gap by errors of pin circle, pin radius and eccentricity, one at a time, and the turn of the disc "
+        "that restores contact.",
         references=(
             Reference(
                 source="Four-bar linkage from its instant centre, re-run: levers to 0.1 µm, gaps to 0.1 nm, turns to 1e-5°",
                 uncertainty="Half a unit of the last digit; of the first order in the errors.",
             ),
         ),
-        model="`pin_errors.radial`, half of `pin_errors.diameter`, `crank.eccentricity_error` of a drive file; gaps are exact.",
+        model="`pin_errors.radial`, half of `pin_errors.diameter`, `crank.eccentricity_error` of a drive file; gaps "
+        "are exact.",
         model_uncertainty="The reference is linear in the errors: up to 0.007 µm.",
         run=_four_bar,
     ),
     Case(
         name="paper_flank",
         title="The paper's flank: gaps and backlash",
-        problem="14 pins of radius 6.5 mm on 88 mm, e 4 mm, offsets Δr_P 0.15 and ΔR_C 0.09 mm: gaps of the unloaded drive and its backlash.",
+        problem="14 pins of radius 6.5 mm on 88 mm, e 4 mm, offsets Δr_P 0.15 and ΔR_C 0.09 mm: gaps of the unloaded "
+        "drive and its backlash.",
         references=(
             Reference(
-                source="*Contact characteristics of cycloid planetary gear drives considering backlashes and clearances*, section 4.1: about "
+                source="*Contact characteristics of cycloid planetary gear drives considering backlashes and "
+                "clearances*, section 4.1: about "
                 "10 arc minutes of backlash; offsets fitted to it, 10.6 to 10.8′ at the disc and 9.8 to 10.1′ at the wheel",
                 uncertainty="Half the width of these intervals.",
             ),
-            Reference(source="Closed forms of gaps and radii, first order in the offsets", uncertainty="Second order, 0.4 µm."),
+            Reference(
+                source="Closed forms of gaps and radii, first order in the offsets", uncertainty="Second order, 0.4 µm."
+            ),
         ),
         model="`ltca.geometry.first_contact.backlash` and `ltca.geometry.flank`.",
         input_uncertainty="The offsets are not printed but fitted to the printed backlash.",

@@ -103,13 +103,15 @@ def _wang() -> list[Figure]:
             2e-3, read, numerical_error=0.0, numerical_origin="a formula", reference_error=5e-4,
         ),
         relative_figure(
-            "loss of the wheel pins by slip, loads by levers, against 4μ(D_p − d_rp)/(K₁ D_p π)", _slip_loss(), float(part), "", 0.02,
+            "loss of the wheel pins by slip, loads by levers, against 4μ(D_p − d_rp)/(K₁ D_p π)", _slip_loss(),
+            float(part), "", 0.02,
             "their mean over the half of the pins that carry is an integral; 44 pins make a sum of it",
             numerical_error=1e-12, numerical_origin="round-off",
         ),
         absolute_figure(
             "loss of our reducer by that of their formula", (1.0 - efficiency) / (1.0 - theirs), 1.0, "times", 1.0,
-            "larger by less than as much again: theirs is of a disc that stands still in its bearing; ours yields there and pins far from "
+            "larger by less than as much again: theirs is of a disc that stands still in its bearing; ours yields "
+            "there and pins far from "
             "the pitch point carry", numerical_error=1e-3, numerical_origin="six positions over a mesh period, estimated",
         ),
     ]  # fmt: skip
@@ -151,7 +153,8 @@ def _pitch_point() -> list[Figure]:
     return [
         relative_figure(
             "power of slip at the pins, worst position", float(told[worst]), float(lost[worst]), "N·mm", 2e-3,
-            "the normal passes the pitch point by the pose", numerical_error=1e-6, numerical_origin="balanced to 1e-9 of the load",
+            "the normal passes the pitch point by the pose", numerical_error=1e-6,
+            numerical_origin="balanced to 1e-9 of the load",
         ),
         relative_figure(
             "rise of the mean crank torque by friction", float(np.mean(torque)), float(np.mean(lost)), "N·mm", 1e-3,
@@ -169,7 +172,8 @@ CASES = (
         references=(
             Reference(
                 source="Wang, Luo, Su, *Mechanism and Machine Theory* 102 (2016) 135–148: η = η_x · 0.99 · 0.995² · η_sx",
-                uncertainty="Three digits. Number of output pins (8), sleeve wall (1 mm), μ and f are not printed: the case informs on the "
+                uncertainty="Three digits. Number of output pins (8), sleeve wall (1 mm), μ and f are not printed: "
+                "the case informs on the "
                 "size of losses, it proves only the slip.",
             ),
         ),
@@ -188,7 +192,8 @@ CASES = (
                 uncertainty="Of first order in the pose and in μ.",
             ),
         ),
-        model="LTCA with half-space compliance: `ltca.analysis.friction.losses`, and the crank torques of both senses of rotation.",
+        model="LTCA with half-space compliance: `ltca.analysis.friction.losses`, and the crank torques of both senses "
+        "of rotation.",
         run=_pitch_point,
     ),
 )

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from functools import partial
 
-from validation.levels.other_codes import compare_answers, stored_answer
 from validation.levels.other_code_problems import CODES
+from validation.levels.other_codes import compare_answers, stored_answer
 from validation.manual.case import Case, Figure, Reference
 
 
@@ -27,11 +27,13 @@ CASES = (
     Case(
         name="tamaas_rollers",
         title="Rollers of finite length against tamaas",
-        problem="A straight roller (radius 2 mm, 11.8 mm long, 1500 N) and one with the profile of ISO 16281 (radius 10 mm, 20 mm long, 40 kN) on a "
+        problem="A straight roller (radius 2 mm, 11.8 mm long, 1500 N) and one with the profile of ISO 16281 (radius "
+        "10 mm, 20 mm long, 40 kN) on a "
         "flat, E 210 000 MPa, ν 0.3: pressure at mid-length and approach.",
         references=(
             Reference(
-                source="tamaas: uniform cells (96 × 512 and 96 × 384), FFT of Boussinesq's solution, conjugate gradients; stored answers "
+                source="tamaas: uniform cells (96 × 512 and 96 × 384), FFT of Boussinesq's solution, conjugate "
+                "gradients; stored answers "
                 "of `validation.levels.other_code_problems`",
                 uncertainty="0.15 %: finer cells halve the difference.",
             ),
@@ -42,7 +44,8 @@ CASES = (
     Case(
         name="calculix_drive",
         title="A whole drive against CalculiX on the same mesh",
-        problem="The paper's CS-1 at φ_C = 0.5, plane strain, two elements for each half-width: loads of all contacts, relative to the largest of their "
+        problem="The paper's CS-1 at φ_C = 0.5, plane strain, two elements for each half-width: loads of all "
+        "contacts, relative to the largest of their "
         "kind, and the angle of the wheel.",
         references=(
             Reference(
@@ -54,7 +57,11 @@ CASES = (
         model_uncertainty="Both codes solve the same plane model.",
         long=True,
         run=partial(
-            _against, "CalculiX", 2e-3, "change of loads from size 4 to the default size, 0.18 % (docs/validation/index.md)", 1e-3
+            _against,
+            "CalculiX",
+            2e-3,
+            "change of loads from size 4 to the default size, 0.18 % (docs/validation/index.md)",
+            1e-3,
         ),
     ),
 )

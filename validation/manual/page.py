@@ -14,7 +14,9 @@ from validation.manual.register import HEADINGS
 
 COMMAND = "cyclo validate --manual"
 ROUND_OFF = 1e-6
-"""Error bars below this part of the reference are round-off, and what they cover is not printed."""
+"""Error bars below this part of the reference (of one unit where that is zero) are round-off; what they cover is not printed."""
+TIGHT = ("′", "'", '"', "°")
+"""Units that follow their number without a space."""
 NOTE = f"<!-- Written by `{COMMAND}`: do not edit. -->\n"
 
 
@@ -56,7 +58,10 @@ def page(outcome: Outcome) -> str:
 def index(outcomes: Sequence[Outcome]) -> str:
     """Return the index of the cases that were computed."""
     found = {outcome.case.name: outcome for outcome in outcomes}
-    passed, bounded = sum(one.passed for one in outcomes), [f for one in outcomes for f in one.figures if f.bound is not None]
+    passed, bounded = (
+        sum(one.passed for one in outcomes),
+        [f for one in outcomes for f in one.figures if f.bound is not None],
+    )
     beyond = sum(figure.beyond_error_bar for figure in bounded)
     text = f"""# Verification manual
 
@@ -64,10 +69,10 @@ def index(outcomes: Sequence[Outcome]) -> str:
 One page for each case in one form: problem, reference with its source and its uncertainty, model, result with error bar, verdict,
 command. `{COMMAND}` writes all of them, `{COMMAND} CASE` some; exit status 1 when a verdict is FAILED.
 
-**{passed} of {len(outcomes)} cases pass**; {len(bounded)} figures have a bound. Three uncertainties are kept apart (ASME V&V 10, V&V 20): that of
-the input, that of numbers (meshes, cells, positions, tables, round-off) and that of the model. A difference beyond the error bars of
-numbers, reference and input together is one of the model; {beyond} of the figures with a bound have one. A bound is no error bar: it was
-set beforehand, with the reason that each page gives.
+**{passed} of {len(outcomes)} cases pass**; {len(bounded)} figures have a bound. Three uncertainties are kept apart
+(ASME V&V 10, V&V 20): that of the input, that of numbers (meshes, cells, positions, tables, round-off) and that of the model.
+A difference beyond the error bars of numbers, reference and input together is one of the model, or of what the reference leaves
+out; {beyond} of the figures with a bound have one. A bound is no error bar: each page gives its reason.
 
 """
     for heading, cases in HEADINGS.items():
@@ -95,9 +100,9 @@ def verdict_word(outcome: Outcome) -> str:
 
 def printed_difference(figure: Figure) -> str:
     """Return a difference with its sign, or that it is below the round-off of its own computation."""
-    scale = 1.0 if figure.difference_unit == "" else abs(figure.reference or 0.0)
+    scale = 1.0 if figure.difference_unit == "" else abs(figure.reference or 1.0)
     error = figure.numerical_error
-    if abs(figure.difference) <= error and (scale == 0.0 or error < ROUND_OFF * scale):
+    if abs(figure.difference) <= error and error < ROUND_OFF * scale:
         return f"< {_amount(error, figure.difference_unit)}" if error else "0"
     return f"{'+' if figure.difference > 0.0 else '−'}{_amount(abs(figure.difference), figure.difference_unit)}"
 
@@ -140,7 +145,8 @@ def _uncertainty(outcome: Outcome) -> str:
     origins = list(dict.fromkeys(figure.numerical_origin for figure in outcome.figures))
     beyond = [figure.quantity for figure in outcome.figures if figure.reference is not None and figure.beyond_error_bar]
     told = (
-        f"{len(beyond)} of {len(outcome.figures)} differences are beyond the error bars of numbers, reference and input together and "
+        f"{len(beyond)} of {len(outcome.figures)} differences are beyond the error bars of numbers, reference and "
+        "input together and "
         "belong to the model (or to what the reference leaves out)."
         if beyond
         else "No difference is beyond the error bars of numbers, reference and input together: none can be told from zero."
@@ -171,7 +177,7 @@ def _value(value: float, figure: Figure) -> str:
     if figure.reference == 0.0 and printed_difference(figure).startswith("<"):
         value = 0.0
     unit = figure.unit
-    space = "" if unit in ("", "′", '"', "°") else " "
+    space = "" if unit in ("", *TIGHT) else " "
     return f"{value:.6g}{space}{unit}".replace("-", "−")
 
 
@@ -181,7 +187,7 @@ def _amount(size: float, unit: str) -> str:
         return "0"
     if unit == "":
         return f"{100.0 * size:.2g} %" if size >= 1e-6 else f"{size:.1g}"
-    space = "" if unit in ("′", '"', "°") else " "
+    space = "" if unit in TIGHT else " "
     return f"{size:.2g}{space}{unit}"
 
 

@@ -33,8 +33,9 @@ def all_cases() -> dict[str, Case]:
 def chosen_cases(names: list[str]) -> tuple[Case, ...]:
     """Return the cases of these names in the order of the manual, all without names; DriveError for others and for repeats."""
     known = all_cases()
+    listed = ", ".join(known)
     problems = [
-        f"--manual {shortened(name)[1:-1]}: is no case of the manual{did_you_mean(name, known)}; cases are {', '.join(known)}"
+        f"--manual {shortened(name)[1:-1]}: is no case of the manual{did_you_mean(name, known)}; cases are {listed}"
         for name in dict.fromkeys(names)
         if name not in known
     ]

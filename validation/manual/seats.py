@@ -20,9 +20,7 @@ ELEMENTS = (12.0, 24.0, 48.0)
 """Over the arc of contact, coarsest first."""
 BY_ELEMENTS = f"{HALVED} (12, 24, 48 elements over the arc)"
 SERIES = "series of the law against the arcs that they are made from, at most 1e-8"
-REASON = (
-    "asked of conforming seats: second order of the play beside the radius, and the fixed outside of the ring around the bore"
-)
+REASON = "asked of conforming seats: second order of the play beside the radius, and the fixed outside of the ring"
 
 
 def _law(bore_radius: float) -> ConformingLaw:
@@ -103,13 +101,16 @@ def _neat() -> list[Figure]:
 
 
 PERSSON = Reference(
-    source="Persson (1964), closed form by Ciavarella and Decuzzi, *International Journal of Solids and Structures* 38 (2001), "
+    source="Persson (1964), closed form by Ciavarella and Decuzzi, *International Journal of Solids and Structures* "
+    "38 (2001), "
     "equal materials",
-    uncertainty="None beyond round-off. The approach is held against Michell's series (docs/theory/seats.md), summed to 1e-8.",
+    uncertainty="None beyond round-off. The approach is held against Michell's series (docs/theory/seats.md), summed "
+    "to 1e-8.",
 )
 MODEL = (
     "The law of the LTCA (`ltca.laws.conforming.ConformingLaw`), and plane-strain finite elements with mortar contact "
-    "(`fem.testing.seated_pin`): the pin a free body under a body force, the bore in a ring of 360 mm, fixed outside; the approach is "
+    "(`fem.testing.seated_pin`): the pin a free body under a body force, the bore in a ring of 360 mm, fixed outside; "
+    "the approach is "
     "relative to the mean displacement of a circle of 6 mm about the bore."
 )
 
@@ -117,17 +118,20 @@ CASES = (
     Case(
         name="pin_in_bore",
         title="Pin in a slightly larger bore",
-        problem="A steel pin of radius 4 mm in a bore of 4.004 mm, 12 mm long, loaded until half the arc is 2 arctan ½ = 53.1°: arc, "
+        problem="A steel pin of radius 4 mm in a bore of 4.004 mm, 12 mm long, loaded until half the arc is 2 arctan "
+        "½ = 53.1°: arc, "
         "largest pressure and approach.",
         references=(PERSSON,),
         model=MODEL,
-        model_uncertainty="Pressure acts on one circle of the mean radius: second order of play by radius, 1e-3. The ring is finite.",
+        model_uncertainty="Pressure acts on one circle of the mean radius: second order of play by radius, 1e-3. The "
+        "ring is finite.",
         run=_persson,
     ),
     Case(
         name="neat_fit_pin",
         title="Neat-fit pin",
-        problem="A steel pin of radius 4 mm in a bore of exactly its size, 12 mm long, 1000 N: the arc does not depend on the load, "
+        problem="A steel pin of radius 4 mm in a bore of exactly its size, 12 mm long, 1000 N: the arc does not "
+        "depend on the load, "
         "and pressure and approach are proportional to it.",
         references=(
             PERSSON,
