@@ -135,7 +135,7 @@ def test_manual_writes_the_pages_that_are_named(tmp_path):
             ["--manual", "--case", "CS-1", "--angles", "0.5", "--level", "quick", "--size", "1"],
             [f"--{name}: has no meaning with --manual" for name in ("case", "angles", "level", "size")],
         ),
-        (["--manual", "nafems_2"], ["--manual nafems_2: is no case of the manual; did you mean `nafems_1`"]),
+        (["--manual", "flat_punsh"], ["--manual flat_punsh: is no case of the manual; did you mean `flat_punch`"]),
         (["--manual", "krol", "krol"], ["--manual krol: is given twice"]),
         ([], ["give a drive file, or --manual"]),
     ],
