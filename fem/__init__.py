@@ -7,6 +7,7 @@ errors        what the package raises on purpose
 shapes        Exact shape of each body of a drive: closed curves with names, in the frame of the body
 mesh          Meshes of single bodies: size field, triangulation, quality, files
 body          One meshed body: elasticity, its boundary zones, its compliance, its stresses
+solid         Extruded bodies in three dimensions: layers, stiffness, factors
 options       Options of a full solution: element size, plane state, fine walls
 contact       Contact between condensed bodies: mortar integrals of a pair and pressures that never pull
 drive         One disc with wheel, crank and pin shaft at one crank angle: expected contacts, graded meshes, condensed

@@ -24,7 +24,7 @@ FLOORS = (
     "ltca.errors", "ltca.arrays", "ltca.quantities", "ltca.output", "ltca.drive", "ltca.geometry", "ltca.contact",
     "ltca.reading", "ltca.laws", "ltca.compliance", "ltca.equilibrium", "ltca.analysis", "ltca.studies", "ltca.figures",
     "ltca.page", "ltca.export", "ltca.testing", "ltca",
-    "fem.errors", "fem.shapes", "fem.mesh", "fem.body", "fem.options", "fem.contact", "fem.drive", "fem.reducer",
+    "fem.errors", "fem.shapes", "fem.mesh", "fem.body", "fem.solid", "fem.options", "fem.contact", "fem.drive", "fem.reducer",
     "fem.coefficients", "fem.referee", "fem.pictures", "fem.export", "fem.testing", "fem",
     "validation.methods", "validation.rows", "validation.compare", "validation.levels", "validation.study", "validation.report",
     "validation.seats", "validation.manual",

@@ -1,0 +1,86 @@
+"""Factors of large symmetric positive definite matrices of extruded bodies.
+
+CHOLMOD (cvxopt, the extra ``fast``) where it is installed, else SuperLU in symmetric mode, which takes longer and more memory.
+Both eliminate the nodes of the section in the order of `fem.body.condensation.order_nodes`, all heights of a node together.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from importlib.util import find_spec
+
+import numpy as np
+import scipy.sparse as sp
+import scipy.sparse.linalg as spla
+
+from fem.body.condensation import SYMMETRIC
+from ltca.arrays import FloatArray, IntArray
+
+BLOCK = 16
+"""Right-hand sides that SuperLU solves together: more leave its cache."""
+
+
+class SymmetricFactor:
+    """Factor of the kept rows and columns of a symmetric positive definite matrix.
+
+    Parameters
+    ----------
+    matrix : csc_matrix, shape (unknowns, unknowns)
+        Symmetric.
+    kept : array of int
+        Unknowns in their order of elimination; the others are held at zero.
+    """
+
+    def __init__(self, matrix: sp.csc_matrix, kept: IntArray) -> None:
+        self._count, self._kept = matrix.shape[0], kept
+        inner = matrix.T[kept].tocsc()[:, kept]
+        self._solve = _cholmod(inner) if cholmod_is_there() else _superlu(inner)
+
+    def solve(self, right: FloatArray | sp.spmatrix) -> FloatArray:
+        """Return the displacements under forces, zero at held unknowns, shape (unknowns, k)."""
+        forces = right if isinstance(right, np.ndarray) else right.toarray()
+        found = np.zeros((self._count, forces.shape[1]))
+        found[self._kept] = self._solve(forces[self._kept])
+        return found
+
+
+def cholmod_is_there() -> bool:
+    """Whether cvxopt, which holds CHOLMOD, is installed."""
+    return find_spec("cvxopt") is not None
+
+
+def _superlu(inner: sp.csc_matrix) -> Callable[[FloatArray], FloatArray]:
+    # Nothing pivots: the matrix is positive definite.
+    factor = spla.splu(inner, permc_spec="NATURAL", diag_pivot_thresh=0.0, options=SYMMETRIC)
+
+    def solve(right: FloatArray) -> FloatArray:
+        found = np.empty_like(right)
+        for first in range(0, right.shape[1], BLOCK):
+            own = slice(first, first + BLOCK)
+            found[:, own] = factor.solve(np.ascontiguousarray(right[:, own]))
+        return found
+
+    return solve
+
+
+def _cholmod(inner: sp.csc_matrix) -> Callable[[FloatArray], FloatArray]:
+    import cvxopt
+    import cvxopt.cholmod
+
+    lower = sp.tril(inner, format="coo")
+    matrix = cvxopt.spmatrix(
+        cvxopt.matrix(lower.data), cvxopt.matrix(lower.row.astype(np.int64)), cvxopt.matrix(lower.col.astype(np.int64))
+    )
+    del lower
+    order = cvxopt.matrix(np.arange(inner.shape[0], dtype=np.int64))
+    cvxopt.cholmod.options["supernodal"] = 2
+    factor = cvxopt.cholmod.symbolic(matrix, p=order)
+    cvxopt.cholmod.numeric(matrix, factor)
+    del matrix
+
+    def solve(right: FloatArray) -> FloatArray:
+        values = cvxopt.matrix(np.asfortranarray(right))
+        cvxopt.cholmod.solve(factor, values)
+        return np.array(values)
+
+    return solve
