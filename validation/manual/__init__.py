@@ -8,6 +8,7 @@ error_bars    Error bars from elements, cells or positions halved in size
 flat_block    Blocks with a flat top for contact problems
 contact       Cases: Hertz' lines and points, NAFEMS' cylinder, flat punch, patch test, roller between flats
 seats         Cases: a pin in a bore of nearly or exactly its own size
+width         Cases: lines that tilt and crowned lines in slices against half-space grids
 elasticity    Cases: a ring under pressure, a hole in a plate under tension
 beams         Cases: pins between their ends, pins tied at their tips, crankshafts, rings
 geometry      Cases: levers, gaps, backlash, errors of a pin

@@ -10,6 +10,8 @@ from typing import Literal
 from validation.rows import Row
 
 Bodies = Literal["plane", "solid"]
+PLAIN = "1"
+"""Unit of differences of numbers without a unit."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,7 +47,8 @@ class Figure:
     difference : float
         What the bound holds.
     difference_unit : str
-        Unit of difference, bound and errors; "" for a ratio, printed in per cent.
+        Unit of difference, bound and errors; "" for a ratio to the reference, printed in per cent, `PLAIN` for the difference of
+        numbers without a unit.
     bound : float or None
         The difference may be this large in magnitude; None for a figure that only informs.
     bound_reason : str
@@ -165,7 +168,7 @@ def absolute_figure(
         reference=reference,
         unit=unit,
         difference=value - reference,
-        difference_unit=unit,
+        difference_unit=unit or PLAIN,
         bound=bound,
         bound_reason=bound_reason,
         numerical_error=numerical_error,

@@ -6,9 +6,10 @@ from typing import Any
 
 import numpy as np
 
+from ltca.analysis.transmission_error_orders import Order, fit_orders
 from ltca.arrays import FloatArray
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
-from ltca.geometry.first_contact import backlash, carrying_pins
+from ltca.geometry.first_contact import backlash, carrying_pins, first_contact
 from ltca.geometry.pairs import ContactGeometry
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import build_drive, load_drive
@@ -294,6 +295,64 @@ def _paper_flank() -> list[Figure]:
     ]  # fmt: skip
 
 
+# Runout of the flank
+
+RUNOUT, RUNOUT_ANGLE = 0.002, 0.8
+"""Amount, mm, and angle, rad, of the runout."""
+
+
+def runout_error(positions: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return what a runout adds to the rigid wheel angle, the same in closed form where one pin touches before and after, and
+    the slant tan β of the touching normal, shape (positions,); differences of pins that change are not a number.
+    """
+    drive = load_drive("paper").cases["CS-1"]
+    runout = with_fields(drive, {"disc.runout.amount": RUNOUT, "disc.runout.angle": RUNOUT_ANGLE})
+    angles = np.linspace(0.0, 2.0 * np.pi, positions, endpoint=False)
+    geometry = ContactGeometry.of_drive(drive)
+    plain, pins = first_contact(geometry, angles, WHEEL_ANGLE, -1)
+    moved, same = first_contact(ContactGeometry.of_drive(runout), angles, WHEEL_ANGLE, -1)
+    pose = np.zeros((positions, 4))
+    pose[:, WHEEL_ANGLE] = plain
+    gradient = geometry.flank(angles, pose).gradient[np.arange(positions), pins]
+    normal = (gradient[:, 0] + 1j * gradient[:, 1]) * np.exp(-1j * angles)
+    slant = normal.real / normal.imag
+    reach = RUNOUT / (4.0 * 14.0)
+    closed = reach * (np.sin(RUNOUT_ANGLE - angles) + slant * np.cos(RUNOUT_ANGLE - angles))
+    return moved - plain, np.where(pins == same, closed, np.nan), slant
+
+
+def _runout() -> list[Figure]:
+    reach, sizes = RUNOUT / (4.0 * 14.0), (260, 520)
+    amplitudes, others, expected = [], [], []
+    for positions in sizes:
+        error, closed, slant = runout_error(positions)
+        angles = np.linspace(0.0, 2.0 * np.pi, positions, endpoint=False)
+        orders = tuple(Order(float(value), str(value)) for value in (1, 2, 3, 5, 11, 12, 13, 14, 15, 26))
+        spectrum = fit_orders(angles, error, orders)
+        expected.append(reach * abs(1.0 + 1j * float(np.mean(slant))))
+        amplitudes.append(spectrum.of(1))
+        others.append(max(spectrum.of(order) for order in (2, 3, 5, 11, 15)) / expected[-1])
+    worst = int(np.nanargmax(np.abs(error - closed)))
+    origin = "change from 260 to 520 crank angles"
+    return [
+        absolute_figure(
+            "wheel angle by runout where one pin touches, worst angle", 1e6 * float(error[worst]), 1e6 * float(closed[worst]),
+            "µrad", 3e-3 * 1e6 * reach, "second order in the runout, and the backlash's turn of the lever",
+            numerical_error=1e-5, numerical_origin="tolerance of the search for first contact",
+        ),
+        relative_figure(
+            "order 1 of the transmission error, ρ/(e u) |1 + i mean tan β|", 1e6 * amplitudes[1], 1e6 * expected[1], "µrad", 1e-2,
+            "where another pin takes over is a few per cent of a tooth", numerical_error=abs(amplitudes[1] / amplitudes[0] - 1.0),
+            numerical_origin=origin,
+        ),
+        absolute_figure(
+            "largest of the orders 2, 3, 5, 11, 15 by order 1", others[1], 0.0, "", 0.02,
+            "as above: teeth leave only sidebands z_C ± 1",
+            numerical_error=abs(others[1] - others[0]), numerical_origin=origin,
+        ),
+    ]  # fmt: skip
+
+
 CASES = (
     Case(
         name="cycloid_levers",
@@ -376,5 +435,21 @@ CASES = (
         model="`ltca.geometry.first_contact.backlash` and `ltca.geometry.flank`.",
         input_uncertainty="The offsets are not printed but fitted to the printed backlash.",
         run=_paper_flank,
+    ),
+    Case(
+        name="runout_order",
+        title="Runout of a flank is one order of the transmission error",
+        problem="The paper's drive (CS-1) without load, its flank off the bore by 2 µm: rigid wheel angle over a turn "
+        "and its orders.",
+        references=(
+            Reference(
+                source="Closed form: δφ = ρ/(e u) (sin(α − φ) + tan β cos(α − φ)), β the slant of the touching "
+                "normal; β repeats with the "
+                "teeth, so order 1 has the amplitude ρ/(e u) |1 + i mean tan β|",
+                uncertainty="First order in the runout.",
+            ),
+        ),
+        model="`ltca.geometry.first_contact`, `ltca.analysis.transmission_error_orders`.",
+        run=_runout,
     ),
 )

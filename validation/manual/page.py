@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from ltca.output.files import whole_file
-from validation.manual.case import Case, Figure, Outcome
+from validation.manual.case import PLAIN, Case, Figure, Outcome
 from validation.manual.register import HEADINGS
 
 COMMAND = "cyclo validate --manual"
@@ -187,6 +187,8 @@ def _amount(size: float, unit: str) -> str:
         return "0"
     if unit == "":
         return f"{100.0 * size:.2g} %" if size >= 1e-6 else f"{size:.1g}"
+    if unit == PLAIN:
+        return f"{size:.2g}"
     space = "" if unit in TIGHT else " "
     return f"{size:.2g}{space}{unit}"
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from ltca.errors import DriveError, did_you_mean, shortened
-from validation.manual import beams, bearings, contact, elasticity, geometry, loads, losses, other_codes, seats
+from validation.manual import beams, bearings, contact, elasticity, geometry, loads, losses, other_codes, seats, width
 from validation.manual.case import Case
 
 PLANE: dict[str, tuple[Case, ...]] = {
     "Contact": contact.CASES,
     "Conforming seats": seats.CASES,
+    "Contacts along their width": width.CASES,
     "Elasticity": elasticity.CASES,
     "Beams and rings": beams.CASES,
     "Geometry": geometry.CASES,
