@@ -251,6 +251,18 @@ def _four_bar() -> list[Figure]:
 # The paper's flank
 
 
+def _by_fitted_offsets(coordinate: int) -> float:
+    """What half a unit of the last digit of both fitted offsets makes of the mean backlash, arc minutes."""
+    drive, angles = load_drive("paper").cases["CS-1"], 2.0 * np.pi * np.arange(90) / 90
+
+    def mean(**offsets: float) -> float:
+        changed = with_fields(drive, {f"disc.{name}": value for name, value in offsets.items()})
+        return float(backlash(ContactGeometry.of_drive(changed), angles, coordinate).mean()) * ARCMIN
+
+    plain = mean()
+    return float(np.hypot(mean(equidistant_offset=0.155) - plain, mean(shifting_offset=0.095) - plain))
+
+
 def _paper_flank() -> list[Figure]:
     geometry = ContactGeometry.of_drive(load_drive("paper").cases["CS-1"])
     angles = 2.0 * np.pi * np.arange(720) / 720
@@ -263,7 +275,8 @@ def _paper_flank() -> list[Figure]:
     return [
         absolute_figure(
             "smallest gap, Δr_P − ΔR_C at tip and root", 1e3 * float(gap.min()), 60.0, "µm", 0.01,
-            "no pin stands exactly at a tip or root of 720 angles", numerical_error=1e3 * abs(float(gap.min() - gap[::2].min())),
+            "no pin stands exactly at a tip or root of 720 angles",
+            numerical_error=max(1e3 * abs(float(gap.min() - gap[::2].min())), 1e-9),
             numerical_origin=sampled,
         ),
         absolute_figure(
@@ -274,10 +287,12 @@ def _paper_flank() -> list[Figure]:
         absolute_figure(
             "mean backlash of the disc about its held centre", float(disc.mean()), 10.7, "′", 0.1, read,
             numerical_error=abs(float(disc.mean() - disc[::2].mean())), numerical_origin=sampled, reference_error=0.1,
+            input_error=_by_fitted_offsets(DISC_ROTATION),
         ),
         absolute_figure(
             "mean backlash at the wheel", float(wheel.mean()), 9.95, "′", 0.15, read,
             numerical_error=abs(float(wheel.mean() - wheel[::2].mean())), numerical_origin=sampled, reference_error=0.15,
+            input_error=_by_fitted_offsets(WHEEL_ANGLE),
         ),
         relative_figure(
             "backlash of the disc by that of the wheel", float(disc.mean() / wheel.mean()), 14.0 / 13.0, "", 2e-3,
@@ -433,7 +448,7 @@ CASES = (
             ),
         ),
         model="`ltca.geometry.first_contact.backlash` and `ltca.geometry.flank`.",
-        input_uncertainty="The offsets are not printed but fitted to the printed backlash.",
+        input_uncertainty="The offsets are not printed but fitted to the printed backlash: half of their last digit, 5 µm.",
         run=_paper_flank,
     ),
     Case(
