@@ -57,7 +57,7 @@ SMALLER = {
     "curves": "--no-figures",
     "design": "--best 1",
     "derive": "--stations 0.25 --size 2",
-    "fem": "--size 4",
+    "fem": "--size 3",
     "mesh": "--size 4",
     "validate": "--level quick --angles 0.5",
     "benchmarks/before_and_after.py": "--count 5",

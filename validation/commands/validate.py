@@ -46,7 +46,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "over one period of the flank",
     )
     parser.add_argument(
-        "--level", choices=("quick", "full"), help="how many angles; full also halves meshes; default quick"
+        "--level",
+        choices=("quick", "full"),
+        help="how many angles; full also halves meshes and finds error bars of the full solutions; default quick",
     )
     add_size_argument(parser, "element edges of the full solutions as a multiple of the default (limits are for 1)")
     # Nothing, quick and 1 are told from values that are given: none has a meaning with --manual.

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from fem.body.condensation import condense_body
-from fem.body.elasticity import assemble_stiffness, traction_load, unknowns_of_boundary
-from fem.body.stress import recover_stress
+from fem.body.elasticity import Traction, assemble_stiffness, traction_load, unknowns_of_boundary
+from fem.body.plane_references import kirsch_traction, lame_hoop_stress, solve_free_body
+from fem.body.stress import Stress
 from fem.body.surface import OppositeZone, PressureZone
 from fem.contact.coupling import Pose
 from fem.contact.two_bodies import press_together
@@ -16,7 +16,6 @@ from fem.mesh.element_size import Refinement
 from fem.mesh.triangulation import mesh_circle, mesh_ring
 from fem.shapes import CircleShape, RingShape
 from ltca.analysis.loaded_analysis import analyse
-from ltca.arrays import FloatArray
 from ltca.contact.hertz import (
     effective_radius,
     line_contact_stress,
@@ -44,24 +43,20 @@ def check_closed_forms(drive: Drive) -> list[Row]:
 
 
 def _solve_ring(
-    inner: float, outer: float, size: float, boundary: str, traction: object
-) -> tuple[FloatArray, FloatArray, FloatArray, NDArray[np.complex128]]:
-    """Solve a free ring under tractions; return xx, yy, xy at the nodes and the nodes."""
+    inner: float, outer: float, size: float, boundary: str, traction: Traction
+) -> tuple[Stress, NDArray[np.complex128]]:
+    """Solve a free ring under tractions; return the stress at the nodes and the nodes."""
     body = mesh_ring(RingShape(inner_radius=inner, outer_radius=outer, name="ring"), coarse_size=size)
-    stiffness = assemble_stiffness(body, STEEL, thickness=1.0)
-    load = traction_load(body, boundary, traction, thickness=1.0)  # type: ignore[arg-type]
-    u = condense_body(body, stiffness, sp.csc_matrix(load[:, None])).displacement(np.array([1.0]))
-    stress = recover_stress(body, u, STEEL)
-    return stress.xx, stress.yy, stress.xy, body.places
+    return solve_free_body(body, STEEL, traction_load(body, boundary, traction, thickness=1.0)), body.places
 
 
 def ring_rows(size: float = 0.7) -> list[Row]:
     """Return the row on a ring under inner pressure, elements of `size` mm on a wall of 10 mm."""
     inner, outer, pressure = 10.0, 20.0, 100.0
-    xx, yy, xy, nodes = _solve_ring(inner, outer, size, "inner", lambda x, n: (-pressure * n[0], -pressure * n[1]))
+    stress, nodes = _solve_ring(inner, outer, size, "inner", lambda x, n: (-pressure * n[0], -pressure * n[1]))
     c, s = np.cos(np.angle(nodes)), np.sin(np.angle(nodes))
-    hoop = xx * s**2 + yy * c**2 - 2.0 * xy * s * c
-    exact = pressure * inner**2 / (outer**2 - inner**2) * (1.0 + outer**2 / np.abs(nodes) ** 2)
+    hoop = stress.xx * s**2 + stress.yy * c**2 - 2.0 * stress.xy * s * c
+    exact = lame_hoop_stress(pressure, inner, outer, np.abs(nodes))
     worst = int(np.argmax(np.abs(hoop - exact)))
     return [
         Row(
@@ -82,21 +77,14 @@ def ring_rows(size: float = 0.7) -> list[Row]:
 def hole_rows(size: float = 0.36) -> list[Row]:
     """Return the row on a hole of radius 3 mm in a plate under tension, elements of `size` mm."""
     far, radius = 80.0, 3.0
-
-    def traction(x: FloatArray, n: FloatArray) -> tuple[FloatArray, FloatArray]:
-        q, theta = radius**2 / (x[0] ** 2 + x[1] ** 2), np.arctan2(x[1], x[0])
-        rr = 0.5 * far * ((1.0 - q) + (1.0 - 4.0 * q + 3.0 * q**2) * np.cos(2.0 * theta))
-        rt = -0.5 * far * (1.0 + 2.0 * q - 3.0 * q**2) * np.sin(2.0 * theta)
-        return rr * np.cos(theta) - rt * np.sin(theta), rr * np.sin(theta) + rt * np.cos(theta)
-
-    xx, _, _, nodes = _solve_ring(radius, 5.0 * radius, size, "outer", traction)
+    stress, nodes = _solve_ring(radius, 5.0 * radius, size, "outer", lambda x, n: kirsch_traction(far, radius, x))
     side = int(np.argmin(np.abs(nodes - 1j * radius)))
     angle = float(np.angle(nodes[side]))  # no node need stand exactly at the side
     return [
         relative_row(
             1,
             "peak stress at a hole in a plate under tension",
-            float(xx[side]),
+            float(stress.xx[side]),
             far * (1.0 - 2.0 * np.cos(2.0 * angle)) * np.sin(angle) ** 2,
             "MPa",
             5e-3,

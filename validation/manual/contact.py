@@ -22,7 +22,7 @@ from ltca.drive.parts import Material, contact_modulus
 from ltca.laws.line_contact import LineContactLaw
 from validation.levels.closed_forms import crowned_roller_rows, cylinder_rows, roller_rows
 from validation.manual.case import Case, Figure, Reference, relative_figure
-from validation.manual.error_bars import HALVED, change_by_halving, figures_by_size
+from validation.manual.error_bars import HALVED, error_by_size, figures_by_size
 from validation.manual.flat_block import FLAT, mesh_block
 
 STEEL = Material(youngs_modulus=206_000.0, poisson_ratio=0.3)
@@ -79,7 +79,7 @@ def _nafems() -> list[Figure]:
         ("half-width of the contact", [contact.half_width for contact in found], NAFEMS_HALF_WIDTH, "mm"),
         ("largest pressure", [contact.peak_pressure for contact in found], NAFEMS_PEAK, "MPa"),
     ):
-        error = change_by_halving(values) / reference
+        error = error_by_size(values) / reference
         origin = f"{HALVED} (5, 10, 20 elements for the half-width)"
         figures.append(
             relative_figure(
@@ -138,7 +138,7 @@ def _punch() -> list[Figure]:
     return [
         relative_figure(
             quantity, values[-1], reference, unit, 1e-2, reason,
-            numerical_error=change_by_halving(values) / reference, numerical_origin=origin,
+            numerical_error=error_by_size(values) / reference, numerical_origin=origin,
         )
         for quantity, values, reference, unit in (
             ("pressure in the middle", [float(one[0]) for one in each], middle, "MPa"),
@@ -271,7 +271,7 @@ def _roller_between_flats() -> list[Figure]:
         relative_figure(
             "approach of points 2 mm deep in both flats", values[-1], exact, "mm", 1e-2,
             "the far boundary of the blocks, 60 mm away, changes the strain between by 1 to 2 % of the flats' part",
-            numerical_error=change_by_halving(values) / exact,
+            numerical_error=error_by_size(values) / exact,
             numerical_origin=f"{HALVED} (4, 8, 16 elements for the half-width)",
         )
     ]  # fmt: skip

@@ -3,25 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from itertools import pairwise
 from typing import TypeVar
 
+from fem.discretisation_error import estimate_error
 from validation.manual.case import Figure
 from validation.rows import Row
 
 Size = TypeVar("Size")
 
-HALVED = "change by the last halving of elements or cells; the largest change of all sizes where changes do not fall"
-"""How `change_by_halving` finds an error bar, in words."""
+FORMAL_ORDER = 2.0
+"""Order of stresses of quadratic elements and of constant cells: a higher observed one counts as this, it is chance."""
+HALVED = "grid convergence index of three sizes, each half of the one before (ASME V&V 20, `fem.discretisation_error`)"
+"""How `error_by_size` finds an error bar from three sizes, in words."""
+DOUBLED = "change by twice as many"
+"""How it finds one from two."""
 ROUND_OFF = 1e-12
 """Least error bar of a ratio, whatever its changes."""
 
 
-def change_by_halving(values: Sequence[float]) -> float:
+def error_by_size(values: Sequence[float]) -> float:
     """Return the error bar of the last of values found with elements, cells or steps halved each time.
 
-    It is the change by the last halving: the error that is left is smaller from first-order convergence on. Where changes do
-    not fall there is no order of convergence, and the largest change of all counts.
+    Of three and more values the grid convergence index, with the state of convergence of the last three; of two, as of positions
+    over a turn, the change.
 
     Parameters
     ----------
@@ -30,14 +34,14 @@ def change_by_halving(values: Sequence[float]) -> float:
 
     Examples
     --------
-    >>> change_by_halving([1.4, 1.1, 1.0])
-    0.10000000000000009
-    >>> change_by_halving([1.0, 1.1, 1.4, 1.3])
-    0.2999999999999998
+    >>> round(error_by_size([1.4, 1.1, 1.0]), 3)
+    0.062
+    >>> round(error_by_size([1.1, 1.0]), 3)
+    0.1
     """
-    changes = [abs(after - before) for before, after in pairwise(values)]
-    falling = all(after <= before for before, after in pairwise(changes))
-    return changes[-1] if falling else max(changes)
+    if len(values) == 2:
+        return abs(values[1] - values[0])
+    return estimate_error(values, FORMAL_ORDER).bar
 
 
 def figures_by_size(
@@ -66,12 +70,12 @@ def figures_by_size(
     figures = []
     for found in zip(*(rows_at(size) for size in sizes), strict=True):
         # Of a row that must only have a sign the difference is zero as soon as it has it.
-        error = change_by_halving([row.value if row.reference is None else row.difference for row in found])
+        error = error_by_size([row.value if row.reference is None else row.difference for row in found])
         figures.append(
             Figure.of_row(
                 found[-1],
                 numerical_error=max(error, least_error(found[-1])),
-                numerical_origin=f"{HALVED} ({of})",
+                numerical_origin=f"{HALVED if len(sizes) > 2 else DOUBLED} ({of})",
                 reference_error=reference_error(found[-1]),
             )
         )

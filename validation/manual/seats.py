@@ -11,7 +11,7 @@ from fem.testing.seated_pin import SeatedPin, press_pin_into_bore
 from ltca.drive.parts import Material
 from ltca.laws.conforming import ConformingLaw
 from validation.manual.case import Case, Figure, Reference, relative_figure
-from validation.manual.error_bars import HALVED, change_by_halving
+from validation.manual.error_bars import HALVED, error_by_size
 from validation.seats import persson_load, persson_pressure
 
 STEEL = Material(youngs_modulus=206_000.0, poisson_ratio=0.3)
@@ -69,7 +69,7 @@ def _by_law_and_elements(bore_radius: float, load: float, half_width: float) -> 
     spread, approach = 2.0 * root_mean_square_angle(half_width), float(law.approach_and_compliance(load, play)[0])
 
     def of_elements(quantity: str, values: Sequence[float], reference: float, unit: str) -> Figure:
-        error = change_by_halving(values) / reference
+        error = error_by_size(values) / reference
         return relative_figure(
             quantity, values[-1], reference, unit, 1e-2, REASON, numerical_error=error, numerical_origin=BY_ELEMENTS
         )  # fmt: skip
