@@ -28,6 +28,7 @@ FLOORS = (
     "fem.drive", "fem.reducer",
     "fem.coefficients", "fem.referee", "fem.pictures", "fem.export", "fem.testing", "fem",
     "validation.methods", "validation.rows", "validation.compare", "validation.levels", "validation.study", "validation.report",
+    "validation.seats", "validation.manual",
     "ltca.commands", "fem.commands", "validation.commands", "validation",
 )  # fmt: skip
 # What a package may not see at all: ltca stands alone, nothing sees validation.
