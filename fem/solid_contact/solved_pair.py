@@ -36,6 +36,9 @@ GROWTH_ALONG = 0.4
 """By how much layers grow by the distance from the end of the contact."""
 END_CELL = 1.0 / 3.0
 """Thickness of the last layer at an end that carries, by the half-width."""
+RIM, RIM_CELL = 0.15, 0.4
+"""Stretch to both sides of the end of a contact that does not reach the end of the line, by its height, and the thickness of
+layers there by that in the middle."""
 ROUNDS = 4
 """Of meshes at most."""
 REFINE, COARSEN = 1.15, 0.6
@@ -258,7 +261,10 @@ def grade_heights(
     def within(z: FloatArray) -> FloatArray:
         if ends:
             return np.minimum(coarsest, finest + GROWTH_ALONG * (half - z))
-        return np.asarray(coarsest + GROWTH_ALONG * np.maximum(z - 1.15 * expected_reach, 0.0))
+        # Thinner about the end of the contact: where it lies within a layer moves the moment.
+        away = np.maximum(np.abs(z - expected_reach) - RIM * expected_reach, 0.0)
+        rise = RIM_CELL * coarsest + GROWTH_ALONG * away
+        return np.where(z > expected_reach, rise, np.minimum(coarsest, rise))
 
     inner = _divide(0.0, half, within)
     last = inner[-1] - inner[-2]
