@@ -33,7 +33,8 @@ FLOORS = (
 UNSEEN = {"ltca": {"fem", "validation"}, "fem": {"validation"}, "validation": set()}
 # Of ltca, fem takes the drive, its shape, the nominal place of its parts and the edge: never their mechanics.
 FEM_MAY_IMPORT = (
-    "ltca.errors", "ltca.arrays", "ltca.output", "ltca.quantities", "ltca.drive", "ltca.reading", "ltca.geometry.flank", "ltca.geometry.length_profile",
+    "ltca.errors", "ltca.arrays", "ltca.output", "ltca.quantities", "ltca.drive", "ltca.reading", "ltca.geometry.flank",
+    "ltca.geometry.length_profile",
     "ltca.geometry.placement", "ltca.geometry.boundary_stations", "ltca.page.study_page", "ltca.page.tables",
     "ltca.page.verdict_tables",
     "ltca.figures.house_style",
