@@ -76,6 +76,8 @@ def refuse_mixed_options(arguments: argparse.Namespace) -> None:
             "--fine-walls": arguments.fine_walls,
             "--pictures": arguments.pictures,
             "--export": arguments.export is not None,
+            "--error": arguments.error,
+            "--meshes": arguments.meshes is not None,
         }
         problems = [f"{name}: has no effect with --pair; leave it out" for name, there in idle.items() if there]
         if arguments.load is not None and arguments.approach is not None:

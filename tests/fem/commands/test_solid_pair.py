@@ -25,6 +25,7 @@ def run(*words):
         (["--pair", "flank"], "--pair: has no effect with plane bodies"),
         (["--tilt", "1e-4", "--load", "100"], "--load: has no effect with plane bodies"),
         (["--bodies", "solid", "--pair", "bore", "--plane", "stress"], "--plane: has no effect with --pair"),
+        (["--bodies", "solid", "--pair", "bore", "--error"], "--error: has no effect with --pair"),
         (["--bodies", "solid", "--pair", "bore", "--load", "9", "--approach", "0.01"], "--approach: must be left out"),
         (["--bodies", "solid", "--pair", "bore", "--load", "9", "--torque", "1e5"], "--torque: has no effect"),
         (["--bodies", "solid", "--pair", "bore", "--contact", "11"], "--contact 11: must be between 0 and 10"),
