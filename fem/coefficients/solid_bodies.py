@@ -92,7 +92,7 @@ def solve_plane(
         fixed[statically_determinate(body, loads)] = True
         balance = rigid_modes(body), support.balance
     unknowns = (2 * order_nodes(body)[:, None] + np.arange(2)).ravel()
-    factor = SymmetricFactor(matrix, unknowns[~fixed[unknowns]])
+    factor = SymmetricFactor(matrix, unknowns[~fixed[unknowns]], many_loads=True)
     return _measured(factor, loads, measures, balance, lambda done: None)
 
 
@@ -154,7 +154,7 @@ def solve_solid(
         modes, shapes = (slice(0, 3), slice(0, 3)) if even else (slice(1, 3), slice(0, 2))
         balance = solid.rigid_motions()[:, modes], solid.spread(support.balance[:, shapes], density).toarray()
     unknowns = (order_nodes(body)[:, None] * solid.per_node + np.arange(solid.per_node)).ravel()
-    factor = SymmetricFactor(solid.assemble_stiffness(material), unknowns[~fixed[unknowns]])
+    factor = SymmetricFactor(solid.assemble_stiffness(material), unknowns[~fixed[unknowns]], many_loads=True)
     if also is None:
         return _measured(factor, spread, measured, balance, advance)
     return _measured(factor, spread, measured, balance, advance, also(solid))

@@ -16,7 +16,7 @@ from scipy.linalg import eigh
 
 from fem.body.elasticity import area_loads
 from fem.body.free_body import boundary_motion_loads
-from fem.coefficients.bodies import GROWTH, ROUND_SIZE, WIDE_RATIO, WIDE_STEP
+from fem.coefficients.bodies import ROUND_SIZE, WIDE_RATIO, WIDE_STEP, edge_growth
 from fem.coefficients.patch_loads import patch_loads
 from fem.coefficients.pieces import Pieces
 from fem.coefficients.solid_bodies import Differences, SolidOptions, Support, Wall, solid_differences
@@ -29,6 +29,7 @@ from fem.coefficients.wall_strain import (
 )
 from fem.errors import MeshError
 from fem.mesh.body_mesh import BodyMesh
+from fem.mesh.boundary_division import MAX_TURN
 from fem.mesh.triangulation import default_coarse_size, mesh_circle, mesh_disc, mesh_ring
 from fem.shapes import CircleShape, DiscShape, DriveShapes, RingShape
 from fem.solid.layers import graded_layers
@@ -41,13 +42,20 @@ if TYPE_CHECKING:
     import xarray as xr
 
 # Layers over half of the thickness, and in the convergence estimate.
-LAYERS, COARSE_LAYERS = 2, 1
+LAYERS = 2
 COARSE_RATIO = 2.0
 MAX_LAYERS = 12
 # Thickness of the last layer by that of the first.
 FINEST = 0.5
 # Places midway between stations that are solved for to measure what interpolation leaves.
 MIDWAY = 24
+
+
+class SectionMesh(NamedTuple):
+    """Size of the mesh of a cross-section, and the largest angle of its boundary edges, rad."""
+
+    size: float
+    turn: float
 
 
 class SolidDisc(NamedTuple):
@@ -64,13 +72,14 @@ class SolidDisc(NamedTuple):
     unknowns: int
 
 
-def _mesh(shape: DiscShape | CircleShape | RingShape, size: float) -> BodyMesh:
-    coarse, growth = default_coarse_size(shape, size), GROWTH * size
+def _mesh(shape: DiscShape | CircleShape | RingShape, mesh: SectionMesh) -> BodyMesh:
+    size = mesh.size * (1.0 if isinstance(shape, DiscShape) else ROUND_SIZE)
+    coarse, growth, turn = default_coarse_size(shape, size), edge_growth(size), mesh.turn
     if isinstance(shape, DiscShape):
-        return mesh_disc(shape, coarse_size=coarse, growth=growth)
+        return mesh_disc(shape, coarse_size=coarse, growth=growth, turn=turn)
     if isinstance(shape, RingShape):
-        return mesh_ring(shape, coarse_size=coarse, growth=growth)
-    return mesh_circle(shape, coarse_size=coarse, growth=growth)
+        return mesh_ring(shape, coarse_size=coarse, growth=growth, turn=turn)
+    return mesh_circle(shape, coarse_size=coarse, growth=growth, turn=turn)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -116,10 +125,10 @@ class _Places:
 
 
 def solid_disc(
-    shape: DiscShape, stations: DiscStations, material: Material, size: float, options: SolidOptions, note: str
+    shape: DiscShape, stations: DiscStations, material: Material, mesh: SectionMesh, options: SolidOptions, note: str
 ) -> SolidDisc:
     """Derive what the solid disc has beyond plane strain."""
-    body, places = _mesh(shape, size), _Places(shape=shape, stations=stations)
+    body, places = _mesh(shape, mesh), _Places(shape=shape, stations=stations)
     wide, between = places.wide, places.midway()
     count = stations.count
     sampled = np.unique(np.linspace(0, count - 1, MIDWAY).astype(int))
@@ -168,7 +177,7 @@ def solid_round(
     angles: FloatArray,
     measured: FloatArray,
     material: Material,
-    size: float,
+    mesh: SectionMesh,
     options: SolidOptions,
     held: str = "",
 ) -> Differences:
@@ -177,7 +186,7 @@ def solid_round(
     Loads are patches at `angles` and, last, one twice as wide at the first of them; measures are patches at `measured` and
     that wide one. `held` is a boundary that does not move.
     """
-    body, curve, width = _mesh(shape, size), shape.curves[0], patch_half_width(shape)
+    body, curve, width = _mesh(shape, mesh), shape.curves[0], patch_half_width(shape)
     wide = patch_loads(body, curve, angles[:1], WIDE_RATIO * width)
     loads, seen = (
         sp.hstack([patch_loads(body, curve, at, width), wide], format="csc") for at in (angles, measured)
@@ -198,18 +207,17 @@ class _Solid(NamedTuple):
     race: Differences
 
 
-def _derive(drive: Drive, shapes: DriveShapes, places: DiscStations, size: float, options: SolidOptions, note: str) -> _Solid:
+def _derive(drive: Drive, shapes: DriveShapes, places: DiscStations, mesh: SectionMesh, options: SolidOptions, note: str) -> _Solid:
     materials, none = drive.materials, np.zeros(1)
     turn = 2.0 * np.pi * np.arange(RACE_ANGLES) / RACE_ANGLES
     ends = np.array([np.pi, 0.0])
-    rounder = ROUND_SIZE * size
     as_long = replace(options, thickness=drive.roller_length)
     pin, race = shapes.wheel_pins[0], shapes.inner_race
     return _Solid(
-        disc=solid_disc(shapes.disc, places, materials.disc, size, options, note),
-        pin=solid_round(f"solid pin{note}", pin, none, none, drive.flank_pin, rounder, options, "core"),
-        roller=solid_round(f"solid roller{note}", shapes.rollers[0], ends, ends, materials.roller, rounder, as_long),
-        race=solid_round(f"solid race{note}", race, none, turn, materials.inner_race, rounder, options, "inner"),
+        disc=solid_disc(shapes.disc, places, materials.disc, mesh, options, note),
+        pin=solid_round(f"solid pin{note}", pin, none, none, drive.flank_pin, mesh, options, "core"),
+        roller=solid_round(f"solid roller{note}", shapes.rollers[0], ends, ends, materials.roller, mesh, as_long),
+        race=solid_round(f"solid race{note}", race, none, turn, materials.inner_race, mesh, options, "inner"),
     )
 
 
@@ -233,15 +241,16 @@ def with_solid_bodies(
         thickness=drive.disc.thickness, layers=layers, tell=tell, pieces=Pieces(folder=keep, key=key)
     )
     fewer = replace(options, layers=max(1, layers - 1))
-    coarse = _derive(drive, shapes, places, COARSE_RATIO * size, fewer, ", coarser")
-    fine = _derive(drive, shapes, places, size, options, "")
+    coarser = SectionMesh(COARSE_RATIO * size, COARSE_RATIO * MAX_TURN)
+    coarse = _derive(drive, shapes, places, coarser, fewer, ", coarser")
+    fine = _derive(drive, shapes, places, SectionMesh(size, MAX_TURN), options, "")
     found = _joined(plane, drive, fine, layers)
+    found.attrs["roller_length"] = drive.roller_length
     found.attrs |= {
         "dimensions": 3,
         "plane": "solid",
         "shape": json.dumps(drive.body_shape("solid")),
         "fingerprint": drive.shape_fingerprint("solid"),
-        "roller_length": drive.roller_length,
         "pin_length": drive.disc.thickness,
         "race_length": drive.disc.thickness,
         "datum": plane.attrs["datum"] + "; " + TILT_DATUM.format(*(["the bore" if len(shapes.disc.bores) == 1 else "all bores"])),
