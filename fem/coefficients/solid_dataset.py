@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Hashable, Iterable
 from dataclasses import dataclass, replace
 from functools import reduce
 from operator import add
@@ -282,8 +282,8 @@ def _joined(plane: xr.Dataset, drive: Drive, solid: _Solid, layers: int) -> xr.D
     per_tilt, roller_tilt = 12.0 / thickness**2, 12.0 / length**2
     shorter = thickness / length
 
-    def variable(dimensions: tuple[str, ...], values: object, unit: str, text: str) -> xr.Variable:
-        return xr.Variable(dimensions, np.asarray(values), {"units": unit, "long_name": text})
+    def variable(dimensions: Iterable[Hashable], values: object, unit: str, text: str) -> xr.Variable:
+        return xr.Variable(tuple(dimensions), np.asarray(values), {"units": unit, "long_name": text})
 
     def both(name: str, even: FloatArray, linear: FloatArray, scale: float = 1.0, tilt: float = per_tilt) -> None:
         old = plane[name]

@@ -23,6 +23,9 @@ from ltca.reading.coefficient_laws import check_coefficients, station_tilt_resul
 from ltca.reading.coefficient_schema import require_schema
 from ltca.reading.drive_file import load_drive
 
+# One derivation serves them all; another goes on where it was interrupted.
+pytestmark = pytest.mark.slow
+
 DRIVE = """
 name = "small"
 [crank]
