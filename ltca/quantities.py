@@ -272,7 +272,10 @@ def _along(part: str, of: str, name: str, sides: tuple[tuple[str, str, str], ...
             Quantity(f"{part}_pressure_along_width{pressure}", f"slices of a {of}", "MPa", each),
             Quantity(f"{part}_pressure_max_place{pressure}", of, "mm", place),
         )
-    told = f"face load factor K_Hβ of a {name}: largest line load by the largest mean line load"
+    told = (
+        f"face load factor K_Hβ of a {name}: largest line load by the largest mean line load, without the bulge of ends; "
+        "not a number where it carries less than a tenth of its largest load"
+    )
     limited = Scalar(
         "max_{}", f"face load factor K_Hβ of a {name}", digits=".3f", how="largest known", limit=AT_LEAST_0
     )

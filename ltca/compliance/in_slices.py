@@ -92,7 +92,7 @@ class ContactsInSlices:
         """Return what wheel pins (0) or shaft pins (1) carry, of whose approaches the bodies take `given`, mm."""
         motion, tilt = self.motions[number], self.tilts[number]
         contact = law.respond(motion.approach - given, tilt.tilt, self.radii[number], start, self.exactness)
-        return LeaningPairs(tilt=tilt, contact=contact)
+        return LeaningPairs(tilt=tilt, contact=contact.still)
 
     def rollers(
         self,
