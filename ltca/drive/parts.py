@@ -35,6 +35,7 @@ from ltca.drive.members.first_stage import FirstStage as FirstStage
 from ltca.drive.members.main_bearing import BearingRow as BearingRow, MainBearing as MainBearing
 from ltca.drive.members.operation import (
     Analysis as Analysis,
+    Bodies as Bodies,
     Compliance as Compliance,
     Duty as Duty,
     ExternalLoad as ExternalLoad,
@@ -521,14 +522,13 @@ class Drive:
         """Return a hash of the whole definition of the drive in this case (hex, 16 digits), whatever analyses it."""
         return fingerprint_of(replace(self, analysis=Analysis()))
 
-    def body_shape(self) -> dict[str, float]:
-        """Return the numbers that determine the plane finite-element bodies, and so their compliance, by name: mm, MPa,
-        counts.
+    def body_shape(self, bodies: Bodies = "plane") -> dict[str, float]:
+        """Return the numbers that determine the finite-element bodies, and so their compliance, by name: mm, MPa, counts.
 
         Bore and holes have their actual radii, clearances included. Left out are errors of single parts, load, name,
         lengths and profiles along the length, numbers of rollers and discs, and of the shaft pins all but their number and
         circle, which are those of the holes; rigid core of the wheel pins and fixed bore of the race where they are the
-        defaults.
+        defaults. Solid rollers have their length.
         """
         self.require_warmed()
         wheel, disc, bearing, shaft = self.pin_wheel, self.disc, self.crank_bearing, self.pin_shaft
@@ -564,6 +564,8 @@ class Drive:
             shape["pin_wheel.core_radius"] = wheel.held_core_radius
         if bearing.held_bore_radius != bearing.default_race_bore_radius:
             shape["crank_bearing.race_bore_radius"] = bearing.held_bore_radius
+        if bodies == "solid":
+            shape["crank_bearing.roller_length"] = self.roller_length
         for part in ("disc", "wheel_pin", "roller", "inner_race"):
             material = getattr(self.body_materials, part)
             shape[f"materials.{part}.youngs_modulus"] = material.youngs_modulus
@@ -579,9 +581,9 @@ class Drive:
             )
         return self
 
-    def shape_fingerprint(self) -> str:
+    def shape_fingerprint(self, bodies: Bodies = "plane") -> str:
         """Return a hash of `body_shape` (hex, 16 digits), the key of influence coefficients."""
-        return fingerprint_of(self.body_shape())
+        return fingerprint_of(self.body_shape(bodies))
 
 
 def part_turn(turned: float, teeth: int, pattern: int) -> tuple[float, int, int]:
