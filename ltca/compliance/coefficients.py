@@ -48,8 +48,8 @@ PLACE_TOLERANCE = 1e-3
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class InfluenceCoefficients:
-    """Smooth parts of the influence coefficients of all bodies, and the strength of their logarithms: approaches by loads, mm/N, or
-    tilts by moments, rad/(N·mm).
+    """Smooth parts of the influence coefficients of all bodies, and the strength of their logarithms: approaches by loads,
+    mm/N, or tilts by moments, rad/(N·mm).
 
     Attributes
     ----------
@@ -60,7 +60,7 @@ class InfluenceCoefficients:
     plane : str
         "strain" or "stress", state of the body part; or "solid".
     thickness : float
-        Of all bodies, of solid rollers without meaning (`roller_length`), mm.
+        Of all bodies but solid rollers, which are as long as they are, mm.
     flank : Boundary
         Stations of the flank.
     bores : tuple of Boundary
@@ -374,7 +374,7 @@ def _coefficients_of_dataset(data: Labelled, drive: Drive, *, shared: bool) -> I
 
 
 def _smooth_parts(data: Labelled, drive: Drive, *, shared: bool, tilts: bool = False) -> InfluenceCoefficients:
-    """Smooth parts of the approaches by loads, or of the tilts by moments, whose logarithms are 12 by the square of the length."""
+    """Smooth parts of approaches by loads, or of tilts by moments, whose logarithms have 12 by the square of the length."""
     plane, thickness, parts = str(data.attrs["plane"]), float(data.attrs["thickness"]), drive.materials
     # Solid rollers have their own length.
     length = drive.roller_length if plane == SOLID else thickness

@@ -5,14 +5,14 @@ width. What the loads F and moments M of all contacts take off the approach and 
 
 .. math:: y = C F(\delta(q) - y, \theta(q) - \tau), \qquad \tau = C' M(\delta(q) - y, \theta(q) - \tau),
 
-those of the slices of every contact together, with the body parts C and C' of `ltca.compliance.coefficients`; even and linear loads
-do not feel each other, by the symmetry of bodies along the width. Plane bodies yield evenly, C' = 0: there is no τ. A roller
-has two entries: in the bore and on the race, which yields under the rollers of its own crank, and the roller between them.
+those of the slices of every contact together, with the body parts C and C' of `ltca.compliance.coefficients`; even and linear
+loads do not feel each other, by the symmetry of bodies along the width. Plane bodies yield evenly, C' = 0: there is no τ. A
+roller has two entries: in the bore and on the race, which yields under the rollers of its own crank, and the roller between them.
 
-Newton's method solves for g = (y, τ) at a pose. Loads and moments are slopes of one energy, :math:`K = -\partial (F, M)/\partial g` is
-symmetric, and the tangent of the disc is that of contacts with g held less :math:`G^T (B^{-1} + K)^{-1} G`, B being C and C' and G how
-loads and moments follow the pose. Tilts are kept as displacements at half the width and moments as loads there, so that all are
-of one unit.
+Newton's method solves for g = (y, τ) at a pose. Loads and moments are slopes of one energy,
+:math:`K = -\partial (F, M)/\partial g` is symmetric, and the tangent of the disc is that of contacts with g held less
+:math:`G^T (B^{-1} + K)^{-1} G`, B being C and C' and G how loads and moments follow the pose. Tilts are kept as displacements at
+half the width and moments as loads there, so that all are of one unit.
 """
 
 from __future__ import annotations
@@ -192,9 +192,7 @@ class _Bodies:
             self.parts.append(self.half**2 * tilting)
         self.shape = pose.shape[0], len(self.parts) * self.count
 
-    def _between(
-        self, body: InfluenceCoefficients, own: OwnParts, race: FloatArray, hole_spring: float
-    ) -> FloatArray:
+    def _between(self, body: InfluenceCoefficients, own: OwnParts, race: FloatArray, hole_spring: float) -> FloatArray:
         """Matrix of approaches by loads or of tilts by moments."""
         disc = body.disc_matrix(*self.places)
         walls = disc.shape[1]

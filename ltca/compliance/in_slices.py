@@ -1,7 +1,7 @@
 """Contacts of a disc in slices at a pose: how they tilt, what they carry, and what force and tangent of the disc that makes.
 
-Walls of bodies that yield under other contacts (`ltca.compliance.coupled_slices`) take their part off every approach and, of solid
-bodies, off every tilt: contacts may be asked for with that given.
+Walls of bodies that yield under other contacts (`ltca.compliance.coupled_slices`) take their part off every approach and, where
+bodies are solid, off every tilt: contacts may be asked for with that given.
 """
 
 from __future__ import annotations

@@ -375,8 +375,8 @@ def projected_on_half_space(length: float, half_width: float) -> tuple[float, fl
               \frac{24}{\pi t^3} \Big( S_0 - \frac{3 S_1}{t} + \frac{2 S_3}{t^3} \Big), \qquad
               S_k = \Big\langle \int_0^t \frac{s^k}{\sqrt{s^2 + \xi^2}}\,ds \Big\rangle .
 
-    To b/t they are :math:`\kappa (\ln(4t/b) + 1/4 - 1)` and :math:`12/t^2\, \kappa (\ln(4t/b) + 1/4 - 7/3)`, those of plane strain
-    with the datums 2t/e and 2t/e^{7/3}.
+    To b/t they are :math:`\kappa (\ln(4t/b) + 1/4 - 1)` and :math:`12/t^2\, \kappa (\ln(4t/b) + 1/4 - 7/3)`, those of
+    plane strain with the datums 2t/e and 2t/e^{7/3}.
 
     Parameters
     ----------

@@ -168,5 +168,7 @@ def _compliance_words(study: Study, coefficients: Sequence[Path] | None) -> str:
     options = study.engine.options
     own = study.cases[0][1].analysis.compliance
     words = "" if options["compliance"] == own else f" --compliance {options['compliance']}"
+    if options.get("bodies", "plane") != study.cases[0][1].analysis.bodies and "bodies" in options:
+        words += f" --bodies {options['bodies']}"
     words += "".join(f" --coefficients {path}" for path in coefficients or ())
     return words + (" --no-hole-near-field" if options.get("hole_near_field") == "no" else "")
