@@ -85,3 +85,17 @@ def test_solid_shapes_have_the_length_of_rollers():
     lent = Hybrid(bodies="solid").lending([longer])
     assert [lent.bodies_of([one])[0] for one in (longer, near, other)] == [longer, longer, other]
     assert replace(coefficients(longer)).lent_to(near).shared
+
+
+def test_what_reshapes_solid_bodies_alone_has_no_derivative_on_them():
+    """The length of rollers shapes solid rollers; plane ones yield like one over it."""
+    results = [
+        ltca.analyse(PAPER, crank_angle=[0.5], compliance=engine)
+        for engine in (
+            Hybrid(coefficients=coefficients(PAPER), bodies="solid"),
+            Hybrid(coefficients=coefficients(PAPER, None)),
+        )
+    ]
+    with pytest.raises(DriveError, match=r"crank_bearing.roller_length: reshapes a body"):
+        ltca.derivatives(results[0], ["crank_bearing.roller_length"])
+    assert "pin_load" in ltca.derivatives(results[1], ["crank_bearing.roller_length"])
