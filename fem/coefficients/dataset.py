@@ -6,7 +6,8 @@ import json
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -26,6 +27,7 @@ from fem.coefficients.bodies import (
     require_disc_memory,
     require_element_size,
 )
+from fem.coefficients.solid_dataset import LAYERS, require_solid, with_solid_bodies
 from fem.coefficients.stations import FLANK_CLUSTERING, DiscStations
 from fem.mesh.gmsh_session import load_gmsh
 from fem.shapes import DriveShapes
@@ -56,8 +58,11 @@ def derive_coefficients(
     size: float = 1.0,
     state: PlaneState = "strain",
     keep_clearance: bool = True,
+    bodies: Literal["plane", "solid"] = "plane",
+    layers: int = LAYERS,
     processes: int = 1,
     progress: Callable[[str], None] | None = None,
+    keep: Path | None = None,
 ) -> xr.Dataset:
     """Derive the influence coefficients of all bodies of a drive.
 
@@ -78,10 +83,17 @@ def derive_coefficients(
     keep_clearance : bool
         Derive the disc with the bearing and pin-hole clearance of this case; without them on purpose, one dataset serves
         all clearance cases approximately, and says so.
+    bodies : {"plane", "solid"}
+        Solid bodies have true ends, and coefficients for the tilt of contacts as well (`fem.coefficients.solid_dataset`).
+    layers : int
+        Of solid bodies, over half of their thickness.
     processes : int
         How many derivations share the memory of the machine.
     progress : callable, optional
         Called with the name of each step before it starts.
+    keep : Path, optional
+        Folder for what is done of solid bodies, so that a derivation that was interrupted goes on; remove it when the file is
+        written (`fem.coefficients.pieces`).
 
     Returns
     -------
@@ -93,18 +105,20 @@ def derive_coefficients(
     DriveError
         For several discs, which may be of several shapes.
     MeshError
-        When a parameter is out of bounds or meshing fails.
+        When a parameter is out of bounds or meshing fails, or for solid bodies in plane stress.
     MemoryLimitError
         When mesh and solution would not fit into memory.
     """
     require_element_size(size, MAX_SIZE / COARSE_RATIO)
+    if bodies == "solid":
+        require_solid(state, layers)
     nominal = nominal_shape(drive, keep_clearance=keep_clearance)
     shapes = DriveShapes.of_drive(nominal)
     places = DiscStations.of_disc(shapes.disc, stations)
     require_disc_memory(shapes.disc, places, size, processes)
     if (coarse_walls := places.coarse_walls) is not None:
         print(f"warning: {drive.name}: {coarse_walls}", file=sys.stderr)
-    bodies = _Bodies(
+    plane = _Bodies(
         shapes=shapes,
         places=places,
         materials=nominal.materials,
@@ -113,8 +127,8 @@ def derive_coefficients(
         state=state,
         tell=progress or (lambda step: None),
     )
-    coarse = bodies.derive(COARSE_RATIO * size, ", twice the size")
-    fine = bodies.derive(size, "")
+    coarse = plane.derive(COARSE_RATIO * size, ", twice the size")
+    fine = plane.derive(size, "")
     disc, _, roller, race = fine
     dataset = _label(places, places.refined(shapes.disc), *fine)
     if len(shapes.disc.bores) > 1:
@@ -129,7 +143,7 @@ def derive_coefficients(
         clearances_left_out=int(not keep_clearance),
         flank_clustering=FLANK_CLUSTERING,
         plane=state,
-        thickness=bodies.thickness,
+        thickness=plane.thickness,
         core_radius=shapes.wheel_pins[0].core_radius,
         race_bore_radius=shapes.inner_race.inner_radius,
         datum=DATUM.format(*["the bore" if len(shapes.disc.bores) == 1 else "all bores together"] * 2),
@@ -148,7 +162,9 @@ def derive_coefficients(
         gmsh=str(load_gmsh().__version__),
         **elastic_constants(nominal.body_materials),
     )
-    return dataset
+    if bodies == "plane":
+        return dataset
+    return with_solid_bodies(dataset, nominal, shapes, places, size=size, layers=layers, tell=plane.tell, keep=keep)
 
 
 class _Derived(NamedTuple):

@@ -14,6 +14,7 @@ from ltca.reading.arguments import (
     add_case_argument,
     add_drive_argument,
     add_size_argument,
+    count_argument,
     default_folder,
     path_argument,
     quantity_argument,
@@ -35,13 +36,15 @@ EXAMPLES = (
 # Options of a derivation, and their defaults.
 DERIVING = {
     "part": "bodies",
+    "bodies": "plane",
     "stations": 1.0,
     "size": 1.0,
+    "layers": None,
     "plane": "strain",
     "without_clearance": False,
     "out": None,
 }
-OF_BODIES = {"stations", "plane", "without_clearance"}
+OF_BODIES = {"bodies", "layers", "stations", "plane", "without_clearance"}
 """Options that a derivation of the ring has no use for."""
 COEFFICIENTS = "coefficients.nc"
 RING = "ring.nc"
@@ -57,6 +60,19 @@ def configure(parser: argparse.ArgumentParser) -> None:
         default="bodies",
         help="disc, wheel pin, roller and inner race (default), or the ring of [ring] with the seats of the wheel pins and its "
         "bolts, always in plane stress",
+    )
+    parser.add_argument(
+        "--bodies",
+        choices=("plane", "solid"),
+        default="plane",
+        help="plane bodies (default), or solid ones with free ends, which also yield to loads linear along the width: minutes "
+        "instead of seconds; time and memory are told before, and what is done is kept until all is",
+    )
+    parser.add_argument(
+        "--layers",
+        type=count_argument("--layers", 1, 12),
+        metavar="N",
+        help="with --bodies solid: quadratic layers over half of the thickness; default 2",
     )
     parser.add_argument(
         "--stations",

@@ -34,7 +34,13 @@ from ltca.geometry.boundary_stations import (
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.placement import Placement
 from ltca.reading.coefficient_file import read_coefficients
-from ltca.reading.coefficient_schema import flank_clustering, require_same_supports, shape_differences, shape_of
+from ltca.reading.coefficient_schema import (
+    flank_clustering,
+    is_solid,
+    require_same_supports,
+    shape_differences,
+    shape_of,
+)
 
 if TYPE_CHECKING:
     from ltca.output.labelled import Labelled
@@ -322,7 +328,7 @@ def load_coefficients(
 
 def bodies_of(data: Labelled) -> Bodies:
     """Return what bodies a file is of."""
-    return "solid" if str(data.attrs["plane"]) == SOLID else "plane"
+    return "solid" if is_solid(data) else "plane"
 
 
 def _require_same_bodies(path: Path, data: Labelled, drive: Drive) -> bool:

@@ -525,10 +525,12 @@ class Drive:
     def body_shape(self, bodies: Bodies = "plane") -> dict[str, float]:
         """Return the numbers that determine the finite-element bodies, and so their compliance, by name: mm, MPa, counts.
 
+        `bodies` is "plane" or "solid"; solid ones end, so the length of the rollers is one of their numbers.
+
         Bore and holes have their actual radii, clearances included. Left out are errors of single parts, load, name,
         lengths and profiles along the length, numbers of rollers and discs, and of the shaft pins all but their number and
         circle, which are those of the holes; rigid core of the wheel pins and fixed bore of the race where they are the
-        defaults. Solid rollers have their length.
+        defaults.
         """
         self.require_warmed()
         wheel, disc, bearing, shaft = self.pin_wheel, self.disc, self.crank_bearing, self.pin_shaft
@@ -544,6 +546,8 @@ class Drive:
             "crank_bearing.roller_radius": bearing.roller_radius,
             "bore_radius": self.bore_radius,
         }
+        if bodies == "solid":
+            shape["crank_bearing.roller_length"] = self.roller_length
         if shaft is not None:
             shape |= {
                 "pin_shaft.number_of_pins": float(shaft.number_of_pins),
@@ -564,8 +568,6 @@ class Drive:
             shape["pin_wheel.core_radius"] = wheel.held_core_radius
         if bearing.held_bore_radius != bearing.default_race_bore_radius:
             shape["crank_bearing.race_bore_radius"] = bearing.held_bore_radius
-        if bodies == "solid":
-            shape["crank_bearing.roller_length"] = self.roller_length
         for part in ("disc", "wheel_pin", "roller", "inner_race"):
             material = getattr(self.body_materials, part)
             shape[f"materials.{part}.youngs_modulus"] = material.youngs_modulus
@@ -582,7 +584,7 @@ class Drive:
         return self
 
     def shape_fingerprint(self, bodies: Bodies = "plane") -> str:
-        """Return a hash of `body_shape` (hex, 16 digits), the key of influence coefficients."""
+        """Return a hash of `body_shape` of plane or solid bodies (hex, 16 digits), the key of influence coefficients."""
         return fingerprint_of(self.body_shape(bodies))
 
 
