@@ -148,7 +148,7 @@ def find_beforehand(engine: Engine, shapes: Mapping[str, Drive], told: Callable[
         missing = [drive for drive in wanted if not has_coefficients(drive, engine.bodies)]
         if missing:
             few = "1 shape has" if len(missing) == 1 else f"{len(missing)} shapes have"
-            each = expected_seconds(missing)
+            each = expected_seconds(missing, engine.bodies)
             whole = f", {told_seconds(sum(each))} in all" if len(missing) > 1 else ""
             told(f"{few} no influence coefficients yet: derived first, {told_seconds(max(each))} each{whole}")
         for first in range(0, len(missing), MAX_KEPT_SHAPES) if len(missing) > 1 else ():

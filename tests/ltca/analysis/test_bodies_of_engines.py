@@ -49,7 +49,10 @@ def test_names_of_bodies_reach_the_engine():
     [
         ({"compliance": "half-space", "bodies": "solid"}, "bodies: has no effect with compliance half-space"),
         ({"method": "paper", "bodies": "solid"}, "bodies: has no effect with compliance half-space"),
-        ({"compliance": "hybrid", "bodies": "solids"}, "bodies = 'solids': is unknown; must be one of 'plane', 'solid'"),
+        (
+            {"compliance": "hybrid", "bodies": "solids"},
+            "bodies = 'solids': is unknown; must be one of 'plane', 'solid'",
+        ),
         ({"compliance": Hybrid(), "bodies": "solid"}, "bodies: is an option of the engine given as compliance"),
     ],
 )
@@ -60,7 +63,9 @@ def test_bodies_that_mean_nothing_are_refused(given, words):
 
 def test_bodies_are_refused_where_a_file_contradicts_itself():
     filed = PAPER.with_fields({"analysis.compliance": "half-space", "analysis.bodies": "solid"})
-    with pytest.raises(DriveError, match="analysis.bodies = 'solid': has no effect with analysis.compliance = 'half-space'"):
+    with pytest.raises(
+        DriveError, match=r"analysis.bodies = 'solid': has no effect with analysis.compliance = 'half-space'"
+    ):
         engine_of([filed])
     with pytest.raises(DriveError, match=r"analysis.bodies = plane, solid: must be the same in all drives"):
         engine_of([PAPER, filed], "hybrid")

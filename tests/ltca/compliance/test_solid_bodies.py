@@ -29,7 +29,7 @@ TILTED = {
     "contact.slices": SLICES, "disc.lead_slope": 1e-4, "disc.lead_crown_drop": 0.002,
     "pin_wheel.inclination": {"x": 3e-4, "y": 2e-4}, "crank_bearing.roller_length": 10.0,
 }  # fmt: skip
-NEAR_FIELDS = ["plane-strain", "half-space"]
+NEAR_FIELDS = [pytest.param("plane-strain", marks=pytest.mark.slow), "half-space"]
 
 
 def paper(**fields):
@@ -413,7 +413,9 @@ DRIVES = {
 }
 
 
-@pytest.mark.parametrize("kind", DRIVES)
+@pytest.mark.parametrize(
+    "kind", [pytest.param(name, marks=() if name == "plastic" else pytest.mark.slow) for name in DRIVES]
+)
 def test_other_drives_balance_on_solid_bodies(kind, kinds_of_drives, monkeypatch):
     """Forces and couples in six directions; gaps, which the lines do not know of coupled bodies here, are not asked.
 
