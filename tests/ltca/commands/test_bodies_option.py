@@ -42,6 +42,7 @@ def run(path, out, *options):
     return main(["run", str(path), "--case", "CS-1", "--positions", "2", "--no-page", "--out", str(out), *options])
 
 
+@pytest.mark.slow
 def test_a_drive_file_asks_for_solid_bodies(derived, tmp_path, capsys, positions_alone):
     """Derived once and kept beside plane ones of the same drive, which the option asks for; both tell."""
     path = written(tmp_path, 'compliance = "hybrid"', 'bodies = "solid"')
