@@ -6,7 +6,6 @@ import json
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
@@ -27,13 +26,15 @@ from fem.coefficients.bodies import (
     require_disc_memory,
     require_element_size,
 )
-from fem.coefficients.solid_dataset import LAYERS, require_solid, with_solid_bodies
+from fem.coefficients.solid_dataset import LAYERS, need_of_solid, require_solid, with_solid_bodies
+from fem.coefficients.solid_need import require_solid_memory
 from fem.coefficients.stations import FLANK_CLUSTERING, DiscStations
 from fem.mesh.gmsh_session import load_gmsh
 from fem.shapes import DriveShapes
 from ltca.arrays import FloatArray
 from ltca.drive.parts import Drive, Material, Materials
 from ltca.drive.single_discs import nominal_shape
+from ltca.output.resources import available_memory
 from ltca.output.provenance import code_hash, code_version
 from ltca.reading.coefficient_laws import project_rigid_motions
 from ltca.reading.coefficient_schema import elastic_constants
@@ -62,7 +63,6 @@ def derive_coefficients(
     layers: int = LAYERS,
     processes: int = 1,
     progress: Callable[[str], None] | None = None,
-    keep: Path | None = None,
 ) -> xr.Dataset:
     """Derive the influence coefficients of all bodies of a drive.
 
@@ -84,16 +84,14 @@ def derive_coefficients(
         Derive the disc with the bearing and pin-hole clearance of this case; without them on purpose, one dataset serves
         all clearance cases approximately, and says so.
     bodies : {"plane", "solid"}
-        Solid bodies have true ends, and coefficients for the tilt of contacts as well (`fem.coefficients.solid_dataset`).
+        Solid bodies have true ends, and coefficients for the tilt of contacts as well (`fem.coefficients.solid_dataset`); time
+        and memory are told on stderr, and what is done is kept until all is.
     layers : int
         Of solid bodies, over half of their thickness.
     processes : int
         How many derivations share the memory of the machine.
     progress : callable, optional
         Called with the name of each step before it starts.
-    keep : Path, optional
-        Folder for what is done of solid bodies, so that a derivation that was interrupted goes on; remove it when the file is
-        written (`fem.coefficients.pieces`).
 
     Returns
     -------
@@ -116,6 +114,10 @@ def derive_coefficients(
     shapes = DriveShapes.of_drive(nominal)
     places = DiscStations.of_disc(shapes.disc, stations)
     require_disc_memory(shapes.disc, places, size, processes)
+    if bodies == "solid":
+        need = need_of_solid(shapes.disc, places, size=size, layers=layers)
+        require_solid_memory(need, available_memory() / processes)
+        print(f"{drive.name}: {need.words}", file=sys.stderr)
     if (coarse_walls := places.coarse_walls) is not None:
         print(f"warning: {drive.name}: {coarse_walls}", file=sys.stderr)
     plane = _Bodies(
@@ -164,7 +166,7 @@ def derive_coefficients(
     )
     if bodies == "plane":
         return dataset
-    return with_solid_bodies(dataset, nominal, shapes, places, size=size, layers=layers, tell=plane.tell, keep=keep)
+    return with_solid_bodies(dataset, nominal, shapes, places, size=size, layers=layers, tell=plane.tell)
 
 
 class _Derived(NamedTuple):

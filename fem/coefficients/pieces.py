@@ -1,9 +1,9 @@
-"""Pieces of a long derivation, kept in a folder until all of it is done: what was interrupted goes on where it stood."""
+"""Pieces of a long derivation, kept in the cache until all of it is done: what was interrupted goes on where it stood."""
 
 from __future__ import annotations
 
+import hashlib
 import shutil
-import zipfile
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
@@ -12,9 +12,9 @@ from pathlib import Path
 import numpy as np
 
 from ltca.arrays import FloatArray
+from ltca.errors import FaultError
 from ltca.output.files import whole_file
-
-KEY = "key"
+from ltca.output.provenance import cache_home
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -24,35 +24,34 @@ class Pieces:
     Attributes
     ----------
     folder : Path or None
-        Where they are kept; None keeps nothing.
-    key : str
-        Of all that they depend on: pieces of another key are computed again.
+        Where they are kept, one for all that they depend on; None where there is no place to keep anything.
     """
 
     folder: Path | None
-    key: str
 
-    def get(self, name: str, compute: Callable[[], dict[str, FloatArray]]) -> dict[str, FloatArray]:
-        """Return the arrays of a name: those kept under the same key, else computed and kept."""
+    @classmethod
+    def of_key(cls, key: str) -> Pieces:
+        """Return the pieces of a derivation, which the key tells from all others, in the cache."""
+        try:
+            home = cache_home()
+        except RuntimeError:  # no home of the user's
+            return cls(folder=None)
+        return cls(folder=home / f"pieces-{hashlib.sha256(key.encode()).hexdigest()[:16]}")
+
+    def get(self, name: str, compute: Callable[[], FloatArray]) -> FloatArray:
+        """Return the array of a name: the one that is kept, else computed and, where the cache can be written, kept."""
         if self.folder is None:
             return compute()
-        path = self.folder / f"{name}.npz"
+        path = self.folder / f"{name}.npy"
         # What cannot be read, cut short or of somebody else, is computed again and replaced.
-        with suppress(OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile), np.load(path) as kept:
-            if str(kept[KEY]) == self.key:
-                return {entry: np.asarray(kept[entry]) for entry in kept.files if entry != KEY}
+        with suppress(OSError, ValueError, EOFError), path.open("rb") as file:
+            return np.asarray(np.load(file, allow_pickle=False))
         found = compute()
-        self.folder.mkdir(parents=True, exist_ok=True)
-        with whole_file(path) as part, part.open("wb") as file:
-            np.savez(file, **found, **{KEY: np.array(self.key)})
+        with suppress(FaultError), whole_file(path) as part, part.open("wb") as file:
+            np.save(file, found)
         return found
 
-
-def pieces_folder(target: Path) -> Path:
-    """Return the folder beside a file in which the pieces of its derivation are kept."""
-    return target.with_name(f"{target.name}.pieces")
-
-
-def forget_pieces(target: Path) -> None:
-    """Remove the pieces of a file that is there."""
-    shutil.rmtree(pieces_folder(target), ignore_errors=True)
+    def forget(self) -> None:
+        """Remove what is kept."""
+        if self.folder is not None:
+            shutil.rmtree(self.folder, ignore_errors=True)

@@ -22,6 +22,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -282,7 +283,7 @@ def solid_differences(
     found, thickness = integrate_section(Section.of_body(body)), options.thickness
     places = 0 if wall is None else wall.strains.shape[1]
     seen = measures if wall is None else sp.hstack([measures, wall.strains], format="csc")
-    same = {"material": material, "thickness": thickness}
+    same: dict[str, Any] = {"material": material, "thickness": thickness}
     strain, stress = (
         solve_plane(body, found, support, loads, seen, state=state, **same) for state in ("strain", "stress")
     )
@@ -298,8 +299,9 @@ def solid_differences(
         axial = sp.csc_matrix((2.0 * nu / thickness * values.data, (ends, values.col)), shape=along.shape)
         return sp.csc_matrix(along + axial)
 
-    solved = {}
-    for parity, words in (("symmetric", "even"), ("antisymmetric", "linear")):
+    solved: dict[Parity, FloatArray] = {}
+    classes: tuple[tuple[Parity, str], ...] = (("symmetric", "even"), ("antisymmetric", "linear"))
+    for parity, words in classes:
         done, all_loads = 0, loads.shape[1]
 
         def advance(number: int, words: str = words) -> None:
@@ -307,16 +309,15 @@ def solid_differences(
             done += number
             options.tell(f"{name}, {words} loads: {done} of {all_loads}")
 
-        def solve(parity: str = parity) -> dict[str, FloatArray]:
+        def solve(parity: Parity = parity, words: str = words) -> FloatArray:
             also = stretched if parity == "symmetric" else None
             options.tell(f"{name}, {words} loads")
-            return {
-                "seen": solve_solid(
-                    body, support, loads, measures, layers=options.layers, parity=parity, also=also, advance=advance, **same
-                )
-            }
+            layers = options.layers
+            return solve_solid(
+                body, support, loads, measures, layers=layers, parity=parity, also=also, advance=advance, **same
+            )
 
-        solved[parity] = options.pieces.get(f"{name}-{words}".replace(", ", "-").replace(" ", "-"), solve)["seen"]
+        solved[parity] = options.pieces.get(f"{name}-{words}".replace(", ", "-").replace(" ", "-"), solve)
     even, linear = solved["symmetric"], solved["antisymmetric"]
     per_node = ExtrudedBody(
         section=Section.of_body(body), layers=graded_layers(thickness, options.layers, "symmetric")

@@ -7,7 +7,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import reduce
 from operator import add
-from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -20,6 +19,7 @@ from fem.coefficients.bodies import ROUND_SIZE, WIDE_RATIO, WIDE_STEP, edge_grow
 from fem.coefficients.patch_loads import patch_loads
 from fem.coefficients.pieces import Pieces
 from fem.coefficients.solid_bodies import Differences, SolidOptions, Support, Wall, solid_differences
+from fem.coefficients.solid_need import SolidNeed, solid_need
 from fem.coefficients.stations import FLANK_CLUSTERING, RACE_ANGLES, DiscStations, patch_half_width
 from fem.coefficients.wall_strain import (
     continue_under_patches,
@@ -230,16 +230,13 @@ def with_solid_bodies(
     size: float,
     layers: int,
     tell: Callable[[str], None],
-    keep: Path | None,
 ) -> xr.Dataset:
     """Return the coefficients of solid bodies: those of plane strain, of a nominal drive, with what solid ones have beyond them.
 
-    `keep` is a folder for pieces of the derivation; who calls removes it when the file is written.
+    Each class of each body is kept in the cache until all are done: a derivation that was interrupted goes on.
     """
     key = json.dumps([drive.body_shape("solid"), size, layers, places.count, plane.attrs["code_hash"]])
-    options = SolidOptions(
-        thickness=drive.disc.thickness, layers=layers, tell=tell, pieces=Pieces(folder=keep, key=key)
-    )
+    options = SolidOptions(thickness=drive.disc.thickness, layers=layers, tell=tell, pieces=Pieces.of_key(key))
     fewer = replace(options, layers=max(1, layers - 1))
     coarser = SectionMesh(COARSE_RATIO * size, COARSE_RATIO * MAX_TURN)
     coarse = _derive(drive, shapes, places, coarser, fewer, ", coarser")
@@ -263,6 +260,7 @@ def with_solid_bodies(
         **_convergence(plane, found, fine, coarse),
         **_bracket(plane, fine.disc, places),
     }
+    options.pieces.forget()
     return found
 
 
@@ -320,6 +318,12 @@ def _joined(plane: xr.Dataset, drive: Drive, solid: _Solid, layers: int) -> xr.D
     return found
 
 
+def need_of_solid(shape: DiscShape, places: DiscStations, *, size: float, layers: int) -> SolidNeed:
+    """Return what the derivation of a solid disc needs."""
+    wide = len(range(0, places.count, WIDE_STEP))
+    return solid_need(shape, places.count + wide + MIDWAY, size=size, growth=edge_growth(size), layers=layers)
+
+
 def _asymmetry(solid: _Solid) -> float:
     """Reciprocity of displacements solved for, of the largest difference."""
     square = [(solid.disc.even, solid.disc.linear), (solid.roller.even[:2, :2], solid.roller.linear[:2, :2])]
@@ -350,8 +354,10 @@ def _convergence(plane: xr.Dataset, found: xr.Dataset, fine: _Solid, coarse: _So
     modulus = float(plane.attrs["disc_youngs_modulus"]) / (1.0 - float(plane.attrs["disc_poisson_ratio"]) ** 2)
     strained = modulus * float(np.max(np.abs(fine.disc.strain - coarse.disc.strain)))
     largest = float(np.max(np.abs(plane["disc_stress"].values)))
+    tilts = {name: value for name, value in each.items() if name.endswith("_tilt")}
     return {
-        "convergence_estimate": max(each.values()),
+        "convergence_estimate": max(value for name, value in each.items() if name not in tilts),
+        "convergence_estimate_tilt": max(tilts.values()),
         **each,
         "convergence_stress": float(plane.attrs["convergence_stress"]) + strained / largest,
     }

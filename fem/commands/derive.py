@@ -40,7 +40,7 @@ DERIVING = {
     "stations": 1.0,
     "size": 1.0,
     "layers": None,
-    "plane": "strain",
+    "plane": None,
     "without_clearance": False,
     "out": None,
 }
@@ -84,7 +84,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     add_size_argument(parser, "element edge as a multiple of the default")
     parser.add_argument(
-        "--plane", choices=("strain", "stress"), default="strain", help="plane strain (default) or plane stress"
+        "--plane",
+        choices=("strain", "stress"),
+        help="plane strain (default) or plane stress; not with --bodies solid, which are in neither",
     )
     parser.add_argument(
         "--without-clearance",
@@ -129,6 +131,10 @@ def execute(arguments: argparse.Namespace) -> int:
         raise CycloError("derive: give a drive file, or a file of coefficients with --check")
     if arguments.part == "ring":
         return _derive_ring(arguments)
+    if arguments.bodies == "solid" and arguments.plane is not None:
+        raise CycloError(f"--plane {arguments.plane}: has no meaning with --bodies solid, which are in no plane state")
+    if arguments.bodies == "plane" and arguments.layers is not None:
+        raise CycloError(f"--layers {arguments.layers}: has no meaning with plane bodies; give --bodies solid with it")
     from ltca.output.locks import claimed_file
     from ltca.reading.coefficient_file import require_replaceable
 
@@ -163,6 +169,7 @@ def _derive(name: str, case: str, drive: Drive, arguments: argparse.Namespace, o
     import time
 
     from fem.coefficients.dataset import derive_coefficients
+    from fem.coefficients.solid_dataset import LAYERS
     from ltca.output.progress import steps
     from ltca.reading.coefficient_file import read_coefficients, write_coefficients
     from ltca.reading.coefficient_laws import check_coefficients
@@ -174,7 +181,9 @@ def _derive(name: str, case: str, drive: Drive, arguments: argparse.Namespace, o
             case=case,
             stations=arguments.stations,
             size=arguments.size,
-            state=arguments.plane,
+            state=arguments.plane or "strain",
+            bodies=arguments.bodies,
+            layers=arguments.layers or LAYERS,
             keep_clearance=not arguments.without_clearance,
             progress=show,
         )
@@ -183,8 +192,8 @@ def _derive(name: str, case: str, drive: Drive, arguments: argparse.Namespace, o
     checks = check_coefficients(written)
     attributes = written.attrs
     print(
-        f"{name} {case}: {written.sizes['station']} stations, {attributes['unknowns_disc']:,} unknowns of the disc, plane "
-        f"{attributes['plane']}, {time.perf_counter() - start:.1f} s"
+        f"{name} {case}: {written.sizes['station']} stations, {attributes['unknowns_disc']:,} unknowns of the disc, "
+        f"{_state_of(written)}, {time.perf_counter() - start:.1f} s"
     )
     left_out = ", those of the case left out" if attributes["clearances_left_out"] else ""
     print(
@@ -192,8 +201,23 @@ def _derive(name: str, case: str, drive: Drive, arguments: argparse.Namespace, o
         f"{left_out}"
     )
     _print_checks(written, checks)
+    if "bracket" in attributes:
+        print(
+            f"between plane strain (0) and plane stress (1) the disc lies at {attributes['bracket']:.3f} for contacts farther apart "
+            f"than it is thick, from {attributes['bracket_lowest']:.3f} to {attributes['bracket_highest']:.3f} for any loads in "
+            "equilibrium"
+        )
     print(f"written to {out}")
     return 0 if all(check.passed for check in checks) else 1
+
+
+def _state_of(dataset: Labelled) -> str:
+    """The state of the bodies of a file, and of solid ones their unknowns."""
+    from ltca.reading.coefficient_schema import is_solid
+
+    if not is_solid(dataset):
+        return f"plane {dataset.attrs['plane']}"
+    return f"solid{f' ({unknowns:,})' if (unknowns := dataset.attrs.get('unknowns_solid')) else ''}"
 
 
 def _derive_ring(arguments: argparse.Namespace) -> int:
@@ -257,7 +281,7 @@ def _check_file(arguments: argparse.Namespace) -> int:
     checks = check_coefficients(dataset)
     if arguments.drive is not None:
         checks += _check_against_discs(dataset, chosen_drive(arguments)[2], arguments.check)
-    print(f"{arguments.check}: {dataset.sizes['station']} stations, plane {dataset.attrs['plane']}")
+    print(f"{arguments.check}: {dataset.sizes['station']} stations, {_state_of(dataset)}")
     _print_checks(dataset, checks)
     return 0 if all(check.passed for check in checks) else 1
 

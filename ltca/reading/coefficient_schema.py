@@ -96,6 +96,7 @@ STATEMENTS = (
     "symmetry",
     "rigid_residual",
     "convergence_estimate",
+    "convergence_estimate_tilt",
     "convergence_stress",
     "interpolation_error",
     "interpolation_error_tilt",
