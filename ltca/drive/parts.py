@@ -36,6 +36,7 @@ from ltca.drive.members.inertia import Damping as Damping, Inertia as Inertia
 from ltca.drive.members.main_bearing import BearingRow as BearingRow, MainBearing as MainBearing
 from ltca.drive.members.operation import (
     Analysis as Analysis,
+    Bodies as Bodies,
     Compliance as Compliance,
     Duty as Duty,
     ExternalLoad as ExternalLoad,
@@ -528,7 +529,7 @@ class Drive:
         """Return a hash of the whole definition of the drive in this case (hex, 16 digits), whatever analyses it."""
         return fingerprint_of(replace(self, analysis=Analysis()))
 
-    def body_shape(self, bodies: str = "plane") -> dict[str, float]:
+    def body_shape(self, bodies: Bodies = "plane") -> dict[str, float]:
         """Return the numbers that determine the finite-element bodies, and so their compliance, by name: mm, MPa, counts.
 
         `bodies` is "plane" or "solid"; solid ones end, so the length of the rollers is one of their numbers.
@@ -589,7 +590,7 @@ class Drive:
             )
         return self
 
-    def shape_fingerprint(self, bodies: str = "plane") -> str:
+    def shape_fingerprint(self, bodies: Bodies = "plane") -> str:
         """Return a hash of `body_shape` of plane or solid bodies (hex, 16 digits), the key of influence coefficients."""
         return fingerprint_of(self.body_shape(bodies))
 
