@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fem.commands.position_arguments import add_position_arguments, body_files, chosen_case, disc_prefix
+from fem.commands.solid_pair import add_pair_arguments, execute_pair, refuse_mixed_options
 from ltca.reading.arguments import add_out_argument, add_page_argument, default_folder, torque_argument
 
 if TYPE_CHECKING:
@@ -24,6 +25,7 @@ EXAMPLES = (
     ("cyclo fem paper --case CS-1 --angle 0.5", "one position by finite elements alone"),
     ("cyclo fem paper --case CS-1 --angle 0.5 --pictures", "with pictures of stress and deformation"),
     ("cyclo fem paper --case CS-1 --angle 0.5 --referee calculix", "solved by CalculiX as well"),
+    ("cyclo fem paper --case CS-1 --angle 0.5 --bodies solid --pair flank", "one pair of solid bodies with free ends"),
 )
 
 
@@ -36,9 +38,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         type=torque_argument,
         help="output torque in N·mm (or a text such as '377.3 N m'); default that of the drive",
     )
-    parser.add_argument(
-        "--plane", choices=("strain", "stress"), default="strain", help="plane strain (default) or plane stress"
-    )
+    parser.add_argument("--plane", choices=("strain", "stress"), help="plane strain (default) or plane stress")
     parser.add_argument(
         "--fine-walls",
         action="store_true",
@@ -60,6 +60,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--referee", choices=("calculix",), help="let another code solve the same problem and print both side by side"
     )
+    add_pair_arguments(parser)
 
 
 def execute(arguments: argparse.Namespace) -> int:
@@ -78,6 +79,10 @@ def execute(arguments: argparse.Namespace) -> int:
     from ltca.errors import DriveError
     from ltca.output.run_folder import claimed_folder
 
+    refuse_mixed_options(arguments)
+    if arguments.bodies == "solid":
+        return execute_pair(arguments)
+    arguments.plane = arguments.plane or "strain"
     referee = _referee(arguments.referee)
     file, case, drive = chosen_case(arguments)
     name = file.name

@@ -178,7 +178,7 @@ def solve_solid_disc(
     MemoryLimitError
         When it would not fit into memory; known before any solid is condensed.
     """
-    require(drive, "solid FE")
+    require(drive, "solid disc")
     drive.require_torque("full finite elements, whose loads follow those of the torque", torque)
     (single,) = single_discs(drive)
     widths = DriveWidths(drive=single, layers=options.layers)
