@@ -25,7 +25,8 @@ FLOORS = (
     "ltca.reading", "ltca.laws", "ltca.compliance", "ltca.equilibrium", "ltca.analysis", "ltca.studies", "ltca.figures",
     "ltca.page", "ltca.export", "ltca.testing", "ltca",
     "fem.errors", "fem.shapes", "fem.mesh", "fem.body", "fem.solid", "fem.options", "fem.contact", "fem.drive",
-    "fem.solid_contact", "fem.solid_drive", "fem.reducer", "fem.coefficients", "fem.referee", "fem.pictures", "fem.export", "fem.testing", "fem",
+    "fem.solid_contact", "fem.reducer",
+    "fem.solid_drive", "fem.coefficients", "fem.referee", "fem.pictures", "fem.export", "fem.testing", "fem",
     "validation.methods", "validation.rows", "validation.compare", "validation.levels", "validation.study", "validation.report",
     "ltca.commands", "fem.commands", "validation.commands", "validation",
 )  # fmt: skip
@@ -33,7 +34,8 @@ FLOORS = (
 UNSEEN = {"ltca": {"fem", "validation"}, "fem": {"validation"}, "validation": set()}
 # Of ltca, fem takes the drive, its shape, the nominal place of its parts and the edge: never their mechanics.
 FEM_MAY_IMPORT = (
-    "ltca.errors", "ltca.arrays", "ltca.output", "ltca.quantities", "ltca.drive", "ltca.reading", "ltca.geometry.flank", "ltca.geometry.length_profile",
+    "ltca.errors", "ltca.arrays", "ltca.output", "ltca.quantities", "ltca.drive", "ltca.reading", "ltca.geometry.flank",
+    "ltca.geometry.length_profile",
     "ltca.geometry.placement", "ltca.geometry.boundary_stations", "ltca.page.study_page", "ltca.page.tables",
     "ltca.page.verdict_tables",
     "ltca.figures.house_style",

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fem.commands.position_arguments import add_position_arguments, body_files, chosen_case, disc_prefix
+from fem.commands.solid_disc import add_disc_arguments, execute_disc
 from fem.commands.solid_pair import add_pair_arguments, execute_pair, refuse_mixed_options
 from ltca.reading.arguments import add_out_argument, add_page_argument, default_folder, torque_argument
 
@@ -26,6 +27,7 @@ EXAMPLES = (
     ("cyclo fem paper --case CS-1 --angle 0.5 --pictures", "with pictures of stress and deformation"),
     ("cyclo fem paper --case CS-1 --angle 0.5 --referee calculix", "solved by CalculiX as well"),
     ("cyclo fem paper --case CS-1 --angle 0.5 --bodies solid --pair flank", "one pair of solid bodies with free ends"),
+    ("cyclo fem examples/drives/plastic.toml --angle 0.3 --bodies solid", "a whole disc of solid bodies"),
 )
 
 
@@ -61,6 +63,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--referee", choices=("calculix",), help="let another code solve the same problem and print both side by side"
     )
     add_pair_arguments(parser)
+    add_disc_arguments(parser)
+    # A disc of solid bodies has another default.
+    parser.set_defaults(size=None)
 
 
 def execute(arguments: argparse.Namespace) -> int:
@@ -80,6 +85,9 @@ def execute(arguments: argparse.Namespace) -> int:
     from ltca.output.run_folder import claimed_folder
 
     refuse_mixed_options(arguments)
+    if arguments.bodies == "solid" and arguments.pair is None:
+        return execute_disc(arguments)
+    arguments.size = arguments.size or 1.0
     if arguments.bodies == "solid":
         return execute_pair(arguments)
     arguments.plane = arguments.plane or "strain"

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from fem.body.surface import PressureZone
 from fem.contact.pressure_measures import peak_of, pressure_moments
 from fem.drive.contact_kinds import CONTACT_KINDS, PairKind
-from fem.drive.model import ContactPair, DriveModel, PlacedContacts
+from fem.drive.model import ContactPair, PlacedContacts
 from fem.drive.pose import PoseSolution, pair_forces
 from ltca.arrays import FloatArray
 
@@ -120,7 +120,7 @@ class DeformedContacts:
     hole_points: NDArray[np.complex128]
 
 
-def deformed_contacts(model: DriveModel, solution: PoseSolution) -> DeformedContacts:
+def deformed_contacts(model: PlacedContacts, solution: PoseSolution) -> DeformedContacts:
     """Return how open a solution leaves the contacts of the disc, and where they press."""
     place = model.placement
     counts = {"pin": len(place.wheel_pin_radii), "roller": len(place.roller_radii), "hole": len(place.hole_radii)}
@@ -128,10 +128,10 @@ def deformed_contacts(model: DriveModel, solution: PoseSolution) -> DeformedCont
     points = {kind: np.full(count, complex(np.nan, np.nan)) for kind, count in counts.items()}
     for pair, integral in zip(model.pairs, solution.integrals, strict=True):
         kind, index = pair.kind.partition("_")[0], pair.index
-        left = float(np.min(solution.contact.opening[pair.unknowns] / integral.measure))
+        left = float(np.min(solution.contact.opening[pair.unknowns] / model.measure_of(pair, integral)))
         gaps[kind][index] = left if np.isnan(gaps[kind][index]) else gaps[kind][index] + left
         if pair.kind != "roller_inner":
-            points[kind][index] = _centre_of_pressure(pair.zone, solution.contact.pressure[pair.unknowns])
+            points[kind][index] = _centre_of_pressure(pair.zone, model.profile_of(pair, solution.contact.pressure))
     return DeformedContacts(
         pin_gaps=gaps["pin"],
         roller_gaps=gaps["roller"],

@@ -151,7 +151,7 @@ class ContactPair:
     @property
     def heights(self) -> int:
         """Pressure unknowns at each vertex of the zone: one in the plane."""
-        return (self.unknowns.stop - self.unknowns.start) // self.zone.unknown_count
+        return int(self.unknowns.stop - self.unknowns.start) // self.zone.unknown_count
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -198,6 +198,10 @@ class PlacedContacts(ABC):
     @abstractmethod
     def force_of(self, pair: ContactPair, integral: PairIntegrals, pressure: FloatArray) -> FloatArray:
         """Return force (x, y, N) and moment about the origin (N·mm) on the round side of a pair at all pressures, MPa."""
+
+    @abstractmethod
+    def measure_of(self, pair: ContactPair, integral: PairIntegrals) -> FloatArray:
+        """Return the weighted area of each pressure unknown of a pair, mm²."""
 
     @abstractmethod
     def profile_of(self, pair: ContactPair, pressure: FloatArray) -> FloatArray:
@@ -340,6 +344,10 @@ class DriveModel(PlacedContacts):
     def force_of(self, pair: ContactPair, integral: PairIntegrals, pressure: FloatArray) -> FloatArray:
         """Return force (x, y, N) and moment about the origin (N·mm) on the round side of a pair at all pressures, MPa."""
         return np.asarray(integral.force @ pressure[pair.unknowns])
+
+    def measure_of(self, pair: ContactPair, integral: PairIntegrals) -> FloatArray:
+        """Return the weighted area of each pressure unknown of a pair, mm²."""
+        return integral.measure
 
     def profile_of(self, pair: ContactPair, pressure: FloatArray) -> FloatArray:
         """Return the pressures of a pair along its arc, of all pressures, MPa."""

@@ -69,9 +69,9 @@ class DriveWidths:
         """Return the layers of a body in every class: one ends where a shorter body that it touches does."""
         return tuple(self._graded(self.length_of(body), parity) for parity in self.parities)
 
-    def grid(self, kind: PairKind) -> WidthGrid:
-        """Return the vertices of the pressure along the width: the ends of the layers of the shorter body."""
-        upper = self._graded(self.length_of(kind), "symmetric").vertices
+    def grid(self, body: str) -> WidthGrid:
+        """Return the vertices of the pressure along a body or contact by its name: the ends of its layers."""
+        upper = self._graded(self.length_of(body), "symmetric").vertices
         return WidthGrid(heights=upper if self.even else np.concatenate([-upper[:0:-1], upper]), even=self.even)
 
     def relief(self, kind: PairKind) -> tuple[Relief | None, FloatArray]:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from fem.drive.condensed import RoundPlaces, counted_from, distinct_rounds, list_pairs, zones_of_round
-from fem.drive.contact_kinds import CONTACT_KINDS, PairKind
+from fem.drive.contact_kinds import CONTACT_KINDS
 from fem.drive.expected_contacts import ContactGroup, ExpectedContacts
 from fem.drive.meshes import DriveMeshes, RoundMesh
 from fem.mesh.body_mesh import BodyMesh
@@ -44,9 +44,7 @@ def condense_solids(
         found = []
         for mesh in distinct:
             zones = zones_of_round(mesh.grading, mesh.body)
-            # A roller's contacts in the bore and on the race are equally long.
-            kind: PairKind = {"wheel_pin": "pin", "roller": "roller_outer"}.get(name, "hole")
-            faces = [Face(plane=zone.unit_loads(mesh.body.unknowns), width=grids[kind]) for zone in zones]
+            faces = [Face(plane=zone.unit_loads(mesh.body.unknowns), width=widths.grid(name)) for zone in zones]
             solid = condensed(mesh.body, faces, material, name, held)
             found.append(SolidGroup(solid=solid, compliance=solid.compliance, zones=zones))
         return found, bodies

@@ -92,6 +92,10 @@ class SolidModel(PlacedContacts):
         """Return the pressures of a pair over arc and height, MPa, shape (arc, heights), of all pressures."""
         return pressure[pair.unknowns].reshape(-1, pair.heights)
 
+    def measure_of(self, pair: ContactPair, integral: PairIntegrals) -> FloatArray:
+        """Return the weighted area of each pressure unknown of a pair, mm²."""
+        return np.outer(integral.measure, self.grids[pair.kind].moments(np.ones_like)).ravel()
+
     def profile_of(self, pair: ContactPair, pressure: FloatArray) -> FloatArray:
         """Return the pressures of a pair along its arc at mid-width, of all pressures, MPa."""
         grid = self.grids[pair.kind]

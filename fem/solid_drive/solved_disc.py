@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fem.drive.contact_kinds import CONTACT_KINDS
-from fem.drive.contact_results import ContactResults, summarise_contacts
+from fem.drive.contact_results import ContactResults, deformed_contacts, summarise_contacts
 from fem.drive.expected_contacts import ExpectedContacts
 from fem.drive.full_solution import moments_on_cranks
 from fem.drive.grading import closed_without_zone, grade_contacts
@@ -25,14 +25,16 @@ from fem.drive.model import DrivePose
 from fem.drive.pose import PoseSolution, solve_pose
 from fem.drive.rigid_bodies import RigidBodies
 from fem.drive.solution import COARSE_SIZE, solve_disc
+from fem.mesh.element_size import Refinement
 from fem.mesh.memory_need import require_memory, solid_memory
 from fem.mesh.triangulation import estimate_unknowns
 from fem.options import SolutionOptions
-from fem.shapes import DriveShapes
+from fem.shapes import DriveShapes, Shape
 from fem.solid_drive.along_width import DriveWidths, plane_part
 from fem.solid_drive.solid_bodies import condense_solids
 from fem.solid_drive.solid_model import SolidModel
 from fem.solid_drive.width_results import WidthResult, bore_lean, disc_lean, width_results
+from ltca.arrays import FloatArray
 from ltca.drive.engine_support import require
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
@@ -128,6 +130,24 @@ class SolidSolution:
         return bore_lean(self.model, self.state)
 
     @property
+    def bearing_couple(self) -> complex:
+        """∫ z dF of the rollers on the disc, N·mm: with i its moment about x and y is −imaginary and real part."""
+        model, pressure = self.model, self.state.contact.pressure
+        return -sum(
+            (
+                model.couple_of(pair, integral, pressure)
+                for pair, integral in zip(model.pairs, self.state.integrals, strict=True)
+                if pair.kind == "roller_outer"
+            ),
+            0j,
+        )
+
+    @property
+    def strain_energy(self) -> float:
+        """Of all bodies, and of the springs of shaft pins, N·mm."""
+        return self.model.strain_energy(self.state.integrals, self.state.contact.pressure)
+
+    @property
     def transmission_error(self) -> float:
         """Deviation of the output, ccw positive, rad."""
         return self.drive.output_per_wheel_angle * self.pose.wheel_angle
@@ -202,6 +222,7 @@ def solve_solid_disc(
     results = start.contacts
     loads = (results.pin_load, results.roller_load, results.pin_shaft_load)
     pose, moment = start.pose, start.state.wheel_moment
+    deformed = deformed_contacts(start.model, start.state)
     lap("plane solution")
     for grading in range(1, MAX_GRADINGS + 1):
         contacts = grade_contacts(
@@ -213,6 +234,7 @@ def solve_solid_disc(
             loads,
             margin=_margin(rigid, pose, widths) * 3.0 ** (grading - 1),
             smallest_share=SMALLEST_SHARE,
+            deformed=deformed,
         )
         require_solid_memory(shapes, contacts, options, widths)
         say("meshes")
@@ -235,7 +257,8 @@ def solve_solid_disc(
                 seconds=seconds | {"total": sum(seconds.values())},
             )
         say(f"meshes graded anew ({grading}): {complaint}")
-        loads, pose, moment = _largest_loads(model, along), state.pose, state.wheel_moment
+        loads, deformed = _largest_loads(model, along), deformed_contacts(model, state)
+        pose, moment = state.pose, state.wheel_moment
     raise ConvergenceError(f"meshes do not fit the contacts after {MAX_GRADINGS} gradings: {complaint}")
 
 
@@ -244,7 +267,7 @@ def require_solid_memory(
 ) -> None:
     """Raise MemoryLimitError when disc and race would not fit into memory as solids; pins and rollers are small beside them."""
     size = options.size
-    planes = {
+    planes: dict[str, tuple[Shape, tuple[Refinement, ...]]] = {
         "disc": (shapes.disc, disc_refinements(contacts, size)),
         "inner_race": (shapes.inner_race, race_refinements(contacts, size)),
     }
@@ -297,7 +320,7 @@ def _shortcoming(model: SolidModel, state: PoseSolution) -> str:
     return closed_without_zone(model, state)
 
 
-def _largest_loads(model: SolidModel, along: tuple[WidthResult, ...]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _largest_loads(model: SolidModel, along: tuple[WidthResult, ...]) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Loads that pins, rollers and holes would carry if all of their width carried as the height that carries most, N."""
     place = model.placement
     found = {
