@@ -17,7 +17,7 @@ import numpy as np
 
 from fem.drive.contact_kinds import CONTACT_KINDS
 from fem.drive.contact_results import ContactResults, deformed_contacts, summarise_contacts
-from fem.drive.expected_contacts import ExpectedContacts
+from fem.drive.expected_contacts import ExpectedContacts, expect_contacts
 from fem.drive.full_solution import moments_on_cranks
 from fem.drive.grading import closed_without_zone, grade_contacts
 from fem.drive.meshes import coarse_edge, disc_refinements, mesh_drive, race_refinements
@@ -210,6 +210,9 @@ def solve_solid_disc(
         seconds[stage], last = seconds.get(stage, 0.0) + now - last, now
 
     plane = plane_part(single)
+    shapes, rigid = DriveShapes.of_drive(plane), RigidBodies.of_drive(single, crank_angle)
+    guess = expect_contacts(plane, crank_angle, wheel_moment=plane.wheel_moment(torque))
+    require_solid_memory(shapes, guess, options, widths)
     say("plane solution")
     start = solve_disc(
         plane,
@@ -218,7 +221,6 @@ def solve_solid_disc(
         SolutionOptions(size=max(COARSE_SIZE, options.size)),
         progress=say,
     )
-    shapes, rigid = DriveShapes.of_drive(plane), RigidBodies.of_drive(single, crank_angle)
     results = start.contacts
     loads = (results.pin_load, results.roller_load, results.pin_shaft_load)
     pose, moment = start.pose, start.state.wheel_moment
