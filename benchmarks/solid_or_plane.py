@@ -11,10 +11,14 @@ between plane strain (0) and plane stress (1) its wheel angle is.
 from __future__ import annotations
 
 import argparse
+import sys
 import time
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
+
+sys.path[0] = str(Path(__file__).resolve().parents[1])  # the package fem, not the benchmark of that name
 
 from fem.body.elasticity import PlaneState
 from fem.drive.condensed import condense_drive
@@ -100,7 +104,7 @@ def main() -> None:
     print(f"{'drive':<14}{'mm':>6} | plane strain, % of solid{columns[25:]:>15} | plane stress")
     print(f"{'':<20} |{columns} |{columns} | {'K_Hβ':>6} {'between':>8} {'unknowns':>9} {'CPU, s':>8}")
     for path in arguments.drives:
-        name, drive = next(iter(load_drive(path).cases.items()))
+        drive = next(iter(load_drive(path).cases.values()))
         for width in arguments.widths:
             row = compare(widened(drive, width), arguments.angle, options)
             print(f"{drive.name[:13]:<14}{width:>6g}{row}", flush=True)
