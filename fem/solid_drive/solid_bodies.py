@@ -46,7 +46,7 @@ def condense_solids(
             zones = zones_of_round(mesh.grading, mesh.body)
             faces = [Face(plane=zone.unit_loads(mesh.body.unknowns), width=widths.grid(name)) for zone in zones]
             solid = condensed(mesh.body, faces, material, name, held)
-            found.append(SolidGroup(solid=solid, compliance=solid.compliance, zones=zones))
+            found.append(SolidGroup(compliance=solid.compliance, zones=zones, unknowns=solid.unknowns))
         return found, bodies
 
     def condensed(body: BodyMesh, faces: list[Face], material: Material, name: str, held: str) -> CondensedSolid:
@@ -69,8 +69,10 @@ def condense_solids(
         faces = [Face(plane=pair.zone.load_shapes(body.unknowns), width=grids[pair.kind]) for pair in own]
         return condensed(body, faces, material, name, held)
 
-    disc = carrier(meshes.disc, False, materials.disc, "disc")
     race = carrier(meshes.inner_race, True, materials.inner_race, "inner_race", "inner")
+    race_compliance, race_unknowns = race.compliance, race.unknowns
+    del race
+    disc = carrier(meshes.disc, False, materials.disc, "disc")
     return SolidModel(
         drive=drive,
         crank_angle=contacts.crank_angle,
@@ -83,9 +85,9 @@ def condense_solids(
         widths=widths,
         grids=grids,
         disc=disc,
-        race=race,
         disc_compliance=disc.compliance,
-        race_compliance=race.compliance,
+        race_compliance=race_compliance,
+        race_unknowns=race_unknowns,
         groups=(*pins, *rollers, *elastic),
     )
 

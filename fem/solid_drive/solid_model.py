@@ -15,7 +15,7 @@ import scipy.sparse as sp
 from fem.body.surface import OppositeZone
 from fem.contact.coupling import PairIntegrals
 from fem.contact.unilateral import ContactProblem
-from fem.drive.contact_kinds import CONTACT_KINDS, PairKind
+from fem.drive.contact_kinds import PairKind
 from fem.drive.model import ContactPair, DrivePose, PlacedContacts
 from fem.solid_contact.bodies import CondensedSolid
 from fem.solid_contact.pressing import opening_of_motion, weighted_gap
@@ -30,17 +30,17 @@ class SolidGroup:
 
     Attributes
     ----------
-    solid : CondensedSolid
-        Its loads are forces by length on the nodes of its zones, at every height of the pressure of its contacts.
     compliance : array
-        That of `solid`, kept.
+        By forces by length on the nodes of its zones, at every height of the pressure of its contacts.
     zones : tuple of OppositeZone
         One for a pin; outer and inner for a roller.
+    unknowns : int
+        Of its displacements, in all classes.
     """
 
-    solid: CondensedSolid
     compliance: FloatArray
     zones: tuple[OppositeZone, ...]
+    unknowns: int
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,10 +53,12 @@ class SolidModel(PlacedContacts):
         Lengths and layers of the bodies.
     grids : dict
         Vertices of the pressure along the width, by kinds of contacts.
-    disc, race : CondensedSolid
-        Their faces are those of their pairs, in order.
+    disc : CondensedSolid
+        Its faces are those of its pairs, in order. Of the other bodies the factors are not kept.
     disc_compliance, race_compliance : array
-        Those of both, kept.
+        By the pressures on both.
+    race_unknowns : int
+        Of the displacements of the race, in all classes.
     groups : tuple of SolidGroup
         Pins and rollers.
     """
@@ -64,9 +66,9 @@ class SolidModel(PlacedContacts):
     widths: DriveWidths
     grids: dict[PairKind, WidthGrid]
     disc: CondensedSolid
-    race: CondensedSolid
     disc_compliance: FloatArray
     race_compliance: FloatArray
+    race_unknowns: int
     groups: tuple[SolidGroup, ...]
 
     @property
@@ -77,8 +79,8 @@ class SolidModel(PlacedContacts):
     @property
     def solid_unknowns(self) -> int:
         """Displacement unknowns of all condensed bodies and classes, and pressures."""
-        bodies = (self.disc, self.race, *(group.solid for group in self.groups))
-        return sum(body.unknowns for body in bodies) + self.unknown_count
+        own = self.disc.unknowns + self.race_unknowns + sum(group.unknowns for group in self.groups)
+        return own + self.unknown_count
 
     def opposite_zone(self, pair: ContactPair) -> OppositeZone | None:
         """Return the meshed zone opposite the pressure of a pair, None for a rigid circle."""
@@ -121,20 +123,10 @@ class SolidModel(PlacedContacts):
         nodes = np.arange(own.body.section.node_count)
         return np.column_stack([u[own.body.unknowns_of(nodes, axis)[:, 0]] for axis in (0, 1)]).ravel()
 
-    def strain_energy(self, integrals: tuple[PairIntegrals, ...], pressure: FloatArray) -> float:
-        """Return the energy of the displacements of all bodies by their stiffness, and of the springs of shaft pins, N·mm."""
-        total = self.disc.energy(pressure[: self.on_disc]) + self.race.energy(pressure[self.on_disc :])
-        by_body: dict[tuple[str, int], list[tuple[ContactPair, PairIntegrals]]] = {}
-        for pair, integral in zip(self.pairs, integrals, strict=True):
-            if pair.kind == "hole":
-                fx, fy, _ = self.force_of(pair, integral, pressure)
-                total += 0.5 * float(fx**2 + fy**2) / self.drive.hole_stiffness
-            if pair.group >= 0:
-                by_body.setdefault((CONTACT_KINDS[pair.kind].part, pair.index), []).append((pair, integral))
-        for ends in by_body.values():
-            loads = [self._on_nodes(pair, integral) @ pressure[pair.unknowns] for pair, integral in ends]
-            total += self.groups[ends[0][0].group].solid.energy(np.concatenate(loads))
-        return total
+    def strain_energy(self, pose: DrivePose, integrals: tuple[PairIntegrals, ...], pressure: FloatArray) -> float:
+        """Return ½ pᵀSp of the pressures at a pose, N·mm: of all bodies, and of the springs of shaft pins."""
+        problem = self.contact_problem(pose, list(integrals), 0.0)
+        return float(0.5 * pressure @ problem.compliance @ pressure)
 
     def contact_problem(self, pose: DrivePose, integrals: list[PairIntegrals], wheel_moment: float) -> ContactProblem:
         """Return the condensed contact problem linearised about a pose.

@@ -20,16 +20,15 @@ from fem.drive.contact_results import ContactResults, deformed_contacts, summari
 from fem.drive.expected_contacts import ExpectedContacts, expect_contacts
 from fem.drive.full_solution import moments_on_cranks
 from fem.drive.grading import closed_without_zone, grade_contacts
-from fem.drive.meshes import coarse_edge, disc_refinements, mesh_drive, race_refinements
+from fem.drive.meshes import coarse_edge, disc_refinements, mesh_drive
 from fem.drive.model import DrivePose
 from fem.drive.pose import PoseSolution, solve_pose
 from fem.drive.rigid_bodies import RigidBodies
 from fem.drive.solution import COARSE_SIZE, solve_disc
-from fem.mesh.element_size import Refinement
 from fem.mesh.memory_need import require_memory, solid_memory
 from fem.mesh.triangulation import estimate_unknowns
 from fem.options import SolutionOptions
-from fem.shapes import DriveShapes, Shape
+from fem.shapes import DriveShapes
 from fem.solid_drive.along_width import DriveWidths, plane_part
 from fem.solid_drive.solid_bodies import condense_solids
 from fem.solid_drive.solid_model import SolidModel
@@ -145,7 +144,7 @@ class SolidSolution:
     @property
     def strain_energy(self) -> float:
         """Of all bodies, and of the springs of shaft pins, N·mm."""
-        return self.model.strain_energy(self.state.integrals, self.state.contact.pressure)
+        return self.model.strain_energy(self.pose, self.state.integrals, self.state.contact.pressure)
 
     @property
     def transmission_error(self) -> float:
@@ -267,19 +266,15 @@ def solve_solid_disc(
 def require_solid_memory(
     shapes: DriveShapes, contacts: ExpectedContacts, options: SolidOptions, widths: DriveWidths
 ) -> None:
-    """Raise MemoryLimitError when disc and race would not fit into memory as solids; pins and rollers are small beside them."""
-    size = options.size
-    planes: dict[str, tuple[Shape, tuple[Refinement, ...]]] = {
-        "disc": (shapes.disc, disc_refinements(contacts, size)),
-        "inner_race": (shapes.inner_race, race_refinements(contacts, size)),
-    }
+    """Raise MemoryLimitError when a disc would not fit into memory as a solid: its factors are kept, others are smaller."""
+    spots = disc_refinements(contacts, options.size)
+    edge = coarse_edge(shapes.disc, options.size)
+    nodes = estimate_unknowns(shapes.disc, spots, coarse_size=edge, growth=GROWTH) // 2
     unknowns, needed = 0, 0.0
-    for name, (shape, spots) in planes.items():
-        plane = estimate_unknowns(shape, spots, coarse_size=coarse_edge(shape, size), growth=GROWTH)
-        for layers in widths.layers_of(name):
-            own = plane // 2 * (2 * layers.free_in_plane.size + layers.free_along_axis.size)
-            unknowns, needed = unknowns + own, needed + solid_memory(own)
-    require_memory(unknowns, needed, "disc and inner race as solid bodies")
+    for layers in widths.layers_of("disc"):
+        per_node = 2 * layers.free_in_plane.size + layers.free_along_axis.size
+        unknowns, needed = unknowns + nodes * per_node, needed + solid_memory(nodes, per_node)
+    require_memory(unknowns, needed, "the disc as a solid body")
 
 
 def _solve_moment(

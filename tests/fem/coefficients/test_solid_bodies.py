@@ -52,7 +52,14 @@ def test_without_lateral_strain_even_loads_know_no_ends(make):
     body, support, loads = make()
     found = solid_differences("cork", body, support, loads, loads, CORK, options(7.0))
     strain = solve_plane(
-        body, integrate_section(Section.of_body(body)), support, loads, loads, material=CORK, thickness=7.0, state="strain"
+        body,
+        integrate_section(Section.of_body(body)),
+        support,
+        loads,
+        loads,
+        material=CORK,
+        thickness=7.0,
+        state="strain",
     )
     # Round-off of two factorisations of stiffness with a condition of some 1e5.
     assert np.max(np.abs(found.even)) < 1e-9 * np.max(np.abs(strain))
@@ -82,7 +89,14 @@ def test_thin_ring_under_linear_loads_bends_like_a_clamped_plate(layers):
 def test_long_bodies_are_in_plane_strain_but_for_their_ends(material):
     body, support, loads = held_ring(coarse=1.5)
     strain = solve_plane(
-        body, integrate_section(Section.of_body(body)), support, loads, loads, material=material, thickness=1.0, state="strain"
+        body,
+        integrate_section(Section.of_body(body)),
+        support,
+        loads,
+        loads,
+        material=material,
+        thickness=1.0,
+        state="strain",
     )
     even, linear = {}, {}
     for length in (60.0, 120.0):

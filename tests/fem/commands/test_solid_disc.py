@@ -34,7 +34,7 @@ def test_files_of_a_disc(tmp_path, capsys):
         assert data["disc_tilt"].dims == ("case", "disc", "position", "axis")
         assert 1e-4 < float(np.abs(data["disc_tilt"]).max()) < 3e-3
         # The listed pressures of a contact carry its load: the rule of trapezoids over both, coarse as the mesh.
-        own = (data["pressure_contact"] == "pin") & (data["pressure_part"] == int(data["pin_load"].argmax()))
+        own = (data["pressure_contact"] == "pin") & (data["pressure_part"] == int(np.argmax(data["pin_load"].values)))
         z, s = np.unique(data["pressure_height"][own]), np.unique(data["pressure_place"][own])
         field = data["pressure"].values[own.values].reshape(s.size, z.size)
         load = np.trapezoid(np.trapezoid(field, z, axis=1), s)

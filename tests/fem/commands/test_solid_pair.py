@@ -26,7 +26,7 @@ def run(*words):
         (["--bodies", "solid", "--referee", "calculix"], "--referee: has no effect with --bodies solid"),
         (["--layers", "3"], "--layers: has no effect with plane bodies"),
         (["--bodies", "solid", "--pair", "bore", "--layers", "3"], "--layers: has no effect with --pair"),
-        (["--bodies", "solid", "--size", "0.05"], "disc and inner race as solid bodies"),
+        (["--bodies", "solid", "--size", "0.05"], "the disc as a solid body"),
         (["--pair", "flank"], "--pair: has no effect with plane bodies"),
         (["--tilt", "1e-4", "--load", "100"], "--load: has no effect with plane bodies"),
         (["--bodies", "solid", "--pair", "bore", "--plane", "stress"], "--plane: has no effect with --pair"),
