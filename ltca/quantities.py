@@ -721,7 +721,6 @@ _DECLARED = (
     Quantity("pressure_disc", "sample", "1", "number of its disc"),
     Quantity("pressure_part", "sample", "1", "number of its pin, roller (crank after crank) or hole"),
     Quantity("pressure_place", "sample", "mm", "arc length from the centre of pressure"),
-    Quantity("pressure_height", "sample", "mm", "height above mid-width, of solid bodies"),
     Quantity("pressure", "sample", "MPa", "mean contact pressure under the shape function of each vertex"),
     Quantity("lobe", "lobe number", "1", "lobe of the flank"),
     Quantity("wall_disc", "wall node", "1", "number of the disc"),

@@ -114,7 +114,10 @@ def label_solid(solution: SolidSolution, case: str) -> LabelledDataset:
         quantity = QUANTITIES[name]
         shape = [sizes.get(dimension, -1) for dimension in quantity.dimensions]
         data[name] = quantity.labelled(np.asarray(value, dtype=float).reshape(shape), in_fem=True)
-    data |= {name: QUANTITIES[name].labelled(values) for name, values in _pressures(solution).items()}
+    heights, listed = _pressures(solution)
+    data |= {name: QUANTITIES[name].labelled(values) for name, values in listed.items()}
+    told = {"units": "mm", "long_name": "height above mid-width"}
+    data["pressure_height"] = QUANTITIES["pressure_place"].dimensions, heights, told
     coordinates = place_coordinates({case: solution.drive}, [[model.placement]], np.atleast_1d(model.crank_angle)) | {
         "torque": QUANTITIES["torque"].labelled([solution.torque], in_fem=True)
     }
@@ -138,8 +141,8 @@ def label_solid(solution: SolidSolution, case: str) -> LabelledDataset:
     return LabelledDataset.build(data, coordinates, attributes)
 
 
-def _pressures(solution: SolidSolution) -> dict[str, Any]:
-    """Pressures of all vertices of the contacts that carry, with their places on arc and width."""
+def _pressures(solution: SolidSolution) -> tuple[FloatArray, dict[str, Any]]:
+    """Heights of all vertices of the contacts that carry, mm; and their pressures, with their places on the arc."""
     kinds, parts, places, heights, values = [], [], [], [], []
     middles = {
         id(pair): detail.middle for pair, detail in zip(solution.model.pairs, solution.contacts.details, strict=True)
@@ -152,12 +155,11 @@ def _pressures(solution: SolidSolution) -> dict[str, Any]:
         heights.append(np.tile(along.heights, arc.size))
         values.append(along.pressure.ravel())
     number = sum(each.size for each in values)
-    return {
+    return np.concatenate(heights), {
         "pressure_contact": np.concatenate(kinds).astype(str),
         "pressure_disc": np.zeros(number, dtype=int),
         "pressure_part": np.concatenate(parts),
         "pressure_place": np.concatenate(places),
-        "pressure_height": np.concatenate(heights),
         "pressure": np.concatenate(values),
     }
 
