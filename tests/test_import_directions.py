@@ -22,12 +22,13 @@ PACKAGES = ("ltca", "fem", "validation")
 # The floors of the house, lowest first: a module imports from its own floor or from lower ones, never from above.
 FLOORS = (
     "ltca.errors", "ltca.arrays", "ltca.quantities", "ltca.output", "ltca.drive", "ltca.geometry", "ltca.contact",
-    "ltca.reading", "ltca.laws", "ltca.compliance", "ltca.equilibrium", "ltca.analysis", "ltca.studies", "ltca.figures",
-    "ltca.page", "ltca.export", "ltca.testing", "ltca",
-    "fem.errors", "fem.shapes", "fem.mesh", "fem.body", "fem.solid", "fem.options", "fem.contact", "fem.drive",
-    "fem.solid_contact", "fem.reducer",
+    "ltca.reading", "ltca.laws", "ltca.compliance", "ltca.equilibrium", "ltca.dynamics", "ltca.analysis", "ltca.studies",
+    "ltca.figures", "ltca.page", "ltca.export", "ltca.testing", "ltca",
+    "fem.errors", "fem.discretisation_error", "fem.shapes", "fem.mesh", "fem.body", "fem.solid", "fem.options", "fem.contact",
+    "fem.drive", "fem.solid_contact", "fem.reducer",
     "fem.solid_drive", "fem.coefficients", "fem.referee", "fem.pictures", "fem.export", "fem.testing", "fem",
     "validation.methods", "validation.rows", "validation.compare", "validation.levels", "validation.study", "validation.report",
+    "validation.seats", "validation.manual",
     "ltca.commands", "fem.commands", "validation.commands", "validation",
 )  # fmt: skip
 # What a package may not see at all: ltca stands alone, nothing sees validation.

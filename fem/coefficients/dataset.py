@@ -34,8 +34,8 @@ from fem.shapes import DriveShapes
 from ltca.arrays import FloatArray
 from ltca.drive.parts import Drive, Material, Materials
 from ltca.drive.single_discs import nominal_shape
-from ltca.output.resources import available_memory
 from ltca.output.provenance import code_hash, code_version
+from ltca.output.resources import available_memory
 from ltca.reading.coefficient_laws import project_rigid_motions
 from ltca.reading.coefficient_schema import elastic_constants
 

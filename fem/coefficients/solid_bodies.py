@@ -131,7 +131,7 @@ def solve_solid(
     also : callable, optional
         Gives further measures of the extruded body, which balance themselves.
     advance : callable
-        Told of the number of loads solved for.
+        Told how many loads are solved for so far.
 
     Returns
     -------
@@ -201,7 +201,7 @@ def _measured(
         found[: len(seen), own] = seen
         if also is not None:
             found[len(seen) :, own] = also.T @ moved
-        advance(own.stop - own.start)
+        advance(own.stop)
     return found
 
 
@@ -268,6 +268,20 @@ class Wall:
     strains: sp.csc_matrix
     values: sp.csc_matrix
 
+    def measures(self, poisson_ratio: float) -> Callable[[ExtrudedBody], sp.csc_matrix]:
+        """Return what measures, on an extruded body, the mean strains along the walls with ν times those along the axis."""
+
+        def of(solid: ExtrudedBody) -> sp.csc_matrix:
+            thickness = solid.layers.thickness
+            along = solid.spread(self.strains, lambda z: np.full_like(z, 1.0 / thickness))
+            values = sp.coo_matrix(self.values)
+            # w is odd in z: the mean of its slope is w at the end by half of the thickness.
+            ends = solid.unknowns_of(values.row, 2)[:, -1]
+            weights = 2.0 * poisson_ratio / thickness * values.data
+            return sp.csc_matrix(along + sp.csc_matrix((weights, (ends, values.col)), shape=along.shape))
+
+        return of
+
 
 def solid_differences(
     name: str,
@@ -289,36 +303,24 @@ def solid_differences(
     )
     count, nu = measures.shape[1], material.poisson_ratio
 
-    def stretched(solid: ExtrudedBody) -> sp.csc_matrix:
-        """Mean strains along the walls, and ν times those along the axis: w is odd."""
-        if wall is None:
-            return sp.csc_matrix((solid.unknowns, 0))
-        along = solid.spread(wall.strains, lambda z: np.full_like(z, 1.0 / thickness))
-        values = sp.coo_matrix(wall.values)
-        ends = solid.unknowns_of(values.row, 2)[:, -1]
-        axial = sp.csc_matrix((2.0 * nu / thickness * values.data, (ends, values.col)), shape=along.shape)
-        return sp.csc_matrix(along + axial)
-
-    solved: dict[Parity, FloatArray] = {}
-    classes: tuple[tuple[Parity, str], ...] = (("symmetric", "even"), ("antisymmetric", "linear"))
-    for parity, words in classes:
-        done, all_loads = 0, loads.shape[1]
-
-        def advance(number: int, words: str = words) -> None:
-            nonlocal done
-            done += number
-            options.tell(f"{name}, {words} loads: {done} of {all_loads}")
-
-        def solve(parity: Parity = parity, words: str = words) -> FloatArray:
-            also = stretched if parity == "symmetric" else None
+    def solve(parity: Parity, words: str) -> FloatArray:
+        def compute() -> FloatArray:
             options.tell(f"{name}, {words} loads")
-            layers = options.layers
             return solve_solid(
-                body, support, loads, measures, layers=layers, parity=parity, also=also, advance=advance, **same
+                body,
+                support,
+                loads,
+                measures,
+                layers=options.layers,
+                parity=parity,
+                also=None if wall is None or parity != "symmetric" else wall.measures(nu),
+                advance=lambda done: options.tell(f"{name}, {words} loads: {done} of {loads.shape[1]}"),
+                **same,
             )
 
-        solved[parity] = options.pieces.get(f"{name}-{words}".replace(", ", "-").replace(" ", "-"), solve)
-    even, linear = solved["symmetric"], solved["antisymmetric"]
+        return options.pieces.get(f"{name}-{words}".replace(", ", "-").replace(" ", "-"), compute)
+
+    even, linear = solve("symmetric", "even"), solve("antisymmetric", "linear")
     per_node = ExtrudedBody(
         section=Section.of_body(body), layers=graded_layers(thickness, options.layers, "symmetric")
     ).per_node

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Hashable, Iterable
 from dataclasses import dataclass, replace
 from functools import reduce
 from operator import add
@@ -133,7 +133,9 @@ def solid_disc(
     count = stations.count
     sampled = np.unique(np.linspace(0, count - 1, MIDWAY).astype(int))
     own = places.loads(body, stations.parameter, stations.boundary, stations.half_width)
-    wider = places.loads(body, stations.parameter[wide], stations.boundary[wide], WIDE_RATIO * stations.half_width[wide])
+    wider = places.loads(
+        body, stations.parameter[wide], stations.boundary[wide], WIDE_RATIO * stations.half_width[wide]
+    )
     middle = places.loads(body, between, stations.boundary, stations.half_width)
     balance = reduce(add, (boundary_motion_loads(body, bore.name) for bore in shape.bores)).toarray()
     seen = stations.refined(shape)
@@ -188,9 +190,7 @@ def solid_round(
     """
     body, curve, width = _mesh(shape, mesh), shape.curves[0], patch_half_width(shape)
     wide = patch_loads(body, curve, angles[:1], WIDE_RATIO * width)
-    loads, seen = (
-        sp.hstack([patch_loads(body, curve, at, width), wide], format="csc") for at in (angles, measured)
-    )
+    loads, seen = (sp.hstack([patch_loads(body, curve, at, width), wide], format="csc") for at in (angles, measured))
     if held:
         support = Support(held=np.unique(body.boundary_nodes(held)), balance=None)
     else:
@@ -207,7 +207,9 @@ class _Solid(NamedTuple):
     race: Differences
 
 
-def _derive(drive: Drive, shapes: DriveShapes, places: DiscStations, mesh: SectionMesh, options: SolidOptions, note: str) -> _Solid:
+def _derive(
+    drive: Drive, shapes: DriveShapes, places: DiscStations, mesh: SectionMesh, options: SolidOptions, note: str
+) -> _Solid:
     materials, none = drive.materials, np.zeros(1)
     turn = 2.0 * np.pi * np.arange(RACE_ANGLES) / RACE_ANGLES
     ends = np.array([np.pi, 0.0])
@@ -250,7 +252,9 @@ def with_solid_bodies(
         "fingerprint": drive.shape_fingerprint("solid"),
         "pin_length": drive.disc.thickness,
         "race_length": drive.disc.thickness,
-        "datum": plane.attrs["datum"] + "; " + TILT_DATUM.format(*(["the bore" if len(shapes.disc.bores) == 1 else "all bores"])),
+        "datum": plane.attrs["datum"]
+        + "; "
+        + TILT_DATUM.format(*(["the bore" if len(shapes.disc.bores) == 1 else "all bores"])),
         "unknowns_solid": fine.disc.unknowns,
         "solid_mesh": f"{size:g}: section of edges {default_coarse_size(shapes.disc, size):.4g} mm, {layers} layers over half of "
         f"the thickness, the last {FINEST:g} of the first; coarser: {COARSE_RATIO:g} times the edges, {fewer.layers} layers",
@@ -278,8 +282,8 @@ def _joined(plane: xr.Dataset, drive: Drive, solid: _Solid, layers: int) -> xr.D
     per_tilt, roller_tilt = 12.0 / thickness**2, 12.0 / length**2
     shorter = thickness / length
 
-    def variable(dimensions: tuple[str, ...], values: object, unit: str, text: str) -> xr.Variable:
-        return xr.Variable(dimensions, np.asarray(values), {"units": unit, "long_name": text})
+    def variable(dimensions: Iterable[Hashable], values: object, unit: str, text: str) -> xr.Variable:
+        return xr.Variable(tuple(dimensions), np.asarray(values), {"units": unit, "long_name": text})
 
     def both(name: str, even: FloatArray, linear: FloatArray, scale: float = 1.0, tilt: float = per_tilt) -> None:
         old = plane[name]
@@ -287,7 +291,9 @@ def _joined(plane: xr.Dataset, drive: Drive, solid: _Solid, layers: int) -> xr.D
         text = str(old.attrs["long_name"])
         found[name] = variable(old.dims, base + even, "mm/N", text)
         own = name.replace("approach", "tilt_approach")
-        found[own] = variable(old.dims, tilt * base + linear, "rad/(N mm)", f"{text}, tilt by a load linear in z, 1 N mm")
+        found[own] = variable(
+            old.dims, tilt * base + linear, "rad/(N mm)", f"{text}, tilt by a load linear in z, 1 N mm"
+        )
 
     def even_in(values: FloatArray) -> FloatArray:
         return 0.5 * (values + np.roll(values[::-1], 1))
@@ -301,7 +307,13 @@ def _joined(plane: xr.Dataset, drive: Drive, solid: _Solid, layers: int) -> xr.D
     both("pin_approach", solid.pin.even[0, 0], solid.pin.linear[0, 0])
     both("pin_wide_approach", solid.pin.even[-1, -1], solid.pin.linear[-1, -1])
     ends = slice(0, 2)
-    both("roller_approach", mean(solid.roller.even[ends, ends]), mean(solid.roller.linear[ends, ends]), shorter, roller_tilt)
+    both(
+        "roller_approach",
+        mean(solid.roller.even[ends, ends]),
+        mean(solid.roller.linear[ends, ends]),
+        shorter,
+        roller_tilt,
+    )
     both("roller_wide_approach", solid.roller.even[-1, -1], solid.roller.linear[-1, -1], shorter, roller_tilt)
     both("race_approach", even_in(solid.race.even[:-1, 0]), even_in(solid.race.linear[:-1, 0]))
     both("race_wide_approach", solid.race.even[-1, -1], solid.race.linear[-1, -1])

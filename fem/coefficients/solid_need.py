@@ -54,13 +54,15 @@ class SolidNeed:
         took = f"{minutes:.1f} min" if minutes >= 1.0 else f"{self.seconds:.0f} s"
         return (
             f"solid disc: some {float(f'{self.unknowns:.2g}'):,.0f} unknowns, {self.loads:,} loads even along the width and as "
-            f"many linear: about {took} of one core and {self.memory / 1e9:.2g} GB, with and without the extra \"fast\""
+            f'many linear: about {took} of one core and {self.memory / 1e9:.2g} GB, with and without the extra "fast"'
         )
 
 
 def solid_need(shape: DiscShape, loads: int, *, size: float, growth: float, layers: int) -> SolidNeed:
     """Return what the solid disc needs for its loads, on a section mesh of a size."""
-    nodes = 0.5 * estimate_unknowns(shape, (), coarse_size=default_coarse_size(shape, size), growth=growth, turn=MAX_TURN)
+    nodes = 0.5 * estimate_unknowns(
+        shape, (), coarse_size=default_coarse_size(shape, size), growth=growth, turn=MAX_TURN
+    )
     per_node = 6 * layers + 2
     values = nodes * per_node**2 * float(np.log2(max(nodes, 2.0)))
     factor = SECONDS_OF_FACTOR * nodes**1.5 * per_node**3

@@ -202,10 +202,10 @@ def _derive(name: str, case: str, drive: Drive, arguments: argparse.Namespace, o
     )
     _print_checks(written, checks)
     if "bracket" in attributes:
+        least, share, most = (float(attributes[f"bracket{which}"]) for which in ("_lowest", "", "_highest"))
         print(
-            f"between plane strain (0) and plane stress (1) the disc lies at {attributes['bracket']:.3f} for contacts farther apart "
-            f"than it is thick, from {attributes['bracket_lowest']:.3f} to {attributes['bracket_highest']:.3f} for any loads in "
-            "equilibrium"
+            f"between plane strain (0) and plane stress (1) the disc lies at {share:.3f} for contacts farther apart than it is "
+            f"thick, from {least:.3f} to {most:.3f} for any loads in equilibrium"
         )
     print(f"written to {out}")
     return 0 if all(check.passed for check in checks) else 1

@@ -79,6 +79,8 @@ def refuse_mixed_options(arguments: argparse.Namespace) -> None:
             "--export": arguments.export is not None,
             "--referee": alone and arguments.referee is not None,
             "--layers": not alone and arguments.layers is not None,
+            "--error": arguments.error,
+            "--meshes": arguments.meshes is not None,
         }
         what = "--bodies solid" if alone else "--pair"
         problems = [f"{name}: has no effect with {what}; leave it out" for name, there in idle.items() if there]

@@ -7,10 +7,54 @@ from dataclasses import dataclass
 import numpy as np
 
 from fem.drive.contact_results import ContactResults
+from fem.drive.expected_contacts import ExpectedContacts
+from fem.drive.meshes import DriveMeshes
 from fem.drive.model import DriveModel, DrivePose, PlacedContacts, RoundGroup
 from fem.drive.pose import PoseSolution, pair_forces
+from fem.mesh.uniform_refinement import CHILDREN
 from fem.options import SolutionOptions
-from ltca.arrays import FloatArray
+from fem.shapes import DriveShapes
+from ltca.arrays import ComplexArray, FloatArray
+from ltca.drive.parts import Drive
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CoarseSolution:
+    """What a solution on refined meshes starts from; without the factors of the coarser ones, which fill the memory.
+
+    Attributes
+    ----------
+    drive : Drive
+        Of one disc.
+    shapes : DriveShapes
+        Exact shapes.
+    contacts : ExpectedContacts
+        For which the coarsest meshes were graded.
+    meshes : DriveMeshes
+        Meshes of the shapes.
+    by_others : array of complex, shape (z_P,)
+        Displacement of the seats in the wheel by the forces of other discs, mm.
+    pose : DrivePose
+        Loaded pose.
+    wheel_moment : float
+        External moment on the wheel that the disc carries, N·mm.
+    options : SolutionOptions
+        How it was solved.
+    """
+
+    drive: Drive
+    shapes: DriveShapes
+    contacts: ExpectedContacts
+    meshes: DriveMeshes
+    by_others: ComplexArray
+    pose: DrivePose
+    wheel_moment: float
+    options: SolutionOptions
+
+    @property
+    def refined_unknowns(self) -> int:
+        """Displacement unknowns of the refined meshes that are factorised, about."""
+        return CHILDREN * self.meshes.factorised_unknowns
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -47,6 +91,21 @@ class FullSolution:
     def pose(self) -> DrivePose:
         """Loaded pose."""
         return self.state.pose
+
+    @property
+    def coarse(self) -> CoarseSolution:
+        """What a solution on refined meshes starts from."""
+        model = self.model
+        return CoarseSolution(
+            drive=model.drive,
+            shapes=model.shapes,
+            contacts=model.contacts,
+            meshes=model.meshes,
+            by_others=model.by_others,
+            pose=self.pose,
+            wheel_moment=self.state.wheel_moment,
+            options=self.options,
+        )
 
     @property
     def bearing_components(self) -> FloatArray:

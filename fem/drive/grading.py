@@ -106,8 +106,11 @@ def _gaps_left(gaps: RigidGaps, deformed: DeformedContacts | None) -> tuple[Floa
     return tuple(np.where(np.isnan(gap), plain, gap) for gap, plain in zip(known, rigid, strict=True))
 
 
-def find_shortcoming(model: DriveModel, solution: PoseSolution, results: ContactResults, size: float) -> str:
-    """Return why the meshes do not serve a solution with these contacts, "" when they do."""
+def find_shortcoming(model: DriveModel, solution: PoseSolution, results: ContactResults, size: float = np.inf) -> str:
+    """Return why the meshes do not serve a solution with these contacts, "" when they do.
+
+    Elements are measured against those of `size`, a multiple of the default edge; at infinity any will do.
+    """
     for pair, detail in zip(model.pairs, results.details, strict=True):
         own = solution.contact.pressure[pair.unknowns]
         name = CONTACT_KINDS[pair.kind].name_of(pair.index, model.placement)

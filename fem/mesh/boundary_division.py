@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from skfem import MeshTri1
 
+from fem.mesh.body_mesh import move_nodes
 from fem.mesh.element_size import Refinement, SizeField, cover_small_edges, nearest_distance
 from fem.shapes import Curve
 from ltca.arrays import FloatArray
@@ -97,6 +100,16 @@ def divide_curve(curve: Curve, field: SizeField, turn: float = MAX_TURN) -> Divi
         if (edges := int(np.ceil(end - start))) > 0
     ]
     return DividedCurve(curve=curve, parameters=np.interp(np.concatenate(pieces), count, parameters))
+
+
+def curve_middles(mesh: MeshTri1, divided: Sequence[DividedCurve]) -> MeshTri1:
+    """Return a quadratic mesh with the mid-side nodes of its boundaries, edge by edge as divided, on the exact curves."""
+    doflocs = mesh.doflocs.copy()
+    for line in divided:
+        middles = line.curve.points(line.middles)
+        nodes = mesh.nvertices + mesh.boundaries[line.curve.name]
+        doflocs[0, nodes], doflocs[1, nodes] = middles.real, middles.imag
+    return move_nodes(mesh, doflocs)
 
 
 def serve_curvature(curves: tuple[Curve, ...], field: SizeField, turn: float = MAX_TURN) -> SizeField:

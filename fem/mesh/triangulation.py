@@ -14,8 +14,8 @@ from types import ModuleType
 import numpy as np
 
 from fem.errors import MeshError
-from fem.mesh.body_mesh import BodyMesh, move_nodes, triangle_mesh
-from fem.mesh.boundary_division import MAX_TURN, DividedCurve, divide_curve, serve_curvature
+from fem.mesh.body_mesh import BodyMesh, triangle_mesh
+from fem.mesh.boundary_division import MAX_TURN, DividedCurve, curve_middles, divide_curve, serve_curvature
 from fem.mesh.element_size import DEFAULT_GROWTH, Refinement, SizeField
 from fem.mesh.gmsh_session import gmsh_model
 from fem.mesh.memory_need import UNKNOWNS_PER_TRIANGLE, mesh_memory, require_memory
@@ -168,12 +168,7 @@ def _mesh_shape(
         first += len(nodes)
     mesh = triangle_mesh(np.vstack([places.real, places.imag]), triangles, edges, order=order)
     if order == 2:
-        doflocs = mesh.doflocs.copy()
-        for line in divided:
-            middles = line.curve.points(line.middles)
-            nodes = mesh.nvertices + mesh.boundaries[line.curve.name]
-            doflocs[0, nodes], doflocs[1, nodes] = middles.real, middles.imag
-        mesh = move_nodes(mesh, doflocs)
+        mesh = curve_middles(mesh, divided)
     body = BodyMesh(name=shape.name, mesh=mesh)
     body.require_complete_boundaries()
     require_quality(body)

@@ -69,10 +69,13 @@ CARRYING = 0.1
 def face_load_factor(kind: AlongWidth, groups: int = 1, series: int = 1) -> FloatArray:
     """Return K_Hβ of groups of pairs, shape (positions, groups): the largest line load by the largest mean one.
 
-    It is that of the pair that carries most, where that has the largest line load as well; not a number where a group carries
-    less than `CARRYING` of the most that any does at one of the positions, of `series` drives one after another.
+    Line loads are without the bulge of ends that carry (`AlongWidth.even_line_load`), which grows without bound as slices become
+    narrower: an aligned straight line has a factor of one. It is that of the pair that carries most, where that has the largest
+    line load as well; not a number where a group carries less than `CARRYING` of the most that any does at one of the positions,
+    of `series` drives one after another.
     """
-    each = kind.line_load.reshape(kind.line_load.shape[0], groups, -1, kind.line_load.shape[-1])
+    shape = kind.line_load.shape[0], groups, -1, kind.line_load.shape[-1]
+    each = kind.even_line_load.reshape(shape)
     if not each.shape[2]:
         return np.full(each.shape[:2], np.nan)
     mean = each.mean(axis=3).max(axis=2)

@@ -141,7 +141,6 @@ class _TiltedGrids:
         )
         z = sliced.slice_heights(self.length, self.slices)
         edges = np.linspace(-0.5 * self.length, 0.5 * self.length, self.slices + 1)
-        weights = 0.5 * np.polynomial.legendre.leggauss(z.shape[1])[1]
         values = np.zeros((6, *delta.shape))
         slice_load, line_load = np.zeros((*delta.shape, self.slices)), np.zeros((*delta.shape, *z.shape))
         for index in np.ndindex(delta.shape):
@@ -162,7 +161,7 @@ class _TiltedGrids:
             centres = 0.5 * (found.edges[1:] + found.edges[:-1])
             points = np.interp(z, centres, found.line_load) * ((z > found.edges[0]) & (z < found.edges[-1]))
             # Points carry together what their slice does: the bulge at an end lies between them.
-            means = points @ weights
+            means = sliced.slice_means(points)
             even = slice_load[index] * (self.slices / self.length)
             line_load[index] = points * np.divide(even, means, out=np.zeros(even.shape), where=means > 0.0)[:, None]
         load, moment, by_approach, by_tilt, turning, _ = values
@@ -271,7 +270,11 @@ class GridCompliance(UncoupledContacts[_KindGrids]):
             size = np.broadcast_to(radius, approach.shape)
             heights = sliced.slice_heights(law.length, law.slices).mean(axis=1)
             patches = sliced.solve_along_width(law.kind, approach, np.asarray(tilt), size, heights, law.known(size))
-            found[name] = along_width(law.kind, patches, size)
+            here, means = along_width(law.kind, patches, size), getattr(by_lines, name).along
+            assert here.along is not None
+            # Grids tell pressures at single heights; line loads are means over slices, whose sum is the load.
+            lines = {each: getattr(means, each) for each in ("line_load", "even_line_load")}
+            found[name] = replace(here, along=replace(here.along, **lines))
         return replace(by_lines, pins=found["pins"], inner=found["inner"], outer=found["outer"])
 
     def warm_start(self, laws: PairLaws[_KindGrids], positions: int) -> NDArray[np.object_]:

@@ -132,14 +132,16 @@ class HalfSpaceCompliance(UncoupledContacts[ContactLaw]):
             drive.pin_wheel,
         )
         pins: Any = sliced.back_line(flank, wheel_pin_seat(drive), place.wheel_pin_plays)
+        rigid = False
         if shaft_pin_beam(drive) is None:
             spring = sliced.SlicedSpring(stiffness=shaft_pin_stiffness(drive), length=wide, slices=slices)
             hole: Any = sliced.back_line(spring, shaft_pin_seat(drive), place.shaft_pin_plays)
         else:
             # A beam bends behind its contact, which says how its load lies along the width.
-            hole = hole_in_slices(
-                drive, hole_modulus(drive, rigid_shaft_pins=not shaft_pins_yield(drive)), place.shaft_pin_plays
-            )
+            rigid = not shaft_pins_yield(drive)
+            modulus = hole_modulus(drive, rigid_shaft_pins=rigid)
+            hole = hole_in_slices(drive, modulus, place.shaft_pin_plays)
+            kinds = replace(kinds, holes=replace(kinds.holes, contact_modulus=modulus))
         return cls(
             geometry=geometry,
             pin_law=pins,
@@ -151,6 +153,7 @@ class HalfSpaceCompliance(UncoupledContacts[ContactLaw]):
             ),
             hole_law=hole,
             kinds=replace(kinds, pins=replace(kinds.pins, lead=None)),
+            rigid_shaft_pins=rigid,
         )
 
     def laws(self, flank: FlankMotion, warm_start: NDArray[np.object_] | None) -> PairLaws[ContactLaw]:

@@ -100,7 +100,7 @@ class ContactsInSlices:
         motion, tilt = self.motions[number], self.tilts[number]
         at = tilt.tilt if given_tilt is None else tilt.tilt - given_tilt
         contact = law.respond(motion.approach - given, at, self.radii[number], start, self.exactness)
-        return LeaningPairs(tilt=tilt, contact=contact)
+        return LeaningPairs(tilt=tilt, contact=contact.still)
 
     def rollers(
         self,

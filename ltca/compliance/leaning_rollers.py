@@ -18,16 +18,9 @@ from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.rollers import RollerLaws, RollerState
 from ltca.errors import ConvergenceError
 from ltca.geometry.pair_motion import RollerRays, cross, dot
+from ltca.laws.between_contacts import SETTLED, PartStiffness, newton_step, shorten_steps, unbalanced
 from ltca.laws.sliced_contact import EXACT, LAST_STEP_ERROR, Exactness, SlicedContact, slice_heights
 from ltca.laws.sliced_line import SlicedLine
-
-SETTLED = 1e-10
-"""Largest force and moment (by half the length) left over, by the larger load of the two contacts."""
-ROUND_OFF = 1e-7
-"""What is left that may be due to what the slices leave over."""
-MAX_HALVINGS = 16
-STEEPEST = 0.5
-"""Largest slope of the energy at the end of a step, by that at its start, that is not shortened."""
 
 FARTHEST = 1.5
 """Place of a roller from the middle of its overlap, as a part of the overlap, up to which it is where to start elsewhere."""
@@ -239,8 +232,7 @@ class _PressedRollers:
             size = np.maximum(np.maximum(self.inner.load, self.outer.load), self.lightest)
             left = np.maximum(np.abs(force), np.abs(moment) / self.half) / size
             history.append(float(np.max(left, initial=0.0)))
-            # Nothing but what the slices leave over is left where steps no longer help.
-            going = np.flatnonzero((left > SETTLED) & ~((before < ROUND_OFF) & (left >= 0.5 * before)))
+            going = unbalanced(left, before)
             if not going.size:
                 return
             if step == self.exactness.steps:
@@ -264,16 +256,17 @@ class _PressedRollers:
         inner, outer = (0.0 if contact.left is None else contact.left for contact in (self.inner, self.outer))
         return np.maximum(self.last_step, np.maximum(inner, outer))
 
+    @property
+    def stands_at(self) -> _Contacts:
+        """Contacts of all rollers, directions and arms of their loads in the bore."""
+        return self.inner, self.outer, self.outward, self.length
+
     def newton(self, which: NDArray[np.intp]) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Newton's step of the places and leans of some rollers, and the slope of the energy along it."""
         force, moment = (values[which] for values in _imbalance(self.inner, self.outer, self.outward, self.ray))
-        stiff, mixed, turning = (values[which] for values in _own_stiffness(self))
-        determinant = np.where(stiff > 0.0, stiff * turning - mixed**2, 1.0)
+        stiffness = _own_stiffness(self.stands_at, self.ray, self.half).take(which)
         # Beyond half of what is pressed together at the end other slices meet than the slopes know of.
-        most = 0.5 * self.reach[which] / self.half
-        turn = np.clip(-(stiff * moment - mixed * force) / determinant, -most, most)
-        step = -(force + mixed * turn) / np.where(stiff > 0.0, stiff, 1.0)
-        return step, turn, force * step + moment * turn
+        return newton_step(force, moment, stiffness, 0.5 * self.reach[which] / self.half)
 
     def along_slopes(self, which: NDArray[np.intp]) -> NDArray[np.intp]:
         """Take Newton's step of some rollers along the slopes of their contacts; return those whose contacts change in it."""
@@ -287,51 +280,31 @@ class _PressedRollers:
         steady = np.abs(step) + bent <= part * self.inner.steady[which]
         steady &= np.abs(after - before) + bent <= part * self.outer.steady[which]
         some = which[steady]
-        self.inner.shift(some, step[steady], -turn[steady])
-        self.outer.shift(some, (after - before)[steady], turn[steady])
+        self.inner.shift(some, step[steady], -turn[steady], 2.0 * self.half)
+        self.outer.shift(some, (after - before)[steady], turn[steady], 2.0 * self.half)
         self.inward[some] += step[steady]
         self.lean[some] += turn[steady]
         self.outward[some], self.length[some] = outward[steady], length[steady]
         return which[~steady]
 
     def downhill(self, going: NDArray[np.intp]) -> None:
-        """Take Newton's step of some rollers, shortened where the energy rises again steeply at its end.
-
-        The energy is convex along a step: its slope says how far its least is, also where differences of energies are
-        round-off.
-        """
-        first, second = self.inner.take(going), self.outer.take(going)
+        """Take Newton's step of some rollers, shortened where the energy rises again steeply at its end."""
+        near = self.inner.near[going], self.outer.near[going]
         step, turn, slope = self.newton(going)
-        fraction = np.ones(step.shape)
-        inward, lean, n = self.inward[going], self.lean[going], self.ray[going]
-        there = self.contacts(going, inward + step, lean + turn, (first.near, second.near))
-        low, high = np.zeros(step.shape), np.full(step.shape, np.inf)
-        for _ in range(MAX_HALVINGS):
-            force, moment = _imbalance(*there[:3], n)
-            ahead, steep = force * step + moment * turn, STEEPEST * np.abs(slope)
-            far, near = ahead > steep, (ahead < -steep) & np.isfinite(high)
-            high[far], low[near] = fraction[far], fraction[near]
-            long = np.flatnonzero(far | near)
-            if not long.size:
-                break
-            # Where a slice begins to carry the slope turns within a little: places are halved by their size then.
-            cut = np.clip(np.abs(slope[long]) / (np.abs(slope[long]) + np.abs(ahead[long])), 0.1, 0.7)
-            between = np.sqrt(low[long] * high[long])
-            fraction[long] = np.where(low[long] > 0.0, between, cut * high[long])
-            part = self.contacts(
-                going[long],
-                inward[long] + fraction[long] * step[long],
-                lean[long] + fraction[long] * turn[long],
-                (first.near[long], second.near[long]),
-            )
-            there[0].put(long, part[0])
-            there[1].put(long, part[1])
-            there[2][long], there[3][long] = part[2:]
-        self.inward[going] += fraction * step
-        self.lean[going] += fraction * turn
-        self.inner.put(going, there[0])
-        self.outer.put(going, there[1])
-        self.outward[going], self.length[going] = there[2:]
+        inward, lean = self.inward[going], self.lean[going]
+
+        def move(some: NDArray[np.intp], fraction: FloatArray) -> tuple[FloatArray, FloatArray]:
+            rows, by, round_by = going[some], step[some], turn[some]
+            self.inward[rows], self.lean[rows] = inward[some] + fraction * by, lean[some] + fraction * round_by
+            there = self.contacts(rows, self.inward[rows], self.lean[rows], (near[0][some], near[1][some]))
+            self.inner.put(rows, there[0])
+            self.outer.put(rows, there[1])
+            self.outward[rows], self.length[rows] = there[2:]
+            force, moment = _imbalance(*there[:3], self.ray[rows])
+            bend = _own_stiffness(there, self.ray[rows], self.half).along(by, round_by)
+            return force * by + moment * round_by, bend
+
+        shorten_steps(slope, move)
 
 
 def _are_alike(inner: Any, outer: Any) -> bool:
@@ -346,15 +319,17 @@ def _imbalance(
     return inner.load - outer.load * dot(outward, ray), outer.moment - inner.moment
 
 
-def _own_stiffness(rollers: _PressedRollers) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _own_stiffness(contacts: _Contacts, ray: ComplexArray, half: float) -> PartStiffness:
     """Second derivatives of the energy by place inward and lean."""
-    inner, outer, cosine = rollers.inner, rollers.outer, dot(rollers.outward, rollers.ray)
-    bend = outer.load * (1.0 - cosine**2) / rollers.length
-    stiff = inner.by_approach + outer.by_approach * cosine**2 + bend
-    mixed = -(inner.by_tilt + outer.by_tilt * cosine)
-    # A roller that touches at one end alone turns about that end freely.
-    turning = inner.moment_by_tilt + outer.moment_by_tilt + 1e-9 * rollers.half**2 * stiff
-    return stiff, mixed, turning
+    inner, outer, outward, length = contacts
+    cosine = dot(outward, ray)
+    bend = outer.load * (1.0 - cosine**2) / length
+    return PartStiffness(
+        inner.by_approach + outer.by_approach * cosine**2 + bend,
+        -(inner.by_tilt + outer.by_tilt * cosine),
+        inner.moment_by_tilt + outer.moment_by_tilt,
+        half,
+    )
 
 
 def _eliminated(rollers: _PressedRollers, *, tilts: bool) -> tuple[FloatArray, FloatArray]:
@@ -389,11 +364,9 @@ def _eliminated(rollers: _PressedRollers, *, tilts: bool) -> tuple[FloatArray, F
     direct[:, :2, 4], direct[:, 2:4, 4] = k * normal, x * n
     direct[:, 4, 4], direct[:, 5, 5] = outer.by_approach, inner.by_approach
     direct[:, 2:4, :2], direct[:, 4, :4] = direct[:, :2, 2:4].swapaxes(1, 2), direct[:, :4, 4]
-    stiff, mixed, turning = _own_stiffness(rollers)
-    own = np.empty((ray.size, 2, 2))
-    own[:, 0, 0], own[:, 1, 1] = stiff, turning
-    own[:, 0, 1] = own[:, 1, 0] = -mixed
-    own[stiff <= 0.0] = np.eye(2)
+    # By place outward and lean.
+    stiffness = _own_stiffness(rollers.stands_at, ray, rollers.half)
+    own = stiffness._replace(mixed=-stiffness.mixed).matrix
     both = np.stack((by_place, by_lean), axis=1)
     local = np.empty((ray.size, 2, 6))
     local[:, :, 0] = np.matmul(both[:, :, :2], n[..., None])[..., 0]

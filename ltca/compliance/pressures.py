@@ -98,8 +98,7 @@ def _between_ends(
     relief = np.zeros(sliced.slice_heights(kind.length, slices).shape)
     line = sliced.SlicedLine(length=kind.length, contact_modulus=kind.contact_modulus, slices=slices, relief=relief)
     shaped = line_load * line.respond(approach, np.zeros(load.shape), effective_radius).line_load
-    weights = 0.5 * kind.length / slices * np.polynomial.legendre.leggauss(shaped.shape[-1])[1]
-    total = (shaped @ weights).sum(axis=-1)
+    total = kind.length / slices * sliced.slice_means(shaped).sum(axis=-1)
     scale = np.divide(load, total, out=np.zeros(load.shape), where=total > 0.0)
     return np.asarray(shaped * scale[..., None, None])
 
@@ -119,10 +118,10 @@ def along_width(
     """Return pressures and half-widths of contacts in slices from what is known along their width at the middles of these."""
     half_width = 2.0 / kind.contact_modulus * found.pressure * np.asarray(effective_radius)[..., None]
     middle = found.pressure.shape[-1] // 2
-    largest, place, end_load = found.largest, found.place, found.end_load
+    largest, place, end_load, even = found.largest, found.place, found.end_load, found.even_line_load
     if not has_ends:
         at = np.argmax(found.pressure, axis=-1)
-        largest, end_load = found.pressure.max(axis=-1), np.zeros(end_load.shape)
+        largest, end_load, even = found.pressure.max(axis=-1), np.zeros(end_load.shape), found.line_load
         place = np.where(largest > 0.0, found.height[at], 0.0)
     return KindPressures(
         mid=found.pressure[..., middle],
@@ -130,6 +129,11 @@ def along_width(
         half_width=half_width[..., middle],
         end_cell=kind.end_cell if has_ends else np.nan,
         along=AlongWidth(
-            line_load=found.line_load, pressure=found.pressure, half_width=half_width, place=place, end_load=end_load
+            line_load=found.line_load,
+            even_line_load=even,
+            pressure=found.pressure,
+            half_width=half_width,
+            place=place,
+            end_load=end_load,
         ),
     )

@@ -239,6 +239,8 @@ class AlongWidth:
     ----------
     line_load : array, shape (positions, pairs, slices)
         Mean over each slice, N/mm.
+    even_line_load : array, shape (positions, pairs, slices)
+        The same without the bulge of ends that carry: by what slices of an aligned straight line do by its middle, N/mm.
     pressure, half_width : array, shape (positions, pairs, slices)
         Largest over the profile and half-width in the middle of each slice, MPa and mm.
     place : array, shape (positions, pairs)
@@ -248,6 +250,7 @@ class AlongWidth:
     """
 
     line_load: FloatArray
+    even_line_load: FloatArray
     pressure: FloatArray
     half_width: FloatArray
     place: FloatArray

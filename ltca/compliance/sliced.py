@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from ltca.compliance.in_slices import ContactsInSlices, roller_start, stacked, warm_rows
     from ltca.contact.tilted_grid import press_tilted
-    from ltca.laws.sliced_contact import EXACT, ROUGH, Exactness, SlicedContact, slice_heights
+    from ltca.laws.sliced_contact import EXACT, ROUGH, Exactness, SlicedContact, slice_heights, slice_means
     from ltca.laws.sliced_line import SlicedLine
     from ltca.laws.sliced_plane import SlicedPlane
     from ltca.laws.sliced_seat import SlicedSeat, back_line
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 _HOMES = {
     "ltca.compliance.in_slices": ("ContactsInSlices", "roller_start", "stacked", "warm_rows"),
     "ltca.contact.tilted_grid": ("press_tilted",),
-    "ltca.laws.sliced_contact": ("EXACT", "ROUGH", "Exactness", "SlicedContact", "slice_heights"),
+    "ltca.laws.sliced_contact": ("EXACT", "ROUGH", "Exactness", "SlicedContact", "slice_heights", "slice_means"),
     "ltca.laws.sliced_line": ("SlicedLine",),
     "ltca.laws.sliced_plane": ("SlicedPlane",),
     "ltca.laws.sliced_seat": ("SlicedSeat", "back_line"),
@@ -31,7 +31,7 @@ _HOMES = {
 
 __all__ = [
     "EXACT", "ROUGH", "ContactsInSlices", "Exactness", "SlicedContact", "SlicedLine", "SlicedPlane", "SlicedSeat",
-    "SlicedSpring", "back_line", "estimate_along_width", "press_tilted", "roller_start", "slice_heights",
+    "SlicedSpring", "back_line", "estimate_along_width", "press_tilted", "roller_start", "slice_heights", "slice_means",
     "solve_along_width", "stacked", "warm_rows",
 ]  # fmt: skip
 

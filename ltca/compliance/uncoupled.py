@@ -53,6 +53,8 @@ class UncoupledContacts(ABC, Generic[Law]):
         Law of shaft pins and holes: springs of stiffness k_PS in series with the sleeves' seats.
     kinds : ContactKinds
         The contacts as grids see them.
+    rigid_shaft_pins : bool
+        Whether shaft pins are rigid where they touch their holes; springs stand for all that yields there otherwise.
     """
 
     coefficients: ClassVar[None] = None
@@ -60,6 +62,7 @@ class UncoupledContacts(ABC, Generic[Law]):
     geometry: ContactGeometry
     hole_law: ContactLaw
     kinds: ContactKinds
+    rigid_shaft_pins: bool = False
 
     @abstractmethod
     def laws(self, flank: FlankMotion, warm_start: NDArray[np.object_] | None) -> PairLaws[Law]:
@@ -180,7 +183,13 @@ class UncoupledContacts(ABC, Generic[Law]):
         """Return pressures and half-widths from the laws, those of the shaft pins from their loads."""
         if response.leaning_pins is not None:
             spring = isinstance(getattr(self.hole_law, "contact", self.hole_law), sliced.SlicedSpring)
-            return pressures_in_slices(response, self.kinds, self.geometry.placement, shaft_pins_on_springs=spring)
+            return pressures_in_slices(
+                response,
+                self.kinds,
+                self.geometry.placement,
+                rigid_shaft_pins=self.rigid_shaft_pins,
+                shaft_pins_on_springs=spring,
+            )
         flank, rollers, kinds = response.flank, response.rollers, self.kinds
         laws = self.laws(flank, response.warm_start)
         of_rollers = laws.rollers
@@ -189,7 +198,7 @@ class UncoupledContacts(ABC, Generic[Law]):
             outer=self.read_pressures(of_rollers.outer, kinds.outer, rollers.outer_approach, of_rollers.outer_radius),
             inner=self.read_pressures(of_rollers.inner, kinds.inner, rollers.inner_approach, of_rollers.inner_radius),
             holes=elastic_hole_pressures(kinds.holes, response.hole_load, self.geometry.placement),
-            rigid_shaft_pins=False,
+            rigid_shaft_pins=self.rigid_shaft_pins,
         )
 
 

@@ -189,7 +189,7 @@ def _problems(drive: Drive, row: Refusal, engine: str) -> Iterator[str]:
             bound = f"{accepted:g}{unit} ({row.equals})"
         elif value == default or (row.accepts is not None and row.accepts(value)):
             continue
-        elif default is not None and not is_dataclass(default):
+        elif default is not None and default != () and not is_dataclass(default):
             bound = f"{default:g}{unit}"
         named = (
             f"{path} ({_contents(path, value, row.path)})" if is_dataclass(value) else f"{path} = {shown(value)}{unit}"

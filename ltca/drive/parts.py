@@ -32,6 +32,7 @@ from ltca.drive.materials import (
 from ltca.drive.members.carrier import Carrier as Carrier, CarrierPosts as CarrierPosts
 from ltca.drive.members.crank import Crank as Crank, CrankBearing as CrankBearing, CrankSupport as CrankSupport
 from ltca.drive.members.first_stage import FirstStage as FirstStage
+from ltca.drive.members.inertia import Damping as Damping, Inertia as Inertia
 from ltca.drive.members.main_bearing import BearingRow as BearingRow, MainBearing as MainBearing
 from ltca.drive.members.operation import (
     Analysis as Analysis,
@@ -209,6 +210,10 @@ class Drive:
         Lubricant of rollers and races, for lives alone; unmodified when left out.
     temperature : Temperature or None
         Temperatures of the parts; lengths of a file are those at 20 °C.
+    inertia : Inertia or None
+        Inertias of input, output and cranks beside those of shapes and densities, for vibrations alone.
+    damping : Damping or None
+        Damping of vibrations, for these alone.
     analysis : Analysis
         Engine of an analysis that does not name one; no property of the drive.
     contact : Contact
@@ -235,6 +240,8 @@ class Drive:
     duty: tuple[Duty, ...] = ()
     lubricant: Lubricant | None = None
     temperature: Temperature | None = None
+    inertia: Inertia | None = None
+    damping: Damping | None = None
     analysis: Analysis = field(default_factory=Analysis)
     contact: Contact = field(default_factory=Contact)
     case: Name = field(default="nominal", compare=False)

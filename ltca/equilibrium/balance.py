@@ -226,11 +226,29 @@ def _solve_by_neighbours(
     begin = take_positions(inner, rest)
     # A start that leads somewhere in a few steps is as good as what lies between neighbours.
     if np.median(search.iterations[first]) > FEW_ITERATIONS and search.balanced:
-        known, contacts = search.contacts()
-        pose[rest] = pose_between(angle[known], pose[known], angle[rest], model.coordinates)
-        ratio = model.discs[0].geometry.placement.reduction_ratio
-        begin = start_between(angle[known], Start.after(contacts), angle[rest], ratio)
+        begin = _place_between(search, rest)
     return np.sort(np.concatenate([left, search.iterate(_most(search), rest, begin)]))
+
+
+def _place_between(search: Search, rows: NDArray[np.intp]) -> Start:
+    """Place positions between those that balance; return the inner unknowns to start from."""
+    model, angle, pose = search.model, search.angle, search.pose
+    known, contacts = search.contacts()
+    pose[rows] = pose_between(angle[known], pose[known], angle[rows], model.coordinates)
+    return start_between(angle[known], Start.after(contacts), angle[rows], _ratio(model))
+
+
+def _place_beside(search: Search, rows: NDArray[np.intp], leaders: NDArray[np.intp]) -> Start:
+    """Place positions as their leaders stand, numbered among those that balance; return the inner unknowns to start from."""
+    model, angle, pose = search.model, search.angle, search.pose
+    known, contacts = search.contacts()
+    at = known[leaders]
+    pose[rows] = pose_beside(angle[at], pose[at], angle[rows], model.coordinates)
+    return start_beside(angle[at], take_positions(Start.after(contacts), leaders), angle[rows], _ratio(model))
+
+
+def _ratio(model: Reducer) -> float:
+    return model.discs[0].geometry.placement.reduction_ratio
 
 
 def _solve_beside_leaders(search: Search, series: int) -> NDArray[np.intp]:
@@ -247,15 +265,20 @@ def _solve_beside_leaders(search: Search, series: int) -> NDArray[np.intp]:
         return left
     led = np.zeros(series, dtype=bool)
     if search.balanced:
-        known, contacts = search.contacts()
+        known = search.contacts()[0]
         led[known // count] = True
         beside = rest[led[rest // count]]
-        rows = (np.cumsum(led) - 1)[beside // count]
-        at = known[rows]
-        pose[beside] = pose_beside(angle[at], pose[at], angle[beside], model.coordinates)
-        ratio = model.discs[0].geometry.placement.reduction_ratio
-        begin = start_beside(angle[at], take_positions(Start.after(contacts), rows), angle[beside], ratio)
-        left = np.concatenate([left, search.iterate(_most(search), beside, begin)])
+        own = (np.cumsum(led) - 1)[beside // count]
+        # Seen from one of several cranks positions do differ: some beside the leader, and the others from between them.
+        first = (
+            np.isin(beside, leading) if series == 1 and _of_several_cranks(model) else np.ones(beside.size, dtype=bool)
+        )
+        begin = _place_beside(search, beside[first], own[first])
+        left = np.concatenate([left, search.iterate(_most(search), beside[first], begin)])
+        if not first.all():
+            left = np.concatenate(
+                [left, search.iterate(_most(search), beside[~first], _place_between(search, beside[~first]))]
+            )
     alone = rest[~led[rest // count]]
     if alone.size:
         pose[alone] = _at_first_contact(model.take(alone), angle[alone], search.moment[alone])
@@ -281,6 +304,10 @@ def _part(search: Search, rows: NDArray[np.intp], factor: FloatArray, pose: Floa
     model = search.model.take(rows)
     moment, load = factor * search.moment[rows], factor * search.load[rows]
     return Search(model, search.angle[rows], moment, search.levers(rows), load, pose.copy())
+
+
+def _of_several_cranks(model: Reducer) -> bool:
+    return model.discs[0].geometry.placement.cranks > 1
 
 
 def _is_loose(model: Reducer) -> bool:

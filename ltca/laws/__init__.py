@@ -12,6 +12,7 @@ sliced_contact         What contacts in slices carry, whatever their law, and wh
 sliced_line            Line contacts in slices along their width: load and moment by approach and tilt
 sliced_spring          Springs even along the width, in slices
 sliced_plane           Plane strain in slices that do not feel each other
+between_contacts       Newton's steps of parts between contacts in slices: place and lean where forces and moments balance
 sliced_seat            Conforming seats in slices behind a contact
 width_pressure         Pressures along the width, from slices and from grids that tilt
 shipped_tables         Makes the tables of cylinders that ship with the package

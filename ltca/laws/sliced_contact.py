@@ -12,6 +12,9 @@ from ltca.arrays import FloatArray
 
 POINTS = 4
 """Points of a slice at which its surfaces' approach is taken (Gauss)."""
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(POINTS)
+SHARES = 0.5 * _WEIGHTS
+"""Parts of the points in the mean over a slice."""
 LARGEST_EXTRAPOLATION = 0.3
 """Change of a slice's load by the largest up to which slopes tell it."""
 LAST_STEP_ERROR = 1e4
@@ -50,7 +53,20 @@ ROUGH = Exactness(slices=3e-3, rollers=3e-3, steady=0.3, steps=3)
 def slice_heights(length: float, slices: int) -> FloatArray:
     """Return z of the points of the slices of a line of a length in mm, shape (slices, points)."""
     middle = (np.arange(slices) - 0.5 * (slices - 1)) * length / slices
-    return np.asarray(middle[:, None] + 0.5 * length / slices * np.polynomial.legendre.leggauss(POINTS)[0])
+    return np.asarray(middle[:, None] + 0.5 * length / slices * _NODES)
+
+
+def slice_means(values: FloatArray) -> FloatArray:
+    """Return the means over slices of values at their points, shape (…, slices, points)."""
+    return np.asarray(values @ SHARES)
+
+
+@cache
+def _sums(length: float, slices: int) -> FloatArray:
+    """Weights of all points of a line for ∫ z dz, for ∫ dz and ∫ z dz of each slice, and for ∫ z² dz, shape (points, 2 n + 2)."""
+    z, own = slice_heights(length, slices).ravel(), np.repeat(np.eye(slices), POINTS, axis=0)
+    weights = length / slices * np.tile(SHARES, slices)
+    return np.asarray(weights[:, None] * np.column_stack((z, own, own * z[:, None], z**2)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -69,8 +85,8 @@ class SlicedContact:
         q at the points of the slices, N/mm.
     near : array, shape (…, 2 + 3 slices) or (…, 0)
         δ, θ, F_i, ∂F_i/∂δ and ∂F_i/∂θ: what a neighbour starts from (`loads_nearby`); nothing where no start is needed.
-    line_slopes : array, shape (…, 2, slices, points), or None
-        ∂q/∂δ and ∂q/∂θ; None where contacts are not moved along them.
+    line_slopes : array, shape (…, slices, points), or None
+        dq by the approach at each point, N/mm²; None where contacts are not moved along them.
     steady : array, shape (…), or None
         Least approach or gap of a point: what changes approaches by a part of it everywhere moves contacts along slopes, mm.
     left : array, shape (…), or None
@@ -98,10 +114,49 @@ class SlicedContact:
         for name, values in self._arrays():
             values[rows] = getattr(part, name)
 
+    @classmethod
+    def of_separate(
+        cls, approach: FloatArray, tilt: FloatArray, line_load: FloatArray, line_slope: FloatArray, length: float
+    ) -> SlicedContact:
+        """Return contacts whose slices do not feel each other, from what their points carry.
+
+        Parameters
+        ----------
+        approach, tilt : array, shape (…)
+            δ, mm, and θ, rad.
+        line_load, line_slope : array, shape (…, slices, points)
+            q, N/mm, and its derivative by the approach of the point, N/mm².
+        length : float
+            L, mm.
+        """
+        shape, slices = line_load.shape[:-2], line_load.shape[-2]
+        sums = _sums(length, slices)
+        carried = line_load.reshape(-1, slices * POINTS) @ sums[:, : slices + 1]
+        stiff = line_slope.reshape(-1, slices * POINTS) @ sums
+        each = [
+            values.reshape(*shape, slices)
+            for values in (carried[:, 1:], stiff[:, 1 : slices + 1], stiff[:, slices + 1 : -1])
+        ]
+        return cls(
+            load=each[0].sum(axis=-1),
+            moment=carried[:, 0].reshape(shape),
+            by_approach=each[1].sum(axis=-1),
+            by_tilt=stiff[:, 0].reshape(shape),
+            moment_by_tilt=stiff[:, -1].reshape(shape),
+            slice_load=each[0],
+            line_load=line_load,
+            near=np.concatenate((approach[..., None], tilt[..., None], *each), axis=-1),
+        )
+
     @property
     def kept(self) -> SlicedContact:
         """The contacts without what a search alone asks for."""
         return replace(self, near=self.near[..., :0], line_slopes=None, steady=None, left=None)
+
+    @property
+    def still(self) -> SlicedContact:
+        """The contacts without what moves them along their slopes."""
+        return replace(self, line_slopes=None, steady=None)
 
     @property
     def halves(self) -> tuple[SlicedContact, SlicedContact]:
@@ -113,17 +168,21 @@ class SlicedContact:
         """Return contacts of the shape (n, 1) as n contacts."""
         return SlicedContact(**{name: values[:, 0] for name, values in self._arrays()})
 
-    def shift(self, rows: NDArray[np.intp], approach: FloatArray, tilt: FloatArray) -> None:
-        """Move some of a row of contacts along their slopes, in place."""
+    def shift(self, rows: NDArray[np.intp], approach: FloatArray, tilt: FloatArray, length: float) -> None:
+        """Move some of a row of contacts of a length, mm, along their slopes, in place."""
         assert self.line_slopes is not None
         slices = self.slice_load.shape[-1]
+        z, weights = slice_heights(length, slices), length / slices * SHARES
         by_approach, by_tilt = self.by_approach[rows], self.by_tilt[rows]
         self.load[rows] += by_approach * approach + by_tilt * tilt
         self.moment[rows] += by_tilt * approach + self.moment_by_tilt[rows] * tilt
-        slopes, of_lines = self.near[rows, 2 + slices :], self.line_slopes[rows]
+        slopes, of_points = self.near[rows, 2 + slices :], self.line_slopes[rows]
         moved = approach[:, None] * slopes[:, :slices] + tilt[:, None] * slopes[:, slices:]
         self.slice_load[rows] += moved
-        self.line_load[rows] += approach[:, None, None] * of_lines[:, 0] + tilt[:, None, None] * of_lines[:, 1]
+        # Points of a slice approach alike but for the tilt: by as much as its load follows.
+        stiff, turned = of_points @ weights, tilt[:, None, None] * z
+        alike = np.divide(moved - (of_points * turned) @ weights, stiff, out=np.zeros(stiff.shape), where=stiff > 0.0)
+        self.line_load[rows] += of_points * (alike[..., None] + turned)
         self.near[rows, :2] += np.stack((approach, tilt), axis=1)
         self.near[rows, 2 : 2 + slices] += moved
 

@@ -45,6 +45,7 @@ from ltca.laws.sliced_contact import (
     EXACT,
     LAST_STEP_ERROR,
     POINTS,
+    SHARES,
     Exactness,
     SlicedContact,
     loads_nearby,
@@ -69,7 +70,7 @@ TOUCHING = 1e-16
 """Deepest approach by the length up to which a contact is open: less is round-off of where parts stand."""
 _KNOTS = 81
 _LIGHTEST, _HEAVIEST, _PLANE_KNOTS = -46.0, -0.3, 4097
-_NODES, _SHARES = np.polynomial.legendre.leggauss(8)
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
 TABLE = Path(__file__).with_name("sliced_line.json")
 
 
@@ -93,27 +94,42 @@ def _plane_square(place: FloatArray) -> FloatArray:
 
 @cache
 def _plane_pieces() -> FloatArray:
-    """Cubic pieces of w over ln X from its values and slopes, as close to it as round-off of loads lets them matter."""
+    """Cubic pieces of 1/w over ln X from its values and slopes, as close to it as round-off of loads lets them matter."""
     places = np.linspace(_LIGHTEST, _HEAVIEST, _PLANE_KNOTS)
     square = _plane_square(places)
-    value = 0.5 * (np.log(4.0 / square) + 1.0)
-    slope = -0.5 * value / (value - 0.5) * (places[1] - places[0])
+    level = 0.5 * (np.log(4.0 / square) + 1.0)
+    value, slope = 1.0 / level, 0.5 / (level * (level - 0.5)) * (places[1] - places[0])
     before, after, rise = slope[:-1], slope[1:], np.diff(value)
     return np.stack((value[:-1], before, 3.0 * rise - 2.0 * before - after, before + after - 2.0 * rise))
 
 
-def _inverse_of_plane_load(place: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """w at ln X and its derivative."""
+def _plane_load(place: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """1/w at ln X and its derivative; in the array itself."""
     per_knot = (_PLANE_KNOTS - 1) / (_HEAVIEST - _LIGHTEST)
-    beyond = (place < _LIGHTEST) | (place >= _HEAVIEST)
-    any_beyond = beyond.any()
-    at = (place - _LIGHTEST) * per_knot
-    piece = np.where(beyond, 0.0, at).astype(np.intp) if any_beyond else at.astype(np.intp)
-    t = at - piece
-    c0, c1, c2, c3 = _plane_pieces().take(piece, axis=1)
-    value, slope = c0 + t * (c1 + t * (c2 + t * c3)), (c1 + t * (2.0 * c2 + (3.0 * t) * c3)) * per_knot
-    if any_beyond:
-        value[beyond], slope[beyond], _ = plane_curve().value_and_derivatives(place[beyond])
+    beyond = None
+    if place.size and not (place.min() >= _LIGHTEST and place.max() < _HEAVIEST):
+        beyond = (place < _LIGHTEST) | (place >= _HEAVIEST)
+        level, bend, _ = plane_curve().value_and_derivatives(place[beyond])
+        place[beyond] = _LIGHTEST
+    place -= _LIGHTEST
+    place *= per_knot
+    piece = place.astype(np.intp)
+    place -= piece
+    value, slope, third, last = _plane_pieces().take(piece, axis=1)
+    # c0 + t (c1 + t (c2 + t c3)) and c1 + t (2 c2 + 3 t c3), by c2 + t c3 and t c3.
+    last *= place
+    third += last
+    last += third
+    third *= place
+    last *= place
+    last += third
+    third += slope
+    third *= place
+    value += third
+    slope += last
+    slope *= per_knot
+    if beyond is not None:
+        value[beyond], slope[beyond] = 1.0 / level, -bend / level**2
     return value, slope
 
 
@@ -153,7 +169,7 @@ def _bends(slices: int) -> tuple[NDArray[np.intp], NDArray[np.intp], FloatArray]
 def _moments(length: float, slices: int) -> FloatArray:
     """Weights of the points of each slice of a line of a length in mm for ∫ dz, ∫ z dz and ∫ z² dz, shape (slices, 3, points)."""
     z = slice_heights(length, slices)
-    weights = 0.5 * length / slices * np.polynomial.legendre.leggauss(POINTS)[1]
+    weights = length / slices * SHARES
     return np.ascontiguousarray(np.stack((np.broadcast_to(weights, z.shape), weights * z, weights * z**2), axis=1))
 
 
@@ -299,7 +315,7 @@ class SlicedLine:
             "slopes": (2, n),
             "near": (2 + 3 * n,),
             "line_load": (n, POINTS),
-            "line_slopes": (2, n, POINTS),
+            "line_slopes": (n, POINTS),
         }
 
     def energy(self, contact: SlicedContact, effective_radius: FloatArray) -> FloatArray:
@@ -328,12 +344,14 @@ class SlicedLine:
         everywhere = pressed.all()
         # Where open any depth will do.
         at = approach if everywhere else np.where(pressed, approach, 1e-6 * self.length)
-        w, first = _inverse_of_plane_load(np.log((2.0 / datum**2) * effective_radius * at))
-        half = (0.5 * np.pi * self.contact_modulus) / w
-        load, slope = at * half, half * (1.0 - first / w)
-        if not everywhere:
-            load *= pressed
-            slope *= pressed
+        place = (2.0 / datum**2) * effective_radius * at
+        np.log(place, out=place)
+        load, slope = _plane_load(place)
+        slope += load
+        load *= at
+        whole = 0.5 * np.pi * self.contact_modulus if everywhere else 0.5 * np.pi * self.contact_modulus * pressed
+        load *= whole
+        slope *= whole
         return load, slope
 
     def _coupling(self, load: FloatArray, effective_radius: FloatArray) -> _Coupling:
@@ -397,7 +415,7 @@ class SlicedLine:
         """
         if not self.overlap:
             return 0.0, 0.0, 0.0
-        places, shares = 0.5 * (_NODES + 1.0), 0.5 * _SHARES
+        places, shares = 0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS
         at = np.maximum(load, 1e-300) * np.append(places**2, 1.0)[:, None, None]
         datum, ratio = HALF_SPACE_DATUM * self.length, self.overlap * self.length * np.pi * self.contact_modulus
         half_width = np.sqrt(4.0 * at * (self.slices / self.length) * effective_radius / (np.pi * self.contact_modulus))
@@ -419,7 +437,7 @@ class SlicedLine:
         at = (held - start) / spacing
         piece = np.minimum(at.astype(np.intp), _KNOTS - 2)
         t = at - piece
-        c0, c1, c2, c3, c4, c5 = pieces[:, :, piece]
+        c0, c1, c2, c3, c4, c5 = pieces.take(piece, axis=2)
         curve = np.empty((3, self.slices + 1, place.size))
         curve[0] = c0 + t * (c1 + t * (c2 + t * (c3 + t * (c4 + t * c5))))
         curve[1] = (c1 + t * (2.0 * c2 + t * (3.0 * c3 + t * (4.0 * c4 + t * (5.0 * c5))))) / spacing
@@ -436,7 +454,7 @@ class SlicedLine:
     ) -> dict[str, FloatArray]:
         """What contacts with something pressed together carry (`_sizes`); contacts come last."""
         n, datum, count = self.slices, DATUM * self.length, radius.size
-        moments, z = _moments(self.length, n), slice_heights(self.length, n)[..., None]
+        moments = _moments(self.length, n)
 
         def loads_of(line: FloatArray) -> FloatArray:
             return np.asarray(np.matmul(moments[:, :1], line)[:, 0])
@@ -472,7 +490,7 @@ class SlicedLine:
                 settled = np.maximum(line + slope * shift, 0.0)
                 last_step = LAST_STEP_ERROR * (size / largest) ** 2 * load.sum(axis=0)
                 values = settled, slope, moved[:, 1:], stiff, leaning, own, at, last_step
-                part = self._carried((moments, z), values if done.all() else tuple(each[..., done] for each in values))
+                part = self._carried(moments, values if done.all() else tuple(each[..., done] for each in values))
                 if part["load"].size == count:
                     return part
                 if not found:
@@ -499,19 +517,15 @@ class SlicedLine:
             raise ConvergenceError(self._why_not(load, radius), history)
         return found
 
-    def _carried(self, heights: tuple[FloatArray, FloatArray], values: tuple[FloatArray, ...]) -> dict[str, FloatArray]:
+    def _carried(self, moments: FloatArray, values: tuple[FloatArray, ...]) -> dict[str, FloatArray]:
         """What contacts carry that are done (`_sizes`), contacts last."""
         line, slope, moved, stiff, leaning, own, steady, left = values
-        moments, z = heights
         both = np.matmul(moments[:, :2], line)
         loads = both[:, 0]
-        # Of a slice's points as its load follows, ∂F/∂δ = k (1 − ∂u/∂δ).
+        # By the tilt points of a slice approach alike but for their heights, as its load follows.
         inverse = np.divide(1.0, stiff, out=np.zeros(stiff.shape), where=stiff > 0.0)
         by_approach, by_tilt = moved[:, 0], moved[:, 1]
         turned = by_tilt - leaning
-        of_points = np.empty((2, *line.shape))
-        np.multiply(slope, (by_approach * inverse)[:, None], out=of_points[0])
-        np.multiply(slope, z + (turned * inverse)[:, None], out=of_points[1])
         return {
             "load": loads.sum(axis=0),
             "moment": both[:, 1].sum(axis=0),
@@ -523,7 +537,7 @@ class SlicedLine:
             "slice_load": loads,
             "slopes": moved.swapaxes(0, 1),
             "line_load": line,
-            "line_slopes": of_points,
+            "line_slopes": slope,
         }
 
     def _why_not(self, load: FloatArray, effective_radius: FloatArray) -> str:

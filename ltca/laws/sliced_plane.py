@@ -10,7 +10,7 @@ from ltca.arrays import FloatArray, by_drive
 from ltca.laws.backed import BackedLaw
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.plane_strain import PlaneContactLaw
-from ltca.laws.sliced_contact import EXACT, POINTS, Exactness, SlicedContact, slice_heights
+from ltca.laws.sliced_contact import EXACT, Exactness, SlicedContact, slice_heights, slice_means
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -55,25 +55,16 @@ class SlicedPlane:
         exactness: Exactness = EXACT,
     ) -> SlicedContact:
         """Return loads, moments and their derivatives, as `ltca.laws.sliced_line.SlicedLine.respond`; `start` is of no use."""
-        z = slice_heights(self.length, self.slices)
-        weights = 0.5 / self.slices * np.polynomial.legendre.leggauss(POINTS)[1] * np.ones(z.shape)
-        delta, theta, radius = (
-            np.asarray(each)[..., None, None] for each in np.broadcast_arrays(approach, tilt, effective_radius)
-        )
-        local = delta + theta * z - self._relief_of(delta)
-        whole, slope = self.plane.load_and_stiffness(local, np.broadcast_to(radius, local.shape))
-        load, carried = weights * whole, weights * slope
-        each = load.sum(axis=-1), carried.sum(axis=-1), (carried * z).sum(axis=-1)
-        both = (-2, -1)
-        return SlicedContact(
-            load=load.sum(axis=both),
-            moment=(load * z).sum(axis=both),
-            by_approach=carried.sum(axis=both),
-            by_tilt=(carried * z).sum(axis=both),
-            moment_by_tilt=(carried * z**2).sum(axis=both),
-            slice_load=each[0],
-            line_load=whole / self.length,
-            near=np.concatenate((delta[..., 0], theta[..., 0], *each), axis=-1),
+        delta, theta, radius = (np.asarray(each) for each in np.broadcast_arrays(approach, tilt, effective_radius))
+        local = self._local(delta, theta)
+        whole, slope = self.plane.load_and_stiffness(local, np.broadcast_to(radius[..., None, None], local.shape))
+        return SlicedContact.of_separate(delta, theta, whole / self.length, slope / self.length, self.length)
+
+    def _local(self, approach: FloatArray, tilt: FloatArray) -> FloatArray:
+        """Approaches of the points of contacts."""
+        delta = approach[..., None, None]
+        return np.asarray(
+            delta + tilt[..., None, None] * slice_heights(self.length, self.slices) - self._relief_of(delta)
         )
 
     def _relief_of(self, approach: FloatArray) -> FloatArray:
@@ -83,9 +74,6 @@ class SlicedPlane:
 
     def energy(self, contact: SlicedContact, effective_radius: FloatArray) -> FloatArray:
         """Return the energy of contacts, N·mm, shape (…)."""
-        z = slice_heights(self.length, self.slices)
-        weights = 0.5 / self.slices * np.polynomial.legendre.leggauss(POINTS)[1]
-        delta, theta = (contact.near[..., number, None, None] for number in (0, 1))
-        local = delta + theta * z - self._relief_of(delta)
+        local = self._local(contact.near[..., 0], contact.near[..., 1])
         radius = np.broadcast_to(np.asarray(effective_radius)[..., None, None], local.shape)
-        return np.asarray((self.plane.energy(local, radius) @ weights).sum(axis=-1))
+        return np.asarray(slice_means(self.plane.energy(local, radius)).sum(axis=-1) / self.slices)

@@ -17,9 +17,10 @@ from numpy.typing import NDArray
 
 from ltca.arrays import FloatArray, by_drive, take_rows
 from ltca.errors import ConvergenceError
+from ltca.laws.between_contacts import SETTLED, PartStiffness, newton_step, shorten_steps, unbalanced
 from ltca.laws.conforming import ConformingLaw
 from ltca.laws.slenderness_curve import quintic_spline_pieces
-from ltca.laws.sliced_contact import EXACT, POINTS, Exactness, SlicedContact, slice_heights
+from ltca.laws.sliced_contact import EXACT, POINTS, SHARES, Exactness, SlicedContact, slice_heights
 from ltca.laws.sliced_line import TOUCHING, SlicedLine
 from ltca.laws.sliced_plane import SlicedPlane
 from ltca.laws.sliced_spring import SlicedSpring
@@ -28,14 +29,6 @@ LEAST_PLAY = 1e-9
 """Play that stands for none, mm."""
 _ALL = slice(None)
 MAX_ITERATIONS = 60
-MAX_HALVINGS = 16
-SETTLED = 1e-10
-"""Largest force and moment (by half the length) left over, by the load."""
-ROUND_OFF = 1e-7
-"""What is left that may be due to what the slices leave over."""
-STEEPEST = 0.5
-"""Largest slope of the energy at the end of a step, by that at its start, that is not shortened."""
-_SHARES = np.polynomial.legendre.leggauss(POINTS)[1]
 _LIGHTEST, _HEAVIEST, _KNOTS = -40.0, 20.0, 601
 
 
@@ -48,6 +41,10 @@ class _Seat(NamedTuple):
     by_lean: FloatArray
     moment_by_lean: FloatArray
     line_load: FloatArray
+
+    def stiffness(self, length: float) -> PartStiffness:
+        """Second derivatives of the energy by travel and lean."""
+        return PartStiffness(self.by_travel, self.by_lean, self.moment_by_lean, 0.5 * length)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -87,7 +84,7 @@ class SlicedSeat:
     def press(self, travel: FloatArray, lean: FloatArray, play: FloatArray) -> _Seat:
         """Return what seats carry at travels, mm, and leans, rad, shape (contacts,), zero where open."""
         z = slice_heights(self.law.length, self.slices)
-        weights = 0.5 * self.law.length / self.slices * _SHARES
+        weights = self.law.length / self.slices * SHARES
         local = travel[:, None, None] + lean[:, None, None] * z
         pressed = local > 0.0
         unit = (
@@ -120,31 +117,40 @@ class SlicedSeat:
         """
         travel, _ = self.law.approach_and_compliance(load, np.maximum(play, LEAST_PLAY))
         lean, half = np.zeros_like(travel), 0.5 * self.law.length
-        seat, history = self.press(travel, lean, play), []
+        history = []
         for _ in range(MAX_ITERATIONS):
-            force, turning = load - seat.load, moment - seat.moment
-            left = np.maximum(np.abs(force), np.abs(turning) / half) / load
+            seat = self.press(travel, lean, play)
+            left = np.maximum(np.abs(seat.load - load), np.abs(seat.moment - moment) / half) / load
             history.append(float(np.max(left, initial=0.0)))
             if history[-1] <= 1e-9:
                 break
-            stiff = np.maximum(seat.by_travel, 1e-300)
-            own = seat.moment_by_lean + 1e-9 * half**2 * stiff
-            determinant = stiff * own - seat.by_lean**2
-            step = (own * force - seat.by_lean * turning) / determinant
-            turn = (stiff * turning - seat.by_lean * force) / determinant
-            steep, fraction = force * step + turning * turn, np.ones_like(step)
-            for _ in range(MAX_HALVINGS):
-                seat = self.press(travel + fraction * step, lean + fraction * turn, play)
-                ahead = (seat.load - load) * step + (seat.moment - moment) * turn
-                if not (ahead > STEEPEST * steep).any():
-                    break
-                fraction = np.where(ahead > STEEPEST * steep, 0.5 * fraction, fraction)
-            travel, lean = travel + fraction * step, lean + fraction * turn
+            travel, lean = self._carry(load, moment, play, (travel, lean), seat)
         else:
             raise ConvergenceError("seats in slices do not carry loads and moments; left over by the load", history)
         end = travel + half * np.abs(lean)
         level, _ = self._level(np.log(end / (self.law.series.load_scale * np.maximum(play, LEAST_PLAY))))
         return np.asarray(self.law.contact_modulus * self.law.length * end / level)
+
+    def _carry(
+        self,
+        load: FloatArray,
+        moment: FloatArray,
+        play: FloatArray,
+        place: tuple[FloatArray, FloatArray],
+        seat: _Seat,
+    ) -> tuple[FloatArray, FloatArray]:
+        """Travel and lean a step closer to where seats carry loads and moments."""
+        travel, lean = place
+        step, turn, slope = newton_step(seat.load - load, seat.moment - moment, seat.stiffness(self.law.length))
+
+        def move(some: NDArray[np.intp], fraction: FloatArray) -> tuple[FloatArray, FloatArray]:
+            by, turned = step[some], turn[some]
+            there = self.press(travel[some] + fraction * by, lean[some] + fraction * turned, play[some])
+            ahead = (there.load - load[some]) * by + (there.moment - moment[some]) * turned
+            return ahead, there.stiffness(self.law.length).along(by, turned)
+
+        fraction = shorten_steps(slope, move)
+        return travel + fraction * step, lean + fraction * turn
 
     def _level(self, place: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Level at the logarithm of the travel, and its derivative."""
@@ -161,7 +167,7 @@ class SlicedSeat:
     def energy(self, line_load: FloatArray, play: FloatArray) -> FloatArray:
         """Return the energy of seats under line loads, N·mm, shape (contacts,)."""
         length = self.law.length
-        weights = 0.5 / self.slices * _SHARES
+        weights = SHARES / self.slices
         stored = self.law.energy(line_load * length, np.maximum(play, LEAST_PLAY)[:, None, None])
         return np.asarray((stored @ weights).sum(axis=1))
 
@@ -265,8 +271,7 @@ class BackedLine:
             size = np.maximum(np.maximum(seat.load, contact.load), lightest)
             left = np.maximum(np.abs(force), np.abs(moment) / half) / size
             history.append(float(np.max(left, initial=0.0)))
-            # Nothing but what the slices leave over is left where steps no longer help.
-            going = np.flatnonzero((left > SETTLED) & ~((before < ROUND_OFF) & (left >= 0.5 * before)))
+            going = unbalanced(left, before)
             if not going.size:
                 break
             before = left
@@ -308,46 +313,30 @@ class BackedLine:
         """Newton's step of those that go on, in place, shortened where the energy rises again steeply at its end."""
         first, second = contact.take(going), _Seat(*(values[going] for values in seat))
         force, moment = second.load - first.load, second.moment - first.moment
-        stiff, mixed, turning = _together(first, second, self.length)
-        determinant = stiff * turning - mixed**2
-        step = -(turning * force - mixed * moment) / determinant
-        turn = -(stiff * moment - mixed * force) / determinant
-        steep = np.abs(force * step + moment * turn)
-        fraction, open_ = np.ones(step.shape), np.arange(going.size)
-        low, high = np.zeros(step.shape), np.full(step.shape, np.inf)
-        for halving in range(MAX_HALVINGS):
-            rows = going[open_]
-            at, leaning = travel[rows] + fraction[open_] * step[open_], lean[rows] + fraction[open_] * turn[open_]
+        step, turn, slope = newton_step(force, moment, _together(first, second, self.length))
+        begin, upright = travel[going], lean[going]
+
+        def move(some: NDArray[np.intp], fraction: FloatArray) -> tuple[FloatArray, FloatArray]:
+            rows, by, turned = going[some], step[some], turn[some]
+            travel[rows], lean[rows] = begin[some] + fraction * by, upright[some] + fraction * turned
             delta, theta, radius, play = (values[rows] for values in given)
-            there = self._outside(rows, delta - at, theta - leaning, radius, first.near[open_])
-            under = self.seat.press(at, leaning, play)
-            ahead = (under.load - there.load) * step[open_] + (under.moment - there.moment) * turn[open_]
+            there = self._outside(rows, delta - travel[rows], theta - lean[rows], radius, first.near[some])
+            under = self.seat.press(travel[rows], lean[rows], play)
             contact.put(rows, there)
             for values, part in zip(seat, under, strict=True):
                 values[rows] = part
-            far = ahead > STEEPEST * steep[open_]
-            near = (ahead < -STEEPEST * steep[open_]) & np.isfinite(high[open_])
-            high[open_[far]], low[open_[near]] = fraction[open_[far]], fraction[open_[near]]
-            long = far | near
-            if not long.any() or halving == MAX_HALVINGS - 1:
-                break
-            cut = (steep[open_][long] / (steep[open_][long] + np.abs(ahead[long]))).clip(0.1, 0.7)
-            open_ = open_[long]
-            # Where a slice begins to carry the slope turns within a little: places are halved by their size then.
-            fraction[open_] = np.where(low[open_] > 0.0, np.sqrt(low[open_] * high[open_]), cut * high[open_])
-        travel[going] += fraction * step
-        lean[going] += fraction * turn
+            ahead = (under.load - there.load) * by + (under.moment - there.moment) * turned
+            return ahead, _together(there, under, self.length).along(by, turned)
+
+        shorten_steps(slope, move)
 
     def _in_series(self, contact: SlicedContact, seat: _Seat, play: FloatArray) -> SlicedContact:
         """The contact with the derivatives and the energy of both."""
         own = np.empty((contact.load.size, 2, 2))
         own[:, 0, 0], own[:, 1, 1] = contact.by_approach, contact.moment_by_tilt
         own[:, 0, 1] = own[:, 1, 0] = contact.by_tilt
-        both = np.empty_like(own)
-        both[:, 0, 0], both[:, 0, 1], both[:, 1, 1] = _together(contact, seat, self.length)
-        both[:, 1, 0] = both[:, 0, 1]
         # What a relief keeps open although middle or ends overlap carries nothing and has no stiffness.
-        both[both[:, 0, 0] <= 0.0] = np.eye(2)
+        both = _together(contact, seat, self.length).matrix
         found = own - np.matmul(own, np.linalg.solve(both, own))
         return SlicedContact(
             load=contact.load,
@@ -361,11 +350,14 @@ class BackedLine:
         )
 
 
-def _together(contact: SlicedContact, seat: _Seat, length: float) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Second derivatives of the energy by travel and lean; what touches at one end alone turns about it freely."""
-    stiff = contact.by_approach + seat.by_travel
-    turning = contact.moment_by_tilt + seat.moment_by_lean + 1e-9 * (0.5 * length) ** 2 * stiff
-    return stiff, contact.by_tilt + seat.by_lean, turning
+def _together(contact: SlicedContact, seat: _Seat, length: float) -> PartStiffness:
+    """Second derivatives of the energy by travel and lean."""
+    return PartStiffness(
+        contact.by_approach + seat.by_travel,
+        contact.by_tilt + seat.by_lean,
+        contact.moment_by_tilt + seat.moment_by_lean,
+        0.5 * length,
+    )
 
 
 def back_line(

@@ -19,11 +19,13 @@ from ltca.arrays import BoolArray, FloatArray
 from ltca.contact.end_pressure import find_cylinder_ratio
 from ltca.contact.tilted_grid import SAMPLES, TiltedPatch, TiltedPiece, recover_tilted
 from ltca.contact.tracked_grid import ContactKind, Separation
-from ltca.laws.sliced_contact import POINTS, slice_heights
+from ltca.laws.sliced_contact import POINTS, slice_heights, slice_means
 from ltca.laws.sliced_line import SlicedLine
 
 HEIGHTS = 33
 """Heights at which pressures are given where none are asked for."""
+NODES = 61
+"""Aligned straight lines between which others are interpolated."""
 _PEAK_BIAS = 0.114
 """Of the first of n cells over a half-width, by 1/n² (`ltca.contact.pressure_cells`)."""
 
@@ -38,6 +40,8 @@ class WidthPressures:
         z above the middle of the width, mm.
     line_load : array, shape (…, heights)
         N/mm.
+    even_line_load : array, shape (…, heights)
+        The same without the bulge of ends that carry, N/mm; of grids the line load itself.
     pressure : array, shape (…, heights)
         Largest pressure over the profile at each height, MPa.
     largest : array, shape (…)
@@ -50,6 +54,7 @@ class WidthPressures:
 
     height: FloatArray
     line_load: FloatArray
+    even_line_load: FloatArray
     pressure: FloatArray
     largest: FloatArray
     place: FloatArray
@@ -76,7 +81,7 @@ def estimate_along_width(kind: ContactKind, line_load: FloatArray, effective_rad
     line = line_load
     radius = np.broadcast_to(effective_radius, line.shape[:-2])
     z = slice_heights(kind.length, line.shape[-2])
-    even = line @ (0.5 * np.polynomial.legendre.leggauss(line.shape[-1])[1])
+    even = slice_means(line)
 
     def pressure_of(load: FloatArray, more: int) -> FloatArray:
         return np.asarray(np.sqrt(kind.contact_modulus * load / (np.pi * radius[(..., *(None,) * more)])))
@@ -109,6 +114,7 @@ def estimate_along_width(kind: ContactKind, line_load: FloatArray, effective_rad
     return WidthPressures(
         height=z.mean(axis=1),
         line_load=even,
+        even_line_load=even / _bulges(kind, even, radius, ends > 0.0),
         pressure=pressure_of(even, 1),
         largest=np.take_along_axis(every, top[..., None], axis=-1)[..., 0],
         place=np.where(closed, places[top], 0.0),
@@ -156,7 +162,13 @@ def solve_along_width(
         largest[index], place[index] = along.largest()
         end_load[index] = along.means(along.line_load, np.array((-half, half)))
     return WidthPressures(
-        height=z, line_load=lines, pressure=pressures, largest=largest, place=place, end_load=end_load
+        height=z,
+        line_load=lines,
+        even_line_load=lines,
+        pressure=pressures,
+        largest=largest,
+        place=place,
+        end_load=end_load,
     )
 
 
@@ -234,11 +246,36 @@ def _peaks(pressure: FloatArray, symmetric: bool) -> FloatArray:
 
 
 @cache
-def _end_bulges(slices: int) -> tuple[FloatArray, FloatArray]:
-    """Nodes of ln(b/l), and loads of the two slices at an end by the middle one, of aligned straight lines, (2, nodes)."""
+def _aligned_loads(slices: int) -> tuple[FloatArray, FloatArray]:
+    """ln(b/L) of the mean line load, and loads of the slices by their mean, of aligned straight lines, shape (nodes, slices)."""
     line = SlicedLine(length=1.0, contact_modulus=1.0, slices=slices, relief=np.zeros((slices, POINTS)))
     # Up to lines four half-widths long, or slices a quarter of one.
-    approach = np.geomspace(1e-8, min(1.0 / 16.0, 16.0 / slices**2), 31)
-    load = line.respond(approach, np.zeros(31), np.ones(31)).slice_load.T
-    middle = load[slices // 2]
-    return 0.5 * np.log(4.0 * middle * slices / np.pi) + np.log(slices), load[:2] / middle
+    approach = np.geomspace(1e-8, min(1.0 / 16.0, 16.0 / slices**2), NODES)
+    found = line.respond(approach, np.zeros(NODES), np.ones(NODES))
+    return 0.5 * np.log(4.0 * found.load / np.pi), found.slice_load / found.load[:, None] * slices
+
+
+@cache
+def _end_bulges(slices: int) -> tuple[FloatArray, FloatArray]:
+    """Nodes of ln(b/l) in the middle, and loads of the two slices at an end by the middle one, (2, nodes)."""
+    place, shares = _aligned_loads(slices)
+    middle = shares[:, slices // 2]
+    return place + 0.5 * np.log(middle) + np.log(slices), shares[:, :2].T / middle
+
+
+def _bulges(kind: ContactKind, line_load: FloatArray, radius: FloatArray, carries: BoolArray) -> FloatArray:
+    """What slices of aligned straight lines of the same mean carry by the middle one, one towards ends that do not carry.
+
+    `line_load` are those of the slices, shape (…, slices), and `carries` says whether the lower and the upper end do.
+    """
+    slices = line_load.shape[-1]
+    nodes, shares = _aligned_loads(slices)
+    mean = line_load.mean(axis=-1)
+    wide = np.maximum(np.sqrt(4.0 * mean * radius / (np.pi * kind.contact_modulus)) / kind.length, 1e-300)
+    at = np.log(wide).clip(nodes[0], nodes[-1])
+    before = np.clip(np.searchsorted(nodes, at) - 1, 0, nodes.size - 2)
+    part = ((at - nodes[before]) / (nodes[before + 1] - nodes[before]))[..., None]
+    bulge = (1.0 - part) * shares[before] + part * shares[before + 1]
+    bulge /= bulge[..., slices // 2, None]
+    upper = np.arange(slices) > slices // 2
+    return np.where(np.where(upper, carries[..., 1:], carries[..., :1]), bulge, 1.0)

@@ -221,7 +221,9 @@ def _check_definiteness(dataset: Labelled) -> Iterator[Check]:
     for tilt, name, also in _kinds(dataset):
         motions = station_tilt_resultants(dataset) if tilt else station_resultants(dataset)
         disc = project_rigid_motions(dataset[f"disc_{name}"].values, motions)
-        smallest = float(np.linalg.eigvalsh(0.5 * (disc + disc.T))[len(motions)]) / near_field_unit(dataset, "disc", tilt)
+        smallest = float(np.linalg.eigvalsh(0.5 * (disc + disc.T))[len(motions)]) / near_field_unit(
+            dataset, "disc", tilt
+        )
         roller = float(np.linalg.eigvalsh(dataset[f"roller_{name}"].values)[0])
         race = float(np.fft.rfft(dataset[f"race_{name}"].values).real.min())
         others = min(
@@ -288,7 +290,9 @@ def _check_neighbours(dataset: Labelled) -> Iterator[Check]:
     Files with wider patches are checked by them, which is sharper: bending between neighbours cancels there.
     """
     for tilt, name, also in _kinds(dataset):
-        if not (_holds(dataset, "wide_station") and _holds(dataset, f"wide_{name}") and _holds(dataset, f"pin_wide_{name}")):
+        if not (
+            _holds(dataset, "wide_station") and _holds(dataset, f"wide_{name}") and _holds(dataset, f"pin_wide_{name}")
+        ):
             yield _neighbours(dataset, tilt, name, also)
 
 
@@ -300,7 +304,9 @@ def _neighbours(dataset: Labelled, tilt: bool, name: str, also: str) -> Check:
         own = np.flatnonzero(boundary == number)
         other = np.roll(own, -1)
         fall = 0.5 * (approach[own, own] + approach[other, other]) - approach[own, other]
-        ratios.append(fall / _fall(np.abs(place[own] - place[other]), width[own]) / near_field_unit(dataset, "disc", tilt))
+        ratios.append(
+            fall / _fall(np.abs(place[own] - place[other]), width[own]) / near_field_unit(dataset, "disc", tilt)
+        )
     shape = shape_of(dataset)  # numbers of the bodies it was derived for
     radius = shape.get("crank_bearing.inner_race_radius")
     if radius is not None:
@@ -364,7 +370,7 @@ def _off_held_ring(dataset: Labelled, body: str, inner: float, outer: float) -> 
     """Largest difference of a round body's approaches from the closed form, relative to the largest; NaN where there is no
     ring.
 
-    Of solid bodies it is how far a harmonic along the ring lies outside of plane strain and plane stress, between which their
+    Of solid bodies it is what harmonics along the ring lie outside of plane strain and plane stress in all, between which their
     energy is under any even load.
     """
     if not 0.0 < inner < outer:
@@ -380,8 +386,8 @@ def _off_held_ring(dataset: Labelled, body: str, inner: float, outer: float) -> 
         closed = strain if dataset.attrs["plane"] == "strain" else stress
         return float(np.max(np.abs(own - closed)) / np.max(np.abs(closed)))
     lowest, highest = strain, stress * _plane_stress(dataset, body)
-    below, above = (np.fft.rfft(each).real / own.size for each in (lowest - own, own - highest))
-    return float(max(below.max(), above.max(), 0.0) / np.max(np.abs(lowest)))
+    outside = sum(np.maximum(np.fft.fft(each).real, 0.0).sum() / own.size for each in (lowest - own, own - highest))
+    return float(outside / np.max(np.abs(lowest)))
 
 
 def _check_bracket(dataset: Labelled) -> Iterator[Check]:

@@ -327,7 +327,12 @@ def _misplaced(dataset: Labelled) -> Iterator[str]:
     if is_solid(dataset) and "layer_height" in dataset.variables:
         heights = dataset["layer_height"].values
         end = 0.5 * float(dataset.attrs["thickness"])
-        if heights.size < 2 or heights[0] != 0.0 or np.any(np.diff(heights) <= 0.0) or abs(heights[-1] - end) > UNIFORM * end:
+        if (
+            heights.size < 2
+            or heights[0] != 0.0
+            or np.any(np.diff(heights) <= 0.0)
+            or abs(heights[-1] - end) > UNIFORM * end
+        ):
             yield f"layer_height must ascend from 0 to half of the thickness, {end:g} mm"
     places = [("race_angle", dataset["race_angle"].values)]
     for kind in ("station", "stress_station"):

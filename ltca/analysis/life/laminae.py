@@ -32,6 +32,7 @@ from ltca.arrays import FloatArray
 from ltca.compliance import sliced
 from ltca.contact.pressure_cells import PatchGrid, PatchSolution, expected_half_width, solve_patch
 from ltca.geometry.length_profile import Relief
+from ltca.laws.line_contact import LineContactLaw
 
 LAMINAE = 31
 """n_s, odd: one in the middle and pairs beside it."""
@@ -188,6 +189,10 @@ class SolvedLaminae:
             relief=np.zeros_like(sliced.slice_heights(self.length, slices)),
         )
         rungs = self._height * APPROACH_RATIO ** np.array(RUNGS)
+        # Those around the loads and two more at either end, for slopes: slices may be too narrow for heavier contacts.
+        own = LineContactLaw(self.length, self.contact_modulus).load_and_stiffness(rungs, self.effective_radius)[0]
+        first, last = np.searchsorted(own, (np.min(load), np.max(load)))
+        rungs = rungs[max(first - 3, 0) : last + 3]
         found = law.respond(rungs, np.zeros(rungs.size), np.full(rungs.size, self.effective_radius))
         at = np.log(np.clip(load, found.load[0], found.load[-1]))
         return monotone_cubic(np.log(found.load), found.slice_load / found.load[:, None], at)

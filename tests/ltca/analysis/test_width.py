@@ -102,15 +102,45 @@ def test_ends_are_where_the_pressure_of_a_slope_is_largest(data):
     assert data["up"]["pin_face_load_factor"].values.min() > data["aligned"]["pin_face_load_factor"].values.max()
 
 
+def test_face_load_factors_settle_with_the_number_of_slices(drive):
+    """The bulge of straight ends was in them: 1.14, 1.27 and 1.48 of the aligned paper with 5, 9 and 17 slices."""
+    found = {}
+    for slices in (5, 9, 17):
+        for name, change in (
+            ("aligned", {}),
+            ("tilted", {"disc.lead_slope": SLOPE}),
+            ("crowned", {"disc.lead_crown_drop": 0.01}),
+        ):
+            along = analyse(with_fields(drive, change | {"contact.slices": slices}), ANGLES[:1]).pressures.pins.along
+            found[name, slices] = float(face_load_factor(along)[0, 0])
+    for slices in (5, 9, 17):
+        assert found["aligned", slices] == pytest.approx(1.0, abs=2e-3)  # between 61 lines of the table
+    # What is left moves as the middles of the last slices come closer to the ends, by a fifth of the length over n.
+    for name, most in (("tilted", 0.02), ("crowned", 0.03)):
+        assert found[name, 5] > 1.02
+        assert abs(found[name, 17] - found[name, 9]) < most * found[name, 17]
+    # Nothing is taken off lines whose ends do not carry: a parabola of line loads over the whole width has 3/2.
+    assert 1.4 < found["crowned", 17] < 1.6
+
+
 def test_the_face_load_factor_of_a_wedge():
     """Four slices in the proportion 1 : 2 : 3 : 4 beside an even lighter contact: the largest is 1.6 of the mean."""
     line = np.array([[[1.0, 2.0, 3.0, 4.0], [2.0, 2.0, 2.0, 2.0]]])
-    kind = AlongWidth(line_load=line, pressure=line, half_width=line, place=line[..., 0], end_load=line[..., :2])
+    kind = AlongWidth(
+        line_load=line, even_line_load=line, pressure=line, half_width=line, place=line[..., 0], end_load=line[..., :2]
+    )
     assert face_load_factor(kind) == pytest.approx(1.6)
     assert face_load_factor(kind, 2) == pytest.approx(np.array([[1.6, 1.0]]))
     # What carries less than a tenth of another has none; two drives one after another are judged each by its own.
     light = np.concatenate((line, 0.05 * line))
-    kind = AlongWidth(line_load=light, pressure=light, half_width=light, place=light[..., 0], end_load=light[..., :2])
+    kind = AlongWidth(
+        line_load=light,
+        even_line_load=light,
+        pressure=light,
+        half_width=light,
+        place=light[..., 0],
+        end_load=light[..., :2],
+    )
     assert np.isnan(face_load_factor(kind)).tolist() == [[False], [True]]
     assert face_load_factor(kind, series=2) == pytest.approx(1.6)
 

@@ -164,6 +164,24 @@ def test_half_spaces_know_no_contact_at_the_holes(drive):
     assert "pin_shaft.elastic_contact = false: without effect" in rigid.hole_words
 
 
+def test_beams_in_slices_touch_their_holes(drive):
+    """Rigid shaft pins were said to be without effect, and their pressures were those of elastic ones."""
+    bent = {
+        "pin_shaft.stiffness": None,
+        "pin_shaft.beam.tip": "free",
+        "pin_shaft.beam.span": 20.0,
+        "contact.slices": 3,
+    }
+    soft, rigid = (analyse(with_fields(drive, bent | more), ANGLES[:1]) for more in (ELASTIC, {}))
+    assert soft.hole_words == ""
+    assert "rigid at their holes" in rigid.hole_words
+    # p² = E* q/(π ρ) in the middle, E* that of the disc alone where pins are rigid.
+    disc, line = rigid.drive.materials.disc, rigid.pressures.holes.along.line_load[0, :, 1]
+    radius = rigid.model.discs[0].geometry.placement.hole_effective_radii
+    expected = np.sqrt(line / (np.pi * radius * disc.plane_strain_compliance))
+    np.testing.assert_allclose(rigid.pressures.holes.mid[0], expected, rtol=1e-9)
+
+
 @pytest.mark.slow
 def test_plane_strain_has_no_ends(drive, closed_form):
     """Pressures at mid-width were given as those anywhere, of an end cell of no length."""

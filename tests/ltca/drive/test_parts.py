@@ -85,6 +85,8 @@ OF_PARTS = (
     "materials.wheel_seat",
     "duty",
     "lubricant",
+    "inertia",
+    "damping",
 )
 OF_PINS = ("pin_wheel.seat", "pin_wheel.beam", "pin_shaft.seat", "pin_shaft.beam")
 # What plane finite-element bodies are made of: flank, bore, holes and thickness of the disc; pins, rollers, race; materials.

@@ -158,3 +158,12 @@ def test_a_rung_beyond_those_shipped_is_solved():
     of = SolvedLaminae(profile=None, length=1.0, effective_radius=1.0, contact_modulus=1.0)
     assert beyond not in straight_rollers()
     np.testing.assert_array_equal(of._at(beyond)[1], solve_laminae(None, 1.0, 1.0, APPROACH_RATIO**beyond)[1])
+
+
+def test_slices_are_asked_for_at_the_loads_alone():
+    """With 65 slices contacts far beyond any load, 8 mm wide, were solved as well, which slices so narrow do not settle under."""
+    of, load = laminae(), np.array([50.0, 1500.0])
+    found = of.slice_shares(load, 65)
+    np.testing.assert_allclose(found.sum(axis=1), 1.0, atol=1e-4)  # of interpolation between loads
+    # Those of another load in between change nothing.
+    np.testing.assert_allclose(of.slice_shares(np.array([50.0, 300.0, 1500.0]), 65)[[0, 2]], found, rtol=1e-12)
