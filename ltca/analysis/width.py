@@ -7,6 +7,7 @@ moments, about the middle of the disc.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -66,23 +67,44 @@ CARRYING = 0.1
 """Part of the largest load of its kind from which a joint has a face load factor: what barely touches does so at a corner."""
 
 
+STRETCHES = 9
+"""Stretches of a contact over which line loads are averaged for the face load factor: the slices of the default."""
+
+
 def face_load_factor(kind: AlongWidth, groups: int = 1, series: int = 1) -> FloatArray:
     """Return K_Hβ of groups of pairs, shape (positions, groups): the largest line load by the largest mean one.
 
     Line loads are without the bulge of ends that carry (`AlongWidth.even_line_load`), which grows without bound as slices become
-    narrower: an aligned straight line has a factor of one. It is that of the pair that carries most, where that has the largest
-    line load as well; not a number where a group carries less than `CARRYING` of the most that any does at one of the positions,
-    of `series` drives one after another.
+    narrower: an aligned straight line has a factor of one. The largest one is a mean over a ninth of the length, whose place is
+    free: slices are divided ever further towards an end of a tilted line, where the load rises, and their own largest would
+    follow them; of fewer than nine slices it is that of a slice. It is that of the pair that carries most, where that has the
+    largest line load as well; not a number where a group carries less than `CARRYING` of the most that any does at one of the
+    positions, of `series` drives one after another.
     """
-    shape = kind.line_load.shape[0], groups, -1, kind.line_load.shape[-1]
+    slices = kind.line_load.shape[-1]
+    shape = kind.line_load.shape[0], groups, -1, slices
     each = kind.even_line_load.reshape(shape)
     if not each.shape[2]:
         return np.full(each.shape[:2], np.nan)
     mean = each.mean(axis=3).max(axis=2)
+    largest = (each @ _stretches(slices).T).max(axis=(2, 3))
     known = np.where(np.isfinite(mean), mean, 0.0).reshape(series, -1)
     least = np.repeat(CARRYING * known.max(axis=1), mean.shape[0] // series)[:, None]
     carries = (mean > 0.0) & (mean >= least)
-    return np.asarray(np.divide(each.max(axis=(2, 3)), mean, out=np.full(mean.shape, np.nan), where=carries))
+    return np.asarray(np.divide(largest, mean, out=np.full(mean.shape, np.nan), where=carries))
+
+
+@cache
+def _stretches(slices: int) -> FloatArray:
+    """Shares of the slices in means over stretches, shape (stretches, slices): those that begin or end where a slice does.
+
+    Line loads are even over each slice, so that the largest mean over any stretch is among these.
+    """
+    edges = np.arange(slices + 1.0)
+    length = max(1.0, slices / STRETCHES)
+    start = np.unique(np.concatenate((edges, edges - length)).clip(0.0, slices - length).round(12))[:, None]
+    within = np.minimum(start + length, edges[1:]) - np.maximum(start, edges[:-1])
+    return np.asarray(np.maximum(within, 0.0) / length)
 
 
 def width_coordinates(drives: Mapping[str, Drive]) -> dict[str, Any]:

@@ -391,11 +391,8 @@ def _pressed(model: Reducer, loaded: Equilibrium) -> float:
         rollers, pins, holes = own.rollers, own.leaning_pins, own.leaning_holes
         found = [own.flank.approach, own.holes.approach, rollers.inner_approach + rollers.outer_approach]
         if own.shifts is not None:
-            found[:2] = [
-                each + np.abs(moved)
-                for each, moved in zip(found, split_shifts(own.shifts, disc), strict=False)
-                if moved is not None
-            ]
+            for kind, moved in enumerate(split_shifts(own.shifts, disc)):
+                found[kind] = found[kind] + (0.0 if moved is None else np.abs(moved))
         if pins is not None and holes is not None:
             leant = pins.tilt.tilt, holes.tilt.tilt, np.asarray(rollers.inner_tilt) + np.asarray(rollers.outer_tilt)
             arms = disc.half_width, disc.half_width, disc.roller_half_length

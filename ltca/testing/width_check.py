@@ -517,8 +517,8 @@ class WidthCheck:
             stands = np.concatenate(
                 [[disc.displaced[crank] for disc in self.each], [disc.sloped[crank] for disc in self.each]]
             )
-            pressed, counted = np.concatenate((force, couple)), np.repeat([1.0, half], self.discs)
-            moved, beyond = _shaft(drive, pressed, stands, counted, self.known)
+            counted = np.repeat([1.0, half], self.discs)
+            moved, beyond = _shaft(drive, np.concatenate((force, couple)), stands, counted, self.known)
             size = float(np.max(np.abs(counted * stands)))
             bound = FORCES * size + ROUND_OFF * drive.pin_wheel.pin_circle_radius
             told(f"crank {crank}: a bearing without load out of its clearance", beyond, bound, "mm")
