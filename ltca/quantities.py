@@ -273,8 +273,9 @@ def _along(part: str, of: str, name: str, sides: tuple[tuple[str, str, str], ...
             Quantity(f"{part}_pressure_max_place{pressure}", of, "mm", place),
         )
     told = (
-        f"face load factor K_Hβ of a {name}: largest line load by the largest mean line load, without the bulge of ends; "
-        "not a number where it carries less than a tenth of its largest load"
+        f"face load factor K_Hβ of a {name}: largest mean line load over a ninth of the length (of fewer slices, over one) by "
+        "that over the length, without the bulge of ends; not a number where the joint carries less than a tenth of the largest "
+        "load that any of its kind does at any position"
     )
     limited = Scalar(
         "max_{}", f"face load factor K_Hβ of a {name}", digits=".3f", how="largest known", limit=AT_LEAST_0

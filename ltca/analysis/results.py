@@ -17,7 +17,7 @@ from ltca.analysis.friction.variables import friction_values
 from ltca.analysis.half_width_guard import pin_deflections
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.analysis.reactions import reaction_values
-from ltca.analysis.width import width_coordinates, width_values
+from ltca.analysis.width import face_load_factors, width_coordinates, width_values
 from ltca.arrays import FloatArray
 from ltca.compliance import sliced
 from ltca.compliance.response import ContactPressures
@@ -41,7 +41,7 @@ def case_arrays(analysis: LoadedAnalysis) -> dict[str, Any]:
     """Return the arrays of one case by name, their dimensions those of the registry without the case."""
     full, light = analysis.full, analysis.light
     per_disc = [_disc_values(disc) for disc in analysis.discs]
-    values = {name: np.stack([disc[name] for disc in per_disc]) for name in per_disc[0]}
+    values = {name: np.stack([disc[name] for disc in per_disc]) for name in per_disc[0]} | face_load_factors(analysis)
     rubbed = friction_values(analysis, values)
     cranks = analysis.drive.crank.number
     return {name: _by_crank(value, QUANTITIES[name].of, cranks) for name, value in values.items()} | {

@@ -43,9 +43,6 @@ def width_values(analysis: LoadedAnalysis) -> dict[str, FloatArray]:
         "pin_shaft_line_load": holes.line_load,
         "disc_tilt": np.stack((-lean[:, 1], lean[:, 0]), axis=-1),
         "crank_bearing_moment": moments_of(bearing_moments(response.rollers, rays, cranks)),
-        "pin_face_load_factor": face_load_factor(pins)[:, 0],
-        "roller_face_load_factor": np.maximum(face_load_factor(outer, cranks), face_load_factor(inner, cranks)),
-        "pin_shaft_face_load_factor": face_load_factor(holes)[:, 0],
     }
     for part, side, kind in (
         ("pin", "", pins),
@@ -56,6 +53,26 @@ def width_values(analysis: LoadedAnalysis) -> dict[str, FloatArray]:
         values[f"{part}_pressure_along_width{side}"] = kind.pressure
         values[f"{part}_pressure_max_place{side}"] = kind.place
     return values
+
+
+def face_load_factors(analysis: LoadedAnalysis) -> dict[str, FloatArray]:
+    """Return K_Hβ of all discs, shape (disc, position) or (disc, position, crank); nothing of the plane model.
+
+    What carries little is judged by all joints of its kind together (`face_load_factor`).
+    """
+    pressures, discs = analysis.pressures, len(analysis.model.discs)
+    pins, outer, inner, holes = (
+        each.along for each in (pressures.pins, pressures.outer, pressures.inner, pressures.holes)
+    )
+    if pins is None or outer is None or inner is None or holes is None:
+        return {}
+    bearings = discs * analysis.model.discs[0].geometry.placement.cranks
+    rollers = np.maximum(face_load_factor(outer, bearings), face_load_factor(inner, bearings))
+    return {
+        "pin_face_load_factor": face_load_factor(pins, discs).T,
+        "roller_face_load_factor": np.moveaxis(rollers.reshape(rollers.shape[0], discs, -1), 0, 1),
+        "pin_shaft_face_load_factor": face_load_factor(holes, discs).T,
+    }
 
 
 def moments_of(leverage: ComplexArray) -> FloatArray:
