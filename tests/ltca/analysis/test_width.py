@@ -11,12 +11,12 @@ from ltca.analysis.life.bearing_lives import bearing_lives
 from ltca.analysis.loaded_analysis import analyse, analyse_cases
 from ltca.analysis.pressure_fields import loads_of, moment_of, pressure_field
 from ltca.analysis.results import build_dataset, check_common_shape
-from ltca.analysis.run_off import run_off_warning
+from ltca.analysis.run_off import few_slices_warning, run_off_warning
 from ltca.analysis.summary import summarise
 from ltca.analysis.verdict.lead_crown import best_lead_crown
 from ltca.analysis.verdict.values import judge_analysis
 from ltca.analysis.width import face_load_factor
-from ltca.compliance.response import AlongWidth
+from ltca.compliance.response import AlongWidth, ContactPressures, KindPressures
 from ltca.drive.members.limits import parse_limits
 from ltca.errors import DriveError
 from ltca.figures.run_figures import draw_figure, figures_of
@@ -193,6 +193,41 @@ def test_the_face_load_factor_of_a_wedge():
     kind = along_of(light)
     assert np.isnan(face_load_factor(kind)).tolist() == [[False], [True]]
     assert face_load_factor(kind, series=2) == pytest.approx(1.6)
+
+
+def test_contacts_over_few_slices_are_told(drive):
+    """A crown of 0.5 mm leaves a patch of 4.3 mm of 11.8 (elliptical Hertz): one of three slices took all of the load, with a
+    pressure a quarter too small, and nothing was said.
+    """
+
+    def told(slices, crown):
+        changed = with_fields(drive, {"contact.slices": slices, "disc.lead_crown_drop": crown})
+        return " ".join(analyse(changed, ANGLES[:1]).warnings)
+
+    assert "contact.slices = 3: " in (rough := told(3, 0.5))
+    assert "(wheel pins over 1 slice)" in rough
+    assert "contact.slices = 13 or more tells" in rough
+    assert "reach over fewer" not in told(33, 0.5)
+    assert "reach over fewer" not in told(3, 0.0)  # which fill all of the width
+
+
+def test_slices_are_counted_where_contacts_carry_notably():
+    """Of contacts that carry a hundredth nothing is said, of those over two slices of five it is."""
+    light, heavy = np.array([0.0, 0.0, 0.0, 0.0, 0.1]), np.array([0.0, 1.0, 8.0, 1.0, 0.1])
+
+    def told(*lines):
+        line = np.stack(lines)[None]
+        kind = KindPressures(
+            mid=line[..., 2], largest=line[..., 2], half_width=line[..., 2], end_cell=0.1, along=along_of(line)
+        )
+        return few_slices_warning(
+            5, ContactPressures(pins=kind, outer=kind, inner=kind, holes=kind, rigid_shaft_pins=False)
+        )
+
+    assert told(light, heavy) is None
+    assert "wheel pins over 2 slices, rollers in the bore over 2 slices" in told(
+        np.array([0.0, 0.0, 0.0, 2.0, 3.0]), heavy
+    )
 
 
 def test_the_plane_has_nothing_of_this(drive):
