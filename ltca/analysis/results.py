@@ -24,7 +24,7 @@ from ltca.compliance.response import ContactPressures
 from ltca.compliance.wall_stress import WallStresses
 from ltca.contact.subsurface import line_contact_shear
 from ltca.drive.parts import Drive
-from ltca.errors import DriveError
+from ltca.errors import DriveError, counted
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, disc_displacement
 from ltca.geometry.placement import place_coordinates
 from ltca.laws.backed import shaft_pin_seat, wheel_pin_seat
@@ -200,8 +200,7 @@ def check_common_shape(cases: Mapping[str, Drive], mend: str = "run it alone wit
 
 
 def _counted(numbers: tuple[int, ...], things: tuple[str, ...]) -> str:
-    each = zip(numbers, things, strict=True)
-    return ", ".join(f"{number} {thing if number != 1 else thing.removesuffix('s')}" for number, thing in each)
+    return ", ".join(counted(*each) for each in zip(numbers, things, strict=True))
 
 
 def build_dataset(drive_name: str, analyses: Mapping[str, LoadedAnalysis], drive_file: str | None = None) -> xr.Dataset:

@@ -8,6 +8,7 @@ from ltca.compliance.response import ContactPressures, KindPressures
 from ltca.drive.members.width import MOST_SLICES
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
+from ltca.errors import counted
 
 RUN_OFF = 0.02
 """Line load at an end, by the largest of all contacts of the kind, from which a contact with a crown is said to run off there."""
@@ -73,7 +74,7 @@ def few_slices_warning(slices: int, pressures: ContactPressures) -> str | None:
         notable = (load > 0.0) & (load >= NOTABLE * load.max())
         if not notable.any() or (least := int(reached[notable].min())) >= min(FEWEST_SLICES, slices):
             continue
-        told.append(f"{name} over {least} {'slice' if least == 1 else 'slices'}")
+        told.append(f"{name} over {counted(least, 'slices')}")
         fewest = min(fewest, least)
     if not told:
         return None

@@ -36,13 +36,20 @@ def width_values(analysis: LoadedAnalysis) -> dict[str, FloatArray]:
     angle, cranks = analysis.full.crank_angle, disc.geometry.placement.cranks
     lean = analysis.full.pose[:, disc.geometry.coordinates_of(analysis.full.pose).lean_place]
     rays = disc.geometry.rollers(angle)
+    rollers, flank, in_holes = response.rollers, response.leaning_pins, response.leaning_holes
+    assert flank is not None
+    assert in_holes is not None
     values = {
+        "pin_moment": flank.contact.moment,
+        "roller_moment": np.asarray(rollers.outer_moment),
+        "roller_moment_inner": np.asarray(rollers.inner_moment),
+        "pin_shaft_moment": in_holes.contact.moment,
         "pin_line_load": pins.line_load,
         "roller_line_load": outer.line_load,
         "roller_line_load_inner": inner.line_load,
         "pin_shaft_line_load": holes.line_load,
         "disc_tilt": np.stack((-lean[:, 1], lean[:, 0]), axis=-1),
-        "crank_bearing_moment": moments_of(bearing_moments(response.rollers, rays, cranks)),
+        "crank_bearing_moment": moments_of(bearing_moments(rollers, rays, cranks)),
     }
     for part, side, kind in (
         ("pin", "", pins),
