@@ -20,7 +20,7 @@ from ltca.analysis.half_width_guard import (
     unborne_warning,
     wide_holes_warning,
 )
-from ltca.analysis.run_off import run_off_warning
+from ltca.analysis.run_off import few_slices_warning, run_off_warning
 from ltca.arrays import ComplexArray, FloatArray, batch_layout, freeze, stack_drives, take_positions
 from ltca.compliance.response import ContactPressures
 from ltca.compliance.wall_stress import WallStresses, wall_stresses
@@ -314,7 +314,10 @@ class LoadedAnalysis:
             found.append(
                 f"with the motion reversed {np.count_nonzero(lost)} of {lost.size} positions have no equilibrium"
             )
-        found.append(run_off_warning(self.drive, self.pressures))
+        found += [
+            run_off_warning(self.drive, self.pressures),
+            few_slices_warning(self.drive.contact.slices, self.pressures),
+        ]
         discs = self.discs if np.all(self.balanced) else ()
         for number, disc in enumerate(discs):
             (contacts,) = disc.model.discs

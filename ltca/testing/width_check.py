@@ -544,14 +544,16 @@ class WidthCheck:
             couple = -np.array([disc.of_rollers["couple"][crank] for disc in self.each])
             if drive.crank.support is None:
                 continue
-            moved = _shaft(drive, np.concatenate((force, couple)))
             stands = np.concatenate(
-                [[disc.displaced[crank] for disc in self.each], [half * disc.sloped[crank] for disc in self.each]]
+                [[disc.displaced[crank] for disc in self.each], [disc.sloped[crank] for disc in self.each]]
             )
-            moved[self.discs :] *= half
-            size = float(np.max(np.abs(stands)))
+            counted = np.repeat([1.0, half], self.discs)
+            moved, beyond = _shaft(drive, np.concatenate((force, couple)), stands, counted, self.known)
+            size = float(np.max(np.abs(counted * stands)))
             bound = FORCES * size + ROUND_OFF * drive.pin_wheel.pin_circle_radius
-            told(f"crank {crank}: displacement or slope of a journal off", _most(np.abs(moved - stands)), bound, "mm")
+            told(f"crank {crank}: a bearing without load out of its clearance", beyond, bound, "mm")
+            off = _most(counted * (moved - stands))
+            told(f"crank {crank}: displacement or slope of a journal off", off, bound, "mm")
         outside, tilting = outside_on_wheel(drive, self.crank_angle), self._tilting_outside()
         flanks = [one - steep for one, steep in (disc.on_flank[0] for disc in self.each)]
         wheel = np.array([-one.force.sum() for one in flanks])
@@ -750,10 +752,15 @@ def _line_load(approach: FloatArray, length: float, modulus: float, radius: Floa
     return np.where(pressed, np.exp(0.5 * (low + high)), 0.0)
 
 
-def _shaft(drive: Drive, pressed: ComplexArray) -> ComplexArray:
+def _shaft(
+    drive: Drive, pressed: ComplexArray, stands: ComplexArray, counted: FloatArray, known: float
+) -> tuple[ComplexArray, float]:
     """Displacements, then slopes, of the journals of a crank under forces, then couples, of the discs.
 
-    Unit loads on a beam on two bearings, each as its spring stands under what statics let it carry.
+    Unit loads on a beam on two bearings, each as its spring stands under what statics let it carry. One that carries no more
+    than how well forces are `known`, N, stands anywhere in its clearance, and the journals tell where: the line through the
+    bearings that comes nearest to where the crank `stands`, slopes `counted` by their lever. Second comes how far such a bearing
+    is beyond its clearance, mm.
     """
     support = drive.crank.support
     assert support is not None
@@ -770,13 +777,21 @@ def _shaft(drive: Drive, pressed: ComplexArray) -> ComplexArray:
     own = np.where(of_couple[:, None], -1.0 * (z > at[:, None]), np.maximum(z - at[:, None], 0.0))
     moments = own - near[:, None] * np.maximum(z - start, 0.0) - far[:, None] * np.maximum(z - end, 0.0)
     rigidity = drive.materials.crankshaft.youngs_modulus * np.pi * support.diameter**4 / 64.0
-    bent = (moments * weight) @ moments.T / rigidity @ pressed
+    moved = (moments * weight) @ moments.T / rigidity @ pressed
+    free, reach = list[FloatArray](), list[float]()
     for share, spring in zip((near, far), crank_springs(drive), strict=True):
         carried = complex((share * pressed).sum())
         size = abs(carried)
-        if size:
-            bent = bent + share * _yielded(spring, size) * carried / size
-    return np.asarray(bent)
+        if size <= known and spring.pressed < 0.0:
+            free.append(share)
+            reach.append(-spring.pressed)
+        elif size:
+            moved = moved + share * _yielded(spring, size) * carried / size
+    if not free:
+        return np.asarray(moved), 0.0
+    shares = np.stack(free, axis=1)
+    places = np.linalg.lstsq(counted[:, None] * shares, counted * (stands - moved))[0]
+    return np.asarray(moved + shares @ places), max(0.0, float(np.max(np.abs(places) - reach)))
 
 
 def _yielded(spring: SidedSpring, force: float) -> float:
