@@ -25,6 +25,8 @@ class SolutionOptions:
         Whether the walls of the discs are meshed finely enough for the stress along them, whatever the size.
     growth : float
         Growth of the element edge by distance from a contact.
+    halvings : int
+        Uniform refinements of the meshes of that size: every edge is divided into two each time.
 
     Raises
     ------
@@ -41,6 +43,12 @@ class SolutionOptions:
     plane: PlaneState = "strain"
     fine_walls: bool = False
     growth: float = DEFAULT_GROWTH
+    halvings: int = 0
+
+    @property
+    def refined_size(self) -> float:
+        """Element edge after all halvings, as a multiple of the default."""
+        return self.size / 2.0**self.halvings
 
     def __post_init__(self) -> None:
         if not (np.isfinite(self.size) and self.size > 0.0):

@@ -53,9 +53,15 @@ ANY_NUMBER = (None, None)
 FROM_0_TO_1 = (0.0, 1.0)
 AT_MOST_1 = (None, 1.0)
 
-SUFFIXES = {"1": "", "N mm": "_Nmm", "N/mm": "_N_per_mm", "MPa m/s": "_MPa_m_s", "N mm/rad": "_Nmm_per_rad"}
+SUFFIXES = {
+    "1": "", "N mm": "_Nmm", "N/mm": "_N_per_mm", "MPa m/s": "_MPa_m_s", "N mm/rad": "_Nmm_per_rad", "kg m2": "_kg_m2",
+    "g mm": "_g_mm", "g mm2": "_g_mm2",
+}  # fmt: skip
 """Units as they end the keys of ``summary.json``, where they are spelled otherwise."""
-SIGNS = {"1": "", "N mm/rad": "N·mm/rad", "arcmin": "′", "arcsec": "″", "deg": "°", "N mm": "N·mm"}
+SIGNS = {
+    "1": "", "N mm/rad": "N·mm/rad", "arcmin": "′", "arcsec": "″", "deg": "°", "N mm": "N·mm", "kg m2": "kg·m²", "g mm": "g·mm",
+    "g mm2": "g·mm²",
+}  # fmt: skip
 """Units as they are printed, where they are spelled otherwise."""
 
 RESOLUTION = {"arcmin": 1e-5, "arcsec": 1e-4, "mm": 1e-9}
@@ -606,6 +612,14 @@ _DECLARED = (
         _scalar("1", Scalar(f"compliance_share_{part}", f"part of the compliance: {part.replace('_', ' ')}", digits=".4f"))
         for part in ("pins", "ring", "crank_bearings", "shaft_pins", "cranks", "wheel_bearing", "carrier", "geometry")
     ),
+    # masses
+    _scalar("kg", Scalar("mass", "mass of what the file describes", digits=".5g")),
+    _scalar("kg", Scalar("disc_mass", "mass of disc 0", digits=".5g")),
+    _scalar("kg m2", Scalar("disc_inertia", "inertia of disc 0 about its centre of mass", digits=".5g")),
+    _scalar("g mm", Scalar("static_unbalance", "unbalance of all discs with what turns with their eccentrics", digits=".4g")),
+    _scalar("g mm2", Scalar("couple_unbalance", "its couple about the zero of disc.planes", digits=".4g")),
+    _scalar("kg m2", Scalar("reflected_inertia_input", "inertia of the drive referred to the input", digits=".5g")),
+    _scalar("kg m2", Scalar("reflected_inertia_output", "inertia of the drive referred to the output", digits=".5g")),
     # the solution
     Quantity(
         "equilibrium_residual", "drive", "N", "largest unbalanced force, moments by their lever arms",

@@ -22,11 +22,13 @@ PACKAGES = ("ltca", "fem", "validation")
 # The floors of the house, lowest first: a module imports from its own floor or from lower ones, never from above.
 FLOORS = (
     "ltca.errors", "ltca.arrays", "ltca.quantities", "ltca.output", "ltca.drive", "ltca.geometry", "ltca.contact",
-    "ltca.reading", "ltca.laws", "ltca.compliance", "ltca.equilibrium", "ltca.analysis", "ltca.studies", "ltca.figures",
-    "ltca.page", "ltca.export", "ltca.testing", "ltca",
-    "fem.errors", "fem.shapes", "fem.mesh", "fem.body", "fem.solid", "fem.options", "fem.contact", "fem.drive", "fem.reducer",
-    "fem.coefficients", "fem.referee", "fem.pictures", "fem.export", "fem.testing", "fem",
+    "ltca.reading", "ltca.laws", "ltca.compliance", "ltca.equilibrium", "ltca.dynamics", "ltca.analysis", "ltca.studies",
+    "ltca.figures", "ltca.page", "ltca.export", "ltca.testing", "ltca",
+    "fem.errors", "fem.discretisation_error", "fem.shapes", "fem.mesh", "fem.body", "fem.solid", "fem.options", "fem.contact",
+    "fem.drive", "fem.solid_contact", "fem.reducer",
+    "fem.solid_drive", "fem.coefficients", "fem.referee", "fem.pictures", "fem.export", "fem.testing", "fem",
     "validation.methods", "validation.rows", "validation.compare", "validation.levels", "validation.study", "validation.report",
+    "validation.seats", "validation.manual",
     "ltca.commands", "fem.commands", "validation.commands", "validation",
 )  # fmt: skip
 # What a package may not see at all: ltca stands alone, nothing sees validation.
@@ -34,6 +36,7 @@ UNSEEN = {"ltca": {"fem", "validation"}, "fem": {"validation"}, "validation": se
 # Of ltca, fem takes the drive, its shape, the nominal place of its parts and the edge: never their mechanics.
 FEM_MAY_IMPORT = (
     "ltca.errors", "ltca.arrays", "ltca.output", "ltca.quantities", "ltca.drive", "ltca.reading", "ltca.geometry.flank",
+    "ltca.geometry.length_profile",
     "ltca.geometry.placement", "ltca.geometry.boundary_stations", "ltca.page.study_page", "ltca.page.tables",
     "ltca.page.verdict_tables",
     "ltca.figures.house_style",

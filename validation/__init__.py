@@ -10,6 +10,7 @@ levels    The levels of the validation, from closed forms to the effect of the f
 study     The whole validation of a drive: which positions, in which order, and the rows of all six levels
 seats     Figures of docs/theory/seats.md: laws of conforming seats against finite elements, Persson and Hertz
 report    The page and files of a validation
+manual    The verification manual: cases with reference, error bar and verdict
 commands  ``cyclo validate``
 ========  ============================================================
 """

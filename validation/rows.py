@@ -48,6 +48,9 @@ class Row:
         Case of the drive, contact, compliance model, and what the reference is; "" where they mean nothing.
     crank_angle : float or None
         rad.
+    error_bar : float or None
+        Numerical uncertainty of the reference by the size of its elements, in the unit of the difference; None where none was
+        found. Of input and model it says nothing.
     """
 
     level: int
@@ -64,6 +67,7 @@ class Row:
     model: str = ""
     against: str = ""
     crank_angle: float | None = None
+    error_bar: float | None = None
 
     def __post_init__(self) -> None:
         """Refuse a row outside the levels or without a reason."""
@@ -76,6 +80,11 @@ class Row:
     def passed(self) -> bool:
         """Whether the difference is within the limit; NaN is not."""
         return self.limit is None or abs(self.difference) <= self.limit
+
+    @property
+    def below_error_bar(self) -> bool | None:
+        """Whether the difference is smaller than the error bar of the reference, so that it says nothing of the model."""
+        return None if self.error_bar is None else abs(self.difference) < self.error_bar
 
     def content(self) -> dict[str, Any]:
         """Return the row as `validation.json` holds it."""
@@ -95,6 +104,8 @@ class Row:
             "limit": self.limit,
             "reason": self.reason,
             "pass": self.passed,
+            "error_bar": rounded(self.error_bar),
+            "below_error_bar": self.below_error_bar,
         }
 
 

@@ -17,6 +17,7 @@ from ltca.drive.single_discs import single_discs
 from ltca.reading.drive_file import DriveFile
 from validation.compare.compared_positions import ComparedPosition, compare_case
 from validation.compare.derived_coefficients import coefficients_of, disc_coefficients_of, nominal_coefficients_of
+from validation.compare.error_bars import ErrorBars, error_bars_of
 from validation.compare.finite_element_positions import FullPosition, solve_positions
 from validation.compare.model_positions import DiscCoefficients
 from validation.levels.closed_forms import check_closed_forms
@@ -64,9 +65,15 @@ class Plan:
     limits: dict[str, Limits] = field(default_factory=dict)
 
     @property
+    def pictured(self) -> float:
+        """Crank angle of the pictures and of the error bars, rad."""
+        return self.crank_angles[len(self.crank_angles) // 2]
+
+    @property
     def steps(self) -> int:
         """Number of steps that `run_validation` reports."""
-        return 5 + 2 * len(self.drives) + len(self.drives) * len(self.crank_angles)
+        bars = len(self.drives) if self.level == "full" else 0
+        return 5 + 2 * len(self.drives) + len(self.drives) * len(self.crank_angles) + bars
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -85,6 +92,8 @@ class Study:
         By case.
     coefficients : dict of str to InfluenceCoefficients or tuple of them
         By case, of several discs of each.
+    error_bars : dict of str to ErrorBars or None
+        By case, on level full; None where the memory is too small for nested meshes.
     """
 
     plan: Plan
@@ -92,6 +101,7 @@ class Study:
     compared: dict[str, list[ComparedPosition]]
     flexibility: dict[str, FlexibilityEffect]
     coefficients: dict[str, DiscCoefficients]
+    error_bars: dict[str, ErrorBars | None] = field(default_factory=dict)
 
 
 def plan_study(
@@ -158,17 +168,42 @@ def run_validation(plan: Plan, folder: Path, step: Callable[[str], None], say: C
     with asked_codes(folder / "other_codes.json") as answers:
         one, three, coefficients, four = _before_positions(plan, folder / "coefficients", step, say)
         full = _solve_positions(plan, folder / "positions", step, say)
+        bars = _error_bars(plan, full, folder / "errors", step, say)
         step("other codes")
         two = answers()
     compared = {case: compare_case(plan.drives[case], full[case], coefficients[case]) for case in plan.drives}
-    five = _model_rows(plan, compared, full, coefficients, folder / "coefficients", say)
+    five = _model_rows(plan, compared, full, coefficients, folder / "coefficients", bars, say)
     flexibility, six = {}, []
     for case, drive in plan.drives.items():
         step(f"one turn of {case}")
         flexibility[case] = study_case(drive, coefficients[case])
-        six += [*full_solution_rows(case, compared[case]), *flexibility_rows(case, flexibility[case])]
+        six += [*full_solution_rows(case, compared[case], bars.get(case)), *flexibility_rows(case, flexibility[case])]
     rows = (*one, *two, *three, *four, *five, *six)
-    return Study(plan=plan, rows=rows, compared=compared, flexibility=flexibility, coefficients=coefficients)
+    return Study(
+        plan=plan,
+        rows=rows,
+        compared=compared,
+        flexibility=flexibility,
+        coefficients=coefficients,
+        error_bars=bars,
+    )
+
+
+def _error_bars(
+    plan: Plan,
+    full: dict[str, list[FullPosition]],
+    folder: Path,
+    step: Callable[[str], None],
+    say: Callable[[str], None],
+) -> dict[str, ErrorBars | None]:
+    """Return the error bars of all cases, at the position that has pictures; nothing on level quick."""
+    found: dict[str, ErrorBars | None] = {}
+    if plan.level == "full":
+        for case, drive in plan.drives.items():
+            step(f"error bars of {case}")
+            own = [position for position in full[case] if position.crank_angle == plan.pictured]
+            found[case] = error_bars_of(drive, case, plan.pictured, folder, plan.options, compared=own, progress=say)
+    return found
 
 
 def _before_positions(
@@ -202,12 +237,17 @@ def _model_rows(
     full: dict[str, list[FullPosition]],
     coefficients: dict[str, DiscCoefficients],
     folder: Path,
+    bars: dict[str, ErrorBars | None],
     say: Callable[[str], None],
 ) -> list[Row]:
     """Return the rows of level 5; relations between the models are checked on the first disc alone."""
     first, last = next(iter(plan.drives)), list(plan.drives)[-1]
-    positions = [item for items in compared.values() for item in items]
-    rows = [row for item in positions for row in (*compare_position_rows(item), *disc_stress_rows(item))]
+    rows = [
+        row
+        for case, items in compared.items()
+        for item in items
+        for row in (*compare_position_rows(item, bars.get(case)), *disc_stress_rows(item, bars.get(case)))
+    ]
     label, alone = first_disc(plan.drives[first], first)
     _, stress = coefficients_of(alone, first, folder, plane="stress", progress=say)
     own = coefficients[first]
@@ -215,7 +255,7 @@ def _model_rows(
     rows += compare_models(alone, label, np.array(plan.crank_angles), strain, stress)
     shared = nominal_coefficients_of(plan.drives[last], last, folder, progress=say)
     if shared is not None:
-        rows += shared_file_rows(compare_case(plan.drives[last], full[last], shared))
+        rows += shared_file_rows(compare_case(plan.drives[last], full[last], shared), bars.get(last))
     return rows
 
 
@@ -230,7 +270,6 @@ def first_disc(drive: Drive, case: str) -> tuple[str, Drive]:
 def _solve_positions(
     plan: Plan, folder: Path, step: Callable[[str], None], say: Callable[[str], None]
 ) -> dict[str, list[FullPosition]]:
-    pictured = plan.crank_angles[len(plan.crank_angles) // 2]
     solved: dict[str, list[FullPosition]] = {}
     for case, drive in plan.drives.items():
         series = solve_positions(
@@ -239,7 +278,7 @@ def _solve_positions(
             plan.crank_angles,
             folder,
             plan.options,
-            pictured=pictured,
+            pictured=plan.pictured,
             title=f"{plan.name}, {case}",
             begin=step,
             progress=say,

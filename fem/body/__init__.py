@@ -2,15 +2,16 @@
 
 Modules in the order data passes:
 
-============  ============================================================
-assembly      Stiffness of all elements in one product of matrices, and its sum by nodes
-elasticity    Plane linear elasticity of one meshed body: stiffness, rigid modes, distributed loads, energy
-surface       Contact zones on meshed boundaries: the side that carries the pressure and the side opposite
-condensation  Condensation of a body to its loads: one sparse factorisation gives the compliance of all of them
-free_body     Datum of a floating body: its displacement relative to the best-fit rigid motion of some boundaries
-influence     Influence between very many loads of a free body: only the blocks that are asked for, none by a dense factor
-stress        Stress recovery: from nodal displacements to nodal Cauchy stresses
-wall_stress   Stress along a meshed boundary, from recovered nodal stresses
-pin_ring      The ring of the pin wheel: forces of pins on its seats and of bolts, flexibility between them
-============  ============================================================
+================  ============================================================
+assembly          Stiffness of all elements in one product of matrices, and its sum by nodes
+elasticity        Plane linear elasticity of one meshed body: stiffness, rigid modes, distributed loads, energy
+surface           Contact zones on meshed boundaries: the side that carries the pressure and the side opposite
+condensation      Condensation of a body to its loads: one sparse factorisation gives the compliance of all of them
+free_body         Datum of a floating body: its displacement relative to the best-fit rigid motion of some boundaries
+influence         Influence between very many loads of a free body: only the blocks that are asked for, none by a dense factor
+stress            Stress recovery: from nodal displacements to nodal Cauchy stresses
+wall_stress       Stress along a meshed boundary, from recovered nodal stresses
+plane_references  Closed forms that stresses along walls are held against, and a free body under loads
+pin_ring          The ring of the pin wheel: forces of pins on its seats and of bolts, flexibility between them
+================  ============================================================
 """

@@ -110,15 +110,20 @@ def order_nodes(body: BodyMesh) -> IntArray:
     and copes with the mesh, else by minimum degree, which SuperLU finds while it factorises a scalar matrix of their graph.
     """
     mesh = body.mesh
-    graph = _graph(mesh.t, mesh.nvertices)
-    try:
-        place = _nested_dissection(graph)
-    except (ImportError, RuntimeError):
-        # METIS not there, or out of its depth (its C++ exceptions arrive as RuntimeError: "unknown exception").
-        place = _minimum_degree(graph)
+    place = order_vertices(mesh.t, mesh.nvertices)
     if body.order == 2:
         place = np.concatenate([place, place[mesh.facets].min(axis=0) - 0.5])
     return np.argsort(place, kind="stable").astype(np.int64)
+
+
+def order_vertices(corners: IntArray, count: int) -> FloatArray:
+    """Return the place of each of `count` vertices in an elimination order; `corners` of the elements, (corners, elements)."""
+    graph = _graph(corners, count)
+    try:
+        return _nested_dissection(graph)
+    except (ImportError, RuntimeError):
+        # METIS not there, or out of its depth (its C++ exceptions arrive as RuntimeError: "unknown exception").
+        return _minimum_degree(graph)
 
 
 def _nested_dissection(graph: sp.csc_matrix) -> FloatArray:

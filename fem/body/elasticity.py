@@ -22,6 +22,8 @@ from ltca.arrays import FloatArray, IntArray
 from ltca.drive.parts import Material
 
 PlaneState = Literal["strain", "stress"]
+Traction = Callable[[FloatArray, FloatArray], tuple[FloatArray, FloatArray]]
+"""Traction x, y, MPa, at places (x, y) and outward normals, arrays of shape (2, …), mm."""
 
 # Stiffness of straight quadratic triangles is a polynomial of degree 2 in the reference coordinates, exact with
 # three points; curved ones have a rational integrand, for which six points leave less than the curve itself.
@@ -137,7 +139,7 @@ def strain_energy(stiffness: sp.csc_matrix, displacement: FloatArray) -> float:
 def traction_load(
     body: BodyMesh,
     boundary: str,
-    traction: Callable[[FloatArray, FloatArray], tuple[FloatArray, FloatArray]],
+    traction: Traction,
     *,
     thickness: float,
 ) -> FloatArray:

@@ -29,6 +29,7 @@ from fem.mesh.body_mesh import BodyMesh
 from fem.mesh.element_size import Refinement
 from fem.mesh.memory_need import require_memory, solution_memory
 from fem.mesh.triangulation import default_coarse_size, estimate_unknowns, mesh_pin_ring
+from fem.mesh.uniform_refinement import CHILDREN, refine_uniformly
 from fem.shapes import PinRingShape, SlottedCircle
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.drive.materials import Material
@@ -119,16 +120,18 @@ def flexibility_of(
     return DerivedRing(flexibility=even, turned=turned, mirror=mirror, unknowns=body.unknowns)
 
 
-def seat_flexibility(drive: Drive, size: float = 1.0) -> FloatArray:
+def seat_flexibility(drive: Drive, size: float = 1.0, *, halvings: int = 0) -> FloatArray:
     """Return the displacement (x, y) of the seats of the ring of a drive by unit forces at them, bolts included, mm/N.
 
     Shape (2 seats, 2 seats), by seat and component in the wheel; of a ring that floats beyond the rigid motion that fits the
-    seats best. Bolts are springs in the stiffness of the mesh itself. DriveError for a drive without ring.
+    seats best. Bolts are springs in the stiffness of the mesh itself. The mesh of a size is refined uniformly `halvings` times.
+    DriveError for a drive without ring.
     """
     shape, bolts, ring = ring_of_drive(drive), bolts_of_drive(drive), drive.ring
     assert ring is not None
     unit = ring.material.youngs_modulus * ring.width
-    body, stiffness, loads = _meshed(shape, bolts, bolt_patch_radius(drive), ring.material.poisson_ratio, size)
+    patch = bolt_patch_radius(drive)
+    body, stiffness, loads = _meshed(shape, bolts, patch, ring.material.poisson_ratio, size, halvings)
     seats = loads[:, : 2 * shape.inner.seats]
     if ring.bolts is None:
         fixed = unknowns_of_boundary(body, "outer") if ring.flange == "built-in" else None
@@ -141,10 +144,14 @@ def seat_flexibility(drive: Drive, size: float = 1.0) -> FloatArray:
 
 
 def _meshed(
-    shape: PinRingShape, bolts: ComplexArray, patch: float, poisson_ratio: float, size: float
+    shape: PinRingShape, bolts: ComplexArray, patch: float, poisson_ratio: float, size: float, halvings: int = 0
 ) -> tuple[BodyMesh, sp.csc_matrix, sp.csc_matrix]:
     """The mesh of a ring, its stiffness for E b = 1 N/mm, and unit forces on seats, then on bolts."""
     body, inner = mesh_ring_for_seats(shape, bolts, patch, size), shape.inner
+    for _ in range(halvings):
+        unknowns = CHILDREN * body.unknowns
+        require_memory(unknowns, solution_memory(unknowns), "the refined ring for its flexibility")
+        body = refine_uniformly(body, shape.curves)
     steel = Material(youngs_modulus=1.0, poisson_ratio=poisson_ratio)
     loads = sp.hstack([seat_loads(body, inner), *(_patch_load(body, bolt, patch) for bolt in bolts)], format="csc")
     return body, assemble_stiffness(body, steel, thickness=1.0, state="stress"), loads

@@ -7,12 +7,22 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fem.commands.position_arguments import add_position_arguments, body_files, chosen_case, disc_prefix
-from ltca.reading.arguments import add_out_argument, add_page_argument, default_folder, torque_argument
+from fem.commands.solid_disc import add_disc_arguments, execute_disc
+from fem.commands.solid_pair import add_pair_arguments, execute_pair, refuse_mixed_options
+from ltca.errors import CycloError
+from ltca.reading.arguments import (
+    add_out_argument,
+    add_page_argument,
+    count_argument,
+    default_folder,
+    torque_argument,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from fem.drive.full_solution import FullSolution
+    from fem.reducer.nested_meshes import NestedSolution
     from fem.reducer.solution import ReducerSolution
     from ltca.drive.members.judgement import Check
     from ltca.drive.members.limits import Limits
@@ -23,7 +33,10 @@ SUMMARY: str = "solve the whole drive by finite elements at one crank angle"
 EXAMPLES = (
     ("cyclo fem paper --case CS-1 --angle 0.5", "one position by finite elements alone"),
     ("cyclo fem paper --case CS-1 --angle 0.5 --pictures", "with pictures of stress and deformation"),
+    ("cyclo fem paper --case CS-1 --angle 0.5 --error", "on three nested meshes: every figure with its error bar"),
     ("cyclo fem paper --case CS-1 --angle 0.5 --referee calculix", "solved by CalculiX as well"),
+    ("cyclo fem paper --case CS-1 --angle 0.5 --bodies solid --pair flank", "one pair of solid bodies with free ends"),
+    ("cyclo fem examples/drives/plastic.toml --angle 0.3 --bodies solid", "a whole disc of solid bodies"),
 )
 
 
@@ -36,13 +49,23 @@ def configure(parser: argparse.ArgumentParser) -> None:
         type=torque_argument,
         help="output torque in N·mm (or a text such as '377.3 N m'); default that of the drive",
     )
-    parser.add_argument(
-        "--plane", choices=("strain", "stress"), default="strain", help="plane strain (default) or plane stress"
-    )
+    parser.add_argument("--plane", choices=("strain", "stress"), help="plane strain (default) or plane stress")
     parser.add_argument(
         "--fine-walls",
         action="store_true",
         help="mesh the disc's walls for the stress along them: within 1 %% of the largest instead of 3.4 %%",
+    )
+    parser.add_argument(
+        "--error",
+        action="store_true",
+        help="solve on nested meshes, the coarsest with edges of twice --size, each next one with edges half as long: "
+        "observed order and error bar (grid convergence index) of every figure, results of the finest",
+    )
+    parser.add_argument(
+        "--meshes",
+        metavar="N",
+        type=count_argument("--meshes", 3, 5),
+        help="nested meshes of --error, 3 (default) to 5",
     )
     add_out_argument(parser, "fem")
     drawn = parser.add_mutually_exclusive_group()
@@ -60,6 +83,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--referee", choices=("calculix",), help="let another code solve the same problem and print both side by side"
     )
+    add_pair_arguments(parser)
+    add_disc_arguments(parser)
+    # A disc of solid bodies has another default.
+    parser.set_defaults(size=None)
 
 
 def execute(arguments: argparse.Namespace) -> int:
@@ -78,6 +105,14 @@ def execute(arguments: argparse.Namespace) -> int:
     from ltca.errors import DriveError
     from ltca.output.run_folder import claimed_folder
 
+    refuse_mixed_options(arguments)
+    if arguments.bodies == "solid" and arguments.pair is None:
+        return execute_disc(arguments)
+    arguments.size = arguments.size or 1.0
+    if arguments.bodies == "solid":
+        return execute_pair(arguments)
+    _require_options(arguments)
+    arguments.plane = arguments.plane or "strain"
     referee = _referee(arguments.referee)
     file, case, drive = chosen_case(arguments)
     name = file.name
@@ -93,16 +128,30 @@ def execute(arguments: argparse.Namespace) -> int:
     own += ["calculix.dat"] if referee else []
     writes += [f"{disc_prefix(disc, discs)}{file}" for disc in range(discs) for file in own]
     with claimed_folder(out, "fem", writes=writes):
-        solution, checks, pictures = _solve_and_write(name, case, drive, file.limits[case], arguments, out, referee)
+        solution, checks, pictures, nested = _solve_and_write(
+            name, case, drive, file.limits[case], arguments, out, referee
+        )
         if not arguments.no_page:
             from fem.pictures.drive_loads import draw_loads
             from fem.reducer.solution_page import solution_page
             from ltca.page.study_page import write_study_page
 
             words = f"case {case}, {drive.load_words(arguments.torque)}, full finite elements, plane {arguments.plane}"
-            page = solution_page(solution, checks, case, words, file.text, draw_loads(solution), pictures)
+            page = solution_page(solution, checks, case, words, file.text, draw_loads(solution), pictures, nested)
             write_study_page(page, out)
     return 0
+
+
+def _require_options(arguments: argparse.Namespace) -> None:
+    """Raise CycloError for options that do not go together."""
+    if arguments.meshes is not None and not arguments.error:
+        raise CycloError(f"--meshes {arguments.meshes}: has no meaning without --error, which solves on nested meshes")
+    for option in ("export", "referee"):
+        if arguments.error and (code := getattr(arguments, option)):
+            raise CycloError(
+                f"--{option} {code}: does not go with --error, whose finest meshes are not those of one solution; "
+                f"run --{option} by itself"
+            )
 
 
 def _solve_and_write(
@@ -113,26 +162,18 @@ def _solve_and_write(
     arguments: argparse.Namespace,
     out: Path,
     referee: Callable[[FullSolution, Path], None] | None,
-) -> tuple[ReducerSolution, list[Check], list[Sequence[Picture]]]:
+) -> tuple[ReducerSolution, list[Check], list[Sequence[Picture]], NestedSolution | None]:
     from fem.drive.fields import recover_fields
-    from fem.options import SolutionOptions
-    from fem.reducer.solution import solve_reducer
     from fem.reducer.solution_files import write_solution
     from ltca.drive.members.verdict_words import verdict_table
     from ltca.output.progress import steps
 
     title = f"{name}, {case}, {arguments.angle:g} rad"
     with steps() as show:
-        solution = solve_reducer(
-            drive,
-            arguments.angle,
-            SolutionOptions(size=arguments.size, plane=arguments.plane, fine_walls=arguments.fine_walls),
-            torque=arguments.torque,
-            progress=show,
-        )
+        solution, nested = _solve(drive, arguments, show)
         show("files")
         fields = [recover_fields(disc) for disc in solution.discs]
-        checks = write_solution(solution, fields, case, out, limits)
+        checks = write_solution(solution, fields, case, out, limits, nested)
     load = drive.load_words(arguments.torque)
     print(
         f"{name} {case}, {load}, full finite elements, plane {arguments.plane}: 1 position, φ_C = {arguments.angle:g} rad"
@@ -153,6 +194,10 @@ def _solve_and_write(
             problem, drawn = draw_solution(disc, fields[number], headline, out, prefix=disc_prefix(number, count))
             pictures.append(drawn)
     _print_drive(solution)
+    if nested is not None:
+        from fem.reducer.error_table import error_lines
+
+        print(*error_lines(nested), sep="\n")
     print("verdict by full finite elements at this position")
     print(verdict_table(checks, limited=True))
     if problem:
@@ -166,7 +211,25 @@ def _solve_and_write(
         if referee:
             referee(disc, deck)
     print(f"written to {out}")
-    return solution, checks, pictures
+    return solution, checks, pictures, nested
+
+
+def _solve(
+    drive: Drive, arguments: argparse.Namespace, show: Callable[[str], None]
+) -> tuple[ReducerSolution, NestedSolution | None]:
+    """Solve the drive, on nested meshes where error bars are asked for."""
+    from fem.options import SolutionOptions
+
+    options = SolutionOptions(size=arguments.size, plane=arguments.plane, fine_walls=arguments.fine_walls)
+    if not arguments.error:
+        from fem.reducer.solution import solve_reducer
+
+        return solve_reducer(drive, arguments.angle, options, torque=arguments.torque, progress=show), None
+    from fem.reducer.nested_meshes import FEWEST_MESHES, solve_nested
+
+    count = arguments.meshes or FEWEST_MESHES
+    nested = solve_nested(drive, arguments.angle, options, torque=arguments.torque, meshes=count, progress=show)
+    return nested.solution, nested
 
 
 def ring_words(drive: Drive) -> str:

@@ -148,7 +148,8 @@ def find_active_set(problem: ContactProblem) -> BoolArray:
     external = problem.external / np.where(reach > 0.0, reach, 1.0)
     gap = problem.gap * unit
     count = len(gap)
-    load = float(np.max(np.abs(external))) or 1.0
+    # Without motions (an approach is given) the pressures are sized by those that would close the gaps one by one.
+    load = float(np.max(np.abs(external), initial=0.0)) or float(np.linalg.norm(gap)) or 1.0
     pressure = np.full(count, load / np.sqrt(count))
     opening = np.full(count, max(load / np.sqrt(count), float(np.max(np.abs(gap)))))
     motion = np.zeros(motions.shape[1])
@@ -156,7 +157,7 @@ def find_active_set(problem: ContactProblem) -> BoolArray:
     for _ in range(MAX_INTERIOR_STEPS):
         dual = stiffness @ pressure + gap + motions @ motion - opening
         primal = motions.T @ pressure - external
-        history.append(float(np.max(np.abs(primal))) / load)
+        history.append(float(np.max(np.abs(primal), initial=0.0)) / load)
         mean = float(pressure @ opening) / count
         size = float(np.max(np.abs(gap))) + float(np.max(np.abs(stiffness @ pressure)))
         settled = float(np.max(np.abs(dual))) < 1e-10 * size and mean < 1e-12 * float(pressure.max()) * size
@@ -167,7 +168,9 @@ def find_active_set(problem: ContactProblem) -> BoolArray:
         factor = sla.cho_factor(stiffness + np.diag(opening / pressure), lower=True, check_finite=False)
         solved = sla.cho_solve(factor, np.column_stack([motions, right]), check_finite=False)
         schur = motions.T @ solved[:, :-1]
-        turn = np.linalg.lstsq(schur, motions.T @ solved[:, -1] + primal, rcond=1e-14)[0]
+        turn = np.zeros(0)
+        if motions.shape[1]:
+            turn = np.linalg.lstsq(schur, motions.T @ solved[:, -1] + primal, rcond=1e-14)[0]
         step = solved[:, -1] - solved[:, :-1] @ turn
         opened = target / pressure - opening - opening / pressure * step
         length = min(_longest(pressure, step), _longest(opening, opened))

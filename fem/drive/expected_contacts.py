@@ -247,8 +247,15 @@ def expect_contacts(
     DriveError
         For several discs, and for what full finite elements refuse at any length (`ltca.drive.engine_support`).
     """
-    rigid = RigidBodies.of_drive(drive, crank_angle)
     require(drive, "FE mesh")
+    return guess_contacts(drive, crank_angle, torque=torque, wheel_moment=wheel_moment)
+
+
+def guess_contacts(
+    drive: Drive, crank_angle: float, *, torque: float | None = None, wheel_moment: float | None = None
+) -> ExpectedContacts:
+    """Return what `expect_contacts` does, of a drive that has been accepted by a model: it looks at the plane alone."""
+    rigid = RigidBodies.of_drive(drive, crank_angle)
     profile, placement = rigid.profile, rigid.placement
     hertz = HertzContacts(drive=drive, rigid=rigid, smallest_share=SMALLEST_LOAD_SHARE)
     pins, rollers = len(placement.wheel_pin_radii), len(placement.roller_radii)

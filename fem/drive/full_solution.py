@@ -7,10 +7,54 @@ from dataclasses import dataclass
 import numpy as np
 
 from fem.drive.contact_results import ContactResults
-from fem.drive.model import DriveModel, DrivePose, RoundGroup
+from fem.drive.expected_contacts import ExpectedContacts
+from fem.drive.meshes import DriveMeshes
+from fem.drive.model import DriveModel, DrivePose, PlacedContacts, RoundGroup
 from fem.drive.pose import PoseSolution, pair_forces
+from fem.mesh.uniform_refinement import CHILDREN
 from fem.options import SolutionOptions
-from ltca.arrays import FloatArray
+from fem.shapes import DriveShapes
+from ltca.arrays import ComplexArray, FloatArray
+from ltca.drive.parts import Drive
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CoarseSolution:
+    """What a solution on refined meshes starts from; without the factors of the coarser ones, which fill the memory.
+
+    Attributes
+    ----------
+    drive : Drive
+        Of one disc.
+    shapes : DriveShapes
+        Exact shapes.
+    contacts : ExpectedContacts
+        For which the coarsest meshes were graded.
+    meshes : DriveMeshes
+        Meshes of the shapes.
+    by_others : array of complex, shape (z_P,)
+        Displacement of the seats in the wheel by the forces of other discs, mm.
+    pose : DrivePose
+        Loaded pose.
+    wheel_moment : float
+        External moment on the wheel that the disc carries, N·mm.
+    options : SolutionOptions
+        How it was solved.
+    """
+
+    drive: Drive
+    shapes: DriveShapes
+    contacts: ExpectedContacts
+    meshes: DriveMeshes
+    by_others: ComplexArray
+    pose: DrivePose
+    wheel_moment: float
+    options: SolutionOptions
+
+    @property
+    def refined_unknowns(self) -> int:
+        """Displacement unknowns of the refined meshes that are factorised, about."""
+        return CHILDREN * self.meshes.factorised_unknowns
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -49,6 +93,21 @@ class FullSolution:
         return self.state.pose
 
     @property
+    def coarse(self) -> CoarseSolution:
+        """What a solution on refined meshes starts from."""
+        model = self.model
+        return CoarseSolution(
+            drive=model.drive,
+            shapes=model.shapes,
+            contacts=model.contacts,
+            meshes=model.meshes,
+            by_others=model.by_others,
+            pose=self.pose,
+            wheel_moment=self.state.wheel_moment,
+            options=self.options,
+        )
+
+    @property
     def bearing_components(self) -> FloatArray:
         """Bearing force of each crank on the disc along its eccentric and 90° ahead of it, N, shape (cranks, 2)."""
         model = self.model
@@ -63,18 +122,23 @@ class FullSolution:
         That of its rollers' forces on the disc about the crank's axis, as if they acted at the centre of the race, and by the
         part `cage_speed` of the crank's angle what they take of the cage: their moment about that centre.
         """
-        model, place = self.model, self.model.placement
-        forces = pair_forces(model, list(self.state.integrals), self.state.contact.pressure)
-        on_disc = np.zeros((place.cranks, 3))
-        for pair, force in zip(model.pairs, forces, strict=True):
-            if pair.kind == "roller_outer":
-                on_disc[model.crank_of(pair.index)] -= force
-        push, races = on_disc[:, 0] + 1j * on_disc[:, 1], model.race_centres
-        about_race = on_disc[:, 2] - (races.conjugate() * push).imag
-        lever = races - place.crank_axes
-        return np.asarray((lever.conjugate() * push).imag + float(place.cage_speed) * about_race)
+        return moments_on_cranks(self.model, self.state)
 
     @property
     def unknowns(self) -> int:
         """Displacement unknowns of all bodies and pressure unknowns."""
         return self.model.meshes.unknowns + self.model.unknown_count
+
+
+def moments_on_cranks(model: PlacedContacts, state: PoseSolution) -> FloatArray:
+    """Return the external moment that holds each crank, ccw positive, N·mm (`FullSolution.crank_moments`), shape (cranks,)."""
+    place = model.placement
+    forces = pair_forces(model, list(state.integrals), state.contact.pressure)
+    on_disc = np.zeros((place.cranks, 3))
+    for pair, force in zip(model.pairs, forces, strict=True):
+        if pair.kind == "roller_outer":
+            on_disc[model.crank_of(pair.index)] -= force
+    push, races = on_disc[:, 0] + 1j * on_disc[:, 1], model.race_centres
+    about_race = on_disc[:, 2] - (races.conjugate() * push).imag
+    lever = races - place.crank_axes
+    return np.asarray((lever.conjugate() * push).imag + float(place.cage_speed) * about_race)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from fem.mesh.body_mesh import BodyMesh
 from fem.mesh.element_size import DEFAULT_GROWTH, Refinement
 from fem.mesh.memory_need import require_memory, solution_memory
 from fem.mesh.triangulation import default_coarse_size, estimate_unknowns, mesh_circle, mesh_disc, mesh_ring
+from fem.mesh.uniform_refinement import refine_uniformly
 from fem.options import DEFAULT_OPTIONS, SolutionOptions
 from fem.shapes import CircleShape, DiscShape, DriveShapes, Shape
 from ltca.arrays import ComplexArray, FloatArray
@@ -62,6 +63,8 @@ class RoundGrading:
         1 or 2.
     growth : float
         Growth of the edge by distance from a contact.
+    halvings : int
+        Uniform refinements of the mesh so graded.
     """
 
     radius: float
@@ -70,6 +73,12 @@ class RoundGrading:
     coarse_size: float
     order: int = 2
     growth: float = DEFAULT_GROWTH
+    halvings: int = 0
+
+    @property
+    def touches(self) -> bool:
+        """Whether a contact is expected at either end."""
+        return any(end.half_width > 0.0 for end in self.ends)
 
     @property
     def refinements(self) -> tuple[Refinement, ...]:
@@ -83,7 +92,10 @@ class RoundGrading:
     def mesh(self, name: str) -> BodyMesh:
         """Return the mesh under the name of a body."""
         shape = CircleShape(name=name, radius=self.radius, core_radius=self.core_radius)
-        return mesh_circle(shape, self.refinements, coarse_size=self.coarse_size, growth=self.growth, order=self.order)
+        body = mesh_circle(shape, self.refinements, coarse_size=self.coarse_size, growth=self.growth, order=self.order)
+        for _ in range(self.halvings):
+            body = refine_uniformly(body, shape.curves)
+        return body
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -107,6 +119,16 @@ class RoundMesh:
     def placed(self, name: str) -> BodyMesh:
         """Return the mesh turned to its contact, axes as the fixed ones."""
         return self.body.turned(self.turn, name)
+
+    def refined(self, known: dict[RoundGrading, BodyMesh]) -> RoundMesh:
+        """Return the mesh refined uniformly, from those `known` or added to them; a body without contact keeps its own."""
+        if not self.grading.touches:
+            return self
+        grading = replace(self.grading, halvings=self.grading.halvings + 1)
+        if grading not in known:
+            shape = CircleShape(name=self.body.name, radius=grading.radius, core_radius=grading.core_radius)
+            known[grading] = refine_uniformly(self.body, shape.curves)
+        return replace(self, grading=grading, body=known[grading])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -141,6 +163,40 @@ class DriveMeshes:
     def unknowns(self) -> int:
         """Displacement unknowns of all bodies."""
         return sum(body.unknowns for body in self.bodies)
+
+    @property
+    def factorised_unknowns(self) -> int:
+        """Displacement unknowns of the meshes that are factorised: of pins and rollers those with contacts, equal ones once."""
+        rounds = (*self.unturned_pins, *self.unturned_rollers, *self.unturned_shaft_pins)
+        distinct = {mesh.grading: mesh.body.unknowns for mesh in rounds if mesh.grading.touches}
+        return self.disc.unknowns + self.inner_race.unknowns + sum(distinct.values())
+
+    def refined(self, shapes: DriveShapes, report: Callable[[BodyMesh], None] | None = None) -> DriveMeshes:
+        """Return the meshes with every triangle divided into four; `report` is called with each as soon as it is made."""
+        known: dict[RoundGrading, BodyMesh] = {}
+        unturned = [
+            tuple(mesh.refined(known) for mesh in meshes)
+            for meshes in (self.unturned_pins, self.unturned_rollers, self.unturned_shaft_pins)
+        ]
+
+        def announce(body: BodyMesh) -> BodyMesh:
+            if report is not None:
+                report(body)
+            return body
+
+        def placed(meshes: tuple[RoundMesh, ...], bodies: tuple[BodyMesh, ...]) -> tuple[BodyMesh, ...]:
+            return tuple(announce(mesh.placed(body.name)) for mesh, body in zip(meshes, bodies, strict=True))
+
+        return DriveMeshes(
+            disc=announce(refine_uniformly(self.disc, shapes.disc.curves)),
+            wheel_pins=placed(unturned[0], self.wheel_pins),
+            rollers=placed(unturned[1], self.rollers),
+            shaft_pins=placed(unturned[2], self.shaft_pins),
+            inner_race=announce(refine_uniformly(self.inner_race, shapes.inner_race.curves)),
+            unturned_pins=unturned[0],
+            unturned_rollers=unturned[1],
+            unturned_shaft_pins=unturned[2],
+        )
 
 
 def _spots(points: ComplexArray, half_width: FloatArray, size: float) -> list[Refinement]:

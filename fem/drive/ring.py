@@ -18,8 +18,11 @@ MAX_KEPT = 8
 _KEPT: dict[str, FloatArray] = {}
 
 
-def ring_of_seats(drive: Drive) -> FloatArray:
-    """Return the flexibility of the ring of a drive at the seats of its pins, mm/N, shape (2 z_P, 2 z_P); found once."""
+def ring_of_seats(drive: Drive, halvings: int = 0) -> FloatArray:
+    """Return the flexibility of the ring of a drive at the seats of its pins, mm/N, shape (2 z_P, 2 z_P); found once.
+
+    Its mesh is refined uniformly `halvings` times.
+    """
     ring = drive.ring
     assert ring is not None
     material, bolts = ring.material, ring.bolts
@@ -27,11 +30,12 @@ def ring_of_seats(drive: Drive) -> FloatArray:
         "modulus": material.youngs_modulus,
         "width": ring.width,
         "bolts": 0.0 if bolts is None else bolts.stiffness,
+        "halvings": halvings,
     }
     key = fingerprint_of(ring_shape(drive) | stiffness)
     if key not in _KEPT:
         while len(_KEPT) >= MAX_KEPT:
             del _KEPT[next(iter(_KEPT))]
-        _KEPT[key] = seat_flexibility(drive)
+        _KEPT[key] = seat_flexibility(drive, halvings=halvings)
         _KEPT[key].flags.writeable = False
     return _KEPT[key]

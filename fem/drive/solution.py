@@ -16,13 +16,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fem.drive.condensed import condense_drive, keep_rounds
-from fem.drive.contact_results import DeformedContacts, deformed_contacts, summarise_contacts
+from fem.drive.contact_results import ContactResults, DeformedContacts, deformed_contacts, summarise_contacts
 from fem.drive.expected_contacts import (
     ExpectedContacts,
     expect_contacts,
     require_one_disc,
 )
-from fem.drive.full_solution import FullSolution
+from fem.drive.full_solution import CoarseSolution, FullSolution
 from fem.drive.grading import FINE_SHARE, find_shortcoming, grade_contacts
 from fem.drive.meshes import DriveMeshes, mesh_drive, require_model_memory
 from fem.drive.model import DriveModel, RoundGroup
@@ -30,6 +30,7 @@ from fem.drive.pose import POSE_TOLERANCE, PoseSolution, solve_pose
 from fem.drive.rigid_bodies import RigidBodies
 from fem.drive.ring import ring_of_seats
 from fem.errors import MeshError
+from fem.mesh.memory_need import require_memory, solution_memory
 from fem.options import DEFAULT_OPTIONS, SolutionOptions
 from fem.shapes import DriveShapes
 from ltca.arrays import ComplexArray, FloatArray
@@ -317,11 +318,13 @@ def solve_moment(
     wheel_moment: float,
     *,
     pose_tolerance: float = POSE_TOLERANCE,
+    regraded: bool = True,
     progress: Callable[[str], None] | None = None,
 ) -> FullSolution:
     """Solve for another moment on the wheel, N·mm, on the meshes of a solution at the same crank angle where they serve.
 
-    The pose has converged when no increment is larger than `pose_tolerance`, mm.
+    The pose has converged when no increment is larger than `pose_tolerance`, mm. Where the meshes do not serve, new ones are
+    graded; with `regraded` false the meshes stay, whatever their elements, and ConvergenceError says why they do not serve.
     """
     watch = _Stopwatch()
     model = previous.model
@@ -335,7 +338,9 @@ def solve_moment(
     )
     watch.lap("contact and pose")
     results = summarise_contacts(model, solution)
-    if find_shortcoming(model, solution, results, previous.options.size):
+    if not regraded:
+        _require_zones(model, solution, results)
+    elif find_shortcoming(model, solution, results, previous.options.size):
         return solve_disc(
             model.drive,
             model.crank_angle,
@@ -352,6 +357,82 @@ def solve_moment(
         pose_iterations=solution.iterations,
         seconds=watch.total(),
     )
+
+
+def refine_solution(
+    coarse: CoarseSolution,
+    *,
+    rounds: tuple[RoundGroup, ...] = (),
+    pose_tolerance: float = POSE_TOLERANCE,
+    progress: Callable[[str], None] | None = None,
+) -> FullSolution:
+    """Solve under the same moment on the meshes of a solution with every element divided into four.
+
+    Contact zones stay where they are, with twice the pressure unknowns; a ring is refined likewise.
+
+    Parameters
+    ----------
+    coarse : CoarseSolution
+        Of a solution on coarser meshes (`FullSolution.coarse`), whose pose starts the iteration.
+    rounds : tuple of RoundGroup
+        Condensed pins and rollers of another disc so refined.
+    pose_tolerance : float
+        Largest rigid increment of a converged pose, mm.
+    progress : callable, optional
+        Called with one line for each step.
+
+    Returns
+    -------
+    FullSolution
+        With `fem.options.SolutionOptions.halvings` increased by one.
+
+    Raises
+    ------
+    ConvergenceError
+        When the pose does not settle, or the contacts outgrow the zones of the coarser meshes.
+    MemoryLimitError
+        When the refined meshes would not fit into memory.
+    """
+    say, watch = progress or (lambda _: None), _Stopwatch()
+    unknowns, drive = coarse.refined_unknowns, coarse.drive
+    require_memory(unknowns, solution_memory(unknowns), "the refined mesh")
+    options = replace(coarse.options, halvings=coarse.options.halvings + 1)
+    say(f"meshes halved, {unknowns:,} unknowns")
+    meshes = coarse.meshes.refined(coarse.shapes)
+    watch.lap("mesh")
+    model = condense_drive(
+        drive,
+        coarse.shapes,
+        coarse.contacts,
+        meshes,
+        plane=options.plane,
+        known=rounds,
+        ring=None if drive.ring is None else ring_of_seats(drive, options.halvings),
+        by_others=coarse.by_others,
+    )
+    watch.lap("assembly and factorisation")
+    found = solve_pose(model, coarse.wheel_moment, start=coarse.pose, pose_tolerance=pose_tolerance, progress=progress)
+    watch.lap("contact and pose")
+    results = summarise_contacts(model, found)
+    _require_zones(model, found, results)
+    return FullSolution(
+        model=model,
+        state=found,
+        contacts=results,
+        options=options,
+        pose_iterations=found.iterations,
+        rounds=keep_rounds(rounds, model.groups),
+        seconds=watch.total(),
+    )
+
+
+def _require_zones(model: DriveModel, solution: PoseSolution, results: ContactResults) -> None:
+    """Raise ConvergenceError when the contacts outgrow the zones of meshes that are kept, whatever the size of their elements."""
+    if complaint := find_shortcoming(model, solution, results):
+        raise ConvergenceError(
+            f"nested meshes do not serve the solution at crank angle {model.crank_angle:g} rad: {complaint}; "
+            "use smaller elements"
+        )
 
 
 def _largest_approach(rigid: RigidBodies, guess: ExpectedContacts) -> float:

@@ -1,13 +1,16 @@
 """A drive of any number of discs by full finite elements: a separate problem for each disc, with one common wheel angle.
 
-==============  ===============================================================
-shares          Part of the wheel's moment that each disc carries: iteration of the moments until the wheel angles agree
-mixing          A fixed point from the last rounds of an iteration: seats of the ring that several discs press
-solution        Solution of a drive at one crank angle with either member held
-series          Solutions at one crank angle after the other; condensed pins and rollers are reused
-verdict         Largest loads, pressures and stresses of a solution, judged by the same limits as the LTCA
-solution_files  Files of such a solution: ``summary.json``, ``fem.nc``, one ``.vtu`` for each body and ``fem.vtm`` over
-                them all
-solution_page   Its page
-==============  ===============================================================
+===============  ===============================================================
+shares           Part of the wheel's moment that each disc carries: iteration of the moments until the wheel angles agree
+mixing           A fixed point from the last rounds of an iteration: seats of the ring that several discs press
+solution         Solution of a drive at one crank angle with either member held
+series           Solutions at one crank angle after the other; condensed pins and rollers are reused
+wall_references  Stress along walls on nested meshes against closed forms
+nested_meshes    A drive on nested meshes: every figure with observed order, Richardson's value and error bar
+error_table      These error bars for ``summary.json``, for print and for the page
+verdict          Largest loads, pressures and stresses of a solution, judged by the same limits as the LTCA
+solution_files   Files of such a solution: ``summary.json``, ``fem.nc``, one ``.vtu`` for each body and ``fem.vtm`` over
+                 them all
+solution_page    Its page
+===============  ===============================================================
 """

@@ -15,10 +15,10 @@ import numpy as np
 
 from fem.drive.condensed import keep_rounds
 from fem.drive.expected_contacts import expect_contacts
-from fem.drive.full_solution import FullSolution
+from fem.drive.full_solution import CoarseSolution, FullSolution
 from fem.drive.meshes import require_model_memory
 from fem.drive.model import RoundGroup
-from fem.drive.solution import solve_disc, solve_moment
+from fem.drive.solution import refine_solution, solve_disc, solve_moment
 from fem.options import DEFAULT_OPTIONS, SolutionOptions
 from fem.reducer.mixing import AndersonMixing
 from fem.reducer.shares import SharedAnswer, share_moment
@@ -128,6 +128,11 @@ class ReducerSolution:
         return max(disc.contacts.equilibrium_residual for disc in self.discs)
 
     @property
+    def coarse(self) -> tuple[CoarseSolution, ...]:
+        """What a solution on refined meshes starts from, disc by disc."""
+        return tuple(disc.coarse for disc in self.discs)
+
+    @property
     def rounds(self) -> tuple[RoundGroup, ...]:
         """Condensed pins and rollers of all discs, to start another solution with."""
         found: tuple[RoundGroup, ...] = ()
@@ -151,7 +156,23 @@ class _Task:
     torque: float
     options: SolutionOptions
     say: Callable[[str], None]
+    regraded: bool = True
     seconds: dict[str, float] = field(default_factory=dict)
+
+    @classmethod
+    def again(
+        cls, drive: Drive, torque: float, coarse: Sequence[CoarseSolution], say: Callable[[str], None] | None
+    ) -> _Task:
+        """Return the task of solving a solution again on meshes that are never graded anew."""
+        return cls(
+            drive=drive,
+            crank_angle=coarse[0].contacts.crank_angle,
+            singles=single_discs(drive),
+            torque=torque,
+            options=coarse[0].options,
+            say=say or (lambda _: None),
+            regraded=False,
+        )
 
     def start(
         self, disc: int, moment: float, rounds: tuple[RoundGroup, ...], by_others: ComplexArray | None = None
@@ -180,10 +201,17 @@ class _Task:
         found = self.start(disc, moment, rounds, by_others) if previous is None else previous
         if not np.array_equal(found.model.by_others, by_others):
             moved = replace(found, model=replace(found.model, by_others=by_others))
-            found = self.timed(solve_moment(moved, moment, pose_tolerance=POSE_TOLERANCE, progress=self.saying(disc)))
+            found = self.solve_again(disc, moved, moment)
         while found.state.wheel_moment != moment or found.state.increments[-1] > POSE_TOLERANCE:
-            found = self.timed(solve_moment(found, moment, pose_tolerance=POSE_TOLERANCE, progress=self.saying(disc)))
+            found = self.solve_again(disc, found, moment)
         return found
+
+    def solve_again(self, disc: int, found: FullSolution, moment: float) -> FullSolution:
+        """Solve one disc under a moment on the meshes it has, from the pose it has."""
+        say = self.saying(disc)
+        return self.timed(
+            solve_moment(found, moment, pose_tolerance=POSE_TOLERANCE, regraded=self.regraded, progress=say)
+        )
 
     def settle_all(
         self, discs: Sequence[FullSolution | None], moments: FloatArray, rounds: tuple[RoundGroup, ...]
@@ -221,6 +249,35 @@ class _Task:
             return wheel - self.drive.wheel_moment(self.torque)
         cranks = float(sum(disc.crank_moments.sum() for disc in discs))
         return wheel + self.drive.input_per_crank_moment * cranks + self.drive.driving_sign * self.torque
+
+    def solve_shares(
+        self,
+        first: Sequence[FullSolution | None],
+        moment: FloatArray,
+        slope: FloatArray,
+        rounds: tuple[RoundGroup, ...],
+    ) -> ReducerSolution:
+        """Solve all discs, from `first` where known, under moments whose wheel angles agree and that balance the drive."""
+        discs = list(first)
+
+        def answer(moments: FloatArray) -> SharedAnswer:
+            found = self.settle_all(discs, moments, rounds)
+            discs[:] = found
+            angle = np.array([disc.pose.wheel_angle for disc in found])
+            shares = ", ".join(f"{share:.4f}" for share in moments / moments.sum())
+            self.say(f"shares {shares}; wheel angles differ by {np.ptp(angle):.2g} rad")
+            return SharedAnswer(wheel_angle=angle, left_over=self.left_over(found))
+
+        shares = share_moment(answer, moment, slope, rise=1.0 / abs(self.drive.output_per_wheel_angle))
+        return ReducerSolution(
+            drive=self.drive,
+            crank_angle=self.crank_angle,
+            torque=self.torque,
+            discs=tuple(disc for disc in discs if disc is not None),
+            spread=shares.spread,
+            left_over=shares.left_over,
+            seconds=self.seconds,
+        )
 
     def saying(self, disc: int) -> Callable[[str], None]:
         if len(self.singles) == 1:
@@ -300,27 +357,68 @@ def solve_reducer(
     if len(singles) > 1:
         require_solution_memory(drive, crank_angle, options)
     moment, slope = expect_shares(drive, crank_angle, drive.wheel_moment(torque))
-    discs: list[FullSolution | None] = [None] * len(singles)
+    return task.solve_shares([None] * len(singles), moment, slope, rounds)
 
-    def answer(moments: FloatArray) -> SharedAnswer:
-        found = task.settle_all(discs, moments, rounds)
-        discs[:] = found
-        angle = np.array([disc.pose.wheel_angle for disc in found])
-        shares = ", ".join(f"{share:.4f}" for share in moments / moments.sum())
-        task.say(f"shares {shares}; wheel angles differ by {np.ptp(angle):.2g} rad")
-        return SharedAnswer(wheel_angle=angle, left_over=task.left_over(found))
 
-    rise = 1.0 / abs(drive.output_per_wheel_angle)
-    shares = share_moment(answer, moment, slope, rise=rise)
-    return ReducerSolution(
-        drive=drive,
-        crank_angle=task.crank_angle,
-        torque=task.torque,
-        discs=tuple(disc for disc in discs if disc is not None),
-        spread=shares.spread,
-        left_over=shares.left_over,
-        seconds=task.seconds,
-    )
+def settle_pose(solution: ReducerSolution, progress: Callable[[str], None] | None = None) -> ReducerSolution:
+    """Return a solution whose poses have converged to `POSE_TOLERANCE` on its own meshes, which are kept.
+
+    That of several discs, or with the wheel held, has converged so far already.
+    """
+    if len(solution.discs) > 1 or solution.drive.wheel_is_held:
+        return solution
+    (disc,) = solution.discs
+    task = _Task.again(solution.drive, solution.torque, (disc.coarse,), progress)
+    settled = task.settle(0, disc, disc.state.wheel_moment, (), disc.model.by_others)
+    seconds = {stage: solution.seconds.get(stage, 0.0) + task.seconds.get(stage, 0.0) for stage in solution.seconds}
+    return replace(solution, discs=(settled,), seconds=seconds)
+
+
+def solve_refined(
+    drive: Drive,
+    torque: float,
+    coarse: Sequence[CoarseSolution],
+    *,
+    progress: Callable[[str], None] | None = None,
+) -> ReducerSolution:
+    """Solve a drive again, to `POSE_TOLERANCE`, on the meshes of a solution with every element divided into four.
+
+    Parameters
+    ----------
+    drive : Drive
+        All of it.
+    torque : float
+        Output torque of the solution, N·mm.
+    coarse : sequence of CoarseSolution
+        The solution, disc by disc (`ReducerSolution.coarse`).
+    progress : callable, optional
+        Called with one line for each step.
+
+    Returns
+    -------
+    ReducerSolution
+        Its meshes are never graded anew; its seconds are those of this call.
+
+    Raises
+    ------
+    ConvergenceError
+        As `solve_reducer`, and when the contacts outgrow the zones of the meshes.
+    MemoryLimitError
+        When the refined meshes of a disc would not fit into memory.
+    """
+    task = _Task.again(drive, torque, coarse, progress)
+    discs, rounds = list[FullSolution | None](), tuple[RoundGroup, ...]()
+    for number, own in enumerate(coarse):
+        # Pins and rollers of one disc serve the next.
+        say = task.saying(number)
+        found = task.timed(refine_solution(own, rounds=rounds, pose_tolerance=POSE_TOLERANCE, progress=say))
+        rounds = found.rounds
+        discs.append(found)
+    if len(discs) == 1 and not drive.wheel_is_held:
+        return replace(ReducerSolution.of_disc(found), drive=drive, torque=torque)
+    moments = np.array([own.wheel_moment for own in coarse])
+    _, slope = expect_shares(drive, task.crank_angle, float(moments.sum()))
+    return task.solve_shares(discs, moments, slope, ())
 
 
 def expect_shares(drive: Drive, crank_angle: float, wheel_moment: float) -> tuple[FloatArray, FloatArray]:

@@ -19,6 +19,8 @@ from fem.drive.disc_stress import DiscStress, recover_disc_stress, stress_variab
 from fem.drive.fields import BodyField, bore_motion
 from fem.drive.full_solution import FullSolution
 from fem.mesh.mesh_file import body_stem, write_vtu
+from fem.reducer.error_table import error_content
+from fem.reducer.nested_meshes import NestedSolution
 from fem.reducer.solution import ReducerSolution
 from fem.reducer.verdict import judge_solution
 from ltca.drive.hole_contact import RIGID_SHAFT_PINS, shaft_pins_yield
@@ -76,7 +78,7 @@ def summarise(solution: ReducerSolution) -> dict[str, Any]:
         QUANTITIES["equilibrium_residual"].fem_key: solution.equilibrium_residual,
         "pose_iterations": each([disc.pose_iterations for disc in discs]),
         "dof": solution.unknowns,
-        "size": discs[0].options.size,
+        "size": discs[0].options.refined_size,
         "plane_state": discs[0].options.plane,
         "held": solution.drive.installation.held,
         "fingerprint": solution.drive.fingerprint(),
@@ -155,7 +157,7 @@ def label_solution(solution: ReducerSolution, case: str, stresses: Sequence[Disc
         "model": f"finite elements, plane {options.plane}",
         "plane": options.plane,
         "elastic_shaft_pins": int(bool(discs[0].model.meshes.shaft_pins)),
-        "size": options.size,
+        "size": options.refined_size,
         "unknowns": solution.unknowns,
     }
     if stresses:
@@ -190,9 +192,11 @@ def write_solution(
     case: str,
     folder: Path,
     limits: Mapping[str, Limit] | None = None,
+    nested: NestedSolution | None = None,
 ) -> list[Check]:
     """Write all files of a solution and return its verdict, as ``summary.json`` holds it; `fields` by disc (`recover_fields`).
 
+    The key ``error`` of ``summary.json`` holds the error bars of the solutions on `nested` meshes, of which this is the finest.
     Each file appears only when it is complete, ``fem.vtm`` only over bodies of this solution.
     """
     index = folder / MULTI_BLOCK
@@ -212,7 +216,8 @@ def write_solution(
     write_multi_block(bodies, index)
     checks = judge_solution(solution, stresses, limits or {})
     verdict = {"verdict": [check_content(check, case) for check in checks]}
-    write_json(folder / "summary.json", summarise(solution) | summarise_stress(stresses) | verdict)
+    bars = {} if nested is None else {"error": error_content(nested)}
+    write_json(folder / "summary.json", summarise(solution) | summarise_stress(stresses) | verdict | bars)
     return checks
 
 

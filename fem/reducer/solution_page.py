@@ -7,6 +7,8 @@ from math import degrees
 
 from fem.drive.contact_kinds import CONTACT_KINDS
 from fem.drive.full_solution import FullSolution
+from fem.reducer.error_table import error_section
+from fem.reducer.nested_meshes import NestedSolution
 from fem.reducer.solution import ReducerSolution
 from ltca.drive.members.judgement import Check
 from ltca.drive.units.quantities import ARCSEC
@@ -23,15 +25,18 @@ def solution_page(
     text: str,
     loads: Picture,
     pictures: Sequence[Sequence[Picture]] = (),
+    nested: NestedSolution | None = None,
 ) -> StudyPage:
     """Return the page of a full solution with its verdict.
 
     `told` describes the problem, `text` is the drive file, `loads` is the drive with its loads, and `pictures` are those of
-    the stress in every disc, none where they were left out.
+    the stress in every disc, none where they were left out; error bars are those of solutions on `nested` meshes.
     """
     sentence, state = verdict_of({case: checks})
     sections = [Section(heading="Verdict at this position", tables=folded(verdict_tables({case: checks})))]
     sections.append(Section(heading="The drive under load", pictures=[loads]))
+    if nested is not None:
+        sections.append(error_section(nested))
     several = len(solution.discs) > 1
     for place, own in enumerate(pictures):
         sections.append(

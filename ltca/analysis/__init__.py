@@ -31,6 +31,8 @@ torque_curve               Torque against wind-up over both directions, and what
 stiffness_by_part          Torsional stiffness with and without each part that a file describes
 transmission_error_orders  Orders of the transmission error by name, fitted together
 life                       Rating life and static safety of the crank bearings from the loads of their rollers
+vibration                  Modes over a turn and over torque, orders that excite them, critical speeds
+forced_vibration           Response to the orders of the transmission error over speed, dynamic factors of contacts
 drive_curves               Curves of one drive: torque curve, orders, lives and pressure over turns
 verdict                    A verdict on a design: values against limits that each have a source, and advice
 pressure_safety            Safety of the flank pressure against a limit

@@ -115,24 +115,24 @@ class DriveCurves:
         return "\n".join(curve_lines(self, f"{self.drive.name} {self.drive.case}"))
 
 
-def _orders(drive: Drive) -> tuple[Order, ...]:
+def known_orders_of(drive: Drive) -> tuple[Order, ...]:
     """Return the orders that are fitted."""
     return known_orders(drive, harmonics=min(HARMONICS, max(2, HIGHEST_ORDER // drive.disc.number_of_teeth)))
 
 
 def positions_per_turn(drive: Drive) -> int:
     """Return the number of positions in a turn that resolves the highest order."""
-    return max(POSITIONS_PER_TURN, ceil(POSITIONS_PER_PERIOD * max(order.value for order in _orders(drive))))
+    return max(POSITIONS_PER_TURN, ceil(POSITIONS_PER_PERIOD * max(order.value for order in known_orders_of(drive))))
 
 
 def fewest_turns(drive: Drive, turns: int) -> int:
     """Return the least number of turns, up to `turns`, that separates the orders of the transmission error."""
-    return least_turns(_orders(drive), positions_per_turn(drive), turns)
+    return least_turns(known_orders_of(drive), positions_per_turn(drive), turns)
 
 
 def require_turns(drive: Drive, turns: int, name: str = "--turns") -> None:
     """Refuse too few turns to separate the orders of the transmission error."""
-    least, orders = fewest_turns(drive, drive.pin_wheel.number_of_pins), len(_orders(drive))
+    least, orders = fewest_turns(drive, drive.pin_wheel.number_of_pins), len(known_orders_of(drive))
     if turns < least:
         raise DriveError(
             [f"{name} = {turns}: must be at least {least}, or {orders} orders of the transmission error look alike"]
@@ -188,7 +188,7 @@ def solve_curves(
         pressures.add(analysis.pressures.pins.mid)
         advance(rows.size)
     try:
-        spectrum = fit_orders(angle, np.concatenate(error), _orders(drive))
+        spectrum = fit_orders(angle, np.concatenate(error), known_orders_of(drive))
     except ValueError as problem:
         raise DriveError([f"turns = {turns}: {problem}"]) from problem
     # The disc does not turn against the pin shaft: a bearing turns as the crank does against that one.

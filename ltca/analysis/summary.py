@@ -15,6 +15,7 @@ from ltca.analysis.loaded_analysis import MAX_BATCH_POSITIONS, LoadedAnalysis
 from ltca.analysis.results import case_arrays
 from ltca.arrays import FloatArray, batch_layout, stack_drives, take_rows
 from ltca.drive.units.quantities import ARCMIN, ARCSEC
+from ltca.dynamics.mass_values import mass_values
 from ltca.equilibrium.output_angle import play_of_input
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
@@ -152,6 +153,7 @@ def _summary(analysis: LoadedAnalysis, unloaded: Values, plays: Values, refined:
         **scalars_of_positions(analysis, arrays),
         "cycloid_stage_stiffness": analysis.stiffness_from_light(analysis.stage_wind_up),
         "reducer_stiffness": analysis.stiffness_from_light(analysis.wind_up),
+        **mass_values(analysis.as_written),
     }
     values |= {f"compliance_share_{part}": np.mean(share) for part, share in analysis.compliance_shares.items()}
     values |= {f"refined_{name}": refined.get(name, np.nan) for name in values if name in REFINED}

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ltca.arrays import FloatArray
+from ltca.arrays import ComplexArray, FloatArray
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
 from ltca.geometry.placement import Placement
@@ -182,3 +182,20 @@ def fit_orders(crank_angle: FloatArray, error: FloatArray, orders: tuple[Order, 
         mean=float(solution[0]),
         residual=float(np.linalg.norm(triangle[:, :count] @ solution - triangle[:, count]) / np.sqrt(angle.size)),
     )
+
+
+def order_amplitudes(crank_angle: FloatArray, values: FloatArray, orders: tuple[Order, ...]) -> ComplexArray:
+    """Return complex amplitudes a of orders, Re a·exp(i·order·φ_C), of several columns, shape (orders, columns).
+
+    Parameters
+    ----------
+    crank_angle : array, shape (positions,)
+        φ_C, rad, over turns at which `fit_orders` tells the orders apart.
+    values : array, shape (positions, columns)
+        What has these orders.
+    orders : tuple of Order
+        What to fit.
+    """
+    columns = _columns(np.asarray(crank_angle), np.array([order.value for order in orders]))
+    solution = np.linalg.lstsq(columns, values, rcond=None)[0]
+    return np.asarray(solution[1 : len(orders) + 1] - 1j * solution[len(orders) + 1 :])

@@ -32,6 +32,7 @@ ORDER = (
     "fields",
     "quantities",
     "curves",
+    "dynamics",
     "tolerance",
     "sweep",
     "optimise",

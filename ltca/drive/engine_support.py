@@ -35,8 +35,11 @@ _IN_MESSAGES = {
     "full FE": "full finite elements",
     "FE mesh": "meshes of full finite elements",
     "clearance-free": "the clearance-free analysis",
+    "solid pair": "a pair of solid bodies",
+    "solid disc": "a disc of solid bodies",
 }
-"""Names of engines in messages. The last two are no choice of an analysis: ``cyclo mesh`` and a reference of the tests."""
+"""Names of engines in messages. The last four are no choice of an analysis: ``cyclo mesh``, a reference of the tests, and
+``cyclo fem --bodies solid`` with and without ``--pair``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,9 +74,9 @@ _PLANE = ("fe", "full FE")
 _TWO_DIMENSIONS = (
     "the model is two-dimensional: nothing varies along the length, and rollers are as long as the disc is thick"
 )
-_RIGID = ("paper", "full FE", "FE mesh", "clearance-free")
+_RIGID = ("paper", "full FE", "FE mesh", "clearance-free", "solid pair", "solid disc")
 _FIXED = ("direct", *_RIGID)
-_ONE_BORE = ("paper", "clearance-free")
+_ONE_BORE = ("paper", "clearance-free", "solid disc")
 _HYBRID = "use --compliance hybrid"
 _TABLES = "use --method tables"
 REFUSALS = (
@@ -82,13 +85,17 @@ REFUSALS = (
     Refusal("crank.angle", _ONE_BORE, "the model has one crank"),
     Refusal("crank.support", _RIGID, "cranks are rigid in the model"),
     Refusal("pin_wheel.pin_profile", _PLANE, _TWO_DIMENSIONS, _HYBRID, accepts=attrgetter("is_cylinder")),
-    Refusal("pin_wheel.axis_offset", ("full FE", "FE mesh"), "wheel and pin shaft have the same axis in the model"),
+    Refusal(
+        "pin_wheel.axis_offset",
+        ("full FE", "FE mesh", "solid pair", "solid disc"),
+        "wheel and pin shaft have the same axis in the model",
+    ),
     Refusal("pin_wheel.support_stiffness", _RIGID, "the axis of the wheel is fixed in the model"),
     Refusal("pin_wheel.seat", _FIXED, "pins are fixed in the model"),
     Refusal("pin_wheel.beam", _FIXED, "pins do not bend in the model"),
     Refusal("first_stage", _RIGID, "the model has no first stage", "give installation.first_stage_ratio"),
     Refusal(f"load.external.{ANY}", _RIGID, "the axis of the wheel is fixed in the model"),
-    Refusal("disc.number_of_discs", ("paper",), "the model has one disc"),
+    Refusal("disc.number_of_discs", ("paper", "solid disc"), "the model has one disc"),
     Refusal(f"disc.of.{ANY}.bore_errors", _ONE_BORE, "the model has one crank"),
     Refusal("crank_bearing.roller_length", _PLANE, _TWO_DIMENSIONS, _HYBRID, equals="disc.thickness"),
     Refusal("crank_bearing.roller_profile", _PLANE, _TWO_DIMENSIONS, _HYBRID, accepts=attrgetter("is_cylinder")),
@@ -104,6 +111,23 @@ REFUSALS = (
     Refusal("contact.slices", ("paper",), "discs do not tilt in the model", _TABLES),
     Refusal("contact.slices", ("full FE", "FE mesh"), _TWO_DIMENSIONS),
     Refusal("contact.slices", ("clearance-free",), "discs do not tilt in the model"),
+    *(
+        Refusal(path, ("solid pair",), "a pair alone does not know by what its members tilt it", "give --tilt")
+        for path in (
+            "crank.inclination",
+            "pin_wheel.inclination",
+            "pin_wheel.pin_errors.inclination_x",
+            "pin_wheel.pin_errors.inclination_y",
+            "pin_shaft.inclination",
+            "pin_shaft.pin_errors.inclination_x",
+            "pin_shaft.pin_errors.inclination_y",
+            "disc.hole_errors.inclination_x",
+            "disc.hole_errors.inclination_y",
+            f"disc.of.{ANY}.hole_errors.inclination_x",
+            f"disc.of.{ANY}.hole_errors.inclination_y",
+        )
+    ),
+    Refusal("disc.axial_play", ("solid pair",), "the disc is not a part of the model"),
 )
 """Everything that an engine refuses, in the order of the definition of a drive."""
 ROUNDING = 1e-9
@@ -165,7 +189,7 @@ def _problems(drive: Drive, row: Refusal, engine: str) -> Iterator[str]:
             bound = f"{accepted:g}{unit} ({row.equals})"
         elif value == default or (row.accepts is not None and row.accepts(value)):
             continue
-        elif default is not None and not is_dataclass(default):
+        elif default is not None and default != () and not is_dataclass(default):
             bound = f"{default:g}{unit}"
         named = (
             f"{path} ({_contents(path, value, row.path)})" if is_dataclass(value) else f"{path} = {shown(value)}{unit}"

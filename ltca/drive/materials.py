@@ -43,7 +43,8 @@ class Material:
 
     Notes
     -----
-    Properties that may be left out change no load: results are judged by strength, hardness and density.
+    Properties that may be left out change no load: results are judged by strength and hardness; masses and vibrations need the
+    density.
     """
 
     youngs_modulus: Annotated[float, quantity("MPa", gt=0.0)] = 206_000.0

@@ -13,6 +13,7 @@ from ltca.drive.members.temperatures import temperature_words
 from ltca.drive.parts import Drive, PinShaft, PinWheel
 from ltca.drive.single_discs import equal_parts, single_discs
 from ltca.drive.units.quantities import ARCMIN
+from ltca.dynamics.mass_values import mass_rows
 from ltca.equilibrium.first_stage import StageMesh
 from ltca.equilibrium.supports import crank_bearing_stiffness, crank_laws, wheel_law, wheel_rows
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
@@ -32,7 +33,7 @@ def derived_rows(written: Drive, drive: Drive, *, plays: bool = True) -> Rows:
 
     `plays` are gaps and backlash over a turn, which take most of the time.
     """
-    return [*_warmth(written), *_materials(written), *_properties(drive, plays)]
+    return [*_warmth(written), *_materials(written), *_properties(drive, plays), *mass_rows(written)]
 
 
 def _properties(drive: Drive, plays: bool) -> Rows:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import pairwise
 from math import cos, degrees, fsum, pi, sin
 
@@ -82,7 +83,7 @@ def _installation(drive: Drive) -> Iterator[str]:
         *_ring(drive),
         *_carrier(drive),
     )
-    yield from (*parts, *find_pin_problems(drive), *_duty(drive))
+    yield from (*parts, *find_pin_problems(drive), *_duty(drive), *_vibrations(drive))
 
 
 def _ring(drive: Drive) -> Iterator[str]:
@@ -219,14 +220,29 @@ def _duty(drive: Drive) -> Iterator[str]:
         )
 
 
+def _vibrations(drive: Drive) -> Iterator[str]:
+    """Problems of inertias and damping, which concern vibrations alone."""
+    damping, given = drive.damping, drive.inertia
+    if damping is not None and (damping.ratio is None) == (damping.loss_factor is None):
+        told = "both are" if damping.ratio is not None else "neither is"
+        yield f"damping.ratio, damping.loss_factor: one of the two must be given, {told}"
+    if given is not None and given.output_mass is not None and not drive.wheel_yields:
+        yield (
+            f"inertia.output_mass = {given.output_mass:g} kg: must be left out without main_bearing (or "
+            "pin_wheel.support_stiffness), where the output turns about a fixed axis"
+        )
+
+
 def _crank_support(drive: Drive) -> Iterator[str]:
     support = drive.crank.support
     if support is None:
-        expands = drive.temperature is not None and drive.materials.crankshaft.thermal_expansion is not None
-        if drive.materials.crankshaft != Material() and not expands:
+        own = drive.materials.crankshaft
+        bare = replace(own, density=None)
+        expands = drive.temperature is not None and own.thermal_expansion is not None
+        if bare != Material() and not expands:
             yield (
-                "materials.crankshaft: must be left out without crank.support, where cranks are rigid, but for its "
-                "thermal_expansion beside [temperature]"
+                "materials.crankshaft: must be left out without crank.support, where cranks are rigid, but for its density and "
+                "for its thermal_expansion beside [temperature]"
             )
         return
     yield from _crank_bearings(support, drive.crank.eccentricity)

@@ -69,6 +69,7 @@ GOES_WITH = {
     "ring.bolts": "ring",
     "first_stage": "first_stage",
     "load.external.0": "load.external",
+    "inertia.output_mass": "pin_wheel.support_stiffness",
     "load.external.0.force": "load.external",
     "load.external.0.moment": "load.external",
     "load.external.0.at": "load.external",
@@ -99,6 +100,15 @@ _LEFT_OUT = {
     "carrier.stiffness_torsion": 2e8,
     "carrier.flange": (8.0, 6.0),
     "disc.axial_play": 0.2,
+}
+_LEFT_OUT |= {
+    "inertia.input": 1e-3,
+    "inertia.output": 0.2,
+    "inertia.output_mass": 10.0,
+    "inertia.crank": 1e-3,
+    "inertia.crank_mass": 2.0,
+    "damping.ratio": 0.02,
+    "damping.loss_factor": 0.04,
 }
 _LEFT_OUT |= {
     f"materials.{part}.{name}": value
@@ -138,6 +148,7 @@ _NAME = {
     "disc.axial_play": "the tilt of discs is judged by it, nothing moves",
     "name": "names a drive and its files, nothing else",
     "analysis.compliance": "chooses the engine where none is named; here one is",
+    "analysis.bodies": "chooses the bodies of the engine where none is named; here one is",
     "disc.planes": "axial places have no effect where neither pins nor cranks bend",
     "disc.gap": "axial places have no effect where neither pins nor cranks bend",
     **dict.fromkeys(
@@ -155,6 +166,11 @@ _OF_LIFE = dict.fromkeys(
 _OF_LIFE |= dict.fromkeys(
     ("crank_bearing.dynamic_load_rating", "crank_bearing.static_load_rating"),
     "ratings of the maker concern lives of bearings alone, and here none is told",
+)
+_NAME |= dict.fromkeys(
+    [f"inertia.{name}" for name in ("input", "output", "output_mass", "crank", "crank_mass")]
+    + [f"damping.{name}" for name in ("ratio", "loss_factor")],
+    "inertias and damping concern vibrations alone, and here the drive stands or turns slowly",
 )
 _EVERYWHERE = _NAME | _OF_LIFE
 _TILTING = dict.fromkeys(
@@ -176,7 +192,34 @@ _SPRINGS = (
     }
     | _BODIES
 )
+_SPRINGS_ALONE = {path: reason for path, reason in _SPRINGS.items() if path not in _EVERYWHERE}
 _SHAFT_PIN = ("materials.shaft_pin.youngs_modulus", "materials.shaft_pin.poisson_ratio", "pin_shaft.elastic_contact")
+_VIBRATIONS = {
+    "name": _NAME["name"],
+    **{
+        path: reason
+        for path, reason in _NAME.items()
+        if path.startswith("materials.") and not path.endswith(".density")
+    },
+    **{
+        path: reason
+        for path, reason in _NAME.items()
+        if path.startswith("ring.material.") and not path.endswith(".density")
+    },
+    **{path: _NAME[path] for path in ("disc.axial_play", "analysis.compliance", "disc.planes", "disc.gap")},
+    **{path: _NAME[path] for path in _NAME if path.startswith("main_bearing.")},
+    **{path: reason for path, reason in _OF_LIFE.items() if path != "duty.0.speed"},
+    **dict.fromkeys(
+        ("duty.0.torque", "duty.0.share"),
+        "vibrations are those about the load; of the duty its speeds bound critical ones",
+    ),
+    **dict.fromkeys(
+        [path for path in field_kinds() if path.startswith("friction.")] + ["load.driven_by"],
+        "vibrations are those without friction, whose place damping takes",
+    ),
+    "load.light_torque": "vibrations are those about the load and parts of it",
+}
+"""Of vibrations, on half-spaces."""
 EXCEPTIONS: Mapping[str, Mapping[str, str]] = {
     "tables": _SPRINGS,
     "direct": _SPRINGS | _TILTING | {"load.light_torque": "direct is walked at full load alone"},
@@ -189,6 +232,11 @@ EXCEPTIONS: Mapping[str, Mapping[str, str]] = {
     | {"load.light_torque": "curves are those of full load"}
     | dict.fromkeys(_SHAFT_PIN, "curves tell no pressure of the holes, and in half-spaces nothing else sees it"),
     "studies": _SPRINGS | _TILTING,
+    "dynamics": _VIBRATIONS
+    | _SPRINGS_ALONE
+    | _TILTING
+    | dict.fromkeys(_SHAFT_PIN, "vibrations tell no pressure of the holes, and in half-spaces nothing else sees it")
+    | {"materials.wheel_seat.density": "slots are in the housing, whose size no file gives and which has no mass"},
     "full FE": _EVERYWHERE
     | {
         "load.light_torque": "a full solution is one of full load",
@@ -366,6 +414,8 @@ def _beside(drive: Drive, path: str) -> dict[str, Any]:
         if path == "friction.seat" and wheel.seat.kind == "fixed":
             needed |= _seat(drive, "pin_wheel", "slot") | {path: 0.02}
         return needed
+    if path == "inertia.output_mass" and not drive.wheel_yields:
+        return {"pin_wheel.support_stiffness": 5e5}
     if path.startswith("first_stage.") and drive.first_stage is None:
         return _FIRST_STAGE
     if path.startswith("load.external.") and not drive.load.external:

@@ -20,6 +20,7 @@ themselves are small rotations, by which sections stay circles and heights heigh
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -84,6 +85,18 @@ class Pressed:
     def __sub__(self, other: Pressed) -> Pressed:
         """What is between two sums."""
         return Pressed(self.force - other.force, self.couple - other.couple, self.turning - other.turning)
+
+
+@dataclass(frozen=True)
+class Taken:
+    """What bodies that yield take off approaches, mm, and off tilts, rad, each of wheel pins, bores, shaft pins and races."""
+
+    approach: tuple[FloatArray, FloatArray, FloatArray, FloatArray]
+    tilt: tuple[FloatArray, FloatArray, FloatArray, FloatArray]
+
+    def at(self, kind: int, z: FloatArray) -> FloatArray:
+        """Return what is taken of one kind at heights, shape (parts, heights)."""
+        return np.asarray(self.approach[kind][:, None] + np.outer(self.tilt[kind], z))
 
 
 @dataclass(frozen=True)
@@ -290,6 +303,10 @@ class Disc:
             touching = (np.conj(ray) * moved).real + np.sqrt(play**2 - (np.conj(ray) * moved).imag ** 2)
             between = (inner_race + radii - touching)[:, None]
             between = 0.5 * (between + np.outer((np.conj(ray) * (race_lean - self.lean)).real, z)) - fallen
+            if check.taken is not None:
+                in_bore_taken, on_race_taken = (check.taken(self).at(kind, z)[own] for kind in (1, 3))
+                pressed_inner, pressed_outer = pressed_inner - on_race_taken, pressed_outer - in_bore_taken
+                between = between - 0.5 * (in_bore_taken + on_race_taken)
             free = (state.outer_load[row, own] <= 0.0)[:, None]
             found["gap"].append((np.where(free, between, pressed_inner), np.where(free, between, pressed_outer)))
             found["radius"].append((1.0 / (1.0 / radii + 1.0 / inner_race), 1.0 / (1.0 / radii - 1.0 / bore)))
@@ -328,10 +345,19 @@ class WidthCheck:
         The answer.
     position : int
         Number of the position.
+    taken : callable, optional
+        Returns what the bodies of a disc take of its contacts, as known from elsewhere; rigid ones take nothing.
     """
 
-    def __init__(self, drive: Drive, model: Reducer, balanced: Equilibrium, position: int) -> None:
-        self.drive, self.model, self.balanced, self.position = drive, model, balanced, position
+    def __init__(
+        self,
+        drive: Drive,
+        model: Reducer,
+        balanced: Equilibrium,
+        position: int,
+        taken: Callable[[Disc], Taken] | None = None,
+    ) -> None:
+        self.drive, self.model, self.balanced, self.position, self.taken = drive, model, balanced, position, taken
         self.pose, self.crank_angle = balanced.pose[position], float(balanced.crank_angle[position])
         support = drive.crank.support
         per_crank = 0 if support is None else (5 if support.torsion else 4)
@@ -428,6 +454,8 @@ class WidthCheck:
             tilted = -np.concatenate([one.couple - steep.couple for one, steep in kinds])
             off = _most(tilted - disc.answer.pin_moments[self.position])
             told(f"{name}: moment on a pin beside what presses on the disc", off, bound * half, "N·mm")
+            if self.taken is not None:
+                gap = gap - self.taken(disc).at(0, disc.heights(drive.disc.thickness)[0])
             self._laws(disc, gap, radius, told, name)
             for force_left, moment_left in rollers["left"]:
                 told(f"{name}: force left on a roller", _most(force_left), bound, "N")
@@ -487,6 +515,8 @@ class WidthCheck:
         if disc.in_holes is not None and drive.pin_shaft is not None and drive.pin_shaft.seat.kind == "fixed":
             law: Any = self.model.discs[disc.number].hole_law  # type: ignore[attr-defined]
             line, there = holes.line_load[row], disc.in_holes[1]
+            if self.taken is not None:
+                there = there - self.taken(disc).at(2, disc.heights(thick)[0])
             if hasattr(law, "contact_modulus"):
                 _, radii = disc.parts.shaft_pins
                 effective = 1.0 / (1.0 / radii - 1.0 / disc.parts.holes[1])

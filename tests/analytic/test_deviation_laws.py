@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from ltca.analysis.torque_curve import torque_curve
-from ltca.analysis.transmission_error_orders import Order, fit_orders
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.equilibrium.balance import solve_equilibrium
 from ltca.equilibrium.reducer import Reducer
@@ -104,36 +103,6 @@ def test_ten_micrometres_are_the_sum_of_their_small_steps(paper_cases):
 
 
 RUNOUT = 0.002
-
-
-def test_eccentric_flank_is_one_order_of_the_transmission_error(paper_cases):
-    """Rigid limit: δφ = ρ·n/(n's lever e u cos β) = ρ/(e u) (sin(α − φ) + tan β cos(α − φ)), β of the touching normal.
-
-    β repeats with the teeth: order 1 has the amplitude ρ/(e u) |1 + i mean tan β|, only its sidebands z_C ± 1 join.
-    """
-    drive = paper_cases["CS-1"]
-    angle_of = 0.8
-    runout = with_fields(drive, {"disc.runout.amount": RUNOUT, "disc.runout.angle": angle_of})
-    angles = 2.0 * np.pi * np.arange(520) / 520
-    plain, pins = first_contact(ContactGeometry.of_drive(drive), angles, WHEEL_ANGLE, -1)
-    moved, same = first_contact(ContactGeometry.of_drive(runout), angles, WHEEL_ANGLE, -1)
-    error = moved - plain
-    pose = np.zeros((520, 4))
-    pose[:, WHEEL_ANGLE] = plain
-    gradient = ContactGeometry.of_drive(drive).flank(angles, pose).gradient[np.arange(520), pins]
-    normal = (gradient[:, 0] + 1j * gradient[:, 1]) * np.exp(-1j * angles)
-    slant = normal.real / normal.imag
-    reach = RUNOUT / (4.0 * 14.0)
-    by_hand = reach * (np.sin(angle_of - angles) + slant * np.cos(angle_of - angles))
-    # Where the same pin touches it is a closed form, to second order in ρ and to the backlash's turn of the lever.
-    np.testing.assert_allclose(error[pins == same], by_hand[pins == same], atol=3e-3 * reach)
-    orders = tuple(Order(float(value), str(value)) for value in (1, 2, 3, 5, 11, 12, 13, 14, 15, 26))
-    spectrum = fit_orders(angles, error, orders)
-    # the mean slant over a tooth is all that the teeth leave; where another pin takes over is a few per cent of a tooth
-    expected = reach * abs(1.0 + 1j * np.mean(slant))
-    assert spectrum.of(1) == pytest.approx(expected, rel=0.01)
-    for other in (2, 3, 5, 11, 15):
-        assert spectrum.of(other) < 0.02 * expected
 
 
 def test_loaded_drive_shows_the_same_order_at_vanishing_torque(paper_cases):

@@ -59,18 +59,6 @@ def rigid(drive):
     return replace(stiff, materials=replace(drive.materials, crankshaft=Material()))
 
 
-def test_forces_by_hand(answer):
-    """F_t = 2T/d, F_r = F_t tan α_n/cos β, F_a = F_t tan β with d = 56 mm: circles of 14 and 28 mm on one of 42 mm."""
-    moments, found = answer.crank_torques, mesh_forces(answer)
-    tangential = 2.0 * moments / 56.0
-    np.testing.assert_allclose(found.tangential, tangential, rtol=1e-12)
-    np.testing.assert_allclose(
-        found.radial, tangential * np.tan(np.radians(20.0)) / np.cos(np.radians(10.0)), rtol=1e-12
-    )
-    np.testing.assert_allclose(found.axial, -tangential * np.tan(np.radians(10.0)), rtol=1e-12)
-    assert np.all(moments > 0.0)
-
-
 def test_forces_have_their_moment_and_push_planets_outward(answer):
     """The tangential force has the crank's moment about its axis; what teeth press is never towards the sun."""
     found, outward = mesh_forces(answer), np.exp(2j * np.pi * np.arange(3) / 3)

@@ -171,33 +171,6 @@ def test_first_order_in_the_coefficient_is_the_perturbation(paper):
     np.testing.assert_allclose(rate(1e-3), expected, rtol=0.0, atol=1e-4 * np.abs(expected).max())
 
 
-def test_loss_at_the_pins_is_that_about_the_pitch_point(paper):
-    """Σ μ F (φ̇_C/u) · distance of the contact from the pitch point, at e·u on the eccentricity from the wheel's axis."""
-    size = 1e-4
-    drive = replace(paper, friction=Friction(pin=size))
-    angle = position_angles(104)
-    model, torque = HalfSpace().prepare(drive).model, paper.load.torque
-    plain = solve_at_output(HalfSpace().prepare(paper).model, [paper], angle, torque)
-    found = solve_at_output(model, [drive], angle, torque)
-    back = replace(model, friction=model.friction.reversed())
-    other = solve_at_output(back, [drive], angle, torque)
-    crank = [one.crank_moments(angle, at.pose, at.response.parts)[:, 0] for one, at in ((model, found), (back, other))]
-    place, flank, u = model.discs[0].geometry.placement, plain.response.flank, paper.reduction_ratio
-    outward = flank.gradient[..., 0] + 1j * flank.gradient[..., 1]
-    turned = np.exp(1j * (angle / u + plain.pose[:, WHEEL_ANGLE]))[:, None]
-    contact = place.wheel_axis + place.wheel_pin_centres * turned - place.wheel_pin_radii * outward
-    # at e·u from the wheel's axis, e that of the disc as it stands
-    disc = place.race_centre(angle) + plain.pose[:, 0] + 1j * plain.pose[:, 1]
-    pitch = place.wheel_axis + (disc - place.crank_axes[0])[:, None] * u
-    lost = (size * plain.response.pin_load * np.abs(contact - pitch) / u).sum(axis=1)
-    # In the mean over a turn the torque rises by the loss; half the difference of both motions is odd in μ. Samples of a
-    # turn that is no period of the rollers tell means to 2e-4 of the torque, of its rise to as much; poses wander within it.
-    assert np.mean(crank[0] - crank[1]) / 2.0 == pytest.approx(np.mean(lost), rel=1e-3)
-    told = losses(model, [drive], found, torque)
-    np.testing.assert_allclose(told.by_kind["pin"], lost, rtol=2e-3)  # the normal passes the pitch point by the pose
-    np.testing.assert_array_equal(told.by_kind["pin"], told.total)
-
-
 @pytest.mark.parametrize(
     ("flank", "seat", "inner", "outer"),
     [

@@ -18,8 +18,6 @@ from ltca.equilibrium.reducer import bearing_forces
 from ltca.equilibrium.supports import crank_stiffness
 from ltca.errors import DriveError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, X, Y
-from ltca.geometry.placement import position_angles
-from ltca.laws.beam import shaft_flexibility
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import parse_drive, shipped_drive
 from ltca.testing.balance_check import find_imbalance
@@ -166,42 +164,6 @@ def test_reverse_is_the_mirror_image(rv):
     )
     np.testing.assert_allclose(forward.bearing_radial, reverse.bearing_radial[..., swapped], rtol=0.0, atol=LOAD)
     np.testing.assert_allclose(forward.transmission_error, -reverse.transmission_error, rtol=0.0, atol=1e-11)
-
-
-def test_first_stage_and_carrier(rv):
-    """i = 1 + i₁ z_P; |T_wheel| = T_out (i − 1)/i in the mean, the sun's moment position by position; TE = −w (i − 1)/i."""
-    geared, carried = rv, kind(rv, "carrier")
-    ratio = 1.0 + 2.0 * 40.0
-    assert (geared.transmission_ratio, carried.transmission_ratio) == (ratio, -40.0)
-    found = analyse(geared, position_angles(24))
-    assert np.mean(found.full.wheel_moment) == pytest.approx(-rv.load.torque * (ratio - 1.0) / ratio, rel=2e-4)
-    np.testing.assert_allclose(
-        found.transmission_error, -(ratio - 1.0) / ratio * found.full.pose[:, WHEEL_ANGLE], rtol=1e-14
-    )
-    # by hand: the pinions of the cranks, z₂ = i₁ z₁, give the sun their moments over i₁, turning the other way
-    cranks = found.model.crank_moments(found.full.crank_angle, found.full.pose, found.full.response.parts).sum(axis=1)
-    np.testing.assert_allclose(found.full.wheel_moment - cranks / 2.0 + rv.load.torque, 0.0, atol=1e-8 * rv.load.torque)
-    alone = analyse(carried, ANGLES)
-    np.testing.assert_allclose(alone.full.wheel_moment, -rv.load.torque, rtol=1e-12)
-    np.testing.assert_array_equal(alone.transmission_error, -alone.full.pose[:, WHEEL_ANGLE])
-
-
-def test_shaft_under_opposite_forces():
-    """Two forces 180° apart at ±a on supports at ±b: bending F a (b − a)²/(6 E I b), and the springs' share F a²/(2 k b²)."""
-    a, b, diameter, modulus, k = 7.0, 22.0, 20.0, 206e3, 4e5
-    rigidity = modulus * np.pi * diameter**4 / 64.0
-    found = shaft_flexibility([-a, a], (-b, b), (k, k), diameter, modulus)
-    deflection = found @ np.array([-1.0, 1.0])
-    expected = a * a * (b - a) ** 2 / (6.0 * rigidity * b) * 2.0 + a * a / (2.0 * k * b * b) * 2.0
-    assert deflection[1] == pytest.approx(expected, rel=1e-12)
-    assert deflection[0] == pytest.approx(-expected, rel=1e-12)
-
-
-def test_overhanging_shaft_is_a_cantilever_behind_a_turned_support():
-    """A force at c beyond the second support: c³/3EI and the slope of the span there, c² L/3EI."""
-    span, c, rigidity = 30.0, 11.0, 2e5 * np.pi * 12.0**4 / 64.0
-    found = shaft_flexibility([span + c], (0.0, span), (1e30, 1e30), 12.0, 2e5)
-    assert found[0, 0] == pytest.approx(c * c * (span + c) / (3.0 * rigidity), rel=1e-10)
 
 
 @pytest.mark.slow

@@ -107,41 +107,6 @@ def test_two_models_of_one_disc_put_in_parallel_by_hand(odd):
     assert np.ptp(together.torque_share) > 0.01
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "field",
-    [
-        "disc.of.0.runout.amount",
-        "crank.of.0.phase_error",
-        pytest.param("crank.of.0.eccentricity_error", marks=pytest.mark.slow),
-    ],
-)
-def test_small_errors_share_the_torque_like_two_springs(paper, field):
-    """T₀ − T₁ = K (w₁ − w₀): the wheel angles that each disc alone would have differ, and the wheel takes one.
-
-    K is the slope of one disc's wind-up at half the torque. In the limit of small errors the formula is exact: halving the
-    error halves what is left of it.
-    """
-    two = with_fields(paper, {"disc.number_of_discs": 2})
-    angle, half = np.array([0.7]), 0.5 * two.wheel_moment()
-    clean = prepared(single_discs(two)[0])
-    low, high = (solve_equilibrium(clean, angle, factor * half).pose[0, WHEEL_ANGLE] for factor in (0.99, 1.01))
-    stiffness = 0.02 * half / (high - low)
-
-    def apart(size):
-        wrong = with_fields(two, {field: size})
-        shares = analyse(wrong, angle).torque_share[0]
-        alone = [solve_equilibrium(prepared(s), angle, half).pose[0, WHEEL_ANGLE] for s in single_discs(wrong)]
-        return shares[0] - 0.5, stiffness * (alone[1] - alone[0]) / (4.0 * half)
-
-    found, expected = apart(2e-4)
-    # 0.2 µm against a wind-up of 10 µm: second order, a few per cent of the first
-    assert found == pytest.approx(expected, rel=0.02)
-    assert abs(found) > 1e-4
-    small, expected_small = apart(1e-4)
-    assert abs(small - expected_small) < 0.6 * abs(found - expected) + 1e-8
-
-
 def test_a_pin_pushed_in_is_felt_by_the_disc_that_it_stands_on(paper):
     """One pin of the wheel, inward: the disc that loads it carries more, the other, half a turn on, less."""
     errors = [0.0] * 14

@@ -10,6 +10,7 @@ from dataclasses import replace
 import pytest
 
 from validation.report.headline import COLUMNS, validation_content, write_files
+from validation.report.page import _line
 from validation.rows import Row, failed_rows, positive_row, range_row, relative_row, rounded
 
 ROW = Row(
@@ -110,3 +111,13 @@ def test_headline(small_study):
         for value in changes.values():
             assert value == pytest.approx(0.01, rel=1e-5)
     assert head["failed"] == len(failed_rows(small_study.rows))
+
+
+def test_error_bars_are_told():
+    """A difference below the bar of its reference says so; without a bar nothing is said."""
+    below = replace(ROW, difference=1e-3, error_bar=2e-3)
+    beyond, silent = replace(below, error_bar=5e-4), replace(below, error_bar=None)
+    assert [row.below_error_bar for row in (below, beyond, silent)] == [True, False, None]
+    assert below.content()["error_bar"] == 2e-3
+    told = [_line(row, 1)["error_bar"] for row in (below, beyond, silent)]
+    assert told == ["below its error bar, ±0.2 %", "error bar ±0.05 %", ""]

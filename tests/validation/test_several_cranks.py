@@ -31,7 +31,7 @@ from validation.compare.disc_stresses import (
     stresses_of,
 )
 from validation.compare.finite_element_positions import answer_of_summary
-from validation.levels.closed_forms import _power
+from validation.levels.closed_forms import power_rows
 from validation.levels.disc_stresses import disc_stress_rows
 from validation.levels.flexible_disc import (
     flexibility_rows,
@@ -289,7 +289,7 @@ def test_what_a_disc_without_shaft_pins_changes_leaves_them_out(crank_study, tmp
 
 @pytest.mark.slow
 def test_power_balance_of_several_cranks(drive):
-    (row,) = _power(drive)
+    (row,) = power_rows(drive)
     assert row.quantity.endswith("sum of all cranks")
     # 400 N·m on the carrier; the housing bears (i − 1)/i of it, i = 1 + 2·12; its work per crank angle is over z_P.
     assert row.reference == pytest.approx(400e3 * 24.0 / 25.0 / (12.0 * 4.0), rel=1e-3)

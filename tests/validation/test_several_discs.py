@@ -17,7 +17,7 @@ from ltca.reading.changes import with_fields
 from validation.compare.compared_positions import compare_case
 from validation.compare.finite_element_positions import FullPosition, answer_of_summary, disc_case
 from validation.compare.model_positions import answers_of
-from validation.levels.closed_forms import _power
+from validation.levels.closed_forms import power_rows
 from validation.levels.flexible_disc import FlexibilityEffect, turn_figures
 from validation.levels.positions import compare_position_rows
 from validation.report.page import write_report
@@ -113,12 +113,12 @@ def test_report_of_several_discs(compared, drive, coefficients, tmp_path):
 
 @pytest.mark.slow
 def test_power_balance_of_every_disc(drive, paper_cases):
-    rows = _power(drive)
+    rows = power_rows(drive)
     assert [row.quantity[-6:] for row in rows] == ["disc 0", "disc 1"]
     # What a disc carries swings with the position, and so do the works of its two sides: the sum alone is closed.
     assert not failed_rows(rows), [row.difference for row in rows]
     held = with_fields(paper_cases["CS-3"], {"installation.held": "pin-wheel"})
-    (row,) = _power(held)
+    (row,) = power_rows(held)
     assert row.passed
     assert row.reference == pytest.approx(377_300.0 * 14.0 / 13.0 / (14.0 * 4.0), rel=3e-4)
 

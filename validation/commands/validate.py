@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from ltca.errors import CycloError
 from ltca.reading.arguments import (
+    DRIVE,
     add_case_argument,
     add_drive_argument,
     add_out_argument,
@@ -25,12 +26,16 @@ SUMMARY = "compare the codes with closed forms, other codes, the paper and full 
 EXAMPLES = (
     ("cyclo validate paper --case CS-1", "a page of comparisons, with limits and reasons"),
     ("cyclo validate my.toml --level full --out out/validation", "more angles, halved meshes"),
+    ("cyclo validate --manual", "the verification manual: a page for each case, with reference, error bar and verdict"),
+    ("cyclo validate --manual nafems_1 cycloidal_studio", "two pages of it"),
 )
+MANUAL_FOLDER = Path("out") / "manual"
+"""Default folder of the manual."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    add_drive_argument(parser)
+    add_drive_argument(parser, f"{DRIVE}; none with --manual", optional=True)
     add_case_argument(parser, "case, repeatable; default the first, middle and last of the file")
     parser.add_argument(
         "--angles",
@@ -41,25 +46,41 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "over one period of the flank",
     )
     parser.add_argument(
-        "--level", choices=("quick", "full"), default="quick", help="how many angles; full also halves meshes"
+        "--level",
+        choices=("quick", "full"),
+        help="how many angles; full also halves meshes and finds error bars of the full solutions; default quick",
     )
     add_size_argument(parser, "element edges of the full solutions as a multiple of the default (limits are for 1)")
+    # Nothing, quick and 1 are told from values that are given: none has a meaning with --manual.
+    parser.set_defaults(size=None)
+    parser.add_argument(
+        "--manual",
+        nargs="*",
+        metavar="CASE",
+        help="write the verification manual instead, a page for each case and an index: all cases, or these. It needs "
+        "no DRIVE and "
+        f"takes no other option than --out (default {MANUAL_FOLDER}); exit status 1 when a verdict is FAILED",
+    )
     add_out_argument(parser, "validate", "folder of report and kept solutions")
 
 
 def execute(arguments: argparse.Namespace) -> int:
-    """Run the validation; write ``report.html``, ``validation.json`` and ``rows.csv``.
+    """Run the validation; write ``report.html``, ``validation.json`` and ``rows.csv``, or the pages of the manual.
 
     Returns
     -------
     int
-        0, or 1 when a row fails its limit.
+        0, or 1 when a row fails its limit or a case of the manual its bound.
 
     Raises
     ------
     CycloError
         For wrong input or when something does not converge.
     """
+    if arguments.manual is not None:
+        return _write_manual(arguments)
+    if arguments.drive is None:
+        raise CycloError("validate: give a drive file, or --manual")
     from ltca.output.run_folder import claimed_folder, require_folder
     from ltca.reading.drive_file import load_drive
 
@@ -73,15 +94,60 @@ def execute(arguments: argparse.Namespace) -> int:
     from fem.reducer.solution import require_solution_memory
     from validation.study import plan_study
 
-    angles = list(arguments.angles or [])
-    plan = plan_study(file, arguments.case, angles, arguments.level, SolutionOptions(size=arguments.size))
+    angles, size = list(arguments.angles or []), 1.0 if arguments.size is None else arguments.size
+    plan = plan_study(file, arguments.case, angles, arguments.level or "quick", SolutionOptions(size=size))
     try:
         for drive in plan.drives.values():
             require_solution_memory(drive, plan.crank_angles[0], plan.options)
     except MemoryLimitError as error:
-        raise CycloError(f"--size {arguments.size:g}: {error}") from error
+        raise CycloError(f"--size {size:g}: {error}") from error
     with claimed_folder(out, "validate", writes=("report.html", "validation.json", "rows.csv"), beside=("kept",)):
         return _run_and_write(plan, out)
+
+
+def _write_manual(arguments: argparse.Namespace) -> int:
+    """Compute the cases of the manual and write their pages; 1 when one of them fails."""
+    import time
+
+    from ltca.errors import DriveError
+    from ltca.output.progress import steps
+    from ltca.output.run_folder import claimed_folder, require_folder
+
+    given = {"DRIVE": arguments.drive} | {
+        f"--{name}": getattr(arguments, name) for name in ("case", "angles", "level", "size")
+    }
+    idle = [f"{name}: has no meaning with --manual; leave it out" for name, value in given.items() if value is not None]
+    if idle:
+        raise DriveError(idle)
+    out: Path = arguments.out or MANUAL_FOLDER
+    require_folder(out)
+    from threadpoolctl import threadpool_limits
+
+    from validation.manual.case import solve_case
+    from validation.manual.page import file_names, printed_difference, verdict_word, write_manual
+    from validation.manual.register import chosen_cases
+
+    cases = chosen_cases(arguments.manual)
+    with claimed_folder(out, "validate", writes=file_names(cases)):
+        outcomes, seconds = [], []
+        # One thread: sums in another order would change last digits.
+        with steps() as show, threadpool_limits(limits=1):
+            for number, case in enumerate(cases, start=1):
+                show(f"[{number}/{len(cases)}] {case.title}")
+                began = time.perf_counter()
+                outcomes.append(solve_case(case))
+                seconds.append(time.perf_counter() - began)
+        paths = write_manual(outcomes, out)
+    for outcome, spent in zip(outcomes, seconds, strict=True):
+        print(f"{verdict_word(outcome)}  {outcome.case.name:<22}{len(outcome.figures):>4} figures {spent:>6.1f} s")
+        for figure in outcome.failed:
+            print(
+                f"        {figure.quantity}: {figure.value:.6g} {figure.unit}, difference {printed_difference(figure)}"
+            )
+    failed = sum(not outcome.passed for outcome in outcomes)
+    print(f"{len(outcomes)} cases, {failed} failed")
+    print(f"written: {len(paths)} pages in {out}, first {out / 'index.md'}")
+    return 1 if failed else 0
 
 
 def _run_and_write(plan: Plan, out: Path) -> int:

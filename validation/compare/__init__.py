@@ -12,6 +12,8 @@ disc_stresses             Stress in the disc by full finite elements and by each
                           differences
 finite_element_positions  Full finite-element solutions of chosen positions, kept in one file for each position as
                           soon as it is solved
+error_bars                Error bars of the full finite-element solutions of a case, from nested meshes at one of its
+                          positions
 compared_positions        Every chosen position answered by full finite elements and by each compliance model, and
                           their differences
 ========================  ============================================================

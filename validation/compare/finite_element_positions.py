@@ -40,6 +40,8 @@ from validation.compare.disc_stresses import DiscStressAnswer, answer_of_content
 FORMAT = 4
 LARGEST_KEPT = 200_000_000
 """Bytes of one kept position."""
+ANSWER = ("summary", "stress")
+"""What a kept position holds beside its key."""
 PICTURES = "pictures.json"
 """Pictures of a disc for the page, kept beside those for print."""
 PICTURE_SIDE = 1200
@@ -122,13 +124,13 @@ def _solve_kept(
     progress: Callable[[str], None] | None,
 ) -> tuple[tuple[FullPosition, ...], tuple[RoundGroup, ...]]:
     """Return a position, and condensed pins and rollers for the next one."""
-    key = _key(drive, case, crank_angle, options)
+    key = position_key(drive, case, crank_angle, options)
     path = folder / f"{position_name(drive, case, crank_angle, options)}.json"
     singles = single_discs(drive)
     count = len(singles)
     prefixes = [f"disc_{disc}_" if count > 1 else "" for disc in range(count)]
     images = [path.with_suffix("") / f"{prefix}{PICTURES}" for prefix in prefixes]
-    content = _read(path, key)
+    content = read_kept(path, key, ANSWER)
     if content is None or (pictures and not all(image.exists() for image in images)):
         # Stresses along the walls are compared.
         with_walls = replace(options, fine_walls=True)
@@ -140,9 +142,8 @@ def _solve_kept(
         if content is None:
             stress = [stress_content(recover_disc_stress(disc)) for disc in solution.discs]
             answer = {"summary": summarise(solution), "stress": stress}
-            content = {"key": key, "checksum": _checksum(answer), **answer}
-            write_json(path, content)
-            content = _read(path, key)
+            write_json(path, sealed(key, answer))
+            content = read_kept(path, key, ANSWER)
     assert content is not None
     summary = content["summary"]
     positions = tuple(
@@ -178,7 +179,8 @@ def position_name(drive: Drive, case: str, crank_angle: float, options: Solution
     return f"{drive.fingerprint()}_{case}_{crank_angle:.9f}_{options.plane}_{options.size:g}"
 
 
-def _key(drive: Drive, case: str, crank_angle: float, options: SolutionOptions) -> dict[str, Any]:
+def position_key(drive: Drive, case: str, crank_angle: float, options: SolutionOptions) -> dict[str, Any]:
+    """Return what a kept file must have been made for."""
     return {
         "format": FORMAT,
         "version": code_version(),
@@ -191,15 +193,20 @@ def _key(drive: Drive, case: str, crank_angle: float, options: SolutionOptions) 
     }
 
 
-def _read(path: Path, key: dict[str, Any]) -> dict[str, Any] | None:
-    """Return the content of a file that fits its key; None when it has to be solved."""
+def sealed(key: dict[str, Any], answer: dict[str, Any]) -> dict[str, Any]:
+    """Return the content of a kept file: its key, a checksum and the answer."""
+    return {"key": key, "checksum": _checksum(answer), **answer}
+
+
+def read_kept(path: Path, key: dict[str, Any], names: tuple[str, ...]) -> dict[str, Any] | None:
+    """Return the content of a file that fits its key, with an answer of these names; None when it has to be solved."""
     try:
         content: dict[str, Any] = json.loads(read_regular(path, LARGEST_KEPT))
     except (OSError, ValueError):
         return None
     if not isinstance(content, dict) or content.get("key") != key:
         return None
-    answer = {name: content.get(name) for name in ("summary", "stress")}
+    answer = {name: content.get(name) for name in names}
     return content if content.get("checksum") == _checksum(answer) else None
 
 

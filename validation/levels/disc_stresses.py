@@ -6,6 +6,7 @@ from typing import Any
 
 from validation.compare.compared_positions import ComparedPosition
 from validation.compare.disc_stresses import REGIONS, ComparedStress, Region
+from validation.compare.error_bars import NO_BARS, ErrorBars
 from validation.compare.model_positions import FULL
 from validation.rows import Row
 
@@ -21,24 +22,40 @@ NAMES: dict[Region, str] = {"flank": "the flank", "bore": "the bore", "holes": "
 PARTS: dict[Region, str] = {"flank": "lobe roots", "bore": "bore", "holes": "holes"}
 
 
-def disc_stress_rows(compared: ComparedPosition) -> list[Row]:
-    """Return the rows of one position for all models that give the stress in the disc."""
-    rows = []
+def disc_stress_rows(compared: ComparedPosition, bars: ErrorBars | None = None) -> list[Row]:
+    """Return the rows of one position for all models that give the stress in the disc, with error bars where they are known."""
+    rows: list[Row] = []
+    walls: dict[Region, float] = {} if bars is None else bars.walls
     for model, difference in compared.stress.items():
         rows += [
-            _row(compared, model, f"stress along {NAMES[region]}, worst station", difference.stations[region], "wall")
+            _row(
+                compared,
+                model,
+                f"stress along {NAMES[region]}, worst station",
+                difference.stations[region],
+                "wall",
+                error_bar=walls.get(region),
+            )
             for region in REGIONS
             if region in difference.stations  # a disc without holes, or a wall under contacts all along
         ]
         rows += [
-            _row(compared, model, f"largest tensile stress, {PARTS[region]}, worst", difference.largest[region], "wall")
+            _row(
+                compared,
+                model,
+                f"largest tensile stress, {PARTS[region]}, worst",
+                difference.largest[region],
+                "wall",
+                error_bar=walls.get(region),
+            )
             for region in REGIONS
             if region in difference.largest
         ]
         for kind, contacts in difference.shear.items():
             rows += [
                 _row(compared, model, "largest shear stress in the disc below a contact", found, "shear",
-                     contact=compared.full.answer.contact_name(kind, number))
+                     contact=compared.full.answer.contact_name(kind, number),
+                     error_bar=None if bars is None else bars.kinds.get(kind, NO_BARS).shear)
                 for number, found in contacts.items()
             ]  # fmt: skip
     return rows

@@ -16,6 +16,7 @@ from ltca.geometry.placement import position_angles
 from ltca.quantities import SCALARS
 from validation.compare.compared_positions import ComparedPosition
 from validation.compare.comparison import Kind, PositionAnswer
+from validation.compare.error_bars import ErrorBars
 from validation.compare.model_positions import FULL, MODELS, DiscCoefficients, engine_of
 from validation.rows import Row, relative_row, rounded
 
@@ -153,12 +154,14 @@ def full_solution_changes(compared: list[ComparedPosition]) -> dict[str, float]:
     }
 
 
-def full_solution_rows(case: str, compared: list[ComparedPosition]) -> list[Row]:
-    """Return the informing rows of one case: full solution against half-space at the chosen angles."""
+def full_solution_rows(case: str, compared: list[ComparedPosition], bars: ErrorBars | None = None) -> list[Row]:
+    """Return the informing rows of one case: full solution against half-space at the chosen angles, with error bars if known."""
     rows = []
     for name, change in full_solution_changes(compared).items():
         quantity = f"{SCALARS[f'max_{name}'].title} at the chosen angles, change from half-space to full FE"
-        rows.append(_change_row(case, quantity, change, FULL))
+        # Changes are parts of the half-space load, bars of the full one.
+        bar = None if bars is None else bars.largest_load * (1.0 + change)
+        rows.append(_change_row(case, quantity, change, FULL, bar))
     wheel = [
         (position.answers["half-space"].wheel_angle, position.full.answer.wheel_angle, position.full.crank_angle)
         for position in compared
@@ -178,12 +181,13 @@ def full_solution_rows(case: str, compared: list[ComparedPosition]) -> list[Row]
             crank_angle=angle,
             model="half-space",
             against=FULL,
+            error_bar=None if bars is None else bars.wheel_angle / (abs(full) * ARCSEC),
         )
     )
     return rows
 
 
-def _change_row(case: str, quantity: str, change: float, against: str) -> Row:
+def _change_row(case: str, quantity: str, change: float, against: str, error_bar: float | None = None) -> Row:
     """Return the informing row of a relative change from half-space to another model."""
     return Row(
         level=6,
@@ -197,6 +201,7 @@ def _change_row(case: str, quantity: str, change: float, against: str) -> Row:
         case=case,
         model="half-space",
         against=against,
+        error_bar=error_bar,
     )
 
 

@@ -14,6 +14,7 @@ from validation.compare.comparison import (
     PositionAnswer,
     PositionDifference,
 )
+from validation.compare.error_bars import NO_BARS, ErrorBars
 from validation.compare.model_positions import FULL
 from validation.rows import Row
 
@@ -33,13 +34,13 @@ CAUSES = {
 }
 
 
-def compare_position_rows(compared: ComparedPosition) -> list[Row]:
-    """Return the rows of one position for all models."""
+def compare_position_rows(compared: ComparedPosition, bars: ErrorBars | None = None) -> list[Row]:
+    """Return the rows of one position for all models, with the error bars of the full solution where they are known."""
     rows: list[Row] = []
     for model in compared.answers:
-        rows += _contact_rows(compared, model)
-        rows += _body_rows(compared, model)
-    return [*rows, _interpolation_row(compared)]
+        rows += _contact_rows(compared, model, bars)
+        rows += _body_rows(compared, model, bars)
+    return [*rows, _interpolation_row(compared, bars)]
 
 
 class _Maker:
@@ -60,6 +61,7 @@ class _Maker:
         *,
         contact: str = "",
         difference_unit: str = "",
+        error_bar: float | None = None,
     ) -> Row:
         bounded = self.model == "fe"
         return Row(
@@ -77,38 +79,40 @@ class _Maker:
             contact=contact,
             model=self.model,
             against=FULL,
+            error_bar=error_bar,
         )
 
 
-def _contact_rows(compared: ComparedPosition, model: str) -> list[Row]:
+def _contact_rows(compared: ComparedPosition, model: str, bars: ErrorBars | None = None) -> list[Row]:
     make = _Maker(compared, model)
     answer, reference, difference = compared.answers[model], compared.full.answer, compared.differences[model]
     rows = []
     for kind in KINDS:
         own, other, apart = answer.kinds[kind], reference.kinds[kind], difference.kinds[kind]
+        of_kind = NO_BARS if bars is None else bars.kinds.get(kind, NO_BARS)
         for number in np.flatnonzero((own.load > 0.0) | (other.load > 0.0)).tolist():
             name = reference.contact_name(kind, number)
             rows.append(
                 make.row(
                     "load", float(own.load[number]), float(other.load[number]), "N", float(apart.load[number]),
-                    LOAD_LIMIT, REASONS["load"], contact=name,
+                    LOAD_LIMIT, REASONS["load"], contact=name, error_bar=of_kind.load,
                 )
             )  # fmt: skip
-            for quantity, ours, theirs, change, unit in (
-                ("peak pressure at mid-width", own.pressure, other.pressure, apart.pressure, "MPa"),
-                ("half-width", own.half_width, other.half_width, apart.half_width, "mm"),
+            for quantity, ours, theirs, change, unit, bar in (
+                ("peak pressure at mid-width", own.pressure, other.pressure, apart.pressure, "MPa", of_kind.pressure),
+                ("half-width", own.half_width, other.half_width, apart.half_width, "mm", of_kind.half_width),
             ):
                 if np.isfinite(change[number]):
                     rows.append(
                         make.row(
                             quantity, float(ours[number]), float(theirs[number]), unit, float(change[number]),
-                            PRESSURE_LIMIT, REASONS["pressure"], contact=name,
+                            PRESSURE_LIMIT, REASONS["pressure"], contact=name, error_bar=bar,
                         )
                     )  # fmt: skip
     return rows
 
 
-def _body_rows(compared: ComparedPosition, model: str) -> list[Row]:
+def _body_rows(compared: ComparedPosition, model: str, bars: ErrorBars | None = None) -> list[Row]:
     make = _Maker(compared, model)
     answer, reference, difference = compared.answers[model], compared.full.answer, compared.differences[model]
     wheel = compared.drive.pin_wheel.pin_circle_radius
@@ -116,27 +120,32 @@ def _body_rows(compared: ComparedPosition, model: str) -> list[Row]:
     travel = WHEEL_LIMIT / ARCSEC * wheel
     rms = max(kind.rms_load for kind in difference.kinds.values())
     rows = [
-        make.row("load differences, root mean square, worst kind", rms, None, "", rms, LOAD_LIMIT, REASONS["load"]),
+        make.row(
+            "load differences, root mean square, worst kind", rms, None, "", rms, LOAD_LIMIT, REASONS["load"],
+            error_bar=None if bars is None else bars.largest_load,
+        ),
         make.row(
             "wheel angle", answer.wheel_angle * ARCSEC, reference.wheel_angle * ARCSEC, '"',
             difference.wheel_angle, WHEEL_LIMIT, REASONS["wheel"], difference_unit='"',
+            error_bar=None if bars is None else bars.wheel_angle,
         ),
         make.row(
             "disc displacement", _length(answer), _length(reference), "µm", 1e3 * difference.disc_displacement,
             1e3 * travel, "what 0.3″ of the wheel are at its pins; length of the difference, fitted to the bore",
-            difference_unit="µm",
+            difference_unit="µm", error_bar=None if bars is None else 1e3 * bars.disc_displacement,
         ),
         make.row(
             "disc rotation", answer.disc_rotation * ARCSEC, reference.disc_rotation * ARCSEC, '"',
             difference.disc_rotation, WHEEL_LIMIT * wheel / lever,
             f"as the wheel's, at the shorter lever of {levers}", difference_unit='"',
+            error_bar=None if bars is None else bars.disc_rotation,
         ),
         make.row(
             "contacts loaded in one answer only", float(len(difference.missing)), 0.0, "",
             float(len(difference.missing)), 0.0, REASONS["same"], contact=", ".join(difference.missing),
             difference_unit="contacts",
         ),
-        *_bearing_rows(make, answer, reference, difference),
+        *_bearing_rows(make, answer, reference, difference, None if bars is None else bars.bearing_force),
     ]  # fmt: skip
     names: dict[Kind, str] = {"pin": "wheel pins", "roller_outer": "rollers", "hole": "shaft pins"}
     for kind, name in names.items():
@@ -163,7 +172,11 @@ def _rotation_lever(drive: Drive) -> tuple[float, str]:
 
 
 def _bearing_rows(
-    make: _Maker, answer: PositionAnswer, reference: PositionAnswer, difference: PositionDifference
+    make: _Maker,
+    answer: PositionAnswer,
+    reference: PositionAnswer,
+    difference: PositionDifference,
+    error_bar: float | None,
 ) -> list[Row]:
     cranks = reference.bearing_radial.size
     reason = "of the bearing force; a sum of roller loads"
@@ -176,7 +189,12 @@ def _bearing_rows(
             ours, theirs, apart = (
                 float(getattr(found, f"bearing_{way}")[crank]) for found in (answer, reference, difference)
             )
-            rows.append(make.row(f"bearing force, {way}", ours, theirs, "N", apart, LOAD_LIMIT, reason, contact=place))
+            rows.append(
+                make.row(
+                    f"bearing force, {way}", ours, theirs, "N", apart, LOAD_LIMIT, reason, contact=place,
+                    error_bar=error_bar,
+                )
+            )  # fmt: skip
     return rows
 
 
@@ -189,7 +207,7 @@ def _faint(answer: PositionAnswer, kind: Kind) -> int:
     return int(np.count_nonzero((load > 0.0) & (load <= LOADED_SHARE * np.max(load, initial=0.0))))
 
 
-def _interpolation_row(compared: ComparedPosition) -> Row:
+def _interpolation_row(compared: ComparedPosition, bars: ErrorBars | None = None) -> Row:
     """Return the worst load among contacts well between stations, where the coefficients are interpolated."""
     worst, name, ours, theirs = 0.0, "", 0.0, 0.0
     for kind, distance in compared.station_distance.items():
@@ -210,10 +228,11 @@ def _interpolation_row(compared: ComparedPosition) -> Row:
         INTERPOLATED_LIMIT,
         "of the largest load of its kind; interpolation of the smooth part by six stations",
         contact=name,
+        error_bar=None if bars is None else bars.largest_load,
     )
 
 
-def shared_file_rows(positions: list[ComparedPosition]) -> list[Row]:
+def shared_file_rows(positions: list[ComparedPosition], bars: ErrorBars | None = None) -> list[Row]:
     """Return the rows on the error of one file for all clearance cases: worst load, pressure and wheel angle of ``fe`` with it.
 
     The positions are of one case with clearance, compared with the coefficients of the disc without clearance.
@@ -225,13 +244,14 @@ def shared_file_rows(positions: list[ComparedPosition]) -> list[Row]:
         kind, number, load = difference.worst_load
         pressed, place, pressure = difference.worst_pressure
         own, other = position.answers["fe"], position.full.answer
-        for quantity, contact, ours, theirs, unit, change, change_unit in (
+        loaded, squeezed = (NO_BARS if bars is None else bars.kinds.get(one, NO_BARS) for one in (kind, pressed))
+        for quantity, contact, ours, theirs, unit, change, change_unit, bar in (
             ("load, worst contact", difference.contact_name(kind, number), own.kinds[kind].load[number],
-             other.kinds[kind].load[number], "N", load, ""),
+             other.kinds[kind].load[number], "N", load, "", loaded.load),
             ("peak pressure at mid-width, worst contact", difference.contact_name(pressed, place),
-             own.kinds[pressed].pressure[place], other.kinds[pressed].pressure[place], "MPa", pressure, ""),
+             own.kinds[pressed].pressure[place], other.kinds[pressed].pressure[place], "MPa", pressure, "", squeezed.pressure),
             ("wheel angle", "", own.wheel_angle * ARCSEC, other.wheel_angle * ARCSEC, '"',
-             difference.wheel_angle, '"'),
+             difference.wheel_angle, '"', None if bars is None else bars.wheel_angle),
         ):  # fmt: skip
             rows.append(
                 Row(
@@ -249,6 +269,7 @@ def shared_file_rows(positions: list[ComparedPosition]) -> list[Row]:
                     contact=contact,
                     model="fe, coefficients shared by all cases",
                     against=FULL,
+                    error_bar=bar,
                 )
             )
     return rows

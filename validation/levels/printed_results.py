@@ -27,16 +27,16 @@ BEYOND = "the paper: little change by pin-hole clearance"
 Summary = dict[str, dict[str, float]]
 
 
-def compare_printed_results() -> list[Row]:
-    """Return the rows of level 3."""
+def compare_printed_results(positions: int = POSITIONS) -> list[Row]:
+    """Return the rows of level 3 from so many positions over a turn."""
     cases = load_drive("paper").cases
-    analyses = {name: analyse(drive, position_angles(POSITIONS)) for name, drive in cases.items()}
+    analyses = {name: analyse(drive, position_angles(positions)) for name, drive in cases.items()}
     summary = {
         name: {key: value for key, value in summarise(analysis).items() if value is not None}
         for name, analysis in analyses.items()
     }
     geometry = ContactGeometry.of_drive(cases["CS-1"])
-    unloaded = unloaded_transmission_error(geometry, position_angles(POSITIONS))
+    unloaded = unloaded_transmission_error(geometry, position_angles(positions))
     return [
         *_forces(summary),
         *_contacts(summary),
@@ -162,7 +162,7 @@ def _meshing(analyses: dict[str, LoadedAnalysis], summary: Summary) -> list[Row]
 
 def _centre_of_range(analysis: LoadedAnalysis) -> float:
     load = analysis.full.response.pin_load[:, 0]
-    return float(np.mean(np.flatnonzero(load > 1e-3 * load.max()))) * 360.0 / POSITIONS
+    return float(np.mean(np.flatnonzero(load > 1e-3 * load.max()))) * 360.0 / load.size
 
 
 def _transmission_error(summary: Summary, unloaded: float) -> list[Row]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,7 @@ from validation.study import Study
 
 COLUMNS = (
     "level", "quantity", "case", "angle_rad", "contact", "model", "against", "reference", "value", "unit", "difference",
-    "difference_unit", "limit", "reason", "pass",
+    "difference_unit", "limit", "reason", "pass", "error_bar", "below_error_bar",
 )  # fmt: skip
 
 
@@ -40,6 +41,7 @@ def headline(study: Study) -> dict[str, Any]:
         "checked": sum(row.limit is not None for row in study.rows),
         "informing": sum(row.limit is None for row in study.rows),
         "failed": len(failed_rows(study.rows)),
+        "below_error_bar": sum(bool(row.below_error_bar) for row in study.rows),
     }
 
 
@@ -78,6 +80,7 @@ def validation_content(study: Study) -> dict[str, Any]:
         "levels": {str(level): title for level, title in LEVELS.items()},
         "headline": headline(study),
         "verdict": verdict_content(study),
+        "error_bars": {case: None if bars is None else asdict(bars) for case, bars in study.error_bars.items()},
         "rows": [row.content() for row in study.rows],
     }
 

@@ -11,6 +11,7 @@ from ltca.page.scene import drive_scene
 from ltca.page.study_page import Picture
 from ltca.page.tables import minus
 from ltca.page.writing import page_text, script_data, write_page
+from validation.compare.error_bars import bars_words
 from validation.compare.finite_element_positions import disc_case, kept_pictures
 from validation.compare.model_positions import FULL, MODELS
 from validation.levels.flexible_disc import TITLES, judge_half_space, turn_content
@@ -59,6 +60,7 @@ def _context(study: Study) -> dict[str, Any]:
     head = headline(study)
     return {
         "title": f"Validation of {plan.name}",
+        "error_bars": bars_words(study.error_bars),
         "drive": plan.name,
         "cases": list(plan.drives),
         "angles": [_angle(angle) for angle in plan.crank_angles],
@@ -168,10 +170,19 @@ def _line(row: Row, count: int) -> dict[str, str]:
         "value": _figure(row.value, row.unit),
         "reference": _figure(row.reference, row.unit) if row.reference is not None else "–",
         "difference": _difference(row.difference, row.difference_unit),
+        "error_bar": _error_bar(row),
         "limit": _difference(row.limit, row.difference_unit, sign="±") if row.limit is not None else "informs",
         "state": "failed" if not row.passed else "informs" if row.limit is None else "passed",
         "reason": minus(row.reason),
     }
+
+
+def _error_bar(row: Row) -> str:
+    """Return what is told of the error bar of the reference."""
+    if row.error_bar is None:
+        return ""
+    bar = _difference(row.error_bar, row.difference_unit, sign="±")
+    return f"below its error bar, {bar}" if row.below_error_bar else f"error bar {bar}"
 
 
 def _figure(value: float, unit: str) -> str:

@@ -7,6 +7,7 @@ run        Solve the cases of ``cyclo run``; dataset, summary, verdicts, page an
 run_table  The table of ``cyclo run``: what decides, in the order in which it is read
 check      Verdicts of ``cyclo check``: judge every case and tell what drives and would mend what fails
 curves     Solve the cases of ``cyclo curves``; curves.json, page and figures
+dynamics   Solve the cases of ``cyclo dynamics``; dynamics.json, page and figures
 study      Run of a study (``cyclo tolerance``, ``cyclo sweep``): solved, written, drawn and printed
 optimise   Search of ``cyclo optimise``, and its outcome solved finely
 =========  =============================================================

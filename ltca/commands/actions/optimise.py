@@ -135,7 +135,7 @@ def _prepared(problem: Problem, engine: Engine, arguments: argparse.Namespace) -
                     f"{' '.join(arguments.vary)} changes it; leave it out, so that each candidate gets its own"
                 ]
             )
-        seconds = sum(expected_seconds(shapes_of([problem.drive]).values()))
+        seconds = sum(expected_seconds(shapes_of([problem.drive]).values(), engine.bodies))
         each = told_seconds(seconds)
         if arguments.engine_is_named:
             most = most_candidates(problem, arguments.generations)

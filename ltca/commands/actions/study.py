@@ -173,7 +173,8 @@ def _print_failures(study: Study, folder: StudyFolder, found: StudySummary) -> N
 def _compliance_words(study: Study, coefficients: Sequence[Path] | None) -> str:
     """Options with which `cyclo run` solves a sample as the study did."""
     options = study.engine.options
-    own = study.cases[0][1].analysis.compliance
-    words = "" if options["compliance"] == own else f" --compliance {options['compliance']}"
+    own = study.cases[0][1].analysis
+    words = "" if options["compliance"] == own.compliance else f" --compliance {options['compliance']}"
+    words += "" if options.get("bodies", own.bodies) == own.bodies else f" --bodies {options['bodies']}"
     words += "".join(f" --coefficients {path}" for path in coefficients or ())
     return words + (" --no-hole-near-field" if options.get("hole_near_field") == "no" else "")

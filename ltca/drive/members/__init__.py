@@ -17,6 +17,7 @@ ring             The ring in which the wheel pins are seated: its size, material
 carrier          Carrier: two flanges, tied by posts, between which shaft pins or cranks stand, and what twists between it
                  and the output
 main_bearing     The main bearing: stiffness, clearance or preload, rows of rolling elements
+inertia          Inertias of input, output and cranks that are given, and damping
 temperatures     A drive at its temperatures: every length multiplied by 1 + α ΔT of its part
 limits           ``[limits]`` of a drive file: bounds on results, by the names of the summary, each with its source
 judgement        Limits of values, from the drive file or its materials, with safety and verdict

@@ -58,6 +58,11 @@ def _spelled(*spellings: str) -> tuple[str, ...]:
     )
 
 
+def _squared(text: str) -> tuple[str, ...]:
+    """Every way to write a product whose last factor is squared: with a raised or a plain 2."""
+    return tuple(form for spelled in _spelled(text) for form in (spelled, spelled.replace("²", "2")))
+
+
 _DEGREE = PI / 180
 # kind, spellings (the first is printed), factor, offset; factors refer to the first unit of a kind.
 _TABLE: tuple[tuple[str, tuple[str, ...], Fraction | int, Fraction | int], ...] = (
@@ -102,6 +107,13 @@ _TABLE: tuple[tuple[str, tuple[str, ...], Fraction | int, Fraction | int], ...] 
     ("density", ("kg/m³", "kg/m3"), 1, 0),
     ("density", ("g/cm³", "g/cm3"), 1000, 0),
     ("viscosity", ("mm²/s", "mm2/s", "cSt"), 1, 0),
+    ("mass", ("kg",), 1, 0),
+    ("mass", ("g",), Fraction(1, 1000), 0),
+    ("mass", ("t",), 1000, 0),
+    ("moment of inertia", _squared("kg·m²"), 1, 0),
+    ("moment of inertia", _squared("kg·cm²"), Fraction(1, 10**4), 0),
+    ("moment of inertia", _squared("kg·mm²"), Fraction(1, 10**6), 0),
+    ("moment of inertia", _squared("g·cm²"), Fraction(1, 10**7), 0),
 )
 UNITS: dict[str, dict[str, Unit]] = {}
 """By kind, then by spelling."""

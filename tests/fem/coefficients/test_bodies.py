@@ -347,6 +347,8 @@ TABLES_LEFT_OUT = (
     "pin_shaft.beam",
     "duty.0",
     "lubricant",
+    "inertia",
+    "damping",
     "temperature",
 )
 OF_MATERIALS = (

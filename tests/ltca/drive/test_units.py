@@ -37,7 +37,7 @@ def test_conversion(text, unit, value):
 @pytest.mark.parametrize(
     ("text", "unit", "words"),
     [
-        ("3 kg", "mm", "not known; it must have the unit mm"),
+        ("3 lb", "mm", "not known; it must have the unit mm"),
         ("3 mm", "N*mm", "must have the unit N·mm"),
         ("three", "mm", "mm"),
         ("", "mm", "not a quantity"),

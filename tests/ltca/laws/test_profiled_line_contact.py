@@ -33,11 +33,6 @@ def test_profiles_are_even_start_at_zero_and_know_their_overlap(profile):
     assert profile.overlap_half_length(1.0) == pytest.approx(5.9, rel=1e-9)
 
 
-def test_logarithmic_profile_by_hand():
-    # ISO 16281:2025: at 0.8 of the half-length 0.00035 · 20 · ln(1/0.36) mm = 7.15 µm
-    assert float(LogarithmicRelief(length=20.0, diameter=20.0).relief(8.0)) == pytest.approx(7.1516e-3, rel=1e-4)
-
-
 @pytest.mark.parametrize("ratio", [1.0, 3.0, 100.0, 1e4])
 def test_crowned_patch_is_hertz_point_contact(ratio):
     crown = CircularCrown(length=1e3, crown_radius=2.0 * ratio)

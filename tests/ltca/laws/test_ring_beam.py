@@ -44,32 +44,6 @@ def radial(found):
     return found[:, 0] * np.cos(angles) + found[:, 1] * np.sin(angles)
 
 
-@pytest.mark.parametrize("ring", [THICK, THIN])
-def test_two_opposite_forces_by_castigliano(ring):
-    """Winkler's curved beam about the centroid (Timoshenko, Strength of Materials II, section 80), its couple at the
-    section at right angles to the forces found from the energy.
-    """
-    area, centre = ring.width * ring.height, 0.5 * (ring.inner_radius + ring.outer_radius)
-    e = centre - ring.height / np.log(ring.outer_radius / ring.inner_radius)
-    modulus, force = STEEL["youngs_modulus"], 1.0
-
-    def energy(couple, load):
-        def density(angle):
-            normal, shear = 0.5 * load * np.cos(angle), 0.5 * load * np.sin(angle)
-            bending = couple - 0.5 * load * centre * (1.0 - np.cos(angle))
-            within = bending**2 / (2.0 * area * modulus * e) + centre * normal**2 / (2.0 * area * modulus)
-            return within - bending * normal / (area * modulus) + ring.neutral_radius * shear**2 / (2.0 * SHEAR * area)
-
-        return 4.0 * quad(density, 0.0, 0.5 * pi, epsabs=0.0, epsrel=1e-12)[0]
-
-    # Quadratic in both, so three values determine it exactly.
-    own, mixed = energy(1.0, 0.0), energy(1.0, force) - energy(1.0, 0.0) - energy(0.0, force)
-    stretch = 2.0 * (energy(0.0, force) - mixed**2 / (4.0 * own))
-    found = ring.free(even(4), 71.0)
-    # e of the thin ring is a difference that leaves 1e-11 of it.
-    assert 2.0 * (found[0, 0, 0, 0] - found[0, 0, 2, 0]) == pytest.approx(stretch, rel=1e-10)
-
-
 @pytest.mark.parametrize("order", [2, 3, 5])
 def test_cosine_row_of_pins_on_a_thin_ring(order):
     """Inextensible ring: w = q R⁴/(EI (k² − 1)²). Single pins have the orders k + m z as well, all of one size: alias sum."""

@@ -108,7 +108,7 @@ def test_error_arrays_are_read():
         ("eccentricity = 4.0", "eccentricity = -4.0", "crank.eccentricity = -4.0: must be greater than 0 mm"),
         (
             "eccentricity = 4.0",
-            'eccentricity = "4 kg"',
+            'eccentricity = "4 lb"',
             "it must have the unit mm or another of length (m, µm, nm, in)",
         ),
         (

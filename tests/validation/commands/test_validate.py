@@ -91,3 +91,58 @@ def test_default_plan(paper_cases):
     chosen = plan_study(file, ["CS-2"], [0.1, 0.1], "quick", SolutionOptions())
     assert list(chosen.drives) == ["CS-2"]
     assert chosen.crank_angles == (0.1,)
+
+
+def figure_of_the_manual(value):
+    from validation.manual.case import relative_figure
+
+    return relative_figure("quantity", value, 1.0, "N", 0.1, "why", numerical_error=0.01, numerical_origin="how")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("value", "status"), [(1.05, 0), (1.2, 1)])
+def test_manual_exits_with_its_verdict(value, status, tmp_path, monkeypatch, capsys):
+    from validation.manual import register
+
+    case = replace(register.all_cases()["patch_test"], run=lambda: [figure_of_the_manual(value)])
+    monkeypatch.setattr(register, "chosen_cases", lambda names: (case,))
+    assert run("--manual", "--out", str(tmp_path)) == status
+    word = "FAILED" if status else "PASSED"
+    assert word in capsys.readouterr().out
+    assert {path.name for path in tmp_path.iterdir()} == {"patch_test.md", "index.md", MANIFEST}
+    for name in ("patch_test.md", "index.md"):
+        assert word in (tmp_path / name).read_text(encoding="utf-8")
+
+
+@pytest.mark.slow
+def test_manual_writes_the_pages_that_are_named(tmp_path):
+    assert run("--manual", "patch_test", "tied_pins", "--out", str(tmp_path)) == 0
+    assert {path.name for path in tmp_path.iterdir()} == {"patch_test.md", "tied_pins.md", "index.md", MANIFEST}
+    text = (tmp_path / "index.md").read_text(encoding="utf-8")
+    assert "**2 of 2 cases pass**" in text
+    assert "nafems" not in text
+    # The same input gives the same bytes, into a folder that holds an earlier manual too.
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    assert run("--manual", "tied_pins", "patch_test", "--out", str(tmp_path)) == 0
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+@pytest.mark.parametrize(
+    ("words", "messages"),
+    [
+        (["paper", "--manual"], ["DRIVE: has no meaning with --manual"]),
+        (
+            ["--manual", "--case", "CS-1", "--angles", "0.5", "--level", "quick", "--size", "1"],
+            [f"--{name}: has no meaning with --manual" for name in ("case", "angles", "level", "size")],
+        ),
+        (["--manual", "flat_punsh"], ["--manual flat_punsh: is no case of the manual; did you mean `flat_punch`"]),
+        (["--manual", "krol", "krol"], ["--manual krol: is given twice"]),
+        ([], ["give a drive file, or --manual"]),
+    ],
+)
+def test_manual_refuses_by_name(words, messages, tmp_path):
+    with pytest.raises(CycloError) as refused:
+        # The folder first: --manual takes all words behind it.
+        run("--out", str(tmp_path / "out"), *words)
+    assert all(message in str(refused.value) for message in messages)
+    assert not (tmp_path / "out").exists()

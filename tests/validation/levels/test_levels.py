@@ -21,7 +21,7 @@ def test_closed_forms(paper_cases):
 def test_a_wrong_closed_form_fails(monkeypatch):
     right = closed_forms.line_half_width
     monkeypatch.setattr(closed_forms, "line_half_width", lambda *words: 1.01 * right(*words))
-    failed = {row.quantity for row in failed_rows([*closed_forms._two_cylinders(), *closed_forms._rollers()])}
+    failed = {row.quantity for row in failed_rows([*closed_forms.cylinder_rows(), *closed_forms.roller_rows()])}
     assert "half-width of two cylinders pressed together" in failed
     assert "half-width of a long roller at mid-width" in failed
 

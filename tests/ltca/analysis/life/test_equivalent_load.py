@@ -86,15 +86,6 @@ def test_places_along_the_length_are_places_like_others():
     assert factor == pytest.approx(1.0445, abs=1e-3)  # 19 % of life
 
 
-def test_edge_factors_of_the_standard():
-    """1 − 0.01/ln(1.985 |2k − n − 1|/(2n)), by hand at the end of 31: 1 − 0.01/ln(1.985 · 30/62)."""
-    factors = edge_factors(31)
-    assert factors[15] == 1.0
-    assert factors[-1] == pytest.approx(1.0 - 0.01 / np.log(1.985 * 30.0 / 62.0), rel=1e-12)
-    assert np.all(np.diff(factors[15:]) > 0.0)
-    np.testing.assert_array_equal(factors, factors[::-1])
-
-
 def test_no_load_is_none():
     _, angle = rollers(1)
     assert race_load(np.zeros_like(angle), angle, EVEN) == 0.0

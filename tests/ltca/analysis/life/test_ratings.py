@@ -4,10 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from scipy.integrate import quad
 
-from ltca.analysis.life.equivalent_load import race_load
-from ltca.analysis.life.laminae import EvenLaminae
 from ltca.analysis.life.ratings import RollerBearing, not_rated
 from ltca.reading.changes import with_fields
 
@@ -26,23 +23,6 @@ def bearing(slenderness=0.15, rollers=20, pitch_diameter=100.0):
         roller_length=10.0,
         pitch_diameter=pitch_diameter,
     )
-
-
-@pytest.mark.parametrize(("slenderness", "factor"), TABLE_7.items())
-def test_geometry_factor_against_the_published_table(slenderness, factor):
-    # the table has three digits; its own smoothing is another tenth
-    assert bearing(slenderness).geometry_factor == pytest.approx(factor, abs=0.11)
-
-
-def test_ratings_of_the_papers_crank_bearing(paper_cases):
-    """By hand from the printed factors: 11 rollers 10 × 11.8 on 49 mm, f_c = 88.7 at γ = 0.204 (Table 7)."""
-    found = RollerBearing.of_drive(paper_cases["CS-1"])
-    assert found == RollerBearing(rollers=11, roller_diameter=10.0, roller_length=11.8, pitch_diameter=49.0)
-    by_hand = 1.1 * 88.65 * 11.8 ** (7 / 9) * 11**0.75 * 10 ** (29 / 27)
-    assert found.dynamic_load_rating == pytest.approx(by_hand, rel=1e-3)
-    # ISO 76: 44 (1 − 10/49) · 11 · 11.8 · 10
-    assert found.static_load_rating == pytest.approx(45_456.49, abs=0.01)
-    assert found.fatigue_load_limit == pytest.approx(45_456.49 / 8.2, abs=0.01)
 
 
 def test_fatigue_limit_falls_behind_above_a_hundred_millimetres():
@@ -65,38 +45,6 @@ def test_rating_of_the_inner_by_that_of_the_outer_race():
     # both by hand: C = 1.1 f_c …, shared by 13 rollers, without the allowance for edges
     share = part.dynamic_load_rating / (0.83 * 13 * 0.378)
     assert found.inner == pytest.approx(share * (1.0 + by_hand**4.5) ** (2.0 / 9.0), rel=1e-12)
-
-
-def test_race_constants_are_the_integrals_of_the_load_zone():
-    """0.378 and 0.364 of ISO 16281:2025 are J_r/J_1 and J_r/J_2: means of the loads with 4 and 4.5."""
-
-    def mean(power):
-        return quad(lambda psi: np.cos(psi) ** power, -np.pi / 2, np.pi / 2)[0] / (2.0 * np.pi)
-
-    radial = mean(2.1)
-    # 1/J_r: the largest roller load is 4.08 F/Z, as catalogues print it (NSK CAT. E728g, Sect. 5.1, ε = 0.5)
-    assert 1.0 / radial == pytest.approx(4.08, abs=0.005)
-    # the standard's constants come from tabulated J of three digits: 0.3 %, against 4 % between the two
-    assert radial / mean(1.1 * 4.0) ** (1 / 4.0) == pytest.approx(0.378, rel=4e-3)
-    assert radial / mean(1.1 * 4.5) ** (1 / 4.5) == pytest.approx(0.364, rel=4e-3)
-
-
-def test_life_at_the_rating_without_edge_stress_is_a_million_turns():
-    """A usual bearing, inner race turning, a load that stands: at P = C, without the 0.83 and without edges, ISO 281's 10⁶."""
-    part = bearing(rollers=20)
-    positions, turns, cage = 60, 7, 0.425
-    crank = 2.0 * np.pi * np.arange(positions * turns) / positions
-    angle = cage * crank[:, None] + 2.0 * np.pi * np.arange(20) / 20
-    # Q ∝ cos^1.1 ψ over half the circle: rigid races without clearance (ISO/TR 1281-1)
-    loads = np.maximum(np.cos(angle), 0.0) ** 1.1
-    force = part.dynamic_load_rating / 0.83
-    loads *= force / np.mean((loads * np.cos(angle)).sum(axis=1))
-    even = EvenLaminae(edges=False)
-    inner, outer = race_load(loads, angle - crank[:, None], even), race_load(loads, angle, even)
-    # 0.3 % of the constants, to the fourth power, and 0.5 % for the roller load that 20 rollers share
-    assert part.race_ratings().life(inner, outer) == pytest.approx(1.0, rel=0.02)
-    # the other way round it is another life: races have changed places
-    assert part.race_ratings().life(outer, inner) < 0.97
 
 
 def test_what_is_no_hardened_steel_is_not_rated(paper_cases):

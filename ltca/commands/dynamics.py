@@ -1,0 +1,92 @@
+"""``cyclo dynamics``: eigenfrequencies and modes, Campbell diagram, critical speeds, response over speed."""
+
+from __future__ import annotations
+
+import argparse
+
+from ltca.commands.compliance_arguments import (
+    add_compliance_arguments,
+    check_compliance,
+    compliance_of,
+    find_coefficients_of,
+    settle_compliance,
+)
+from ltca.reading.arguments import (
+    add_case_argument,
+    add_drive_argument,
+    add_figures_argument,
+    add_out_argument,
+    add_page_argument,
+    count_argument,
+    default_folder,
+    quantity_argument,
+    tell_unit_mistakes,
+)
+
+SUMMARY = "eigenfrequencies and modes under load, Campbell diagram, critical speeds, response over speed"
+EXAMPLES = (
+    ("cyclo dynamics my.toml", "modes over a turn and over torque, critical speeds; dynamics.json"),
+    ("cyclo dynamics my.toml --speed '3000 rpm'", "up to that speed of the input"),
+)
+FIGURES = ("campbell_diagram", "response")
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    add_drive_argument(parser)
+    add_case_argument(parser, "case, repeatable; default all")
+    parser.add_argument(
+        "--positions",
+        metavar="N",
+        type=count_argument("--positions", 4, 1000),
+        default=24,
+        help="crank angles of a turn at which modes are told; default 24",
+    )
+    parser.add_argument(
+        "--turns",
+        metavar="N",
+        type=count_argument("--turns", 1, 1000),
+        help="crank turns behind the orders of the transmission error; default the fewest that tell them apart",
+    )
+    parser.add_argument(
+        "--speed",
+        metavar="N",
+        type=quantity_argument("--speed", "rpm", gt=0.0),
+        help="largest speed of the input in turns a minute (or a text such as '3000 rpm'); default the largest of [[duty]], "
+        "load.speed, or 3000",
+    )
+    add_compliance_arguments(parser)
+    add_out_argument(parser, "dynamics")
+    add_figures_argument(parser)
+    add_page_argument(parser)
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Solve every case; write dynamics.json, page and figures, print the results."""
+    from glob import escape
+
+    from ltca.output.run_folder import claimed_folder, figure_files, require_folder
+    from ltca.reading.drive_file import load_drive
+
+    check_compliance(arguments)
+    file = load_drive(arguments.drive)
+    cases = file.select_warm(arguments.case)
+    settle_compliance(arguments, cases.values())
+    tell_unit_mistakes(file.cases[name] for name in cases)
+    out = arguments.out or default_folder(file.name, "dynamics")
+    require_folder(out)
+    from ltca.analysis.drive_curves import require_turns
+    from ltca.analysis.engines import lending_between
+    from ltca.commands.actions.dynamics import require_vibrations, solve_and_write
+
+    engine = lending_between(file.cases.values(), compliance_of(arguments, cases.values()))
+    for name, drive in cases.items():
+        require_vibrations(file.cases[name])
+        if arguments.turns is not None:
+            require_turns(drive, arguments.turns)
+    endings = [f"_{escape(name)}" for name in cases] if len(cases) > 1 else [""]
+    figures = figure_files(arguments.figures, *(name + ending for name in FIGURES for ending in endings))
+    writes = ["dynamics.json", *([] if arguments.no_page else ["report.html"])]
+    with claimed_folder(out, "dynamics", writes=[*writes, *figures]):
+        find_coefficients_of(cases, engine, arguments)
+        return solve_and_write(file, cases, engine, arguments, out)

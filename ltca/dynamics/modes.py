@@ -1,0 +1,193 @@
+r"""Eigenfrequencies and modes of stiffness and mass matrices, and what moves in them.
+
+Solved is :math:`M x = \mu (K + s M) x` with :math:`\omega^2 = 1/\mu - s`: parts without mass yield as springs do, and a shift s
+makes the matrix on the right positive where the drive turns freely. Where nothing is given of the input its rotation is held,
+and the coordinates are those that leave it still.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import LinAlgError, cholesky, eigh
+
+from ltca.arrays import ComplexArray, FloatArray
+from ltca.dynamics.kinetics import Body, Motion
+from ltca.errors import ConvergenceError
+from ltca.geometry.coordinates import DISC_ROTATION, X, Y
+
+MASSLESS = 1e-10
+"""Mass by the largest one, each coordinate by its own, below which a combination of coordinates has none."""
+FIRST_SHIFT, SHIFT_STEP, SHIFTS = 1e-8, 10.0, 12
+"""First shift by the mean square frequency (traces of K and M), its growth, and how many are tried."""
+TOLD = 0.05
+"""Part of the kinetic energy from which a body is told of."""
+MOST_TOLD = 3
+ALIKE = 0.5
+"""Cosine of the motions of two discs from which they move together, or against each other."""
+ALONG = 0.8
+"""Part of the motion of a disc along its eccentricity from which it moves so, and against which it moves across."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Modes:
+    """Modes at one position.
+
+    Attributes
+    ----------
+    square : array, shape (modes,)
+        ω², 1/s², ascending; of a drive that turns freely the first is that of the turning, about 0 of either sign.
+    shapes : array, shape (coordinates, modes)
+        Coordinates of each mode, mm and rad, mass-normalised: :math:`x^T M x = 1` t·mm².
+    turns_freely : bool
+        Whether the first one is the turning of the whole drive, no vibration.
+    """
+
+    square: FloatArray
+    shapes: FloatArray
+    turns_freely: bool
+
+    @property
+    def frequency(self) -> FloatArray:
+        """Eigenfrequencies, Hz, shape (modes,); 0 of the free turning."""
+        found = np.sqrt(np.maximum(self.square, 0.0)) / (2.0 * np.pi)
+        if self.turns_freely:
+            found[0] = 0.0
+        return np.asarray(found)
+
+
+def free_coordinates(row: FloatArray, lever: FloatArray) -> FloatArray:
+    """Return columns that span all motions, as displacements, under which a row is zero, shape (n, n − 1); all for a zero row.
+
+    Parameters
+    ----------
+    row : array, shape (n,)
+        By the coordinates.
+    lever : array, shape (n,)
+        Lengths by which coordinates are displacements, mm.
+    """
+    scaled = row / lever
+    if not np.any(scaled):
+        return np.diag(1.0 / lever)
+    _, _, basis = np.linalg.svd(scaled[None])
+    return np.asarray(basis[1:].T / lever[:, None])
+
+
+def solve_modes(stiffness: FloatArray, mass: FloatArray, basis: FloatArray, rigid: FloatArray | None) -> Modes:
+    """Return the modes of a drive at one position.
+
+    Parameters
+    ----------
+    stiffness, mass : array, shape (n, n)
+        K and M.
+    basis : array, shape (n, m)
+        Motions that are free.
+    rigid : array, shape (n,), or None
+        Turning of the whole drive, where it is free.
+
+    Raises
+    ------
+    ConvergenceError
+        When the drive is not stable where it stands.
+    """
+    k, m = basis.T @ stiffness @ basis, basis.T @ mass @ basis
+    own = np.sqrt(np.maximum(np.diag(m), 0.0))
+    own[own == 0.0] = 1.0
+    sizes = np.linalg.eigvalsh(m / np.outer(own, own))
+    count = int(np.count_nonzero(sizes > MASSLESS * sizes[-1]))
+    # A loaded drive that turns freely is pulled on or back by its own transmission error.
+    first, shift = FIRST_SHIFT * np.trace(k) / np.trace(m), 0.0
+    for trial in range(SHIFTS):
+        try:
+            cholesky(k + shift * m)
+            break
+        except LinAlgError:
+            shift = first * SHIFT_STEP**trial
+    else:
+        raise ConvergenceError("no vibration: the drive is not stable there, some of its stiffness is negative", [])
+    inverse, shapes = eigh(m, k + shift * m)
+    order = np.argsort(-inverse)[:count]
+    square, shapes = 1.0 / inverse[order] - shift, basis @ shapes[:, order]
+    shapes = shapes / np.sqrt(np.einsum("ij,ik,kj->j", shapes, mass, shapes))
+    if rigid is not None:
+        # The turning may be faster than the softest vibration where its stiffness is that of the transmission error.
+        overlap = np.abs(rigid @ mass @ shapes)
+        turning = int(np.argmax(overlap))
+        order = np.concatenate(([turning], np.delete(np.arange(square.size), turning)))
+        square, shapes = square[order], shapes[:, order]
+    return Modes(square=square, shapes=shapes, turns_freely=rigid is not None)
+
+
+def energy_shares(bodies: Sequence[Body], shape: FloatArray) -> dict[str, float]:
+    """Return the part of the kinetic energy of a mode by what moves and how, largest first.
+
+    Parameters
+    ----------
+    bodies : sequence of Body
+        Every body that moves.
+    shape : array, shape (n,)
+        Coordinates of the mode.
+    """
+    found: dict[str, float] = {}
+    for body in bodies:
+        name = "discs" if body.name.startswith("disc") else body.name
+        key = f"{name} {'turn' if body.turns else 'move'}"
+        found[key] = found.get(key, 0.0) + body.size * float(abs(body.row @ shape) ** 2)
+    total = sum(found.values())
+    return dict(sorted(((name, size / total) for name, size in found.items()), key=lambda one: -one[1]))
+
+
+def mode_words(motion: Motion, bodies: Sequence[Body], shape: FloatArray, eccentric: ComplexArray) -> str:
+    """Return what moves in a mode, in words, with its part of the kinetic energy.
+
+    Parameters
+    ----------
+    motion : Motion
+        Coordinates.
+    bodies : sequence of Body
+        Every body that moves.
+    shape : array, shape (n,)
+        Coordinates of the mode.
+    eccentric : array of complex, shape (discs,)
+        Directions of the eccentricities.
+    """
+    told = []
+    for name, share in list(energy_shares(bodies, shape).items())[:MOST_TOLD]:
+        if share < TOLD:
+            continue
+        words = name
+        if name.startswith("discs"):
+            turns = name.endswith("turn")
+            words = _of_discs(motion, shape, eccentric, turns)
+        elif name.startswith(("input", "output")):
+            words = f"{name}s"
+        told.append(f"{words} ({100.0 * share:.0f} %)")
+    return ", ".join(told)
+
+
+def _of_discs(motion: Motion, shape: FloatArray, eccentric: ComplexArray, turns: bool) -> str:
+    """How the discs of a mode move: which, along or across their eccentricities, together or against each other."""
+    own = [motion.pose.columns(disc) for disc in range(motion.pose.discs)]
+    if turns:
+        moved = np.array([complex(shape[one[DISC_ROTATION]]) for one in own])
+    else:
+        moved = np.array([shape[one[X]] + 1j * shape[one[Y]] for one in own])
+    sizes = np.abs(moved)
+    several = sizes > 0.5 * sizes.max()
+    names = "disc" if moved.size == 1 else "discs"
+    if moved.size > 1 and np.count_nonzero(several) == 1:
+        names = f"disc {int(np.argmax(sizes))}"
+    verb = ("turns" if turns else "moves") if names != "discs" else ("turn" if turns else "move")
+    words = f"{names} {verb}"
+    if not turns and sizes.max() > 0.0:
+        along = np.sum((moved * eccentric.conjugate()).real ** 2) / np.sum(sizes**2)
+        words += (
+            " along its eccentricity" if along > ALONG else " across its eccentricity" if along < 1.0 - ALONG else ""
+        )
+        words = words.replace("its eccentricity", "their eccentricities") if names == "discs" else words
+    if names == "discs":
+        pair = (moved[0].conjugate() * moved[1:]).real.sum() / max(sizes[0] * sizes[1:].sum(), 1e-300)
+        words += " together" if pair > ALIKE else " against each other" if pair < -ALIKE else ""
+    return words

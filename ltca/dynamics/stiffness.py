@@ -1,0 +1,103 @@
+r"""Stiffness of a drive about balanced positions, over the coordinates of its motion.
+
+Beside the tangent of the pose stand the derivatives by the crank angle, with which discs and wheel go along as they nominally do:
+those of the forces on the members, and of the force on that motion, differenced beside the balanced position. The mesh of a
+first stage and the twist of a carrier are springs on these coordinates. Friction is left out: what it takes from a
+vibration is said by ``[damping]``.
+
+The tangent takes radii of curvature and influence coefficients as they stand, which is 1e-5 of it (`ltca.analysis.derivatives`);
+stiffnesses are made symmetric, which is as much.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ltca.arrays import FloatArray
+from ltca.compliance.response import Response, Start
+from ltca.dynamics.kinetics import Motion
+from ltca.equilibrium.balance import Equilibrium
+from ltca.equilibrium.reducer import Reducer
+from ltca.geometry.coordinates import WHEEL_ANGLE, X, Y
+
+STEP = 1e-5
+"""Step of the crank angle, rad: contacts move by some nanometres then, and round-off of the forces is 1e-6 of their change."""
+
+
+def stiffness_matrices(model: Reducer, motion: Motion, found: Equilibrium) -> FloatArray:
+    """Return the stiffness at balanced positions, N/mm, N and N·mm by coordinates in mm and rad, shape (positions, n, n).
+
+    Parameters
+    ----------
+    model : Reducer
+        That balanced them, without friction.
+    motion : Motion
+        Coordinates.
+    found : Equilibrium
+        Balanced positions.
+    """
+    angle, pose, start = found.crank_angle, found.pose, Start.after(found.response)
+    contacts = replace(model, stage=None, friction=None, external=None)
+    tangent = contacts.respond(angle, pose, start).tangent
+    if model.stage is not None and model.supports is not None:
+        # What bearings of cranks with clearance or preload yield depends on all that they carry.
+        carried = model.carried_beside_discs(angle, pose, found.response.parts)
+        if carried is not None:
+            supports = model.supports
+            tangent = tangent + supports.respond(pose, carried)[1] - supports.respond(pose)[1]
+    ends = []
+    for sense in (-1.0, 1.0):
+        turned = angle + sense * STEP
+        response = contacts.respond(turned, pose, start)
+        ends.append(np.concatenate((response.force, _crank_force(contacts, turned, pose, response)[:, None]), axis=1))
+    by_crank = (ends[1] - ends[0]) / (2.0 * STEP)
+    stiffness = np.zeros((angle.size, motion.size, motion.size))
+    pose_size = motion.pose.size
+    stiffness[:, :pose_size, :pose_size] = 0.5 * (tangent + tangent.swapaxes(1, 2))
+    stiffness[:, : pose_size + 1, motion.crank] = by_crank
+    stiffness[:, motion.crank, :pose_size] = by_crank[:, :pose_size]
+    if motion.sun is not None:
+        row = motion.unit(motion.crank) - motion.unit(motion.sun)
+        row[:pose_size] += motion.mesh_by_pose
+        stiffness += np.outer(row, row) / motion.mesh_compliance
+    carrier = motion.drive.carrier
+    if motion.twist is not None and carrier is not None:
+        stiffness[:, motion.twist, motion.twist] += carrier.stiffness_torsion or 0.0
+    return stiffness
+
+
+def _crank_force(model: Reducer, crank_angle: FloatArray, pose: FloatArray, response: Response) -> FloatArray:
+    """∂U/∂φ_C at a held pose, with which discs and wheel go along, N·mm: the moments that hold the cranks, and the work of the
+    forces on discs and wheel on their nominal motion.
+    """
+    moment = model.crank_moments(crank_angle, pose, response.parts).sum(axis=1)
+    for number, disc in enumerate(model.discs):
+        own, velocity = model.coordinates.columns(number), disc.geometry.placement.race_velocity(crank_angle)
+        moment = moment + response.force[:, own[X]] * velocity.real + response.force[:, own[Y]] * velocity.imag
+    ratio = model.discs[0].geometry.placement.reduction_ratio
+    return np.asarray(moment + response.force[:, WHEEL_ANGLE] / ratio)
+
+
+def levers(model: Reducer, motion: Motion, lever: FloatArray) -> FloatArray:
+    """Return the lengths by which coordinates are displacements, mm, shape (n,): 1 of displacements.
+
+    Parameters
+    ----------
+    model : Reducer
+        Whose poses they are.
+    motion : Motion
+        Coordinates.
+    lever : array, shape (pose,)
+        Of the pose (`ltca.equilibrium.balance.lever_arms`).
+    """
+    found = np.ones(motion.size)
+    found[: motion.pose.size] = lever
+    eccentricity = float(model.discs[0].geometry.placement.mean_eccentricity.ravel()[0])
+    found[motion.crank] = eccentricity
+    if motion.sun is not None:
+        found[motion.sun] = eccentricity
+    if motion.twist is not None:
+        found[motion.twist] = lever[-1]
+    return found

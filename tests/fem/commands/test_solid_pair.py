@@ -1,0 +1,84 @@
+"""``cyclo fem --bodies solid --pair``: files, keys, and one clear message for each mistake."""
+
+import argparse
+import json
+import shutil
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from fem.commands import fem as command
+from ltca.errors import CycloError, DriveError
+
+
+def run(*words):
+    parser = argparse.ArgumentParser()
+    command.configure(parser)
+    return command.execute(parser.parse_args(words))
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["--bodies", "solid", "--load", "100"], "--load: belongs to one pair"),
+        (["--bodies", "solid", "--plane", "stress"], "--plane: has no effect with --bodies solid"),
+        (["--bodies", "solid", "--referee", "calculix"], "--referee: has no effect with --bodies solid"),
+        (["--layers", "3"], "--layers: has no effect with plane bodies"),
+        (["--bodies", "solid", "--pair", "bore", "--layers", "3"], "--layers: has no effect with --pair"),
+        (["--bodies", "solid", "--size", "0.05"], "the disc as a solid body"),
+        (["--pair", "flank"], "--pair: has no effect with plane bodies"),
+        (["--tilt", "1e-4", "--load", "100"], "--load: has no effect with plane bodies"),
+        (["--bodies", "solid", "--pair", "bore", "--plane", "stress"], "--plane: has no effect with --pair"),
+        (["--bodies", "solid", "--pair", "bore", "--error"], "--error: has no effect with --pair"),
+        (["--bodies", "solid", "--pair", "bore", "--load", "9", "--approach", "0.01"], "--approach: must be left out"),
+        (["--bodies", "solid", "--pair", "bore", "--load", "9", "--torque", "1e5"], "--torque: has no effect"),
+        (["--bodies", "solid", "--pair", "bore", "--contact", "11"], "--contact 11: must be between 0 and 10"),
+        (["--bodies", "solid", "--pair", "bore", "--contact", "6"], "--load: must be given"),
+        (["--bodies", "solid", "--pair", "bore", "--block", "0.05"], "too wide for a block of 0.05 mm"),
+    ],
+)
+def test_what_does_not_go_together_is_refused(words, message, tmp_path):
+    with pytest.raises(CycloError, match=message):
+        run("paper", "--case", "CS-1", "--angle", "0.5", "--out", str(tmp_path / "out"), *words)
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("words", [("--load", "0"), ("--tilt", "0.02"), ("--block", "-1")])
+def test_quantities_have_bounds(words, tmp_path):
+    with pytest.raises(DriveError, match=words[0]):
+        run("paper", "--bodies", "solid", "--pair", "bore", "--out", str(tmp_path), *words)
+
+
+@pytest.mark.slow
+def test_files_of_a_pair(tmp_path, capsys):
+    out = tmp_path / "out"
+    words = ("paper", "--case", "CS-1", "--angle", "0.5", "--bodies", "solid", "--pair", "bore", "--size", "8")
+    assert run(*words, "--approach", "3 µm", "--out", str(out)) == 0
+    summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
+    assert summary["approach_mm"] == pytest.approx(3e-3)
+    assert (summary["case"], summary["crank_angle_rad"], summary["block_mm"]) == ("CS-1", 0.5, 5.0)
+    with xr.open_dataset(out / "pair.nc", engine="h5netcdf") as data:
+        assert data["pressure"].dims == ("x", "height")
+        assert data["pressure"].attrs["units"] == "MPa"
+        line = np.trapezoid(data["line_load"].values, data["height"].values)
+        # Vertex values along the width are smoothed for reading: a per cent at the ends.
+        assert line == pytest.approx(summary["load_N"], rel=0.02)
+        assert data.attrs["load_N"] == summary["load_N"]
+    printed = capsys.readouterr().out
+    assert "held in all directions at sides and bottom" in printed
+    assert "approach 3 µm" in printed
+
+
+@pytest.mark.slow
+@pytest.mark.nightly
+@pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX is not installed (apt install calculix-ccx)")
+def test_calculix_solves_the_pair_of_a_drive(tmp_path, capsys):
+    """Bounds of the comparison are those of `tests/referee/test_calculix_pair.py`, on finer meshes than this one."""
+    words = ("paper", "--case", "CS-1", "--angle", "0.5", "--bodies", "solid", "--pair", "bore", "--size", "8")
+    assert run(*words, "--referee", "calculix", "--load", "2000", "--out", str(tmp_path)) == 0
+    summary = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))
+    # One element for the half-width.
+    assert summary["calculix"]["load_N"] == pytest.approx(summary["load_N"], rel=0.02)
+    assert (tmp_path / "calculix.inp").exists()
+    assert "ccx C3D20R" in capsys.readouterr().out

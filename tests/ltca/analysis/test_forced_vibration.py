@@ -1,0 +1,185 @@
+"""Response over speed against its limits, one mass on one spring in closed form, and centrifugal forces by hand."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ltca.analysis.engines import HalfSpace
+from ltca.analysis.forced_vibration import _departures, _nominal_forces, _orders, _quasi_static, forced_vibration
+from ltca.analysis.vibration import vibration
+from ltca.commands.program import main
+from ltca.dynamics.masses import DISCS, ROLLERS, drive_masses
+from ltca.errors import DriveError
+from ltca.reading.changes import with_fields
+from ltca.reading.drive_file import load_drive, shipped_drive
+
+HEAVY = 1e4
+RATIO = 0.05
+PAPER = load_drive("paper").cases["CS-1"]
+
+
+@pytest.fixture(scope="module")
+def heavy():
+    """The paper's drive with an output that is far heavier than its parts: one mass on one spring."""
+    drive = with_fields(PAPER, {"inertia.output": HEAVY, "damping.ratio": RATIO})
+    return vibration(drive, engine=HalfSpace(), positions=24, turns=4)
+
+
+@pytest.fixture(scope="module")
+def usual():
+    drive = with_fields(PAPER, {"inertia.output": 0.5, "damping.ratio": RATIO})
+    return vibration(drive, engine=HalfSpace(), positions=24, turns=4)
+
+
+def amplification(part):
+    """Motion of a mass by that of the foot of its spring, damper to the ground of the moving foot: 1 + r²/(1 − r² + 2iζr)."""
+    return np.abs(1.0 + part**2 / (1.0 - part**2 + 2j * RATIO * part))
+
+
+def test_one_mass_on_one_spring_follows_the_closed_form(heavy):
+    """Every order meets its resonance of ω = √(k̄/J); the compliance of the mean stiffness is known to a thousandth of k̄."""
+    first = heavy.at_load[:, 0].mean()
+    order = heavy.input_orders[heavy.told_orders[0]]
+    resonance = 60.0 * first / order
+    found = forced_vibration(heavy, fastest=3.0 * resonance)
+    place = heavy.told_orders[0]
+    part = found.speed / resonance
+    # Beside the peak, where a thousandth of the frequency would be some hundredths of the answer.
+    beside = np.abs(part - 1.0) > 0.15
+    got = found.order_amplitude[beside, place] / heavy.spectrum.amplitude[place]
+    assert got == pytest.approx(amplification(part[beside]), rel=2e-2)
+    # At the peak the damping alone counts: √(1 + 1/4ζ²).
+    peak = np.max(found.order_amplitude[:, place]) / heavy.spectrum.amplitude[place]
+    assert peak == pytest.approx(np.max(amplification(np.linspace(0.9, 1.1, 2001))), rel=2e-2)
+
+
+def test_slow_motion_is_the_quasi_static_one(usual):
+    found = forced_vibration(usual, fastest=3.0)
+    assert found.order_amplitude[0] == pytest.approx(usual.spectrum.amplitude, rel=1e-6, abs=1e-12)
+    for factor in found.factors.values():
+        assert factor == pytest.approx(1.0, abs=1e-4)
+    assert found.parts_from is None
+    assert found.torque_ratio.max() < 1e-4
+
+
+def test_centrifugal_forces_by_hand(usual):
+    """Seen from the crank the disc and half of its rollers are pushed out along the eccentricity by m e ω²."""
+    masses = drive_masses(PAPER)
+    force = _nominal_forces(usual)
+    pushed = (masses.mass_of(DISCS) + 0.5 * masses.mass_of(ROLLERS)) * PAPER.crank.eccentricity
+    # Differences of the rows over 1e-4 rad.
+    assert force[:2] == pytest.approx([pushed, 0.0], rel=1e-6, abs=1e-9)
+    assert force[2:] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_centrifugal_forces_are_held_by_the_springs(usual):
+    """What they displace is that of the stiffness, to first order of the square of the speed."""
+    speed = np.array([1.0])
+    _, outward = _departures(usual, speed, _orders(usual), _quasi_static(usual))
+    held = usual.basis.T @ usual.mean_stiffness @ outward[0]
+    # Softening by the moving disc itself is (1/ω)² of it: 1e-9 at 1 rad/s against modes of 1000 rad/s.
+    assert held == pytest.approx(usual.basis.T @ _nominal_forces(usual), rel=1e-5, abs=1e-9)
+
+
+def test_a_loss_factor_is_twice_the_ratio_at_resonance(heavy):
+    resonance = 60.0 * heavy.at_load[:, 0].mean() / heavy.input_orders[heavy.told_orders[0]]
+    lossy = replace(heavy, drive=with_fields(PAPER, {"inertia.output": HEAVY, "damping.loss_factor": 2.0 * RATIO}))
+    each = [forced_vibration(one, fastest=1.5 * resonance) for one in (heavy, lossy)]
+    place = heavy.told_orders[0]
+    peaks = [found.order_amplitude[:, place].max() for found in each]
+    assert peaks[1] == pytest.approx(peaks[0], rel=1e-2)  # apart by ζ² away from the resonance
+
+
+def test_parting_contacts_are_told(heavy):
+    """With a ten-thousandth of the critical damping a resonance is 5000 times the transmission error: contacts part before its
+    speed is reached.
+    """
+    order = heavy.input_orders[heavy.told_orders[0]]
+    resonance = 60.0 * heavy.at_load[:, 0].mean() / order
+    weak = replace(heavy, drive=with_fields(heavy.drive, {"damping.ratio": 1e-4}))
+    found = forced_vibration(weak, fastest=1.2 * resonance)
+    assert found.parts_from is not None
+    assert found.parts_from <= 1.01 * resonance
+    assert forced_vibration(heavy, fastest=0.2 * resonance / heavy.input_orders.max() * order).parts_from is None
+
+
+def test_without_damping_there_is_no_response(usual):
+    with pytest.raises(DriveError, match=r"damping\.ratio: must be given \(or damping\.loss_factor\)"):
+        forced_vibration(replace(usual, drive=with_fields(PAPER, {"inertia.output": 0.5})))
+
+
+@pytest.mark.slow
+def test_the_command_writes_what_it_prints(tmp_path, capsys):
+    drive = tmp_path / "mine.toml"
+    text = (
+        shipped_drive("paper").partition("[[case]]")[0]
+        + '\n[damping]\nratio = "3 %"\n[inertia]\noutput = "0.5 kg·m²"\n'
+    )
+    drive.write_text(text.replace("[load]\n", "[load]\nspeed = 1500.0\n"), encoding="utf-8")
+    out = tmp_path / "out"
+    command = [
+        "dynamics",
+        str(drive),
+        "--quick",
+        "--positions",
+        "6",
+        "--turns",
+        "4",
+        "--out",
+        str(out),
+        "--figures",
+        "svg",
+    ]
+    assert main(command) == 0
+    printed = capsys.readouterr().out
+    content = json.loads((out / "dynamics.json").read_text(encoding="utf-8"))
+    assert content["input_held"] is True
+    assert f"mode {content['critical_speeds'][0]['mode']}, order" in printed
+    assert all(one["what_moves"] in printed for one in content["modes"])
+    assert len(content["frequency_Hz"][0]) == 6
+    assert max(content["response"]["speed_rpm"]) == 1500.0
+    page = (out / "report.html").read_text(encoding="utf-8")
+    assert all(words in page for words in ("Campbell diagram", "Response over speed", "Masses"))
+    assert {path.name for path in (out / "figures").iterdir()} == {"campbell_diagram.svg", "response.svg"}
+
+
+@pytest.mark.slow
+def test_the_command_refuses_by_name_and_leaves_nothing(tmp_path, capsys):
+    drive = tmp_path / "bare.toml"
+    text = shipped_drive("paper").replace('roller = { like = "100Cr6", youngs_modulus', "roller = { youngs_modulus")
+    drive.write_text(text, encoding="utf-8")
+    assert main(["dynamics", str(drive), "--case", "CS-1", "--out", str(tmp_path / "out")]) == 2
+    assert "materials.roller.density: must be given for inertias" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+def test_seen_from_the_crank_orders_are_one_apart(usual):
+    """A disc on springs alike in all directions answers at the frequency it has at rest: turning with order 3 in the frame of the
+    crank, the way this turns, it turns with order 4, and with order 2 the other way.
+    """
+    size, mass, stiffness, speed = usual.motion.size, 2e-3, 5e4, 400.0
+    alike = replace(
+        usual,
+        mean_mass=mass * np.eye(size),
+        mean_stiffness=stiffness * np.eye(size),
+        drive=with_fields(PAPER, {"damping.ratio": 1e-9}),
+    )
+    for sense, order in ((1.0, 4.0), (-1.0, 2.0)):
+        turning = np.zeros((size, 1), dtype=complex)
+        turning[:2, 0] = 1.0, -1j * sense
+        found, _ = _departures(alike, np.array([speed]), np.array([3.0]), turning)
+        square = (order * speed) ** 2
+        # Damping of 1e-9 is nothing beside the resonance.
+        assert found[0, :2] == pytest.approx(turning[:2] * square / (stiffness / mass - square), rel=1e-6)
+
+
+def test_the_frame_of_the_crank_spins(usual):
+    motion, step = usual.motion, 1e-6
+    ends = motion.turned(np.array([0.4 - step, 0.4 + step]))
+    assert (ends[1] - ends[0]) / (2.0 * step) == pytest.approx(
+        motion.turned(np.array([0.4]))[0] @ motion.spin, abs=1e-9
+    )
