@@ -50,6 +50,7 @@ ENGINES: tuple[dict[str, str], ...] = (
     {"compliance": "hybrid"},
 )
 SHIPPED_ANGLES = (0.1, 1.4, 2.6, 3.9, 5.2)
+HALF_SPACES = {"compliance": "half-space"}
 SECOND_ANGLE_OFFSET = 0.7
 """Difference between the two crank angles of a random reducer, rad."""
 
@@ -106,7 +107,9 @@ def random_jobs(folder: Path, count: int) -> list[dict[str, Any]]:
             path = folder / f"{generator.__name__}-{seed}.toml"
             path.write_text(drive_text(drive), encoding="utf-8")
             angles = (angle, angle + SECOND_ANGLE_OFFSET)
-            jobs.append({"name": path.stem, "file": str(path), "case": "nominal", "angles": angles, "options": {}})
+            jobs.append(
+                {"name": path.stem, "file": str(path), "case": "nominal", "angles": angles, "options": HALF_SPACES}
+            )
         seed += 1
     return jobs
 

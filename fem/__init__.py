@@ -13,6 +13,7 @@ drive          One disc with wheel, crank and pin shaft at one crank angle: expe
                model, loaded pose, results
 solid_contact  Contact between extruded bodies in three dimensions: pressures over arc and width
 reducer        All discs of a drive on one wheel, either member held, and the files of a solution
+solid_drive    One disc of solid bodies with all its contacts: pressures over arc and width, tilts, its files
 coefficients   Influence coefficients of the bodies: places, loads, derivation
 referee        The same problem given to another code
 pictures       Pictures of meshes and solutions

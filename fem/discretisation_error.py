@@ -115,7 +115,9 @@ def estimate_error(
 
     Examples
     --------
-    >>> found = estimate_error([5.863, 5.972, 6.063], ratios=[1.333, 1.5])  # Celik et al. 2008, Table 1
+    >>> cells = [4500.0, 8000.0, 18000.0]  # in the plane, of Celik et al. 2008, Table 1
+    >>> ratios = [(fine / coarse) ** 0.5 for coarse, fine in zip(cells, cells[1:])]
+    >>> found = estimate_error([5.863, 5.972, 6.063], ratios=ratios)
     >>> round(found.order, 2), round(100 * found.relative_bar, 1)
     (1.53, 2.2)
     """

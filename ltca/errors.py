@@ -133,6 +133,18 @@ def told_twice(names: Sequence[str]) -> str:
     return next((name for place, name in enumerate(names) if name in names[:place]), "")
 
 
+def counted(number: int, things: str) -> str:
+    """Return a number of things, whose name is a plural in "s" or "ies".
+
+    Examples
+    --------
+    >>> counted(1, "values"), counted(0, "entries"), counted(1, "entries")
+    ('1 value', '0 entries', '1 entry')
+    """
+    one = things.removesuffix("ies") + "y" if things.endswith("ies") else things.removesuffix("s")
+    return f"{number} {one if number == 1 else things}"
+
+
 def did_you_mean(name: str, known: Iterable[str]) -> str:
     """Return a question after the name that was meant, with a space before it, or nothing when none is near.
 

@@ -276,6 +276,7 @@ def analyse(
     contacts: str | None = None,
     coefficients: InfluenceCoefficients | Path | str | None = None,
     hole_near_field: bool | None = None,
+    bodies: str | None = None,
     case: str | None = None,
 ) -> AnalysisResult:
     """Analyse a drive over a turn of the crank, or at chosen crank angles.
@@ -303,6 +304,9 @@ def analyse(
         Of the bodies, for ``fe`` and ``hybrid``; found in the cache or derived when left out.
     hole_near_field : bool, optional
         Whether hole walls yield like a Hertz contact (``fe`` and ``hybrid``); they do by default.
+    bodies : {"plane", "solid"}, optional
+        What bodies the coefficients of ``fe`` and ``hybrid`` are of: plane sections, or solids with their ends; left out,
+        ``drive.analysis.bodies`` says it.
     case : str, optional
         Name of the case in the dataset; by default that of the file, which changed drives keep, or ``nominal``.
 
@@ -338,7 +342,13 @@ def analyse(
     carried = torque_given(drive, torque)
     name = drive.case if case is None else case
     engine = engine_given(
-        drive, compliance, method=method, contacts=contacts, coefficients=coefficients, hole_near_field=hole_near_field
+        drive,
+        compliance,
+        method=method,
+        contacts=contacts,
+        coefficients=coefficients,
+        hole_near_field=hole_near_field,
+        bodies=bodies,
     )
     try:
         return AnalysisResult(case=name, loaded=loaded_analysis.analyse(drive, angles, carried, engine))

@@ -273,14 +273,17 @@ def _along(part: str, of: str, name: str, sides: tuple[tuple[str, str, str], ...
         place = f"height above mid-width at which the pressure of {pair} is largest"
         each = f"largest pressure over the profile of {pair} in each slice"
         load = f"line load of {pair}, mean over each slice"
+        within = "with what line loads vary by within slices"
         found += (
             Quantity(f"{part}_line_load{line}", f"slices of a {of}", "N/mm", load, () if line else largest),
+            Quantity(f"{part}_moment{line}", of, "N mm", f"Σ q z of {pair} about its middle, {within}"),
             Quantity(f"{part}_pressure_along_width{pressure}", f"slices of a {of}", "MPa", each),
             Quantity(f"{part}_pressure_max_place{pressure}", of, "mm", place),
         )
     told = (
-        f"face load factor K_Hβ of a {name}: largest line load by the largest mean line load, without the bulge of ends; "
-        "not a number where it carries less than a tenth of its largest load"
+        f"face load factor K_Hβ of a {name}: largest mean line load over a ninth of the length (of fewer slices, over one) by "
+        "that over the length, without the bulge of ends; not a number where the joint carries less than a tenth of the largest "
+        "load that any of its kind does at any position"
     )
     limited = Scalar(
         "max_{}", f"face load factor K_Hβ of a {name}", digits=".3f", how="largest known", limit=AT_LEAST_0

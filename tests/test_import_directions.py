@@ -26,7 +26,7 @@ FLOORS = (
     "ltca.figures", "ltca.page", "ltca.export", "ltca.testing", "ltca",
     "fem.errors", "fem.discretisation_error", "fem.shapes", "fem.mesh", "fem.body", "fem.solid", "fem.options", "fem.contact",
     "fem.drive", "fem.solid_contact", "fem.reducer",
-    "fem.coefficients", "fem.referee", "fem.pictures", "fem.export", "fem.testing", "fem",
+    "fem.solid_drive", "fem.coefficients", "fem.referee", "fem.pictures", "fem.export", "fem.testing", "fem",
     "validation.methods", "validation.rows", "validation.compare", "validation.levels", "validation.study", "validation.report",
     "validation.seats", "validation.manual",
     "ltca.commands", "fem.commands", "validation.commands", "validation",

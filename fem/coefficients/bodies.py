@@ -131,7 +131,8 @@ def require_element_size(size: float, largest: float = MAX_SIZE) -> None:
         )
 
 
-def _growth(size: float) -> float:
+def edge_growth(size: float) -> float:
+    """Return the growth of edges by distance on a mesh of a size."""
     return min(GROWTH * size, MAX_GROWTH)
 
 
@@ -142,7 +143,7 @@ def require_disc_memory(shape: DiscShape, stations: DiscStations, size: float = 
     """
     refinements = _refinements(stations.points, float(stations.half_width.min()), size)
     coarse = default_coarse_size(shape, size)
-    unknowns = estimate_unknowns(shape, refinements, coarse_size=coarse, growth=_growth(size))
+    unknowns = estimate_unknowns(shape, refinements, coarse_size=coarse, growth=edge_growth(size))
     what = "the disc for its influence coefficients"
     require_memory(unknowns, solution_memory(unknowns), what, available=available_memory() / processes)
 
@@ -152,7 +153,7 @@ def mesh_disc_for_stations(shape: DiscShape, stations: DiscStations, size: float
     require_element_size(size)
     require_disc_memory(shape, stations, size)
     refinements = _refinements(stations.points, float(stations.half_width.min()), size)
-    return mesh_disc(shape, refinements, coarse_size=default_coarse_size(shape, size), growth=_growth(size))
+    return mesh_disc(shape, refinements, coarse_size=default_coarse_size(shape, size), growth=edge_growth(size))
 
 
 def derive_disc(
@@ -300,5 +301,5 @@ def _mesh_round(shape: CircleShape | RingShape, angles: FloatArray, size: float)
     refinements = _refinements(shape.curves[0].points(angles), width, finer)
     coarse = default_coarse_size(shape, finer)
     if isinstance(shape, RingShape):
-        return mesh_ring(shape, refinements, coarse_size=coarse, growth=_growth(finer)), width
-    return mesh_circle(shape, refinements, coarse_size=coarse, growth=_growth(finer)), width
+        return mesh_ring(shape, refinements, coarse_size=coarse, growth=edge_growth(finer)), width
+    return mesh_circle(shape, refinements, coarse_size=coarse, growth=edge_growth(finer)), width

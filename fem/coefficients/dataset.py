@@ -6,7 +6,7 @@ import json
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -26,6 +26,8 @@ from fem.coefficients.bodies import (
     require_disc_memory,
     require_element_size,
 )
+from fem.coefficients.solid_dataset import LAYERS, need_of_solid, require_solid, with_solid_bodies
+from fem.coefficients.solid_need import require_solid_memory
 from fem.coefficients.stations import FLANK_CLUSTERING, DiscStations
 from fem.mesh.gmsh_session import load_gmsh
 from fem.shapes import DriveShapes
@@ -33,6 +35,7 @@ from ltca.arrays import FloatArray
 from ltca.drive.parts import Drive, Material, Materials
 from ltca.drive.single_discs import nominal_shape
 from ltca.output.provenance import code_hash, code_version
+from ltca.output.resources import available_memory
 from ltca.reading.coefficient_laws import project_rigid_motions
 from ltca.reading.coefficient_schema import elastic_constants
 
@@ -56,6 +59,8 @@ def derive_coefficients(
     size: float = 1.0,
     state: PlaneState = "strain",
     keep_clearance: bool = True,
+    bodies: Literal["plane", "solid"] = "plane",
+    layers: int = LAYERS,
     processes: int = 1,
     progress: Callable[[str], None] | None = None,
 ) -> xr.Dataset:
@@ -78,6 +83,11 @@ def derive_coefficients(
     keep_clearance : bool
         Derive the disc with the bearing and pin-hole clearance of this case; without them on purpose, one dataset serves
         all clearance cases approximately, and says so.
+    bodies : {"plane", "solid"}
+        Solid bodies have true ends, and coefficients for the tilt of contacts as well (`fem.coefficients.solid_dataset`); time
+        and memory are told on stderr, and what is done is kept until all is.
+    layers : int
+        Of solid bodies, over half of their thickness.
     processes : int
         How many derivations share the memory of the machine.
     progress : callable, optional
@@ -93,18 +103,24 @@ def derive_coefficients(
     DriveError
         For several discs, which may be of several shapes.
     MeshError
-        When a parameter is out of bounds or meshing fails.
+        When a parameter is out of bounds or meshing fails, or for solid bodies in plane stress.
     MemoryLimitError
         When mesh and solution would not fit into memory.
     """
     require_element_size(size, MAX_SIZE / COARSE_RATIO)
+    if bodies == "solid":
+        require_solid(state, layers)
     nominal = nominal_shape(drive, keep_clearance=keep_clearance)
     shapes = DriveShapes.of_drive(nominal)
     places = DiscStations.of_disc(shapes.disc, stations)
     require_disc_memory(shapes.disc, places, size, processes)
+    if bodies == "solid":
+        need = need_of_solid(shapes.disc, places, size=size, layers=layers)
+        require_solid_memory(need, available_memory() / processes)
+        print(f"{drive.name}: {need.words}", file=sys.stderr)
     if (coarse_walls := places.coarse_walls) is not None:
         print(f"warning: {drive.name}: {coarse_walls}", file=sys.stderr)
-    bodies = _Bodies(
+    plane = _Bodies(
         shapes=shapes,
         places=places,
         materials=nominal.materials,
@@ -113,8 +129,8 @@ def derive_coefficients(
         state=state,
         tell=progress or (lambda step: None),
     )
-    coarse = bodies.derive(COARSE_RATIO * size, ", twice the size")
-    fine = bodies.derive(size, "")
+    coarse = plane.derive(COARSE_RATIO * size, ", twice the size")
+    fine = plane.derive(size, "")
     disc, _, roller, race = fine
     dataset = _label(places, places.refined(shapes.disc), *fine)
     if len(shapes.disc.bores) > 1:
@@ -129,7 +145,7 @@ def derive_coefficients(
         clearances_left_out=int(not keep_clearance),
         flank_clustering=FLANK_CLUSTERING,
         plane=state,
-        thickness=bodies.thickness,
+        thickness=plane.thickness,
         core_radius=shapes.wheel_pins[0].core_radius,
         race_bore_radius=shapes.inner_race.inner_radius,
         datum=DATUM.format(*["the bore" if len(shapes.disc.bores) == 1 else "all bores together"] * 2),
@@ -148,7 +164,9 @@ def derive_coefficients(
         gmsh=str(load_gmsh().__version__),
         **elastic_constants(nominal.body_materials),
     )
-    return dataset
+    if bodies == "plane":
+        return dataset
+    return with_solid_bodies(dataset, nominal, shapes, places, size=size, layers=layers, tell=plane.tell)
 
 
 class _Derived(NamedTuple):

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fem.shapes import DriveShapes
-from ltca.drive.parts import Drive
+from ltca.drive.parts import Bodies, Drive
 from ltca.drive.single_discs import nominal_shape
 from ltca.errors import CycloError
 from ltca.reading.coefficient_laws import Check
-from ltca.reading.coefficient_schema import require_same_supports, shape_differences, shape_of
+from ltca.reading.coefficient_schema import is_solid, require_same_supports, shape_differences, shape_of
 
 if TYPE_CHECKING:
     from ltca.output.labelled import Labelled
@@ -60,12 +60,13 @@ def check_against_drive(dataset: Labelled, drive: Drive, source: str) -> tuple[C
 def _served_by(dataset: Labelled, drive: Drive, source: str) -> Drive:
     """Return the nominal drive that a file was derived for, with its clearances or, where the file leaves them out, without."""
     theirs = shape_of(dataset)
+    bodies: Bodies = "solid" if is_solid(dataset) else "plane"
     for keep in (True, False) if float(dataset.attrs["clearances_left_out"]) else (True,):
         nominal = nominal_shape(drive, keep_clearance=keep)
-        if theirs == nominal.body_shape():
+        if theirs == nominal.body_shape(bodies):
             require_same_supports(source, dataset, nominal)
             return nominal
-    own = drive.body_shape()
+    own = drive.body_shape(bodies)
     different = shape_differences(theirs, own)
     differences = ", ".join(f"{name} {here} ({there} there)" for name, (here, there) in different.items())
     raise CycloError(f"{source}: belongs to other bodies than those of {drive.name}: {differences}")

@@ -20,7 +20,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from fem.body.elasticity import PlaneState
-from fem.body.surface import quadratic_slopes
+from fem.body.surface import quadratic_shapes, quadratic_slopes
 from fem.coefficients.patch_loads import BoundaryArc, divide_patches, sum_at_nodes
 from fem.mesh.body_mesh import BodyMesh
 from fem.shapes import Curve
@@ -78,3 +78,16 @@ def continue_under_patches(
         beside = own[(np.arange(len(own))[:, None] + offsets) % len(own)]
         found[upon, own] = stress[upon[:, None], beside] @ np.array(weights)
     return found
+
+
+def wall_values(body: BodyMesh, curve: Curve, parameters: FloatArray) -> sp.csc_matrix:
+    """Return weights on nodal values that give the values at places of a wall, shape (nodes, n).
+
+    `parameters` are the places on the exact curve, rad.
+    """
+    parameters = np.atleast_1d(np.asarray(parameters, dtype=float))
+    boundary = BoundaryArc.of_boundary(body, curve)
+    edge, xi = boundary.coordinate_of(boundary.arc_of(curve.points(parameters)))
+    columns = np.broadcast_to(np.arange(len(parameters)), (3, len(parameters)))
+    entries = (quadratic_shapes(xi).ravel(), (boundary.nodes[edge].T.ravel(), columns.ravel()))
+    return sp.csc_matrix(entries, shape=(body.node_count, len(parameters)))

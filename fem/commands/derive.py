@@ -14,6 +14,7 @@ from ltca.reading.arguments import (
     add_case_argument,
     add_drive_argument,
     add_size_argument,
+    count_argument,
     default_folder,
     path_argument,
     quantity_argument,
@@ -35,13 +36,15 @@ EXAMPLES = (
 # Options of a derivation, and their defaults.
 DERIVING = {
     "part": "bodies",
+    "bodies": "plane",
     "stations": 1.0,
     "size": 1.0,
-    "plane": "strain",
+    "layers": None,
+    "plane": None,
     "without_clearance": False,
     "out": None,
 }
-OF_BODIES = {"stations", "plane", "without_clearance"}
+OF_BODIES = {"bodies", "layers", "stations", "plane", "without_clearance"}
 """Options that a derivation of the ring has no use for."""
 COEFFICIENTS = "coefficients.nc"
 RING = "ring.nc"
@@ -59,6 +62,19 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "bolts, always in plane stress",
     )
     parser.add_argument(
+        "--bodies",
+        choices=("plane", "solid"),
+        default="plane",
+        help="plane bodies (default), or solid ones with free ends, which also yield to loads linear along the width: minutes "
+        "instead of seconds; time and memory are told before, and what is done is kept until all is",
+    )
+    parser.add_argument(
+        "--layers",
+        type=count_argument("--layers", 1, 12),
+        metavar="N",
+        help="with --bodies solid: quadratic layers over half of the thickness; default 2",
+    )
+    parser.add_argument(
         "--stations",
         type=quantity_argument("--stations", "dimensionless", ge=1e-2, le=1e2),
         default=1.0,
@@ -68,7 +84,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     add_size_argument(parser, "element edge as a multiple of the default")
     parser.add_argument(
-        "--plane", choices=("strain", "stress"), default="strain", help="plane strain (default) or plane stress"
+        "--plane",
+        choices=("strain", "stress"),
+        help="plane strain (default) or plane stress; not with --bodies solid, which are in neither",
     )
     parser.add_argument(
         "--without-clearance",
@@ -113,6 +131,10 @@ def execute(arguments: argparse.Namespace) -> int:
         raise CycloError("derive: give a drive file, or a file of coefficients with --check")
     if arguments.part == "ring":
         return _derive_ring(arguments)
+    if arguments.bodies == "solid" and arguments.plane is not None:
+        raise CycloError(f"--plane {arguments.plane}: has no meaning with --bodies solid, which are in no plane state")
+    if arguments.bodies == "plane" and arguments.layers is not None:
+        raise CycloError(f"--layers {arguments.layers}: has no meaning with plane bodies; give --bodies solid with it")
     from ltca.output.locks import claimed_file
     from ltca.reading.coefficient_file import require_replaceable
 
@@ -147,6 +169,7 @@ def _derive(name: str, case: str, drive: Drive, arguments: argparse.Namespace, o
     import time
 
     from fem.coefficients.dataset import derive_coefficients
+    from fem.coefficients.solid_dataset import LAYERS
     from ltca.output.progress import steps
     from ltca.reading.coefficient_file import read_coefficients, write_coefficients
     from ltca.reading.coefficient_laws import check_coefficients
@@ -158,7 +181,9 @@ def _derive(name: str, case: str, drive: Drive, arguments: argparse.Namespace, o
             case=case,
             stations=arguments.stations,
             size=arguments.size,
-            state=arguments.plane,
+            state=arguments.plane or "strain",
+            bodies=arguments.bodies,
+            layers=arguments.layers or LAYERS,
             keep_clearance=not arguments.without_clearance,
             progress=show,
         )
@@ -167,8 +192,8 @@ def _derive(name: str, case: str, drive: Drive, arguments: argparse.Namespace, o
     checks = check_coefficients(written)
     attributes = written.attrs
     print(
-        f"{name} {case}: {written.sizes['station']} stations, {attributes['unknowns_disc']:,} unknowns of the disc, plane "
-        f"{attributes['plane']}, {time.perf_counter() - start:.1f} s"
+        f"{name} {case}: {written.sizes['station']} stations, {attributes['unknowns_disc']:,} unknowns of the disc, "
+        f"{_state_of(written)}, {time.perf_counter() - start:.1f} s"
     )
     left_out = ", those of the case left out" if attributes["clearances_left_out"] else ""
     print(
@@ -176,8 +201,23 @@ def _derive(name: str, case: str, drive: Drive, arguments: argparse.Namespace, o
         f"{left_out}"
     )
     _print_checks(written, checks)
+    if "bracket" in attributes:
+        least, share, most = (float(attributes[f"bracket{which}"]) for which in ("_lowest", "", "_highest"))
+        print(
+            f"between plane strain (0) and plane stress (1) the disc lies at {share:.3f} for contacts farther apart than it is "
+            f"thick, from {least:.3f} to {most:.3f} for any loads in equilibrium"
+        )
     print(f"written to {out}")
     return 0 if all(check.passed for check in checks) else 1
+
+
+def _state_of(dataset: Labelled) -> str:
+    """The state of the bodies of a file, and of solid ones their unknowns."""
+    from ltca.reading.coefficient_schema import is_solid
+
+    if not is_solid(dataset):
+        return f"plane {dataset.attrs['plane']}"
+    return f"solid{f' ({unknowns:,})' if (unknowns := dataset.attrs.get('unknowns_solid')) else ''}"
 
 
 def _derive_ring(arguments: argparse.Namespace) -> int:
@@ -241,7 +281,7 @@ def _check_file(arguments: argparse.Namespace) -> int:
     checks = check_coefficients(dataset)
     if arguments.drive is not None:
         checks += _check_against_discs(dataset, chosen_drive(arguments)[2], arguments.check)
-    print(f"{arguments.check}: {dataset.sizes['station']} stations, plane {dataset.attrs['plane']}")
+    print(f"{arguments.check}: {dataset.sizes['station']} stations, {_state_of(dataset)}")
     _print_checks(dataset, checks)
     return 0 if all(check.passed for check in checks) else 1
 

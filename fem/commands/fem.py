@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fem.commands.position_arguments import add_position_arguments, body_files, chosen_case, disc_prefix
+from fem.commands.solid_disc import add_disc_arguments, execute_disc
 from fem.commands.solid_pair import add_pair_arguments, execute_pair, refuse_mixed_options
 from ltca.errors import CycloError
 from ltca.reading.arguments import (
@@ -35,6 +36,7 @@ EXAMPLES = (
     ("cyclo fem paper --case CS-1 --angle 0.5 --error", "on three nested meshes: every figure with its error bar"),
     ("cyclo fem paper --case CS-1 --angle 0.5 --referee calculix", "solved by CalculiX as well"),
     ("cyclo fem paper --case CS-1 --angle 0.5 --bodies solid --pair flank", "one pair of solid bodies with free ends"),
+    ("cyclo fem examples/drives/plastic.toml --angle 0.3 --bodies solid", "a whole disc of solid bodies"),
 )
 
 
@@ -82,6 +84,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--referee", choices=("calculix",), help="let another code solve the same problem and print both side by side"
     )
     add_pair_arguments(parser)
+    add_disc_arguments(parser)
+    # A disc of solid bodies has another default.
+    parser.set_defaults(size=None)
 
 
 def execute(arguments: argparse.Namespace) -> int:
@@ -101,6 +106,9 @@ def execute(arguments: argparse.Namespace) -> int:
     from ltca.output.run_folder import claimed_folder
 
     refuse_mixed_options(arguments)
+    if arguments.bodies == "solid" and arguments.pair is None:
+        return execute_disc(arguments)
+    arguments.size = arguments.size or 1.0
     if arguments.bodies == "solid":
         return execute_pair(arguments)
     _require_options(arguments)

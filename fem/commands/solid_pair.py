@@ -23,7 +23,7 @@ def add_pair_arguments(parser: argparse.ArgumentParser) -> None:
         "--bodies",
         choices=("plane", "solid"),
         default="plane",
-        help="plane bodies (default), or solid ones with free ends: needs --pair",
+        help="plane bodies (default), or solid ones with free ends: a whole disc, or one pair with --pair",
     )
     group = parser.add_argument_group("one pair of solid bodies (--bodies solid)")
     group.add_argument(
@@ -68,18 +68,24 @@ def refuse_mixed_options(arguments: argparse.Namespace) -> None:
     given = [name for name in OPTIONS if getattr(arguments, name) is not None]
     if arguments.bodies == "plane":
         problems = [f"--{name}: has no effect with plane bodies; add --bodies solid" for name in given]
-    elif arguments.pair is None:
-        problems = ["--bodies solid: needs --pair flank, bore, race or hole; whole discs are plane"]
+        if arguments.layers is not None:
+            problems.append("--layers: has no effect with plane bodies; add --bodies solid")
     else:
+        alone = arguments.pair is None
         idle = {
             "--plane": arguments.plane is not None,
             "--fine-walls": arguments.fine_walls,
             "--pictures": arguments.pictures,
             "--export": arguments.export is not None,
+            "--referee": alone and arguments.referee is not None,
+            "--layers": not alone and arguments.layers is not None,
             "--error": arguments.error,
             "--meshes": arguments.meshes is not None,
         }
-        problems = [f"{name}: has no effect with --pair; leave it out" for name, there in idle.items() if there]
+        what = "--bodies solid" if alone else "--pair"
+        problems = [f"{name}: has no effect with {what}; leave it out" for name, there in idle.items() if there]
+        if alone:
+            problems += [f"--{name}: belongs to one pair; add --pair flank, bore, race or hole" for name in given]
         if arguments.load is not None and arguments.approach is not None:
             problems.append("--approach: must be left out where --load is given")
         if arguments.torque is not None and (arguments.load is not None or arguments.approach is not None):

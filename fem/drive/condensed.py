@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from types import MappingProxyType
 
 import numpy as np
 import scipy.sparse as sp
@@ -13,7 +15,7 @@ from fem.body.elasticity import PlaneState, assemble_stiffness, unknowns_of_boun
 from fem.body.surface import OppositeZone, PressureZone
 from fem.drive.contact_kinds import PairKind
 from fem.drive.expected_contacts import ContactGroup, ExpectedContacts
-from fem.drive.meshes import DriveMeshes, RoundMesh
+from fem.drive.meshes import DriveMeshes, RoundGrading, RoundMesh
 from fem.drive.model import ContactPair, DriveModel, RoundBody, RoundGroup
 from fem.mesh.body_mesh import BodyMesh
 from fem.shapes import Curve, DriveShapes
@@ -49,37 +51,32 @@ def condense_drive(
     """
     place, slab = Placement.of_drive(drive), _Slab(thickness=drive.disc.thickness, state=plane)
     materials, holes = drive.materials, contacts.holes
-    outer, inner = contacts.rollers_outer, contacts.rollers_inner
+    outer = contacts.rollers_outer
     stock = {group.made_of: group for group in known}
     pins = _condense_round(meshes.unturned_pins, contacts.pins, materials.wheel_pin, slab, stock, held="core")
     rollers = _condense_round(meshes.unturned_rollers, outer, materials.roller, slab, stock)
     elastic = _condense_round(meshes.unturned_shaft_pins, holes, materials.shaft_pin, slab, stock)
-    pairs = _PairList(thickness=slab.thickness)
     groups = (*pins.groups, *rollers.groups, *elastic.groups)
-    rollers = rollers.counted_from(len(pins.groups))
-    elastic = elastic.counted_from(len(pins.groups) + len(rollers.groups))
-    disc = shapes.disc
-    flanks = (disc.flank,) * len(place.wheel_pin_radii)
-    bores = tuple(disc.bores[crank] for crank in place.roller_cranks)
-    races = (shapes.inner_race.curves[0],) * len(place.roller_radii)
-    pairs.add("pin", meshes.disc, flanks, contacts.flank_points, contacts.pins, place.wheel_pin_radii, pins)
-    pairs.add("hole", meshes.disc, disc.holes, contacts.hole_points, holes, place.shaft_pin_radii, elastic)
-    pairs.add("roller_outer", meshes.disc, bores, contacts.bore_points, outer, place.roller_radii, rollers)
-    on_disc = len(pairs.found)
-    pairs.add("roller_inner", meshes.inner_race, races, contacts.race_points, inner, place.roller_radii, rollers)
-    race_loads, first_of_each = _distinct_loads(pairs.found[on_disc:])
+    places = (
+        pins.places,
+        counted_from(len(pins.groups), rollers.places),
+        counted_from(len(pins.groups) + len(rollers.groups), elastic.places),
+    )
+    pairs = list_pairs(shapes, contacts, meshes, place, places, thickness=slab.thickness)
+    on_disc = sum(pair.kind != "roller_inner" for pair in pairs)
+    race_loads, first_of_each = _distinct_loads(pairs[on_disc:])
     return DriveModel(
         drive=drive,
         crank_angle=contacts.crank_angle,
         shapes=shapes,
         meshes=meshes,
         contacts=contacts,
-        disc=_condense_carrier(meshes.disc, pairs.found[:on_disc], materials.disc, slab),
+        disc=_condense_carrier(meshes.disc, pairs[:on_disc], materials.disc, slab),
         race=_condense_carrier(
-            meshes.inner_race, pairs.found[on_disc:], materials.inner_race, slab, held="inner", among=first_of_each
+            meshes.inner_race, pairs[on_disc:], materials.inner_race, slab, held="inner", among=first_of_each
         ),
         groups=groups,
-        pairs=tuple(pairs.found),
+        pairs=tuple(pairs),
         placement=place,
         race_loads=race_loads,
         ring=ring,
@@ -115,13 +112,32 @@ class _Slab:
 class _RoundBodies:
     """Condensed round bodies of one kind: the groups, and group and rotation of every candidate body."""
 
-    groups: tuple[RoundGroup, ...] = ()
-    places: dict[int, tuple[int, float]] = field(default_factory=dict)
+    groups: tuple[RoundGroup, ...]
+    places: RoundPlaces
 
-    def counted_from(self, first: int) -> _RoundBodies:
-        """Return the same bodies with their groups numbered from `first` on."""
-        places = {body: (first + group, turn) for body, (group, turn) in self.places.items()}
-        return _RoundBodies(groups=self.groups, places=places)
+
+RoundPlaces = dict[int, tuple[int, float]]
+"""Number of the group and rotation, rad, of every candidate pin or roller by its number."""
+
+
+def counted_from(first: int, places: RoundPlaces) -> RoundPlaces:
+    """Return places with their groups numbered from `first` on."""
+    return {body: (first + group, turn) for body, (group, turn) in places.items()}
+
+
+def distinct_rounds(meshes: tuple[RoundMesh, ...], expected: ContactGroup) -> tuple[list[RoundMesh], RoundPlaces]:
+    """Return the meshes of candidate pins or rollers, one for each grading, and which of them every body has."""
+    numbers: dict[RoundGrading, int] = {}
+    found: list[RoundMesh] = []
+    places: RoundPlaces = {}
+    for index, mesh in enumerate(meshes):
+        if not expected.half_width[index] > 0.0:
+            continue
+        if mesh.grading not in numbers:
+            numbers[mesh.grading] = len(found)
+            found.append(mesh)
+        places[index] = (numbers[mesh.grading], mesh.turn)
+    return found, places
 
 
 def _condense_round(
@@ -133,29 +149,27 @@ def _condense_round(
     held: str = "",
 ) -> _RoundBodies:
     """Condense pins or rollers: equal ones share a factorisation; `held` is a boundary that does not move."""
-    groups: list[RoundGroup] = []
-    numbers: dict[RoundBody, int] = {}
-    places: dict[int, tuple[int, float]] = {}
-    for index, mesh in enumerate(meshes):
-        if not expected.half_width[index] > 0.0:
-            continue
+    distinct, places = distinct_rounds(meshes, expected)
+    groups = []
+    for mesh in distinct:
         made_of = RoundBody(
             grading=mesh.grading, material=material, thickness=slab.thickness, state=slab.state, held=held
         )
-        if made_of not in numbers:
-            numbers[made_of] = len(groups)
-            groups.append(stock.get(made_of) or condense_round_body(made_of, mesh.body))
-        places[index] = (numbers[made_of], mesh.turn)
+        groups.append(stock.get(made_of) or condense_round_body(made_of, mesh.body))
     return _RoundBodies(groups=tuple(groups), places=places)
+
+
+def zones_of_round(grading: RoundGrading, body: BodyMesh) -> tuple[OppositeZone, ...]:
+    """Return the zones of a pin or roller opposite its contacts, the first at polar angle 0."""
+    return tuple(
+        OppositeZone.on_circle(body, "surface", complex(side * grading.radius), OPPOSITE_REACH * end.half_width)
+        for side, end in zip((1.0, -1.0), grading.ends, strict=False)
+    )
 
 
 def condense_round_body(made_of: RoundBody, body: BodyMesh) -> RoundGroup:
     """Condense a pin or roller, its first contact at polar angle 0, to unit forces on the nodes of its zones."""
-    grading = made_of.grading
-    zones = tuple(
-        OppositeZone.on_circle(body, "surface", complex(side * grading.radius), OPPOSITE_REACH * end.half_width)
-        for side, end in zip((1.0, -1.0), grading.ends, strict=False)
-    )
+    zones = zones_of_round(made_of.grading, body)
     loads = sp.hstack([zone.unit_loads(body.unknowns) for zone in zones], format="csc")
     slab = _Slab(thickness=made_of.thickness, state=made_of.state)
     condensed = _condense(body, loads, made_of.material, slab, made_of.held)
@@ -193,11 +207,41 @@ def _condense(body: BodyMesh, loads: sp.csc_matrix, material: Material, slab: _S
     return condense_body(body, stiffness, loads, fixed=unknowns_of_boundary(body, held) if held else None)
 
 
+def list_pairs(
+    shapes: DriveShapes,
+    contacts: ExpectedContacts,
+    meshes: DriveMeshes,
+    placement: Placement,
+    rounds: tuple[RoundPlaces, RoundPlaces, RoundPlaces],
+    *,
+    thickness: float,
+    heights: Mapping[PairKind, int] = MappingProxyType({}),
+) -> list[ContactPair]:
+    """Return the candidate contacts, those on the disc first.
+
+    `rounds` are the meshed wheel pins, rollers and shaft pins, `thickness` is that of the zones, mm; `heights` are the pressure
+    unknowns at each of their vertices by kinds, 1 by default.
+    """
+    pins, rollers, elastic = rounds
+    disc, place = shapes.disc, placement
+    flanks = (disc.flank,) * len(place.wheel_pin_radii)
+    bores = tuple(disc.bores[crank] for crank in place.roller_cranks)
+    races = (shapes.inner_race.curves[0],) * len(place.roller_radii)
+    outer, inner, holes = contacts.rollers_outer, contacts.rollers_inner, contacts.holes
+    pairs = _PairList(thickness=thickness, heights=heights)
+    pairs.add("pin", meshes.disc, flanks, contacts.flank_points, contacts.pins, place.wheel_pin_radii, pins)
+    pairs.add("hole", meshes.disc, disc.holes, contacts.hole_points, holes, place.shaft_pin_radii, elastic)
+    pairs.add("roller_outer", meshes.disc, bores, contacts.bore_points, outer, place.roller_radii, rollers)
+    pairs.add("roller_inner", meshes.inner_race, races, contacts.race_points, inner, place.roller_radii, rollers)
+    return pairs.found
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _PairList:
     """Candidate contacts, their pressure unknowns counted on from one to the next."""
 
     thickness: float
+    heights: Mapping[PairKind, int]
     found: list[ContactPair] = field(default_factory=list)
 
     def add(
@@ -208,7 +252,7 @@ class _PairList:
         points: ComplexArray,
         expected: ContactGroup,
         radii: FloatArray,
-        opposite: _RoundBodies,
+        opposite: RoundPlaces,
     ) -> None:
         """Add the pairs of one kind: pressure on `body`, along the curve of each part."""
         width, load = expected.half_width, expected.load
@@ -218,13 +262,13 @@ class _PairList:
                 body, curves[index], complex(points[index]), reach, thickness=self.thickness
             )
             first = self.found[-1].unknowns.stop if self.found else 0
-            group, turn = opposite.places.get(index, (-1, 0.0))
+            group, turn = opposite.get(index, (-1, 0.0))
             self.found.append(
                 ContactPair(
                     kind=kind,
                     index=index,
                     zone=zone,
-                    unknowns=slice(first, first + zone.unknown_count),
+                    unknowns=slice(first, first + zone.unknown_count * self.heights.get(kind, 1)),
                     radius=float(radii[index]),
                     group=group,
                     turn=turn,

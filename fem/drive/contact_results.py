@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from fem.body.surface import PressureZone
 from fem.contact.pressure_measures import peak_of, pressure_moments
 from fem.drive.contact_kinds import CONTACT_KINDS, PairKind
-from fem.drive.model import ContactPair, DriveModel
+from fem.drive.model import ContactPair, PlacedContacts
 from fem.drive.pose import PoseSolution, pair_forces
 from ltca.arrays import FloatArray
 
@@ -120,7 +120,7 @@ class DeformedContacts:
     hole_points: NDArray[np.complex128]
 
 
-def deformed_contacts(model: DriveModel, solution: PoseSolution) -> DeformedContacts:
+def deformed_contacts(model: PlacedContacts, solution: PoseSolution) -> DeformedContacts:
     """Return how open a solution leaves the contacts of the disc, and where they press."""
     place = model.placement
     counts = {"pin": len(place.wheel_pin_radii), "roller": len(place.roller_radii), "hole": len(place.hole_radii)}
@@ -128,10 +128,10 @@ def deformed_contacts(model: DriveModel, solution: PoseSolution) -> DeformedCont
     points = {kind: np.full(count, complex(np.nan, np.nan)) for kind, count in counts.items()}
     for pair, integral in zip(model.pairs, solution.integrals, strict=True):
         kind, index = pair.kind.partition("_")[0], pair.index
-        left = float(np.min(solution.contact.opening[pair.unknowns] / integral.measure))
+        left = float(np.min(solution.contact.opening[pair.unknowns] / model.measure_of(pair, integral)))
         gaps[kind][index] = left if np.isnan(gaps[kind][index]) else gaps[kind][index] + left
         if pair.kind != "roller_inner":
-            points[kind][index] = _centre_of_pressure(pair.zone, solution.contact.pressure[pair.unknowns])
+            points[kind][index] = _centre_of_pressure(pair.zone, model.profile_of(pair, solution.contact.pressure))
     return DeformedContacts(
         pin_gaps=gaps["pin"],
         roller_gaps=gaps["roller"],
@@ -153,7 +153,7 @@ def _centre_of_pressure(zone: PressureZone, pressure: FloatArray) -> complex:
     return complex(points[0])
 
 
-def summarise_contacts(model: DriveModel, solution: PoseSolution) -> ContactResults:
+def summarise_contacts(model: PlacedContacts, solution: PoseSolution) -> ContactResults:
     """Return the results of all contacts of a pose solution."""
     forces = pair_forces(model, list(solution.integrals), solution.contact.pressure)
     loads = np.hypot(forces[:, 0], forces[:, 1])
@@ -173,7 +173,7 @@ def summarise_contacts(model: DriveModel, solution: PoseSolution) -> ContactResu
         force[pair.kind][pair.index] = -complex(acting[0], acting[1])
     details = []
     for pair, value in zip(model.pairs, loads.tolist(), strict=True):
-        detail = _detail(pair, solution.contact.pressure[pair.unknowns], value, float(load[pair.kind].max()))
+        detail = _detail(pair, model.profile_of(pair, solution.contact.pressure), value, float(load[pair.kind].max()))
         peak[pair.kind][pair.index], width[pair.kind][pair.index] = detail.peak_pressure, detail.half_width
         details.append(detail)
     return ContactResults(
@@ -216,7 +216,7 @@ def _detail(pair: ContactPair, pressure: FloatArray, load: float, largest: float
     )
 
 
-def _residual(model: DriveModel, solution: PoseSolution, forces: FloatArray) -> float:
+def _residual(model: PlacedContacts, solution: PoseSolution, forces: FloatArray) -> float:
     """Return the largest unbalanced force, N, from the forces alone: nothing of the solver enters."""
     disc = np.zeros(3)
     wheel = solution.wheel_moment

@@ -9,7 +9,7 @@ import numpy as np
 from fem.drive.contact_results import ContactResults
 from fem.drive.expected_contacts import ExpectedContacts
 from fem.drive.meshes import DriveMeshes
-from fem.drive.model import DriveModel, DrivePose, RoundGroup
+from fem.drive.model import DriveModel, DrivePose, PlacedContacts, RoundGroup
 from fem.drive.pose import PoseSolution, pair_forces
 from fem.mesh.uniform_refinement import CHILDREN
 from fem.options import SolutionOptions
@@ -122,18 +122,23 @@ class FullSolution:
         That of its rollers' forces on the disc about the crank's axis, as if they acted at the centre of the race, and by the
         part `cage_speed` of the crank's angle what they take of the cage: their moment about that centre.
         """
-        model, place = self.model, self.model.placement
-        forces = pair_forces(model, list(self.state.integrals), self.state.contact.pressure)
-        on_disc = np.zeros((place.cranks, 3))
-        for pair, force in zip(model.pairs, forces, strict=True):
-            if pair.kind == "roller_outer":
-                on_disc[model.crank_of(pair.index)] -= force
-        push, races = on_disc[:, 0] + 1j * on_disc[:, 1], model.race_centres
-        about_race = on_disc[:, 2] - (races.conjugate() * push).imag
-        lever = races - place.crank_axes
-        return np.asarray((lever.conjugate() * push).imag + float(place.cage_speed) * about_race)
+        return moments_on_cranks(self.model, self.state)
 
     @property
     def unknowns(self) -> int:
         """Displacement unknowns of all bodies and pressure unknowns."""
         return self.model.meshes.unknowns + self.model.unknown_count
+
+
+def moments_on_cranks(model: PlacedContacts, state: PoseSolution) -> FloatArray:
+    """Return the external moment that holds each crank, ccw positive, N·mm (`FullSolution.crank_moments`), shape (cranks,)."""
+    place = model.placement
+    forces = pair_forces(model, list(state.integrals), state.contact.pressure)
+    on_disc = np.zeros((place.cranks, 3))
+    for pair, force in zip(model.pairs, forces, strict=True):
+        if pair.kind == "roller_outer":
+            on_disc[model.crank_of(pair.index)] -= force
+    push, races = on_disc[:, 0] + 1j * on_disc[:, 1], model.race_centres
+    about_race = on_disc[:, 2] - (races.conjugate() * push).imag
+    lever = races - place.crank_axes
+    return np.asarray((lever.conjugate() * push).imag + float(place.cage_speed) * about_race)

@@ -14,7 +14,7 @@ from fem.drive.contact_kinds import CONTACT_KINDS, PairKind
 from fem.drive.contact_results import ContactResults, DeformedContacts
 from fem.drive.expected_contacts import ContactGroup, ExpectedContacts, HertzContacts
 from fem.drive.meshes import ELEMENTS_PER_HALF_WIDTH
-from fem.drive.model import DriveModel
+from fem.drive.model import DriveModel, PlacedContacts
 from fem.drive.pose import PoseSolution
 from fem.drive.rigid_bodies import RigidBodies, RigidGaps
 from ltca.arrays import ComplexArray, FloatArray
@@ -124,10 +124,11 @@ def find_shortcoming(model: DriveModel, solution: PoseSolution, results: Contact
                 f"{detail.half_width / detail.largest_edge:.3g} elements for the half-width of {name}, "
                 f"not {ELEMENTS_PER_HALF_WIDTH / size:.3g}"
             )
-    return _closed_without_zone(model, solution)
+    return closed_without_zone(model, solution)
 
 
-def _closed_without_zone(model: DriveModel, solution: PoseSolution) -> str:
+def closed_without_zone(model: PlacedContacts, solution: PoseSolution) -> str:
+    """Return which contact without a zone the deformed disc has closed at mid-width, "" for none."""
     pose, place = solution.pose, model.placement
     flank_profile = model.shapes.disc.flank.profile
     rigid = RigidBodies(profile=flank_profile, placement=place, crank_angle=model.crank_angle)

@@ -6,6 +6,7 @@ rollers. Pins and rollers that share a mesh share one factorisation and one comp
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
 import numpy as np
@@ -147,10 +148,15 @@ class ContactPair:
     expected_half_width: float
     expected_load: float
 
+    @property
+    def heights(self) -> int:
+        """Pressure unknowns at each vertex of the zone: one in the plane."""
+        return int(self.unknowns.stop - self.unknowns.start) // self.zone.unknown_count
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class DriveModel:
-    """Condensed drive at one crank angle; the meshes and factors serve every load and pose near by.
+class PlacedContacts(ABC):
+    """Candidate contacts of one disc at one crank angle and where the bodies stand at a pose, however these yield.
 
     Attributes
     ----------
@@ -164,21 +170,10 @@ class DriveModel:
         Their meshes.
     contacts : ExpectedContacts
         For which they were graded.
-    disc : CondensedBody
-        Unit loads are the pressure unknowns on it.
-    race : CondensedBody
-        One body that represents the inner races of all cranks; unit loads are the pressures about its boundary vertices,
-        each once.
-    groups : tuple of RoundGroup
-        Pins and rollers.
     pairs : tuple of ContactPair
         All candidate contacts, those on the disc first.
     placement : Placement
         Nominal places of the parts.
-    race_loads : array of int
-        Unit load of `race` that each pressure unknown of an inner race is, crank after crank.
-    ring : array, shape (2 z_P, 2 z_P), or None
-        Displacement (x, y) of the seats of the wheel pins in the wheel by unit forces there, mm/N; None in a rigid ring.
     by_others : array of complex, shape (z_P,)
         Displacement of the seats in the wheel by the forces of other discs, mm.
     """
@@ -188,14 +183,37 @@ class DriveModel:
     shapes: DriveShapes
     meshes: DriveMeshes
     contacts: ExpectedContacts
-    disc: CondensedBody
-    race: CondensedBody
-    groups: tuple[RoundGroup, ...]
     pairs: tuple[ContactPair, ...]
     placement: Placement
-    race_loads: NDArray[np.intp]
-    ring: FloatArray | None
     by_others: ComplexArray
+
+    @abstractmethod
+    def opposite_zone(self, pair: ContactPair) -> OppositeZone | None:
+        """Return the meshed zone opposite the pressure of a pair, None for a rigid circle."""
+
+    @abstractmethod
+    def contact_problem(self, pose: DrivePose, integrals: list[PairIntegrals], wheel_moment: float) -> ContactProblem:
+        """Return the contact problem about a pose; motions: disc x, y, rotation, wheel, rollers on their rays, then others."""
+
+    @abstractmethod
+    def force_of(self, pair: ContactPair, integral: PairIntegrals, pressure: FloatArray) -> FloatArray:
+        """Return force (x, y, N) and moment about the origin (N·mm) on the round side of a pair at all pressures, MPa."""
+
+    @abstractmethod
+    def measure_of(self, pair: ContactPair, integral: PairIntegrals) -> FloatArray:
+        """Return the weighted area of each pressure unknown of a pair, mm²."""
+
+    @abstractmethod
+    def profile_of(self, pair: ContactPair, pressure: FloatArray) -> FloatArray:
+        """Return the pressures of a pair along its arc, at mid-width, of all pressures, MPa."""
+
+    @abstractmethod
+    def disc_displacement(self, pressure: FloatArray) -> FloatArray:
+        """Return the nodal displacements of the disc in its own frame, at mid-width, mm, at all pressures, MPa."""
+
+    @abstractmethod
+    def seats_moved_by(self, force: ComplexArray) -> ComplexArray:
+        """Return the displacement of all seats by forces on the wheel pins, in the wheel, mm and N, shape (z_P,)."""
 
     @property
     def unknown_count(self) -> int:
@@ -221,27 +239,6 @@ class DriveModel:
         """Return the number of the crank that a roller runs on."""
         return int(self.placement.roller_cranks[roller])
 
-    def race_unknowns(self, crank: int) -> slice:
-        """Return the pressure unknowns on the inner race of a crank among all: rollers follow each other by cranks."""
-        inner = [pair for pair in self.pairs if pair.kind == "roller_inner" and self.crank_of(pair.index) == crank]
-        first = self.disc.compliance.shape[0]
-        return slice(inner[0].unknowns.start, inner[-1].unknowns.stop) if inner else slice(first, first)
-
-    def loads_on_race(self, crank: int) -> NDArray[np.intp]:
-        """Return which unit load of `race` each pressure unknown on the inner race of a crank is."""
-        own, first = self.race_unknowns(crank), self.disc.compliance.shape[0]
-        return self.race_loads[own.start - first : own.stop - first]
-
-    def disc_displacement(self, pressure: FloatArray) -> FloatArray:
-        """Return the nodal displacements of the disc in its own frame, mm, at all pressures of the drive, MPa."""
-        return self.disc.displacement(pressure[: self.disc.compliance.shape[0]])
-
-    def race_displacement(self, crank: int, pressure: FloatArray) -> FloatArray:
-        """Return the nodal displacements of the inner race of a crank, fixed axes, mm, at all pressures of the drive, MPa."""
-        carried = np.zeros(self.race.compliance.shape[0])
-        carried[self.loads_on_race(crank)] = pressure[self.race_unknowns(crank)]
-        return self.race.displacement(carried)
-
     @property
     def roller_rays(self) -> ComplexArray:
         """Unit vectors of the cage rays."""
@@ -266,13 +263,6 @@ class DriveModel:
         """Return the direction in which the wheel stands."""
         return complex(np.exp(1j * (self.crank_angle / self.placement.reduction_ratio + pose.wheel_angle)))
 
-    def seats_moved_by(self, force: ComplexArray) -> ComplexArray:
-        """Return the displacement of all seats by forces on the wheel pins, in the wheel, mm and N, shape (z_P,)."""
-        if self.ring is None:
-            return np.zeros(force.shape, dtype=complex)
-        moved = (self.ring @ np.stack([force.real, force.imag], axis=-1).ravel()).reshape(-1, 2)
-        return np.asarray(moved[:, 0] + 1j * moved[:, 1])
-
     def carrier_pose(self, pair: ContactPair, pose: DrivePose) -> Pose:
         """Return the frame of the body that carries the pressure of a pair."""
         if pair.kind == "roller_inner":
@@ -281,12 +271,8 @@ class DriveModel:
 
     def integrate(self, pair: ContactPair, pose: DrivePose) -> PairIntegrals:
         """Integrate one pair at a pose."""
-        carrier = self.carrier_pose(pair, pose)
         circle = Pose(centre=self.circle_centre(pair.kind, pair.index, pose), rotation=pair.turn)
-        opposite = None
-        if pair.group >= 0:
-            opposite = self.groups[pair.group].zones[1 if pair.kind == "roller_inner" else 0]
-        return integrate_pair(pair.zone, carrier, circle, pair.radius, opposite)
+        return integrate_pair(pair.zone, self.carrier_pose(pair, pose), circle, pair.radius, self.opposite_zone(pair))
 
     def start_pose(self, start: tuple[float, float, float, float] | None = None) -> DrivePose:
         """Return a pose with rollers midway between race and bore and shaft pins unloaded.
@@ -321,8 +307,79 @@ class DriveModel:
             if pair.expected_load > 0.0:
                 arc = pair.zone.arc[1:-1]
                 middle = 0.5 * pair.zone.arc[-1]
-                active[pair.unknowns] = np.abs(arc - middle) < 0.8 * pair.expected_half_width
+                near = np.abs(arc - middle) < 0.8 * pair.expected_half_width
+                active[pair.unknowns] = np.repeat(near, pair.heights)
         return active
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DriveModel(PlacedContacts):
+    """Condensed drive at one crank angle; the meshes and factors serve every load and pose near by.
+
+    Attributes
+    ----------
+    disc : CondensedBody
+        Unit loads are the pressure unknowns on it.
+    race : CondensedBody
+        One body that represents the inner races of all cranks; unit loads are the pressures about its boundary vertices,
+        each once.
+    groups : tuple of RoundGroup
+        Pins and rollers.
+    race_loads : array of int
+        Unit load of `race` that each pressure unknown of an inner race is, crank after crank.
+    ring : array, shape (2 z_P, 2 z_P), or None
+        Displacement (x, y) of the seats of the wheel pins in the wheel by unit forces there, mm/N; None in a rigid ring.
+    """
+
+    disc: CondensedBody
+    race: CondensedBody
+    groups: tuple[RoundGroup, ...]
+    race_loads: NDArray[np.intp]
+    ring: FloatArray | None
+
+    def opposite_zone(self, pair: ContactPair) -> OppositeZone | None:
+        """Return the meshed zone opposite the pressure of a pair, None for a rigid circle."""
+        return None if pair.group < 0 else self.groups[pair.group].zones[1 if pair.kind == "roller_inner" else 0]
+
+    def force_of(self, pair: ContactPair, integral: PairIntegrals, pressure: FloatArray) -> FloatArray:
+        """Return force (x, y, N) and moment about the origin (N·mm) on the round side of a pair at all pressures, MPa."""
+        return np.asarray(integral.force @ pressure[pair.unknowns])
+
+    def measure_of(self, pair: ContactPair, integral: PairIntegrals) -> FloatArray:
+        """Return the weighted area of each pressure unknown of a pair, mm²."""
+        return integral.measure
+
+    def profile_of(self, pair: ContactPair, pressure: FloatArray) -> FloatArray:
+        """Return the pressures of a pair along its arc, of all pressures, MPa."""
+        return pressure[pair.unknowns]
+
+    def race_unknowns(self, crank: int) -> slice:
+        """Return the pressure unknowns on the inner race of a crank among all: rollers follow each other by cranks."""
+        inner = [pair for pair in self.pairs if pair.kind == "roller_inner" and self.crank_of(pair.index) == crank]
+        first = self.disc.compliance.shape[0]
+        return slice(inner[0].unknowns.start, inner[-1].unknowns.stop) if inner else slice(first, first)
+
+    def loads_on_race(self, crank: int) -> NDArray[np.intp]:
+        """Return which unit load of `race` each pressure unknown on the inner race of a crank is."""
+        own, first = self.race_unknowns(crank), self.disc.compliance.shape[0]
+        return self.race_loads[own.start - first : own.stop - first]
+
+    def disc_displacement(self, pressure: FloatArray) -> FloatArray:
+        """Return the nodal displacements of the disc in its own frame, mm, at all pressures of the drive, MPa."""
+        return self.disc.displacement(pressure[: self.disc.compliance.shape[0]])
+
+    def race_displacement(self, crank: int, pressure: FloatArray) -> FloatArray:
+        """Return the nodal displacements of the inner race of a crank, fixed axes, mm, at all pressures of the drive, MPa."""
+        carried = np.zeros(self.race.compliance.shape[0])
+        carried[self.loads_on_race(crank)] = pressure[self.race_unknowns(crank)]
+        return self.race.displacement(carried)
+
+    def seats_moved_by(self, force: ComplexArray) -> ComplexArray:
+        """Return the displacement of all seats by forces on the wheel pins, in the wheel, mm and N, shape (z_P,)."""
+        if self.ring is None:
+            return np.zeros(force.shape, dtype=complex)
+        moved = (self.ring @ np.stack([force.real, force.imag], axis=-1).ravel()).reshape(-1, 2)
+        return np.asarray(moved[:, 0] + 1j * moved[:, 1])
 
     def contact_problem(self, pose: DrivePose, integrals: list[PairIntegrals], wheel_moment: float) -> ContactProblem:
         """Return the condensed contact problem linearised about a pose.

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from fem.contact.coupling import PairIntegrals
 from fem.contact.unilateral import ContactSolution, solve_floating_contact
-from fem.drive.model import DriveModel, DrivePose
+from fem.drive.model import DrivePose, PlacedContacts
 from ltca.arrays import FloatArray
 from ltca.errors import ConvergenceError
 
@@ -57,15 +57,15 @@ class PoseSolution:
     load_changes: tuple[float, ...]
 
 
-def pair_forces(model: DriveModel, integrals: list[PairIntegrals], pressure: FloatArray) -> FloatArray:
+def pair_forces(model: PlacedContacts, integrals: list[PairIntegrals], pressure: FloatArray) -> FloatArray:
     """Return force (x, y, N) and moment about the origin (N·mm) on the round side of each pair, shape (pairs, 3)."""
     return np.array(
-        [integral.force @ pressure[pair.unknowns] for pair, integral in zip(model.pairs, integrals, strict=True)]
+        [model.force_of(pair, integral, pressure) for pair, integral in zip(model.pairs, integrals, strict=True)]
     )
 
 
 def solve_pose(
-    model: DriveModel,
+    model: PlacedContacts,
     wheel_moment: float,
     *,
     start: DrivePose | None = None,
@@ -78,7 +78,7 @@ def solve_pose(
 
     Parameters
     ----------
-    model : DriveModel
+    model : PlacedContacts
         Condensed drive.
     wheel_moment : float
         External moment on the wheel, N·mm, ccw positive.
@@ -140,13 +140,14 @@ def solve_pose(
 
 
 def _move(
-    model: DriveModel,
+    model: PlacedContacts,
     pose: DrivePose,
     contact: ContactSolution,
     forces: FloatArray,
 ) -> tuple[DrivePose, float]:
     """Return the pose found and the largest increment, mm."""
-    motion = contact.motion.copy()
+    # Further motions are tilts: gaps are linear in them, each step finds all of them anew.
+    motion = contact.motion[: 4 + len(model.rollers)].copy()
     shapes = model.shapes
     reach = np.ones(len(motion))
     reach[2] = shapes.disc.flank.profile.tip_radius

@@ -79,17 +79,17 @@ def sample_parameters(curve: Curve, field: SizeField) -> FloatArray:
     return np.sort(np.concatenate(found))
 
 
-def divide_curve(curve: Curve, field: SizeField) -> DividedCurve:
-    """Divide a closed curve into edges whose lengths follow the size field and the curvature."""
+def divide_curve(curve: Curve, field: SizeField, turn: float = MAX_TURN) -> DividedCurve:
+    """Divide a closed curve into edges whose lengths follow the size field and that turn by so much at most, rad."""
     parameters = sample_parameters(curve, field)
     if len(curve.corners):
         parameters = np.union1d(parameters, curve.corners)
     points = curve.points(parameters)
-    wanted = np.minimum(field.at(points), MAX_TURN * curve.curvature_radius(parameters))
+    wanted = np.minimum(field.at(points), turn * curve.curvature_radius(parameters))
     density = 1.0 / wanted
     count = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]) * np.abs(np.diff(points)))])
     if not len(curve.corners):
-        edges = max(int(np.ceil(count[-1])), round(2.0 * np.pi / MAX_TURN))
+        edges = max(int(np.ceil(count[-1])), round(2.0 * np.pi / turn))
         places = np.arange(edges) * (count[-1] / edges)
         return DividedCurve(curve=curve, parameters=np.interp(places, count, parameters))
     # Every piece between corners by itself; the first begins at parameter 0.
@@ -112,12 +112,12 @@ def curve_middles(mesh: MeshTri1, divided: Sequence[DividedCurve]) -> MeshTri1:
     return move_nodes(mesh, doflocs)
 
 
-def serve_curvature(curves: tuple[Curve, ...], field: SizeField) -> SizeField:
-    """Return the size field with balls added where the curvature of a boundary asks for smaller elements."""
+def serve_curvature(curves: tuple[Curve, ...], field: SizeField, turn: float = MAX_TURN) -> SizeField:
+    """Return the size field with balls added where edges of a boundary would turn by more than an angle, rad."""
     added: list[Refinement] = []
     for curve in curves:
         parameters = np.linspace(0.0, 2.0 * np.pi, 4 * curve.samples, endpoint=False)
-        limit = MAX_TURN * curve.curvature_radius(parameters)
+        limit = turn * curve.curvature_radius(parameters)
         so_far = SizeField(balls=field.balls + tuple(added), coarse_size=field.coarse_size, growth=field.growth)
         added += cover_small_edges(curve.points(parameters), limit, so_far)
     return SizeField(balls=field.balls + tuple(added), coarse_size=field.coarse_size, growth=field.growth)

@@ -11,6 +11,9 @@ from ltca.output.resources import available_memory
 # like n log n.
 REFERENCE_UNKNOWNS = 4.0e5
 REFERENCE_BYTES = 787.0e6
+# The factor of an extruded body has some n p² log₂ n values by nested dissection, with p unknowns at each of the n nodes of its
+# section: 42 to 69 bytes for each with SuperLU and CHOLMOD (measured, docs/theory/solid_bodies.md).
+SOLID_BYTES_PER_VALUE = 60.0
 # Mesh generation, coordinates and tables on the way, per unknown: 245 to 405 measured from 47,000 to 840,000.
 MESH_BYTES_PER_UNKNOWN = 500.0
 # Quadratic triangles: two nodes for each triangle, two unknowns for each node.
@@ -27,6 +30,12 @@ def solution_memory(unknowns: int) -> float:
     size = max(float(unknowns), 10.0)
     factor = REFERENCE_BYTES * (size / REFERENCE_UNKNOWNS) * np.log(size) / np.log(REFERENCE_UNKNOWNS)
     return float(factor + mesh_memory(unknowns))
+
+
+def solid_memory(nodes: int, per_node: int) -> float:
+    """Return the bytes that one class of an extruded body needs, of a section of so many nodes with unknowns at each."""
+    size = max(float(nodes), 2.0)
+    return float(SOLID_BYTES_PER_VALUE * size * per_node**2 * np.log2(size))
 
 
 def require_memory(unknowns: int, needed: float, what: str, *, available: float | None = None) -> None:

@@ -15,7 +15,7 @@ import numpy as np
 
 from fem.errors import MeshError
 from fem.mesh.body_mesh import BodyMesh, triangle_mesh
-from fem.mesh.boundary_division import DividedCurve, curve_middles, divide_curve, serve_curvature
+from fem.mesh.boundary_division import MAX_TURN, DividedCurve, curve_middles, divide_curve, serve_curvature
 from fem.mesh.element_size import DEFAULT_GROWTH, Refinement, SizeField
 from fem.mesh.gmsh_session import gmsh_model
 from fem.mesh.memory_need import UNKNOWNS_PER_TRIANGLE, mesh_memory, require_memory
@@ -40,9 +40,10 @@ def estimate_unknowns(
     coarse_size: float | None = None,
     growth: float = DEFAULT_GROWTH,
     order: int = 2,
+    turn: float = MAX_TURN,
 ) -> int:
     """Return the number of unknowns to expect of a mesh, without making it (see `SizeField`)."""
-    field = _size_field(shape, tuple(refinements), coarse_size, growth)
+    field = _size_field(shape, tuple(refinements), coarse_size, growth, turn)
     return int(UNKNOWNS_PER_TRIANGLE[order] * field.estimate_triangles(shape.area))
 
 
@@ -53,6 +54,7 @@ def mesh_disc(
     coarse_size: float | None = None,
     growth: float = DEFAULT_GROWTH,
     order: int = 2,
+    turn: float = MAX_TURN,
 ) -> BodyMesh:
     """Mesh the disc; boundaries "flank", "bore", "hole_0", ….
 
@@ -68,6 +70,8 @@ def mesh_disc(
         Growth of the edge by distance from a refinement.
     order : int
         1 (straight) or 2 (curved, mid-side nodes).
+    turn : float
+        Largest angle by which an edge of a boundary may turn, rad.
 
     Returns
     -------
@@ -81,7 +85,7 @@ def mesh_disc(
     MemoryLimitError
         When the mesh would not fit into memory.
     """
-    return _mesh_shape(shape, refinements, coarse_size, growth, order)
+    return _mesh_shape(shape, refinements, coarse_size, growth, order, turn)
 
 
 def mesh_circle(
@@ -91,12 +95,13 @@ def mesh_circle(
     coarse_size: float | None = None,
     growth: float = DEFAULT_GROWTH,
     order: int = 2,
+    turn: float = MAX_TURN,
 ) -> BodyMesh:
     """Mesh a pin or roller about the origin; boundaries "surface" and, with a core, "core".
 
     One mesh, `BodyMesh.turned`, serves all pins of one radius. Parameters, result and errors as for `mesh_disc`.
     """
-    return _mesh_shape(shape, refinements, coarse_size, growth, order)
+    return _mesh_shape(shape, refinements, coarse_size, growth, order, turn)
 
 
 def mesh_ring(
@@ -106,12 +111,13 @@ def mesh_ring(
     coarse_size: float | None = None,
     growth: float = DEFAULT_GROWTH,
     order: int = 2,
+    turn: float = MAX_TURN,
 ) -> BodyMesh:
     """Mesh the inner race about the origin; boundaries "inner" and "outer".
 
     Parameters, result and errors as for `mesh_disc`.
     """
-    return _mesh_shape(shape, refinements, coarse_size, growth, order)
+    return _mesh_shape(shape, refinements, coarse_size, growth, order, turn)
 
 
 def mesh_pin_ring(
@@ -132,22 +138,27 @@ def mesh_pin_ring(
 # A drive asks for the field of each body to estimate its memory, alone and in all, and to mesh it.
 @functools.lru_cache(maxsize=256)
 def _size_field(
-    shape: Shape, refinements: tuple[Refinement, ...], coarse_size: float | None, growth: float
+    shape: Shape, refinements: tuple[Refinement, ...], coarse_size: float | None, growth: float, turn: float
 ) -> SizeField:
     coarse = default_coarse_size(shape) if coarse_size is None else coarse_size
     field = SizeField(balls=refinements, coarse_size=coarse, growth=growth)
-    return serve_curvature(shape.curves, field)
+    return serve_curvature(shape.curves, field, turn)
 
 
 def _mesh_shape(
-    shape: Shape, refinements: Sequence[Refinement], coarse_size: float | None, growth: float, order: int
+    shape: Shape,
+    refinements: Sequence[Refinement],
+    coarse_size: float | None,
+    growth: float,
+    order: int,
+    turn: float = MAX_TURN,
 ) -> BodyMesh:
     if order not in (1, 2):
         raise MeshError(f"element order {order} of the mesh of {shape.name}: must be 1 or 2")
-    field = _size_field(shape, tuple(refinements), coarse_size, growth)
+    field = _size_field(shape, tuple(refinements), coarse_size, growth, turn)
     unknowns = int(UNKNOWNS_PER_TRIANGLE[order] * field.estimate_triangles(shape.area))
     require_memory(unknowns, mesh_memory(unknowns), f"the mesh of {shape.name}")
-    divided = [divide_curve(curve, field) for curve in shape.curves]
+    divided = [divide_curve(curve, field, turn) for curve in shape.curves]
     places, triangles = _fill_interior(shape.name, divided, field)
     edges: dict[str, IntArray] = {}
     first = 0

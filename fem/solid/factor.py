@@ -29,12 +29,15 @@ class SymmetricFactor:
         Symmetric.
     kept : array of int
         Unknowns in their order of elimination; the others are held at zero.
+    many_loads : bool
+        Whether hundreds of right-hand sides follow: SuperLU then, whose factor takes a third longer and whose solutions take
+        less than half of the time of CHOLMOD's (measured from 40,000 to 160,000 unknowns).
     """
 
-    def __init__(self, matrix: sp.csc_matrix, kept: IntArray) -> None:
+    def __init__(self, matrix: sp.csc_matrix, kept: IntArray, *, many_loads: bool = False) -> None:
         self._count, self._kept = matrix.shape[0], kept
         inner = matrix.T[kept].tocsc()[:, kept]
-        self._solve = _cholmod(inner) if cholmod_is_there() else _superlu(inner)
+        self._solve = _cholmod(inner) if cholmod_is_there() and not many_loads else _superlu(inner)
 
     def solve(self, right: FloatArray | sp.spmatrix) -> FloatArray:
         """Return the displacements under forces, zero at held unknowns, shape (unknowns, k)."""

@@ -32,6 +32,9 @@ from ltca.drive.parts import Material
 BLOCK = 128
 """Right-hand sides solved together: as many as fill the processor's matrix products, few beside the factor."""
 
+MANY_LOADS = 128
+"""Right-hand sides of a class from which on their time, and not that of the factor, counts."""
+
 Held = Callable[[ExtrudedBody], BoolArray]
 """Which unknowns of a body in its class are held at zero."""
 
@@ -223,8 +226,8 @@ def _condense_class(
     else:
         still = held(body)
     unknowns = order_unknowns(body)
-    factor = SymmetricFactor(stiffness, unknowns[~still[unknowns]])
     count = loads.shape[1]
+    factor = SymmetricFactor(stiffness, unknowns[~still[unknowns]], many_loads=count > MANY_LOADS)
     compliance = np.zeros((count, count))
     transposed = loads.T.tocsr()
     for first in range(0, count, BLOCK):

@@ -9,7 +9,7 @@ half_space_errors          How far half-spaces are off on the shipped drives, to
 friction                   Losses of a drive that turns, the loop of one whose input is locked
 loaded_analysis            Loaded tooth contact analysis of one drive at many crank angles: equilibrium, then
                            pressures and bearing forces
-run_off                    Contacts with a crown or relief whose patch of pressure runs off the end all the same
+run_off                    How far contacts reach along their width: run-off of crowned ones, and such over too few slices
 width                      Along the width of contacts in slices: line loads, pressures, moments, tilts
 reactions                  What the bearings of cranks and output carry: forces of discs, first stage and from outside
 contact_arrays             Arrays of all contacts by their names in the registry

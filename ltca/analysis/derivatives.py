@@ -35,7 +35,7 @@ from ltca.arrays import FloatArray
 from ltca.compliance.response import Start
 from ltca.drive.fields import field_kind, is_element, read_field
 from ltca.drive.members.temperatures import warm_drive
-from ltca.drive.parts import Drive
+from ltca.drive.parts import Bodies, Drive
 from ltca.drive.ring_shape import has_ring_of_elements, ring_fingerprint
 from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.balance import Equilibrium, lever_arms
@@ -289,7 +289,7 @@ class _Balanced:
 
     def __init__(self, analysis: LoadedAnalysis, engine: Engine) -> None:
         self.analysis, self.engine, self.drive = analysis, engine, analysis.drive
-        self.shapes = _shapes(analysis.drive)
+        self.shapes = _shapes(analysis.drive, engine.bodies)
         self.base = _Node(drive=analysis.drive, model=engine.prepare(analysis.drive).model, step=0.0)
         self.own_torque = analysis.torque == analysis.drive.load.torque
         self.states = [
@@ -368,7 +368,8 @@ class _Field:
 
     def _reshapes(self) -> bool:
         """Whether the field is one of the shape of a body."""
-        return any(_shapes(drive) != self.balanced.shapes for drive in self._drives((self._first_step,)))
+        bodies = self.balanced.engine.bodies
+        return any(_shapes(drive, bodies) != self.balanced.shapes for drive in self._drives((self._first_step,)))
 
     def _reshapes_ring(self) -> bool:
         """Whether the field is one of the shape of the ring."""
@@ -413,8 +414,8 @@ class _Field:
         raise failure
 
 
-def _shapes(drive: Drive) -> list[str]:
-    return [single.shape_fingerprint() for single in single_discs(drive)]
+def _shapes(drive: Drive, bodies: Bodies) -> list[str]:
+    return [single.shape_fingerprint(bodies) for single in single_discs(drive)]
 
 
 def _reversed(node: _Node) -> _Node:

@@ -23,14 +23,14 @@ from ltca.compliance.near_field import NEAR_FIELDS
 from ltca.compliance.response import Start
 from ltca.drive.engine_support import require
 from ltca.drive.members.temperatures import warm_drive
-from ltca.drive.parts import Compliance, Drive
+from ltca.drive.parts import Bodies, Compliance, Drive
 from ltca.drive.ring_shape import has_ring_of_elements, nearly_same_ring, ring_fingerprint
 from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.reducer import Reducer
 from ltca.errors import DriveError, did_you_mean, shortened
-from ltca.reading.arguments import compliance_for, refuse_idle_options
+from ltca.reading.arguments import bodies_for, compliance_for, refuse_idle_options
 
 Method = Literal["tables", "direct", "paper"]
 Contacts = Literal["tables", "grids"]
@@ -68,6 +68,11 @@ class Engine(Protocol):
     @property
     def compliance(self) -> Compliance:
         """How the bodies yield, by name."""
+        ...
+
+    @property
+    def bodies(self) -> Bodies:
+        """What bodies influence coefficients are of, where they yield by such."""
         ...
 
     @property
@@ -176,6 +181,7 @@ class HalfSpace:
     """
 
     compliance: ClassVar[Compliance] = "half-space"
+    bodies: ClassVar[Bodies] = "plane"
     batches: ClassVar[bool] = True
 
     method: Method = "tables"
@@ -247,6 +253,8 @@ class CoupledEngine:
         its shape, or (None) found in the cache or derived and kept there.
     hole_near_field : bool
         Whether hole walls yield like a Hertz contact.
+    bodies : {"plane", "solid"}
+        What bodies the coefficients are of.
     lenders : tuple of Drive
         Drives of one disc whose coefficients also serve drives of nearly their bodies (`nearly_same_body`), see `lending`.
     rings : tuple of Drive
@@ -263,6 +271,7 @@ class CoupledEngine:
 
     coefficients: Given = field(default=None, repr=False)
     hole_near_field: bool = True
+    bodies: Bodies = "plane"
     lenders: tuple[Drive, ...] = field(default=(), repr=False)
     rings: tuple[Drive, ...] = field(default=(), repr=False)
 
@@ -270,9 +279,12 @@ class CoupledEngine:
         """Check the options; files become a tuple of paths, which nobody changes."""
         if not isinstance(self.hole_near_field, bool):
             raise DriveError([f"hole_near_field = {shortened(self.hole_near_field)}: must be true or false"])
+        _check_name("bodies", self.bodies, get_args(Bodies))
         given: Any = self.coefficients
         if isinstance(given, list):
             object.__setattr__(self, "coefficients", tuple(given))
+        if other := [own.bodies for own in self._of_discs if own.bodies != self.bodies]:
+            raise DriveError([f"coefficients: are of {other[0]} bodies; bodies = {self.bodies!r} asks for others"])
         if given is None or self._of_discs:
             return
         one = isinstance(given, str | Path)
@@ -287,9 +299,15 @@ class CoupledEngine:
 
     @property
     def options(self) -> dict[str, str]:
-        """Compliance, and whether hole walls yield."""
+        """Compliance, whether hole walls yield, and what bodies are."""
         near = "yes" if self.hole_near_field else "no"
-        return {"compliance": self.compliance, "method": "tables", "contacts": "tables", "hole_near_field": near}
+        return {
+            "compliance": self.compliance,
+            "method": "tables",
+            "contacts": "tables",
+            "hole_near_field": near,
+            "bodies": self.bodies,
+        }
 
     @property
     def _of_discs(self) -> tuple[InfluenceCoefficients, ...]:
@@ -317,8 +335,8 @@ class CoupledEngine:
         lenders: dict[str, Drive] = {}
         for drive in drives:
             for single in single_discs(warm_drive(drive)):
-                if not any(nearly_same_body(body, single) for body in lenders.values()):
-                    lenders[single.shape_fingerprint()] = single
+                if not any(nearly_same_body(body, single, self.bodies) for body in lenders.values()):
+                    lenders[single.shape_fingerprint(self.bodies)] = single
         return replace(self, lenders=tuple(lenders.values()))
 
     def lending_rings(self, drives: Iterable[Drive]) -> Self:
@@ -327,10 +345,10 @@ class CoupledEngine:
 
     def bodies_of(self, singles: Sequence[Drive]) -> list[Drive]:
         """Return the drives whose coefficients serve warm drives of one disc: lenders that have nearly their bodies."""
-        exact = {body.shape_fingerprint(): body for body in self.lenders}
+        exact = {body.shape_fingerprint(self.bodies): body for body in self.lenders}
         return [
-            exact.get(each.shape_fingerprint())
-            or next((body for body in self.lenders if nearly_same_body(body, each)), each)
+            exact.get(each.shape_fingerprint(self.bodies))
+            or next((body for body in self.lenders if nearly_same_body(body, each, self.bodies)), each)
             for each in singles
         ]
 
@@ -338,7 +356,7 @@ class CoupledEngine:
         """Return the engine with the coefficients of each of some drives of one disc."""
         files: Any = self.coefficients
         near_field = NEAR_FIELDS[self.compliance]
-        found = tuple(find_coefficients(each, files, near_field=near_field) for each in bodies)
+        found = tuple(find_coefficients(each, files, near_field=near_field, bodies=self.bodies) for each in bodies)
         return replace(self, coefficients=found[0] if len(found) == 1 else found)
 
     def lent_to(self, singles: Sequence[Drive]) -> Self:
@@ -387,7 +405,7 @@ class CoupledEngine:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlaneStrain(CoupledEngine):
-    """Plane-strain bodies by finite elements: every contact of a body feels the others (``fe``)."""
+    """Contacts in plane strain on bodies by finite elements: every contact of a body feels the others (``fe``)."""
 
     compliance: ClassVar[Compliance] = "fe"
 
@@ -399,11 +417,11 @@ class Hybrid(CoupledEngine):
     compliance: ClassVar[Compliance] = "hybrid"
 
 
-def nearly_same_body(first: Drive, second: Drive) -> bool:
+def nearly_same_body(first: Drive, second: Drive, bodies: Bodies = "plane") -> bool:
     """Tell whether no number that determines the bodies of drives of one disc (`Drive.body_shape`) differs by more than
     `SHARED_BODY` of itself, angles in rad by that; counts are equal.
     """
-    one, other = first.body_shape(), second.body_shape()
+    one, other = first.body_shape(bodies), second.body_shape(bodies)
     if one.keys() != other.keys():
         return False
     for name, value in one.items():
@@ -451,7 +469,8 @@ def lent_words(engine: Engine, drive: Drive) -> str:
         return ""
     singles = single_discs(warm_drive(drive))
     bodies = zip(engine.bodies_of(singles), singles, strict=True)
-    lent = [body.case for body, own in bodies if body.shape_fingerprint() != own.shape_fingerprint()]
+    kind = engine.bodies
+    lent = [body.case for body, own in bodies if body.shape_fingerprint(kind) != own.shape_fingerprint(kind)]
     if not lent:
         return ""
     return (
@@ -465,13 +484,14 @@ def describe_engine(engine: Engine) -> str:
 
     Examples
     --------
-    >>> describe_engine(HalfSpace()), describe_engine(Hybrid(hole_near_field=False))
-    ('half-space (tables)', 'hybrid (no hole near field)')
+    >>> describe_engine(HalfSpace()), describe_engine(Hybrid(hole_near_field=False, bodies="solid"))
+    ('half-space (tables)', 'hybrid (no hole near field, solid bodies)')
     """
     options = engine.options
     told = [options["method"]] if options["compliance"] == "half-space" else []
     told += [options["contacts"]] if options["contacts"] not in ("tables", *told) else []
     told += ["no hole near field"] if options.get("hole_near_field") == "no" else []
+    told += ["solid bodies"] if engine.bodies == "solid" else []
     return options["compliance"] + (f" ({', '.join(told)})" if told else "")
 
 
@@ -482,6 +502,7 @@ def engine_named(
     contacts: str | None = None,
     coefficients: Given = None,
     hole_near_field: bool | None = None,
+    bodies: str | None = None,
 ) -> Engine:
     """Return the engine that names and options ask for; what an engine cannot use is refused.
 
@@ -491,7 +512,7 @@ def engine_named(
         How the bodies yield; an engine brings its own options, so none may stand beside it.
     method, contacts : str, optional
         Of `HalfSpace`.
-    coefficients, hole_near_field : optional
+    coefficients, hole_near_field, bodies : optional
         Of `PlaneStrain` and `Hybrid`.
 
     Raises
@@ -506,6 +527,7 @@ def engine_named(
             ("contacts", contacts),
             ("coefficients", coefficients),
             ("hole_near_field", hole_near_field),
+            ("bodies", bodies),
         )
         if value is not None
     }
@@ -517,7 +539,12 @@ def engine_named(
         return compliance
     _check_name("compliance", compliance, get_args(Compliance))
     refuse_idle_options(
-        compliance, method=method, contacts=contacts, coefficients=coefficients, hole_near_field=hole_near_field
+        compliance,
+        method=method,
+        contacts=contacts,
+        coefficients=coefficients,
+        hole_near_field=hole_near_field,
+        bodies=bodies,
     )
     if compliance == "half-space":
         return HalfSpace(method=given.get("method", "tables"), contacts=given.get("contacts"))
@@ -534,6 +561,7 @@ def engine_of(
     contacts: str | None = None,
     coefficients: Given = None,
     hole_near_field: bool | None = None,
+    bodies: str | None = None,
 ) -> Engine:
     """Return the engine for drives: the one named, or that of their files (`ltca.drive.parts.Analysis`).
 
@@ -545,10 +573,18 @@ def engine_of(
     DriveError
         As `engine_named`; and when the drives are to be analysed differently.
     """
+    drives = tuple(drives)
     if compliance is None:
         compliance = compliance_for(drives, method=method, contacts=contacts)
+    if bodies is None and isinstance(compliance, str):
+        bodies = bodies_for(drives, compliance)
     return engine_named(
-        compliance, method=method, contacts=contacts, coefficients=coefficients, hole_near_field=hole_near_field
+        compliance,
+        method=method,
+        contacts=contacts,
+        coefficients=coefficients,
+        hole_near_field=hole_near_field,
+        bodies=bodies,
     )
 
 

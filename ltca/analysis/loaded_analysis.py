@@ -20,7 +20,7 @@ from ltca.analysis.half_width_guard import (
     unborne_warning,
     wide_holes_warning,
 )
-from ltca.analysis.run_off import run_off_warning
+from ltca.analysis.run_off import few_slices_warning, run_off_warning
 from ltca.arrays import ComplexArray, FloatArray, batch_layout, freeze, stack_drives, take_positions
 from ltca.compliance.response import ContactPressures
 from ltca.compliance.wall_stress import WallStresses, wall_stresses
@@ -280,8 +280,16 @@ class LoadedAnalysis:
 
     @property
     def width_words(self) -> str:
-        """What to say of bodies that contacts in slices stand on: influence coefficients are those of the plane."""
-        if self.drive.contact.slices == 1 or self.model.discs[0].coefficients is None:
+        """What to say of bodies that contacts stand on: solid ones, or in slices those of the plane."""
+        coefficients, slices = self.model.discs[0].coefficients, self.drive.contact.slices
+        if coefficients is not None and coefficients.bodies == "solid":
+            yielding = (
+                "they yield under loads even along the width; contact.slices asks for loads linear along it as well"
+                if slices == 1
+                else "they yield under loads even and linear along the width, by an approach and a tilt of every contact"
+            )
+            return f"influence coefficients of the bodies are those of solids with their ends: {yielding}"
+        if slices == 1 or coefficients is None:
             return ""
         return (
             "influence coefficients of the bodies are those of the plane: they yield evenly along the width under the loads of "
@@ -306,7 +314,10 @@ class LoadedAnalysis:
             found.append(
                 f"with the motion reversed {np.count_nonzero(lost)} of {lost.size} positions have no equilibrium"
             )
-        found.append(run_off_warning(self.drive, self.pressures))
+        found += [
+            run_off_warning(self.drive, self.pressures),
+            few_slices_warning(self.drive.contact.slices, self.pressures),
+        ]
         discs = self.discs if np.all(self.balanced) else ()
         for number, disc in enumerate(discs):
             (contacts,) = disc.model.discs

@@ -17,14 +17,14 @@ from ltca.analysis.friction.variables import friction_values
 from ltca.analysis.half_width_guard import pin_deflections
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.analysis.reactions import reaction_values
-from ltca.analysis.width import width_coordinates, width_values
+from ltca.analysis.width import face_load_factors, width_coordinates, width_values
 from ltca.arrays import FloatArray
 from ltca.compliance import sliced
 from ltca.compliance.response import ContactPressures
 from ltca.compliance.wall_stress import WallStresses
 from ltca.contact.subsurface import line_contact_shear
 from ltca.drive.parts import Drive
-from ltca.errors import DriveError
+from ltca.errors import DriveError, counted
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, disc_displacement
 from ltca.geometry.placement import place_coordinates
 from ltca.laws.backed import shaft_pin_seat, wheel_pin_seat
@@ -41,7 +41,7 @@ def case_arrays(analysis: LoadedAnalysis) -> dict[str, Any]:
     """Return the arrays of one case by name, their dimensions those of the registry without the case."""
     full, light = analysis.full, analysis.light
     per_disc = [_disc_values(disc) for disc in analysis.discs]
-    values = {name: np.stack([disc[name] for disc in per_disc]) for name in per_disc[0]}
+    values = {name: np.stack([disc[name] for disc in per_disc]) for name in per_disc[0]} | face_load_factors(analysis)
     rubbed = friction_values(analysis, values)
     cranks = analysis.drive.crank.number
     return {name: _by_crank(value, QUANTITIES[name].of, cranks) for name, value in values.items()} | {
@@ -200,8 +200,7 @@ def check_common_shape(cases: Mapping[str, Drive], mend: str = "run it alone wit
 
 
 def _counted(numbers: tuple[int, ...], things: tuple[str, ...]) -> str:
-    each = zip(numbers, things, strict=True)
-    return ", ".join(f"{number} {thing if number != 1 else thing.removesuffix('s')}" for number, thing in each)
+    return ", ".join(counted(*each) for each in zip(numbers, things, strict=True))
 
 
 def build_dataset(drive_name: str, analyses: Mapping[str, LoadedAnalysis], drive_file: str | None = None) -> xr.Dataset:

@@ -7,6 +7,7 @@ moments, about the middle of the disc.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -35,16 +36,20 @@ def width_values(analysis: LoadedAnalysis) -> dict[str, FloatArray]:
     angle, cranks = analysis.full.crank_angle, disc.geometry.placement.cranks
     lean = analysis.full.pose[:, disc.geometry.coordinates_of(analysis.full.pose).lean_place]
     rays = disc.geometry.rollers(angle)
+    rollers, flank, in_holes = response.rollers, response.leaning_pins, response.leaning_holes
+    assert flank is not None
+    assert in_holes is not None
     values = {
+        "pin_moment": flank.contact.moment,
+        "roller_moment": np.asarray(rollers.outer_moment),
+        "roller_moment_inner": np.asarray(rollers.inner_moment),
+        "pin_shaft_moment": in_holes.contact.moment,
         "pin_line_load": pins.line_load,
         "roller_line_load": outer.line_load,
         "roller_line_load_inner": inner.line_load,
         "pin_shaft_line_load": holes.line_load,
         "disc_tilt": np.stack((-lean[:, 1], lean[:, 0]), axis=-1),
-        "crank_bearing_moment": moments_of(bearing_moments(response.rollers, rays, cranks)),
-        "pin_face_load_factor": face_load_factor(pins)[:, 0],
-        "roller_face_load_factor": np.maximum(face_load_factor(outer, cranks), face_load_factor(inner, cranks)),
-        "pin_shaft_face_load_factor": face_load_factor(holes)[:, 0],
+        "crank_bearing_moment": moments_of(bearing_moments(rollers, rays, cranks)),
     }
     for part, side, kind in (
         ("pin", "", pins),
@@ -57,6 +62,26 @@ def width_values(analysis: LoadedAnalysis) -> dict[str, FloatArray]:
     return values
 
 
+def face_load_factors(analysis: LoadedAnalysis) -> dict[str, FloatArray]:
+    """Return K_Hβ of all discs, shape (disc, position) or (disc, position, crank); nothing of the plane model.
+
+    What carries little is judged by all joints of its kind together (`face_load_factor`).
+    """
+    pressures, discs = analysis.pressures, len(analysis.model.discs)
+    pins, outer, inner, holes = (
+        each.along for each in (pressures.pins, pressures.outer, pressures.inner, pressures.holes)
+    )
+    if pins is None or outer is None or inner is None or holes is None:
+        return {}
+    bearings = discs * analysis.model.discs[0].geometry.placement.cranks
+    rollers = np.maximum(face_load_factor(outer, bearings), face_load_factor(inner, bearings))
+    return {
+        "pin_face_load_factor": face_load_factor(pins, discs).T,
+        "roller_face_load_factor": np.moveaxis(rollers.reshape(rollers.shape[0], discs, -1), 0, 1),
+        "pin_shaft_face_load_factor": face_load_factor(holes, discs).T,
+    }
+
+
 def moments_of(leverage: ComplexArray) -> FloatArray:
     """Return the moments about x and y, N·mm, of forces of which Σ F z is given, shape (…, 2)."""
     return np.stack((-leverage.imag, leverage.real), axis=-1)
@@ -66,23 +91,44 @@ CARRYING = 0.1
 """Part of the largest load of its kind from which a joint has a face load factor: what barely touches does so at a corner."""
 
 
+STRETCHES = 9
+"""Stretches of a contact over which line loads are averaged for the face load factor: the slices of the default."""
+
+
 def face_load_factor(kind: AlongWidth, groups: int = 1, series: int = 1) -> FloatArray:
     """Return K_Hβ of groups of pairs, shape (positions, groups): the largest line load by the largest mean one.
 
     Line loads are without the bulge of ends that carry (`AlongWidth.even_line_load`), which grows without bound as slices become
-    narrower: an aligned straight line has a factor of one. It is that of the pair that carries most, where that has the largest
-    line load as well; not a number where a group carries less than `CARRYING` of the most that any does at one of the positions,
-    of `series` drives one after another.
+    narrower: an aligned straight line has a factor of one. The largest one is a mean over a ninth of the length, whose place is
+    free: slices are divided ever further towards an end of a tilted line, where the load rises, and their own largest would
+    follow them; of fewer than nine slices it is that of a slice. It is that of the pair that carries most, where that has the
+    largest line load as well; not a number where a group carries less than `CARRYING` of the most that any does at one of the
+    positions, of `series` drives one after another.
     """
-    shape = kind.line_load.shape[0], groups, -1, kind.line_load.shape[-1]
+    slices = kind.line_load.shape[-1]
+    shape = kind.line_load.shape[0], groups, -1, slices
     each = kind.even_line_load.reshape(shape)
     if not each.shape[2]:
         return np.full(each.shape[:2], np.nan)
     mean = each.mean(axis=3).max(axis=2)
+    largest = (each @ _stretches(slices).T).max(axis=(2, 3))
     known = np.where(np.isfinite(mean), mean, 0.0).reshape(series, -1)
     least = np.repeat(CARRYING * known.max(axis=1), mean.shape[0] // series)[:, None]
     carries = (mean > 0.0) & (mean >= least)
-    return np.asarray(np.divide(each.max(axis=(2, 3)), mean, out=np.full(mean.shape, np.nan), where=carries))
+    return np.asarray(np.divide(largest, mean, out=np.full(mean.shape, np.nan), where=carries))
+
+
+@cache
+def _stretches(slices: int) -> FloatArray:
+    """Shares of the slices in means over stretches, shape (stretches, slices): those that begin or end where a slice does.
+
+    Line loads are even over each slice, so that the largest mean over any stretch is among these.
+    """
+    edges = np.arange(slices + 1.0)
+    length = max(1.0, slices / STRETCHES)
+    start = np.unique(np.concatenate((edges, edges - length)).clip(0.0, slices - length).round(12))[:, None]
+    within = np.minimum(start + length, edges[1:]) - np.maximum(start, edges[:-1])
+    return np.asarray(np.maximum(within, 0.0) / length)
 
 
 def width_coordinates(drives: Mapping[str, Drive]) -> dict[str, Any]:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ltca.errors import DamagedFileError, DriveError
-from ltca.reading.arguments import DifferentValues, compliance_for, refuse_idle_options
+from ltca.reading.arguments import DifferentValues, bodies_for, compliance_for, refuse_idle_options
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -39,6 +39,12 @@ def add_compliance_arguments(parser: argparse.ArgumentParser) -> None:
         "are derived once for each shape and kept",
     )
     parser.add_argument(
+        "--bodies",
+        choices=("plane", "solid"),
+        help="what bodies fe and hybrid stand on: plane sections, which yield evenly along the width, or solids with their ends; "
+        "default [analysis] bodies of the drive file, plane where it has none",
+    )
+    parser.add_argument(
         "--no-hole-near-field",
         action="store_true",
         help="leave out the local yielding of the hole walls (fe and hybrid)",
@@ -49,8 +55,9 @@ def check_compliance(arguments: argparse.Namespace) -> None:
     """Check the arguments as far as that goes before drives are read and engines imported, which takes a second."""
     if arguments.quick and arguments.compliance not in (None, "half-space"):
         raise DriveError([f"--quick: is half-spaces, not --compliance {arguments.compliance}; leave one of them out"])
-    if arguments.quick and (arguments.coefficients or arguments.no_hole_near_field):
-        option = "--coefficients" if arguments.coefficients else "--no-hole-near-field"
+    if arguments.quick and (arguments.coefficients or arguments.no_hole_near_field or arguments.bodies):
+        option = "--no-hole-near-field" if arguments.no_hole_near_field else "--bodies"
+        option = "--coefficients" if arguments.coefficients else option
         raise DriveError([f"{option}: has no effect with --quick, which is half-spaces; leave one of them out"])
     compliance = "half-space" if arguments.quick else arguments.compliance
     if compliance is not None:
@@ -59,10 +66,11 @@ def check_compliance(arguments: argparse.Namespace) -> None:
 
 def settle_compliance(arguments: argparse.Namespace, drives: Iterable[Drive]) -> str:
     """Return how the bodies of the drives yield, by the arguments or else as their file says, and keep it in the arguments."""
-    given = _options(arguments)
+    drives, given = tuple(drives), _options(arguments)
     named = "half-space" if arguments.quick else arguments.compliance
     arguments.compliance = named or compliance_for(drives, method=given["method"], contacts=given["contacts"])
     refuse_idle_options(arguments.compliance, **given)
+    arguments.bodies = arguments.bodies or bodies_for(drives, arguments.compliance)
     for path in arguments.coefficients or ():
         if not path.is_file():
             raise DamagedFileError(f"--coefficients {path}: no such file")
@@ -85,6 +93,7 @@ def _options(arguments: argparse.Namespace) -> dict[str, Any]:
         "contacts": getattr(arguments, "contacts", None),
         "coefficients": arguments.coefficients or None,
         "hole_near_field": False if arguments.no_hole_near_field else None,
+        "bodies": arguments.bodies,
     }
 
 
@@ -103,10 +112,11 @@ def find_coefficients_of(cases: Mapping[str, Drive], engine: Engine, arguments: 
         warm = {name: warm_drive(drive) for name, drive in cases.items()}  # coefficients are those of the warm bodies
         if isinstance(engine, CoupledEngine) and engine.lenders:
             found = [body for one in warm.values() for body in engine.bodies_of(single_discs(one))]
-            bodies = {body.shape_fingerprint(): body for body in found}.values()
+            bodies = {body.shape_fingerprint(engine.bodies): body for body in found}.values()
             cases_of = [body.case for body in bodies]
             warm = {
                 body.case if cases_of.count(body.case) == 1 else f"{body.case}, body {number}": body
                 for number, body in enumerate(bodies)
             }
-        find_case_coefficients(warm, arguments.coefficients or (), near_field=NEAR_FIELDS[arguments.compliance])
+        near_field = NEAR_FIELDS[arguments.compliance]
+        find_case_coefficients(warm, arguments.coefficients or (), near_field=near_field, bodies=engine.bodies)

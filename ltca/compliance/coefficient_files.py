@@ -1,8 +1,8 @@
 """Where influence coefficients come from: files of the user's, or derived once for each distinct shape and kept.
 
 `ltca` reads files only. What derives them registers in the entry-point group ``cyclo.derivations`` (the package
-`fem` does), so that `ltca` imports nothing to its right: a function of a drive, ``state`` and ``processes`` (how many
-of its kind share the memory) that returns the dataset of ``docs/theory/coefficients.md``.
+`fem` does), so that `ltca` imports nothing to its right: a function of a drive, ``state`` or ``bodies`` and ``processes`` (how
+many of its kind share the memory) that returns the dataset of ``docs/theory/coefficients.md``.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from typing import Any
 from ltca.compliance.coefficients import InfluenceCoefficients, load_coefficients
 from ltca.compliance.near_field import NEAR_FIELDS, NearField
 from ltca.drive.engine_support import require
-from ltca.drive.parts import Drive
+from ltca.drive.parts import Bodies, Drive
 from ltca.drive.single_discs import single_discs
 from ltca.errors import CycloError, DamagedFileError
 from ltca.output.process_pools import process_pool
@@ -43,19 +43,21 @@ MAX_DERIVATIONS = 2
 """Most derivations at the same time: one takes 1.0 GB for a disc like the paper's, 3.1 GB with 99 teeth."""
 SECONDS, SECONDS_PER_TOOTH, SECONDS_PER_HOLE, SECONDS_PER_BORE = 0.8, 0.28, 0.45, 0.5
 """Time of a derivation on one core, s: the mesh is fine along the boundaries and the rest follows its size."""
+SOLID_SECONDS = 0.7
+"""Time of a solid disc, s, by the square of that of a plane one: as many loads as stations on unknowns that grow as they do."""
 GIGABYTES, GIGABYTES_PER_TOOTH, MUCH = 0.55, 0.026, 2.0
 """Its memory, GB, and from where on it is told beforehand."""
 _ENGINES = {near_field: engine for engine, near_field in NEAR_FIELDS.items()}
 """What coefficients are wanted for."""
 
 
-def cached_file(drive: Drive) -> Path:
+def cached_file(drive: Drive, bodies: Bodies = "plane") -> Path:
     """Return where the coefficients of a drive's shape are kept: under ``$XDG_CACHE_HOME`` or ``~/.cache``.
 
     The folder carries version and hash of the code that derived them: other code derives its own. Where it cannot be
     written and has not got them, it is a temporary one of this run (`require_cache`).
     """
-    return kept_file(file_name(drive))
+    return kept_file(file_name(drive, bodies))
 
 
 def kept_file(name: str) -> Path:
@@ -64,20 +66,20 @@ def kept_file(name: str) -> Path:
     return kept if kept.exists() and not new.exists() else new
 
 
-def file_name(drive: Drive) -> str:
+def file_name(drive: Drive, bodies: Bodies = "plane") -> str:
     """Return the name of a file of coefficients by the shape that they belong to."""
-    return f"coefficients-{drive.shape_fingerprint()}-strain.nc"
+    return f"coefficients-{drive.shape_fingerprint(bodies)}-{'solid' if bodies == 'solid' else 'strain'}.nc"
 
 
-def shipped_file(drive: Drive) -> Path | None:
+def shipped_file(drive: Drive, bodies: Bodies = "plane") -> Path | None:
     """Return the coefficients of a drive of one disc that come with the package: those of the shipped drives' shapes."""
-    path = SHIPPED / file_name(drive)
+    path = SHIPPED / file_name(drive, bodies)
     return path if path.exists() else None
 
 
-def has_coefficients(drive: Drive) -> bool:
+def has_coefficients(drive: Drive, bodies: Bodies = "plane") -> bool:
     """Tell whether coefficients of a drive of one disc are there without being derived."""
-    return shipped_file(drive) is not None or cached_file(drive).exists()
+    return shipped_file(drive, bodies) is not None or cached_file(drive, bodies).exists()
 
 
 def cache_folder() -> Path:
@@ -123,6 +125,7 @@ def find_coefficients(
     files: Sequence[Path] | None = None,
     *,
     near_field: NearField = "half-space",
+    bodies: Bodies = "plane",
 ) -> InfluenceCoefficients:
     """Return the coefficients of a drive: from a file, from the cache, or newly derived and kept there.
 
@@ -134,6 +137,8 @@ def find_coefficients(
         Files of ``cyclo derive``, one of which must belong to the drive.
     near_field : {"plane-strain", "half-space"}
         What they are wanted for.
+    bodies : {"plane", "solid"}
+        What bodies they are of.
 
     Returns
     -------
@@ -147,11 +152,11 @@ def find_coefficients(
     """
     require(drive, _ENGINES[near_field])
     if files is not None:
-        return _load_first_that_fits(files, drive)[1]
-    found = _kept(drive)
+        return _load_first_that_fits(files, drive, bodies)[1]
+    found = _kept(drive, bodies)
     if found is None:
-        _derive_missing({drive.name: drive})
-        found = load_coefficients(cached_file(drive), drive, lawful=False)
+        _derive_missing({drive.name: drive}, bodies)
+        found = load_coefficients(cached_file(drive, bodies), drive, lawful=False)
     return found
 
 
@@ -160,6 +165,7 @@ def find_case_coefficients(
     files: Sequence[Path] = (),
     *,
     near_field: NearField = "half-space",
+    bodies: Bodies = "plane",
 ) -> dict[str, InfluenceCoefficients]:
     """Return the coefficients of each case, those of each distinct shape derived once.
 
@@ -172,6 +178,8 @@ def find_case_coefficients(
         are not in the cache are derived and kept there.
     near_field : {"plane-strain", "half-space"}
         What they are wanted for.
+    bodies : {"plane", "solid"}
+        What bodies they are of.
 
     Returns
     -------
@@ -187,11 +195,11 @@ def find_case_coefficients(
         require(drive, _ENGINES[near_field])
     cases = {label: single for name, drive in cases.items() for label, single in _discs(name, drive)}
     if files:
-        return _load_each(cases, files)
-    kept = {name: _kept(drive) for name, drive in cases.items()}
-    _derive_missing({name: drive for name, drive in cases.items() if kept[name] is None})
+        return _load_each(cases, files, bodies)
+    kept = {name: _kept(drive, bodies) for name, drive in cases.items()}
+    _derive_missing({name: drive for name, drive in cases.items() if kept[name] is None}, bodies)
     return {
-        name: own or load_coefficients(cached_file(cases[name]), cases[name], lawful=False)
+        name: own or load_coefficients(cached_file(cases[name], bodies), cases[name], lawful=False)
         for name, own in kept.items()
     }
 
@@ -202,12 +210,12 @@ def _discs(name: str, drive: Drive) -> list[tuple[str, Drive]]:
     return [(name if len(singles) == 1 else f"{name}, disc {number}", single) for number, single in enumerate(singles)]
 
 
-def _load_each(cases: Mapping[str, Drive], files: Sequence[Path]) -> dict[str, InfluenceCoefficients]:
+def _load_each(cases: Mapping[str, Drive], files: Sequence[Path], bodies: Bodies) -> dict[str, InfluenceCoefficients]:
     """Give each case the file that belongs to it; leave no case and no file over, and say where clearances are left out."""
     found, used = {}, set()
     for name, drive in cases.items():
         try:
-            path, found[name] = _load_first_that_fits(files, drive)
+            path, found[name] = _load_first_that_fits(files, drive, bodies)
         except CycloError as error:
             raise CycloError(f"case {name}: {error}") from error
         used.add(path)
@@ -219,11 +227,11 @@ def _load_each(cases: Mapping[str, Drive], files: Sequence[Path]) -> dict[str, I
     return found
 
 
-def _load_first_that_fits(files: Sequence[Path], drive: Drive) -> tuple[Path, InfluenceCoefficients]:
+def _load_first_that_fits(files: Sequence[Path], drive: Drive, bodies: Bodies) -> tuple[Path, InfluenceCoefficients]:
     refusals = []
     for path in files:
         try:
-            return path, load_coefficients(path, drive)
+            return path, load_coefficients(path, drive, bodies=bodies)
         except DamagedFileError:
             raise
         except CycloError as error:
@@ -231,13 +239,13 @@ def _load_first_that_fits(files: Sequence[Path], drive: Drive) -> tuple[Path, In
     raise CycloError("; ".join(refusals) or "no file of influence coefficients is given")
 
 
-def _kept(drive: Drive) -> InfluenceCoefficients | None:
+def _kept(drive: Drive, bodies: Bodies) -> InfluenceCoefficients | None:
     """Return the coefficients that are shipped or in the cache; None where there are none, or a damaged file that has to be
     made again. They were checked when they were derived.
     """
-    if (path := shipped_file(drive)) is not None:
+    if (path := shipped_file(drive, bodies)) is not None:
         return load_coefficients(path, drive, lawful=False)
-    path = cached_file(drive)
+    path = cached_file(drive, bodies)
     if not path.exists():
         return None
     try:
@@ -249,15 +257,16 @@ def _kept(drive: Drive) -> InfluenceCoefficients | None:
         return None
 
 
-def expected_seconds(drives: Iterable[Drive]) -> list[float]:
+def expected_seconds(drives: Iterable[Drive], bodies: Bodies = "plane") -> list[float]:
     """Return about how long the derivation of each drive of one disc takes on one core, s (docs/theory/coefficients.md)."""
-    return [
+    plane = [
         SECONDS
         + SECONDS_PER_TOOTH * drive.disc.number_of_teeth
         + SECONDS_PER_HOLE * drive.number_of_holes
         + SECONDS_PER_BORE * drive.crank.number
         for drive in drives
     ]
+    return plane if bodies == "plane" else [seconds + SOLID_SECONDS * seconds**2 for seconds in plane]
 
 
 def told_seconds(seconds: float) -> str:
@@ -271,55 +280,61 @@ def told_seconds(seconds: float) -> str:
     return f"some {10 * max(round(0.1 * seconds), 1)} s" if seconds < 180.0 else f"some {round(seconds / 60.0)} min"
 
 
-def _derive_missing(cases: Mapping[str, Drive]) -> None:
+def _derive_missing(cases: Mapping[str, Drive], bodies: Bodies) -> None:
     """Derive the coefficients of cases into the cache, those of one shape once, and say so."""
     missing: dict[Path, str] = {}
     for name, drive in cases.items():
-        missing.setdefault(cached_file(drive), name)
+        missing.setdefault(cached_file(drive, bodies), name)
     if not missing:
         return
     derivation()
     require_cache()
-    missing = {cache_folder() / file_name(cases[name]): name for name in missing.values()}
-    each = expected_seconds(cases[name] for name in missing.values())
-    whole = max(sum(each) / _processes(len(missing)), *each)
+    missing = {cache_folder() / file_name(cases[name], bodies): name for name in missing.values()}
+    each = expected_seconds((cases[name] for name in missing.values()), bodies)
+    whole = max(sum(each) / _processes(len(missing), bodies), *each)
     most = max(GIGABYTES + GIGABYTES_PER_TOOTH * cases[name].disc.number_of_teeth for name in missing.values())
-    needed = f", {most:.0f} GB of memory for each" if most > MUCH else ""
+    # What solid bodies need is told by what derives them.
+    needed = f", {most:.0f} GB of memory for each" if most > MUCH and bodies == "plane" else ""
+    of = ", solid bodies," if bodies == "solid" else ","
     print(
-        f"deriving influence coefficients of {', '.join(missing.values())}, once for each shape ({told_seconds(whole)}{needed}; "
-        f"kept in {next(iter(missing)).parent})",
+        f"deriving influence coefficients of {', '.join(missing.values())}{of} once for each shape ({told_seconds(whole)}"
+        f"{needed}; kept in {next(iter(missing)).parent})",
         file=sys.stderr,
     )
     with progress("coefficients", len(missing)) as advance:
-        for path in _derive({path: cases[name] for path, name in missing.items()}):
+        for path in _derive({path: cases[name] for path, name in missing.items()}, bodies):
             advance(missing[path])
 
 
-def _derive(drives: Mapping[Path, Drive]) -> Iterator[Path]:
+def _derive(drives: Mapping[Path, Drive], bodies: Bodies) -> Iterator[Path]:
     """Derive coefficients into their files, two at once, and yield each file that is there."""
-    processes = _processes(len(drives))
+    processes = _processes(len(drives), bodies)
     alone = dict(drives)
     if processes > 1:
         with process_pool(processes) as pool:
             with interrupts_held():
-                flying = {pool.submit(_derive_file, drive, path, processes): path for path, drive in drives.items()}
+                flying = {
+                    pool.submit(_derive_file, drive, path, processes, bodies): path for path, drive in drives.items()
+                }
             for future in as_completed(flying):
                 # What fails for want of memory (or of a process that was killed for it) may still fit alone.
                 if future.exception() is None:
                     del alone[flying[future]]
                     yield flying[future]
     for path, drive in alone.items():
-        _derive_file(drive, path, 1)
+        _derive_file(drive, path, 1, bodies)
         yield path
 
 
-def _processes(derivations: int) -> int:
-    return min(MAX_DERIVATIONS, derivations, os.cpu_count() or 1)
+def _processes(derivations: int, bodies: Bodies) -> int:
+    """How many are derived at once: solid bodies take the memory of many plane ones."""
+    return 1 if bodies == "solid" else min(MAX_DERIVATIONS, derivations, os.cpu_count() or 1)
 
 
-def _derive_file(drive: Drive, path: Path, processes: int) -> None:
+def _derive_file(drive: Drive, path: Path, processes: int, bodies: Bodies) -> None:
     """Derive the coefficients of one drive into a file, one of some processes that share the memory."""
-    dataset = derivation()(drive, state="strain", processes=processes)
+    of: dict[str, str] = {"bodies": bodies} if bodies == "solid" else {"state": "strain"}
+    dataset = derivation()(drive, **of, processes=processes)
     require_laws(dataset, str(path))
     write_coefficients(dataset, path)
 

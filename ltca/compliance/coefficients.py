@@ -4,6 +4,9 @@ The file (written by ``cyclo derive``, format in docs/theory/coefficients.md) ho
 roller and race by unit loads on patches, at stations along the boundaries. Of each entry the half-plane's logarithm is
 taken off; what is left is smooth when load and place move together, and is interpolated. The logarithm of the
 actual places is added again.
+
+Plane bodies know loads that are even along the width alone. Files of solid bodies hold a second set, of loads linear along it:
+the tilt by a moment of 1 N·mm, q = 12 z/t³. Near a contact both follow one logarithm, that of a moment times 12/t².
 """
 
 from __future__ import annotations
@@ -18,7 +21,7 @@ from numpy.typing import NDArray
 
 from ltca.arrays import FloatArray
 from ltca.compliance.stress_coefficients import NO_STRESSES, StressCoefficients, read_stress_coefficients
-from ltca.drive.parts import Clearance, Drive, Material
+from ltca.drive.parts import Bodies, Clearance, Drive, Material
 from ltca.drive.single_discs import nominal_shape
 from ltca.errors import CycloError, DamagedFileError, DriveError
 from ltca.geometry.boundary_stations import (
@@ -31,19 +34,28 @@ from ltca.geometry.boundary_stations import (
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.placement import Placement
 from ltca.reading.coefficient_file import read_coefficients
-from ltca.reading.coefficient_schema import flank_clustering, require_same_supports, shape_differences, shape_of
+from ltca.reading.coefficient_schema import (
+    flank_clustering,
+    is_solid,
+    require_same_supports,
+    shape_differences,
+    shape_of,
+)
 
 if TYPE_CHECKING:
     from ltca.output.labelled import Labelled
 
 
+SOLID = "solid"
+"""What files of solid bodies say of their plane."""
 PLACE_TOLERANCE = 1e-3
 """Largest misplacement of a station relative to a half-width: coefficients change by that part of the near field's unit."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class InfluenceCoefficients:
-    """Smooth parts of the influence coefficients of all bodies, mm/N; and the strength of their logarithms.
+    """Smooth parts of the influence coefficients of all bodies, and the strength of their logarithms: approaches by loads,
+    mm/N, or tilts by moments, rad/(N·mm).
 
     Attributes
     ----------
@@ -52,9 +64,9 @@ class InfluenceCoefficients:
     shared : bool
         Whether they stand for bodies that differ a little from those they were derived for: on somebody's word.
     plane : str
-        "strain" or "stress": state of the body part.
+        "strain" or "stress", state of the body part; or "solid".
     thickness : float
-        Of all bodies, mm.
+        Of all bodies but solid rollers, which are as long as they are, mm.
     flank : Boundary
         Stations of the flank.
     bores : tuple of Boundary
@@ -70,11 +82,13 @@ class InfluenceCoefficients:
     race : array, shape (angles,)
         Of the inner race, by the angle between place and load.
     disc_logarithm, pin_logarithm, roller_logarithm, race_logarithm : float
-        Factor κ of −ln(distance) in each body, mm/N.
+        Factor κ of −ln(distance) in each body, mm/N or rad/(N·mm).
     stress : StressCoefficients
         Stress along the walls of the disc, where the file has it.
     code_hash : str
         Of the code that derived them, where the file says so.
+    tilting : InfluenceCoefficients or None
+        Tilts by moments of solid bodies; None of plane ones, which take nothing of a tilt.
     """
 
     fingerprint: str
@@ -94,6 +108,12 @@ class InfluenceCoefficients:
     race_logarithm: float
     stress: StressCoefficients = NO_STRESSES
     code_hash: str = ""
+    tilting: InfluenceCoefficients | None = None
+
+    @property
+    def bodies(self) -> Bodies:
+        """What bodies they are of."""
+        return "solid" if self.plane == SOLID else "plane"
 
     def lent_to(self, drive: Drive) -> InfluenceCoefficients:
         """Return the same coefficients to serve another drive whose bodies differ a little; who asks answers for it.
@@ -122,7 +142,7 @@ class InfluenceCoefficients:
                     "drive whose influence coefficients are shared"
                 ]
             )
-        fingerprint = drive.shape_fingerprint()
+        fingerprint = drive.shape_fingerprint(self.bodies)
         return replace(self, fingerprint=fingerprint, shared=self.shared or fingerprint != self.fingerprint)
 
     def placed_in(self, drive: Drive) -> InfluenceCoefficients:
@@ -140,10 +160,16 @@ class InfluenceCoefficients:
         how: dict[str, Any] = {"bores": cranks, "steps": steps, "pattern": drive.pattern, "flank_turn": tooth_turn}
         flank, *walls = turned_boundaries((self.flank, *self.bores, *self.holes), **how)
         bores, holes = tuple(walls[:cranks]), tuple(walls[cranks:])
-        return replace(self, flank=flank, bores=bores, holes=holes, stress=self.stress.placed(**how))
+        tilting = None if self.tilting is None else self.tilting.placed_in(drive)
+        placed = self.stress.placed(**how)
+        return replace(self, flank=flank, bores=bores, holes=holes, stress=placed, tilting=tilting)
 
     def with_roller_length(self, length: float) -> InfluenceCoefficients:
-        """Return the coefficients with rollers of a length of their own, mm: in plane strain they yield like one over it."""
+        """Return the coefficients with rollers of a length of their own, mm: in the plane they yield like one over it, and solid
+        ones have it.
+        """
+        if self.plane == SOLID:
+            return self
         scale = self.thickness / length
         return replace(self, roller=scale * self.roller, roller_logarithm=scale * self.roller_logarithm)
 
@@ -249,12 +275,17 @@ def _mean_logarithm(distance: FloatArray, first: FloatArray, second: FloatArray)
 
 
 def logarithm_factor(material: Material, thickness: float, plane: str = "strain") -> float:
-    """Return κ = 2 (1 − ν²)/(π E t) of a half-plane's displacement −κ F ln(distance); 2/(π E t) in plane stress."""
-    compliance = material.plane_strain_compliance if plane == "strain" else 1.0 / material.youngs_modulus
+    """Return κ = 2 (1 − ν²)/(π E t) of a half-plane's displacement −κ F ln(distance); 2/(π E t) in plane stress.
+
+    Near its contacts a solid is in plane strain but for its ends.
+    """
+    compliance = 1.0 / material.youngs_modulus if plane == "stress" else material.plane_strain_compliance
     return 2.0 * compliance / (np.pi * thickness)
 
 
-def load_coefficients(path: Path, drive: Drive, *, lawful: bool = True) -> InfluenceCoefficients:
+def load_coefficients(
+    path: Path, drive: Drive, *, lawful: bool = True, bodies: Bodies | None = None
+) -> InfluenceCoefficients:
     """Read the coefficients of a drive.
 
     Parameters
@@ -265,6 +296,8 @@ def load_coefficients(path: Path, drive: Drive, *, lawful: bool = True) -> Influ
         The drive they must belong to.
     lawful : bool
         Check their laws, which takes a second; not needed where that was done when they were derived.
+    bodies : {"plane", "solid"}, optional
+        What bodies they must be of; any by default.
 
     Returns
     -------
@@ -277,6 +310,9 @@ def load_coefficients(path: Path, drive: Drive, *, lawful: bool = True) -> Influ
         When the file cannot be read, is damaged, breaks a law, or belongs to other bodies; it names what differs.
     """
     data = read_coefficients(path, lawful=lawful)
+    own = bodies_of(data)
+    if bodies not in (None, own):
+        raise CycloError(f"{path}: holds coefficients of {own} bodies, not of {bodies} ones: give --bodies {own}")
     shared = _require_same_bodies(path, data, drive)
     boundaries = len(np.unique(data["station_boundary"].values))
     walls = 1 + drive.crank.number + drive.number_of_holes
@@ -290,10 +326,15 @@ def load_coefficients(path: Path, drive: Drive, *, lawful: bool = True) -> Influ
     return replace(found, stress=stress, code_hash=str(data.attrs.get("code_hash", "")))
 
 
+def bodies_of(data: Labelled) -> Bodies:
+    """Return what bodies a file is of."""
+    return "solid" if is_solid(data) else "plane"
+
+
 def _require_same_bodies(path: Path, data: Labelled, drive: Drive) -> bool:
     """Return whether the file serves the drive although it leaves the clearances out, which it must say itself."""
-    own, theirs, attributes = drive.body_shape(), shape_of(data), data.attrs
-    nominal = replace(drive, clearance=Clearance()).body_shape()
+    own, theirs, attributes = drive.body_shape(bodies_of(data)), shape_of(data), data.attrs
+    nominal = replace(drive, clearance=Clearance()).body_shape(bodies_of(data))
     if theirs == own or (theirs == nominal and bool(attributes["clearances_left_out"])):
         require_same_supports(str(path), data, drive)
         return theirs != own
@@ -334,30 +375,43 @@ def _require_places(path: Path, data: Labelled, drive: Drive) -> None:
 
 def _coefficients_of_dataset(data: Labelled, drive: Drive, *, shared: bool) -> InfluenceCoefficients:
     """Take the half-plane's logarithm off every entry of a file."""
+    even = _smooth_parts(data, drive, shared=shared)
+    return replace(even, tilting=_smooth_parts(data, drive, shared=shared, tilts=True)) if even.plane == SOLID else even
+
+
+def _smooth_parts(data: Labelled, drive: Drive, *, shared: bool, tilts: bool = False) -> InfluenceCoefficients:
+    """Smooth parts of approaches by loads, or of tilts by moments, whose logarithms have 12 by the square of the length."""
     plane, thickness, parts = str(data.attrs["plane"]), float(data.attrs["thickness"]), drive.materials
+    # Solid rollers have their own length.
+    length = drive.roller_length if plane == SOLID else thickness
+
+    def approach(body: str) -> FloatArray:
+        return np.asarray(data[f"{body}_tilt_approach" if tilts else f"{body}_approach"].values)
+
+    def logarithm(material: Material, width: float) -> float:
+        return logarithm_factor(material, width, plane) * (12.0 / width**2 if tilts else 1.0)
+
     boundary = data["station_boundary"].values.astype(int)
     places = data["station_x"].values + 1j * data["station_y"].values
     half_width = data["station_half_width"].values
-    disc_logarithm = logarithm_factor(parts.disc, thickness, plane)
+    disc_logarithm = logarithm(parts.disc, thickness)
     distance = np.abs(places[:, None] - places[None, :])
-    logarithm = _mean_logarithm(distance, half_width[:, None], half_width[None, :])
+    between = _mean_logarithm(distance, half_width[:, None], half_width[None, :])
     same = boundary[:, None] == boundary[None, :]
-    disc = data["disc_approach"].values + np.where(same, disc_logarithm * logarithm, 0.0)
+    disc = approach("disc") + np.where(same, disc_logarithm * between, 0.0)
 
     flank, *walls = boundaries_of(boundary, drive.disc.number_of_teeth, flank_clustering(data))
-    pin_logarithm = logarithm_factor(drive.flank_pin, thickness, plane)
-    roller_logarithm = logarithm_factor(parts.roller, thickness, plane)
-    race_logarithm = logarithm_factor(parts.inner_race, thickness, plane)
+    pin_logarithm = logarithm(drive.flank_pin, thickness)
+    roller_logarithm = logarithm(parts.roller, length)
+    race_logarithm = logarithm(parts.inner_race, thickness)
     own = _self_logarithm(data["pin_half_width"].values)
-    roller = data["roller_approach"].values + roller_logarithm * np.diag(
-        _self_logarithm(data["roller_half_width"].values)
-    )
+    roller = approach("roller") + roller_logarithm * np.diag(_self_logarithm(data["roller_half_width"].values))
     angle = data["race_angle"].values
     race_half_width = np.full(angle.shape, float(data["race_half_width"].values))
     chord = 2.0 * drive.crank_bearing.inner_race_radius * np.abs(np.sin(0.5 * angle))
-    race = data["race_approach"].values + race_logarithm * _mean_logarithm(chord, race_half_width, race_half_width)
+    race = approach("race") + race_logarithm * _mean_logarithm(chord, race_half_width, race_half_width)
     return InfluenceCoefficients(
-        fingerprint=drive.shape_fingerprint(),
+        fingerprint=drive.shape_fingerprint(bodies_of(data)),
         shared=shared,
         plane=plane,
         thickness=thickness,
@@ -365,7 +419,7 @@ def _coefficients_of_dataset(data: Labelled, drive: Drive, *, shared: bool) -> I
         bores=tuple(walls[: drive.crank.number]),
         holes=tuple(walls[drive.crank.number :]),
         disc=0.5 * (disc + disc.T),
-        pin=float(data["pin_approach"].values + pin_logarithm * own),
+        pin=float(approach("pin") + pin_logarithm * own),
         roller=roller,
         race=race,
         disc_logarithm=disc_logarithm,

@@ -90,6 +90,8 @@ class CoupledCompliance:
         Effective radii of shaft pins and holes, mm.
     own : OwnParts
         What each contact's own body parts add to the diagonal of C.
+    race_tilting : array, shape (rollers, rollers), or None
+        Tilts by moments between the inner contacts, rad/(N·mm), of solid bodies in slices.
     """
 
     grids_can_check: ClassVar[bool] = False
@@ -104,6 +106,7 @@ class CoupledCompliance:
     inner_radius: FloatArray
     hole_radius: FloatArray
     own: OwnParts
+    race_tilting: FloatArray | None = None
 
     @classmethod
     def of_drive(
@@ -132,11 +135,12 @@ class CoupledCompliance:
         DriveError
             When the coefficients are those of other bodies, or plane strain cannot say what the drive has.
         """
-        if coefficients.fingerprint != drive.shape_fingerprint():
+        fingerprint = drive.shape_fingerprint(coefficients.bodies)
+        if coefficients.fingerprint != fingerprint:
             raise DriveError(
                 [
                     f"influence coefficients of the shape {coefficients.fingerprint}: must be those of {drive.name}, shape "
-                    f"{drive.shape_fingerprint()}"
+                    f"{fingerprint}"
                 ]
             )
         geometry = replace(ContactGeometry.of_drive(drive), tip_share=tip_share(drive), tip_slope=tip_slope(drive))
@@ -162,7 +166,10 @@ class CoupledCompliance:
         # A sleeve's own law has all that it yields (`ltca.laws.backed`).
         bare = drive.pin_shaft is not None and drive.pin_shaft.seat.kind == "fixed"
         own = OwnParts.of_drive(drive, geometry, body, near_field, laws.datum, elastic_shaft_pins=yields and bare)
-        race = body.race_matrix(place.roller_cage_angles, float(place.inner_race_radius))
+        on_race = place.roller_cage_angles, float(place.inner_race_radius)
+        race, tilting = body.race_matrix(*on_race), None
+        if body.tilting is not None and own.tilting is not None:
+            tilting = body.tilting.race_matrix(*on_race) + own.tilting.inner * np.eye(race.shape[0])
         return cls(
             geometry=geometry,
             coefficients=body,
@@ -176,6 +183,7 @@ class CoupledCompliance:
             inner_radius=place.inner_effective_radii,
             hole_radius=place.hole_effective_radii,
             own=own,
+            race_tilting=tilting,
         )
 
     def respond(

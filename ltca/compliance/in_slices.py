@@ -1,7 +1,7 @@
 """Contacts of a disc in slices at a pose: how they tilt, what they carry, and what force and tangent of the disc that makes.
 
-Walls of bodies that yield under other contacts (`ltca.compliance.coupled_slices`) take their part off every approach, even along
-the width: contacts may be asked for with that given.
+Walls of bodies that yield under other contacts (`ltca.compliance.coupled_slices`) take their part off every approach and, where
+bodies are solid, off every tilt: contacts may be asked for with that given.
 """
 
 from __future__ import annotations
@@ -87,11 +87,19 @@ class ContactsInSlices:
         self.at_race, self.at_bore = (dot(self.rays.direction, lean) for lean in (journals, geometry.lean(pose)))
 
     def pair(
-        self, number: int, law: SlicedLaw, start: FloatArray | None = None, given: FloatArray | float = 0.0
+        self,
+        number: int,
+        law: SlicedLaw,
+        start: FloatArray | None = None,
+        given: FloatArray | float = 0.0,
+        given_tilt: FloatArray | None = None,
     ) -> LeaningPairs:
-        """Return what wheel pins (0) or shaft pins (1) carry, of whose approaches the bodies take `given`, mm."""
+        """Return what wheel pins (0) or shaft pins (1) carry, of whose approaches the bodies take `given`, mm, and `given_tilt`,
+        rad, of their tilts.
+        """
         motion, tilt = self.motions[number], self.tilts[number]
-        contact = law.respond(motion.approach - given, tilt.tilt, self.radii[number], start, self.exactness)
+        at = tilt.tilt if given_tilt is None else tilt.tilt - given_tilt
+        contact = law.respond(motion.approach - given, at, self.radii[number], start, self.exactness)
         return LeaningPairs(tilt=tilt, contact=contact.still)
 
     def rollers(
@@ -99,11 +107,14 @@ class ContactsInSlices:
         laws: RollerLaws[Any],
         start: RollerStart | None = None,
         given: tuple[FloatArray | float, FloatArray | float] = (0.0, 0.0),
+        given_tilts: tuple[FloatArray, FloatArray] | None = None,
     ) -> RollerState:
-        """Return the balanced rollers, of whose approaches in the bore and on the race the bodies take `given`, mm."""
+        """Return the balanced rollers, of whose approaches in the bore and on the race the bodies take `given`, mm, and
+        `given_tilts`, rad, of their tilts.
+        """
         displacement = self.bores.each(self.bores.displacement, self.rays.direction.shape[1])
         at = self.at_race, self.at_bore
-        return balance_leaning_rollers(self.rays, displacement, laws, at, start, given, self.exactness)
+        return balance_leaning_rollers(self.rays, displacement, laws, at, start, given, self.exactness, given_tilts)
 
     @property
     def moved(self) -> FloatArray:

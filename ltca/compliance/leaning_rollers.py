@@ -66,12 +66,17 @@ def balance_leaning_rollers(
     start: RollerStart | None = None,
     given: tuple[FloatArray | float, FloatArray | float] = (0.0, 0.0),
     exactness: Exactness = EXACT,
+    given_tilts: tuple[FloatArray, FloatArray] | None = None,
 ) -> RollerState:
     """Place every roller so that its contacts balance; arguments as for `ltca.compliance.rollers.balance_rollers`.
 
     `leans` are those of race and bore along the rays, rad, shape (positions, rollers); `start` is what stood nearby, and `given`
-    what the bodies take of the approaches in the bore and on the race, mm, shape (positions, rollers).
+    what the bodies take of the approaches in the bore and on the race, mm, shape (positions, rollers), as `given_tilts` of the
+    tilts, rad, where they yield unevenly along the width.
     """
+    if given_tilts is not None:
+        # A wall that gives way under a moment leans: what it takes of a tilt is a lean of bore or race more.
+        leans = leans[0] - given_tilts[1], leans[1] + given_tilts[0]
     shape = rays.direction.shape
     pressed = _PressedRollers(rays, displacement, laws, leans, given, exactness)
     pressed.begin(start)
@@ -79,7 +84,7 @@ def balance_leaning_rollers(
     rows, numbers, ray = pressed.rows, pressed.numbers, pressed.ray
     inner, outer, outward, inward, lean = pressed.inner, pressed.outer, pressed.outward, pressed.inward, pressed.lean
     overlap = pressed.overlap
-    tangent, follow = _eliminated(pressed)
+    tangent, follow = _eliminated(pressed, tilts=given_tilts is not None)
     found: dict[str, NDArray[Any]] = {
         "share": np.divide(inward, overlap, out=np.full(inward.shape, 0.5), where=overlap > 0.0),
         "inner_approach": inward,
@@ -327,10 +332,10 @@ def _own_stiffness(contacts: _Contacts, ray: ComplexArray, half: float) -> PartS
     )
 
 
-def _eliminated(rollers: _PressedRollers) -> tuple[FloatArray, FloatArray]:
+def _eliminated(rollers: _PressedRollers, *, tilts: bool) -> tuple[FloatArray, FloatArray]:
     """Second derivative of the eliminated energy by displacement (x, y) and lean (x, y) of the bore and what the bodies take of
-    the approaches in the bore and on the race, shape (rollers, 6, 6); and how place outward and lean follow what places the
-    roller (`RollerStart`).
+    the approaches in the bore and on the race, with `tilts` of the tilts there as well, shape (rollers, 6, 6) or (…, 8, 8); and
+    how place outward and lean follow what places the roller (`RollerStart`).
     """
     ray, outward, inner, outer = rollers.ray, rollers.outward, rollers.inner, rollers.outer
     cosine = dot(outward, ray)
@@ -349,7 +354,8 @@ def _eliminated(rollers: _PressedRollers) -> tuple[FloatArray, FloatArray]:
         (-k * cosine[:, None] * normal - (bend * slant)[:, None] * across, -x * cosine[:, None] * n, -first), axis=1
     )
     by_lean = np.concatenate((-x * normal, -m * n, -second), axis=1)
-    direct = np.zeros((ray.size, 6, 6))
+    size = 8 if tilts else 6
+    direct = np.zeros((ray.size, size, size))
     direct[:, :2, :2] = (
         k[..., None] * normal[:, :, None] * normal[:, None] + bend[:, None, None] * across[:, :, None] * across[:, None]
     )
@@ -368,6 +374,14 @@ def _eliminated(rollers: _PressedRollers) -> tuple[FloatArray, FloatArray]:
     local[:, :, 2] = np.matmul(both[:, :, 2:4], n[..., None])[..., 0]
     local[:, 0, 3], local[:, 1, 3] = -inner.by_tilt, -inner.moment_by_tilt
     local[:, :, 4:] = both[:, :, 4:]
+    if tilts:
+        # What is taken of a tilt acts as a lean of bore or race along the ray.
+        by_tilts = np.stack((local[:, :, 2], -local[:, :, 3]), axis=2)
+        both = np.concatenate((both, by_tilts), axis=2)
+        direct[:, :2, 6], direct[:, 2:4, 6] = x * normal, m * n
+        direct[:, 4, 6], direct[:, 5, 7] = outer.by_tilt, inner.by_tilt
+        direct[:, 6, 6], direct[:, 7, 7] = outer.moment_by_tilt, inner.moment_by_tilt
+        direct[:, 6:, :6] = direct[:, :6, 6:].swapaxes(1, 2)
     solved = np.linalg.solve(own, np.concatenate((both, local), axis=2))
-    tangent = direct - np.matmul(both.swapaxes(1, 2), solved[:, :, :6])
-    return np.asarray(tangent), np.asarray(-solved[:, :, 6:], dtype=float)
+    tangent = direct - np.matmul(both.swapaxes(1, 2), solved[:, :, :size])
+    return np.asarray(tangent), np.asarray(-solved[:, :, size:], dtype=float)

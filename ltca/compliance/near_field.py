@@ -7,17 +7,20 @@ What is taken off is the near field of the *finite-element body's own* load: eve
 the length and profile of the part that presses on it. What is left, the walls and supports of the body, then goes
 with any law near the contact: of a roller shorter than the disc, of a crowned pin. (With the law's own length in its
 place that length would cancel, and short rollers would be as stiff as long ones.)
+
+Of solid bodies that is, for loads even and linear along the width, what a half-space yields under the same load: Love's strips
+of the law in slices, projected on these loads (`projected_on_half_space`; docs/theory/solid_bodies.md).
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal, get_args
 
 import numpy as np
 
 from ltca.compliance import sliced
-from ltca.compliance.coefficients import InfluenceCoefficients, logarithm_factor
+from ltca.compliance.coefficients import SOLID, InfluenceCoefficients, logarithm_factor
 from ltca.compliance.half_space import HalfSpaceCompliance, hole_in_slices
 from ltca.contact.hertz import effective_radius, line_half_width
 from ltca.contact.tracked_grid import ContactKinds
@@ -37,6 +40,10 @@ NearField = Literal["plane-strain", "half-space"]
 
 NEAR_FIELDS: dict[str, NearField] = {"fe": "plane-strain", "hybrid": "half-space"}
 """The near field of a compliance, by its name."""
+POINTS_ACROSS = 12
+"""Of a semi-elliptic load: exact of powers of 23."""
+MEAN_DISTANCE, MEAN_CUBED_DISTANCE = 256.0 / (45.0 * np.pi**2), 8192.0 / (1575.0 * np.pi**2)
+"""⟨|x − x′|⟩ and ⟨|x − x′|³⟩ of two semi-ellipses of half-width 1."""
 MAX_ITERATIONS = 30
 """Of the search for the approach of a half-width: a handful is usual."""
 
@@ -152,18 +159,21 @@ class NearFieldLaws:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OwnParts:
-    """Diagonal body parts of the contacts, mm/N: what FE has beyond the near field of each contact itself.
+    """Diagonal body parts of the contacts: what FE has beyond the near field of each contact itself.
 
     Attributes
     ----------
     pin, outer, inner, hole : float
-        Added to the interpolated diagonal of disc (pin, outer, hole) and race (inner).
+        Added to the interpolated diagonal of disc (pin, outer, hole) and race (inner), mm/N.
+    tilting : OwnParts or None
+        The same of tilts by moments, rad/(N·mm), of solid bodies.
     """
 
     pin: float
     outer: float
     inner: float
     hole: float
+    tilting: OwnParts | None = None
 
     @classmethod
     def of_drive(
@@ -199,61 +209,88 @@ class OwnParts:
         of it, which leaves smooth − κ ln D. What a half-space of finite length holds of it for the same patch is
         `finite_length_approach`; both are taken at the half-width of half the drive's load T/(e u) on one contact
         (they differ by the end effects alone, which change little with the load). A plane-stress body part joins the
-        plane-strain near field at D.
+        plane-strain near field at D. Of solid bodies a half-space holds `projected_on_half_space` of the even and of the
+        linear load, plane strain the same of both, 12/t² κ of the linear one.
         """
-        parts, bearing, c = drive.materials, drive.crank_bearing, coefficients
-        place = geometry.placement
-        load = 0.5 * abs(drive.wheel_moment()) / (float(place.mean_eccentricity[0]) * place.reduction_ratio)
+        even = _own_parts(drive, geometry, coefficients, near_field, datum, elastic_shaft_pins, tilts=False)
+        if coefficients.tilting is None:
+            return even
+        tilting = _own_parts(drive, geometry, coefficients.tilting, near_field, datum, elastic_shaft_pins, tilts=True)
+        return replace(even, tilting=tilting)
 
-        def remove(body: float, material: Material, radius: float, modulus: float, thickness: float) -> float:
-            if body == 0.0:
-                return 0.0
-            joined = -body * np.log(datum)
-            if near_field == "plane-strain":
-                return float(joined)
-            half_width = float(line_half_width(load / thickness, radius, modulus))
-            factor = logarithm_factor(material, thickness)
-            held = material.plane_strain_compliance * finite_length_approach(thickness, half_width)
-            return float(joined + factor * (np.log(2.0 * datum / half_width) + SELF_ENERGY) - held)
 
-        thickness, length = drive.disc.thickness, drive.roller_length
-        # Where the pitch circle cuts the flank the pins carry most.
-        steep = np.array([0.25 * 2.0 * np.pi / drive.reduction_ratio])
-        at_pin = (
-            float(geometry.profile.effective_radius(steep, drive.pin_wheel.pin_radius)[0]),
-            contact_modulus(parts.disc, drive.flank_pin),
+def _own_parts(
+    drive: Drive,
+    geometry: ContactGeometry,
+    coefficients: InfluenceCoefficients,
+    near_field: NearField,
+    datum: float,
+    elastic_shaft_pins: bool,
+    *,
+    tilts: bool,
+) -> OwnParts:
+    """Diagonal parts of approaches by loads, or of tilts by moments, whose units are 12 by the square of the length."""
+    parts, bearing, c = drive.materials, drive.crank_bearing, coefficients
+    place = geometry.placement
+    load = 0.5 * abs(drive.wheel_moment()) / (float(place.mean_eccentricity[0]) * place.reduction_ratio)
+
+    def unit(material: Material, thickness: float, plane: str = "strain") -> float:
+        return logarithm_factor(material, thickness, plane) * (12.0 / thickness**2 if tilts else 1.0)
+
+    def remove(body: float, material: Material, radius: float, modulus: float, thickness: float) -> float:
+        if body == 0.0:
+            return 0.0
+        joined = -body * np.log(datum)
+        if near_field == "plane-strain":
+            return float(joined)
+        half_width = float(line_half_width(load / thickness, radius, modulus))
+        factor = unit(material, thickness)
+        of_length = (
+            projected_on_half_space(thickness, half_width)[1 if tilts else 0]
+            if c.plane == SOLID
+            else finite_length_approach(thickness, half_width)
         )
-        in_bore = (
-            effective_radius(bearing.roller_radius, -drive.bore_radius),
-            contact_modulus(parts.disc, parts.roller),
-        )
-        on_race = (
-            effective_radius(bearing.roller_radius, bearing.inner_race_radius),
-            contact_modulus(parts.inner_race, parts.roller),
-        )
-        shaft = drive.pin_shaft
-        in_hole = (
-            1.0 if shaft is None else effective_radius(shaft.pin_radius, -drive.hole_radius),
-            hole_modulus(drive, rigid_shaft_pins=not elastic_shaft_pins),
-        )
-        sleeved = drive.pin_wheel.seat.kind == "sleeve"  # whose law has all of it (`ltca.laws.backed`)
-        disc, pin, roller, race = c.disc_logarithm, c.pin_logarithm, c.roller_logarithm, c.race_logarithm
-        whole_pin = c.pin + remove(pin, drive.flank_pin, *at_pin, thickness)
-        hole = remove(disc, parts.disc, *in_hole, thickness)
-        if shaft is not None and elastic_shaft_pins and disc > 0.0:  # without coupling there is no body part at all
-            own = logarithm_factor(parts.shaft_pin, thickness, c.plane)
-            hole += own * carried_cylinder(shaft.pin_radius, parts.shaft_pin.poisson_ratio, c.plane)
-            hole += remove(own, parts.shaft_pin, *in_hole, thickness)
-        return cls(
-            pin=remove(disc, parts.disc, *at_pin, thickness) + (0.0 if sleeved else whole_pin),
-            outer=remove(disc, parts.disc, *in_bore, thickness)
-            + float(c.roller[1, 1])
-            + remove(roller, parts.roller, *in_bore, length),
-            inner=remove(race, parts.inner_race, *on_race, thickness)
-            + float(c.roller[0, 0])
-            + remove(roller, parts.roller, *on_race, length),
-            hole=hole,
-        )
+        held = material.plane_strain_compliance * of_length
+        return float(joined + factor * (np.log(2.0 * datum / half_width) + SELF_ENERGY) - held)
+
+    thickness, length = drive.disc.thickness, drive.roller_length
+    # Where the pitch circle cuts the flank the pins carry most.
+    steep = np.array([0.25 * 2.0 * np.pi / drive.reduction_ratio])
+    at_pin = (
+        float(geometry.profile.effective_radius(steep, drive.pin_wheel.pin_radius)[0]),
+        contact_modulus(parts.disc, drive.flank_pin),
+    )
+    in_bore = (
+        effective_radius(bearing.roller_radius, -drive.bore_radius),
+        contact_modulus(parts.disc, parts.roller),
+    )
+    on_race = (
+        effective_radius(bearing.roller_radius, bearing.inner_race_radius),
+        contact_modulus(parts.inner_race, parts.roller),
+    )
+    shaft = drive.pin_shaft
+    in_hole = (
+        1.0 if shaft is None else effective_radius(shaft.pin_radius, -drive.hole_radius),
+        hole_modulus(drive, rigid_shaft_pins=not elastic_shaft_pins),
+    )
+    sleeved = drive.pin_wheel.seat.kind == "sleeve"  # whose law has all of it (`ltca.laws.backed`)
+    disc, pin, roller, race = c.disc_logarithm, c.pin_logarithm, c.roller_logarithm, c.race_logarithm
+    whole_pin = c.pin + remove(pin, drive.flank_pin, *at_pin, thickness)
+    hole = remove(disc, parts.disc, *in_hole, thickness)
+    if shaft is not None and elastic_shaft_pins and disc > 0.0:  # without coupling there is no body part at all
+        own = unit(parts.shaft_pin, thickness, c.plane)
+        hole += own * carried_cylinder(shaft.pin_radius, parts.shaft_pin.poisson_ratio, c.plane)
+        hole += remove(own, parts.shaft_pin, *in_hole, thickness)
+    return OwnParts(
+        pin=remove(disc, parts.disc, *at_pin, thickness) + (0.0 if sleeved else whole_pin),
+        outer=remove(disc, parts.disc, *in_bore, thickness)
+        + float(c.roller[1, 1])
+        + remove(roller, parts.roller, *in_bore, length),
+        inner=remove(race, parts.inner_race, *on_race, thickness)
+        + float(c.roller[0, 0])
+        + remove(roller, parts.roller, *on_race, length),
+        hole=hole,
+    )
 
 
 def carried_cylinder(radius: float, poisson_ratio: float, plane: str = "strain") -> float:
@@ -274,8 +311,8 @@ def carried_cylinder(radius: float, poisson_ratio: float, plane: str = "strain")
         R, mm.
     poisson_ratio : float
         ν.
-    plane : {"strain", "stress"}
-        Plane strain or plane stress.
+    plane : {"strain", "stress", "solid"}
+        Plane strain, which slices of a solid pin are in as well, or plane stress.
 
     Returns
     -------
@@ -288,7 +325,7 @@ def carried_cylinder(radius: float, poisson_ratio: float, plane: str = "strain")
     -0.678571
     """
     nu = poisson_ratio
-    kolosov = 3.0 - 4.0 * nu if plane == "strain" else (3.0 - nu) / (1.0 + nu)
+    kolosov = (3.0 - nu) / (1.0 + nu) if plane == "stress" else 3.0 - 4.0 * nu
     return float(np.log(radius) - 0.5 * (kolosov + 2.0) / (kolosov + 1.0))
 
 
@@ -326,3 +363,49 @@ def finite_length_approach(length: float, half_width: float) -> float:
     approach = float(np.exp(logarithm))
     load = float(law.load_and_stiffness(approach, 1.0)[0])
     return (approach - half_width**2 / 8.0) / load
+
+
+def projected_on_half_space(length: float, half_width: float) -> tuple[float, float]:
+    r"""Return what a half-space yields under loads even and linear along the width, times E/(1 − ν²), 1/mm and 1/mm³.
+
+    Loads are semi-elliptic over 2b across and spread along t as 1/t for 1 N and 12 z/t³ for 1 N·mm; the same vectors measure the
+    mean displacement and the tilt. With Boussinesq's kernel 1/r and the distance ξ of two points across,
+
+    .. math:: \frac{2}{\pi t} \Big( S_0 - \frac{S_1}{t} \Big), \qquad
+              \frac{24}{\pi t^3} \Big( S_0 - \frac{3 S_1}{t} + \frac{2 S_3}{t^3} \Big), \qquad
+              S_k = \Big\langle \int_0^t \frac{s^k}{\sqrt{s^2 + \xi^2}}\,ds \Big\rangle .
+
+    To b/t they are :math:`\kappa (\ln(4t/b) + 1/4 - 1)` and :math:`12/t^2\, \kappa (\ln(4t/b) + 1/4 - 7/3)`, those of
+    plane strain with the datums 2t/e and 2t/e^{7/3}.
+
+    Parameters
+    ----------
+    length : float
+        t, mm.
+    half_width : float
+        b, mm.
+
+    Returns
+    -------
+    tuple of float
+        Of the even load by 1 N and of the linear one by 1 N·mm.
+
+    Examples
+    --------
+    >>> even, linear = projected_on_half_space(10.0, 1e-6)
+    >>> round(0.5 * np.pi * 10.0 * even - np.log(4e7), 4), round(np.pi * 1e3 / 24.0 * linear - np.log(4e7), 4)
+    (-0.75, -2.0833)
+    """
+    t, b = length, half_width
+    # Points of two semi-ellipses by Gauss's rule of Chebyshev polynomials of the second kind; means of odd powers of their
+    # distance and of its logarithm, which that does not know, in closed form.
+    angle = np.pi * np.arange(1, POINTS_ACROSS + 1) / (POINTS_ACROSS + 1)
+    weight = 2.0 / (POINTS_ACROSS + 1) * np.sin(angle) ** 2
+    square = b**2 * (np.cos(angle)[:, None] - np.cos(angle)) ** 2
+    far = np.sqrt(t**2 + square)
+    mean = np.outer(weight, weight)
+    zeroth = float((mean * np.log(t + far)).sum()) - np.log(0.5 * b) + SELF_ENERGY
+    first = float((mean * far).sum()) - MEAN_DISTANCE * b
+    third = float((mean * (far**3 / 3.0 - square * far)).sum()) + 2.0 / 3.0 * MEAN_CUBED_DISTANCE * b**3
+    even = 2.0 / (np.pi * t) * (zeroth - first / t)
+    return even, 24.0 / (np.pi * t**3) * (zeroth - 3.0 * first / t + 2.0 * third / t**3)

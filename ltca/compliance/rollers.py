@@ -65,7 +65,8 @@ class RollerState:
         Unit vector from the bore centre to the roller, the direction of the load on the disc.
     tangent : array, shape (positions, rollers, 2, 2)
         Second derivative of the eliminated energy by the displacement (x, y) of the bore, N/mm; of leaning rollers
-        (`ltca.compliance.leaning_rollers`) by its displacement, its lean and what is taken of both approaches, shape (…, 6, 6).
+        (`ltca.compliance.leaning_rollers`) by its displacement, its lean and what is taken of both approaches, shape (…, 6, 6),
+        and of both tilts where bodies take of these, (…, 8, 8).
     inner_moment, outer_moment : array, shape (positions, rollers), or None
         Of leaning rollers about mid-length, N·mm; that on the disc acts along the ray.
     lean : array, shape (positions, rollers), or None

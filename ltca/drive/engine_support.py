@@ -36,9 +36,10 @@ _IN_MESSAGES = {
     "FE mesh": "meshes of full finite elements",
     "clearance-free": "the clearance-free analysis",
     "solid pair": "a pair of solid bodies",
+    "solid disc": "a disc of solid bodies",
 }
-"""Names of engines in messages. The last three are no choice of an analysis: ``cyclo mesh``, a reference of the tests, and
-``cyclo fem --pair``."""
+"""Names of engines in messages. The last four are no choice of an analysis: ``cyclo mesh``, a reference of the tests, and
+``cyclo fem --bodies solid`` with and without ``--pair``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,9 +74,9 @@ _PLANE = ("fe", "full FE")
 _TWO_DIMENSIONS = (
     "the model is two-dimensional: nothing varies along the length, and rollers are as long as the disc is thick"
 )
-_RIGID = ("paper", "full FE", "FE mesh", "clearance-free", "solid pair")
+_RIGID = ("paper", "full FE", "FE mesh", "clearance-free", "solid pair", "solid disc")
 _FIXED = ("direct", *_RIGID)
-_ONE_BORE = ("paper", "clearance-free")
+_ONE_BORE = ("paper", "clearance-free", "solid disc")
 _HYBRID = "use --compliance hybrid"
 _TABLES = "use --method tables"
 REFUSALS = (
@@ -86,7 +87,7 @@ REFUSALS = (
     Refusal("pin_wheel.pin_profile", _PLANE, _TWO_DIMENSIONS, _HYBRID, accepts=attrgetter("is_cylinder")),
     Refusal(
         "pin_wheel.axis_offset",
-        ("full FE", "FE mesh", "solid pair"),
+        ("full FE", "FE mesh", "solid pair", "solid disc"),
         "wheel and pin shaft have the same axis in the model",
     ),
     Refusal("pin_wheel.support_stiffness", _RIGID, "the axis of the wheel is fixed in the model"),
@@ -94,7 +95,7 @@ REFUSALS = (
     Refusal("pin_wheel.beam", _FIXED, "pins do not bend in the model"),
     Refusal("first_stage", _RIGID, "the model has no first stage", "give installation.first_stage_ratio"),
     Refusal(f"load.external.{ANY}", _RIGID, "the axis of the wheel is fixed in the model"),
-    Refusal("disc.number_of_discs", ("paper",), "the model has one disc"),
+    Refusal("disc.number_of_discs", ("paper", "solid disc"), "the model has one disc"),
     Refusal(f"disc.of.{ANY}.bore_errors", _ONE_BORE, "the model has one crank"),
     Refusal("crank_bearing.roller_length", _PLANE, _TWO_DIMENSIONS, _HYBRID, equals="disc.thickness"),
     Refusal("crank_bearing.roller_profile", _PLANE, _TWO_DIMENSIONS, _HYBRID, accepts=attrgetter("is_cylinder")),

@@ -27,6 +27,15 @@ def describe_mistakes(
         if detail["type"] in UNKNOWN and (name := nearest(place[-1], [p[-1] for p in missing if p[:-1] == place[:-1]])):
             meant[place] = (*place[:-1], name)
     told = []
+    shaft = (*map(str, prefix), "pin_shaft")
+    if [name for name in PIN_SHAFT if (*shaft, name) in missing and (*shaft, name) not in meant.values()] == list(
+        PIN_SHAFT
+    ):
+        words = f"{', '.join(PIN_SHAFT[:-1])} and {PIN_SHAFT[-1]}"
+        told.append(
+            f"{_path(shaft)}: {words} are missing; without them the drive has no pin shaft, and nothing of it is used"
+        )
+        found = [(place, detail) for place, detail in found if place[:-1] != shaft or place[-1] not in PIN_SHAFT]
     for place, detail in found:
         if place in meant:
             told.append(
@@ -41,6 +50,8 @@ GONE = {
     "disc.torque_share": "is no longer a field: the load of each disc is computed (disc.number_of_discs); leave it out"
 }
 """Fields of earlier versions, and their replacement."""
+PIN_SHAFT = ("number_of_pins", "pin_circle_radius", "pin_radius", "hole_radius")
+"""Fields that every pin shaft needs: where none of them is given, the drive has none."""
 UNKNOWN = ("unexpected_keyword_argument", "extra_forbidden")
 
 

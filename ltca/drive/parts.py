@@ -36,6 +36,7 @@ from ltca.drive.members.inertia import Damping as Damping, Inertia as Inertia
 from ltca.drive.members.main_bearing import BearingRow as BearingRow, MainBearing as MainBearing
 from ltca.drive.members.operation import (
     Analysis as Analysis,
+    Bodies as Bodies,
     Compliance as Compliance,
     Duty as Duty,
     ExternalLoad as ExternalLoad,
@@ -528,9 +529,10 @@ class Drive:
         """Return a hash of the whole definition of the drive in this case (hex, 16 digits), whatever analyses it."""
         return fingerprint_of(replace(self, analysis=Analysis()))
 
-    def body_shape(self) -> dict[str, float]:
-        """Return the numbers that determine the plane finite-element bodies, and so their compliance, by name: mm, MPa,
-        counts.
+    def body_shape(self, bodies: Bodies = "plane") -> dict[str, float]:
+        """Return the numbers that determine the finite-element bodies, and so their compliance, by name: mm, MPa, counts.
+
+        `bodies` is "plane" or "solid"; solid ones end, so the length of the rollers is one of their numbers.
 
         Bore and holes have their actual radii, clearances included. Left out are errors of single parts, load, name,
         lengths and profiles along the length, numbers of rollers and discs, and of the shaft pins all but their number and
@@ -551,6 +553,8 @@ class Drive:
             "crank_bearing.roller_radius": bearing.roller_radius,
             "bore_radius": self.bore_radius,
         }
+        if bodies == "solid":
+            shape["crank_bearing.roller_length"] = self.roller_length
         if shaft is not None:
             shape |= {
                 "pin_shaft.number_of_pins": float(shaft.number_of_pins),
@@ -586,9 +590,9 @@ class Drive:
             )
         return self
 
-    def shape_fingerprint(self) -> str:
-        """Return a hash of `body_shape` (hex, 16 digits), the key of influence coefficients."""
-        return fingerprint_of(self.body_shape())
+    def shape_fingerprint(self, bodies: Bodies = "plane") -> str:
+        """Return a hash of `body_shape` of plane or solid bodies (hex, 16 digits), the key of influence coefficients."""
+        return fingerprint_of(self.body_shape(bodies))
 
 
 def part_turn(turned: float, teeth: int, pattern: int) -> tuple[float, int, int]:

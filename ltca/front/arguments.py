@@ -42,11 +42,18 @@ def engine_given(
     contacts: str | None = None,
     coefficients: InfluenceCoefficients | Path | str | None = None,
     hole_near_field: bool | None = None,
+    bodies: str | None = None,
 ) -> Engine:
     """Return the engine that the arguments ask for, or else the drive (`engine_of`); coefficients may be the name of a file."""
     given: Any = Path(coefficients) if isinstance(coefficients, str) else coefficients
     return engine_of(
-        [drive], compliance, method=method, contacts=contacts, coefficients=given, hole_near_field=hole_near_field
+        [drive],
+        compliance,
+        method=method,
+        contacts=contacts,
+        coefficients=given,
+        hole_near_field=hole_near_field,
+        bodies=bodies,
     )
 
 

@@ -29,6 +29,7 @@ def check(
     compliance: str | Engine | None = None,
     coefficients: InfluenceCoefficients | Path | str | None = None,
     hole_near_field: bool | None = None,
+    bodies: str | None = None,
 ) -> DriveCheck:
     """Judge a drive: value, limit and safety of every check, what drives it and what would mend it.
 
@@ -53,6 +54,9 @@ def check(
         Of the bodies, for ``fe`` and ``hybrid``; found in the cache or derived when left out.
     hole_near_field : bool, optional
         Whether hole walls yield like a Hertz contact (``fe`` and ``hybrid``); they do by default.
+    bodies : {"plane", "solid"}, optional
+        What bodies the coefficients of ``fe`` and ``hybrid`` are of: plane sections, or solids with their ends; left out,
+        ``drive.analysis.bodies`` says it.
 
     Returns
     -------
@@ -78,7 +82,7 @@ def check(
     judged, known = drive_and_limits(drive, case, limits)
     if not isinstance(advice, bool):
         raise DriveError([f"advice = {shortened(advice)}: must be true or false"])
-    engine = engine_given(judged, compliance, coefficients=coefficients, hole_near_field=hole_near_field)
+    engine = engine_given(judged, compliance, coefficients=coefficients, hole_near_field=hole_near_field, bodies=bodies)
     return check_drive(
         judged,
         known,

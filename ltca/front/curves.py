@@ -34,6 +34,7 @@ def curves(
     compliance: str | Engine | None = None,
     coefficients: InfluenceCoefficients | Path | str | None = None,
     hole_near_field: bool | None = None,
+    bodies: str | None = None,
 ) -> DriveCurves:
     """Compute torque curve and lost motion, orders of the transmission error, bearing lives and pressure safety.
 
@@ -65,6 +66,9 @@ def curves(
         Of the bodies, for ``fe`` and ``hybrid``; found in the cache or derived when left out.
     hole_near_field : bool, optional
         Whether hole walls yield like a Hertz contact (``fe`` and ``hybrid``); they do by default.
+    bodies : {"plane", "solid"}, optional
+        What bodies the coefficients of ``fe`` and ``hybrid`` are of: plane sections, or solids with their ends; left out,
+        ``drive.analysis.bodies`` says it.
 
     Returns
     -------
@@ -101,7 +105,7 @@ def curves(
         lost_motion=parse_quantity(lost_motion, "dimensionless", "lost_motion", ge=0.001, le=0.5),
         parts=parts,
     )
-    engine = engine_given(one, compliance, coefficients=coefficients, hole_near_field=hole_near_field)
+    engine = engine_given(one, compliance, coefficients=coefficients, hole_near_field=hole_near_field, bodies=bodies)
     if isinstance(drive, DriveFile):
         engine = lending_between(drive.cases.values(), engine)
     return solve_curves(warm, rotations, settings, engine)

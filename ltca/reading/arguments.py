@@ -47,16 +47,41 @@ def compliance_for(drives: Iterable[Drive], *, method: str | None, contacts: str
     """
     if method is not None or contacts is not None:
         return "half-space"
-    found = list(dict.fromkeys(drive.analysis.compliance for drive in drives))
+    known = tuple(drives)
+    found = list(dict.fromkeys(drive.analysis.compliance for drive in known))
     if len(found) > 1:
         raise DriveError(
             [f"analysis.compliance = {', '.join(found)}: must be the same in all drives that are analysed together"]
+        )
+    if found[0] == "half-space" and any(drive.analysis.bodies != "plane" for drive in known):
+        raise DriveError(
+            ["analysis.bodies = 'solid': has no effect with analysis.compliance = 'half-space'; leave one of them out"]
+        )
+    return found[0]
+
+
+def bodies_for(drives: Iterable[Drive], compliance: str) -> str | None:
+    """Return what bodies influence coefficients are of where nobody says so: as the drives' files say, None where half-spaces
+    have none; DriveError when these differ.
+    """
+    found = list(dict.fromkeys(drive.analysis.bodies for drive in drives))
+    if compliance == "half-space":
+        return None
+    if len(found) > 1:
+        raise DriveError(
+            [f"analysis.bodies = {', '.join(found)}: must be the same in all drives that are analysed together"]
         )
     return found[0]
 
 
 def refuse_idle_options(
-    compliance: str, *, method: str | None, contacts: str | None, coefficients: object, hole_near_field: bool | None
+    compliance: str,
+    *,
+    method: str | None,
+    contacts: str | None,
+    coefficients: object,
+    hole_near_field: bool | None,
+    bodies: str | None = None,
 ) -> None:
     """Refuse options that have no effect together, all of them in one DriveError; before the engines are imported, which
     check more.
@@ -64,7 +89,7 @@ def refuse_idle_options(
     Options that are not given are None.
     """
     if compliance == "half-space":
-        found = {"coefficients": coefficients, "hole_near_field": hole_near_field}
+        found = {"coefficients": coefficients, "hole_near_field": hole_near_field, "bodies": bodies}
         idle = [
             f"{name}: has no effect with compliance {compliance}; leave it out"
             for name in found

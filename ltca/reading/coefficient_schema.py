@@ -38,6 +38,13 @@ NEEDED: dict[str, tuple[str, ...]] = {
     "race_approach": ("race_angle",),
     "race_half_width": (),
 }
+# Those of solid bodies besides: under loads linear along the width.
+NEEDED_OF_SOLIDS: dict[str, tuple[str, ...]] = {
+    "disc_tilt_approach": ("station", "station_loaded"),
+    "pin_tilt_approach": (),
+    "roller_tilt_approach": ("roller_end", "roller_end_loaded"),
+    "race_tilt_approach": ("race_angle",),
+}
 # Dimensions of optional variables, in groups that come together.
 OPTIONAL: tuple[dict[str, tuple[str, ...]], ...] = (
     {"disc_resultant": ("motion", "station")},
@@ -51,6 +58,15 @@ OPTIONAL: tuple[dict[str, tuple[str, ...]], ...] = (
         "stress_station_parameter": ("stress_station",),
     },
 )
+# Of solid bodies besides.
+OPTIONAL_OF_SOLIDS: tuple[dict[str, tuple[str, ...]], ...] = (
+    {"layer_height": ("layer",)},
+    {"disc_tilt_resultant": ("tilt", "station")},
+    {"wide_tilt_approach": ("wide",), "wide_approach": ("wide",)},
+    {"pin_wide_tilt_approach": (), "pin_wide_approach": ()},
+    {"roller_wide_tilt_approach": (), "roller_wide_approach": ()},
+    {"race_wide_tilt_approach": (), "race_wide_approach": ()},
+)
 # Bodies of a file, and their names in the materials of a drive.
 PARTS = {"disc": "disc", "pin": "wheel_pin", "roller": "roller", "race": "inner_race"}
 CONSTANTS = ("youngs_modulus", "poisson_ratio")
@@ -60,6 +76,7 @@ LABELS: dict[str, tuple[str, ...]] = {
     "station_loaded": (),
     "stress_station": (),
     "motion": ("x", "y", "rotation"),
+    "tilt": ("x", "y"),
     "roller_end": ("inner", "outer"),
     "roller_end_loaded": ("inner", "outer"),
 }
@@ -67,6 +84,7 @@ LABELS: dict[str, tuple[str, ...]] = {
 REPEATED = {
     "thickness": "disc.thickness",
     "roller_radius": "crank_bearing.roller_radius",
+    "roller_length": "crank_bearing.roller_length",
     "core_radius": "pin_wheel.core_radius",
     "race_bore_radius": "crank_bearing.race_bore_radius",
 } | {f"{body}_{constant}": f"materials.{part}.{constant}" for body, part in PARTS.items() for constant in CONSTANTS}
@@ -74,7 +92,15 @@ REPEATED = {
 HAVE_DEFAULTS = ("pin_wheel.core_radius", "crank_bearing.race_bore_radius")
 CLEARANCES = ("bearing_clearance", "pin_hole_clearance")
 POSITIVE_ATTRIBUTES = ("thickness", "roller_radius", *(f"{body}_youngs_modulus" for body in PARTS))
-STATEMENTS = ("symmetry", "rigid_residual", "convergence_estimate", "convergence_stress")
+STATEMENTS = (
+    "symmetry",
+    "rigid_residual",
+    "convergence_estimate",
+    "convergence_estimate_tilt",
+    "convergence_stress",
+    "interpolation_error",
+    "interpolation_error_tilt",
+)
 POISSON_RATIOS = tuple(f"{body}_poisson_ratio" for body in PARTS)
 # Interpolation takes six stations; with fewer on a boundary some would count twice.
 FEWEST_STATIONS = 6
@@ -99,24 +125,49 @@ def require_schema(dataset: Labelled, source: str) -> None:
         )
 
 
+def is_solid(dataset: Labelled) -> bool:
+    """Tell whether a file is of solid bodies, with coefficients for the tilt of contacts as well."""
+    return _number(dataset.attrs.get("dimensions", 2)) == 3.0
+
+
+def _needed(dataset: Labelled) -> dict[str, tuple[str, ...]]:
+    return NEEDED | NEEDED_OF_SOLIDS if is_solid(dataset) else NEEDED
+
+
+def _groups(dataset: Labelled) -> tuple[dict[str, tuple[str, ...]], ...]:
+    return OPTIONAL + OPTIONAL_OF_SOLIDS if is_solid(dataset) else OPTIONAL
+
+
 def _missing(dataset: Labelled) -> Iterator[str]:
-    variables = [name for name in NEEDED if name not in dataset.variables]
+    variables = [name for name in _needed(dataset) if name not in dataset.variables]
     for group in OPTIONAL:
         if any(name in dataset.variables for name in group):
+            variables += [name for name in group if name not in dataset.variables]
+    for group in OPTIONAL_OF_SOLIDS if is_solid(dataset) else ():
+        first = next(iter(group))
+        if first in dataset.variables:
             variables += [name for name in group if name not in dataset.variables]
     if variables:
         yield f"it lacks {', '.join(variables)}"
     attributes = [
         name
-        for name in ("shape", "clearances_left_out", *CLEARANCES, "plane", *POSITIVE_ATTRIBUTES, *POISSON_RATIOS)
+        for name in (
+            "shape",
+            "clearances_left_out",
+            *CLEARANCES,
+            "plane",
+            *POSITIVE_ATTRIBUTES,
+            *POISSON_RATIOS,
+            *(("roller_length",) if is_solid(dataset) else ()),
+        )
         if name not in dataset.attrs
-    ]  # fmt: skip
+    ]
     if attributes:
         yield f"it lacks the attributes {', '.join(attributes)}"
 
 
 def _misshapen(dataset: Labelled) -> Iterator[str]:
-    for group in (NEEDED, *OPTIONAL):
+    for group in (_needed(dataset), *_groups(dataset)):
         for name, dimensions in group.items():
             if name not in dataset.variables:
                 continue
@@ -136,6 +187,8 @@ def _misshapen(dataset: Labelled) -> Iterator[str]:
             yield f"{name} must number its entries 0, 1, 2, …{told}: they are used in their order"
     if dataset.sizes.get("motion", 3) != 3:
         yield f"motion has length {dataset.sizes['motion']}: must be 3 (x, y, rotation)"
+    if dataset.sizes.get("tilt", 2) != 2:
+        yield f"tilt has length {dataset.sizes['tilt']}: must be 2 (x, y)"
     if dataset.sizes.get("roller_end", 2) != 2:
         yield f"roller_end has length {dataset.sizes['roller_end']}: must be 2 (inner, outer)"
 
@@ -152,10 +205,18 @@ def _in_order(dataset: Labelled, name: str) -> bool:
 
 
 def _implausible(dataset: Labelled) -> Iterator[str]:
-    plane = dataset.attrs["plane"]
-    if plane not in ("strain", "stress"):
+    plane, dimensions = dataset.attrs["plane"], dataset.attrs.get("dimensions", 2)
+    if _number(dimensions) not in (2.0, 3.0):
+        yield f"dimensions = {dimensions}: must be 2 (left out) or 3"
+    elif is_solid(dataset) and plane != "solid":
+        yield f"plane = {plane}: must be solid with dimensions = 3"
+    elif not is_solid(dataset) and plane not in ("strain", "stress"):
         yield f"plane = {plane}: must be strain or stress"
-    for name in POSITIVE_ATTRIBUTES:
+    if not is_solid(dataset):
+        for name in (*NEEDED_OF_SOLIDS, *(next(iter(group)) for group in OPTIONAL_OF_SOLIDS)):
+            if name in dataset.variables:
+                yield f"{name} has no meaning without dimensions = 3"
+    for name in (*POSITIVE_ATTRIBUTES, *(("roller_length",) if is_solid(dataset) else ())):
         if not _number(dataset.attrs[name]) > 0.0:
             yield f"{name} = {dataset.attrs[name]}: must be greater than 0"
     if not 0.0 <= flank_clustering(dataset) < MAX_CLUSTERING:
@@ -251,6 +312,8 @@ def _contradictions(dataset: Labelled) -> Iterator[str]:
         if name not in dataset.attrs:
             continue  # optional, or missing, which was said
         own = _number(dataset.attrs[name])
+        if path not in shape and name == "roller_length" and is_solid(dataset):
+            yield f"shape lacks {path}, the roller_length of solid bodies"
         if path in shape and not abs(own - shape[path]) <= REPEATED_TOLERANCE * abs(shape[path]):
             yield f"{name} = {own:g}: must be {shape[path]:g} as in shape"
 
@@ -261,6 +324,16 @@ def _misplaced(dataset: Labelled) -> Iterator[str]:
     if np.any(np.diff(boundary) < 0) or not np.array_equal(numbers, np.arange(len(numbers))) or len(numbers) < 3:
         yield "station_boundary must be 0 (flank), 1 (bore; 1 … s of s cranks), then holes, in this order"
         return
+    if is_solid(dataset) and "layer_height" in dataset.variables:
+        heights = dataset["layer_height"].values
+        end = 0.5 * float(dataset.attrs["thickness"])
+        if (
+            heights.size < 2
+            or heights[0] != 0.0
+            or np.any(np.diff(heights) <= 0.0)
+            or abs(heights[-1] - end) > UNIFORM * end
+        ):
+            yield f"layer_height must ascend from 0 to half of the thickness, {end:g} mm"
     places = [("race_angle", dataset["race_angle"].values)]
     for kind in ("station", "stress_station"):
         if f"{kind}_boundary" in dataset.variables:

@@ -13,6 +13,7 @@ from ltca.arrays import ComplexArray, FloatArray
 from ltca.drive.deviations import BoreErrors
 from ltca.drive.members.width import LARGEST_SLOPE
 from ltca.drive.parts import Drive, LengthProfile, PlacementErrors, RollerErrors
+from ltca.errors import counted
 from ltca.geometry.flank import CurveFrame, FlankProfile
 from ltca.geometry.interference import ROUNDING, drawn_interference
 from ltca.geometry.rotation import unit
@@ -348,7 +349,7 @@ def part_errors(
     for name in ("radial", "tangential", "diameter"):
         values = getattr(errors, name, ())
         if values and len(values) != count:
-            yield f"{path}.{name} has {len(values)} values: must have {count}, one for each of the {things}"
+            yield f"{path}.{name} has {counted(len(values), 'values')}: {_needed(count, things)}"
         worst = max(values, key=abs, default=0.0)
         if abs(worst) > bound:
             yield (
@@ -358,10 +359,17 @@ def part_errors(
     for name in ("inclination_x", "inclination_y"):
         values = getattr(errors, name, ())
         if values and len(values) != count:
-            yield f"{path}.{name} has {len(values)} values: must have {count}, one for each of the {things}"
+            yield f"{path}.{name} has {counted(len(values), 'values')}: {_needed(count, things)}"
         worst = max(values, key=abs, default=0.0)
         if abs(worst) > LARGEST_SLOPE:
             yield f"{path}.{name} holds {worst:g} rad: {slope_bound()}"
+
+
+def _needed(count: int, things: str) -> str:
+    """How many values a part has to have; a drive without a pin shaft has no holes."""
+    if not count:
+        return f"must be left out, the drive has no {things}" + (" without [pin_shaft]" if things == "holes" else "")
+    return f"must have {count}, one for each of the {things}"
 
 
 def _profile_errors(drive: Drive, bound: float) -> Iterator[str]:
@@ -372,10 +380,10 @@ def _profile_errors(drive: Drive, bound: float) -> Iterator[str]:
     for name in ("cosine", "sine"):
         values = getattr(errors, name)
         if values and len(values) != len(errors.orders):
-            yield f"{path}.{name} has {len(values)} values: must have {len(errors.orders)}, one for each of the orders"
+            yield f"{path}.{name} has {counted(len(values), 'values')}: {_needed(len(errors.orders), 'orders')}"
     if len(errors.deviation) != len(errors.parameter):
         yield (
-            f"{path}.deviation has {len(errors.deviation)} values: must have {len(errors.parameter)}, "
+            f"{path}.deviation has {counted(len(errors.deviation), 'values')}: must have {len(errors.parameter)}, "
             "one for each measured parameter"
         )
     if errors.parameter:

@@ -15,6 +15,7 @@ from ltca.drive.members.pins import PinShaft, PinWheel, ShaftPinBeam, WheelPinBe
 from ltca.drive.mistakes import entry_words
 from ltca.drive.parts import BearingRow, CrankSupport, Drive, MainBearing, Material, Preload
 from ltca.drive.ring_shape import ring_mesh_problems, seat_radius
+from ltca.errors import counted
 from ltca.reading.disc_checks import deviation_bound, part_errors
 from ltca.reading.width_checks import find_width_problems
 
@@ -321,7 +322,7 @@ def _crank_bearings(support: CrankSupport, eccentricity: float) -> Iterator[str]
     tapered = {"contact_angle": support.contact_angle, "load_constant": support.load_constant}
     if not any(value is not None for value in tapered.values()):
         if len(support.stiffness) != 2:
-            yield f"{path}.stiffness has {len(support.stiffness)} values: must have 2, one for each bearing"
+            yield f"{path}.stiffness has {counted(len(support.stiffness), 'values')}: must have 2, one for each bearing"
     else:
         if support.stiffness:
             yield (
@@ -510,7 +511,7 @@ def _per_disc(drive: Drive) -> Iterator[str]:
         ("crank.of", drive.crank.of if all(entry.disc is None for entry in drive.crank.of) else ()),
     ):
         if entries and len(entries) != discs:
-            yield f"{path} has {len(entries)} entries: must have {discs}, one for each disc (disc.number_of_discs)"
+            yield f"{path} has {counted(len(entries), 'entries')}: must have {discs}, one for each disc (disc.number_of_discs)"
     planes, thickness = sorted(drive.disc.planes), drive.disc.thickness
     if planes and drive.disc.gap:
         yield f"disc.gap = {drive.disc.gap:g} mm: must be left out beside disc.planes, which say where the discs stand"

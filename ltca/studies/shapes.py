@@ -31,7 +31,7 @@ from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.compliance.near_field import NEAR_FIELDS
 from ltca.compliance.ring import derive_beforehand, expected_ring_seconds, has_ring
 from ltca.drive.members.temperatures import warm_drive
-from ltca.drive.parts import Drive
+from ltca.drive.parts import Bodies, Drive
 from ltca.drive.ring_shape import has_ring_of_elements, ring_fingerprint
 from ltca.drive.single_discs import single_discs
 from ltca.errors import CycloError
@@ -55,10 +55,10 @@ def with_kept_coefficients(engine: Engine, drive: Drive) -> Engine:
         return engine
     singles = single_discs(warm_drive(drive))
     bodies = engine.bodies_of(singles)
-    shapes = [body.shape_fingerprint() for body in bodies]
+    shapes = [body.shape_fingerprint(engine.bodies) for body in bodies]
     key = (*engine.options.values(), repr(given), *shapes)
     if key not in _ENGINES:
-        there = given is not None or all(has_coefficients(body) for body in bodies)
+        there = given is not None or all(has_coefficients(body, engine.bodies) for body in bodies)
         with nullcontext() if there else _one_process(shapes[0]):
             _ENGINES[key] = engine.with_coefficients_of(bodies)
         if len(_ENGINES) > MAX_KEPT_SHAPES:
@@ -92,10 +92,11 @@ def shapes_of(drives: Iterable[Drive], engine: Engine | None = None) -> dict[str
     every shape that it needs.
     """
     found: dict[str, Drive] = {}
+    kind: Bodies = "plane" if engine is None else engine.bodies
     for drive in drives:
         singles = single_discs(warm_drive(drive))
         for body in engine.bodies_of(singles) if isinstance(engine, CoupledEngine) else singles:
-            found.setdefault(body.shape_fingerprint(), body)
+            found.setdefault(body.shape_fingerprint(kind), body)
     return found
 
 
@@ -144,10 +145,10 @@ def find_beforehand(engine: Engine, shapes: Mapping[str, Drive], told: Callable[
         return
     wanted = list(shapes.values())
     if given is None:
-        missing = [drive for drive in wanted if not has_coefficients(drive)]
+        missing = [drive for drive in wanted if not has_coefficients(drive, engine.bodies)]
         if missing:
             few = "1 shape has" if len(missing) == 1 else f"{len(missing)} shapes have"
-            each = expected_seconds(missing)
+            each = expected_seconds(missing, engine.bodies)
             whole = f", {told_seconds(sum(each))} in all" if len(missing) > 1 else ""
             told(f"{few} no influence coefficients yet: derived first, {told_seconds(max(each))} each{whole}")
         for first in range(0, len(missing), MAX_KEPT_SHAPES) if len(missing) > 1 else ():
@@ -157,7 +158,8 @@ def find_beforehand(engine: Engine, shapes: Mapping[str, Drive], told: Callable[
             }
             # Several at once; what fails is tried again alone below.
             with suppress(CycloError):
-                find_case_coefficients(group, near_field=NEAR_FIELDS[engine.compliance])
+                near_field = NEAR_FIELDS[engine.compliance]
+                find_case_coefficients(group, near_field=near_field, bodies=engine.bodies)
         wanted = missing or wanted[:1]
     failures = []
     for drive in wanted:
@@ -192,7 +194,7 @@ def _coefficients_identity(engine: Engine) -> str:
     if given is not None:
         files = [given] if isinstance(given, Path) else list(given)
         return "files " + " ".join(_checksum(path)[:16] for path in files)
-    lent = "".join(f" lent by {body.shape_fingerprint()}" for body in getattr(engine, "lenders", ()))
+    lent = "".join(f" lent by {body.shape_fingerprint(engine.bodies)}" for body in getattr(engine, "lenders", ()))
     packages = sorted({entry.module.partition(".")[0] for entry in entry_points(group=GROUP)})
     return f"derived {code_hash(*packages)}{lent}"
 

@@ -3,7 +3,8 @@
 Disc, wheel pins and race are half-planes with a datum at a depth (pins and race rings held inside, where the drive says on
 which core or bore), rollers are cylinders between two loads (K. L. Johnson,
 *Contact Mechanics* (1985), section 5.6). Contacts of one boundary are coupled as on a half-plane, different boundaries are
-not coupled. Results with such a file can be worked out by hand.
+not coupled. Results with such a file can be worked out by hand. Solid bodies are the same under loads linear along the width,
+12/t² times it, with a datum of their own and rollers as long as they are.
 """
 
 from __future__ import annotations
@@ -31,13 +32,35 @@ CROSS_SHARE = 0.1
 """Approach at one end of a roller by the load at the other, as a fraction of the half-plane's unit."""
 
 
-def closed_form_coefficients(drive: Drive, *, half_width: float, depth: float) -> xr.Dataset:
+def closed_form_coefficients(
+    drive: Drive, *, half_width: float, depth: float, tilt_depth: float | None = None
+) -> xr.Dataset:
     """Return the content of a coefficient file of a drive in closed form (``docs/theory/coefficients.md``).
 
     `half_width` is that of all patches, mm, small against their distances; `depth` is the datum depth of disc, pins and
     race, mm. It must exceed the size of the disc (some 200 mm for the paper's), or loads in equilibrium do negative work
-    and the file is refused.
+    and the file is refused. With a `tilt_depth`, that of linear loads, mm, bodies are solid.
     """
+    found = _even_along_the_width(drive, half_width=half_width, depth=depth)
+    if tilt_depth is None:
+        return found
+    wide, long = drive.disc.thickness, drive.roller_length
+    linear = _even_along_the_width(drive, half_width=half_width, depth=tilt_depth)
+    tilts = {f"{body}_tilt_approach": 12.0 / wide**2 * linear[f"{body}_approach"] for body in ("disc", "pin", "race")}
+    tilts["roller_tilt_approach"] = 12.0 / long**2 * wide / long * linear["roller_approach"]
+    solid = {
+        "dimensions": 3,
+        "plane": "solid",
+        "shape": json.dumps(drive.body_shape("solid")),
+        "fingerprint": drive.shape_fingerprint("solid"),
+        "roller_length": long,
+    }
+    rollers = {"roller_approach": wide / long * found["roller_approach"]}
+    return found.assign({**tilts, **rollers}).assign_attrs(solid)
+
+
+def _even_along_the_width(drive: Drive, *, half_width: float, depth: float) -> xr.Dataset:
+    """Content of the file of plane bodies."""
     import xarray as xr
 
     thickness, parts = drive.disc.thickness, drive.body_materials

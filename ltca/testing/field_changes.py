@@ -148,6 +148,7 @@ _NAME = {
     "disc.axial_play": "the tilt of discs is judged by it, nothing moves",
     "name": "names a drive and its files, nothing else",
     "analysis.compliance": "chooses the engine where none is named; here one is",
+    "analysis.bodies": "chooses the bodies of the engine where none is named; here one is",
     "disc.planes": "axial places have no effect where neither pins nor cranks bend",
     "disc.gap": "axial places have no effect where neither pins nor cranks bend",
     **dict.fromkeys(

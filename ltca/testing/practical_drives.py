@@ -15,6 +15,7 @@ from numpy.random import Generator
 
 from ltca.analysis.engines import HalfSpace
 from ltca.arrays import FloatArray
+from ltca.compliance.response import split_shifts
 from ltca.drive.deviations import OneDisc, OneEccentric, Runout
 from ltca.drive.materials import Material
 from ltca.drive.members.temperatures import warm_drive
@@ -373,7 +374,11 @@ def _limit(discs: Sequence[ContactGeometry], angle: FloatArray) -> float:
 
 
 def _pressed(model: Reducer, loaded: Equilibrium) -> float:
-    """Largest approach of any contact at either end, and displacement of any bearing beyond its clearance, mm."""
+    """Largest approach of any contact at either end as rigid members that stand there have it, mm.
+
+    That is the approach of the contact with what its pin gives way in beam, ring or carrier, and the largest displacement of any
+    bearing beyond its clearance.
+    """
     contacts, held = loaded.response, 0.0
     carried = model.carried_beside_discs(loaded.crank_angle, loaded.pose, contacts.parts)
     bearings, cranks = ((), 0) if model.supports is None else (model.supports.bearings, model.supports.cranks)
@@ -385,6 +390,9 @@ def _pressed(model: Reducer, loaded: Equilibrium) -> float:
     for disc, own in zip(model.geometries, contacts.parts, strict=True):
         rollers, pins, holes = own.rollers, own.leaning_pins, own.leaning_holes
         found = [own.flank.approach, own.holes.approach, rollers.inner_approach + rollers.outer_approach]
+        if own.shifts is not None:
+            for kind, moved in enumerate(split_shifts(own.shifts, disc)):
+                found[kind] = found[kind] + (0.0 if moved is None else np.abs(moved))
         if pins is not None and holes is not None:
             leant = pins.tilt.tilt, holes.tilt.tilt, np.asarray(rollers.inner_tilt) + np.asarray(rollers.outer_tilt)
             arms = disc.half_width, disc.half_width, disc.roller_half_length

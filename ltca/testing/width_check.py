@@ -20,6 +20,7 @@ themselves are small rotations, by which sections stay circles and heights heigh
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -84,6 +85,18 @@ class Pressed:
     def __sub__(self, other: Pressed) -> Pressed:
         """What is between two sums."""
         return Pressed(self.force - other.force, self.couple - other.couple, self.turning - other.turning)
+
+
+@dataclass(frozen=True)
+class Taken:
+    """What bodies that yield take off approaches, mm, and off tilts, rad, each of wheel pins, bores, shaft pins and races."""
+
+    approach: tuple[FloatArray, FloatArray, FloatArray, FloatArray]
+    tilt: tuple[FloatArray, FloatArray, FloatArray, FloatArray]
+
+    def at(self, kind: int, z: FloatArray) -> FloatArray:
+        """Return what is taken of one kind at heights, shape (parts, heights)."""
+        return np.asarray(self.approach[kind][:, None] + np.outer(self.tilt[kind], z))
 
 
 @dataclass(frozen=True)
@@ -290,6 +303,10 @@ class Disc:
             touching = (np.conj(ray) * moved).real + np.sqrt(play**2 - (np.conj(ray) * moved).imag ** 2)
             between = (inner_race + radii - touching)[:, None]
             between = 0.5 * (between + np.outer((np.conj(ray) * (race_lean - self.lean)).real, z)) - fallen
+            if check.taken is not None:
+                in_bore_taken, on_race_taken = (check.taken(self).at(kind, z)[own] for kind in (1, 3))
+                pressed_inner, pressed_outer = pressed_inner - on_race_taken, pressed_outer - in_bore_taken
+                between = between - 0.5 * (in_bore_taken + on_race_taken)
             free = (state.outer_load[row, own] <= 0.0)[:, None]
             found["gap"].append((np.where(free, between, pressed_inner), np.where(free, between, pressed_outer)))
             found["radius"].append((1.0 / (1.0 / radii + 1.0 / inner_race), 1.0 / (1.0 / radii - 1.0 / bore)))
@@ -328,10 +345,19 @@ class WidthCheck:
         The answer.
     position : int
         Number of the position.
+    taken : callable, optional
+        Returns what the bodies of a disc take of its contacts, as known from elsewhere; rigid ones take nothing.
     """
 
-    def __init__(self, drive: Drive, model: Reducer, balanced: Equilibrium, position: int) -> None:
-        self.drive, self.model, self.balanced, self.position = drive, model, balanced, position
+    def __init__(
+        self,
+        drive: Drive,
+        model: Reducer,
+        balanced: Equilibrium,
+        position: int,
+        taken: Callable[[Disc], Taken] | None = None,
+    ) -> None:
+        self.drive, self.model, self.balanced, self.position, self.taken = drive, model, balanced, position, taken
         self.pose, self.crank_angle = balanced.pose[position], float(balanced.crank_angle[position])
         support = drive.crank.support
         per_crank = 0 if support is None else (5 if support.torsion else 4)
@@ -428,6 +454,8 @@ class WidthCheck:
             tilted = -np.concatenate([one.couple - steep.couple for one, steep in kinds])
             off = _most(tilted - disc.answer.pin_moments[self.position])
             told(f"{name}: moment on a pin beside what presses on the disc", off, bound * half, "N·mm")
+            if self.taken is not None:
+                gap = gap - self.taken(disc).at(0, disc.heights(drive.disc.thickness)[0])
             self._laws(disc, gap, radius, told, name)
             for force_left, moment_left in rollers["left"]:
                 told(f"{name}: force left on a roller", _most(force_left), bound, "N")
@@ -487,6 +515,8 @@ class WidthCheck:
         if disc.in_holes is not None and drive.pin_shaft is not None and drive.pin_shaft.seat.kind == "fixed":
             law: Any = self.model.discs[disc.number].hole_law  # type: ignore[attr-defined]
             line, there = holes.line_load[row], disc.in_holes[1]
+            if self.taken is not None:
+                there = there - self.taken(disc).at(2, disc.heights(thick)[0])
             if hasattr(law, "contact_modulus"):
                 _, radii = disc.parts.shaft_pins
                 effective = 1.0 / (1.0 / radii - 1.0 / disc.parts.holes[1])
@@ -514,14 +544,16 @@ class WidthCheck:
             couple = -np.array([disc.of_rollers["couple"][crank] for disc in self.each])
             if drive.crank.support is None:
                 continue
-            moved = _shaft(drive, np.concatenate((force, couple)))
             stands = np.concatenate(
-                [[disc.displaced[crank] for disc in self.each], [half * disc.sloped[crank] for disc in self.each]]
+                [[disc.displaced[crank] for disc in self.each], [disc.sloped[crank] for disc in self.each]]
             )
-            moved[self.discs :] *= half
-            size = float(np.max(np.abs(stands)))
+            counted = np.repeat([1.0, half], self.discs)
+            moved, beyond = _shaft(drive, np.concatenate((force, couple)), stands, counted, self.known)
+            size = float(np.max(np.abs(counted * stands)))
             bound = FORCES * size + ROUND_OFF * drive.pin_wheel.pin_circle_radius
-            told(f"crank {crank}: displacement or slope of a journal off", _most(np.abs(moved - stands)), bound, "mm")
+            told(f"crank {crank}: a bearing without load out of its clearance", beyond, bound, "mm")
+            off = _most(counted * (moved - stands))
+            told(f"crank {crank}: displacement or slope of a journal off", off, bound, "mm")
         outside, tilting = outside_on_wheel(drive, self.crank_angle), self._tilting_outside()
         flanks = [one - steep for one, steep in (disc.on_flank[0] for disc in self.each)]
         wheel = np.array([-one.force.sum() for one in flanks])
@@ -720,10 +752,15 @@ def _line_load(approach: FloatArray, length: float, modulus: float, radius: Floa
     return np.where(pressed, np.exp(0.5 * (low + high)), 0.0)
 
 
-def _shaft(drive: Drive, pressed: ComplexArray) -> ComplexArray:
+def _shaft(
+    drive: Drive, pressed: ComplexArray, stands: ComplexArray, counted: FloatArray, known: float
+) -> tuple[ComplexArray, float]:
     """Displacements, then slopes, of the journals of a crank under forces, then couples, of the discs.
 
-    Unit loads on a beam on two bearings, each as its spring stands under what statics let it carry.
+    Unit loads on a beam on two bearings, each as its spring stands under what statics let it carry. One that carries no more
+    than how well forces are `known`, N, stands anywhere in its clearance, and the journals tell where: the line through the
+    bearings that comes nearest to where the crank `stands`, slopes `counted` by their lever. Second comes how far such a bearing
+    is beyond its clearance, mm.
     """
     support = drive.crank.support
     assert support is not None
@@ -740,13 +777,21 @@ def _shaft(drive: Drive, pressed: ComplexArray) -> ComplexArray:
     own = np.where(of_couple[:, None], -1.0 * (z > at[:, None]), np.maximum(z - at[:, None], 0.0))
     moments = own - near[:, None] * np.maximum(z - start, 0.0) - far[:, None] * np.maximum(z - end, 0.0)
     rigidity = drive.materials.crankshaft.youngs_modulus * np.pi * support.diameter**4 / 64.0
-    bent = (moments * weight) @ moments.T / rigidity @ pressed
+    moved = (moments * weight) @ moments.T / rigidity @ pressed
+    free, reach = list[FloatArray](), list[float]()
     for share, spring in zip((near, far), crank_springs(drive), strict=True):
         carried = complex((share * pressed).sum())
         size = abs(carried)
-        if size:
-            bent = bent + share * _yielded(spring, size) * carried / size
-    return np.asarray(bent)
+        if size <= known and spring.pressed < 0.0:
+            free.append(share)
+            reach.append(-spring.pressed)
+        elif size:
+            moved = moved + share * _yielded(spring, size) * carried / size
+    if not free:
+        return np.asarray(moved), 0.0
+    shares = np.stack(free, axis=1)
+    places = np.linalg.lstsq(counted[:, None] * shares, counted * (stands - moved))[0]
+    return np.asarray(moved + shares @ places), max(0.0, float(np.max(np.abs(places) - reach)))
 
 
 def _yielded(spring: SidedSpring, force: float) -> float:

@@ -12,7 +12,7 @@ import numpy as np
 from ltca.analysis.engines import SHARED_BODY, Engine, HalfSpace, describe_engine
 from ltca.analysis.extremes import sampling_warning
 from ltca.analysis.time_need import TOLD_FROM
-from ltca.commands.actions.study import tell
+from ltca.commands.actions.study import name_width, tell
 from ltca.compliance.coefficient_files import expected_seconds, told_seconds
 from ltca.compliance.ring import expected_ring_seconds
 from ltca.drive.fields import read_field, whose, with_whose
@@ -135,7 +135,7 @@ def _prepared(problem: Problem, engine: Engine, arguments: argparse.Namespace) -
                     f"{' '.join(arguments.vary)} changes it; leave it out, so that each candidate gets its own"
                 ]
             )
-        seconds = sum(expected_seconds(shapes_of([problem.drive]).values()))
+        seconds = sum(expected_seconds(shapes_of([problem.drive]).values(), engine.bodies))
         each = told_seconds(seconds)
         if arguments.engine_is_named:
             most = most_candidates(problem, arguments.generations)
@@ -251,15 +251,19 @@ def _print(optimum: Optimum, fine: list[FineSolution], engine: Engine, search: E
         f"{len(optimum.variables)} candidates × {positions} positions in {optimum.generations} batches, "
         f"{describe_engine(search)}, {optimum.feasible.sum()} within the limits"
     )
-    print(f"{'':<48}{describe_engine(engine):>24}{describe_engine(search):>24}")
-    print(f"{'':<48}{f'{found.positions} positions, refined':>24}{f'{positions} positions':>24}")
-    print(f"{'':<48}{'as it is':>12}{'found':>12}{'as it is':>12}{'found':>12}")
-    for variable, value in zip(problem.variables, optimum.variables[optimum.best], strict=True):
-        head = with_whose(variable.path, whose(problem.drive, variable.path))
-        print(f"{head:<48}{float(read_field(problem.drive, variable.path)):>12.5g}{value:>12.5g}")
+    paths = [with_whose(variable.path, whose(problem.drive, variable.path)) for variable in problem.variables]
+    wide = name_width([*paths, *(SCALARS[name].heading for name in problem.quantities)], 48)
+    engines = describe_engine(engine), describe_engine(search)
+    both = name_width(engines, 24)
+    both += both % 2
+    print(f"{'':<{wide}}" + "".join(f"{each:>{both}}" for each in engines))
+    print(f"{'':<{wide}}{f'{found.positions} positions, refined':>{both}}{f'{positions} positions':>{both}}")
+    print(f"{'':<{wide}}" + f"{'as it is':>{both // 2}}{'found':>{both // 2}}" * 2)
+    for head, variable, value in zip(paths, problem.variables, optimum.variables[optimum.best], strict=True):
+        print(f"{head:<{wide}}{float(read_field(problem.drive, variable.path)):>{both // 2}.5g}{value:>{both // 2}.5g}")
     for column, name in enumerate(problem.quantities):
         values = nominal.values[name], found.values[name], optimum.start[column], optimum.values[optimum.best, column]
-        print(f"{SCALARS[name].heading:<48}" + "".join(f"{value:>12.5g}" for value in values))
+        print(f"{SCALARS[name].heading:<{wide}}" + "".join(f"{value:>{both // 2}.5g}" for value in values))
     for limit in broken_limits(problem, found.values):
         print(
             f"beyond {describe_bound(limit)} when solved finely: {found.values[limit.quantity]:.5g}; the search saw "

@@ -96,7 +96,10 @@ def solve_and_write(task: RunTask, out: Path) -> int:
         with whole_file(out / "results.nc") as part:
             write_netcdf(dataset, part)
     whose = {name: yielding_parts(drive).content for name, drive in cases.items()}
-    write_json(out / "summary.json", {"drive": file.name, "cases": summaries, "torsional_stiffness_of": whose})
+    content = {"drive": file.name, "cases": summaries, "torsional_stiffness_of": whose}
+    # Of engines on coefficients, what bodies these are of.
+    content |= {name: value for name, value in engine.options.items() if name == "bodies"}
+    write_json(out / "summary.json", content)
     files, fields = ["results.nc", "summary.json"], None
     if shown:
         from ltca.analysis.pressure_fields import build_pressure_dataset

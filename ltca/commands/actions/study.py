@@ -99,6 +99,11 @@ def tell(message: str) -> None:
     print(message, file=sys.stderr)
 
 
+def name_width(names: Sequence[str], least: int) -> int:
+    """Return the width of the column of names of a table, wider than `least` where one of them is longer."""
+    return max(least, 2 + max(map(len, names), default=0))
+
+
 def _print(study: Study, folder: StudyFolder, found: StudySummary, compliance: str) -> None:
     samples = f"{study.design.samples} samples × {study.positions} positions"
     print(f"{study.name}, {study.load_words()}: {samples}, {describe_engine(study.engine)}")
@@ -107,11 +112,12 @@ def _print(study: Study, folder: StudyFolder, found: StudySummary, compliance: s
     if found.solved_positions:
         rate = found.solved_positions / found.seconds
         print(f"solved in {found.seconds:.1f} s, {rate:.0f} positions/s")
-    print(f"{'':<48}{'nominal':>10}{'mean':>10}{'1 %':>10}{'50 %':>10}{'99 %':>10}{'largest':>10}  sample")
+    wide = name_width([SCALARS[name].heading for name in found.quantities], 48)
+    print(f"{'':<{wide}}{'nominal':>10}{'mean':>10}{'1 %':>10}{'50 %':>10}{'99 %':>10}{'largest':>10}  sample")
     for name, summary in found.quantities.items():
         numbers = [found.nominal.get(name, float("nan")), summary.mean, *(summary.percentiles[i] for i in (1, 3, 5))]
         cells = "".join(f"{value:>10.4g}" for value in [*numbers, summary.largest])
-        print(f"{SCALARS[name].heading:<48}{cells}  {summary.largest_sample}")
+        print(f"{SCALARS[name].heading:<{wide}}{cells}  {summary.largest_sample}")
     print(f"sensitivity: {found.ranking['method']}")
     for name, entry in list(found.ranking["quantities"].items())[:3]:
         first = [
@@ -142,10 +148,11 @@ def _print_yield(found: Yield) -> None:
     """Print which part of the samples keeps each limit, and all of them."""
     samples = f"{found.together.samples} samples, {100.0 * CONFIDENCE:g} % intervals of {METHOD}"
     print(f"yield, {samples}:")
+    wide = name_width([f"{one.title} {one.bound}" for one, _ in found.each], 62)
     for one, kept in found.each:
-        print(f"  {f'{one.title} {one.bound}':<62}{yield_words(kept)}")
+        print(f"  {f'{one.title} {one.bound}':<{wide}}{yield_words(kept)}")
     if len(found.each) > 1:
-        print(f"  {'all limits together':<62}{yield_words(found.together)}")
+        print(f"  {'all limits together':<{wide}}{yield_words(found.together)}")
 
 
 def _print_failures(study: Study, folder: StudyFolder, found: StudySummary) -> None:
@@ -166,7 +173,8 @@ def _print_failures(study: Study, folder: StudyFolder, found: StudySummary) -> N
 def _compliance_words(study: Study, coefficients: Sequence[Path] | None) -> str:
     """Options with which `cyclo run` solves a sample as the study did."""
     options = study.engine.options
-    own = study.cases[0][1].analysis.compliance
-    words = "" if options["compliance"] == own else f" --compliance {options['compliance']}"
+    own = study.cases[0][1].analysis
+    words = "" if options["compliance"] == own.compliance else f" --compliance {options['compliance']}"
+    words += "" if options.get("bodies", own.bodies) == own.bodies else f" --bodies {options['bodies']}"
     words += "".join(f" --coefficients {path}" for path in coefficients or ())
     return words + (" --no-hole-near-field" if options.get("hole_near_field") == "no" else "")

@@ -152,6 +152,8 @@ class Lubricant:
 
 Compliance = Literal["half-space", "fe", "hybrid"]
 """How the bodies of a drive yield, by the names of the engines (`ltca.analysis.engines`)."""
+Bodies = Literal["plane", "solid"]
+"""What bodies influence coefficients are of: plane sections, or solids with their ends."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
@@ -163,9 +165,13 @@ class Analysis:
     compliance : {"half-space", "fe", "hybrid"}
         How the bodies yield: half-spaces, plane-strain finite elements, or half-spaces of finite length on finite elements.
         The same in all cases.
+    bodies : {"plane", "solid"}
+        Whether finite elements of ``fe`` and ``hybrid`` are those of plane sections, which yield evenly along the width, or of
+        solid bodies with their ends. The same in all cases.
     """
 
     compliance: Compliance = "hybrid"
+    bodies: Bodies = "plane"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)

@@ -21,7 +21,12 @@ def run(*words):
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (["--bodies", "solid"], "--bodies solid: needs --pair"),
+        (["--bodies", "solid", "--load", "100"], "--load: belongs to one pair"),
+        (["--bodies", "solid", "--plane", "stress"], "--plane: has no effect with --bodies solid"),
+        (["--bodies", "solid", "--referee", "calculix"], "--referee: has no effect with --bodies solid"),
+        (["--layers", "3"], "--layers: has no effect with plane bodies"),
+        (["--bodies", "solid", "--pair", "bore", "--layers", "3"], "--layers: has no effect with --pair"),
+        (["--bodies", "solid", "--size", "0.05"], "the disc as a solid body"),
         (["--pair", "flank"], "--pair: has no effect with plane bodies"),
         (["--tilt", "1e-4", "--load", "100"], "--load: has no effect with plane bodies"),
         (["--bodies", "solid", "--pair", "bore", "--plane", "stress"], "--plane: has no effect with --pair"),

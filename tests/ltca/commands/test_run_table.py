@@ -144,3 +144,23 @@ def test_nothing_is_printed_as_nothing():
     play = Value(quantity="backlash_output", value=-1.16e-11)
     assert with_unit(play.value, play, 5) == "0′"
     assert number(-1.16e-11, "{:.2f}", "arcmin").text == "0.00′"
+
+
+@pytest.mark.slow
+def test_long_names_leave_the_numbers_of_studies_under_their_heads(tmp_path, monkeypatch, capsys):
+    """The names of pressures anywhere are longer than the columns were: numbers began 8 places further to the right."""
+    monkeypatch.chdir(tmp_path)
+    name = "max_pin_pressure_max"
+    text = shipped_drive("paper").replace("[limits]", f"[limits]\n{name} = 5000", 1)
+    (tmp_path / "own.toml").write_text(text if "[limits]" in text else f"{text}\n[limits]\n{name} = 5000\n", "utf-8")
+    few = ["--samples", "2", "--positions", "2", "--quick", "--no-figures", "--no-page"]
+    assert main(["tolerance", "own.toml", *few, "--quantities", name, "max_pin_load"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    first = next(number for number, line in enumerate(lines) if line.split()[:2] == ["nominal", "mean"])
+    heads = [match.end() for match in re.finditer(r"nominal|mean|[0-9]+ %|largest", lines[first])]
+    for line in lines[first + 1 : first + 3]:
+        numbers = [match.end() for match in re.finditer(r"\S+", line)][-7:-1]
+        assert numbers == heads, line
+    shares = [line for line in lines if "≤" in line]
+    assert shares
+    assert all(re.search(r"  [0-9.]+ % \(", line) for line in shares)

@@ -22,7 +22,7 @@ WRONG = {
     ),
     "shaft pin errors of the wrong length": (
         {"pin_shaft": {"pin_errors": {"diameter": [0.0]}}},
-        r"pin_shaft\.pin_errors\.diameter has 1 values: must have 8",
+        r"pin_shaft\.pin_errors\.diameter has 1 value: must have 8",
     ),
     "roller errors of the wrong length": (
         {"crank_bearing": {"roller_errors": {"diameter": [0.0] * 12}}},

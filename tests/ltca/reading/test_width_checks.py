@@ -111,6 +111,31 @@ def test_bad_input_is_one_clear_line(words, message, paper):
 
 
 @pytest.mark.parametrize(
+    ("table", "message"),
+    [
+        (
+            "[disc.hole_errors]\ninclination_x = [1e-4, 0, 0]",
+            "disc.hole_errors.inclination_x has 3 values: must be left out, the drive has no holes without [pin_shaft]",
+        ),
+        (
+            "[disc.hole_errors]\nradial = [1e-4]",
+            "disc.hole_errors.radial has 1 value: must be left out, the drive has no holes without [pin_shaft]",
+        ),
+        (
+            "[pin_shaft]\ninclination = {x = 1e-4, y = 0.0}",
+            "pin_shaft: number_of_pins, pin_circle_radius, pin_radius and hole_radius are missing; without them the drive has no "
+            "pin shaft, and nothing of it is used",
+        ),
+    ],
+)
+def test_what_a_drive_without_a_pin_shaft_has_not_got(table, message):
+    """Holes of an rv "must have 0, one for each of the holes", and an inclined shaft asked for four fields one by one."""
+    with pytest.raises(DriveError) as caught:
+        parse_drive(f"{shipped_drive('rv')}\n[contact]\nslices = 5\n{table}\n", "rv")
+    assert list(caught.value.problems) == [message]
+
+
+@pytest.mark.parametrize(
     ("text", "angle"), [("0.5 mrad", 5e-4), ("500 µrad", 5e-4), ("0.5 mm/m", 5e-4), ("2'", 2 * 2.908882086657216e-4)]
 )
 def test_angles_as_drawings_give_them(text, angle, paper):

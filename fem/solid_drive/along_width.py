@@ -1,0 +1,161 @@
+"""What of a drive varies along the width: lengths, layers, reliefs and leans; and the drive without it.
+
+Disc, wheel pins, shaft pins and inner race are as long as the disc is thick; rollers are as long as they are, no longer than
+that, and so are their contacts.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fem.drive.contact_kinds import PairKind
+from fem.drive.model import ContactPair, DrivePose, PlacedContacts
+from fem.errors import MeshError
+from fem.solid.layers import Layers, Parity, graded_layers
+from fem.solid_contact.pressing import Relief
+from fem.solid_contact.widths import WidthGrid
+from ltca.arrays import FloatArray
+from ltca.drive.members.width import Contact, Inclination
+from ltca.drive.parts import Drive, LengthProfile, PlacementErrors
+from ltca.geometry.length_profile import generator_profile, lead_relief
+from ltca.geometry.placement import Placement
+
+FINEST = 0.4
+"""Thickness of the last layer at a free end by that of the first in the middle."""
+FEWEST_LAYERS = 2
+ROUNDING = 1e-9
+"""Relative difference up to which two lengths are equal."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DriveWidths:
+    """Lengths of the bodies of a drive and grids along them.
+
+    Attributes
+    ----------
+    drive : Drive
+        Of one disc.
+    layers : int
+        Over half of a length.
+    """
+
+    drive: Drive
+    layers: int
+
+    def __post_init__(self) -> None:
+        if self.layers < FEWEST_LAYERS:
+            raise MeshError(f"layers = {self.layers}: must be at least {FEWEST_LAYERS} over half of the width")
+
+    @property
+    def even(self) -> bool:
+        """Whether everything is its own mirror image in mid-width, so that nothing tilts."""
+        place = Placement.of_drive(self.drive)
+        leans = np.concatenate([place.wheel_pin_leans, place.hole_leans, place.shaft_pin_leans])
+        axes = (complex(place.wheel_lean), complex(place.crank_lean))
+        return self.drive.disc.lead_slope == 0.0 and not np.any(leans) and not any(axes)
+
+    @property
+    def parities(self) -> tuple[Parity, ...]:
+        """Classes of displacements that are needed."""
+        return ("symmetric",) if self.even else ("symmetric", "antisymmetric")
+
+    def length_of(self, body: str) -> float:
+        """Return the length of a body or contact by its name, mm: rollers and what they press on their own, others the disc's."""
+        return self.drive.roller_length if body.startswith("roller") else self.drive.disc.thickness
+
+    def layers_of(self, body: str) -> tuple[Layers, ...]:
+        """Return the layers of a body in every class: one ends where a shorter body that it touches does."""
+        return tuple(self._graded(self.length_of(body), parity) for parity in self.parities)
+
+    def grid(self, body: str) -> WidthGrid:
+        """Return the vertices of the pressure along a body or contact by its name: the ends of its layers."""
+        upper = self._graded(self.length_of(body), "symmetric").vertices
+        return WidthGrid(heights=upper if self.even else np.concatenate([-upper[:0:-1], upper]), even=self.even)
+
+    def relief(self, kind: PairKind) -> tuple[Relief | None, FloatArray]:
+        """Return by how much both surfaces of a contact fall short at heights, None for nothing, and heights of its kinks."""
+        drive = self.drive
+        if kind == "hole":
+            return None, np.zeros(0)
+        if kind == "pin":
+            length = drive.disc.thickness
+            profile = generator_profile(drive.pin_wheel.pin_profile, length, drive.pin_wheel.pin_radius)
+            kinks = _kinks(length, drive.disc.lead_relief_length, drive.pin_wheel.pin_profile.end_relief_length)
+
+            def of_flank(z: FloatArray) -> FloatArray:
+                fallen = lead_relief(drive.disc, z)
+                return fallen if profile is None else fallen + profile.relief(z)
+
+            return of_flank, kinks
+        bearing, length = drive.crank_bearing, drive.roller_length
+        profile = generator_profile(bearing.roller_profile, length, bearing.roller_radius)
+        kinks = _kinks(length, bearing.roller_profile.end_relief_length)
+        return (None if profile is None else profile.relief), kinks
+
+    def _graded(self, length: float, parity: Parity) -> Layers:
+        roller = self.drive.roller_length
+        marks = (0.5 * roller,) if roller < (1.0 - ROUNDING) * length else ()
+        return graded_layers(length, self.layers, parity, finest=FINEST, marks=marks)
+
+
+def _kinks(length: float, *reliefs: float) -> FloatArray:
+    inner = np.array([0.5 * length - each for each in reliefs if each > 0.0])
+    return np.concatenate([-inner, inner])
+
+
+def lean_apart(model: PlacedContacts, pair: ContactPair, pose: DrivePose) -> complex:
+    """Return by how much the round side of a pair leans from the side that carries the pressure, rad, before either tilts.
+
+    As dx/dz + i dy/dz in the fixed frame (`ltca.drive.members.width.Inclination.lean`); that of the disc itself and those
+    of rollers are unknowns.
+    """
+    place = model.placement
+    if pair.kind == "pin":
+        return complex(place.wheel_lean) + complex(place.wheel_pin_leans[pair.index]) * model.wheel_direction(pose)
+    if pair.kind == "hole":
+        turn = complex(np.exp(1j * pose.disc_rotation))
+        return complex(place.shaft_pin_leans[pair.index]) - complex(place.hole_leans[pair.index]) * turn
+    return -complex(place.crank_lean) if pair.kind == "roller_inner" else 0j
+
+
+def plane_part(drive: Drive) -> Drive:
+    """Return a drive of one disc as it is at mid-width: nothing leans, flanks, pins and rollers are straight and as long.
+
+    Examples
+    --------
+    >>> from ltca.reading.changes import with_fields
+    >>> from ltca.reading.drive_file import load_drive
+    >>> drive = load_drive("paper").cases["CS-1"]
+    >>> leaning = with_fields(drive, {"contact.slices": 5, "disc.lead_slope": 1e-4, "crank_bearing.roller_length": 10.0})
+    >>> plane = plane_part(leaning)
+    >>> plane.contact.slices, plane.disc.lead_slope, plane.roller_length
+    (1, 0.0, 11.8)
+    """
+
+    def upright(errors: PlacementErrors) -> PlacementErrors:
+        return replace(errors, inclination_x=(), inclination_y=())
+
+    disc, wheel, shaft, bearing = drive.disc, drive.pin_wheel, drive.pin_shaft, drive.crank_bearing
+    return replace(
+        drive,
+        contact=Contact(),
+        crank=replace(drive.crank, inclination=Inclination()),
+        disc=replace(
+            disc,
+            lead_crown_drop=0.0,
+            lead_relief_length=0.0,
+            lead_relief_depth=0.0,
+            lead_slope=0.0,
+            axial_play=None,
+            hole_errors=upright(disc.hole_errors),
+        ),
+        pin_wheel=replace(
+            wheel, inclination=Inclination(), pin_profile=LengthProfile(), pin_errors=upright(wheel.pin_errors)
+        ),
+        pin_shaft=None
+        if shaft is None
+        else replace(shaft, inclination=Inclination(), pin_errors=upright(shaft.pin_errors)),
+        crank_bearing=replace(bearing, roller_length=None, roller_profile=LengthProfile()),
+    )

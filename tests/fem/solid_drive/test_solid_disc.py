@@ -1,0 +1,216 @@
+"""A whole disc of solid bodies: plane bodies at ν = 0, balance in space, mirror in z, energies, what it refuses."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from fem.drive.condensed import condense_drive
+from fem.drive.expected_contacts import expect_contacts
+from fem.drive.meshes import mesh_drive
+from fem.drive.pose import solve_pose
+from fem.errors import MemoryLimitError, MeshError
+from fem.shapes import DriveShapes
+from fem.solid_drive.along_width import DriveWidths, plane_part
+from fem.solid_drive.solid_bodies import condense_solids
+from fem.solid_drive.solved_disc import SolidOptions, solve_solid_disc
+from fem.solid_drive.width_results import disc_lean, roller_leans, width_results
+from ltca.drive.parts import Material
+from ltca.errors import DriveError
+from ltca.geometry.placement import Placement
+from ltca.reading.changes import with_fields
+from ltca.reading.drive_file import load_drive
+
+ANGLE, LEAN = 0.3, {"contact.slices": 5, "pin_shaft.inclination.x": 3e-3, "pin_wheel.inclination.y": -1e-3}
+OPTIONS = SolidOptions(size=6.0, layers=2)
+
+
+def plastic():
+    return load_drive("examples/drives/plastic.toml").cases["aligned"]
+
+
+def condense(drive, layers=2):
+    """Meshes for the guess of rigid bodies on springs: coarse, but the same for whatever is compared."""
+    plane = plane_part(drive)
+    shapes, contacts = DriveShapes.of_drive(plane), expect_contacts(plane, ANGLE)
+    meshes = mesh_drive(shapes, contacts, OPTIONS.section)
+    model = condense_solids(drive, shapes, contacts, meshes, DriveWidths(drive=drive, layers=layers))
+    return SimpleNamespace(drive=drive, plane=plane, shapes=shapes, contacts=contacts, meshes=meshes, model=model)
+
+
+def standing(model, drive):
+    """The same condensed bodies as they stand in another drive of their shape."""
+    return replace(model, drive=drive, placement=Placement.of_drive(drive), widths=DriveWidths(drive=drive, layers=2))
+
+
+def solve(model, drive, factor=1.0):
+    return solve_pose(model, factor * drive.wheel_moment(), pose_tolerance=1e-9)
+
+
+@pytest.fixture(scope="module")
+def leaning():
+    made = condense(with_fields(plastic(), LEAN))
+    return SimpleNamespace(**vars(made), state=solve(made.model, made.drive))
+
+
+@pytest.mark.slow
+def test_without_poisson_ratio_solids_are_plane():
+    # Nothing varies along the width then: the displacements of plane bodies are those of solid ones, in the elements as well.
+    soft = Material(youngs_modulus=3100.0, poisson_ratio=0.0)
+    drive = plastic()
+    drive = replace(drive, materials=replace(drive.materials, disc=soft, wheel_pin=soft, roller=soft, inner_race=soft))
+    made = condense(drive)
+    plane = condense_drive(drive, made.shapes, made.contacts, made.meshes)
+    flat, solid = solve(plane, drive), solve(made.model, drive)
+    # What the condensations lose to round-off: the condition of the compliance, 1e6.
+    assert solid.pose.wheel_angle == pytest.approx(flat.pose.wheel_angle, rel=1e-8)
+    largest = flat.contact.pressure.max()
+    for solid_pair, plane_pair in zip(made.model.pairs, plane.pairs, strict=True):
+        of_solid = made.model.pressures_of(solid_pair, solid.contact.pressure)
+        expected = np.repeat(flat.contact.pressure[plane_pair.unknowns][:, None], of_solid.shape[1], axis=1)
+        np.testing.assert_allclose(of_solid, expected, atol=1e-6 * largest)
+    stored = made.model.strain_energy(solid.pose, solid.integrals, solid.contact.pressure)
+    assert stored == pytest.approx(
+        0.5 * flat.contact.pressure @ _compliance(plane, flat) @ flat.contact.pressure, rel=1e-7
+    )
+
+
+def _compliance(model, state):
+    return model.contact_problem(state.pose, list(state.integrals), state.wheel_moment).compliance
+
+
+@pytest.mark.nightly
+@pytest.mark.slow
+class TestLeaning:
+    """One condensation of a drive whose shaft pins and wheel stand askew."""
+
+    def test_disc_balances_in_five_directions(self, leaning):
+        # Forces from pressures and exact normals by a rule of our own: Simpson over both, fine, on the exact curves.
+        forces, couples, moment = [], [], 0.0
+        model, state = leaning.model, leaning.state
+        for pair in model.pairs:
+            if pair.kind == "roller_inner":
+                continue
+            grid = model.grids[pair.kind]
+            pressure = model.pressures_of(pair, state.contact.pressure)
+            full = np.vstack([0.0 * pressure[:1], pressure, 0.0 * pressure[:1]])
+            # Bilinear in z: exact by two moments of every hat.
+            along, rising = grid.moments(np.ones_like), grid.moments(np.asarray)
+            xi = (np.arange(200) + 0.5) / 200
+            edge, local = np.repeat(np.arange(pair.zone.edge_count), 200), np.tile(xi, pair.zone.edge_count)
+            points, speed = pair.zone.points(edge, local)
+            exact, normal = pair.zone.exact(points)
+            pose = model.carrier_pose(pair, state.pose)
+            normal, place = pose.turn(normal), pose.turn(exact)
+            p = full[edge] * (1.0 - local)[:, None] + full[edge + 1] * local[:, None]
+            push = -normal * speed / 200
+            forces.append(push @ (p @ along))
+            couples.append(push @ (p @ rising))
+            moment += float((np.conj(place) * push).imag @ (p @ along))
+        largest = max(map(abs, forces))
+        # Normal forces meet exactly; the middle rule on 200 points of an edge leaves (1/200)² of it.
+        assert abs(sum(forces)) < 1e-4 * largest
+        assert abs(sum(couples)) < 1e-4 * largest * 4.0
+        assert abs(moment) < 1e-4 * largest * 20.0
+        assert max(map(abs, couples)) > 0.05 * largest
+        assert abs(disc_lean(model, state)) > 1e-4
+
+    def test_rollers_balance_in_force_and_moment(self, leaning):
+        model = leaning.model
+        along = dict(zip(((p.kind, p.index) for p in model.pairs), width_results(model, leaning.state), strict=True))
+        largest = max(each.load for each in along.values())
+        for index in model.rollers:
+            bore, race = along["roller_outer", index], along["roller_inner", index]
+            # Along the ray: the forces are off it by the square of the angle between ray and normal in the bore.
+            assert bore.load == pytest.approx(race.load, abs=2e-3 * largest)
+            assert bore.moment == pytest.approx(race.moment, abs=2e-3 * largest * 8.0)
+
+    def test_mirrored_inclinations_have_the_mirrored_answer(self, leaning):
+        mirrored = with_fields(leaning.drive, {"pin_shaft.inclination.x": -3e-3, "pin_wheel.inclination.y": 1e-3})
+        model = standing(leaning.model, mirrored)
+        state = solve(model, mirrored)
+        assert state.pose.wheel_angle == pytest.approx(leaning.state.pose.wheel_angle, rel=1e-9)
+        assert disc_lean(model, state) == pytest.approx(-disc_lean(leaning.model, leaning.state), rel=1e-7)
+        np.testing.assert_allclose(
+            roller_leans(model, state), -roller_leans(leaning.model, leaning.state), rtol=1e-6, atol=1e-10
+        )
+        for there, here in zip(width_results(model, state), width_results(leaning.model, leaning.state), strict=True):
+            np.testing.assert_allclose(
+                there.pressure, here.pressure[:, ::-1], atol=1e-6 * max(here.pressure.max(), 1.0)
+            )
+
+    def test_aligned_parts_tilt_nothing(self, leaning):
+        model = standing(leaning.model, plastic())
+        # Both classes are there; nothing but round-off asks for the antisymmetric one.
+        model = replace(model, widths=leaning.model.widths)
+        state = solve(model, plastic())
+        assert abs(disc_lean(model, state)) < 1e-10
+        for each in width_results(model, state):
+            np.testing.assert_allclose(each.line_load, each.line_load[::-1], atol=1e-7 * max(each.line_load.max(), 1.0))
+
+    def test_energies_agree_and_torque_does_what_is_stored(self, leaning):
+        model, state = leaning.model, leaning.state
+        on_disc = state.contact.pressure[: model.on_disc]
+        # By the displacements and the stiffness, and by the compliance: 1e-4 of what a factor of condition 1e8 loses.
+        assert model.disc.energy(on_disc) == pytest.approx(0.5 * on_disc @ model.disc_compliance @ on_disc, rel=1e-8)
+        # dE = M dφ of all that is held or free: central about the torque, third order of 2 %.
+        less, more = solve(model, leaning.drive, 0.98), solve(model, leaning.drive, 1.02)
+        rise = [model.strain_energy(each.pose, each.integrals, each.contact.pressure) for each in (less, more)]
+        turn = more.pose.wheel_angle - less.pose.wheel_angle
+        # Gaps are linearised about a pose within the plane and linear in tilts: some 1e-4 of normals that turn.
+        assert rise[1] - rise[0] == pytest.approx(leaning.drive.wheel_moment() * turn, rel=2e-3)
+
+
+def test_lengths_reliefs_and_classes():
+    drive = with_fields(
+        plastic(),
+        {
+            "contact.slices": 5,
+            "disc.lead_slope": 1e-3,
+            "disc.lead_crown_drop": 0.004,
+            "crank_bearing.roller_length": 6.0,
+        },
+    )
+    widths = DriveWidths(drive=drive, layers=3)
+    assert not widths.even
+    assert DriveWidths(drive=plane_part(drive), layers=3).even
+    assert [each.parity for each in widths.layers_of("disc")] == ["symmetric", "antisymmetric"]
+    # The disc has an end of a layer where the rollers end.
+    assert np.any(widths.layers_of("disc")[0].vertices == 3.0)
+    assert widths.layers_of("roller")[0].vertices[-1] == widths.grid("roller_inner").heights[-1] == 3.0
+    assert widths.grid("pin").heights[-1] == widths.layers_of("wheel_pin")[0].vertices[-1] == 4.0
+    relief, _ = widths.relief("pin")
+    # Metal is left where z is positive; the crown takes 4 µm off both ends.
+    np.testing.assert_allclose(relief(np.array([-4.0, 0.0, 4.0])), [0.008, 0.0, 0.0], atol=1e-15)
+    assert widths.relief("hole")[0] is None
+    assert widths.relief("roller_outer")[0] is None
+    crowned = with_fields(plastic(), {"crank_bearing.roller_profile.crown_drop": 0.002})
+    assert DriveWidths(drive=crowned, layers=3).even
+    assert DriveWidths(drive=crowned, layers=3).relief("roller_inner")[0](4.0) == pytest.approx(0.002, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("fields", "words"),
+    [
+        ({"disc.number_of_discs": 2}, "disc.number_of_discs = 2: must be 1 for a disc of solid bodies"),
+        ({"pin_wheel.support_stiffness": 1e5}, "the axis of the wheel is fixed"),
+        ({"friction.pin": 0.1}, "frictionless"),
+        ({"pin_wheel.axis_offset.x": 0.01}, "same axis"),
+    ],
+)
+def test_what_it_does_not_know_is_refused_by_name(fields, words):
+    with pytest.raises(DriveError, match=words):
+        solve_solid_disc(with_fields(plastic(), fields), ANGLE)
+
+
+def test_memory_is_known_before():
+    with pytest.raises(MemoryLimitError, match="the disc as a solid body"):
+        solve_solid_disc(plastic(), ANGLE, SolidOptions(size=0.01, layers=40))
+
+
+def test_one_layer_is_too_few():
+    with pytest.raises(MeshError, match="layers = 1: must be at least 2"):
+        DriveWidths(drive=plastic(), layers=1)
