@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fem.shapes import DriveShapes
-from ltca.drive.parts import Drive
+from ltca.drive.parts import Bodies, Drive
 from ltca.drive.single_discs import nominal_shape
 from ltca.errors import CycloError
 from ltca.reading.coefficient_laws import Check
@@ -59,7 +59,8 @@ def check_against_drive(dataset: Labelled, drive: Drive, source: str) -> tuple[C
 
 def _served_by(dataset: Labelled, drive: Drive, source: str) -> Drive:
     """Return the nominal drive that a file was derived for, with its clearances or, where the file leaves them out, without."""
-    theirs, bodies = shape_of(dataset), "solid" if is_solid(dataset) else "plane"
+    theirs = shape_of(dataset)
+    bodies: Bodies = "solid" if is_solid(dataset) else "plane"
     for keep in (True, False) if float(dataset.attrs["clearances_left_out"]) else (True,):
         nominal = nominal_shape(drive, keep_clearance=keep)
         if theirs == nominal.body_shape(bodies):

@@ -57,8 +57,8 @@ QUANTITIES = [
     for word, text, value in (
         ("--angle", "20 deg", math.radians(20.0)), ("--angles", "-20deg", math.radians(-20.0)),
         ("--pressure", "30′", math.radians(0.5)), ("--torque", "377.3 N m", 377_300.0), ("--torque", "377.3", 377.3),
-        ("--pressure-limit", "1.5 GPa", 1500.0), ("--load-rating", "40 kN", 40_000.0), ("--load", "1.5 kN", 1500.0), ("--speed", "1500 rpm", 1500.0),
-        ("--speed", "1500", 1500.0), ("--size", "50 %", 0.5), ("--stations", "2", 2.0),
+        ("--pressure-limit", "1.5 GPa", 1500.0), ("--load-rating", "40 kN", 40_000.0), ("--speed", "1500 rpm", 1500.0),
+        ("--load", "1.5 kN", 1500.0), ("--speed", "1500", 1500.0), ("--size", "50 %", 0.5), ("--stations", "2", 2.0),
     )
     for name in ORDER
     if word in options(name)
