@@ -17,7 +17,7 @@ from fem.shapes import DriveShapes
 from fem.solid_drive.along_width import DriveWidths, plane_part
 from fem.solid_drive.solid_bodies import condense_solids
 from fem.solid_drive.solved_disc import SolidOptions, solve_solid_disc
-from fem.solid_drive.width_results import disc_lean, roller_leans, width_results
+from fem.solid_drive.width_results import bore_lean, disc_lean, roller_leans, width_results
 from ltca.drive.parts import Material
 from ltca.errors import DriveError
 from ltca.geometry.placement import Placement
@@ -148,6 +148,29 @@ class TestLeaning:
         model = replace(model, widths=leaning.model.widths)
         state = solve(model, plastic())
         assert abs(disc_lean(model, state)) < 1e-10
+        for each in width_results(model, state):
+            np.testing.assert_allclose(each.line_load, each.line_load[::-1], atol=1e-7 * max(each.line_load.max(), 1.0))
+
+    def test_all_leaning_alike_is_the_drive_turned_as_a_whole(self, leaning):
+        # Wheel, crank and shaft pins lean alike: so do disc and rollers, and nothing is pressed otherwise.
+        members = ("pin_wheel", "pin_shaft", "crank")
+        fields = {
+            f"{member}.inclination.{axis}": value for member in members for axis, value in (("x", 2e-3), ("y", 1e-3))
+        }
+        turned = with_fields(plastic(), fields)
+        model = standing(leaning.model, turned)
+        state = solve(model, turned)
+        lean = turned.crank.inclination.lean
+        assert lean == 1e-3 - 2e-3j
+        assert disc_lean(model, state) == pytest.approx(lean, rel=1e-8)
+        assert bore_lean(model, state) == pytest.approx(lean, rel=1e-7)
+        rays = model.roller_rays[list(model.rollers)]
+        carrying = {pair.index for pair, each in zip(model.pairs, width_results(model, state), strict=True)
+                    if pair.kind == "roller_outer" and each.load > 0.0}  # fmt: skip
+        on = [number in carrying for number in model.rollers]
+        np.testing.assert_allclose(
+            roller_leans(model, state)[on], (np.conj(rays) * lean).real[on], rtol=1e-6, atol=1e-10
+        )
         for each in width_results(model, state):
             np.testing.assert_allclose(each.line_load, each.line_load[::-1], atol=1e-7 * max(each.line_load.max(), 1.0))
 
