@@ -117,7 +117,10 @@ def lean_apart(model: PlacedContacts, pair: ContactPair, pose: DrivePose) -> com
     if pair.kind == "hole":
         turn = complex(np.exp(1j * pose.disc_rotation))
         return complex(place.shaft_pin_leans[pair.index]) - complex(place.hole_leans[pair.index]) * turn
-    return -complex(place.crank_lean) if pair.kind == "roller_inner" else 0j
+    # Cages lean with their cranks, and hold rollers across their rays.
+    ray, crank = complex(model.roller_rays[pair.index]), complex(place.crank_lean)
+    across = crank - ray * (ray.conjugate() * crank).real
+    return across - crank if pair.kind == "roller_inner" else across
 
 
 def plane_part(drive: Drive) -> Drive:
