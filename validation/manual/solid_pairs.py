@@ -391,7 +391,8 @@ CASES = (
         name="solid_free_end",
         title="Free ends of a straight line",
         problem="The ends of a straight cylinder (radius 5 mm, 11.8 mm long) and of a flat of the same length, flush and free, E "
-        "210 000 MPa, ν 0.3, 2000 N: pressure near the end by that in the middle, and K_Hβ, the line load in the middle by the mean.",
+        "210 000 MPa, ν 0.3, 2000 N: pressure near the end by that in the middle, and K_Hβ, the line load in the middle "
+        "by the mean.",
         references=(
             Reference(
                 source="Images in the free ends: de Mul, Kalker and Fredriksson, J. Tribol. 108 (1986) 140, with the factor of "
