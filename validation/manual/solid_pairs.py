@@ -306,7 +306,8 @@ def _crown(tilt: float) -> list[Figure]:
                 "moment about mid-length", moments[-1], grid.moment, "N·mm", PRESSURE_BOUND,
                 "a crown rolls by R θ, 0.24 mm: layers of 0.2 to 0.35 mm at the ends of the contact leave a per cent in doubt",
                 numerical_error=error_of_sizes(moments) / grid.moment, numerical_origin=origin,
-                reference_error=abs(coarse.moment / grid.moment - 1.0),
+                # The grids find a crown's roll exactly: what is left is that of their balance.
+                reference_error=max(abs(coarse.moment / grid.moment - 1.0), 1e-6),
             )
         )  # fmt: skip
     return figures
@@ -349,7 +350,8 @@ CROWNED_PROBLEM = (
 CROWNED_MODEL = (
     f"{BLOCKS} Blocks 12 mm deep, 24 mm wide and 32 mm long, where half-spaces go on: what those yield beyond is in proportion "
     "to the load and by one over the depth, and is found from blocks half and twice the size. Compared at the same load; the "
-    "load at the same approach follows from the difference of the approaches and the stiffness of the grid."
+    "load at the same approach follows from the difference of the approaches and the stiffness of the grid. The finest mesh "
+    "has 5.7 elements for the half-width, so that the page takes some minutes."
 )
 CASES = (
     Case(
@@ -388,8 +390,9 @@ CASES = (
     Case(
         name="solid_free_end",
         title="Free ends of a straight line",
-        problem="The same roller and flat, whose ends are flush and free: pressure near the end by that in the middle, at the "
-        "same load, and K_Hβ, the line load in the middle by the mean.",
+        problem="The ends of a straight cylinder (radius 5 mm, 11.8 mm long) and of a flat of the same length, flush and free, E "
+        "210 000 MPa, ν 0.3, 2000 N: pressure near the end by that in the middle, and K_Hβ, the line load in the middle "
+        "by the mean.",
         references=(
             Reference(
                 source="Images in the free ends: de Mul, Kalker and Fredriksson, J. Tribol. 108 (1986) 140, with the factor of "
