@@ -18,7 +18,7 @@ from fem.contact.coupling import PairIntegrals, Pose, integrate_pair
 from fem.contact.pressure_measures import peak_of, pressure_moments
 from fem.errors import MeshError
 from fem.mesh.memory_need import require_memory
-from fem.solid.layers import Layers, Parity
+from fem.solid.layers import Layers, Parity, with_middles
 from fem.solid_contact.block import Block, circle_height, graded_columns, graded_rows, make_block
 from fem.solid_contact.bodies import CondensedSolid, Face, condense_solid
 from fem.solid_contact.pair_shapes import SolidPair
@@ -442,8 +442,7 @@ def _gap_left(
     nodes = np.unique(blocks[0].surface_edges)
     x, y = blocks[0].section.places[:, nodes]
     inner = width.heights[width.heights >= 0.0]
-    z = np.empty(2 * inner.size - 1)
-    z[0::2], z[1::2] = inner, 0.5 * (inner[1:] + inner[:-1])
+    z = with_middles(inner)
     signs = (1.0,) if width.even else (1.0, -1.0)
     opening = circle_height(1.0 / pair.radius, pair.shape_reach)(x) - y
     left = []
