@@ -214,6 +214,11 @@ def _expect(pair: SolidPair, load: PairLoad, meshes: PairMeshes) -> _Expected:
     slope = np.pi * modulus / 8.0
     if load.approach is not None:
         depth = overlap(load.approach)
+        if not depth.max() > 0.0:
+            first = float(np.min(relief - load.tilt * z))
+            raise MeshError(
+                f"approach = {load.approach:g} mm of {pair.name}: must be greater than {first:.3g} mm, where surfaces touch first"
+            )
     else:
         wanted = float(load.load or 0.0)
         if not wanted > 0.0:
@@ -227,8 +232,6 @@ def _expect(pair: SolidPair, load: PairLoad, meshes: PairMeshes) -> _Expected:
         while missing(high) < 0.0:
             high = low + 2.0 * (high - low)
         depth = overlap(float(brentq(missing, low, high)))
-    if not depth.max() > 0.0:
-        return _Expected(half_width=1e-2 * radius, reach=0.5 * pair.length, ends=True)
     half_width = float(np.sqrt(4.0 * slope * depth.max() * radius / (np.pi * modulus)))
     pressed = np.abs(z[depth > 0.0])
     return _Expected(
