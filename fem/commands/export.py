@@ -142,8 +142,10 @@ def _write(part: Part, arguments: argparse.Namespace, out: Path) -> None:
         write_drawing(part, paths[0])
     elif kind == "step":
         from fem.export.solids import write_solids
+        from ltca.output.progress import steps
 
-        write_solids(part, paths[0])
+        with steps(f"{part.name} as STEP") as note:
+            write_solids(part, paths[0], note)
     elif kind == "csv":
         from ltca.export.point_tables import write_tables
 

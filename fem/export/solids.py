@@ -10,7 +10,7 @@ from __future__ import annotations
 import os
 import re
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from types import ModuleType
@@ -36,18 +36,20 @@ _SOLID = re.compile(r"(MANIFOLD_SOLID_BREP|SHELL_BASED_SURFACE_MODEL)\(''")
 _OCCURRENCE = re.compile(r"NEXT_ASSEMBLY_USAGE_OCCURRENCE\('[0-9]+','[^']*'")
 
 
-def write_solids(part: Part, path: Path) -> None:
-    """Write a part of straight bodies as a STEP file in mm.
+def write_solids(part: Part, path: Path, note: Callable[[str], None] = lambda step: None) -> None:
+    """Write a part of bodies as a STEP file in mm; `note` is told of each step before it starts.
 
     MeshError when gmsh cannot be loaded or makes a solid of a wrong volume.
     """
     with gmsh_model(part.name) as gmsh:
         for body in part.bodies:
-            _add_solid(gmsh, body)
+            _add_solid(gmsh, body, note)
         for wall in part.walls:
             _add_wall(gmsh, wall)
+        note("volumes")
         gmsh.model.occ.synchronize()
         _require_volumes(gmsh, part.bodies)
+        note("file")
         with whole_file(path) as file:
             with _quiet_kernel():
                 gmsh.write(str(file))
@@ -55,21 +57,26 @@ def write_solids(part: Part, path: Path) -> None:
             file.write_text(_named(file.read_text(encoding="ascii"), part, names), encoding="ascii", newline="\n")
 
 
-def _add_solid(gmsh: ModuleType, body: Body) -> None:
+def _add_solid(gmsh: ModuleType, body: Body, note: Callable[[str], None]) -> None:
     """Extrude the section of a body, or loft it along its lead; solids are numbered in the order they are added."""
     occ = gmsh.model.occ
     if body.lead is not None:
-        _add_lofted(gmsh, body)
+        _add_lofted(gmsh, body, note)
         return
+    note(body.name)
     loops = [_add_loop(gmsh, curve, body.bottom) for curve in (body.outer, *body.inner)]
     face = occ.addPlaneSurface(loops)
     occ.extrude([(SURFACE, face)], 0.0, 0.0, body.top - body.bottom)
 
 
-def _add_lofted(gmsh: ModuleType, body: Body) -> None:
+def _add_lofted(gmsh: ModuleType, body: Body, note: Callable[[str], None]) -> None:
     """A smooth surface through the outlines at several heights, with the holes cut out of it."""
     occ = gmsh.model.occ
-    loops = [_add_loop(gmsh, body.outline(height), height) for height in body.heights(ALONG_WIDTH).tolist()]
+    heights, loops = body.heights(ALONG_WIDTH).tolist(), list[int]()
+    for number, height in enumerate(heights, 1):
+        note(f"{body.name}, outline {number} of {len(heights)} along its lead")
+        loops.append(_add_loop(gmsh, body.outline(height), height))
+    note(f"{body.name}, surface through {len(heights)} outlines")
     ((_, solid),) = [one for one in occ.addThruSections(loops, makeSolid=True) if one[0] == VOLUME]
     occ.remove([(CURVE, tag) for _, tag in occ.getEntities(CURVE)], recursive=True)
     height = body.top - body.bottom
@@ -78,6 +85,7 @@ def _add_lofted(gmsh: ModuleType, body: Body) -> None:
         for one in body.inner
     ]
     if holes:
+        note(f"{body.name}, {len(holes)} holes")
         occ.cut([(VOLUME, solid)], holes)
 
 

@@ -129,7 +129,7 @@ def ask_about_pair(solved: SolvedPair, deck: Path, program: str) -> PairReferee:
     touching = [[points.get(int(number), []) for number in row] for row in elements]
     whole = np.array([[len(values) >= WHOLE * most for values in row] for row in touching])
     theirs = np.array([[np.mean(values) if values else 0.0 for values in row] for row in touching])[whole]
-    own = _face_means(solved)[whole]
+    own = face_means(solved)[whole]
     share = (2.0 if solved.pair.symmetric else 1.0) * (2.0 if solved.width.even else 1.0)
     return PairReferee(
         load=share * float(np.hypot(force[0], force[1])),
@@ -233,8 +233,8 @@ def _material(name: str, material: Material) -> list[str]:
     ]
 
 
-def _face_means(solved: SolvedPair) -> FloatArray:
-    """Means of our pressure over the faces that are in the deck, shape (columns, layers)."""
+def face_means(solved: SolvedPair) -> FloatArray:
+    """Return the means of our pressure over the faces that are in the deck, MPa, shape (columns, layers)."""
     field = solved.pressure
     means = 0.25 * (field[1:, 1:] + field[1:, :-1] + field[:-1, 1:] + field[:-1, :-1])
     if solved.pair.symmetric:

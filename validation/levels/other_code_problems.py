@@ -23,6 +23,9 @@ from fem.drive.solution import solve_drive
 from fem.options import SolutionOptions
 from fem.referee.calculix import ask_calculix
 from fem.referee.calculix_deck import PENALTY_FACTOR, find_calculix, pair_name, write_deck
+from fem.referee.calculix_pair import PENALTY_FACTOR as SOLID_PENALTY_FACTOR, ask_about_pair, face_means
+from fem.solid_contact.pair_shapes import SolidPair
+from fem.solid_contact.solved_pair import PairLoad, PairMeshes, SolvedPair, solve_pair
 from ltca.arrays import FloatArray
 from ltca.drive.materials import elastic_alone
 from ltca.drive.parts import Drive, Material, contact_modulus
@@ -241,12 +244,97 @@ def _press(roller: PressedRoller) -> tuple[float, float]:
     return peak, float(np.mean((displacement - surface)[loaded]))
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CrownedPair:
+    """A crowned cylinder pressed on a flat, both solid.
+
+    Attributes
+    ----------
+    name : str
+        In rows.
+    tilt : float
+        rad.
+    radius, length, crown_radius : float
+        Of the cylinder, mm.
+    approach : float
+        At mid-length, mm.
+    size : float
+        Of the elements, by the default: the same mesh in both codes, C3D20R at a minute.
+    block : float
+        Depth of the blocks, mm.
+    """
+
+    name: str
+    tilt: float
+    radius: float = 10.0
+    length: float = 4.0
+    crown_radius: float = 400.0
+    approach: float = 5e-3
+    size: float = 3.0
+    block: float = 3.0
+
+    def relief(self, z: FloatArray) -> FloatArray:
+        """Return the crown's relief at heights, mm."""
+        return np.asarray(np.square(z) / (2.0 * self.crown_radius))
+
+    def solved(self) -> SolvedPair:
+        """Press the pair by our finite elements."""
+        pair = SolidPair.round_bodies(self.radius, 0.0, STEEL, self.length, relief=self.relief)
+        return solve_pair(
+            pair, PairLoad(approach=self.approach, tilt=self.tilt), PairMeshes(size=self.size, block=self.block)
+        )
+
+
+CROWNED_PAIRS = (
+    CrownedPair(name="crowned pair", tilt=0.0),
+    CrownedPair(name="crowned pair, tilted by 0.5 mrad", tilt=5e-4),
+)
+
+
+def define_pairs() -> dict[str, Any]:
+    """Return what defines the solid pairs: shapes, material, approach, tilt, mesh and penalty."""
+    return {
+        pair.name: {
+            "radius_mm": pair.radius,
+            "length_mm": pair.length,
+            "crown_radius_mm": pair.crown_radius,
+            "youngs_modulus_MPa": STEEL.youngs_modulus,
+            "poisson_ratio": STEEL.poisson_ratio,
+            "approach_mm": pair.approach,
+            "tilt_rad": pair.tilt,
+            "size": pair.size,
+            "block_mm": pair.block,
+            "penalty": SOLID_PENALTY_FACTOR,
+        }
+        for pair in CROWNED_PAIRS
+    }
+
+
+def our_pairs() -> Answer:
+    """Press the pairs by our finite elements: load and largest mean pressure of a face by pair."""
+    found = {pair.name: pair.solved() for pair in CROWNED_PAIRS}
+    return {name: [solved.load, float(face_means(solved).max())] for name, solved in found.items()}
+
+
+def their_pairs() -> Answer:
+    """Press the pairs by CalculiX, C3D20R on the same meshes."""
+    found = {}
+    for pair in CROWNED_PAIRS:
+        with tempfile.TemporaryDirectory(prefix="cyclo-validate-") as folder:
+            answer = ask_about_pair(pair.solved(), Path(folder) / "pair.inp", find_calculix())
+        found[pair.name] = [answer.load, answer.largest]
+    return found
+
+
 CODES = {
     code.name: code
     for code in (
         OtherCode(name="CalculiX", installed=has_calculix, definition=define_drive, ours=our_drive, theirs=their_drive),
         OtherCode(
             name="tamaas", installed=has_tamaas, definition=define_rollers, ours=our_rollers, theirs=their_rollers
+        ),
+        OtherCode(
+            name="CalculiX C3D20R", installed=has_calculix, definition=define_pairs, ours=our_pairs, theirs=their_pairs
         ),
     )
 }

@@ -28,7 +28,7 @@ from ltca.output.processes import supervised
 from ltca.output.provenance import code_hash
 from ltca.output.regular_files import read_regular
 from validation.compare.comparison import contact_name
-from validation.levels.other_code_problems import CASE, CODES, CRANK_ANGLE, ROLLERS, Answer
+from validation.levels.other_code_problems import CASE, CODES, CRANK_ANGLE, CROWNED_PAIRS, ROLLERS, Answer
 from validation.rows import Row
 
 COMMAND = "python -m validation.levels.other_codes"
@@ -44,6 +44,8 @@ LIMITS = {
     ),
     "pressure": (3e-3, "the other code's uniform cells, 96 across: finer ones halve the difference (0.15 % at worst)"),
     "approach": (3e-3, "its uniform cells at the ends: 0.05 to 0.1 % measured"),
+    "pair load": (3e-3, "asked of solid pairs on the same mesh: reduced integration and a penalty in the other code"),
+    "pair pressure": (2e-2, "asked of solid pairs on the same mesh: means of the points of a face there"),
 }
 
 
@@ -138,8 +140,9 @@ def with_problems(answers: dict[str, Answer]) -> dict[str, Any]:
 
 
 def compare_answers(name: str, ours: Answer, theirs: Answer, against: str) -> list[Row]:
-    """Return the rows of one code ("CalculiX" or "tamaas"); `against` is the label of the other code."""
-    return _drive_rows(ours, theirs, against) if name == "CalculiX" else _roller_rows(ours, theirs, against)
+    """Return the rows of one code of `CODES`; `against` is the label of the other code."""
+    rows_of = {"CalculiX": _drive_rows, "tamaas": _roller_rows, "CalculiX C3D20R": _pair_rows}
+    return rows_of[name](ours, theirs, against)
 
 
 def _drive_rows(ours: Answer, theirs: Answer, against: str) -> list[Row]:
@@ -170,6 +173,22 @@ def _roller_rows(ours: Answer, theirs: Answer, against: str) -> list[Row]:
             difference = own / other - 1.0
             rows.append(
                 _row(f"{quantity}, {roller.name}", own, other, unit, difference, bound, model="half-space", against=against)
+            )  # fmt: skip
+    return rows
+
+
+def _pair_rows(ours: Answer, theirs: Answer, against: str) -> list[Row]:
+    rows = []
+    for pair in CROWNED_PAIRS:
+        for quantity, own, other, unit, bound in zip(
+            ("load", "largest mean pressure of a face"), ours[pair.name], theirs[pair.name], ("N", "MPa"),
+            ("pair load", "pair pressure"), strict=True,
+        ):  # fmt: skip
+            rows.append(
+                _row(
+                    f"{quantity}, {pair.name}", own, other, unit, own / other - 1.0, bound,
+                    model="solid finite elements, coarse", against=against,
+                )
             )  # fmt: skip
     return rows
 

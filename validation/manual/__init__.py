@@ -16,6 +16,8 @@ loads         Cases: printed results, sharing among pins and discs, balance of p
 bearings      Cases: load zone, ratings, limits of the rating life
 losses        Cases: slip and losses of wheel pins, efficiency
 other_codes   Cases: tamaas and CalculiX on the same problems
+solid_bodies  Cases: solid slab between flats, bar under its own weight, ring of finite length
+solid_pairs   Cases: pairs of solid bodies in contact, against Hertz, images, half-space grids and CalculiX
 register      All cases by heading; solid ones have their own list
 page          Pages and index
 ============  ============================================================

@@ -3,7 +3,20 @@
 from __future__ import annotations
 
 from ltca.errors import DriveError, did_you_mean, shortened
-from validation.manual import beams, bearings, contact, elasticity, geometry, loads, losses, other_codes, seats, width
+from validation.manual import (
+    beams,
+    bearings,
+    contact,
+    elasticity,
+    geometry,
+    loads,
+    losses,
+    other_codes,
+    seats,
+    solid_bodies,
+    solid_pairs,
+    width,
+)
 from validation.manual.case import Case
 
 PLANE: dict[str, tuple[Case, ...]] = {
@@ -20,8 +33,11 @@ PLANE: dict[str, tuple[Case, ...]] = {
 }
 """Cases of the plane and of half-spaces by their heading in the index."""
 
-SOLID: dict[str, tuple[Case, ...]] = {}
-"""Cases of solid bodies (`Case.bodies` is "solid") by their heading in the index: their modules are entered here."""
+SOLID: dict[str, tuple[Case, ...]] = {
+    "Solid bodies": solid_bodies.CASES,
+    "Contact of solid bodies": solid_pairs.CASES,
+}
+"""Cases of solid bodies (`Case.bodies` is "solid") by their heading in the index."""
 
 HEADINGS: dict[str, tuple[Case, ...]] = {**PLANE, **SOLID}
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fem.export.facets import write_facets
-from fem.export.solids import write_solids
+from fem.export.solids import ALONG_WIDTH, write_solids
 from fem.mesh.gmsh_session import gmsh_model
 from ltca.commands.program import main
 from ltca.drive.single_discs import single_discs
@@ -63,7 +63,12 @@ SHALLOW = {"disc.lead_slope": -2e-4, "disc.lead_relief_length": 3.0, "disc.lead_
 def test_a_solid_follows_its_lead(tmp_path, changes, inward):
     drive = drive_with(changes)
     (part,) = make_parts(drive, "CS-1", compensation=inward)
-    write_solids(part, tmp_path / "part.step")
+    steps = list[str]()
+    write_solids(part, tmp_path / "part.step", steps.append)
+    # Minutes of a flank with a lead were silent: every outline of it is told before it is made.
+    outlines = sum("outline " in step for step in steps)
+    assert outlines == part.bodies[0].heights(ALONG_WIDTH).size >= 3
+    assert steps[-2:] == ["volumes", "file"]
     with gmsh_model("read back") as gmsh:
         gmsh.model.occ.importShapes(str(tmp_path / "part.step"))
         gmsh.model.occ.synchronize()

@@ -47,8 +47,12 @@ def rows_of(kept=None):
         return answers()
 
 
+PAIRS = "CalculiX C3D20R"
+
+
 @pytest.mark.slow
 def test_todays_code_meets_the_stored_answers(alone, monkeypatch, solved):
+    monkeypatch.delitem(CODES, PAIRS)  # below, for itself
     asked = []
 
     def solve(drive, crank_angle, options):
@@ -71,7 +75,28 @@ def test_todays_code_meets_the_stored_answers(alone, monkeypatch, solved):
 
 
 @pytest.mark.slow
+@pytest.mark.nightly
+def test_solid_pairs_meet_the_stored_answers(alone, monkeypatch):
+    """Issue 31: load 0.3 %, pressure 2 %. A load or a pressure that is off by more fails."""
+    only(monkeypatch, PAIRS)
+    ours = CODES[PAIRS].ours()
+    only(monkeypatch, PAIRS, ours=lambda: ours)
+    rows = rows_of()
+    assert not failed_rows(rows)
+    assert [row.limit for row in rows] == [3e-3, 2e-2] * 2
+    assert {row.against for row in rows} == {f"{PAIRS} (stored, python -m validation.levels.other_codes)"}
+    tilted = "crowned pair, tilted by 0.5 mrad"
+    off = {**ours, tilted: [1.006 * ours[tilted][0], 1.04 * ours[tilted][1]]}
+    only(monkeypatch, PAIRS, ours=lambda: off)
+    assert [row.quantity for row in failed_rows(rows_of())] == [
+        f"load, {tilted}",
+        f"largest mean pressure of a face, {tilted}",
+    ]
+
+
+@pytest.mark.slow
 def test_a_broken_solution_of_ours_fails_against_the_stored_answers(alone, monkeypatch, solved):
+    monkeypatch.delitem(CODES, PAIRS)
     right = contact_results.pair_forces
     monkeypatch.setattr(contact_results, "pair_forces", lambda *words: 1.01 * right(*words))
     broken = replace(solved, contacts=contact_results.summarise_contacts(solved.model, solved.state))
@@ -102,7 +127,9 @@ def test_nothing_of_ours_is_stored():
 @pytest.mark.parametrize(
     ("name", "attribute", "value"),
     [("CalculiX", "SIZE", 3.0), ("CalculiX", "CRANK_ANGLE", 0.6), ("CalculiX", "CASE", "CS-3"),
-     ("CalculiX", "PENALTY_FACTOR", 20.0), ("tamaas", "STEEL", Material(youngs_modulus=205e3, poisson_ratio=0.3)),
+     ("CalculiX", "PENALTY_FACTOR", 20.0), (PAIRS, "SOLID_PENALTY_FACTOR", 20.0),
+     (PAIRS, "CROWNED_PAIRS", (replace(problems.CROWNED_PAIRS[0], size=2.0),)),
+     ("tamaas", "STEEL", Material(youngs_modulus=205e3, poisson_ratio=0.3)),
      ("tamaas", "ROLLERS", (replace(problems.ROLLERS[0], load=1600.0), problems.ROLLERS[1]))],
 )  # fmt: skip
 def test_a_stored_answer_to_another_problem_is_refused(alone, monkeypatch, name, attribute, value):
