@@ -330,12 +330,15 @@ def _solve_on(
     heights = WidthGrid(heights=inner if even else np.concatenate([-inner[:0:-1], inner]), even=even)
     parities: tuple[Parity, ...] = ("symmetric",) if even else ("symmetric", "antisymmetric")
     blocks = (lower, upper) if pair.opposite_material is not None else (lower,)
-    each = [
-        block.section.node_count * 3 * (2 * ends.size - 2) for block, (ends, _) in zip(blocks, layers, strict=False)
+    classes = [[Layers(vertices=ends, parity=parity) for parity in parities] for ends, _ in layers]
+    unknowns = [
+        block.section.node_count * each.unknowns_per_node
+        for block, own in zip(blocks, classes, strict=False)
+        for each in own
     ]
-    needed = len(parities) * sum(factor_memory(count) for count in each)
-    require_memory(sum(each) * len(parities), needed, f"blocks of {pair.name} with size {size:g}")
-    progress(f"mesh {number}: {sum(each) * len(parities):,} unknowns, about {needed / 1e9:.2g} GB")
+    needed = sum(factor_memory(count) for count in unknowns)
+    require_memory(sum(unknowns), needed, f"blocks of {pair.name} with size {size:g}")
+    progress(f"mesh {number}: {sum(unknowns):,} unknowns, about {needed / 1e9:.2g} GB")
     zone_below = lower.pressure_zone(pair.curve)
     opposite = upper.opposite_zone(1j * pair.radius) if len(blocks) == 2 else None
     integrals = integrate_pair(zone_below, Pose(), Pose(centre=1j * pair.radius), pair.radius, opposite)
@@ -345,10 +348,9 @@ def _solve_on(
     materials = (pair.carrier_material, pair.opposite_material)
     bodies = tuple(
         condense_solid(
-            block.section, [Layers(vertices=ends, parity=parity) for parity in parities], material, [face], block.held,
-            progress,
+            block.section, own, material, [face], block.held, progress
         )
-        for block, (ends, _), material, face in zip(blocks, layers, materials, faces, strict=False)
+        for block, own, material, face in zip(blocks, classes, materials, faces, strict=False)
         if material is not None
     )  # fmt: skip
     share = 2.0 if pair.symmetric else 1.0
