@@ -157,15 +157,24 @@ def _graph(corners: IntArray, count: int) -> sp.csc_matrix:
 def statically_determinate(body: BodyMesh, loads: sp.csc_matrix) -> IntArray:
     """Return three unknowns that hold a free body without straining it, at nodes far from the loads."""
     places = body.mesh.doflocs.T
-    loaded = np.unique(loads.nonzero()[0] // 2)
-    away, _ = cKDTree(places[loaded]).query(places) if len(loaded) else (np.ones(len(places)), None)
-    first = int(np.argmax(away))
-    # A load on a held unknown would vanish: the second node, too, keeps clear of the loads.
-    span = np.linalg.norm(places - places[first], axis=1)
-    second = int(np.argmax(np.minimum(span, away) * (away > 0.0)))
+    first, second, _ = unloaded_nodes(places, loads)
     direction = places[second] - places[first]
     across = 1 if abs(direction[0]) >= abs(direction[1]) else 0
     return np.array([2 * first, 2 * first + 1, 2 * second + across])
+
+
+def unloaded_nodes(places: FloatArray, loads: sp.spmatrix) -> tuple[int, int, int]:
+    """Return three nodes of a section far from its loads, from one another and from one line; a load on a held one would vanish.
+
+    `places` have the shape (nodes, 2), loads (2 nodes, n).
+    """
+    loaded = np.unique(sp.coo_matrix(loads).row // 2)
+    away = cKDTree(places[loaded]).query(places)[0] if loaded.size else np.ones(len(places))
+    first = int(np.argmax(away))
+    span = places - places[first]
+    second = int(np.argmax(np.minimum(np.hypot(*span.T), away) * (away > 0.0)))
+    height = np.abs(span[second, 0] * span[:, 1] - span[second, 1] * span[:, 0])
+    return first, second, int(np.argmax(height * (away > 0.0)))
 
 
 def condense_body(

@@ -127,7 +127,7 @@ def require_element_size(size: float, largest: float = MAX_SIZE) -> None:
     """Raise MeshError for a multiple of the default element edge that is not positive or above the largest."""
     if not (np.isfinite(size) and 0.0 < size <= largest):
         raise MeshError(
-            f"element size {size:g}: must be greater than 0 and at most {largest:g} (a multiple of the default edge)"
+            f"size = {size:g} (--size): must be greater than 0 and at most {largest:g}, element edge by the default one"
         )
 
 

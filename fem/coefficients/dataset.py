@@ -27,9 +27,9 @@ from fem.coefficients.bodies import (
     require_element_size,
 )
 from fem.coefficients.solid_dataset import LAYERS, need_of_solid, require_solid, with_solid_bodies
-from fem.coefficients.solid_need import require_solid_memory
 from fem.coefficients.stations import FLANK_CLUSTERING, DiscStations
 from fem.mesh.gmsh_session import load_gmsh
+from fem.mesh.memory_need import require_memory
 from fem.shapes import DriveShapes
 from ltca.arrays import FloatArray
 from ltca.drive.parts import Drive, Material, Materials
@@ -116,7 +116,8 @@ def derive_coefficients(
     require_disc_memory(shapes.disc, places, size, processes)
     if bodies == "solid":
         need = need_of_solid(shapes.disc, places, size=size, layers=layers)
-        require_solid_memory(need, available_memory() / processes)
+        what = "the solid disc for its influence coefficients (--bodies solid)"
+        require_memory(need.unknowns, need.memory, what, available=available_memory() / processes)
         print(f"{drive.name}: {need.words}", file=sys.stderr)
     if (coarse_walls := places.coarse_walls) is not None:
         print(f"warning: {drive.name}: {coarse_walls}", file=sys.stderr)

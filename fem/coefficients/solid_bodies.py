@@ -28,7 +28,7 @@ import numpy as np
 import scipy.sparse as sp
 from skfem.models.elasticity import lame_parameters
 
-from fem.body.condensation import order_nodes, statically_determinate
+from fem.body.condensation import order_nodes, statically_determinate, unloaded_nodes
 from fem.body.elasticity import rigid_modes
 from fem.coefficients.pieces import Pieces
 from fem.mesh.body_mesh import BodyMesh
@@ -138,39 +138,22 @@ def solve_solid(
     array, shape (measures, loads)
     """
     solid = ExtrudedBody(section=Section.of_body(body), layers=graded_layers(thickness, layers, parity))
-    even = parity == "symmetric"
-
-    def density(z: FloatArray) -> FloatArray:
-        return np.full_like(z, 1.0 / thickness) if even else 12.0 * z / thickness**3
-
+    density = solid.layers.unit_load
     spread, measured = solid.spread(loads, density), solid.spread(measures, density)
     fixed = np.zeros(solid.unknowns, dtype=bool)
     if support.balance is None:
-        for component in range(3):
-            fixed[solid.unknowns_of(support.held, component).ravel()] = True
+        fixed[solid.all_unknowns_of(support.held)] = True
         balance = None
     else:
-        fixed[solid.statically_determinate(free_nodes(body, loads))] = True
+        fixed[solid.statically_determinate(unloaded_nodes(solid.section.places.T, loads))] = True
         # Forces in the plane alone balance linear loads: the datum is the tilt of u and v, whatever w does.
-        modes, shapes = (slice(0, 3), slice(0, 3)) if even else (slice(1, 3), slice(0, 2))
+        modes, shapes = (slice(0, 3), slice(0, 3)) if parity == "symmetric" else (slice(1, 3), slice(0, 2))
         balance = solid.rigid_motions()[:, modes], solid.spread(support.balance[:, shapes], density).toarray()
-    unknowns = (order_nodes(body)[:, None] * solid.per_node + np.arange(solid.per_node)).ravel()
+    unknowns = solid.all_unknowns_of(order_nodes(body))
     factor = SymmetricFactor(solid.assemble_stiffness(material), unknowns[~fixed[unknowns]], many_loads=True)
     if also is None:
         return _measured(factor, spread, measured, balance, advance)
     return _measured(factor, spread, measured, balance, advance, also(solid))
-
-
-def free_nodes(body: BodyMesh, loads: sp.csc_matrix) -> tuple[int, int, int]:
-    """Return three nodes of a section, no loads on them, that are far from one line."""
-    places = body.mesh.doflocs.T
-    idle = np.setdiff1d(np.arange(body.node_count), np.unique(sp.csc_matrix(loads).nonzero()[0] // 2))
-    own = places[idle]
-    first = int(np.argmax(np.hypot(*own.T)))
-    second = int(np.argmax(np.hypot(*(own - own[first]).T)))
-    span = own[second] - own[first]
-    away = np.abs(span[0] * (own[:, 1] - own[first, 1]) - span[1] * (own[:, 0] - own[first, 0]))
-    return int(idle[first]), int(idle[second]), int(idle[int(np.argmax(away))])
 
 
 def _measured(
@@ -273,7 +256,7 @@ class Wall:
 
         def of(solid: ExtrudedBody) -> sp.csc_matrix:
             thickness = solid.layers.thickness
-            along = solid.spread(self.strains, lambda z: np.full_like(z, 1.0 / thickness))
+            along = solid.spread(self.strains, solid.layers.unit_load)
             values = sp.coo_matrix(self.values)
             # w is odd in z: the mean of its slope is w at the end by half of the thickness.
             ends = solid.unknowns_of(values.row, 2)[:, -1]
@@ -321,9 +304,7 @@ def solid_differences(
         return options.pieces.get(f"{name}-{words}".replace(", ", "-").replace(" ", "-"), compute)
 
     even, linear = solve("symmetric", "even"), solve("antisymmetric", "linear")
-    per_node = ExtrudedBody(
-        section=Section.of_body(body), layers=graded_layers(thickness, options.layers, "symmetric")
-    ).per_node
+    per_node = graded_layers(thickness, options.layers, "symmetric").unknowns_per_node
     return Differences(
         even=even[:count] - strain[:count],
         linear=linear - 12.0 / thickness**2 * strain[:count],

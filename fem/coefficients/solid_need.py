@@ -10,10 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fem.errors import MemoryLimitError
 from fem.mesh.boundary_division import MAX_TURN
 from fem.mesh.triangulation import default_coarse_size, estimate_unknowns
 from fem.shapes import DiscShape
+from fem.solid.layers import graded_layers
 
 # Measured with SuperLU on the paper's disc, 5,200 to 11,700 nodes with 8 and 14 unknowns at each: 44 to 61 bytes and 1.50 to
 # 1.76 ns by value, 1.7 to 2.6 ns of the factor, by minimum degree as by METIS; CHOLMOD (the extra "fast") takes 42 to 69 bytes
@@ -63,7 +63,7 @@ def solid_need(shape: DiscShape, loads: int, *, size: float, growth: float, laye
     nodes = 0.5 * estimate_unknowns(
         shape, (), coarse_size=default_coarse_size(shape, size), growth=growth, turn=MAX_TURN
     )
-    per_node = 6 * layers + 2
+    per_node = graded_layers(1.0, layers, "symmetric").unknowns_per_node
     values = nodes * per_node**2 * float(np.log2(max(nodes, 2.0)))
     factor = SECONDS_OF_FACTOR * nodes**1.5 * per_node**3
     return SolidNeed(
@@ -72,10 +72,3 @@ def solid_need(shape: DiscShape, loads: int, *, size: float, growth: float, laye
         memory=BYTES + BYTES_PER_VALUE * values + 8.0 * MATRICES * float(loads) ** 2,
         seconds=COARSER * CLASSES * (factor + loads * SECONDS_PER_VALUE * values),
     )
-
-
-def require_solid_memory(need: SolidNeed, available: float) -> None:
-    """Raise MemoryLimitError when a solid disc would not fit into the memory that is available, bytes."""
-    if need.memory > available:
-        what = "the solid disc for its influence coefficients (--bodies solid)"
-        raise MemoryLimitError(need.unknowns, need.memory, available, what)

@@ -55,8 +55,7 @@ class ExtrudedBody:
     @property
     def per_node(self) -> int:
         """Unknowns at every node of the section."""
-        in_plane, axial = self.counts
-        return 2 * in_plane + axial
+        return self.layers.unknowns_per_node
 
     @property
     def unknowns(self) -> int:
@@ -68,6 +67,10 @@ class ExtrudedBody:
         in_plane, axial = self.counts
         heights = np.arange(axial if component == 2 else in_plane)
         return np.asarray(np.asarray(nodes)[:, None] * self.per_node + component * in_plane + heights)
+
+    def all_unknowns_of(self, nodes: IntArray) -> IntArray:
+        """Return all unknowns of nodes of the section, node by node in the order given."""
+        return np.asarray((np.asarray(nodes)[:, None] * self.per_node + np.arange(self.per_node)).ravel())
 
     def spread(self, plane: sp.spmatrix | FloatArray, density: Density) -> sp.csc_matrix:
         """Return loads of the section spread along the axis, shape (unknowns, loads).

@@ -1,7 +1,8 @@
 """Factors of large symmetric positive definite matrices of extruded bodies.
 
 CHOLMOD (cvxopt, the extra ``fast``) where it is installed, else SuperLU in symmetric mode, which takes longer and more memory.
-Both eliminate the nodes of the section in the order of `fem.body.condensation.order_nodes`, all heights of a node together.
+Both eliminate the unknowns in the order in which they are given (`fem.solid.order`, or all heights of a node together in the
+order of `fem.body.condensation.order_nodes`).
 """
 
 from __future__ import annotations

@@ -58,10 +58,7 @@ class Layers:
     @property
     def heights(self) -> FloatArray:
         """Heights of all nodes, ends and middles of the layers, mm, shape (2 layers + 1,)."""
-        ends = self.vertices
-        found = np.empty(2 * ends.size - 1)
-        found[0::2], found[1::2] = ends, 0.5 * (ends[1:] + ends[:-1])
-        return found
+        return with_middles(self.vertices)
 
     @property
     def thickness(self) -> float:
@@ -80,6 +77,21 @@ class Layers:
         """Nodes at which the axial displacement is unknown."""
         first = 1 if self.parity == "symmetric" else 0
         return np.arange(first, self.heights.size)
+
+    @property
+    def unknowns_per_node(self) -> int:
+        """Unknowns at every node of a section: heights of u, v and w."""
+        return 2 * self.free_in_plane.size + self.free_along_axis.size
+
+    def unit_load(self, z: FloatArray) -> FloatArray:
+        """Return the load by length at heights in the plane, 1/mm: of 1 N even along the thickness, or of 1 N·mm linear in z.
+
+        Linear for the antisymmetric class. The same function measures: the mean of a displacement along the thickness, or its
+        tilt.
+        """
+        if self.parity == "antisymmetric":
+            return np.asarray(12.0 * z / self.thickness**3)
+        return np.full(np.shape(z), 1.0 / self.thickness)
 
     def points(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """Return Gauss points, mm, their weights over the whole body, and shapes and slopes of all nodes there.
@@ -106,6 +118,13 @@ class Layers:
         """
         z, weight, values, _ = self.points()
         return np.asarray((weight * density(z)) @ values)
+
+
+def with_middles(ends: FloatArray) -> FloatArray:
+    """Return ends of cells with the middles between them, shape (2 n − 1,) for n ends."""
+    found = np.empty(2 * ends.size - 1)
+    found[0::2], found[1::2] = ends, 0.5 * (ends[1:] + ends[:-1])
+    return found
 
 
 def graded_layers(

@@ -9,6 +9,7 @@ widths       Pressure hats along the width: moments, integrals with the layers o
 bodies       A body reduced to the pressures on its faces, class by class; held or floating
 block        A block of a body around a contact: structured quadrilaterals graded to the contact
 pressing     One or more faces pressed together: gaps with profile and tilt, unilateral pressures, balance and energy
+reliefs      By how much the surfaces of a drive's contacts fall short along the width
 pair_shapes  One pair of bodies cut out of a drive: surfaces, lengths, materials, profile, lead, expected load
 solved_pair  Two blocks pressed together: meshes graded to the contact, solution, pressures along the width, errors
 pair_files   Files and words of a solved pair

@@ -18,6 +18,7 @@ from fem.body.surface import OppositeZone, PressureZone
 from fem.errors import MeshError
 from fem.shapes import Curve
 from fem.solid.extruded import ExtrudedBody
+from fem.solid.layers import with_middles
 from fem.solid.section import Section
 from ltca.arrays import BoolArray, FloatArray, IntArray
 
@@ -77,8 +78,7 @@ class Block:
     def held(self, body: ExtrudedBody) -> BoolArray:
         """Return which unknowns are held: sides and bottom in all directions, the plane of symmetry across."""
         still = np.zeros(body.unknowns, dtype=bool)
-        for component in range(3):
-            still[body.unknowns_of(self.far_nodes, component).ravel()] = True
+        still[body.all_unknowns_of(self.far_nodes)] = True
         still[body.unknowns_of(self.plane_nodes, 0).ravel()] = True
         return still
 
@@ -155,7 +155,7 @@ def make_block(
         Whether only x ≥ 0 is meshed.
     """
     ends = columns if symmetric else np.concatenate([-columns[:0:-1], columns])
-    x, depth = _with_middles(ends), _with_middles(rows)
+    x, depth = with_middles(ends), with_middles(rows)
     top = surface(x)
     # The shape of the surface fades with the depth: the bottom is flat.
     fade = 1.0 - depth / depth[-1]
@@ -212,9 +212,3 @@ def circle_height(curvature: float, reach: float) -> Height:
         return np.asarray(curvature * inner**2 / (1.0 + root) + curvature * inner / root * (x - inner))
 
     return height
-
-
-def _with_middles(ends: FloatArray) -> FloatArray:
-    found = np.empty(2 * ends.size - 1)
-    found[0::2], found[1::2] = ends, 0.5 * (ends[1:] + ends[:-1])
-    return found

@@ -17,8 +17,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.spatial import cKDTree
 
+from fem.body.condensation import unloaded_nodes
 from fem.errors import MeshError
 from fem.solid.extruded import ExtrudedBody
 from fem.solid.factor import SymmetricFactor
@@ -222,7 +222,8 @@ def _condense_class(
         motions = body.rigid_motions()
         balance = (motions, body.mass_times(motions))
         still = np.zeros(body.unknowns, dtype=bool)
-        still[body.statically_determinate(_three_nodes(body.section, faces))] = True
+        plane = sp.hstack([face.plane for face in faces]) if faces else sp.coo_matrix((2 * body.section.node_count, 0))
+        still[body.statically_determinate(unloaded_nodes(body.section.places.T, plane))] = True
     else:
         still = held(body)
     unknowns = order_unknowns(body)
@@ -254,22 +255,3 @@ def _solve(factor: SymmetricFactor, forces: FloatArray, balance: tuple[FloatArra
     inertia = motions.T @ mass
     found = factor.solve(forces - mass @ np.linalg.solve(inertia, motions.T @ forces))
     return np.asarray(found - motions @ np.linalg.solve(inertia, mass.T @ found))
-
-
-def _three_nodes(section: Section, faces: Sequence[Face]) -> tuple[int, int, int]:
-    """Three nodes away from the loads and from one line: holding them holds a floating body."""
-    places = section.places.T
-    loaded = (
-        np.unique(np.concatenate([sp.coo_matrix(face.plane).row // 2 for face in faces])) if faces else np.zeros(0, int)
-    )
-    away = cKDTree(places[loaded]).query(places)[0] if loaded.size else np.ones(len(places))
-    free = away > 0.0
-    first = int(np.argmax(away))
-    span = np.linalg.norm(places - places[first], axis=1)
-    second = int(np.argmax(np.where(free, np.minimum(span, away), 0.0)))
-    line = places[second] - places[first]
-    height = np.abs(
-        np.cross(np.append(line, 0.0), np.column_stack([places - places[first], np.zeros(len(places))]))[:, 2]
-    )
-    third = int(np.argmax(np.where(free, height, 0.0)))
-    return first, second, third

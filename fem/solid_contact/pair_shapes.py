@@ -13,24 +13,29 @@ from typing import Literal
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from fem.drive.contact_kinds import CONTACT_KINDS
+from fem.drive.contact_kinds import CONTACT_KINDS, PairKind
 from fem.drive.expected_contacts import ContactGroup, guess_contacts
 from fem.errors import MeshError
 from fem.shapes import CircleCurve, Curve, FlankCurve
 from fem.solid_contact.block import Height, circle_height
+from fem.solid_contact.reliefs import relief_of
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.drive.engine_support import require
 from ltca.drive.hole_contact import shaft_pins_yield
 from ltca.drive.parts import Drive, Material, contact_modulus
 from ltca.drive.single_discs import single_discs
 from ltca.geometry.flank import FlankProfile
-from ltca.geometry.length_profile import generator_profile, has_lead, lead_relief
 from ltca.geometry.placement import Placement
 
 PairName = Literal["flank", "bore", "race", "hole"]
 PAIRS: tuple[PairName, ...] = ("flank", "bore", "race", "hole")
 """Wheel pin on the flank, roller in the bore, roller on the race, shaft pin in its hole."""
-KIND_OF_PAIR = {"flank": "pin", "bore": "roller_outer", "race": "roller_inner", "hole": "hole"}
+KIND_OF_PAIR: dict[PairName, PairKind] = {
+    "flank": "pin",
+    "bore": "roller_outer",
+    "race": "roller_inner",
+    "hole": "hole",
+}
 TRUE_SHAPE = 0.5
 """Surfaces have their true shape up to this part of the smaller radius from the contact, and go on along their tangent beyond."""
 _SAMPLES = 801
@@ -179,16 +184,16 @@ class SolidPair:
         place, group = Placement.of_drive(drive), groups[pair]
         index = _chosen(pair, group, number)
         load = float(group.load[index])
-        name = CONTACT_KINDS[KIND_OF_PAIR[pair]].title_of(index, place)  # type: ignore[index]
+        name = CONTACT_KINDS[KIND_OF_PAIR[pair]].title_of(index, place)
         if pair == "flank":
-            return _on_flank(drive, place, index, complex(expected.flank_points[index]), name, load)
+            flank = _on_flank(drive, place, index, complex(expected.flank_points[index]), name, load)
+            return _relieved(flank, drive, pair)
         parts, disc, rollers = drive.materials, drive.disc.thickness, drive.roller_length
         if pair == "hole":
             material = drive.hole_pin if shaft_pins_yield(drive) else None
             radii = float(place.hole_radii[index]), float(place.shaft_pin_radii[index])
             return _round(name, "disc", "shaft pin", radii[0], radii[1], parts.disc, material, disc, disc, load)
         radius = float(place.roller_radii[index])
-        profile = generator_profile(drive.crank_bearing.roller_profile, rollers, drive.crank_bearing.roller_radius)
         if pair == "bore":
             found = _round(
                 name, "disc", "roller", float(place.bore_radius), radius, parts.disc, parts.roller, disc, rollers, load
@@ -198,9 +203,7 @@ class SolidPair:
             race = max(disc, rollers)
             outer = -float(place.inner_race_radius)
             found = _round(name, "race", "roller", outer, radius, parts.inner_race, parts.roller, race, rollers, load)
-        if profile is None:
-            return found
-        return replace(found, relief=profile.relief, breaks=_kinks(drive.crank_bearing.roller_profile, rollers))
+        return _relieved(found, drive, pair)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -270,6 +273,12 @@ def _chosen(pair: str, group: ContactGroup, number: int | None) -> int:
     return number
 
 
+def _relieved(found: SolidPair, drive: Drive, pair: PairName) -> SolidPair:
+    """A pair with the relief that its kind of contacts has in a drive."""
+    relief, kinks = relief_of(drive, KIND_OF_PAIR[pair])
+    return found if relief is None else replace(found, relief=relief, breaks=tuple(kinks.tolist()))
+
+
 def _round(
     name: str,
     carrier: str,
@@ -307,17 +316,6 @@ def _on_flank(drive: Drive, place: Placement, index: int, point: complex, name: 
     curve = PlacedCurve(curve=flank, origin=origin, normal=normal)
     radius, thickness = float(place.wheel_pin_radii[index]), drive.disc.thickness
     reach = TRUE_SHAPE * min(radius, float(flank.curvature_radius(parameter)[0]))
-    profile = generator_profile(drive.pin_wheel.pin_profile, thickness, drive.pin_wheel.pin_radius)
-    lead = drive.disc if has_lead(drive.disc) else None
-
-    def relief(z: FloatArray) -> FloatArray:
-        total = np.zeros(np.shape(z)) if profile is None else np.asarray(profile.relief(z))
-        return total if lead is None else total + lead_relief(lead, np.asarray(z))
-
-    breaks = _kinks(drive.pin_wheel.pin_profile, thickness)
-    if lead is not None and lead.lead_relief_length > 0.0:
-        inner = 0.5 * thickness - lead.lead_relief_length
-        breaks = (*breaks, -inner, inner)
     return SolidPair(
         name=name,
         carrier="disc",
@@ -331,9 +329,7 @@ def _on_flank(drive: Drive, place: Placement, index: int, point: complex, name: 
         opposite_material=drive.flank_pin,
         carrier_length=thickness,
         opposite_length=thickness,
-        relief=relief,
-        breaks=breaks,
-        even=lead is None or lead.lead_slope == 0.0,
+        even=drive.disc.lead_slope == 0.0,
         symmetric=False,
         expected_load=load,
     )
@@ -359,9 +355,3 @@ def _curve_height(curve: PlacedCurve, parameter: float, reach: float) -> Height:
         return np.asarray(points.imag + slope * (x - points.real))
 
     return height
-
-
-def _kinks(profile: object, length: float) -> tuple[float, ...]:
-    relief, depth = getattr(profile, "end_relief_length", 0.0), getattr(profile, "end_relief_depth", 0.0)
-    inner = 0.5 * length - relief
-    return (-inner, inner) if relief > 0.0 and depth > 0.0 else ()

@@ -18,7 +18,7 @@ from fem.contact.coupling import PairIntegrals, Pose, integrate_pair
 from fem.contact.pressure_measures import peak_of, pressure_moments
 from fem.errors import MeshError
 from fem.mesh.memory_need import require_memory
-from fem.solid.layers import Layers, Parity
+from fem.solid.layers import Layers, Parity, with_middles
 from fem.solid_contact.block import Block, circle_height, graded_columns, graded_rows, make_block
 from fem.solid_contact.bodies import CondensedSolid, Face, condense_solid
 from fem.solid_contact.pair_shapes import SolidPair
@@ -214,6 +214,11 @@ def _expect(pair: SolidPair, load: PairLoad, meshes: PairMeshes) -> _Expected:
     slope = np.pi * modulus / 8.0
     if load.approach is not None:
         depth = overlap(load.approach)
+        if not depth.max() > 0.0:
+            first = float(np.min(relief - load.tilt * z))
+            raise MeshError(
+                f"approach = {load.approach:g} mm of {pair.name}: must be greater than {first:.3g} mm, where surfaces touch first"
+            )
     else:
         wanted = float(load.load or 0.0)
         if not wanted > 0.0:
@@ -227,8 +232,6 @@ def _expect(pair: SolidPair, load: PairLoad, meshes: PairMeshes) -> _Expected:
         while missing(high) < 0.0:
             high = low + 2.0 * (high - low)
         depth = overlap(float(brentq(missing, low, high)))
-    if not depth.max() > 0.0:
-        return _Expected(half_width=1e-2 * radius, reach=0.5 * pair.length, ends=True)
     half_width = float(np.sqrt(4.0 * slope * depth.max() * radius / (np.pi * modulus)))
     pressed = np.abs(z[depth > 0.0])
     return _Expected(
@@ -327,12 +330,15 @@ def _solve_on(
     heights = WidthGrid(heights=inner if even else np.concatenate([-inner[:0:-1], inner]), even=even)
     parities: tuple[Parity, ...] = ("symmetric",) if even else ("symmetric", "antisymmetric")
     blocks = (lower, upper) if pair.opposite_material is not None else (lower,)
-    each = [
-        block.section.node_count * 3 * (2 * ends.size - 2) for block, (ends, _) in zip(blocks, layers, strict=False)
+    classes = [[Layers(vertices=ends, parity=parity) for parity in parities] for ends, _ in layers]
+    unknowns = [
+        block.section.node_count * each.unknowns_per_node
+        for block, own in zip(blocks, classes, strict=False)
+        for each in own
     ]
-    needed = len(parities) * sum(factor_memory(count) for count in each)
-    require_memory(sum(each) * len(parities), needed, f"blocks of {pair.name} with size {size:g}")
-    progress(f"mesh {number}: {sum(each) * len(parities):,} unknowns, about {needed / 1e9:.2g} GB")
+    needed = sum(factor_memory(count) for count in unknowns)
+    require_memory(sum(unknowns), needed, f"blocks of {pair.name} with size {size:g}")
+    progress(f"mesh {number}: {sum(unknowns):,} unknowns, about {needed / 1e9:.2g} GB")
     zone_below = lower.pressure_zone(pair.curve)
     opposite = upper.opposite_zone(1j * pair.radius) if len(blocks) == 2 else None
     integrals = integrate_pair(zone_below, Pose(), Pose(centre=1j * pair.radius), pair.radius, opposite)
@@ -342,10 +348,9 @@ def _solve_on(
     materials = (pair.carrier_material, pair.opposite_material)
     bodies = tuple(
         condense_solid(
-            block.section, [Layers(vertices=ends, parity=parity) for parity in parities], material, [face], block.held,
-            progress,
+            block.section, own, material, [face], block.held, progress
         )
-        for block, (ends, _), material, face in zip(blocks, layers, materials, faces, strict=False)
+        for block, own, material, face in zip(blocks, classes, materials, faces, strict=False)
         if material is not None
     )  # fmt: skip
     share = 2.0 if pair.symmetric else 1.0
@@ -442,8 +447,7 @@ def _gap_left(
     nodes = np.unique(blocks[0].surface_edges)
     x, y = blocks[0].section.places[:, nodes]
     inner = width.heights[width.heights >= 0.0]
-    z = np.empty(2 * inner.size - 1)
-    z[0::2], z[1::2] = inner, 0.5 * (inner[1:] + inner[:-1])
+    z = with_middles(inner)
     signs = (1.0,) if width.even else (1.0, -1.0)
     opening = circle_height(1.0 / pair.radius, pair.shape_reach)(x) - y
     left = []

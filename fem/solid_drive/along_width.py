@@ -10,16 +10,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fem.drive.contact_kinds import PairKind
 from fem.drive.model import ContactPair, DrivePose, PlacedContacts
 from fem.errors import MeshError
 from fem.solid.layers import Layers, Parity, graded_layers
-from fem.solid_contact.pressing import Relief
 from fem.solid_contact.widths import WidthGrid
-from ltca.arrays import FloatArray
 from ltca.drive.members.width import Contact, Inclination
 from ltca.drive.parts import Drive, LengthProfile, PlacementErrors
-from ltca.geometry.length_profile import generator_profile, lead_relief
 from ltca.geometry.placement import Placement
 
 FINEST = 0.4
@@ -74,35 +70,10 @@ class DriveWidths:
         upper = self._graded(self.length_of(body), "symmetric").vertices
         return WidthGrid(heights=upper if self.even else np.concatenate([-upper[:0:-1], upper]), even=self.even)
 
-    def relief(self, kind: PairKind) -> tuple[Relief | None, FloatArray]:
-        """Return by how much both surfaces of a contact fall short at heights, None for nothing, and heights of its kinks."""
-        drive = self.drive
-        if kind == "hole":
-            return None, np.zeros(0)
-        if kind == "pin":
-            length = drive.disc.thickness
-            profile = generator_profile(drive.pin_wheel.pin_profile, length, drive.pin_wheel.pin_radius)
-            kinks = _kinks(length, drive.disc.lead_relief_length, drive.pin_wheel.pin_profile.end_relief_length)
-
-            def of_flank(z: FloatArray) -> FloatArray:
-                fallen = lead_relief(drive.disc, z)
-                return fallen if profile is None else fallen + profile.relief(z)
-
-            return of_flank, kinks
-        bearing, length = drive.crank_bearing, drive.roller_length
-        profile = generator_profile(bearing.roller_profile, length, bearing.roller_radius)
-        kinks = _kinks(length, bearing.roller_profile.end_relief_length)
-        return (None if profile is None else profile.relief), kinks
-
     def _graded(self, length: float, parity: Parity) -> Layers:
         roller = self.drive.roller_length
         marks = (0.5 * roller,) if roller < (1.0 - ROUNDING) * length else ()
         return graded_layers(length, self.layers, parity, finest=FINEST, marks=marks)
-
-
-def _kinks(length: float, *reliefs: float) -> FloatArray:
-    inner = np.array([0.5 * length - each for each in reliefs if each > 0.0])
-    return np.concatenate([-inner, inner])
 
 
 def lean_apart(model: PlacedContacts, pair: ContactPair, pose: DrivePose) -> complex:

@@ -100,8 +100,7 @@ def _hold(body: BodyMesh, boundary: str) -> Held | None:
 
     def held(solid: ExtrudedBody) -> BoolArray:
         still = np.zeros(solid.unknowns, dtype=bool)
-        for component in range(3):
-            still[solid.unknowns_of(nodes, component).ravel()] = True
+        still[solid.all_unknowns_of(nodes)] = True
         return still
 
     return held

@@ -17,7 +17,7 @@ from fem.drive.contact_kinds import CONTACT_KINDS, PairKind
 from fem.drive.model import ContactPair
 from fem.reducer.solution_files import ARRAYS
 from fem.solid_drive.solved_disc import SolidSolution
-from fem.solid_drive.width_results import WidthResult, bore_motion
+from fem.solid_drive.width_results import WidthResult, bore_motion, roller_leans
 from ltca.arrays import FloatArray
 from ltca.drive.units.quantities import ARCSEC
 from ltca.geometry.placement import place_coordinates
@@ -91,8 +91,12 @@ def summarise_solid(solution: SolidSolution) -> dict[str, Any]:
         for name, own in zip(names, solution.along_width, strict=True)
         if own.load > 0.0
     }
+    # In the plane of ray and axis; 0 of rollers that are no candidates.
+    leans = np.zeros(solution.model.placement.roller_radii.size)
+    leans[list(solution.model.rollers)] = roller_leans(solution.model, solution.state)
     return content | {
         "bodies": "solid",
+        "roller_lean_rad": leans.tolist(),
         "disc_volume_tilt_rad": [-solution.disc_lean.imag, solution.disc_lean.real],
         "strain_energy_N_mm": solution.strain_energy,
         "pose_iterations": solution.state.iterations,

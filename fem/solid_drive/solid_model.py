@@ -19,6 +19,7 @@ from fem.drive.contact_kinds import PairKind
 from fem.drive.model import ContactPair, DrivePose, PlacedContacts
 from fem.solid_contact.bodies import CondensedSolid
 from fem.solid_contact.pressing import opening_of_motion, weighted_gap
+from fem.solid_contact.reliefs import relief_of
 from fem.solid_contact.widths import WidthGrid
 from fem.solid_drive.along_width import DriveWidths, lean_apart
 from ltca.arrays import ComplexArray, FloatArray
@@ -147,7 +148,7 @@ class SolidModel(PlacedContacts):
         of_rollers: dict[int, list[tuple[ContactPair, PairIntegrals]]] = {}
         for pair, integral in zip(self.pairs, integrals, strict=True):
             own, grid = pair.unknowns, self.grids[pair.kind]
-            relief, kinks = self.widths.relief(pair.kind)
+            relief, kinks = relief_of(self.drive, pair.kind)
             gap[own] = weighted_gap(integral, grid, relief, kinks)
             fx, fy = (opening_of_motion(integral, grid, direction) for direction in (1.0 + 0.0j, 1j))
             moment = np.outer(integral.force[2], grid.moments(np.ones_like)).ravel()

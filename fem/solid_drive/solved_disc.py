@@ -272,7 +272,7 @@ def require_solid_memory(
     nodes = estimate_unknowns(shapes.disc, spots, coarse_size=edge, growth=GROWTH) // 2
     unknowns, needed = 0, 0.0
     for layers in widths.layers_of("disc"):
-        per_node = 2 * layers.free_in_plane.size + layers.free_along_axis.size
+        per_node = layers.unknowns_per_node
         unknowns, needed = unknowns + nodes * per_node, needed + solid_memory(nodes, per_node)
     require_memory(unknowns, needed, "the disc as a solid body")
 

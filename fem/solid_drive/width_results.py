@@ -122,9 +122,7 @@ def _on_bore(model: SolidModel, pressure: FloatArray, *, tilting: bool) -> tuple
     parity = "antisymmetric" if tilting else "symmetric"
     own = next(each for each in model.disc.classes if each.body.layers.parity == parity)
     layers, body = own.body.layers, model.meshes.disc
-    thickness = layers.thickness
-    density = (lambda z: 12.0 * z / thickness**3) if tilting else (lambda z: np.full_like(z, 1.0 / thickness))
-    along = layers.moments(density)[layers.free_in_plane]
+    along = layers.moments(layers.unit_load)[layers.free_in_plane]
     u = own.displacement(pressure[: model.on_disc])
     chain = np.concatenate([body.boundary_nodes(bore.name) for bore in model.shapes.disc.bores])
     nodes, places = np.unique(chain), body.places

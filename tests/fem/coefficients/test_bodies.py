@@ -414,7 +414,7 @@ def test_unfit_numbers_of_stations_are_refused(disc_shape, scale):
 
 @pytest.mark.parametrize("size", [0.0, -1.0, 5.0, float("nan")])
 def test_unfit_sizes_are_refused(disc_shape, stations, size):
-    with pytest.raises(MeshError, match="element size"):
+    with pytest.raises(MeshError, match=r"size = .* \(--size\): must be"):
         derive_disc(disc_shape, stations, STEEL, thickness=1.0, size=size)
-    with pytest.raises(MeshError, match="element size"):
+    with pytest.raises(MeshError, match=r"size = .* \(--size\): must be"):
         derive_pin(CircleShape(name="pin", radius=5.0, core_radius=1.0), STEEL, thickness=1.0, size=size)

@@ -26,6 +26,10 @@ def test_files_of_a_disc(tmp_path, capsys):
     assert summary["bodies"] == "solid"
     assert len(summary["pin_load_N"]) == 5
     assert len(summary["roller_load_N"]) == len(summary["roller_load_inner_N"]) == 5
+    # Rollers lean between an upright race and the bore.
+    assert len(summary["roller_lean_rad"]) == 5
+    tilt = float(np.linalg.norm(summary["disc_tilt_rad"]))
+    assert 0.0 < np.max(np.abs(summary["roller_lean_rad"])) < tilt
     assert abs(summary["wheel_moment_N_mm"]) == pytest.approx(1500.0, rel=1e-12)
     assert summary["equilibrium_residual_N"] < 1e-6 * max(summary["pin_load_N"])
     with xr.open_dataset(out / "fem.nc", engine="h5netcdf") as data:

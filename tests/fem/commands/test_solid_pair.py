@@ -35,6 +35,11 @@ def run(*words):
         (["--bodies", "solid", "--pair", "bore", "--load", "9", "--torque", "1e5"], "--torque: has no effect"),
         (["--bodies", "solid", "--pair", "bore", "--contact", "11"], "--contact 11: must be between 0 and 10"),
         (["--bodies", "solid", "--pair", "bore", "--contact", "6"], "--load: must be given"),
+        # Blocks that touch nowhere were meshed and factorised for a quarter of an hour before they carried nothing.
+        (
+            ["--bodies", "solid", "--pair", "bore", "--approach", "0"],
+            "approach = 0 mm of .*: must be greater than 0 mm",
+        ),
         (["--bodies", "solid", "--pair", "bore", "--block", "0.05"], "too wide for a block of 0.05 mm"),
     ],
 )

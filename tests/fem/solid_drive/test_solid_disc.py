@@ -14,6 +14,7 @@ from fem.drive.meshes import mesh_drive
 from fem.drive.pose import solve_pose
 from fem.errors import MemoryLimitError, MeshError
 from fem.shapes import DriveShapes
+from fem.solid_contact.reliefs import relief_of
 from fem.solid_drive.along_width import DriveWidths, plane_part
 from fem.solid_drive.solid_bodies import condense_solids
 from fem.solid_drive.solved_disc import SolidOptions, solve_solid_disc
@@ -205,14 +206,14 @@ def test_lengths_reliefs_and_classes():
     assert np.any(widths.layers_of("disc")[0].vertices == 3.0)
     assert widths.layers_of("roller")[0].vertices[-1] == widths.grid("roller_inner").heights[-1] == 3.0
     assert widths.grid("pin").heights[-1] == widths.layers_of("wheel_pin")[0].vertices[-1] == 4.0
-    relief, _ = widths.relief("pin")
+    relief, _ = relief_of(drive, "pin")
     # Metal is left where z is positive; the crown takes 4 µm off both ends.
     np.testing.assert_allclose(relief(np.array([-4.0, 0.0, 4.0])), [0.008, 0.0, 0.0], atol=1e-15)
-    assert widths.relief("hole")[0] is None
-    assert widths.relief("roller_outer")[0] is None
+    assert relief_of(drive, "hole")[0] is None
+    assert relief_of(drive, "roller_outer")[0] is None
     crowned = with_fields(plastic(), {"crank_bearing.roller_profile.crown_drop": 0.002})
     assert DriveWidths(drive=crowned, layers=3).even
-    assert DriveWidths(drive=crowned, layers=3).relief("roller_inner")[0](4.0) == pytest.approx(0.002, rel=1e-12)
+    assert relief_of(crowned, "roller_inner")[0](4.0) == pytest.approx(0.002, rel=1e-12)
 
 
 @pytest.mark.parametrize(
