@@ -1,6 +1,6 @@
 r"""Integrals of the shape functions over the cross-section of an extruded body.
 
-For quadratic triangles (`fem.mesh.body_mesh.BodyMesh`) and for quadrilaterals of nine nodes:
+For quadratic triangles (`fem.mesh.body_mesh.BodyMesh`) and for quadrilaterals of nine nodes (``skfem.MeshQuad2``):
 
 .. math:: S_{ab} = \int N_{i,a} N_{j,b}\,dA, \qquad G_a = \int N_{i,a} N_j\,dA, \qquad M = \int N_i N_j\,dA .
 """
@@ -10,7 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from skfem import ElementQuad2, ElementTriP2
+import scipy.sparse as sp
+from skfem import ElementQuad2, ElementTriP2, MeshQuad2
 from skfem.quadrature import get_quadrature
 
 from fem.errors import MeshError
@@ -45,6 +46,17 @@ class Section:
         if body.order != 2:
             raise MeshError(f"mesh of {body.name} has straight elements; solid bodies need second-order ones")
         return cls(name=body.name, places=np.asarray(body.mesh.doflocs), element_nodes=body.element_nodes)
+
+    @classmethod
+    def of_quadrilaterals(cls, name: str, mesh: MeshQuad2) -> Section:
+        """Return the cross-section of a mesh of quadrilaterals of nine nodes.
+
+        Nodes are numbered as scikit-fem does: vertices, mid-sides facet by facet, middles of the elements.
+        """
+        first = mesh.nvertices + mesh.nfacets
+        middles = first + np.arange(mesh.t.shape[1])
+        nodes = np.vstack([mesh.t, mesh.nvertices + mesh.t2f, middles])
+        return cls(name=name, places=np.asarray(mesh.doflocs), element_nodes=np.asarray(nodes, dtype=np.int64).T)
 
     @property
     def node_count(self) -> int:
@@ -118,3 +130,9 @@ def integrate_section(section: Section) -> SectionIntegrals:
         mixed_transposed=summed[6:8],
         mass=summed[8],
     )
+
+
+def section_mass(section: Section) -> sp.csc_matrix:
+    """Return the mass matrix of a cross-section, shape (nodes, nodes), mm²."""
+    found = integrate_section(section)
+    return sp.csc_matrix((found.mass, (found.rows, found.columns)), shape=(section.node_count,) * 2)

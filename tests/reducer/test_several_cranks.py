@@ -248,7 +248,7 @@ def test_equal_parts_by_counting(rv, cranks, teeth, alike):
         ({"crank.support.positions": (22.0, -22.0)}, r"crank\.support\.positions holds 22 and -22 mm: must ascend"),
         ({"crank.support.diameter": 27.0}, r"crank\.support\.diameter = 27 mm: must be at most 26 mm"),
         ({"crank.support.stiffness": (0.0, 1e5)}, r"crank\.support\.stiffness"),
-        ({"disc.of.0.bore_errors.radial": (0.001,)}, r"bore_errors\.radial has 1 values: must have 3"),
+        ({"disc.of.0.bore_errors.radial": (0.001,)}, r"bore_errors\.radial has 1 value: must have 3"),
         ({"pin_shaft.stiffness": 1e5}, r"pin_shaft\.stiffness: there is no pin_shaft"),
         ({"disc.hole_errors.radial": (0.001,) * 3}, r"disc\.hole_errors\.radial: there is no pin_shaft"),
         (

@@ -29,10 +29,7 @@ def cylinder(parity, *, number=2, coarse=2.5):
 
 def square(parity):
     mesh = MeshQuad2.from_mesh(MeshQuad().refined(1))
-    # Numbered as scikit-fem does: vertices, mid-sides facet by facet, middles of the elements.
-    middles = mesh.nvertices + mesh.nfacets + np.arange(mesh.t.shape[1])
-    nodes = np.vstack([mesh.t, mesh.nvertices + mesh.t2f, middles]).T
-    section = Section(name="block", places=mesh.doflocs, element_nodes=nodes)
+    section = Section.of_quadrilaterals("block", mesh)
     return ExtrudedBody(section=section, layers=graded_layers(2.0, 1, parity))
 
 
