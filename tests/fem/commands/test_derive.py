@@ -245,7 +245,7 @@ def test_failure_leaves_the_old_file(dataset, tmp_path, monkeypatch):
         (("paper", "--stations", "nan"), "stations = 'nan'"),
         (("paper", "--size", "0"), "size = 0"),
         (("paper", "--size", "-1"), "size = -1"),
-        (("paper", "--size", "3"), "size 3: .* at most 2"),
+        (("paper", "--size", "3"), "size = 3 .* at most 2"),
         (("paper", "--size", "1e-6"), "memory"),
         (("paper", "--out", "/proc/none/c.nc"), "/proc/none"),
     ],
