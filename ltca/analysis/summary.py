@@ -15,7 +15,7 @@ from ltca.analysis.loaded_analysis import MAX_BATCH_POSITIONS, LoadedAnalysis
 from ltca.analysis.results import case_arrays
 from ltca.arrays import FloatArray, batch_layout, stack_drives, take_rows
 from ltca.drive.units.quantities import ARCMIN, ARCSEC
-from ltca.dynamics.mass_values import mass_values
+from ltca.dynamics.mass_values import NAMES as OF_MASSES, mass_values
 from ltca.equilibrium.output_angle import play_of_input
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
@@ -78,7 +78,11 @@ def summarise(analysis: LoadedAnalysis) -> dict[str, float | None]:
 
 
 def summarise_cases(
-    analyses: Mapping[str, LoadedAnalysis], *, without_load: bool = True, near: TurnPlay | None = None
+    analyses: Mapping[str, LoadedAnalysis],
+    *,
+    without_load: bool = True,
+    masses: bool = True,
+    near: TurnPlay | None = None,
 ) -> dict[str, dict[str, float | None]]:
     """Return the scalars of several cases by name, as `summarise` does; what is solved for them is solved together.
 
@@ -88,6 +92,8 @@ def summarise_cases(
         By name.
     without_load : bool
         Whether backlash, free play and overlap are wanted, which no load moves.
+    masses : bool
+        Whether masses and inertias are wanted.
     near : TurnPlay, optional
         Free play of a drive that all of these nearly are (`ltca.geometry.play.plays_over_a_turn`).
     """
@@ -100,7 +106,7 @@ def summarise_cases(
         plays = _together(partial(_plays, near=near), each, layouts)
     refined = _together(_refined, each, [_refined_with(analysis) for analysis in each])
     known = zip(each, unloaded, plays, refined, strict=True)
-    return {name: _summary(*of) for name, of in zip(analyses, known, strict=True)}
+    return {name: _summary(*of, masses=masses) for name, of in zip(analyses, known, strict=True)}
 
 
 def _together(
@@ -127,7 +133,9 @@ def _together(
     return [found[number] for number in range(len(analyses))]
 
 
-def _summary(analysis: LoadedAnalysis, unloaded: Values, plays: Values, refined: Values) -> dict[str, float | None]:
+def _summary(
+    analysis: LoadedAnalysis, unloaded: Values, plays: Values, refined: Values, *, masses: bool
+) -> dict[str, float | None]:
     """The scalars of one case from what was solved for it."""
     arrays = case_arrays(analysis)
     full, contacts = analysis.full, analysis.full.response
@@ -153,7 +161,7 @@ def _summary(analysis: LoadedAnalysis, unloaded: Values, plays: Values, refined:
         **scalars_of_positions(analysis, arrays),
         "cycloid_stage_stiffness": analysis.stiffness_from_light(analysis.stage_wind_up),
         "reducer_stiffness": analysis.stiffness_from_light(analysis.wind_up),
-        **mass_values(analysis.as_written),
+        **(mass_values(analysis.as_written) if masses else dict.fromkeys(OF_MASSES, np.nan)),
     }
     values |= {f"compliance_share_{part}": np.mean(share) for part, share in analysis.compliance_shares.items()}
     values |= {f"refined_{name}": refined.get(name, np.nan) for name in values if name in REFINED}

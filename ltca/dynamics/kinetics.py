@@ -285,15 +285,17 @@ class ReflectedInertia:
     given_output: float
 
 
-def reflected_inertia(drive: Drive) -> ReflectedInertia | None:
+def reflected_inertia(drive: Drive, masses: DriveMasses | None = None) -> ReflectedInertia | None:
     """Return the inertia of a drive at its input and output, mean over a turn; None where a density is not known.
 
     Parameters
     ----------
     drive : Drive
         In one disc or several.
+    masses : DriveMasses, optional
+        Of this drive, where they are known.
     """
-    masses = drive_masses(drive)
+    masses = drive_masses(drive) if masses is None else masses
     if masses.without_density:
         return None
     motion, energies = Motion.of_drive(_plane(masses.drive)), []

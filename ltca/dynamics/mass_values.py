@@ -32,7 +32,7 @@ def mass_values(drive: Drive) -> dict[str, float]:
     """
     masses = drive_masses(drive)
     disc, total, found = masses.of(DISCS)[0], masses.total, masses.unbalance
-    reflected = reflected_inertia(drive)
+    reflected = reflected_inertia(drive, masses)
     values = dict.fromkeys(NAMES, nan)
     if disc.mass is not None and disc.about_own_axis is not None:
         values |= {"disc_mass": disc.mass / TONNE_PER_KG, "disc_inertia": disc.about_own_axis / INERTIA}

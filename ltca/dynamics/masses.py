@@ -41,6 +41,8 @@ POINTS_PER_WAVE = 12
 OVER_WIDTH = 4
 """Places of Gauss's rule between the heights at which a lead changes its law: a lead is a square there, second moments of the
 section have its fourth power, and z² comes to it."""
+GAUSS = np.polynomial.legendre.leggauss(OVER_WIDTH)
+"""Places over (−1, 1) and their weights."""
 DISCS, WHEEL_PINS, SHAFT_PINS, ROLLERS, CRANKS, RING, POSTS = (
     "discs", "wheel pins", "shaft pins", "rollers", "cranks", "ring", "posts",
 )  # fmt: skip
@@ -395,7 +397,7 @@ def _across(disc: Disc) -> tuple[FloatArray, FloatArray]:
 
 
 def _gauss(ends: Sequence[float]) -> tuple[FloatArray, FloatArray]:
-    places, weights = np.polynomial.legendre.leggauss(OVER_WIDTH)
+    places, weights = GAUSS
     low, high = np.array(ends[:-1])[:, None], np.array(ends[1:])[:, None]
     half = 0.5 * (high - low)
     return (low + half * (1.0 + places)).ravel(), (half * weights).ravel()

@@ -241,7 +241,7 @@ class _Trials:
             return {name: values for found in each for name, values in found.items()}
 
     def _values(self, analyses: Mapping[str, LoadedAnalysis], play: TurnPlay | None) -> dict[str, dict[str, Value]]:
-        summaries = summarise_cases(analyses, without_load=self.without_load, near=play)
+        summaries = summarise_cases(analyses, without_load=self.without_load, masses=False, near=play)
         return {
             name: {value.quantity: value for value in find_values(one, summaries[name], lives=self.lives)}
             for name, one in analyses.items()
