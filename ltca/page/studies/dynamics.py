@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ltca.analysis.forced_vibration import ForcedVibration
+from ltca.analysis.forced_vibration import ForcedVibration, response_notes
 from ltca.analysis.vibration import Vibration
 from ltca.drive.units.quantities import ARCSEC
 from ltca.dynamics.mass_values import mass_rows
@@ -116,9 +116,6 @@ def _response(case: str, found: Vibration, answer: ForcedVibration) -> Section:
         title="Transmission error in motion", unit="arc seconds", axis="speed of the input, rpm", x=x, lines=lines
     )
     factors = Curves(title="Dynamic factor", unit="", axis="speed of the input, rpm", x=x, lines=answer.factors)
-    notes = [
-        "Largest load of a contact in motion by the largest at rest. Stiffness in the mean of a turn, contacts closed."
-    ]
-    if answer.parts_from is not None:
-        notes.append(f"From {answer.parts_from:.4g} rpm on the torque would pass through zero: contacts part.")
+    told = [f"{note[0].upper()}{note[1:]}." for note in response_notes(answer, found)]
+    notes = ["Largest load of a contact in motion by the largest at rest, contacts closed.", *told]
     return Section(heading=_heading(case, "Response over speed"), notes=notes, curves=[error, factors])
