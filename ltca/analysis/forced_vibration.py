@@ -6,12 +6,12 @@ with the input turning evenly; its masses do not let it, and it departs by Y:
 
 .. math:: M D^2 Y + C \dot Y + K(\varphi_C) Y = -M D^2 X_s - f_0, \quad D = \frac{d}{dt} + \dot\varphi J
 
-with the tangent K of every position of a turn, the masses in the mean of a turn, the spin J of the frame (Coriolis and centrifugal terms)
-and the inertia forces :math:`f_0` of the nominal motion: discs on their eccentrics. The pulsation of the stiffness makes of every
-whole order all others (`ltca.dynamics.harmonic_balance`); what of it does not come again after a turn is left out and told, and
-so is the speed from which on the balance does not converge and the mean stiffness answers. What torque the input takes at rest it has at
-every speed: an input whose inertia is given vibrates about that. A damping ratio is that of every mode of the mean of K and M, a
-loss factor makes K̄(1 + iη) of the mean.
+with the tangent K of every position of a turn, the masses in the mean of a turn, the spin J of the frame (Coriolis and
+centrifugal terms) and the inertia forces :math:`f_0` of the nominal motion: discs on their eccentrics. The pulsation of the
+stiffness makes of every whole order all others (`ltca.dynamics.harmonic_balance`). What of it does not come again after a turn
+is left out and told; so is the speed from which on the balance does not converge and the mean stiffness answers. What torque the
+input takes at rest it has at every speed: an input whose inertia is given vibrates about that. A damping ratio is that of every
+mode of the mean of K and M, a loss factor makes K̄(1 + iη) of the mean.
 
 Where the pulsation shakes modes up by itself, and from where the transmitted torque would pass through zero, so that contacts
 part, the response is not valid: both are told.
@@ -67,7 +67,7 @@ class ForcedVibration:
     mean_from : float or None
         Speed from which on the mean stiffness answers, since the balance with its pulsation does not converge, turns a minute.
     truncation : float
-        Change of the transmission error where it is largest, with pulsation, by half of the orders of the balance, as root mean square by it.
+        Change of the transmission error, by itself, that half of the orders of the balance make where it is largest.
     unstable : tuple of UnstableRange
         Speeds of the input, turns a minute, at which the stiffness shakes modes up by its pulsation.
     torque_ratio : array, shape (speeds,)

@@ -5,8 +5,8 @@ In the frame that turns with the crank at the speed :math:`\dot\varphi`,
 .. math:: M D^2 Y + C \dot Y + K(\varphi) Y = f(\varphi), \quad D = \frac{d}{dt} + \dot\varphi J
 
 with a stiffness that comes again after a turn. Whole orders below half the positions of a turn are balanced together: inertia,
-spin and damping act on orders, the stiffness at positions (alternating by FFT). GMRES solves them; its preconditioner lets motions
-with inertia that counts answer by the mean of what they feel, and the others, b, at every position at once:
+spin and damping act on orders, the stiffness at positions (alternating by FFT). GMRES solves them; its preconditioner lets
+motions a, whose inertia counts, answer by the mean of what they feel, and the others, b, at every position at once:
 
 .. math:: b = K_{bb}^{-1} (f_b - K_{ba} a), \quad K_{eff} = K_{aa} - K_{ab} K_{bb}^{-1} K_{ba} .
 
@@ -98,8 +98,9 @@ class HillSystem:
     steady: FloatArray
 
     def compliance(self, speed: float, orders: FloatArray) -> ComplexArray:
-        """Return R of the mean stiffness at a speed of the crank, rad/s, over the free motions, shape (orders, m, m); orders from 0
-        on, of which 0 is the first.
+        """Return what the mean stiffness yields at a speed of the crank, rad/s, over the free motions, shape (orders, m, m).
+
+        Orders are not negative, and zero is the first.
         """
         rates = 1j * speed * orders[:, None, None] * np.eye(self.mass.shape[0]) + speed * self.spin
         damped = 1j * speed * orders[:, None, None] * self.damping

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from ltca.analysis.engines import HalfSpace
-from ltca.analysis.forced_vibration import _force, _nominal_forces, _orders, _quasi_static, _system, forced_vibration
+from ltca.analysis.forced_vibration import _force, _nominal_forces, _system, forced_vibration
 from ltca.analysis.vibration import vibration
 from ltca.commands.program import main
 from ltca.dynamics.harmonic_balance import PulsatingStiffness
