@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 from dataclasses import dataclass
-from glob import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -119,6 +118,8 @@ class OpenedDrives:
 
     def figure_endings(self) -> list[str]:
         """Endings of the names of figures, as patterns: of several cases their names."""
+        from glob import escape
+
         return [f"_{escape(name)}" for name in self.cases] if len(self.cases) > 1 else [""]
 
 

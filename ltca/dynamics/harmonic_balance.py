@@ -32,7 +32,7 @@ from ltca.errors import ConvergenceError
 
 SOLVED = 1e-9
 """Part of a force that a balance may leave, in displacements."""
-DIRECTIONS, CYCLES = 80, 2
+DIRECTIONS, CYCLES = 30, 2
 """Of GMRES at most: each strong resonance takes some. Beyond, many modes are coupled over many orders."""
 BEYOND = 2.0
 """Eigenfrequency by that of the highest order from which motions answer at every position at once in the preconditioner."""
