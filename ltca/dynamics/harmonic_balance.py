@@ -63,7 +63,7 @@ class PulsatingStiffness:
     @property
     def orders(self) -> int:
         """Largest order that its positions resolve."""
-        return self.over_turn.shape[0] // 2 - 1
+        return len(self.over_turn) // 2 - 1
 
     @property
     def amplitude(self) -> ComplexArray:
@@ -109,7 +109,7 @@ class HillSystem:
         found = np.zeros_like(whole)
         found[1:] = np.linalg.inv(whole[1:])
         found[0] = self.steady @ np.linalg.inv(self.steady.T @ whole[0].real @ self.steady) @ self.steady.T
-        return found
+        return np.asarray(found)
 
     def respond(
         self,
@@ -173,7 +173,7 @@ class HillSystem:
             return np.asarray(np.fft.irfft(amplitudes, samples, axis=0))
 
         def by_orders(values: FloatArray) -> ComplexArray:
-            found = np.asarray(np.fft.rfft(values, axis=0)[:whole])
+            found: ComplexArray = np.fft.rfft(values, axis=0)[:whole]
             found[0] = held @ found[0]
             return found
 
@@ -189,7 +189,7 @@ class HillSystem:
         def prepared(values: FloatArray) -> FloatArray:
             given = values.reshape(samples, size)
             taken = in_time(by_orders(given))
-            turned = taken @ split
+            turned: FloatArray = np.asarray(taken @ split, dtype=np.float64)
             quick = _times(at_once, turned[:, count:])
             pushed = turned[:, :count] - np.einsum("pba,pb->pa", parts[:, count:, :count], quick)
             slowly = in_time(np.einsum("oij,oj->oi", answers, np.fft.rfft(pushed, axis=0)[:whole]))
