@@ -8,9 +8,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from fem.mesh.boundary_division import MAX_TURN
+from fem.mesh.memory_need import solid_memory, solid_values
 from fem.mesh.triangulation import default_coarse_size, estimate_unknowns
 from fem.shapes import DiscShape
 from fem.solid.layers import graded_layers
@@ -18,7 +17,7 @@ from fem.solid.layers import graded_layers
 # Measured with SuperLU on the paper's disc, 5,200 to 11,700 nodes with 8 and 14 unknowns at each: 44 to 61 bytes and 1.50 to
 # 1.76 ns by value, 1.7 to 2.6 ns of the factor, by minimum degree as by METIS; CHOLMOD (the extra "fast") takes 42 to 69 bytes
 # and 3.5 to 4.1 ns by value. The rest is what a process and the matrices of the file take.
-BYTES_PER_VALUE, BYTES = 55.0, 3.0e8
+BYTES = 3.0e8
 SECONDS_PER_VALUE, SECONDS_OF_FACTOR = 1.7e-9, 2.2e-9
 # Matrices over stations that are held at the same time, of eight bytes.
 MATRICES = 12
@@ -64,11 +63,11 @@ def solid_need(shape: DiscShape, loads: int, *, size: float, growth: float, laye
         shape, (), coarse_size=default_coarse_size(shape, size), growth=growth, turn=MAX_TURN
     )
     per_node = graded_layers(1.0, layers, "symmetric").unknowns_per_node
-    values = nodes * per_node**2 * float(np.log2(max(nodes, 2.0)))
+    values = solid_values(nodes, per_node)
     factor = SECONDS_OF_FACTOR * nodes**1.5 * per_node**3
     return SolidNeed(
         unknowns=round(nodes * per_node),
         loads=loads,
-        memory=BYTES + BYTES_PER_VALUE * values + 8.0 * MATRICES * float(loads) ** 2,
+        memory=BYTES + solid_memory(nodes, per_node) + 8.0 * MATRICES * float(loads) ** 2,
         seconds=COARSER * CLASSES * (factor + loads * SECONDS_PER_VALUE * values),
     )

@@ -204,6 +204,11 @@ def find_case_coefficients(
     }
 
 
+def coefficient_warnings(found: Iterable[InfluenceCoefficients | None]) -> list[str]:
+    """Return what to tell of coefficients less accurate than asked for, each file once; None stands for half-spaces."""
+    return [*dict.fromkeys(own.warning for own in found if own is not None and own.warning)]
+
+
 def _discs(name: str, drive: Drive) -> list[tuple[str, Drive]]:
     """The drives of each disc with labels of their own."""
     singles = single_discs(drive)

@@ -21,6 +21,7 @@ from ltca.analysis.engines import CoupledEngine, Engine, ring_lender
 from ltca.compliance.coefficient_files import (
     GROUP,
     cache_folder,
+    coefficient_warnings,
     expected_seconds,
     find_case_coefficients,
     has_coefficients,
@@ -161,16 +162,19 @@ def find_beforehand(engine: Engine, shapes: Mapping[str, Drive], told: Callable[
                 near_field = NEAR_FIELDS[engine.compliance]
                 find_case_coefficients(group, near_field=near_field, bodies=engine.bodies)
         wanted = missing or wanted[:1]
-    failures = []
+    failures, found = [], list[InfluenceCoefficients]()
     for drive in wanted:
         try:
-            with_kept_coefficients(engine, drive)
+            given_now = _given(with_kept_coefficients(engine, drive))
+            found += given_now if isinstance(given_now, tuple) else [given_now]
         except CycloError as error:
             if given is not None:
                 raise
             failures.append(error)
     if len(failures) == len(wanted) == len(shapes):
         raise failures[0]
+    for text in coefficient_warnings(found):
+        told(f"warning: {text}")
 
 
 def coefficients_identity(engine: Engine) -> str:
@@ -187,8 +191,8 @@ def _coefficients_identity(engine: Engine) -> str:
     if _are_coefficients(given):
         digest = hashlib.sha256()
         for own in given if isinstance(given, tuple) else (given,):
-            for item in fields(own):
-                value = getattr(own, item.name)
+            # What is said of a file names its place.
+            for value in (getattr(own, item.name) for item in fields(own) if item.name != "warning"):
                 digest.update(value.tobytes() if isinstance(value, np.ndarray) else repr(value).encode())
         return f"given {digest.hexdigest()[:16]}"
     if given is not None:
