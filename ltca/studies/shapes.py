@@ -22,7 +22,7 @@ from ltca.compliance.coefficient_files import (
     GROUP,
     cache_folder,
     coefficient_warnings,
-    expected_seconds,
+    derivation_words,
     find_case_coefficients,
     has_coefficients,
     require_cache,
@@ -149,9 +149,10 @@ def find_beforehand(engine: Engine, shapes: Mapping[str, Drive], told: Callable[
         missing = [drive for drive in wanted if not has_coefficients(drive, engine.bodies)]
         if missing:
             few = "1 shape has" if len(missing) == 1 else f"{len(missing)} shapes have"
-            each = expected_seconds(missing, engine.bodies)
-            whole = f", {told_seconds(sum(each))} in all" if len(missing) > 1 else ""
-            told(f"{few} no influence coefficients yet: derived first, {told_seconds(max(each))} each{whole}")
+            words = derivation_words(missing, engine.bodies, len(missing))
+            if engine.bodies == "plane":
+                words += " each" + (f", {derivation_words(missing, 'plane')} in all" if len(missing) > 1 else "")
+            told(f"{few} no influence coefficients yet: derived first, {words}")
         for first in range(0, len(missing), MAX_KEPT_SHAPES) if len(missing) > 1 else ():
             group = {
                 f"shape {first + number}": drive
