@@ -17,7 +17,7 @@ ROOT = Path(__file__).parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 CITATION = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
 NEXT = PROJECT["tool"]["setuptools_scm"]["fallback_version"].partition(".dev")[0]
-YAML = sorted(path for path in ROOT.glob(".github/**/*.yml")) + [ROOT / ".readthedocs.yaml"]
+YAML = [*sorted(ROOT.glob(".github/**/*.yml")), ROOT / ".readthedocs.yaml"]
 PYTHONS = [
     line.rpartition(" ")[2] for line in PROJECT["project"]["classifiers"] if re.search(r"Python :: 3\.\d+$", line)
 ]
@@ -84,9 +84,7 @@ def test_version_of_an_sdist(tmp_path):
 
 
 def test_citation_is_that_of_the_newest_release():
-    dated = re.findall(
-        r"^## (\d+\.\d+\.\d+) \((\d{4}-\d\d-\d\d)\)$", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE
-    )
+    dated = re.findall(r"^## (\d+\.\d+\.\d+) \((\d{4}-\d\d-\d\d)\)$", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)
     assert (CITATION["version"], str(CITATION["date-released"])) == dated[0]
     assert CITATION["license"] == PROJECT["project"]["license"]
     assert [author["name"] for author in CITATION["authors"]] == [one["name"] for one in PROJECT["project"]["authors"]]
