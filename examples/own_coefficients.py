@@ -22,24 +22,24 @@ folder = Path(tempfile.mkdtemp())
 drive = ltca.load_drive("paper").cases["CS-1"]
 
 # %%
-# The file has the positions at which your code is to load the disc, and the format of its answers. Here a coarse derivation with a
-# quarter of the stations stands for them: replace its ``disc_approach`` and the like by the displacements that your code finds.
+# The file has the positions at which your code is to load the disc, and the format of its answers. Here a coarse derivation with
+# a quarter of the stations stands for them: replace its ``disc_approach`` and the like by the displacements that your code finds.
 
 dataset = derive_coefficients(drive, case="CS-1", stations=0.25, size=2.0)
 print("load at x, y [mm]:", dataset["station_x"].values[:3].round(3), dataset["station_y"].values[:3].round(3))
 write_coefficients(dataset, folder / "mine.nc")
 
 # %%
-# Before it is used a file is held against physical laws, and against the drive that it is to serve: reciprocity, rigid motions, the
-# near field of a line load, places and normals.
+# Before it is used a file is held against physical laws, and against the drive that it is to serve: reciprocity, rigid motions,
+# the near field of a line load, places and normals.
 
 mine = read_coefficients(folder / "mine.nc", lawful=False)
 for law in (*check_coefficients(mine), *check_against_drive(mine, drive, "mine.nc")):
     print(f"{'passes' if law.passed else 'fails'}: {law.name}")
 
 # %%
-# Loads with these bodies and with half-spaces, over a period of the flank, and how the pin loads follow the torque: the derivative
-# comes from the Jacobian of the balance, no second solution is needed.
+# Loads with these bodies and with half-spaces, over a period of the flank, and how the pin loads follow the torque: the
+# derivative comes from the Jacobian of the balance, no second solution is needed.
 
 angles = np.linspace(0.0, 2.0 * np.pi / 13.0, 12, endpoint=False)
 result = ltca.analyse(drive, crank_angle=angles, compliance=ltca.Hybrid(coefficients=folder / "mine.nc"))
