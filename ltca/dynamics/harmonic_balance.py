@@ -163,8 +163,8 @@ class HillSystem:
         split = np.concatenate((slow, _beside(slow, mass)), axis=1)
         count = slow.shape[1]
         parts = split.T @ stiffness @ split
-        at_once = np.linalg.inv(parts[:, count:, count:])
-        across = at_once @ parts[:, count:, :count]
+        at_once: FloatArray = np.asarray(np.linalg.inv(parts[:, count:, count:]), dtype=np.float64)
+        across: FloatArray = np.asarray(at_once @ parts[:, count:, :count], dtype=np.float64)
         felt = np.mean(parts[:, :count, :count] - parts[:, :count, count:] @ across, axis=0)
         answers = _inverses(slow.T @ moving @ slow + felt)
         scale = np.concatenate(([samples], np.full(whole - 1, 0.5 * samples)))[:, None]

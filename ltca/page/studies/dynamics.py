@@ -97,8 +97,8 @@ def _campbell(case: str, ending: str, found: Vibration, fastest: float) -> Secti
     table = Table(name=f"critical_speeds{ending}", caption="", columns=columns, rows=rows)
     notes = [
         f"Where the {len(found.told_orders)} largest orders of the transmission error meet an eigenfrequency, up to "
-        f"{fastest:g} rpm of the input; {len(speeds)} in all. Orders are counted by turn of the input in the diagram, and by turn "
-        "of the crank against the pin shaft in the table."
+        f"{fastest:g} rpm of the input; {len(speeds)} in all. Orders are counted by turn of the input in "
+        "the diagram, by turn of the crank against the pin shaft in the table."
     ]
     return Section(
         heading=_heading(case, "Critical speeds"), notes=notes, curves=[plot], tables=[table] if rows else []
