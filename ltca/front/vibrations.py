@@ -36,6 +36,14 @@ class DriveVibrations:
         Response over the speed of the input; None of a drive without ``[damping]``.
     fastest : float
         Largest speed of the input, turns a minute.
+
+    Examples
+    --------
+    >>> import ltca
+    >>> drive = ltca.load_drive("paper").cases["CS-1"]
+    >>> found = ltca.vibration(drive, positions=4, compliance="half-space", speed="1500 rpm")
+    >>> found.response is None, found.fastest  # no [damping] in its file
+    (True, 1500.0)
     """
 
     modes: Vibration
@@ -44,7 +52,16 @@ class DriveVibrations:
 
     @property
     def content(self) -> dict[str, Any]:
-        """What ``dynamics.json`` holds of it, without the options of the engine: lists and numbers, units in the keys."""
+        """What ``dynamics.json`` holds of it, without the options of the engine: lists and numbers, units in the keys.
+
+        Examples
+        --------
+        >>> import ltca
+        >>> drive = ltca.load_drive("paper").cases["CS-1"]
+        >>> content = ltca.vibration(drive, positions=4, compliance="half-space").content
+        >>> content["input_held"], [mode["number"] for mode in content["modes"]]
+        (True, [1, 2, 3, 4])
+        """
         answer = None if self.response is None else response_content(self.response, self.modes)
         return {**vibration_content(self.modes, self.fastest), "response": answer}
 
