@@ -9,7 +9,7 @@ with the input turning evenly; its masses do not let it, and it departs by Y:
 with the tangent K of every position of a turn, the masses in the mean of a turn, the spin J of the frame (Coriolis and
 centrifugal terms) and the inertia forces :math:`f_0` of the nominal motion: discs on their eccentrics. The pulsation of the
 stiffness makes of every whole order all others (`ltca.dynamics.harmonic_balance`). What of it does not come again after a turn
-is left out and told; so is the speed from which on the balance does not converge and the mean stiffness answers. What torque the
+is left out and told; so are the speeds at which the balance does not converge and the mean stiffness answers. What torque the
 input takes at rest it has at every speed: an input whose inertia is given vibrates about that. A damping ratio is that of every
 mode of the mean of K and M, a loss factor makes K̄(1 + iη) of the mean.
 
@@ -26,7 +26,7 @@ import numpy as np
 
 from ltca.analysis.transmission_error_orders import OrderFit
 from ltca.analysis.vibration import Vibration, speed_range
-from ltca.arrays import ComplexArray, FloatArray, IntArray
+from ltca.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from ltca.compliance.response import Response, Start
 from ltca.dynamics.harmonic_balance import HillSystem, UnstableRange, unstable_ranges
 from ltca.dynamics.kinetics import moving_bodies
@@ -44,6 +44,8 @@ SPEEDS = 300
 """Evenly spaced speeds of a response; critical ones come to them."""
 POSITIONS = 96
 """Crank angles of a turn at which loads are told."""
+GIVEN_UP = 3
+"""Speeds in a row, faster than one that balances, whose failure ends the balance with the pulsation."""
 SAME_ORDER = 1e-9
 """Distance from a whole number below which an order is one."""
 STEP = 1e-6
@@ -64,8 +66,8 @@ class ForcedVibration:
         Of the transmission error in motion, the orders of the spectrum, rad.
     amplitude : array, shape (speeds,)
         Root mean square of the transmission error about its mean, rad, with orders that only the motion has.
-    mean_from : float or None
-        Speed from which on the mean stiffness answers, since the balance with its pulsation does not converge, turns a minute.
+    mean_at : array, shape (speeds,)
+        Those of the speeds at which the mean stiffness answers, since the balance with its pulsation does not converge.
     truncation : float
         Change of the transmission error, by itself, that half of the orders of the balance make where it is largest.
     unstable : tuple of UnstableRange
@@ -79,7 +81,7 @@ class ForcedVibration:
     speed: FloatArray
     order_amplitude: FloatArray
     amplitude: FloatArray
-    mean_from: float | None
+    mean_at: FloatArray
     truncation: float
     unstable: tuple[UnstableRange, ...]
     torque_ratio: FloatArray
@@ -128,9 +130,9 @@ def forced_vibration(found: Vibration, *, fastest: float | None = None, speeds: 
     departure, outward = answers[:, 1:].transpose(0, 2, 1), answers[:, 0].real
     every = np.abs(np.einsum("n,snm->sm", _deviation(found), resting + departure))
     amplitude = np.sqrt(0.5 * np.sum(every**2, axis=1))
-    worst = int(np.argmax(amplitude[:balanced])) if balanced else 0
+    worst = int(np.argmax(np.where(balanced, amplitude, 0.0)))
     fewer = system.respond(
-        crank[worst], orders, forces[worst], pulsates=balanced > 0, highest=system.stiffness.orders // 2
+        crank[worst], orders, forces[worst], pulsates=bool(balanced[worst]), highest=system.stiffness.orders // 2
     )
     changed = _deviation(found) @ (fewer - answers[worst])[1:].T
     loads = _Loads.at_load(found, model)
@@ -141,7 +143,7 @@ def forced_vibration(found: Vibration, *, fastest: float | None = None, speeds: 
         speed=speed,
         order_amplitude=every[:, _places(found, orders)],
         amplitude=amplitude,
-        mean_from=float(speed[balanced]) if balanced < speed.size else None,
+        mean_at=speed[~balanced],
         truncation=float(np.sqrt(0.5 * np.sum(np.abs(changed) ** 2)) / amplitude[worst]),
         unstable=_unstable(found, system, top),
         torque_ratio=loads.torque_ratio(moved),
@@ -151,17 +153,18 @@ def forced_vibration(found: Vibration, *, fastest: float | None = None, speeds: 
 
 def _answers(
     system: HillSystem, crank: FloatArray, orders: FloatArray, forces: ComplexArray
-) -> tuple[ComplexArray, int]:
-    """Amplitudes by speed, order and coordinate, the mean first; and at how many speeds, from the least, the stiffness pulses."""
-    found: list[ComplexArray] = []
-    balanced = crank.size
+) -> tuple[ComplexArray, BoolArray]:
+    """Amplitudes by speed, order and coordinate, the mean first; and at which speeds the stiffness pulses."""
+    found, balanced = list[ComplexArray](), np.zeros(crank.size, dtype=bool)
     for number, (speed, force) in enumerate(zip(crank.tolist(), forces, strict=True)):
-        if number < balanced:
+        # Beyond speeds that balance, what does not converge does so less and less; below, an input may turn too freely.
+        if not balanced.any() or balanced[max(number - GIVEN_UP, 0) : number].any():
             try:
                 found.append(system.respond(speed, orders, force))
+                balanced[number] = True
                 continue
             except ConvergenceError:
-                balanced = number
+                pass
         found.append(system.respond(speed, orders, force, pulsates=False))
     return np.array(found), balanced
 
@@ -359,9 +362,11 @@ def response_notes(found: ForcedVibration, vibration: Vibration) -> list[str]:
         f"stiffness pulses over the turn; {vibration.stiffness_rest:.2%} of it does not come again after one and is left out; "
         f"half of the orders change the transmission error by {found.truncation:.2g} of it"
     ]
-    if found.mean_from is not None:
+    if found.mean_at.size:
+        low, high = found.mean_at.min(), found.mean_at.max()
         notes.append(
-            f"from {found.mean_from:.4g} rpm the balance with the pulsation does not converge: mean stiffness from there"
+            f"at {found.mean_at.size} of {found.speed.size} speeds, from {low:.4g} to {high:.4g} rpm, the balance with the "
+            "pulsation does not converge: mean stiffness there"
         )
     notes += [
         f"from {one.slowest:.4g} to {one.fastest:.4g} rpm order {one.order} of the stiffness shakes modes "
@@ -401,7 +406,7 @@ def response_content(found: ForcedVibration, vibration: Vibration) -> dict[str, 
         ],
         "stiffness_that_does_not_repeat": vibration.stiffness_rest,
         "truncation": found.truncation,
-        "mean_stiffness_from_rpm": found.mean_from,
+        "mean_stiffness_at_rpm": found.mean_at.tolist(),
         "unstable_ranges": [
             {
                 "least_rpm": one.slowest,
