@@ -89,7 +89,7 @@ def free_end_factor(poisson_ratio: float, compliance_share: float = 1.0) -> floa
 
 
 def remaining_bulge(free_ends: Iterable[FreeEnds], stretch: FloatArray) -> FloatArray:
-    """Return what images leave of the bulge of half-spaces at an end that carries: 1 far from end planes, none at a full image.
+    r"""Return what images leave of the bulge of half-spaces at an end that carries: 1 far from end planes, none at a full image.
 
     Parameters
     ----------

@@ -210,9 +210,12 @@ def _products(lags: FloatArray, load: FloatArray, other: FloatArray) -> tuple[Fl
     row, column = beside.strides
     near = np.lib.stride_tricks.as_strided(beside, (n, 2 * n - 1, count), (row, row, column))
     products = np.einsum("kmc,imc->kic", lags[:2, np.abs(np.arange(1 - n, n))], near)
-    alike = np.einsum("ic,imc->mc", load, near[:, n - 1 :])
-    form = 2.0 * (lags[2] * alike).sum(axis=0) - lags[2, 0] * alike[0]
-    return products, form
+    if other is load:
+        alike = np.einsum("ic,imc->mc", load, near[:, n - 1 :])
+        return products, 2.0 * (lags[2] * alike).sum(axis=0) - lags[2, 0] * alike[0]
+    # Of loads and others that differ both ways count.
+    alike = np.einsum("ic,imc->mc", load, near)
+    return products, (lags[2, np.abs(np.arange(1 - n, n))] * alike).sum(axis=0)
 
 
 @cache
