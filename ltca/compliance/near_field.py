@@ -19,9 +19,11 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
+from ltca.arrays import FloatArray
 from ltca.compliance import sliced
 from ltca.compliance.coefficients import SOLID, InfluenceCoefficients, logarithm_factor
 from ltca.compliance.half_space import HalfSpaceCompliance, hole_in_slices
+from ltca.compliance.solid_cylinder import free_ends_of_cylinder
 from ltca.contact.free_end import FreeEnds, guilbault_factor
 from ltca.contact.hertz import effective_radius, line_half_width
 from ltca.contact.tracked_grid import ContactKinds
@@ -81,9 +83,7 @@ class NearFieldLaws:
     kinds: ContactKinds
 
     @classmethod
-    def of_drive(
-        cls, drive: Drive, kind: NearField, *, rigid_shaft_pins: bool, solid: bool = False
-    ) -> NearFieldLaws:
+    def of_drive(cls, drive: Drive, kind: NearField, *, rigid_shaft_pins: bool, solid: bool = False) -> NearFieldLaws:
         """Return the near fields of a drive.
 
         Parameters
@@ -298,7 +298,11 @@ def _own_parts(
     hole = remove(disc, parts.disc, *in_hole, thickness)
     if shaft is not None and elastic_shaft_pins and disc > 0.0:  # without coupling there is no body part at all
         own = unit(parts.shaft_pin, thickness, c.plane)
-        hole += own * carried_cylinder(shaft.pin_radius, parts.shaft_pin.poisson_ratio, c.plane)
+        nu = parts.shaft_pin.poisson_ratio
+        hole += own * carried_cylinder(shaft.pin_radius, nu, c.plane)
+        if c.plane == SOLID and shaft.beam is None:
+            # On its spring it ends with the disc; as a beam it goes on.
+            hole += own * free_ends_of_cylinder(shaft.pin_radius, thickness, nu)[1 if tilts else 0]
         hole += remove(own, parts.shaft_pin, *in_hole, thickness)
     return OwnParts(
         pin=remove(disc, parts.disc, *at_pin, thickness) + (0.0 if sleeved else whole_pin),

@@ -152,7 +152,9 @@ def end_images(cell_width: float, y_edges: FloatArray, end_plane: float) -> Floa
     `y_edges` are the n + 1 ascending edges along y between the planes, mm.
     """
     lags = np.zeros(1)
-    total = sum(_lagged_block(lags, cell_width, y_edges, -1.0, shift)[0] for shift in (2.0 * end_plane, -2.0 * end_plane))
+    total = sum(
+        _lagged_block(lags, cell_width, y_edges, -1.0, shift)[0] for shift in (2.0 * end_plane, -2.0 * end_plane)
+    )
     return np.asarray(0.5 * cell_width**2 * (total + np.transpose(total)))
 
 

@@ -187,8 +187,8 @@ def _images(slices: int, reach: float) -> FloatArray:
 def _pieces(slices: int, free_ends: tuple[FreeEnds, ...]) -> FloatArray:
     """Pieces of a_k, ε and, where ends are free, those of images, shape (6, curves, pieces).
 
-    Images with the weight 1 at the very end leave nothing of the bulge there, and others a part of it; what even slices miss of
-    the energy of the bulge goes with its square. Of bodies that reach beyond, images count by what the end slice feels of its own.
+    Images with the weight 1 at the very end leave nothing of the bulge there, and others a part of it; what even slices miss
+    of its energy goes with the square. Where bodies reach beyond, images count by what the end slice feels of its own.
     """
     table = _softer_ends(slices)
     if not free_ends:
@@ -370,7 +370,10 @@ class SlicedLine:
         """Tell whether another law says the same of contacts."""
         numbers = ("length", "contact_modulus", "slices", "sleeve", "overlap")
         return all(getattr(self, name) == getattr(other, name) for name in numbers) and (
-            self.ends is other.ends and self.free_ends == other.free_ends and self.relief.ndim == 2 and np.array_equal(self.relief, other.relief)
+            self.ends is other.ends
+            and self.free_ends == other.free_ends
+            and self.relief.ndim == 2
+            and np.array_equal(self.relief, other.relief)
         )
 
     def _sizes(self) -> dict[str, tuple[int, ...]]:
@@ -495,9 +498,7 @@ class SlicedLine:
         return stored, off[-1], (bounded * (1.0 - narrow))[-1]
 
     def _coefficients(self, place: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray | None]:
-        """a_k, ε and those of images with first and second derivatives by ln(b/l), shapes (3, slices, contacts), (3, contacts) and
-        (3, slices, contacts).
-        """
+        """a_k, ε and those of images with two derivatives by ln(b/l), shapes (3, slices, contacts), (3, contacts) and as a_k."""
         n, pieces = self.slices, _pieces(self.slices, self.free_ends)
         if self.ends is not None:
             pieces = pieces.copy()

@@ -12,9 +12,9 @@ from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.coupled_slices import _Bodies, _settled
 from ltca.compliance.in_slices import ContactsInSlices, stacked
 from ltca.compliance.near_field import projected_on_half_space
-from ltca.contact.free_end import FreeEnds, guilbault_factor
 from ltca.compliance.response import Start
 from ltca.compliance.rollers import RollerLaws
+from ltca.contact.free_end import FreeEnds, guilbault_factor
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.output_torque import solve_at_output

@@ -49,21 +49,25 @@ def test_images_of_narrow_strips_are_logarithms():
 def test_images_of_narrow_lines_add_constants_to_the_logarithms(reach, even, linear):
     """In κ and κ′: 2 ln 2 and 2 (1 − ln 2), the integrals of 1/(t − z − z′) and z z′/(t − z − z′) over both heights."""
     t, b = 10.0, 1e-4
-    more = np.subtract(projected_on_half_space(t, b, (FreeEnds(reach=reach, weight=1.0),)), projected_on_half_space(t, b))
+    more = np.subtract(
+        projected_on_half_space(t, b, (FreeEnds(reach=reach, weight=1.0),)), projected_on_half_space(t, b)
+    )
     # What is left goes with b/t, 1e-5.
     np.testing.assert_allclose(more / (2.0 / (np.pi * t) * np.array([1.0, 12.0 / t**2])), [even, linear], rtol=1e-4)
 
 
 @pytest.mark.parametrize("reach", [1.0, 1.3])
 def test_images_of_the_law_add_up_to_what_comes_off_the_solid_answer(reach):
-    """Means of strips over all slices are those of the line but for b/t of the strips' shape and, of linear loads, 1/n² of stairs."""
+    """Means of strips over all slices are those of the line, but for the shape of strips and, of linear loads, stairs (1/n²)."""
     t, b, slices = 8.0, 0.1, 45
     size = t / slices
     edges = np.arange(slices + 1.0) - 0.5 * slices
     width = 2.0 * STRIP * b / size
     strips = end_images(width, edges, 0.5 * slices * reach) / width**2
     z = edges[1:] - 0.5
-    found = np.array([strips.sum() / (np.pi * slices**2 * size), (12.0 / t**3) ** 2 * size**3 * (z @ strips @ z) / np.pi])
+    found = np.array(
+        [strips.sum() / (np.pi * slices**2 * size), (12.0 / t**3) ** 2 * size**3 * (z @ strips @ z) / np.pi]
+    )
     given = (FreeEnds(reach=reach, weight=1.0),)
     expected = np.subtract(projected_on_half_space(t, b, given), projected_on_half_space(t, b))
     np.testing.assert_allclose(found, expected, rtol=4e-3)
@@ -100,7 +104,9 @@ def test_ends_far_away_are_half_spaces_to_round_off():
     np.testing.assert_allclose(one.slice_load, other.slice_load, rtol=1e-11)
 
 
-@pytest.mark.parametrize(("free_ends", "factor"), [(FLUSH, FLUSH[0].weight), ((FreeEnds(reach=1.0, weight=0.695),), 0.695)])
+@pytest.mark.parametrize(
+    ("free_ends", "factor"), [(FLUSH, FLUSH[0].weight), ((FreeEnds(reach=1.0, weight=0.695),), 0.695)]
+)
 @pytest.mark.parametrize("slices", [5, 9])
 @pytest.mark.parametrize("approach", [1e-3, 1e-2, 0.05])
 def test_aligned_lines_with_free_ends_have_the_load_of_grids(free_ends, factor, slices, approach):
