@@ -17,8 +17,10 @@ import numpy as np
 
 sys.path[0] = str(Path(__file__).resolve().parents[1])  # the package fem, not the benchmark of that name
 
-from fem.coefficients.solid_bodies import Pieces, SolidOptions
-from fem.coefficients.solid_dataset import MAX_TURN, SectionMesh, solid_round
+from fem.coefficients.pieces import Pieces
+from fem.coefficients.solid_bodies import SolidOptions
+from fem.coefficients.solid_dataset import SectionMesh, solid_round
+from fem.mesh.boundary_division import MAX_TURN
 from fem.shapes import CircleShape
 from ltca.compliance.solid_cylinder import POISSON_RATIOS, RADIUS_BY_LENGTH
 from ltca.drive.parts import Material

@@ -193,7 +193,7 @@ def _pieces(slices: int, free_ends: tuple[FreeEnds, ...]) -> FloatArray:
     table = _softer_ends(slices)
     if not free_ends:
         return np.concatenate((_lags(slices), softer_ends(slices)[:, None]), axis=1)
-    images = sum(each.weight * _images(slices, each.reach) for each in free_ends)
+    images = np.sum([each.weight * _images(slices, each.reach) for each in free_ends], axis=0)
     bulge = 1.0 - images[-1] / _images(slices, 1.0)[-1]
     every = np.concatenate((_strips(slices), (bulge**2 * table)[None], images))
     return np.stack([quintic_spline_pieces(curve) for curve in every], axis=1)

@@ -5,8 +5,10 @@ import json
 import numpy as np
 import pytest
 
-from fem.coefficients.solid_bodies import Pieces, SolidOptions
-from fem.coefficients.solid_dataset import MAX_TURN, SectionMesh, solid_round
+from fem.coefficients.pieces import Pieces
+from fem.coefficients.solid_bodies import SolidOptions
+from fem.coefficients.solid_dataset import SectionMesh, solid_round
+from fem.mesh.boundary_division import MAX_TURN
 from fem.shapes import CircleShape
 from ltca.compliance.solid_cylinder import free_ends_of_cylinder
 from ltca.drive.parts import Material
