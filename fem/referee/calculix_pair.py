@@ -7,8 +7,8 @@ presses both apart. Sides and bottom are held as ours are, planes of symmetry li
 points of each face (`fem.referee.calculix_deck`).
 
 Pressures are compared face by face as means: of the points of CalculiX, and of ours, which is bilinear there.
-CalculiX prints the points that touch alone; faces of which some do not are left out, because the areas of the points
-are not told.
+CalculiX prints the points that touch alone; faces at the rim, of which some do not, are left out, because the areas of the
+points are not told.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from fem.referee.calculix import last_output, read_forces, read_pressures, run_c
 from fem.referee.calculix_deck import CONTACT_CONTROLS
 from fem.solid_contact.block import Block
 from fem.solid_contact.solved_pair import SolvedPair
-from ltca.arrays import FloatArray, IntArray
+from ltca.arrays import BoolArray, FloatArray, IntArray
 from ltca.drive.parts import Material
 from ltca.errors import CycloError
 from ltca.output.files import whole_file
@@ -30,8 +30,6 @@ from ltca.output.files import whole_file
 PENALTY_FACTOR = 400.0
 """Penalty stiffness times half-width over E: four times that of the plane, where loads are given. Here the approach is, of
 which the penetration takes p b/(400 E), some hundredths of a per cent."""
-WHOLE = 0.95
-"""Part of the most points of a face from which on it counts as carrying all over: not all faces have as many."""
 OPEN = 2.0
 """Reliefs beyond this many approaches are cut off: logarithmic profiles have no end."""
 
@@ -124,10 +122,9 @@ def ask_about_pair(solved: SolvedPair, deck: Path, program: str) -> PairReferee:
     last = last_output(text)
     (force,) = read_forces(last).values()
     points = {element: values for (element, _), values in read_pressures(last).items()}
-    most = max(len(values) for values in points.values())
     elements = _parts(solved)[0].elements
     touching = [[points.get(int(number), []) for number in row] for row in elements]
-    whole = np.array([[len(values) >= WHOLE * most for values in row] for row in touching])
+    whole = inner_faces(np.array([[bool(values) for values in row] for row in touching]), solved)
     theirs = np.array([[np.mean(values) if values else 0.0 for values in row] for row in touching])[whole]
     own = face_means(solved)[whole]
     share = (2.0 if solved.pair.symmetric else 1.0) * (2.0 if solved.width.even else 1.0)
@@ -139,6 +136,22 @@ def ask_about_pair(solved: SolvedPair, deck: Path, program: str) -> PairReferee:
         faces=int(np.count_nonzero(whole)),
         seconds=seconds,
     )
+
+
+def inner_faces(touching: BoolArray, solved: SolvedPair) -> BoolArray:
+    """Return which faces carry all over: those that touch, and all around them too.
+
+    The rim of a contact passes through faces next to ones that do not touch. How many points a face has says nothing: where
+    the surfaces are cut by each other's edges faces have more. Planes of symmetry and ends of the line are no rim.
+    """
+    padded = np.pad(touching, 1, mode="edge")
+    # The zone itself ends where nothing touches.
+    padded[-1] = False
+    if not solved.pair.symmetric:
+        padded[0] = False
+    columns, layers = touching.shape
+    around = [padded[i : i + columns, k : k + layers] for i in range(3) for k in range(3)]
+    return np.asarray(np.logical_and.reduce(around))
 
 
 def tabulate_referee(solved: SolvedPair, answer: PairReferee) -> list[str]:
