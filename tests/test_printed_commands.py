@@ -76,6 +76,7 @@ SMALLER = {
     "benchmarks/practical_models.py": "--direct 1 --hybrid 0 --fe 0 --full 0",
     "benchmarks/random_drives.py": "--count 4",
     "benchmarks/run_paper.py": "--rounds 1",
+    "benchmarks/solid_free_ends.py": "--size 8 --cells 6",
     "benchmarks/solid_ltca.py": "examples/drives/plastic.toml --size 8 --layers 2",
     "benchmarks/solid_or_plane.py": "--widths 8 --size 8 --layers 2",
     "benchmarks/startup.py": "--runs 1",

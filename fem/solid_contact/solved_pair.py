@@ -40,6 +40,8 @@ END_CELL = 1.0 / 3.0
 RIM, RIM_CELL = 0.15, 0.4
 """Stretch to both sides of the end of a contact that does not reach the end of the line, by its height, and the thickness of
 layers there by that in the middle."""
+NARROWEST = 5e-4
+"""Least half-width by the depth of the block: meshes span both, and get larger without end; a surface is rough long before."""
 ROUNDS = 4
 """Of meshes at most."""
 REFINE, COARSEN = 1.15, 0.6
@@ -316,6 +318,11 @@ def _solve_on(
             f"the contact of {pair.name} is {width:.3g} mm wide to each side: too wide for a block of "
             f"{meshes.block:g} mm whose surfaces have their shape up to {pair.shape_reach:.3g} mm"
         )
+    if width < NARROWEST * meshes.block:
+        raise MeshError(
+            f"the contact of {pair.name} is {width:.2g} mm wide to each side: must be at least {NARROWEST:g} of the depth of the "
+            f"block, {NARROWEST * meshes.block:.2g} mm; give a larger load or approach, or a smaller block"
+        )
     columns, zone_columns = graded_columns(edge, zone, meshes.block)
     rows = graded_rows(edge, 0.5 * width, meshes.block)
     lower = make_block(
@@ -342,7 +349,7 @@ def _solve_on(
     ]
     needed = sum(factor_memory(count) for count in unknowns)
     require_memory(sum(unknowns), needed, f"blocks of {pair.name} with size {size:g}")
-    progress(f"mesh {number}: {sum(unknowns):,} unknowns, about {needed / 1e9:.2g} GB")
+    progress(f"mesh {number}: {sum(unknowns):,} unknowns, about {needed / 1e9:.2g} GB; an interrupt waits for a body's factor")
     zone_below = lower.pressure_zone(pair.curve)
     opposite = upper.opposite_zone(1j * pair.radius) if len(blocks) == 2 else None
     integrals = integrate_pair(zone_below, Pose(), Pose(centre=1j * pair.radius), pair.radius, opposite)
@@ -399,8 +406,7 @@ def _read(
     if pair.symmetric:
         pressure, arc = np.concatenate([pressure[:0:-1], pressure]), np.concatenate([-arc[:0:-1], arc])
         x = np.concatenate([-x[:0:-1], x])
-    # Vertex values of a projection lie above a smooth pressure by h²|p″|/12, means under their hats below it as much.
-    smooth = 0.5 * (pressure + _hat_means(along, pressure))
+    smooth = smooth_along_width(along, pressure)
     line, peak, half = np.zeros(along.size), np.zeros(along.size), np.zeros(along.size)
     for place in range(along.size):
         total, _, square = pressure_moments(arc, smooth[:, place])
@@ -419,6 +425,14 @@ def _read(
         energy=energy, energy_error=error, gap_left=_gap_left(pair, blocks, width, bodies, pressed),
         unknowns=sum(body.unknowns for body in bodies), rounds=number, seconds=time.perf_counter() - start,
     )  # fmt: skip
+
+
+def smooth_along_width(along: FloatArray, pressure: FloatArray) -> FloatArray:
+    """Return vertex values of a pressure, shape (places, heights), without what projection adds along the width, MPa.
+
+    Vertex values of a projection lie above a smooth pressure by h²|p″|/12, means under their hats below it as much.
+    """
+    return np.asarray(0.5 * (pressure + _hat_means(along, pressure)))
 
 
 def _hat_means(along: FloatArray, values: FloatArray) -> FloatArray:
