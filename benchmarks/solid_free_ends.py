@@ -53,7 +53,9 @@ def press_solids(carrier_length: float, size: float) -> list[float]:
 def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--size", type=float, default=2.0, help="element edge by an eighth of the half-width; default 2")
+    parser.add_argument(
+        "--size", type=float, default=2.0, help="element edge by an eighth of the half-width; default 2"
+    )
     parser.add_argument("--cells", type=int, default=24, help="cells of the grids over the half-width; default 24")
     arguments = parser.parse_args()
     print(f"{'':<26}" + "".join(f"{f'{place:g} b':>8}" for place in INSIDE) + f"{'K_Hβ':>8}")
@@ -62,7 +64,12 @@ def main() -> None:
         print(f"{name:<26}" + "".join(f"{value:>8.3f}" for value in np.asarray(values)), flush=True)
 
     law = free_end_factor(STEEL.poisson_ratio)
-    for name, factor in (("half-spaces", 0.0), ("images, 1", 1.0), ("images, law", law), ("images, half the law", 0.5 * law)):
+    for name, factor in (
+        ("half-spaces", 0.0),
+        ("images, 1", 1.0),
+        ("images, law", law),
+        ("images, half the law", 0.5 * law),
+    ):
         row(name, ends_of_images(press_grid(factor, arguments.cells)))
     row("solid, both flush", press_solids(LINE_LENGTH, arguments.size))
     row("solid, one goes on", press_solids(LINE_LENGTH + 2.0 * BEYOND, arguments.size))

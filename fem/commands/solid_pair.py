@@ -125,8 +125,8 @@ def execute_pair(arguments: argparse.Namespace) -> int:
     if program and pair.opposite_material is None:
         raise DriveError(
             [
-                f"--referee calculix: has no effect on a rigid {pair.opposite}, of which CalculiX gets no elements; leave it out or "
-                "set pin_shaft.elastic_contact = true"
+                f"--referee calculix: has no effect on a rigid {pair.opposite}, of which CalculiX gets no elements; "
+                "leave it out or set pin_shaft.elastic_contact = true"
             ]
         )
     block = pair.radius if arguments.block is None else arguments.block
@@ -160,7 +160,7 @@ def _load(arguments: argparse.Namespace, expected: float, name: str) -> tuple[Pa
 
 
 def _ask(solved: SolvedPair, out: Path, program: str | None) -> tuple[dict[str, Any], bool]:
-    """Let the other code solve the pair where asked for, print both answers; return them for the summary, and whether all passed."""
+    """Let the other code solve the pair where asked for; return its answer for the summary, and whether all rows passed."""
     if program is None:
         return {}, True
     from fem.referee.calculix_pair import ask_about_pair, referee_rows, tabulate_referee

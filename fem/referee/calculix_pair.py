@@ -159,7 +159,9 @@ def ask_about_pair(solved: SolvedPair, deck: Path, program: str) -> PairReferee:
     touching = [[points.get(int(number), []) for number in row] for row in elements]
     whole = inner_faces(np.array([[bool(values) for values in row] for row in touching]), solved)
     if not np.any(whole):
-        raise CycloError("--referee calculix: no face carries all over, so that none can be compared; give a smaller --size")
+        raise CycloError(
+            "--referee calculix: no face carries all over, so that none can be compared; give a smaller --size"
+        )
     theirs = np.array([[np.mean(values) if values else 0.0 for values in row] for row in touching])[whole]
     own = face_means(solved)[whole]
     share = (2.0 if solved.pair.symmetric else 1.0) * (2.0 if solved.width.even else 1.0)

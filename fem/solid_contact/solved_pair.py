@@ -349,7 +349,9 @@ def _solve_on(
     ]
     needed = sum(factor_memory(count) for count in unknowns)
     require_memory(sum(unknowns), needed, f"blocks of {pair.name} with size {size:g}")
-    progress(f"mesh {number}: {sum(unknowns):,} unknowns, about {needed / 1e9:.2g} GB; an interrupt waits for a body's factor")
+    progress(
+        f"mesh {number}: {sum(unknowns):,} unknowns, about {needed / 1e9:.2g} GB; an interrupt waits for a body's factor"
+    )
     zone_below = lower.pressure_zone(pair.curve)
     opposite = upper.opposite_zone(1j * pair.radius) if len(blocks) == 2 else None
     integrals = integrate_pair(zone_below, Pose(), Pose(centre=1j * pair.radius), pair.radius, opposite)
@@ -490,7 +492,7 @@ def _gap_left(
     bodies: tuple[CondensedSolid, ...],
     pressed: PressedFaces,
 ) -> tuple[float, float]:
-    """Gap or overlap left at nodes of the displaced surfaces under high pressure, root mean square and largest, by the approach."""
+    """Gap or overlap left between displaced surfaces under high pressure, root mean square and largest, by the approach."""
     if pressed.load == 0.0:
         return 0.0, 0.0
     z = with_middles(width.heights)

@@ -41,8 +41,14 @@ def run(*words):
             "approach = 0 mm of .*: must be greater than 0 mm",
         ),
         (["--bodies", "solid", "--pair", "bore", "--block", "0.05"], "too wide for a block of 0.05 mm"),
-        (["--bodies", "solid", "--pair", "bore", "--load", "1e-3"], "must be at least 0.0005 of the depth of the block"),
-        (["--bodies", "solid", "--pair", "bore", "--approach", "1e-8"], "must be at least 0.0005 of the depth of the block"),
+        (
+            ["--bodies", "solid", "--pair", "bore", "--load", "1e-3"],
+            "must be at least 0.0005 of the depth of the block",
+        ),
+        (
+            ["--bodies", "solid", "--pair", "bore", "--approach", "1e-8"],
+            "must be at least 0.0005 of the depth of the block",
+        ),
     ],
 )
 def test_what_does_not_go_together_is_refused(words, message, tmp_path):
