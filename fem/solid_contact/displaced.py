@@ -9,8 +9,8 @@ height z, the point opposite is
           g = y^o(Z) + u^o_y(Z) - \delta - \theta z - y^c(X) - u^c_y(X) ,
 
 measured across the tangent of the contact and turned onto the carrier's normal, and the relief r(z) on top. The
-correction, this gap less the linear one, is found from a solution and added to the gap of the next. Elasticity remains linear, and pressures act along the
-undeformed normals.
+correction, this gap less the linear one, is found from a solution and added to the gap of the next. Elasticity
+remains linear, and pressures act along the undeformed normals.
 """
 
 from __future__ import annotations

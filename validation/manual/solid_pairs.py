@@ -37,8 +37,8 @@ BLOCKS = (
     "height, p ≥ 0 and gap ≥ 0 in the mean."
 )
 PATCH = 0.5
-"""Half the width of the patch over which pressures are read, by the half-width of theory: that of the parabola by which `fem` reads
-a peak (`fem.contact.pressure_measures.PEAK_WINDOW`), for which the coarse meshes here have too few vertices."""
+"""Half the width of the patch over which pressures are read, by the half-width of theory: that of the parabola by which `fem`
+reads a peak (`fem.contact.pressure_measures.PEAK_WINDOW`), for which the coarse meshes here have too few vertices."""
 PATCHES = (
     "Pressures are means over a patch half as wide as the contact of theory, the same on all meshes, as peaks of an ellipse with "
     "the half-width found: single vertices swing with where the rim falls in a cell, means over a patch far from it little."
