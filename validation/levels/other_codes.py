@@ -139,6 +139,12 @@ def with_problems(answers: dict[str, Answer]) -> dict[str, Any]:
     return {name: {"problem": CODES[name].fingerprint(), "answer": answer} for name, answer in answers.items()}
 
 
+def add_answers(path: Path, answers: dict[str, Answer]) -> None:
+    """Write answers, by code, into a file; those of other codes that it holds stay, those of the same codes are replaced."""
+    held = json.loads(read_regular(path, LARGEST_KEPT)) if path.exists() else {}
+    write_json(path, held | with_problems(answers))
+
+
 def compare_answers(name: str, ours: Answer, theirs: Answer, against: str) -> list[Row]:
     """Return the rows of one code of `CODES`; `against` is the label of the other code."""
     rows_of = {"CalculiX": _drive_rows, "tamaas": _roller_rows, "CalculiX C3D20R": _pair_rows}
@@ -215,4 +221,4 @@ if __name__ == "__main__":
     parser.add_argument("codes", nargs="*", default=list(CODES), help="default: all")
     parser.add_argument("--out", type=Path, default=Path(__file__).parent / STORED, help="default: the stored answers")
     arguments = parser.parse_args()
-    write_json(arguments.out, with_problems({name: CODES[name].theirs() for name in arguments.codes}))
+    add_answers(arguments.out, {name: CODES[name].theirs() for name in arguments.codes})
