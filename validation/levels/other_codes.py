@@ -110,7 +110,8 @@ def stored_answer(name: str) -> Answer:
     found = fitting_answers(content)
     if name not in found:
         raise CycloError(
-            f"{name} is not installed and its stored answer belongs to another problem: where it is installed, {COMMAND}"
+            f"{name} is not installed and its stored answer belongs to another problem: "
+            f"{CODES[name].installation}, then {COMMAND}"
         )
     return found[name]
 
@@ -221,4 +222,6 @@ if __name__ == "__main__":
     parser.add_argument("codes", nargs="*", default=list(CODES), help="default: all")
     parser.add_argument("--out", type=Path, default=Path(__file__).parent / STORED, help="default: the stored answers")
     arguments = parser.parse_args()
+    for missing in [name for name in arguments.codes if not CODES[name].installed()]:
+        parser.exit(2, f"{COMMAND}: error: {missing} is not installed: {CODES[missing].installation}\n")
     add_answers(arguments.out, {name: CODES[name].theirs() for name in arguments.codes})
