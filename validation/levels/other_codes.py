@@ -140,6 +140,12 @@ def with_problems(answers: dict[str, Answer]) -> dict[str, Any]:
     return {name: {"problem": CODES[name].fingerprint(), "answer": answer} for name, answer in answers.items()}
 
 
+def add_answers(path: Path, answers: dict[str, Answer]) -> None:
+    """Write answers, by code, into a file; those of other codes that it holds stay, those of the same codes are replaced."""
+    held = json.loads(read_regular(path, LARGEST_KEPT)) if path.exists() else {}
+    write_json(path, held | with_problems(answers))
+
+
 def compare_answers(name: str, ours: Answer, theirs: Answer, against: str) -> list[Row]:
     """Return the rows of one code of `CODES`; `against` is the label of the other code."""
     rows_of = {"CalculiX": _drive_rows, "tamaas": _roller_rows, "CalculiX C3D20R": _pair_rows}
@@ -218,4 +224,4 @@ if __name__ == "__main__":
     arguments = parser.parse_args()
     for missing in [name for name in arguments.codes if not CODES[name].installed()]:
         parser.exit(2, f"{COMMAND}: error: {missing} is not installed: {CODES[missing].installation}\n")
-    write_json(arguments.out, with_problems({name: CODES[name].theirs() for name in arguments.codes}))
+    add_answers(arguments.out, {name: CODES[name].theirs() for name in arguments.codes})
