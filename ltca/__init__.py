@@ -48,6 +48,7 @@ if TYPE_CHECKING:
     from ltca.front.checks import check
     from ltca.front.curves import curves
     from ltca.front.joined import concat
+    from ltca.front.motions import motion
     from ltca.reading.drive_file import load_drive
 
     __version__: str
@@ -65,11 +66,12 @@ _HOMES = {
     "curves": "ltca.front.curves",
     "derivatives": "ltca.facade",
     "load_drive": "ltca.reading.drive_file",
+    "motion": "ltca.front.motions",
 }
 
 __all__ = [
     "Drive", "DriveError", "HalfSpace", "Hybrid", "PlaneStrain", "__version__", "analyse", "check", "concat",
-    "curves", "derivatives", "load_drive",
+    "curves", "derivatives", "load_drive", "motion",
 ]  # fmt: skip
 
 

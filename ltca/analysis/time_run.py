@@ -129,7 +129,9 @@ class Course:
             chosen[name] = float(value)
         for name in ("within", "frequency"):
             if name in chosen and not chosen[name] > 0.0:
-                problems.append(f"{name} = {chosen[name]:g}: must be greater than 0 {'s' if name == 'within' else 'Hz'}")
+                problems.append(
+                    f"{name} = {chosen[name]:g}: must be greater than 0 {'s' if name == 'within' else 'Hz'}"
+                )
         if "at" in chosen and not 0.0 <= chosen["at"] < time:
             problems.append(f"at = {chosen['at']:g}: must be at least 0 and less than the time, {time:g} s")
         for name in ("from_speed", "amplitude"):
@@ -391,7 +393,9 @@ class PreparedRun:
         mass = self.equation.kinetic.at(*self.equation.place(0.0, self.start))[0]
         stiffness = self.equation.solved(0.0, self.start)[2].stiffness
         basis = self.equation.basis
-        fastest = np.sqrt(np.abs(np.linalg.eigvals(np.linalg.solve(basis.T @ mass @ basis, basis.T @ stiffness @ basis))).max())
+        fastest = np.sqrt(
+            np.abs(np.linalg.eigvals(np.linalg.solve(basis.T @ mass @ basis, basis.T @ stiffness @ basis))).max()
+        )
         found[m : 2 * m] = PLACE_TOLERANCE * fastest
         turn = abs(float(self.motion.output_turns @ self.equation.lead))
         torque = self.drive.load.torque * turn
@@ -476,7 +480,9 @@ def _sense(drive: Drive) -> float:
 def _require_supported(drive: Drive, model: Reducer, course: Course) -> None:
     problems = []
     if model._teeth_press:
-        problems.append("first_stage: its teeth press on cranks or main bearing that yield, which a run in time leaves out")
+        problems.append(
+            "first_stage: its teeth press on cranks or main bearing that yield, which a run in time leaves out"
+        )
     if model.external is not None:
         problems.append("external_force: a run in time leaves out forces from outside on the output")
     if course.driven_by == "torque" and (drive.inertia is None or drive.inertia.input is None):
@@ -493,12 +499,19 @@ def _require_mass(kinetic: KineticEnergy, motion: Motion, basis: FloatArray, lev
     if least[0] > MASSLESS * least[-1]:
         return
     light = [place for place in range(motion.size) if size[place] <= np.sqrt(MASSLESS) * size.max()]
-    named = {motion.sun: "sun of the first stage (inertia.input)", motion.twist: "twist of the carrier (inertia.output)"}
+    named = {
+        motion.sun: "sun of the first stage (inertia.input)",
+        motion.twist: "twist of the carrier (inertia.output)",
+    }
     ring = range(*motion.pose.ring_place.indices(motion.pose.size))
-    words = [named.get(place, "far flange or ring of the pin shaft" if place in ring else f"coordinate {place}") for place in light]
-    raise DriveError([f"{word}: yields, but has no mass, which a run in time needs" for word in dict.fromkeys(words)] or [
-        "masses: some motion that yields has none, which a run in time needs"
-    ])
+    words = [
+        named.get(place, "far flange or ring of the pin shaft" if place in ring else f"coordinate {place}")
+        for place in light
+    ]
+    raise DriveError(
+        [f"{word}: yields, but has no mass, which a run in time needs" for word in dict.fromkeys(words)]
+        or ["masses: some motion that yields has none, which a run in time needs"]
+    )
 
 
 class Recorder:

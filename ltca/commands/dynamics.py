@@ -1,8 +1,10 @@
-"""``cyclo dynamics``: eigenfrequencies and modes, Campbell diagram, critical speeds, response over speed."""
+"""``cyclo dynamics``: eigenfrequencies and modes, Campbell diagram, critical speeds, response over speed; runs in time."""
 
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ltca.commands.compliance_arguments import (
     add_compliance_arguments,
@@ -11,6 +13,7 @@ from ltca.commands.compliance_arguments import (
     find_coefficients_of,
     settle_compliance,
 )
+from ltca.commands.time_arguments import add_time_arguments, check_time_arguments
 from ltca.reading.arguments import (
     add_case_argument,
     add_drive_argument,
@@ -23,12 +26,22 @@ from ltca.reading.arguments import (
     tell_unit_mistakes,
 )
 
-SUMMARY = "eigenfrequencies and modes under load, Campbell diagram, critical speeds, response over speed"
+if TYPE_CHECKING:
+    from ltca.analysis.engines import Engine
+    from ltca.drive.parts import Drive
+    from ltca.reading.drive_file import DriveFile
+
+SUMMARY = "eigenfrequencies and modes under load, Campbell diagram, critical speeds, response over speed; run in time"
 EXAMPLES = (
     ("cyclo dynamics my.toml", "modes over a turn and over torque, critical speeds; dynamics.json"),
     ("cyclo dynamics my.toml --speed '3000 rpm'", "up to that speed of the input"),
+    (
+        "cyclo dynamics my.toml --time '200 ms' --speed '1500 rpm' --motion start",
+        "in time, from rest to that speed; time.nc and time.json",
+    ),
 )
 FIGURES = ("campbell_diagram", "response")
+POSITIONS = 24
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -39,8 +52,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--positions",
         metavar="N",
         type=count_argument("--positions", 4, 1000),
-        default=24,
-        help="crank angles of a turn at which modes are told; default 24",
+        default=POSITIONS,
+        help=f"crank angles of a turn at which modes are told; default {POSITIONS}",
     )
     parser.add_argument(
         "--turns",
@@ -55,6 +68,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="largest speed of the input in turns a minute (or a text such as '3000 rpm'); default the largest of [[duty]], "
         "load.speed, or 3000",
     )
+    add_time_arguments(parser)
     add_compliance_arguments(parser)
     add_out_argument(parser, "dynamics")
     add_figures_argument(parser)
@@ -69,6 +83,7 @@ def execute(arguments: argparse.Namespace) -> int:
     from ltca.reading.drive_file import load_drive
 
     check_compliance(arguments)
+    check_time_arguments(arguments, POSITIONS)
     file = load_drive(arguments.drive)
     cases = file.select_warm(arguments.case)
     settle_compliance(arguments, cases.values())
@@ -84,9 +99,32 @@ def execute(arguments: argparse.Namespace) -> int:
         require_vibrations(file.cases[name])
         if arguments.turns is not None:
             require_turns(drive, arguments.turns)
+    if arguments.time is not None:
+        return _run_in_time(file, cases, engine, arguments, out)
     endings = [f"_{escape(name)}" for name in cases] if len(cases) > 1 else [""]
     figures = figure_files(arguments.figures, *(name + ending for name in FIGURES for ending in endings))
     writes = ["dynamics.json", *([] if arguments.no_page else ["report.html"])]
     with claimed_folder(out, "dynamics", writes=[*writes, *figures]):
         find_coefficients_of(cases, engine, arguments)
         return solve_and_write(file, cases, engine, arguments, out)
+
+
+def _run_in_time(
+    file: DriveFile, cases: dict[str, Drive], engine: Engine, arguments: argparse.Namespace, out: Path
+) -> int:
+    """Run every case in time; write time.nc, time.json, page and figures, print the results."""
+    from glob import escape
+
+    from ltca.commands.actions.time_run import CHECKPOINTS, course_of, require_checkpoints, run_and_write
+    from ltca.output.run_folder import claimed_folder, figure_files
+
+    for drive in cases.values():
+        course_of(drive, arguments)
+    endings = [f"_{escape(name)}" for name in cases] if len(cases) > 1 else [""]
+    figures = figure_files(arguments.figures, *(f"time_run{ending}" for ending in endings))
+    writes = [*(f"time{ending}.nc" for ending in endings), "time.json"]
+    writes += [] if arguments.no_page else ["report.html"]
+    require_checkpoints(out, arguments.resume)
+    with claimed_folder(out, "dynamics", writes=[*writes, *figures], beside=(CHECKPOINTS,)):
+        find_coefficients_of(cases, engine, arguments)
+        return run_and_write(file, cases, engine, arguments, out)

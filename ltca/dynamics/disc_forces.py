@@ -252,7 +252,9 @@ class DiscContacts:
             stiffness[:-1, :-1] += moved.T @ each[crank] @ moved
         return push, displaced, lever, inner, outer
 
-    def _rollers(self, angle: float, displaced: ComplexArray) -> tuple[FloatArray, FloatArray, ComplexArray, FloatArray]:
+    def _rollers(
+        self, angle: float, displaced: ComplexArray
+    ) -> tuple[FloatArray, FloatArray, ComplexArray, FloatArray]:
         """Loads of the rollers in both contacts, directions in the bore and tangents, as `balance_rollers`."""
         turned = self._cage * angle
         direction = self._rays * complex(np.cos(turned), np.sin(turned))
