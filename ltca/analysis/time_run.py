@@ -49,8 +49,8 @@ VALUES = {
 """Values that each motion takes."""
 DEFAULTS = {"within": 0.1, "at": 0.5, "from_speed": 0.0, "factor": 2.0, "amplitude": 0.5}
 """Parts of the whole time, turns a minute, parts of the load."""
-RELATIVE_TOLERANCE, PLACE_TOLERANCE = 1e-6, 1e-8
-"""Of a step, relative and in mm: contacts approach by some micrometres, of which this is 1e-5."""
+RELATIVE_TOLERANCE, PLACE_TOLERANCE = 1e-5, 5e-8
+"""Of a step, relative and in mm: contacts approach by some micrometres, of which this is some 1e-5."""
 WORK_TOLERANCE = 1e-9
 """Of a step, works, by the energy that the load takes in the whole run."""
 QUASI_STATIC_STEP = 1e-4

@@ -20,9 +20,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-from scipy.linalg import LinAlgError, eigh
+from scipy.linalg.lapack import dposv, dsygv
 
 from ltca.arrays import FloatArray
 from ltca.dynamics.contact_forces import ContactForces, Instant
@@ -104,7 +105,7 @@ class Equation:
         inner = now.force + now.friction + damped + inertia
         outer = loaded if self.input_torque is None else loaded + self.input_torque * self.input_turns
         known = outer - inner - mass @ self.lead * told
-        faster = np.linalg.solve(projected, basis.T @ known)
+        faster = _checked(dposv(projected, basis.T @ known))[1]  # LAPACK itself: a system of five takes numpy ten times as long
         if self.input_torque is None:
             # By virtual work on the rigid motion; the input's own angle is s.
             torque = float(self.lead @ (mass @ (basis @ faster + self.lead * told) + inner - loaded))
@@ -121,7 +122,7 @@ class Equation:
     def _damping(self, stiffness: FloatArray, mass: FloatArray) -> FloatArray:
         """C at the state of the moment, shape (n, n)."""
         pressed = stiffness @ self.basis
-        square, shapes = eigh(self.basis.T @ pressed, mass, check_finite=False)
+        square, shapes = _checked(dsygv(self.basis.T @ pressed, mass))[:2]
         felt = square > SOFTEST**2 * square[-1]
         on_modes = pressed @ shapes[:, felt]
         return np.asarray((on_modes * (2.0 * self.damping_ratio / square[felt] ** 1.5)) @ on_modes.T)
@@ -143,10 +144,17 @@ class Equation:
             matrix = self.basis.T @ now.stiffness @ self.basis
             try:
                 step = np.linalg.solve(matrix, left)
-            except LinAlgError as problem:
+            except np.linalg.LinAlgError as problem:
                 raise ConvergenceError("no balanced state to start from: nothing holds a part", history) from problem
             y = y - step
             history.append(float(np.abs(step).max()))
             if history[-1] <= REST_SETTLED * max(1.0, float(np.abs(y).max())):
                 return y
         raise ConvergenceError("no balanced state to start from; last steps in mm", history)
+
+
+def _checked(found: tuple[Any, ...]) -> tuple[Any, ...]:
+    """Return what LAPACK answers; ConvergenceError where it fails, as for a motion that is not a number."""
+    if found[-1] != 0:
+        raise ConvergenceError("the motion has become no number: its masses or forces are not finite", [])
+    return found
