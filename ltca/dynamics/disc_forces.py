@@ -15,9 +15,13 @@ from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.rollers import balance_rollers
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, X, Y
+from ltca.geometry.flank import CurvePoints, NearestPoint
 from ltca.geometry.pair_motion import RollerRays, cross, dot
+from ltca.geometry.pairs import MAX_EXTRAPOLATION
 from ltca.geometry.rotation import unit
 
+FLATTEST = 0.05
+"""Least slope of Newton's function by that on the curve itself: pins nearer to a centre of curvature start anew."""
 PLACE_SETTLED = 1e-8
 """Last step of a contact parameter, rad: distances are off by its square then."""
 SHARE_SETTLED = 1e-6
@@ -94,6 +98,7 @@ class DiscContacts:
         self._bore_play = float(place.bore_radius) - place.roller_radii
         self._by_ring = geometry._by_ring if self._coordinates.ring else None
         self._crank_of = place.roller_cranks
+        self._cusped = bool(np.any(self._profile.has_cusps))
         self._parameter: FloatArray | None = None
         self._point = np.zeros(place.wheel_pin_radii.size, dtype=complex)
         self._turning = self._point
@@ -150,22 +155,34 @@ class DiscContacts:
         pin = place.wheel_pin_centres * complex(np.cos(turned), np.sin(turned))
         arm = complex(place.wheel_axis) + pin - centre
         point = arm * turn.conjugate()
-        if self._parameter is None:
-            theta = self._geometry.nominal_parameter(np.array([angle]))[0] + q[WHEEL_ANGLE] - q[DISC_ROTATION]
-            theta = profile.nearest_point(point, theta).parameter
-        else:
-            theta = self._parameter + dot(self._turning, point - self._point)
-        for _ in range(STEPS):
-            curve = profile.contact_curve(unit(theta))
+        most = MAX_EXTRAPOLATION / abs(self._ratio)
+        theta, settled = self._parameter, False
+        if theta is not None:
+            theta = theta + dot(self._turning, point - self._point).clip(-most, most)
+            for _ in range(STEPS):
+                curve = profile.contact_curve(unit(theta))
+                away, tangent, second = curve.point - point, curve.tangent, curve.second
+                square = tangent.real**2 + tangent.imag**2
+                slope = square + dot(second, away)
+                step = dot(tangent, away) / slope
+                moved = float(np.abs(step).max())
+                # Near a centre of curvature a foot may jump: those are looked for as if nothing were known.
+                if not (moved < most and np.all(slope > FLATTEST * square)):
+                    break
+                theta = theta - step
+                if moved < PLACE_SETTLED:
+                    settled = True
+                    break
+        if settled and theta is not None and self._cusped:
+            found = profile.nearer_side(point, NearestPoint(theta, curve))
+            settled = bool(np.all(found.parameter == theta))
+        if not settled:
+            nominal = self._geometry.nominal_parameter(np.array([angle]))[0] + q[WHEEL_ANGLE] - q[DISC_ROTATION]
+            found = profile.nearest_point(point[None], nominal[None])
+            theta = found.parameter[0]
+            curve = CurvePoints(*(each[0] for each in found.curve))
             away, tangent, second = curve.point - point, curve.tangent, curve.second
             square = tangent.real**2 + tangent.imag**2
-            step = dot(tangent, away) / (square + dot(second, away))
-            theta = theta - step
-            moved = float(np.abs(step).max())
-            if moved < PLACE_SETTLED:
-                break
-            if not moved < 0.1 / self._ratio:
-                theta = profile.nearest_point(point, theta + step).parameter
         speed = np.sqrt(square)
         normal = -1j * tangent / speed
         distance = -dot(normal, away)

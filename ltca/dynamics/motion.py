@@ -105,7 +105,9 @@ class Equation:
         inner = now.force + now.friction + damped + inertia
         outer = loaded if self.input_torque is None else loaded + self.input_torque * self.input_turns
         known = outer - inner - mass @ self.lead * told
-        faster = _checked(dposv(projected, basis.T @ known))[1]  # LAPACK itself: a system of five takes numpy ten times as long
+        faster = _checked(dposv(projected, basis.T @ known))[
+            1
+        ]  # LAPACK itself: a system of five takes numpy ten times as long
         if self.input_torque is None:
             # By virtual work on the rigid motion; the input's own angle is s.
             torque = float(self.lead @ (mass @ (basis @ faster + self.lead * told) + inner - loaded))

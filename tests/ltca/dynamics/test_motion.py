@@ -16,6 +16,7 @@ from ltca.analysis.engines import HalfSpace
 from ltca.analysis.time_run import Course, prepare_run, run_in_time
 from ltca.drive.members.temperatures import warm_drive
 from ltca.dynamics.contact_forces import ContactForces
+from ltca.dynamics.disc_forces import DiscContacts
 from ltca.dynamics.kinetic_energy import KineticEnergy
 from ltca.dynamics.kinetics import Motion, mass_matrix, moving_bodies
 from ltca.dynamics.masses import CRANKS, DISCS, drive_masses
@@ -90,7 +91,7 @@ def test_slow_motion_is_the_quasi_static_one(name):
     [("paper, damped", 0), *(pytest.param("two discs held pin-wheel", n, marks=pytest.mark.slow) for n in (0, 2))],
 )
 def test_small_vibrations_are_the_modes(name, mode):
-    """A mode displaced by a nanometre decays with its frequency, 1e-3, and damping, 1 %: zeros and logarithmic decrement."""
+    """A mode displaced by ten nanometres decays with its frequency, 1e-3, and damping, 1 %: zeros and logarithmic decrement."""
     run = standing(name)
     equation, motion = run.equation, run.motion
     model = replace(HalfSpace().prepare(drive_of(name)).model, friction=None)
@@ -103,11 +104,11 @@ def test_small_vibrations_are_the_modes(name, mode):
     start = run.start.copy()
     start[m : 2 * m] = 0.0
     rest = start[:m].copy()
-    start[:m] += own * (1e-6 / np.abs(own).max())
+    start[:m] += own * (1e-5 / np.abs(own).max())
     period = 1.0 / modes.frequency[mode]
-    times = np.linspace(0.0, 12.0 * period, 2401)
+    times = np.linspace(0.0, 6.0 * period, 1201)
     answer = solve_ivp(
-        equation.rates, (0.0, times[-1]), start, method="DOP853", t_eval=times, rtol=1e-8, atol=1e-13
+        equation.rates, (0.0, times[-1]), start, method="DOP853", t_eval=times, rtol=1e-8, atol=1e-2 * run.tolerances()
     )  # fmt: skip
     moved = (shape @ mass @ equation.basis) @ (answer.y[:m] - rest[:, None])
     crossing = np.flatnonzero((moved[:-1] > 0.0) & (moved[1:] <= 0.0))
@@ -149,20 +150,15 @@ def test_energy_closes(name, course):
 
 
 def test_a_flight_through_the_play_keeps_momentum_and_an_impact_energy():
-    """The wheel alone, thrown across its play with the crank held: nothing acts until it meets a pin, and it comes back as fast as
-    it went since nothing takes energy. By hand: ω stays, ½ J ω² is all there is; 1e-6 was asked for.
+    """The wheel alone, thrown across its play with the crank held: nothing acts until it meets the disc, and nothing takes energy.
+    By hand: ω stays until then, and ½ J ω² is all there is through the impact and after; 1e-6 was asked for.
     """
     run = standing("paper")
     equation, motion, drive = run.equation, run.motion, run.drive
     equation = replace(equation, output_torque=lambda _: 0.0)
     m, turn = equation.freedoms, motion.wheel_angle
     contacts, still = equation.contacts, np.zeros(motion.size)
-    # Somewhere in the play nothing touches.
-    x = np.zeros(motion.size)
-    for angle in np.linspace(-3e-3, 3e-3, 601):
-        x[turn] = angle
-        if not np.any(contacts.at(x, still).force):
-            break
+    x = np.zeros(motion.size)  # all parts in the middle of their plays
     assert not np.any(contacts.at(x, still).force)
     speed = 2.0
     inertia = sum(
@@ -175,15 +171,16 @@ def test_a_flight_through_the_play_keeps_momentum_and_an_impact_energy():
     start = np.zeros_like(run.start)
     start[:m] = np.linalg.lstsq(equation.basis, x, rcond=None)[0]
     start[m : 2 * m] = np.linalg.lstsq(equation.basis, thrown, rcond=None)[0]
-    times = np.linspace(0.0, 4e-3, 401)
+    times = np.linspace(0.0, 1.2e-3, 601)
     answer = solve_ivp(
-        equation.rates, (0.0, times[-1]), start, method="DOP853", rtol=1e-9, atol=1e-12, max_step=4e-5, t_eval=times
+        equation.rates, (0.0, times[-1]), start, method="DOP853", rtol=1e-8, atol=1e-11, max_step=4e-5, t_eval=times
     )  # fmt: skip
 
     def at(row):
         place, rate = equation.place(0.0, answer.y[:, row])
         now = contacts.at(place, rate)
-        return place, rate, bool(np.any(now.force)), equation.kinetic.energy(place, rate) + contacts.energy(place)
+        energy = equation.kinetic.energy(place, rate) + contacts.energy(place)
+        return place, rate, bool(np.any(now.force)), energy, *contacts.energy_by_radius()
 
     every = [at(row) for row in range(times.size)]
     pressed = np.flatnonzero([one[2] for one in every])
@@ -192,7 +189,11 @@ def test_a_flight_through_the_play_keeps_momentum_and_an_impact_energy():
     assert last > 10
     assert every[last][1][turn] == pytest.approx(speed, rel=1e-6)
     assert every[last][0][turn] - x[turn] == pytest.approx(speed * times[last], rel=1e-6)
-    assert [one[3] for one in every] == pytest.approx(0.5 * inertia * speed**2, rel=1e-6)
+    # The law books the work of changing radii, some 1e-5 of the energy: ∂U/∂ρ dρ between samples.
+    slope, radius = (np.array([one[place] for one in every]) for place in (4, 5))
+    booked = np.sum(0.5 * (slope[1:] + slope[:-1]) * np.diff(radius, axis=0), axis=1)
+    kept = np.array([one[3] for one in every]) - np.append(0.0, np.cumsum(booked))
+    assert kept == pytest.approx(0.5 * inertia * speed**2, rel=1e-6)
 
 
 def test_inertia_forces_are_those_of_lagrange():
@@ -306,6 +307,21 @@ def test_forces_without_a_batch_are_those_of_the_reducer():
         found = light.at(x, np.zeros(motion.size))
     expected = other.at(x, np.zeros(motion.size))
     assert found.force == pytest.approx(expected.force, abs=1e-8 * np.abs(expected.force).max())
+
+
+def test_contacts_come_back_from_a_step_that_is_rejected():
+    """The solver tries states far off; at the next one contacts are those of a fresh start, 1e-9 as places are settled."""
+    drive = drive_of("paper")
+    model = replace(HalfSpace().prepare(drive).model, friction=None)
+    warm, rng = warm_drive(drive), np.random.default_rng(0)
+    pose = solve_at_output(model, [warm], np.zeros(1), warm.load.torque).pose[0]
+    followed = DiscContacts(model.discs[0])
+    for angle in rng.uniform(0.0, 88.0, 40):
+        turned = complex(pose[0], pose[1]) * np.exp(1j * angle)
+        here = np.array([turned.real, turned.imag, pose[2], pose[3]])
+        followed.at(angle, here + rng.standard_normal(4) * np.array([0.3, 0.3, 0.02, 0.02]) * rng.choice([0.1, 1.0]))
+        expected = DiscContacts(model.discs[0]).at(angle, here).force
+        assert followed.at(angle, here).force == pytest.approx(expected, abs=1e-8 * np.abs(expected).max())
 
 
 @pytest.mark.parametrize(
