@@ -60,11 +60,6 @@ class WidthPressures:
     place: FloatArray
     end_load: FloatArray
 
-    @property
-    def runs_off(self) -> BoolArray:
-        """Whether a contact carries right up to the lower and the upper end, shape (…, 2)."""
-        return np.asarray(self.end_load > 0.0)
-
 
 def estimate_along_width(kind: ContactKind, line_load: FloatArray, effective_radius: FloatArray) -> WidthPressures:
     """Return pressures of contacts in slices by their line loads, at the middles of the slices.
