@@ -59,7 +59,7 @@ PER_TURN, FEWEST_SAMPLES, MOST_SAMPLES = 720, 400, 40_000
 """Samples to a turn of the crank, and their bounds, by which memory is bounded."""
 STEPS_PER_PIN = 4
 """Steps of the solver, at least, in which the crank turns by the pitch of the wheel pins: no contact is passed over."""
-STEPS_BETWEEN = 200
+STEPS_BETWEEN = 25
 """Steps of the solver between two occasions to save."""
 MASSLESS = 1e-10
 """Mass by the largest one below which a coordinate has none, as in `ltca.dynamics.modes`."""
@@ -419,7 +419,7 @@ def prepare_run(drive: Drive, engine: Engine, course: Course) -> PreparedRun:
     ------
     DriveError
         For what a run in time leaves out, by name: contacts in slices, teeth or outside forces that press on parts that yield,
-        parts without mass, an input of no inertia that a torque drives, a torque of zero.
+        drag of seals and oil, parts without mass, an input of no inertia that a torque drives, a torque of zero.
     ConvergenceError
         Where no balanced state is found to start from.
     """
@@ -485,6 +485,8 @@ def _require_supported(drive: Drive, model: Reducer, course: Course) -> None:
         )
     if model.external is not None:
         problems.append("external_force: a run in time leaves out forces from outside on the output")
+    if drive.friction is not None and drive.friction.no_load_torque:
+        problems.append("friction.no_load_torque: a run in time leaves out the drag of seals and oil; must be 0")
     if course.driven_by == "torque" and (drive.inertia is None or drive.inertia.input is None):
         problems.append("inertia.input: must be given for an input that a torque drives, kg·m²")
     if problems:

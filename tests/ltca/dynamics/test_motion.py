@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
+from itertools import pairwise
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -117,7 +118,7 @@ def test_small_vibrations_are_the_modes(name, mode):
     ratio = 0.03
     damped = modes.frequency[mode] * np.sqrt(1.0 - ratio**2)
     assert (zeros.size - 1) / (zeros[-1] - zeros[0]) == pytest.approx(damped, rel=1e-3)
-    tops = [moved[a:b].max() for a, b in zip(crossing[:-1], crossing[1:], strict=True)]
+    tops = [moved[a:b].max() for a, b in pairwise(crossing)]
     decrement = np.log(tops[0] / tops[-1]) / (len(tops) - 1)
     assert decrement / np.hypot(2.0 * np.pi, decrement) == pytest.approx(ratio, rel=1e-2)
 
@@ -150,7 +151,7 @@ def test_energy_closes(name, course):
 
 
 def test_a_flight_through_the_play_keeps_momentum_and_an_impact_energy():
-    """The wheel alone, thrown across its play with the crank held: nothing acts until it meets the disc, and nothing takes energy.
+    """The wheel alone, thrown across its play with the crank held: nothing acts until it meets the disc; nothing takes energy.
     By hand: ω stays until then, and ½ J ω² is all there is through the impact and after; 1e-6 was asked for.
     """
     run = standing("paper")
@@ -345,6 +346,7 @@ def test_values_are_used_or_refused(values, words):
         ({"contact.slices": 5}, "contact.slices"),
         ({"materials.disc.density": None}, "materials.disc.density"),
         ({"load.torque": 0.0}, "load.torque"),
+        ({"friction.no_load_torque": 50.0}, "friction.no_load_torque"),
     ],
 )
 def test_what_a_run_leaves_out_is_refused_by_name(change, words):
