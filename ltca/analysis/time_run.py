@@ -456,7 +456,7 @@ def prepare_run(drive: Drive, engine: Engine, course: Course) -> PreparedRun:
     first = np.zeros(motion.size)
     first[: motion.pose.size] = found.pose[0]
     first -= lead * float(turns @ first)
-    y = equation.at_rest(0.0, np.linalg.lstsq(held, first, rcond=None)[0])
+    y = equation.at_rest(0.0, np.asarray(np.linalg.lstsq(held, first, rcond=None)[0], dtype=float))
     slow = QUASI_STATIC_STEP / abs(float(lead[motion.crank]))
     ends = [
         replace(equation, input_motion=lambda _, by=side * slow: (by, 0.0, 0.0)).at_rest(0.0, y)  # type: ignore[misc]

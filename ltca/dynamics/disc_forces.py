@@ -124,12 +124,11 @@ class DiscContacts:
             whole = np.column_stack((gradient, gradient @ nominal))
             stiffness += whole.T @ (stiff[:, None] * whole)
         push, displacement, lever, inner, outer = self._bearings(angle, q, middle, races, turn, force, stiffness)
-        moment = float(np.sum((lever.conjugate() * push).imag + self._cage * (displacement.conjugate() * push).imag))
-        moment += force @ nominal
+        held = float(np.sum((lever.conjugate() * push).imag + self._cage * (displacement.conjugate() * push).imag))
         normal = pins[2][:, X] + 1j * pins[2][:, Y]
         return DiscForces(
             force=force,
-            by_crank=float(moment),
+            by_crank=held + float(force @ nominal),
             nominal=nominal,
             pin_load=pins[0],
             hole_load=holes[0],

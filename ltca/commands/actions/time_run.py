@@ -6,6 +6,7 @@ import argparse
 import hashlib
 import time
 from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +28,8 @@ from ltca.reading.drive_file import DriveFile
 
 CHECKPOINTS = "checkpoint"
 """Folder of interrupted runs, a file for each case."""
+KEPT = ("time", "step", "state", "radii", "slope", "rows")
+"""What of a checkpoint stands beside its samples."""
 SAVED_EVERY = 20.0
 """Seconds of work between two checkpoints."""
 WHAT_DIFFERS = "another drive file, engine, motion or version"
@@ -70,9 +73,9 @@ def run_and_write(
             save = _saving(path, mark)
             every[name] = run_in_time(
                 run,
-                advance=lambda size, case=name: advance(case, size),
+                advance=partial(advance, name),
                 save=save,
-                resumed=resumed,  # type: ignore[misc]
+                resumed=resumed,
             )
             print("\n".join(_lines(every[name], f"{file.name} {name}")))
     files, contents = [], {}
@@ -128,17 +131,9 @@ def _saving(path: Path, mark: str) -> Callable[[Callable[[], Checkpoint]], None]
             return
         last, found = time.monotonic(), state()
         with whole_file(path) as part, part.open("wb") as stream:
-            np.savez(
-                stream,
-                mark=np.array(mark),
-                time=found.time,
-                step=found.step,
-                state=found.state,
-                radii=found.radii,
-                slope=found.slope,
-                rows=found.rows,
-                **{f"samples_{name}": values for name, values in found.samples.items()},
-            )
+            kept: dict[str, Any] = {name: getattr(found, name) for name in KEPT}
+            kept |= {f"samples_{name}": values for name, values in found.samples.items()}
+            np.savez(stream, mark=np.array(mark), **kept)
 
     return save
 
