@@ -57,6 +57,8 @@ QUASI_STATIC_STEP = 1e-4
 """Step of the angle of the crank for the rates of slow motion, rad."""
 PER_TURN, FEWEST_SAMPLES, MOST_SAMPLES = 720, 400, 40_000
 """Samples to a turn of the crank, and their bounds, by which memory is bounded."""
+FIRST_STEP = 0.1
+"""First step of the solver by the inverse of the highest frequency, rad: a longer one could throw parts through each other."""
 STEPS_PER_PIN = 4
 """Steps of the solver, at least, in which the crank turns by the pitch of the wheel pins: no contact is passed over."""
 STEPS_BETWEEN = 25
@@ -386,17 +388,20 @@ class PreparedRun:
     equation: Equation
     start: FloatArray
 
+    @property
+    def fastest(self) -> float:
+        """Highest frequency at the start, rad/s."""
+        equation = self.equation
+        mass = equation.kinetic.at(*equation.place(0.0, self.start))[0]
+        stiffness, basis = equation.solved(0.0, self.start)[2].stiffness, equation.basis
+        square = np.linalg.eigvals(np.linalg.solve(basis.T @ mass @ basis, basis.T @ stiffness @ basis))
+        return float(np.sqrt(np.abs(square).max()))
+
     def tolerances(self) -> FloatArray:
         """Return the absolute tolerances of the state."""
         m = self.equation.freedoms
         found = np.full(2 * m + len(WORKS), PLACE_TOLERANCE)
-        mass = self.equation.kinetic.at(*self.equation.place(0.0, self.start))[0]
-        stiffness = self.equation.solved(0.0, self.start)[2].stiffness
-        basis = self.equation.basis
-        fastest = np.sqrt(
-            np.abs(np.linalg.eigvals(np.linalg.solve(basis.T @ mass @ basis, basis.T @ stiffness @ basis))).max()
-        )
-        found[m : 2 * m] = PLACE_TOLERANCE * fastest
+        found[m : 2 * m] = PLACE_TOLERANCE * self.fastest
         turn = abs(float(self.motion.output_turns @ self.equation.lead))
         torque = self.drive.load.torque * turn
         found[2 * m :] = WORK_TOLERANCE * torque * self.course.speed * 2.0 * np.pi / 60.0 * self.course.time
@@ -636,7 +641,7 @@ def run_in_time(
     """
     equation, end = run.equation, run.course.time
     recorder = Recorder(run, samples or samples_of(run.course, run.drive))
-    time, state, step = 0.0, run.start, None
+    time, state, step = 0.0, run.start, FIRST_STEP / run.fastest
     if resumed is None:
         recorder.take(state)
         advance(1)
@@ -656,7 +661,7 @@ def run_in_time(
             max_step=longest,
             rtol=RELATIVE_TOLERANCE,
             atol=run.tolerances(),
-            first_step=None if step is None else min(step, end - time),
+            first_step=min(step, end - time),
         )
         taken = 0
         while solver.status == "running":

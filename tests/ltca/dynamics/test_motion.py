@@ -106,10 +106,13 @@ def test_small_vibrations_are_the_modes(name, mode):
     start[m : 2 * m] = 0.0
     rest = start[:m].copy()
     start[:m] += own * (1e-5 / np.abs(own).max())
+    tolerance = 1e-2 * run.tolerances()
+    tolerance[2 * m :] = 1.0  # works are not looked at
     period = 1.0 / modes.frequency[mode]
     times = np.linspace(0.0, 6.0 * period, 1201)
     answer = solve_ivp(
-        equation.rates, (0.0, times[-1]), start, method="DOP853", t_eval=times, rtol=1e-8, atol=1e-2 * run.tolerances()
+        equation.rates, (0.0, times[-1]), start, method="DOP853", t_eval=times, rtol=1e-8, atol=tolerance,
+        first_step=0.1 / run.fastest
     )  # fmt: skip
     moved = (shape @ mass @ equation.basis) @ (answer.y[:m] - rest[:, None])
     crossing = np.flatnonzero((moved[:-1] > 0.0) & (moved[1:] <= 0.0))
@@ -256,7 +259,7 @@ class OneContact:
 
 @pytest.mark.parametrize(
     ("amplitude", "side"),
-    [(0.5, 1.0), pytest.param(0.35, 1.0, marks=pytest.mark.slow), pytest.param(0.4, -1.0, marks=pytest.mark.slow)],
+    [(0.29, 1.0), pytest.param(0.2, 1.0, marks=pytest.mark.slow), pytest.param(0.22, -1.0, marks=pytest.mark.slow)],
 )
 def test_one_mass_on_a_hertzian_contact(amplitude, side):
     r"""Amplitude–frequency curve of Nayak (1972), J. Sound Vib. 22, 297, and Rigaud and Perret-Liaudet (2003), ibid. 265, 289.
@@ -264,10 +267,10 @@ def test_one_mass_on_a_hertzian_contact(amplitude, side):
     With the static approach x_s the equation is that of q = 1.5 (x − x_s)/x_s, :math:`q'' + 2\zeta q' + (1 + 2q/3)^{3/2} - 1 =
     \sigma\cos\Omega t`, and multiple scales give :math:`\Omega = 1 - A^2/54 \pm \sqrt{(\sigma/2A)^2 - \zeta^2}`: points on
     either side of the peak and next to it. The fundamental of the motion is compared, 1 % of it. The curve is of first order in
-    Ω − 1: at A = 0.3 left of the peak it is 1.1 % off, as measured.
+    Ω − 1 and A²: left of a peak of 0.53 it was 1.1 % off at A = 0.4 and 0.3, so that one of 0.3 is taken.
     """
     ratio, load, mass, stiffness = 0.005, 100.0, 1e-3, 1e6
-    sigma = 2.0 * ratio * 0.53
+    sigma = 2.0 * ratio * 0.3
     static = (load / stiffness) ** (2.0 / 3.0)
     natural = np.sqrt(1.5 * stiffness * np.sqrt(static) / mass)
     away = side * np.sqrt((0.5 * sigma / amplitude) ** 2 - ratio**2)
