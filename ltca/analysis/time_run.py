@@ -507,14 +507,16 @@ def _require_mass(kinetic: KineticEnergy, motion: Motion, basis: FloatArray, lev
         return
     light = [place for place in range(motion.size) if size[place] <= np.sqrt(MASSLESS) * size.max()]
     named = {
-        motion.sun: "sun of the first stage (inertia.input)",
-        motion.twist: "twist of the carrier (inertia.output)",
+        motion.sun: "inertia.input: sun of the first stage",
+        motion.twist: "inertia.output: twist of the carrier",
     }
+    flange = (
+        "carrier.posts: far flange of the carrier"
+        if motion.drive.posts
+        else "pin_shaft.beam.tip: ring of the pin shaft"
+    )
     ring = range(*motion.pose.ring_place.indices(motion.pose.size))
-    words = [
-        named.get(place, "far flange or ring of the pin shaft" if place in ring else f"coordinate {place}")
-        for place in light
-    ]
+    words = [named.get(place, flange if place in ring else f"coordinate {place}") for place in light]
     raise DriveError(
         [f"{word}: yields, but has no mass, which a run in time needs" for word in dict.fromkeys(words)]
         or ["masses: some motion that yields has none, which a run in time needs"]

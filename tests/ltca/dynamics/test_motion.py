@@ -361,6 +361,11 @@ def test_what_a_run_leaves_out_is_refused_by_name(change, words):
         prepare_run(drive, HalfSpace(), Course.of_values("steady", 1.0, 1500.0))
 
 
+def test_a_ring_without_mass_is_refused_by_name():
+    with pytest.raises(DriveError, match="pin_shaft.beam.tip: ring of the pin shaft: yields, but has no mass"):
+        prepare_run(drive_of("sleeved"), HalfSpace(), Course.of_values("steady", 1.0, 1500.0))
+
+
 @pytest.mark.slow
 def test_a_resumed_run_is_the_same():
     """From a checkpoint in the middle: the same to the tolerance of the solver, 1e-6 of what is large."""
