@@ -362,7 +362,7 @@ def test_what_a_run_leaves_out_is_refused_by_name(change, words):
 
 
 def test_a_ring_without_mass_is_refused_by_name():
-    with pytest.raises(DriveError, match="pin_shaft.beam.tip: ring of the pin shaft: yields, but has no mass"):
+    with pytest.raises(DriveError, match=r"pin_shaft\.beam\.tip: ring of the pin shaft: yields, but has no mass"):
         prepare_run(drive_of("sleeved"), HalfSpace(), Course.of_values("steady", 1.0, 1500.0))
 
 
