@@ -48,6 +48,7 @@ if TYPE_CHECKING:
     from ltca.front.checks import check
     from ltca.front.curves import curves
     from ltca.front.joined import concat
+    from ltca.front.motions import motion
     from ltca.front.vibrations import vibration
     from ltca.reading.drive_file import load_drive
 
@@ -66,12 +67,13 @@ _HOMES = {
     "curves": "ltca.front.curves",
     "derivatives": "ltca.facade",
     "load_drive": "ltca.reading.drive_file",
+    "motion": "ltca.front.motions",
     "vibration": "ltca.front.vibrations",
 }
 
 __all__ = [
     "Drive", "DriveError", "HalfSpace", "Hybrid", "PlaneStrain", "__version__", "analyse", "check", "concat",
-    "curves", "derivatives", "load_drive", "vibration",
+    "curves", "derivatives", "load_drive", "motion", "vibration",
 ]  # fmt: skip
 
 

@@ -454,6 +454,8 @@ def made_small(words: list[str]) -> list[str]:
         del small[small.index("--positions") : small.index("--positions") + 2]
     if "--figures" in words and "--no-figures" in small:
         small.remove("--no-figures")
+    if kind == "dynamics" and "--time" in words:  # has no positions
+        small = ["--time", "1 ms", "--compliance", "half-space"]
     if kind == "derive" and "--check" in words:  # derives nothing
         small = []
     of_the_paper = (kind == "derive" and "paper" in words) or (kind == "run" and "--coefficients" in words)

@@ -8,6 +8,7 @@ run_table  The table of ``cyclo run``: what decides, in the order in which it is
 check      Verdicts of ``cyclo check``: judge every case and tell what drives and would mend what fails
 curves     Solve the cases of ``cyclo curves``; curves.json, page and figures
 dynamics   Solve the cases of ``cyclo dynamics``; dynamics.json, page and figures
+time_run   Runs of ``cyclo dynamics --time``; time.nc, time.json, page and figures
 study      Run of a study (``cyclo tolerance``, ``cyclo sweep``): solved, written, drawn and printed
 optimise   Search of ``cyclo optimise``, and its outcome solved finely
 =========  =============================================================
