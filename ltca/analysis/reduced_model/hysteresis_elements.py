@@ -1,0 +1,91 @@
+r"""Hysteresis of the wind-up as Maxwell-slip elements whose strength goes with the load.
+
+Friction in a drive is Coulomb's, so what contacts hold grows with what they carry: the loop of a drive is narrow at light torques
+and gone within the play. Elements of constant strength have the same width everywhere; those here act on the elastic torque f,
+the torque of the drive without friction at the same wind-up: an element moves by :math:`\kappa\,\Delta f` and slips at
+:math:`c\,T_r (|f|/T_r)^p` with the rated torque :math:`T_r` and p = 1 (Coulomb) or 2 (more contacts carry). Its stiffness by its
+strength says at which part of the torque of the reversal it slips back. Torque along a path is linear in the strengths, which are
+found by non-negative least squares.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import nnls
+
+from ltca.arrays import FloatArray
+
+SLIPS_BACK_AT = (0.97, 0.93, 0.87, 0.8, 0.7, 0.55, 0.35)
+"""Elastic torque by that of the reversal at which an element has slipped back."""
+EXPONENTS = (1.0, 2.0)
+LEAST_STRENGTH = 1e-5
+"""By the rated torque; weaker elements are left out."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HysteresisElements:
+    """Maxwell-slip elements on the elastic torque.
+
+    Attributes
+    ----------
+    exponent, strength, stiffness : array, shape (elements,)
+        p, c and κ.
+    """
+
+    exponent: FloatArray
+    strength: FloatArray
+    stiffness: FloatArray
+
+    def torque(self, elastic: FloatArray, rated: float) -> FloatArray:
+        """Return what the elements add along a path, one that starts without them, N·mm, shape of `elastic`.
+
+        Parameters
+        ----------
+        elastic : array, shape (points,)
+            f along the path, N·mm.
+        rated : float
+            T_r, N·mm.
+        """
+        return np.asarray(_responses(elastic, rated, self.exponent, self.strength, self.stiffness).sum(axis=1))
+
+
+NO_ELEMENTS = HysteresisElements(exponent=np.zeros(0), strength=np.zeros(0), stiffness=np.zeros(0))
+
+
+def _responses(
+    elastic: FloatArray, rated: float, exponent: FloatArray, strength: FloatArray, stiffness: FloatArray
+) -> FloatArray:
+    """Torque of each element along a path, shape (points, elements)."""
+    state, found = np.zeros(strength.size), np.zeros((elastic.size, strength.size))
+    before = 0.0
+    for place, value in enumerate(elastic.tolist()):
+        most = strength * rated * (abs(value) / rated) ** exponent
+        state = np.clip(state + stiffness * (value - before), -most, most)
+        before, found[place] = value, state
+    return found
+
+
+def fit_elements(elastic: list[FloatArray], torque: list[FloatArray], rated: float) -> HysteresisElements:
+    """Fit elements to paths of torque.
+
+    Parameters
+    ----------
+    elastic : list of array, shape (points,)
+        Torque of the drive without friction at the same wind-up, path by path, N·mm; each path starts without load.
+    torque : list of array, shape (points,)
+        Torque along the same paths, N·mm.
+    rated : float
+        T_r, N·mm.
+    """
+    exponent = np.repeat(EXPONENTS, len(SLIPS_BACK_AT))
+    back = np.tile(SLIPS_BACK_AT, len(EXPONENTS))
+    # What slips back at the part ρ has gone from c to −c ρ^p over 1 − ρ; an element follows its own strength while it grows.
+    slope = np.maximum((1.0 + back**exponent) / (1.0 - back), exponent)
+    one = np.ones(exponent.size)
+    columns = np.vstack([_responses(path, rated, exponent, one, slope) for path in elastic])
+    beside = np.concatenate([value - path for path, value in zip(elastic, torque, strict=True)])
+    strength = nnls(columns / rated, beside / rated)[0]
+    kept = strength > LEAST_STRENGTH
+    return HysteresisElements(exponent=exponent[kept], strength=strength[kept], stiffness=(slope * strength)[kept])
