@@ -46,7 +46,7 @@ OTHER_ANGLE = 2.3
 """Crank angle of the path that they are not fitted to, rad."""
 OTHER_PATH = (0.01, 0.15, 0.45, 0.8, 0.6, 0.35, 0.55, 0.8, 0.3, 0.05, -0.1, -0.4, -0.7, -0.5, -0.2, 0.0, 0.2, 0.5)
 """That path, by the largest torque: reversals within the loop; its zero is passed at 1e-4."""
-CHECKED_PARTS = (2e-3, 0.02, 0.08, 0.21, 0.43, 0.62, 0.88)
+CHECKED_PARTS = (2e-3, 0.02, 0.08, 0.21, 0.43, 0.68, 0.94)
 """Torques without friction between those of the table, by the largest one, either way."""
 LEAST_TOLD = 1e-3
 """Torque by the largest one up to which angles are not compared: at the edge of the play a torque of nearly nothing turns the
@@ -123,8 +123,7 @@ class ReducedModel:
     @property
     def speed(self) -> float | None:
         """Largest speed of the input that the file gives, turns a minute: of ``[[duty]]``, else ``load.speed``."""
-        speeds = [entry.speed for entry in self.drive.duty]
-        return max(speeds) if speeds else self.drive.load.speed
+        return largest_speed(self.drive)
 
     @property
     def damping(self) -> tuple[float | None, str]:
@@ -165,6 +164,12 @@ class ReducedModel:
     def content(self) -> dict[str, Any]:
         """The model as its JSON file holds it: N·m, rad, kg·m², s."""
         return _content(self)
+
+
+def largest_speed(drive: Drive) -> float | None:
+    """Return the largest speed of the input that a drive gives, turns a minute; None where it gives none."""
+    speeds = [entry.speed for entry in drive.duty]
+    return max(speeds) if speeds else drive.load.speed
 
 
 def positions_of(drive: Drive) -> int:
@@ -393,6 +398,7 @@ def _content(found: ReducedModel) -> dict[str, Any]:
             "at_output_kg_m2": None if inertia is None else inertia.at_output / INERTIA,
             "given_input_kg_m2": None if inertia is None else inertia.given_input / INERTIA,
             "given_output_kg_m2": None if inertia is None else inertia.given_output / INERTIA,
+            "given_output_mass_kg": None if drive.inertia is None else drive.inertia.output_mass,
             "words": "of the parts that move, as rigid ones, referred to the input or to the output: the same inertia twice"
             if inertia is not None
             else f"densities are not given: {', '.join(found.without_density)}",

@@ -22,7 +22,7 @@ from ltca.equilibrium.output_angle import wheel_angle_of_input
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.reducer import Reducer
 
-TORQUE_PARTS = (1e-4, 0.003, 0.01, 0.03, 0.06, 0.1, 0.17, 0.25, 0.37, 0.5, 0.75, 1.0)
+TORQUE_PARTS = (1e-4, 0.003, 0.01, 0.03, 0.06, 0.1, 0.17, 0.25, 0.37, 0.5, 0.62, 0.75, 0.87, 1.0)
 """Torques of the table by the largest one, either way; at the first bodies yield 1e-4 of what they do at the last."""
 HARMONICS = 3
 """Multiples of each origin of an order; what higher ones do is told with the residual."""
