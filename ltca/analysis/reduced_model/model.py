@@ -11,7 +11,7 @@ import numpy as np
 from ltca.analysis.engines import Engine, describe_engine, lent_words
 from ltca.analysis.friction.hysteresis import LEAST_TORQUE_RATIO, locked_path
 from ltca.analysis.half_space_errors import half_space_words
-from ltca.analysis.reduced_model.hysteresis_elements import NO_ELEMENTS, HysteresisElements, fit_elements
+from ltca.analysis.reduced_model.hysteresis_elements import NO_ELEMENTS, NO_FACTOR, HysteresisElements, StrengthFactor, fit_elements
 from ltca.analysis.reduced_model.input_friction import (
     POSITIONS,
     TORQUE_PARTS as FRICTION_PARTS,
@@ -19,7 +19,8 @@ from ltca.analysis.reduced_model.input_friction import (
     input_friction,
 )
 from ltca.analysis.reduced_model.reduced_drive import ReducedDrive
-from ltca.analysis.reduced_model.wind_up import TORQUE_PARTS as WIND_UP_PARTS, WindUp, frictionless, sampling, wind_up
+from ltca.analysis.reduced_model.wind_up import TORQUE_PARTS as WIND_UP_PARTS, WindUp, HARMONICS, frictionless, scattered_angles, wind_up
+from ltca.analysis.transmission_error_orders import known_orders
 from ltca.arrays import FloatArray
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Drive
@@ -40,8 +41,10 @@ BRISTLE_ANGLE = 1e-3
 """Angle of the input over which its friction builds up in the reduced law, rad; at the output it is less by the ratio."""
 LOOP_PARTS = (0.01, 0.03, 0.06, 0.12, 0.22, 0.36, 0.52, 0.7, 0.85, 1.0)
 """Torques of the loop by the largest one, either way."""
-LOOP_ANGLES = (0.7, 3.9)
+LOOP_ANGLES = (0.7, 2.8, 3.9, 5.4)
 """Crank angles whose loops the elements are fitted to, rad."""
+FACTOR_HARMONICS = 1
+"""Multiples of each origin of an order of the strength of the elements."""
 OTHER_ANGLE = 2.3
 """Crank angle of the path that they are not fitted to, rad."""
 OTHER_PATH = (0.01, 0.15, 0.45, 0.8, 0.6, 0.35, 0.55, 0.8, 0.3, 0.05, -0.1, -0.4, -0.7, -0.5, -0.2, 0.0, 0.2, 0.5)
@@ -51,8 +54,8 @@ CHECKED_PARTS = (2e-3, 0.02, 0.08, 0.21, 0.43, 0.68, 0.94)
 LEAST_TOLD = 1e-3
 """Torque by the largest one up to which angles are not compared: at the edge of the play a torque of nearly nothing turns the
 output through all of it."""
-CHECKED_ANGLES = 2.0 * np.pi * np.array([0.137, 0.411, 0.893, 1.271, 1.618, 2.357, 3.083])
-"""Crank angles between those of the table, rad, and beyond its first turn."""
+CHECKED_ANGLES = 2.0 * np.pi * np.array([0.137, 0.411, 0.893, 1.271, 3.083, 7.357, 11.618])
+"""Crank angles between those of the table, rad, within its first turn and beyond."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -99,6 +102,8 @@ class ReducedModel:
         Without friction.
     elements : HysteresisElements
         None without friction.
+    strength_factor : StrengthFactor
+        Of the elements over the crank angle.
     friction : InputFriction
         Zero without friction.
     inertia : ReflectedInertia or None
@@ -115,6 +120,7 @@ class ReducedModel:
     largest: float
     wind_up: WindUp
     elements: HysteresisElements
+    strength_factor: StrengthFactor
     friction: InputFriction
     inertia: ReflectedInertia | None
     without_density: tuple[str, ...]
@@ -174,13 +180,9 @@ def largest_speed(drive: Drive) -> float | None:
 
 def positions_of(drive: Drive) -> int:
     """Return how many positions are solved for a reduced model, those of the loops left out."""
-    found = 2 * len(WIND_UP_PARTS) * _positions_of_orders(drive)
+    orders = len(known_orders(drive, harmonics=HARMONICS))
+    found = 2 * len(WIND_UP_PARTS) * scattered_angles(drive, orders).size
     return found + (0 if drive.friction is None else 4 * len(FRICTION_PARTS) * POSITIONS)
-
-
-def _positions_of_orders(drive: Drive) -> int:
-    _, each, turns = sampling(drive)
-    return each * turns
 
 
 @names_unit_mistakes
@@ -219,6 +221,7 @@ def reduce_drive(drive: Drive, engine: Engine, advance: Callable[[int], None] = 
         largest=largest,
         wind_up=wind_up(warm, model, largest, advance),
         elements=NO_ELEMENTS,
+        strength_factor=NO_FACTOR,
         friction=input_friction(warm, engine, largest, advance),
         inertia=reflected_inertia(drive, masses),
         without_density=masses.without_density,
@@ -259,17 +262,32 @@ def _with_elements(found: ReducedModel) -> tuple[ReducedModel, dict[str, FitErro
     once = np.concatenate([-up[::-1], up])
     loop = np.concatenate([[LEAST_TORQUE_RATIO], up, once[::-1][1:], once[1:]])
     other = np.array([part or LEAST_TORQUE_RATIO for part in (LEAST_TORQUE_RATIO, *OTHER_PATH)])
+    orders = known_orders(drive, harmonics=FACTOR_HARMONICS)
+    around = scattered_angles(drive, len(orders))
+    held = []
+    for way_of_load in (_way(drive), -_way(drive)):  # torque on the output negative, then positive
+        rising = np.concatenate([[LEAST_TORQUE_RATIO], up]) * -way_of_load * found.largest
+        wound = locked_path(drive, around, rising, engine=found.engine)[:, -1]
+        sprung_at = np.array([_elastic(law, angle, one) for angle, one in zip(around, wound, strict=True)])
+        held.append(_way(drive) * rising[-1] / sprung_at - 1.0)
+    found = replace(found, strength_factor=StrengthFactor.fitted(around, held, orders))
+    law = law_of(found)
     of_loops = locked_path(drive, np.array(LOOP_ANGLES), found.largest * loop, engine=found.engine)
     of_other = locked_path(drive, np.array([OTHER_ANGLE]), found.largest * other, engine=found.engine)
     way = _way(drive)
 
-    def elastic(crank_angle: float, wound: FloatArray) -> FloatArray:
-        at = crank_angle / law.cranks
-        return NEWTON_METRE * np.array([law.elastic_torque(at, at / law.ratio + one) for one in wound])
-
     torque = way * found.largest * loop
-    sprung = [elastic(angle, path) for angle, path in zip(LOOP_ANGLES, of_loops, strict=True)]
-    fitted = replace(found, elements=fit_elements(sprung, [torque] * len(sprung), drive.load.torque))
+    sprung = [
+        np.array([_elastic(law, angle, one) for one in path])
+        for angle, path in zip(LOOP_ANGLES, of_loops, strict=True)
+    ]
+    factors = [
+        (law.strength_factor(angle / law.cranks, -1.0), law.strength_factor(angle / law.cranks, 1.0))
+        for angle in LOOP_ANGLES
+    ]
+    fitted = replace(
+        found, elements=fit_elements(sprung, [torque] * len(sprung), drive.load.torque, factors)
+    )
     own = law_of(fitted)
     loops = [
         list(zip(np.full(path.size, angle), path, torque, strict=True))
@@ -282,6 +300,12 @@ def _with_elements(found: ReducedModel) -> tuple[ReducedModel, dict[str, FitErro
     }
 
 
+def _elastic(law: ReducedDrive, crank_angle: float, wound: float) -> float:
+    """Elastic torque at a crank angle and a wind-up, N·mm."""
+    at = crank_angle / law.cranks
+    return NEWTON_METRE * law.elastic_torque(at, at / law.ratio + wound)
+
+
 def _largest(law: ReducedDrive, paths: Paths, largest: float) -> FitError:
     """Largest errors of the law along paths of crank angle, wind-up and torque (rad, N·mm)."""
     in_torque, in_angle = 0.0, 0.0
@@ -292,7 +316,7 @@ def _largest(law: ReducedDrive, paths: Paths, largest: float) -> FitError:
             if abs(torque) > LEAST_TOLD * largest:
                 in_angle = max(in_angle, abs(wind_up_at(law, at, torque / NEWTON_METRE) - wound))
             in_torque = max(in_torque, abs(NEWTON_METRE * law.move(at, at / law.ratio + float(wound)) - torque))
-    return FitError(torque=in_torque, angle=in_angle, points=sum(map(len, paths)))
+    return FitError(torque=float(in_torque), angle=float(in_angle), points=sum(map(len, paths)))
 
 
 def wind_up_at(law: ReducedDrive, input_angle: float, torque: float) -> float:
@@ -323,6 +347,7 @@ def _content(found: ReducedModel) -> dict[str, Any]:
     drive, table, friction, inertia = found.drive, found.wind_up, found.friction, found.inertia
     ratio, speed = drive.transmission_ratio, found.speed
     damping, why = found.damping
+    factor = found.strength_factor
     words = half_space_words(found.engine, drive) or lent_words(found.engine, drive)
     back = {name: friction.driving_back_torque(way) for name, way in (("ccw", 1.0), ("cw", -1.0))}
     return {
@@ -379,6 +404,17 @@ def _content(found: ReducedModel) -> dict[str, Any]:
             "exponent": found.elements.exponent.tolist(),
             "strength": found.elements.strength.tolist(),
             "stiffness": found.elements.stiffness.tolist(),
+            "factor_orders": [
+                {
+                    "order": order.value,
+                    "name": order.name,
+                    "cos_ccw": float(factor.cosine[1, place]),
+                    "sin_ccw": float(factor.sine[1, place]),
+                    "cos_cw": float(factor.cosine[0, place]),
+                    "sin_cw": float(factor.sine[0, place]),
+                }
+                for place, order in enumerate(factor.orders)
+            ],
         },
         "friction": {
             "torque_N_m": (friction.torque / NEWTON_METRE).tolist(),

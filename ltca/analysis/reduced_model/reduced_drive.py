@@ -10,7 +10,8 @@ turns of the input by those of the output:
 
 - wind-up x = output angle − input angle/i; at the nodes T_j of the table x_j(φ) = mean + Σ cos·cos(order φ) + sin·sin(order φ)
   with the crank angle φ; the elastic torque f is linear between the nodes, and beyond them;
-- Maxwell-slip elements on f: z moves by stiffness·Δf and stays within ± strength·T_r·(\\|f\\|/T_r)^exponent with the rated torque T_r;
+- Maxwell-slip elements on f: z moves by stiffness·Δf and stays within ± g·strength·T_r·(\\|f\\|/T_r)^exponent with the rated torque
+  T_r and the factor g of the crank angle, 1 + Σ cos·cos(order φ) + sin·sin(order φ), one for either sign of f;
 - the drive holds the output with T = f + Σz and turns the input with T/i;
 - friction at the input is a bristle: it moves by Δ(input angle) and stays within the friction of the table at f and the sense.
 """
@@ -53,6 +54,12 @@ class ReducedDrive:
         self.exponent = column("hysteresis", "exponent")
         self.strength = column("hysteresis", "strength")
         self.stiffness = column("hysteresis", "stiffness")
+        around = tables["hysteresis"]["factor_orders"]
+        self.factor_order = np.array([entry["order"] for entry in around], dtype=np.float64)
+        self.factor = {
+            sign: np.array([[entry[f"cos_{name}"], entry[f"sin_{name}"]] for entry in around]).reshape(-1, 2)
+            for sign, name in ((1, "ccw"), (-1, "cw"))
+        }
         self.friction_torque = column("friction", "torque_N_m")
         self.friction = {
             1: column("friction", "at_input_turning_ccw_N_m"),
@@ -108,16 +115,31 @@ class ReducedDrive:
         part = (wound - nodes[first]) / width
         return float(torque[first] + part * (torque[first + 1] - torque[first]))
 
-    def slipped(self, elastic: float) -> Array:
+    def strength_factor(self, input_angle: float, elastic: float) -> float:
+        """Return the factor of the strength of the elements, 1 in the mean over the crank angle, not negative.
+
+        Parameters
+        ----------
+        input_angle : float
+            rad.
+        elastic : float
+            Torque on the output, of which the sign counts, N·m.
+        """
+        phase, table = self.factor_order * (self.cranks * input_angle), self.factor[1 if elastic > 0.0 else -1]
+        return max(0.0, 1.0 + float(np.cos(phase) @ table[:, 0] + np.sin(phase) @ table[:, 1]))
+
+    def slipped(self, input_angle: float, elastic: float) -> Array:
         """Return the elements after the elastic torque has come to a value, N·m; the state stays.
 
         Parameters
         ----------
+        input_angle : float
+            rad.
         elastic : float
             N·m.
         """
         rated = self.rated_torque
-        most = self.strength * rated * (abs(elastic) / rated) ** self.exponent
+        most = self.strength_factor(input_angle, elastic) * self.strength * rated * (abs(elastic) / rated) ** self.exponent
         return np.asarray(np.clip(self.elements + self.stiffness * (elastic - self.elastic), -most, most))
 
     def torque_of(self, input_angle: float, output_angle: float) -> float:
@@ -129,7 +151,7 @@ class ReducedDrive:
             rad.
         """
         elastic = self.elastic_torque(input_angle, output_angle)
-        return elastic + float(self.slipped(elastic).sum())
+        return elastic + float(self.slipped(input_angle, elastic).sum())
 
     def friction_at(self, elastic: float, sense: float) -> float:
         """Return the friction at the input, N·m, not negative.
@@ -153,7 +175,7 @@ class ReducedDrive:
             rad.
         """
         elastic = self.elastic_torque(input_angle, output_angle)
-        self.elements, self.elastic = self.slipped(elastic), elastic
+        self.elements, self.elastic = self.slipped(input_angle, elastic), elastic
         return elastic + float(self.elements.sum())
 
     def step(self, input_angle: float, output_angle: float) -> tuple[float, float]:

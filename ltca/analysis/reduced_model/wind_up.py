@@ -1,6 +1,6 @@
 """Wind-up of the output over torque and crank angle, as a table of mean and orders.
 
-At each of some torques either way the drive is balanced without friction at crank angles over some turns, and the deviation of
+At each of some torques either way the drive is balanced without friction at crank angles over all turns, and the deviation of
 the output is fitted by a mean and the orders that a drive can have (`ltca.analysis.transmission_error_orders`). The means are the
 torque–wind-up curve with the play between its least torques; the orders are the transmission error at that torque.
 """
@@ -9,12 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from math import ceil
 
 import numpy as np
 
 from ltca.analysis.memory_need import positions_together
-from ltca.analysis.transmission_error_orders import Order, Spectrum, fit_orders, known_orders, least_turns
+from ltca.analysis.transmission_error_orders import Order, Spectrum, fit_orders, known_orders
 from ltca.arrays import FloatArray
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import ARCMIN
@@ -26,9 +25,10 @@ TORQUE_PARTS = (1e-4, 0.003, 0.01, 0.03, 0.06, 0.1, 0.17, 0.25, 0.37, 0.5, 0.62,
 """Torques of the table by the largest one, either way; at the first bodies yield 1e-4 of what they do at the last."""
 HARMONICS = 3
 """Multiples of each origin of an order; what higher ones do is told with the residual."""
-LEAST_POSITIONS = 96
-"""In a turn; more where the highest order asks for them."""
-POSITIONS_PER_PERIOD = 2.05
+POSITIONS_PER_UNKNOWN = 5
+"""Positions for each cosine, sine and mean that is fitted."""
+GOLDEN = 0.5 * (5.0**0.5 - 1.0)
+"""Step by which positions go on, modulo one, over all turns: no order looks like another at them."""
 LEAST_AMPLITUDE = 5e-4 / ARCMIN
 """Amplitude, rad, up to which an order is left out: 0.0005′ at every torque."""
 
@@ -95,8 +95,8 @@ def wind_up(drive: Drive, model: Reducer, largest: float, advance: Callable[[int
     advance : callable
         Told of solved positions.
     """
-    orders, each, turns = sampling(drive)
-    angle = 2.0 * np.pi * np.arange(turns * each) / each
+    orders = known_orders(drive, harmonics=HARMONICS)
+    angle = scattered_angles(drive, len(orders))
     opposing = _opposing(drive)
     torque, spectra = [], list[Spectrum]()
     for way in (1.0, -1.0):
@@ -123,16 +123,15 @@ def wind_up(drive: Drive, model: Reducer, largest: float, advance: Callable[[int
         cosine=(amplitude * np.cos(phase))[kept],
         sine=(amplitude * np.sin(phase))[kept],
         residual=np.sqrt(np.array([spectra[place].residual for place in along]) ** 2 + left),
-        turns=turns,
+        turns=drive.pin_wheel.number_of_pins,
         positions=angle.size,
     )
 
 
-def sampling(drive: Drive) -> tuple[tuple[Order, ...], int, int]:
-    """Return the orders that are fitted, positions in a turn, and turns that tell them apart."""
-    orders = known_orders(drive, harmonics=HARMONICS)
-    each = max(LEAST_POSITIONS, ceil(POSITIONS_PER_PERIOD * max(order.value for order in orders)))
-    return orders, each, least_turns(orders, each, drive.pin_wheel.number_of_pins)
+def scattered_angles(drive: Drive, orders: int) -> FloatArray:
+    """Return crank angles over as many turns as there are wheel pins, at which so many orders are told apart, rad."""
+    count = POSITIONS_PER_UNKNOWN * (2 * orders + 1)
+    return np.asarray(2.0 * np.pi * drive.pin_wheel.number_of_pins * np.mod(GOLDEN * np.arange(count), 1.0))
 
 
 def _opposing(drive: Drive) -> float:

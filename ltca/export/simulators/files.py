@@ -18,7 +18,7 @@ from ltca.output.files import whole_file, write_json
 CALLBACK, LAW = "mujoco_callback.py", "reduced_drive.py"
 HOME = "ltca.analysis.reduced_model.reduced_drive"
 """Of the law in the suite; beside the exported files it is `LAW`."""
-TABLES = ("wind_up.csv", "friction.csv", "hysteresis.csv")
+TABLES = ("wind_up.csv", "friction.csv", "hysteresis.csv", "hysteresis_factor.csv")
 
 
 def model_name(drive: str, case: str) -> str:

@@ -49,6 +49,10 @@ def tables_header(tables: dict[str, Any]) -> str:
     """
     wind_up, friction, loop = tables["wind_up"], tables["friction"], tables["hysteresis"]
     orders, nodes = wind_up["orders"], len(wind_up["torque_N_m"])
+    around = loop["factor_orders"]
+    ends = {
+        way: [[one[f"cos_{way}"], one[f"sin_{way}"]] for one in around] or [[0.0, 0.0]] for way in ("ccw", "cw")
+    }
     # C has no empty arrays: what has no entries has one that is not read.
     none = [dict.fromkeys(("cos_rad", "sin_rad"), [0.0] * nodes) | {"order": 0.0}]
 
@@ -62,7 +66,7 @@ def tables_header(tables: dict[str, Any]) -> str:
     lines = [
         f"/* {tables['fingerprint']}: the drive; N m and rad. */",
         f"enum {{ NODES = {nodes}, ORDERS = {len(orders)}, ELEMENTS = {len(loop['strength'])}, "
-        f"FRICTIONS = {len(friction['torque_N_m'])} }};",
+        f"FRICTIONS = {len(friction['torque_N_m'])}, FACTORS = {len(around)} }};",
         f"static const double RATIO = {tables['transmission_ratio']:.17g};",
         f"static const double CRANKS = {tables['crank_turns_per_input_turn']:.17g};",
         f"static const double RATED = {tables['limits']['rated_torque_N_m']:.17g};",
@@ -75,6 +79,11 @@ def tables_header(tables: dict[str, Any]) -> str:
         vector("EXPONENT", loop["exponent"]),
         vector("STRENGTH", loop["strength"]),
         vector("STIFFNESS", loop["stiffness"]),
+        vector("FACTOR_ORDER", [one["order"] for one in around]),
+        *(
+            f"static const double FACTOR_{way.upper()}[][2] = {{{', '.join(map(_row, rows))}}};"
+            for way, rows in ends.items()
+        ),
         vector("FRICTION_TORQUE", friction["torque_N_m"]),
         vector("FRICTION_CCW", friction["at_input_turning_ccw_N_m"]),
         vector("FRICTION_CW", friction["at_input_turning_cw_N_m"]),

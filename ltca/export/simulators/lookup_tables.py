@@ -26,6 +26,9 @@ def csv_texts(tables: dict[str, Any]) -> dict[str, str]:
     return {
         "wind_up.csv": _csv(columns),
         "friction.csv": _csv({name: friction[name] for name in names}),
+        "hysteresis_factor.csv": _csv({
+            name: [one[name] for one in loop["factor_orders"]] for name in ("order", "cos_ccw", "sin_ccw", "cos_cw", "sin_cw")
+        }),
         "hysteresis.csv": _csv({name: loop[name] for name in ("exponent", "strength", "stiffness")}),
     }
 
@@ -62,6 +65,7 @@ Written by cyclo {tables["cyclo_version"]} from the drive {tables["drive"]}, cas
 | `{name}_wind_up.csv` | by the torque on the output: mean wind-up over the crank angle, and cosine and sine of each order of the transmission error |
 | `{name}_friction.csv` | by the torque on the output: friction torque at the input that turns ccw and cw, efficiency with input and output driving |
 | `{name}_hysteresis.csv` | Maxwell-slip elements, a row each; none without friction |
+| `{name}_hysteresis_factor.csv` | orders over the crank angle of the factor of their strength, for a torque on the output that turns it ccw and cw |
 | `reduced_drive.py` | the law that these tables are for, numpy alone |
 
 ## Units and signs
@@ -72,7 +76,7 @@ output, with sign. The crank angle is {tables["crank_turns_per_input_turn"]:.9g}
 ## Law
 - Wind-up x = output angle − input angle/i. At the torque T_j of row j of the table x_j = mean + Σ cos_order·cos(order·φ) + sin_order·sin(order·φ) with the crank angle φ. The elastic torque f is linear between
   these nodes, and beyond them. The play lies between the two least torques.
-- Element: z moves by stiffness·Δf and stays within ± strength·T_r·(|f|/T_r)^exponent with the rated torque T_r = {limits["rated_torque_N_m"]:g} N·m. The output is held with f + Σz.
+- Element: z moves by stiffness·Δf and stays within ± g·strength·T_r·(|f|/T_r)^exponent with the rated torque T_r = {limits["rated_torque_N_m"]:g} N·m. g = 1 + Σ cos·cos(order·φ) + sin·sin(order·φ), by the sign of f. The output is held with f + Σz.
 - The torque on the input is (f + Σz)/i and friction against its motion.
 - Efficiency and friction are means over a turn. {tables["friction"]["speed_words"][0].upper() + tables["friction"]["speed_words"][1:]}.
 

@@ -28,7 +28,7 @@ def modelica_text(tables: dict[str, Any]) -> str:
         Content of the JSON file of the drive, with its name.
     """
     name, wind_up, friction, loop = tables["name"], tables["wind_up"], tables["friction"], tables["hysteresis"]
-    orders, limits, inertia = wind_up["orders"], tables["limits"], tables["inertia"]
+    orders, around, limits, inertia = wind_up["orders"], loop["factor_orders"], tables["limits"], tables["inertia"]
     nodes, worst = len(wind_up["torque_N_m"]), tables["fit_error"]["worst"]
     damping, rotor = tables["damping"]["at_output_N_m_s_per_rad"] or 0.0, inertia["at_input_kg_m2"]
     told = f"{tables['drive']} {tables['case']}, fingerprint {tables['fingerprint']}, cyclo {tables['cyclo_version']}"
@@ -73,6 +73,18 @@ package {name} "{told}"
     end for;
   end windUpNodes;
 
+  function strengthFactor "Of the elements over the crank angle, less one"
+    input Real phase "Crank angle";
+    input Real order[:];
+    input Real ends[size(order, 1), 2] "Cosine and sine";
+    output Real y;
+  algorithm
+    y := 0;
+    for k in 1:size(order, 1) loop
+      y := y + ends[k, 1]*cos(order[k]*phase) + ends[k, 2]*sin(order[k]*phase);
+    end for;
+  end strengthFactor;
+
   model Drive "Valid to {limits["peak_torque_N_m"]:g} N.m; within {100.0 * worst["part_of_torque_range"]:.2g} % of the torque range of the analysis"
     extends Modelica.Mechanics.Rotational.Interfaces.PartialTwoFlanges;
     parameter Real ratio = {tables["transmission_ratio"]:.12g} "Turns of flange_a (input) for one of flange_b (output)";
@@ -90,6 +102,9 @@ package {name} "{told}"
     constant Real exponent[{len(loop["exponent"])}] = {_vector(loop["exponent"])};
     constant Real strength[{len(loop["strength"])}] = {_vector(loop["strength"])};
     constant Real stiffness[{len(loop["stiffness"])}] = {_vector(loop["stiffness"])};
+    constant Real factorOrder[{len(around)}] = {_vector([one["order"] for one in around])};
+    constant Real factorCcw[{len(around)}, 2] = {_matrix([[one["cos_ccw"], one["sin_ccw"]] for one in around], 2)};
+    constant Real factorCw[{len(around)}, 2] = {_matrix([[one["cos_cw"], one["sin_cw"]] for one in around], 2)};
     constant Real frictionAt[{len(friction["torque_N_m"])}] = {_row(friction["torque_N_m"])};
     constant Real frictionCcw[size(frictionAt, 1)] = {_row(friction["at_input_turning_ccw_N_m"])};
     constant Real frictionCw[size(frictionAt, 1)] = {_row(friction["at_input_turning_cw_N_m"])};
@@ -98,6 +113,7 @@ package {name} "{told}"
     Modelica.Units.SI.Torque followed(start = 0, fixed = true) "The same, filtered";
     Modelica.Units.SI.Torque element[size(strength, 1)](each start = 0, each fixed = true) "Maxwell-slip elements";
     Modelica.Units.SI.Torque most[size(strength, 1)] "At which they slip";
+    Real factor "Of their strength";
     Modelica.Units.SI.Torque torque "With which the output is held";
     Modelica.Units.SI.Torque friction "At the input";
     Modelica.Units.SI.AngularVelocity w "Of the input";
@@ -106,8 +122,9 @@ package {name} "{told}"
     w = der(flange_a.phi);
     elastic = interpolate(windUp, windUpNodes(cranks*flange_a.phi, mean, order, cosine, sine), torqueAt);
     settling*der(followed) = elastic - followed;
+    factor = max(0, 1 + strengthFactor(cranks*flange_a.phi, factorOrder, if followed > 0 then factorCcw else factorCw));
     for e in 1:size(strength, 1) loop
-      most[e] = strength[e]*rated*(abs(followed)/rated)^exponent[e];
+      most[e] = factor*strength[e]*rated*(abs(followed)/rated)^exponent[e];
       der(element[e]) = stiffness[e]*(elastic - followed)/settling - max(0, element[e] - most[e])/settling
         + max(0, -most[e] - element[e])/settling;
     end for;

@@ -85,12 +85,18 @@ static double friction(const double *table, double torque) {
 }
 
 static void answer(const State *state, Answer *found) {
-    double torque, forward, backward, most;
+    double torque, forward, backward, most, factor = 1.0;
     int e;
     found->after = *state;
     torque = found->elastic = found->after.elastic = elastic_torque(state);
+    for (e = 0; e < FACTORS; e++) {
+        double phase = FACTOR_ORDER[e] * CRANKS * state->input_angle;
+        const double *ends = found->elastic > 0.0 ? FACTOR_CCW[e] : FACTOR_CW[e];
+        factor += ends[0] * cos(phase) + ends[1] * sin(phase);
+    }
+    if (factor < 0.0) factor = 0.0;
     for (e = 0; e < ELEMENTS; e++) {
-        most = STRENGTH[e] * RATED * pow(fabs(found->elastic) / RATED, EXPONENT[e]);
+        most = factor * STRENGTH[e] * RATED * pow(fabs(found->elastic) / RATED, EXPONENT[e]);
         found->after.elements[e] =
             within(state->elements[e] + STIFFNESS[e] * (found->elastic - state->elastic), -most, most);
         torque += found->after.elements[e];
