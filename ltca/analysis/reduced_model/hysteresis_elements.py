@@ -19,7 +19,7 @@ from scipy.optimize import nnls
 from ltca.analysis.transmission_error_orders import Order, fit_orders
 from ltca.arrays import FloatArray
 
-SLIPS_BACK_AT = (0.97, 0.93, 0.87, 0.8, 0.7, 0.55, 0.35)
+SLIPS_BACK_AT = (0.95, 0.92, 0.89, 0.86, 0.83, 0.8, 0.76, 0.7, 0.6, 0.45, 0.3)
 """Elastic torque by that of the reversal at which an element has slipped back."""
 EXPONENTS = (1.0, 2.0)
 LEAST_FACTOR = 0.005

@@ -39,7 +39,7 @@ FORMAT = 1
 """Of the JSON file; a later one says so."""
 BRISTLE_ANGLE = 1e-3
 """Angle of the input over which its friction builds up in the reduced law, rad; at the output it is less by the ratio."""
-LOOP_PARTS = (0.01, 0.03, 0.06, 0.12, 0.22, 0.36, 0.52, 0.7, 0.85, 1.0)
+LOOP_PARTS = (0.01, 0.03, 0.06, 0.12, 0.2, 0.3, 0.4, 0.5, 0.6, 0.68, 0.74, 0.79, 0.84, 0.88, 0.92, 0.96, 1.0)
 """Torques of the loop by the largest one, either way."""
 LOOP_ANGLES = (0.7, 2.8, 3.9, 5.4)
 """Crank angles whose loops the elements are fitted to, rad."""
