@@ -43,6 +43,10 @@ LOOP_PARTS = (0.01, 0.03, 0.06, 0.12, 0.2, 0.3, 0.4, 0.5, 0.6, 0.68, 0.74, 0.79,
 """Torques of the loop by the largest one, either way."""
 LOOP_ANGLES = (0.7, 2.8, 3.9, 5.4)
 """Crank angles whose loops the elements are fitted to, rad."""
+FACTOR_POSITIONS = 3
+"""Positions for each unknown of that strength."""
+RISING_PARTS = (0.06, 0.2, 0.45, 0.7, 1.0)
+"""Torques by which the largest one is reached there: with ten of them the wind-up at the last differs by less than 0.01′."""
 FACTOR_HARMONICS = 1
 """Multiples of each origin of an order of the strength of the elements."""
 OTHER_ANGLE = 2.3
@@ -263,10 +267,10 @@ def _with_elements(found: ReducedModel) -> tuple[ReducedModel, dict[str, FitErro
     loop = np.concatenate([[LEAST_TORQUE_RATIO], up, once[::-1][1:], once[1:]])
     other = np.array([part or LEAST_TORQUE_RATIO for part in (LEAST_TORQUE_RATIO, *OTHER_PATH)])
     orders = known_orders(drive, harmonics=FACTOR_HARMONICS)
-    around = scattered_angles(drive, len(orders))
+    around = scattered_angles(drive, len(orders), FACTOR_POSITIONS)
     held = []
     for way_of_load in (_way(drive), -_way(drive)):  # torque on the output negative, then positive
-        rising = np.concatenate([[LEAST_TORQUE_RATIO], up]) * -way_of_load * found.largest
+        rising = np.concatenate([[LEAST_TORQUE_RATIO], RISING_PARTS]) * -way_of_load * found.largest
         wound = locked_path(drive, around, rising, engine=found.engine)[:, -1]
         sprung_at = np.array([_elastic(law, angle, one) for angle, one in zip(around, wound, strict=True)])
         held.append(_way(drive) * rising[-1] / sprung_at - 1.0)
