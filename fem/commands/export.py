@@ -80,7 +80,9 @@ def execute(arguments: argparse.Namespace) -> int:
                 raise DriveError([f"--{option}: has no effect with --for {arguments.simulator}; leave one of them out"])
         return export_model(arguments)
     if arguments.format is None:
-        raise DriveError([f"--format or --for: one of them must be given, {', '.join(FORMATS)} of a part or a simulator"])
+        raise DriveError(
+            [f"--format or --for: one of them must be given, {', '.join(FORMATS)} of a part or a simulator"]
+        )
     refuse_compliance(arguments)
     return _export_part(arguments)
 

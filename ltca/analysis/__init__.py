@@ -34,6 +34,7 @@ life                       Rating life and static safety of the crank bearings f
 vibration                  Modes over a turn and over torque, orders that excite them, critical speeds
 forced_vibration           Response to the orders of the transmission error over speed, dynamic factors of contacts
 drive_curves               Curves of one drive: torque curve, orders, lives and pressure over turns
+reduced_model              A drive reduced to what simulators of robots and machines hold, with the error of the fit
 verdict                    A verdict on a design: values against limits that each have a source, and advice
 pressure_safety            Safety of the flank pressure against a limit
 memory_need                Memory and disc that an analysis of many positions will need, estimated before it starts

@@ -25,8 +25,8 @@ def add_simulator_arguments(parser: argparse.ArgumentParser) -> None:
         "--for",
         dest="simulator",
         choices=SIMULATORS,
-        help="in place of --format: a reduced model of the drive (wind-up with play and hysteresis, friction, transmission error, "
-        "inertias, limits) as lookup tables, MJCF, URDF, Modelica package or functional mock-up unit",
+        help="in place of --format: a reduced model of the drive (wind-up with play and hysteresis, friction, transmission "
+        "error, inertias, limits) as lookup tables, MJCF, URDF, Modelica package or functional mock-up unit",
     )
     add_compliance_arguments(parser)
 

@@ -5,8 +5,8 @@ and gone within the play. Elements of constant strength have the same width ever
 the torque of the drive without friction at the same wind-up: an element moves by :math:`\kappa\,\Delta f` and slips at
 :math:`c\,T_r (|f|/T_r)^p` with the rated torque :math:`T_r` and p = 1 (Coulomb) or 2 (more contacts carry). Its stiffness by its
 strength says at which part of the torque of the reversal it slips back. Torque along a path is linear in the strengths, which are
-found by non-negative least squares. What contacts hold goes with the crank angle as well: the strength of all elements has a factor
-for it, of one in the mean, by orders, found from the drive loaded slowly at many crank angles.
+found by non-negative least squares. What contacts hold goes with the crank angle as well: the strength of all elements has a
+factor for it, of one in the mean, by orders, found from the drive loaded slowly at many crank angles.
 """
 
 from __future__ import annotations
@@ -97,7 +97,7 @@ def _responses(
     stiffness: FloatArray,
     factors: tuple[float, float],
 ) -> FloatArray:
-    """Torque of each element along a path, shape (points, elements); factors of their strength at negative and positive torque."""
+    """Torque of each element along a path, shape (points, elements); factors are those of negative and positive torque."""
     state, found = np.zeros(strength.size), np.zeros((elastic.size, strength.size))
     before = 0.0
     for place, value in enumerate(elastic.tolist()):
@@ -128,9 +128,9 @@ def fit_elements(
     # What slips back at the part ρ has gone from c to −c ρ^p over 1 − ρ; an element follows its own strength while it grows.
     slope = np.maximum((1.0 + back**exponent) / (1.0 - back), exponent)
     one = np.ones(exponent.size)
-    columns = np.vstack([
-            _responses(path, rated, exponent, one, slope, factor) for path, factor in zip(elastic, factors, strict=True)
-        ])
+    columns = np.vstack(
+        [_responses(path, rated, exponent, one, slope, factor) for path, factor in zip(elastic, factors, strict=True)]
+    )
     beside = np.concatenate([value - path for path, value in zip(elastic, torque, strict=True)])
     strength = nnls(columns / rated, beside / rated)[0]
     kept = strength > LEAST_STRENGTH

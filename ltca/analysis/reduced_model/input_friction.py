@@ -1,10 +1,10 @@
 """Friction of a turning drive as a torque at its input, by the torque on the output and the sense of motion.
 
-Friction is Coulomb's and rolling resistance, whose coefficients do not go with speed (``[friction]``): neither does the table. What
-a turn of the drive loses (`ltca.analysis.friction.losses`), by the angle of the input, is the friction torque there. A load on the
-output moves the input without help where its torque, by the ratio, is more than that; the least such load is the torque that drives
-back. Where a drive that is driven at its output has no equilibrium, it locks itself: the friction is then told as what the load
-asks.
+Friction is Coulomb's and rolling resistance, whose coefficients do not go with speed (``[friction]``): neither does the table.
+What a turn of the drive loses (`ltca.analysis.friction.losses`), by the angle of the input, is the friction torque there. A load
+on the output moves the input without help where its torque, by the ratio, is more than that; the least such load is the torque
+that drives back. Where a drive that is driven at its output has no equilibrium, it locks itself: the friction is then told as
+what the load asks.
 """
 
 from __future__ import annotations

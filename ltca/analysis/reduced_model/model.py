@@ -11,7 +11,13 @@ import numpy as np
 from ltca.analysis.engines import Engine, describe_engine, lent_words
 from ltca.analysis.friction.hysteresis import LEAST_TORQUE_RATIO, locked_path
 from ltca.analysis.half_space_errors import half_space_words
-from ltca.analysis.reduced_model.hysteresis_elements import NO_ELEMENTS, NO_FACTOR, HysteresisElements, StrengthFactor, fit_elements
+from ltca.analysis.reduced_model.hysteresis_elements import (
+    NO_ELEMENTS,
+    NO_FACTOR,
+    HysteresisElements,
+    StrengthFactor,
+    fit_elements,
+)
 from ltca.analysis.reduced_model.input_friction import (
     POSITIONS,
     TORQUE_PARTS as FRICTION_PARTS,
@@ -19,9 +25,15 @@ from ltca.analysis.reduced_model.input_friction import (
     input_friction,
 )
 from ltca.analysis.reduced_model.reduced_drive import ReducedDrive
-from ltca.analysis.reduced_model.wind_up import TORQUE_PARTS as WIND_UP_PARTS, WindUp, HARMONICS, frictionless, scattered_angles, wind_up
+from ltca.analysis.reduced_model.wind_up import (
+    HARMONICS,
+    TORQUE_PARTS as WIND_UP_PARTS,
+    WindUp,
+    frictionless,
+    scattered_angles,
+    wind_up,
+)
 from ltca.analysis.transmission_error_orders import known_orders
-from ltca.arrays import FloatArray
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Drive
 from ltca.drive.unit_mistakes import names_unit_mistakes
@@ -43,7 +55,7 @@ LOOP_PARTS = (0.01, 0.03, 0.06, 0.12, 0.2, 0.3, 0.4, 0.5, 0.6, 0.68, 0.74, 0.79,
 """Torques of the loop by the largest one, either way."""
 LOOP_ANGLES = (0.7, 2.8, 3.9, 5.4)
 """Crank angles whose loops the elements are fitted to, rad."""
-FACTOR_POSITIONS = 3
+FACTOR_POSITIONS = 5
 """Positions for each unknown of that strength."""
 RISING_PARTS = (0.06, 0.2, 0.45, 0.7, 1.0)
 """Torques by which the largest one is reached there: with ten of them the wind-up at the last differs by less than 0.01′."""
@@ -282,16 +294,13 @@ def _with_elements(found: ReducedModel) -> tuple[ReducedModel, dict[str, FitErro
 
     torque = way * found.largest * loop
     sprung = [
-        np.array([_elastic(law, angle, one) for one in path])
-        for angle, path in zip(LOOP_ANGLES, of_loops, strict=True)
+        np.array([_elastic(law, angle, one) for one in path]) for angle, path in zip(LOOP_ANGLES, of_loops, strict=True)
     ]
     factors = [
         (law.strength_factor(angle / law.cranks, -1.0), law.strength_factor(angle / law.cranks, 1.0))
         for angle in LOOP_ANGLES
     ]
-    fitted = replace(
-        found, elements=fit_elements(sprung, [torque] * len(sprung), drive.load.torque, factors)
-    )
+    fitted = replace(found, elements=fit_elements(sprung, [torque] * len(sprung), drive.load.torque, factors))
     own = law_of(fitted)
     loops = [
         list(zip(np.full(path.size, angle), path, torque, strict=True))

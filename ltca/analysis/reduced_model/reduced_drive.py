@@ -10,8 +10,8 @@ turns of the input by those of the output:
 
 - wind-up x = output angle − input angle/i; at the nodes T_j of the table x_j(φ) = mean + Σ cos·cos(order φ) + sin·sin(order φ)
   with the crank angle φ; the elastic torque f is linear between the nodes, and beyond them;
-- Maxwell-slip elements on f: z moves by stiffness·Δf and stays within ± g·strength·T_r·(\\|f\\|/T_r)^exponent with the rated torque
-  T_r and the factor g of the crank angle, 1 + Σ cos·cos(order φ) + sin·sin(order φ), one for either sign of f;
+- Maxwell-slip elements on f: z moves by stiffness·Δf and stays within ± g·strength·T_r·(\\|f\\|/T_r)^exponent with the rated
+  torque T_r and the factor g of the crank angle, 1 + Σ cos·cos(order φ) + sin·sin(order φ), one for either sign of f;
 - the drive holds the output with T = f + Σz and turns the input with T/i;
 - friction at the input is a bristle: it moves by Δ(input angle) and stays within the friction of the table at f and the sense.
 """
@@ -139,7 +139,9 @@ class ReducedDrive:
             N·m.
         """
         rated = self.rated_torque
-        most = self.strength_factor(input_angle, elastic) * self.strength * rated * (abs(elastic) / rated) ** self.exponent
+        most = (
+            self.strength_factor(input_angle, elastic) * self.strength * rated * (abs(elastic) / rated) ** self.exponent
+        )
         return np.asarray(np.clip(self.elements + self.stiffness * (elastic - self.elastic), -most, most))
 
     def torque_of(self, input_angle: float, output_angle: float) -> float:

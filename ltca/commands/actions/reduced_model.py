@@ -45,7 +45,9 @@ def _lines(found: ReducedModel) -> list[str]:
     if drive.friction is not None:
         back = friction.driving_back_torque(1.0)
         told = (
-            "no load of the output moves the input" if back is None else f"driven back from {back / NEWTON_METRE:.4g} N·m"
+            "no load of the output moves the input"
+            if back is None
+            else f"driven back from {back / NEWTON_METRE:.4g} N·m"
         )
         lines.append(
             f"  hysteresis of {found.elements.strength.size} Maxwell-slip elements; {told}; efficiency "

@@ -50,9 +50,7 @@ def tables_header(tables: dict[str, Any]) -> str:
     wind_up, friction, loop = tables["wind_up"], tables["friction"], tables["hysteresis"]
     orders, nodes = wind_up["orders"], len(wind_up["torque_N_m"])
     around = loop["factor_orders"]
-    ends = {
-        way: [[one[f"cos_{way}"], one[f"sin_{way}"]] for one in around] or [[0.0, 0.0]] for way in ("ccw", "cw")
-    }
+    ends = {way: [[one[f"cos_{way}"], one[f"sin_{way}"]] for one in around] or [[0.0, 0.0]] for way in ("ccw", "cw")}
     # C has no empty arrays: what has no entries has one that is not read.
     none = [dict.fromkeys(("cos_rad", "sin_rad"), [0.0] * nodes) | {"order": 0.0}]
 

@@ -26,9 +26,12 @@ def csv_texts(tables: dict[str, Any]) -> dict[str, str]:
     return {
         "wind_up.csv": _csv(columns),
         "friction.csv": _csv({name: friction[name] for name in names}),
-        "hysteresis_factor.csv": _csv({
-            name: [one[name] for one in loop["factor_orders"]] for name in ("order", "cos_ccw", "sin_ccw", "cos_cw", "sin_cw")
-        }),
+        "hysteresis_factor.csv": _csv(
+            {
+                name: [one[name] for one in loop["factor_orders"]]
+                for name in ("order", "cos_ccw", "sin_ccw", "cos_cw", "sin_cw")
+            }
+        ),
         "hysteresis.csv": _csv({name: loop[name] for name in ("exponent", "strength", "stiffness")}),
     }
 

@@ -34,7 +34,9 @@ def modelica_text(tables: dict[str, Any]) -> str:
     told = f"{tables['drive']} {tables['case']}, fingerprint {tables['fingerprint']}, cyclo {tables['cyclo_version']}"
     told = told.replace("\\", "\\\\").replace('"', '\\"')
     rotor_words = (
-        "inertia of the drive at its input" if rotor is not None else "densities are not given: the drive has no inertia here"
+        "inertia of the drive at its input"
+        if rotor is not None
+        else "densities are not given: the drive has no inertia here"
     )
     return f"""within ;
 package {name} "{told}"

@@ -6,7 +6,7 @@ Written beside the MJCF of ``cyclo export DRIVE --for mujoco``; it needs numpy a
 >>> drive = DriveCallback(model, "robot-joint_nominal.json")         # doctest: +SKIP
 >>> mujoco.set_mjcb_passive(drive)                                   # doctest: +SKIP
 
-Several drives share the one callback of MuJoCo: ``mujoco.set_mjcb_passive(lambda model, data: [one(model, data) for one in drives])``.
+Several drives share the one callback of MuJoCo: ``set_mjcb_passive(lambda model, data: [one(model, data) for one in drives])``.
 Set the callback after all models are loaded: MuJoCo calls it for models it compiles, too.
 The spring of the tendon and its play are switched off in the model that is given, and the friction of the input follows the load.
 """

@@ -16,7 +16,9 @@ def flange_inertia(tables: dict[str, Any]) -> tuple[float, str]:
     inertia = tables["inertia"]
     if inertia["given_output_kg_m2"]:
         return float(inertia["given_output_kg_m2"]), "inertia.output of the drive file"
-    return float(inertia["at_output_kg_m2"]), "a stand-in as large as the inertia of the drive; give that of your flange"
+    return float(
+        inertia["at_output_kg_m2"]
+    ), "a stand-in as large as the inertia of the drive; give that of your flange"
 
 
 def time_step(tables: dict[str, Any]) -> float:
@@ -60,7 +62,9 @@ def mjcf_text(tables: dict[str, Any]) -> str:
     held = f' solreffriction="{2.0 * time_step(tables):g} 1" solimpfriction="0.99 0.99 0.001"'
     loss = f' frictionloss="{at_rest:.9g}"{held}' if at_rest else ""
     damped = f' damping="{damping:.9g}"' if damping else ""
-    head = escape(f"{tables['drive']} {tables['case']}, fingerprint {tables['fingerprint']}, cyclo {tables['cyclo_version']}")
+    head = escape(
+        f"{tables['drive']} {tables['case']}, fingerprint {tables['fingerprint']}, cyclo {tables['cyclo_version']}"
+    )
     return f"""<!-- {head.replace("--", "- -")}
      The tendon is a linear spring behind the mean play: within {100.0 * spring["part_of_torque_range"]:.2g} % of the torque range
      of the mean curve, valid up to {tables["limits"]["peak_torque_N_m"]:g} N m. mujoco_callback.py with {name}.json replaces it by

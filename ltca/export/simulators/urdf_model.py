@@ -22,7 +22,9 @@ def urdf_text(tables: dict[str, Any]) -> str:
     friction = tables["friction"]["at_input_turning_ccw_N_m"]
     at_rest = friction[len(friction) // 2] * abs(ratio)
     flange, from_words = flange_inertia(tables)
-    head = escape(f"{tables['drive']} {tables['case']}, fingerprint {tables['fingerprint']}, cyclo {tables['cyclo_version']}")
+    head = escape(
+        f"{tables['drive']} {tables['case']}, fingerprint {tables['fingerprint']}, cyclo {tables['cyclo_version']}"
+    )
     return f"""<?xml version="1.0"?>
 <!-- {head.replace("--", "- -")}
      Friction is that without load, at the output; it does not go with speed, so damping is 0. Wind-up, play, hysteresis, friction

@@ -15,8 +15,8 @@ from ltca.commands.program import main
 from ltca.drive.units.quantities import ARCMIN
 from ltca.dynamics.kinetics import reflected_inertia
 from ltca.dynamics.masses import INERTIA
-from ltca.export.simulators.functional_mockup_unit import find_compiler
 from ltca.export.simulators.files import write_simulator
+from ltca.export.simulators.functional_mockup_unit import find_compiler
 from ltca.output.run_folder import MANIFEST
 from ltca.reading.drive_file import load_drive, shipped_drive
 

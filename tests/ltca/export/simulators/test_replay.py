@@ -47,7 +47,9 @@ def loaded_path():
         steps = before + (turn - before) * np.arange(1, count + 1) / count
         steps = steps[np.abs(steps) > 2.0 * BESIDE_PLAY[-1]].tolist()
         if before * turn <= 0.0:
-            steps += [np.sign(turn) * part for part in BESIDE_PLAY] + [np.sign(before) * part for part in BESIDE_PLAY if before]
+            steps += [np.sign(turn) * part for part in BESIDE_PLAY] + [
+                np.sign(before) * part for part in BESIDE_PLAY if before
+            ]
         found += sorted(steps, reverse=turn < before)
         before = turn
     return np.array(found)
@@ -55,9 +57,10 @@ def loaded_path():
 
 @pytest.fixture(scope="module")
 def drive():
-    return load_drive("paper").cases["CS-4"].with_fields({
-        "friction": {"pin": 0.06, "hole": 0.06, "roller": 0.002, "no_load_torque": 200.0},
-        "load.speed": 1500.0, "inertia": {"input": 2e-4, "output": 0.05}, "damping": {"ratio": 0.1},
+    """The robot joint with the friction of docs/how-to/robot_joint.md."""
+    return load_drive("robot-joint").cases["nominal"].with_fields({
+        "friction": {"pin": 0.05, "hole": 0.05, "roller": 0.002, "no_load_torque": 100.0},
+        "load.speed": 1500.0, "inertia": {"input": 1e-4, "output": 0.05}, "damping": {"ratio": 0.1},
     })  # fmt: skip
 
 
@@ -79,8 +82,8 @@ def expected(drive):
     """Torque on the output and its angle against the input, N·m and rad, by the analysis."""
     torque = drive.load.torque * np.array([LIGHT, *loaded_path()])
     wound = locked_path(drive, np.array([ANGLE]), torque, engine=HalfSpace())[0]
-    # With the pin shaft held and a crank that drives ccw a positive load turns the wheel cw.
-    return -torque[1:] / 1e3, wound[1:]
+    # With the pin wheel held and a crank that drives ccw a positive load turns the pin shaft ccw.
+    return torque[1:] / 1e3, wound[1:]
 
 
 @pytest.fixture(scope="module")
