@@ -52,7 +52,7 @@ def tables_header(tables: dict[str, Any]) -> str:
     around = loop["factor_orders"]
     ends = {way: [[one[f"cos_{way}"], one[f"sin_{way}"]] for one in around] or [[0.0, 0.0]] for way in ("ccw", "cw")}
     # C has no empty arrays: what has no entries has one that is not read.
-    none = [dict.fromkeys(("cos_rad", "sin_rad"), [0.0] * nodes) | {"order": 0.0}]
+    none: list[dict[str, Any]] = [{"cos_rad": [0.0] * nodes, "sin_rad": [0.0] * nodes}]
 
     def matrix(name: str, key: str) -> str:
         rows = ",\n    ".join(_row(one[key]) for one in orders or none)

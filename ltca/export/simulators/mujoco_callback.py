@@ -37,10 +37,9 @@ class DriveCallback:
     """
 
     def __init__(self, model: Any, tables: str | Path | dict[str, Any], prefix: str = "") -> None:
-        if not isinstance(tables, dict):
-            tables = json.loads(Path(tables).read_text(encoding="utf-8"))
-        name = prefix + str(tables["name"])
-        self.law = ReducedDrive(tables)
+        content = tables if isinstance(tables, dict) else json.loads(Path(tables).read_text(encoding="utf-8"))
+        name = prefix + str(content["name"])
+        self.law = ReducedDrive(content)
         self.input = int(model.joint(f"{name}_input").qposadr[0])
         self.output = int(model.joint(f"{name}_output").qposadr[0])
         self.input_dof = int(model.joint(f"{name}_input").dofadr[0])
