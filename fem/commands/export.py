@@ -38,7 +38,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add_drive_argument(parser)
     add_case_argument(parser, "case; default the first", several=False)
     add_out_argument(parser, "export", "folder for the files; what earlier exports wrote there stays")
-    parser.add_argument("--format", choices=FORMATS, help="of the files of a part")
+    which = parser.add_mutually_exclusive_group(required=True)
+    which.add_argument("--format", choices=FORMATS, help="of the files of a part")
     parser.add_argument("--part", choices=PARTS, help="what to write; default disc")
     parser.add_argument(
         "--disc",
@@ -58,7 +59,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         type=quantity_argument("--chord", "mm", gt=1e-6, le=1.0),
         help="of STL: largest distance of a triangle from the exact surface, mm; default 0.001",
     )
-    add_simulator_arguments(parser)
+    add_simulator_arguments(parser, which)
 
 
 def execute(arguments: argparse.Namespace) -> int:
@@ -75,14 +76,10 @@ def execute(arguments: argparse.Namespace) -> int:
         For wrong input, what cannot be exported, or missing libraries.
     """
     if arguments.simulator is not None:
-        for option in ("format", "part", "disc", "compensate", "chord"):
+        for option in ("part", "disc", "compensate", "chord"):
             if getattr(arguments, option) is not None:
                 raise DriveError([f"--{option}: has no effect with --for {arguments.simulator}; leave one of them out"])
         return export_model(arguments)
-    if arguments.format is None:
-        raise DriveError(
-            [f"--format or --for: one of them must be given, {', '.join(FORMATS)} of a part or a simulator"]
-        )
     refuse_compliance(arguments)
     return _export_part(arguments)
 

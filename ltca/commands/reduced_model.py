@@ -19,9 +19,9 @@ COMPLIANCE = ("compliance", "quick", "coefficients", "bodies", "no_hole_near_fie
 """Arguments of `add_compliance_arguments`, none of which is given by default."""
 
 
-def add_simulator_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the simulator, and how bodies yield in what its model is made of."""
-    parser.add_argument(
+def add_simulator_arguments(parser: argparse.ArgumentParser, which: argparse._MutuallyExclusiveGroup) -> None:
+    """Add the simulator to the options of which one is given, and how bodies yield in what its model is made of."""
+    which.add_argument(
         "--for",
         dest="simulator",
         choices=SIMULATORS,

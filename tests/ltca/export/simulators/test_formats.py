@@ -174,13 +174,11 @@ def test_without_a_compiler_the_sources_are_there(tables, tmp_path, monkeypatch)
 @pytest.mark.parametrize(
     ("given", "told"),
     [
-        (["--for", "json", "--format", "dxf"], "--format: has no effect with --for json; leave one of them out"),
         (["--for", "json", "--part", "disc"], "--part: has no effect with --for json"),
         (["--for", "fmu", "--compensate", "0.1"], "--compensate: has no effect with --for fmu"),
         (["--for", "urdf"], "load.speed: must be given for --for urdf, whose <limit> has a velocity, rpm"),
         (["--format", "csv", "--quick"], "--quick: has no effect with --format, only with --for"),
         (["--for", "json", "--quick", "--compliance", "fe"], "--quick: is half-spaces, not --compliance fe"),
-        ([], "--format or --for: one of them must be given"),
     ],
 )
 def test_wrong_input_is_refused_and_leaves_nothing(given, told, tmp_path, capsys):
@@ -190,6 +188,22 @@ def test_wrong_input_is_refused_and_leaves_nothing(given, told, tmp_path, capsys
     assert told in error
     assert error.count("\n") == 1
     assert not out.exists()
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        (["--for", "json", "--format", "dxf"], "argument --format: not allowed with argument --for"),
+        ([], "one of the arguments --format --for is required"),
+        (["--for", "gazebo"], "argument --for: invalid choice: 'gazebo'"),
+    ],
+)
+def test_one_of_two_options_is_given(given, told, tmp_path, capsys):
+    with pytest.raises(SystemExit) as end:
+        main(["export", "paper", *given, "--out", str(tmp_path / "out")])
+    assert end.value.code == 2
+    assert told in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
 
 
 def test_a_density_that_is_missing_is_named(tmp_path, capsys):
