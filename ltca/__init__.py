@@ -30,7 +30,7 @@ page           Pages of results that open offline
 export         Parts carried out: exact outlines, DXF drawings, tables of points (STEP and STL: ``fem.export``)
 testing        What serves checking alone, importable by tests of your own
 facade         The front door: `analyse`, its result, derivatives
-front          What else ``import ltca`` gives: `check`, `curves`, `concat`
+front          What else ``import ltca`` gives: `check`, `curves`, `vibration`, `concat`
 commands       The program ``cyclo``
 drives         Drives that ship with the package
 =============  ============================================================
@@ -48,6 +48,7 @@ if TYPE_CHECKING:
     from ltca.front.checks import check
     from ltca.front.curves import curves
     from ltca.front.joined import concat
+    from ltca.front.vibrations import vibration
     from ltca.reading.drive_file import load_drive
 
     __version__: str
@@ -65,11 +66,12 @@ _HOMES = {
     "curves": "ltca.front.curves",
     "derivatives": "ltca.facade",
     "load_drive": "ltca.reading.drive_file",
+    "vibration": "ltca.front.vibrations",
 }
 
 __all__ = [
     "Drive", "DriveError", "HalfSpace", "Hybrid", "PlaneStrain", "__version__", "analyse", "check", "concat",
-    "curves", "derivatives", "load_drive",
+    "curves", "derivatives", "load_drive", "vibration",
 ]  # fmt: skip
 
 
