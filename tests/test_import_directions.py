@@ -41,6 +41,8 @@ FEM_MAY_IMPORT = (
     "ltca.page.verdict_tables",
     "ltca.figures.house_style",
     "ltca.export",
+    # One command writes parts and, handed on whole, models for simulators: nothing of these comes back.
+    "ltca.commands.reduced_model",
 )  # fmt: skip
 # A change is checked as a drive file is read, above the drive; users look for it on the drive. It is loaded when called.
 METHODS_FROM_ABOVE = {("ltca.drive.parts", "ltca.reading.changes")}
