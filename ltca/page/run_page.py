@@ -84,9 +84,19 @@ def run_page(run: Run) -> str:
 
 def run_context(run: Run) -> dict[str, Any]:
     """Return what the templates of the page of a run are filled with."""
+    drives = {case: warm_drive(drive) for case, drive in run.drives.items()}
+    return answer_context(run, drives) | {
+        "inputs": input_tables(run.drives),
+        "derived": derived_tables(run.drives, drives),
+        "made": _made(run, drives),
+        "text": run.dataset.attrs["drive_file"],
+    }
+
+
+def answer_context(run: Run, drives: Mapping[str, Drive]) -> dict[str, Any]:
+    """Return what the templates are filled with of the answer alone; `drives` are warm."""
     dataset, cases = run.dataset, list(run.drives)
     name, positions = str(dataset.attrs["drive"]), dataset.sizes["position"]
-    drives = {case: warm_drive(drive) for case, drive in run.drives.items()}
     loads = [drive.load_words(_torque(dataset, place)) for place, drive in enumerate(drives.values())]
     shown = shown_positions(dataset)
     sentence, state = verdict_of(run.checks)
@@ -117,10 +127,6 @@ def run_context(run: Run) -> dict[str, Any]:
         "compared": run.compared,
         "warnings": [line.removeprefix("warning: ") for line in run.sampling if line.startswith("warning: ")],
         "sampling": [line for line in run.sampling if not line.startswith("warning: ")],
-        "inputs": input_tables(run.drives),
-        "derived": derived_tables(run.drives, drives),
-        "made": _made(run, drives),
-        "text": dataset.attrs["drive_file"],
         "data": script_data(content),
         "numbers": numbers,
     }

@@ -12,11 +12,13 @@ import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 from ltca.drive.declaration import Field
 from ltca.drive.members.named_materials import LIKE
 from ltca.errors import DriveError, shortened
+from ltca.reading.toml_text import parse_toml
 
 BARE = re.compile(r"[A-Za-z0-9_-]+")
 _PART = re.compile(r"""[ \t]*(?:([A-Za-z0-9_-]+)|"((?:[^"\\\n]|\\.)*)"|'([^'\n]*)')[ \t]*""")
@@ -96,6 +98,12 @@ def _is_toml(typed: str) -> bool:
         return False
 
 
+@lru_cache(maxsize=16)
+def tables_of(text: str) -> dict[str, Any]:
+    """Return the tables of a text as `parse_toml` does, once for every text; they must not be changed."""
+    return parse_toml(text, "the text")
+
+
 def with_values(text: str, changes: Mapping[str, str | None]) -> str:
     """Return the text of a TOML file with some values replaced.
 
@@ -127,14 +135,14 @@ def with_values(text: str, changes: Mapping[str, str | None]) -> str:
     for dotted, value in changes.items():
         path = tuple(dotted.split("."))
         try:
-            before = tomllib.loads(text)
+            before = tables_of(text)
             wanted = _with_value(before, path, None if value is None else tomllib.loads(f"a = {value}")["a"])
             if wanted == before:
                 continue
             changed = _written(text, path, value)
-            if tomllib.loads(changed) != wanted:
+            if tables_of(changed) != wanted:
                 raise _UnreadableError
-        except (ValueError, RecursionError, _UnreadableError, LookupError, TypeError) as error:
+        except (ValueError, RecursionError, _UnreadableError, LookupError, TypeError, DriveError) as error:
             told = "cannot be changed by itself where it stands; change the text of the file"
             raise DriveError([f"{shortened(dotted)[1:-1]}: {told}"]) from error
         text = changed
@@ -186,38 +194,82 @@ def _written(text: str, path: Path, value: str | None) -> str:
     return _added(text, headers, statements, path, value)
 
 
-def _added(
-    text: str, headers: Sequence[_Header], statements: Sequence[_Statement], path: Path, value: str
-) -> str:
+def _added(text: str, headers: Sequence[_Header], statements: Sequence[_Statement], path: Path, value: str) -> str:
     """The text with a new key: at the end of the table it belongs to, of the nearest one above, or in a table of its own."""
     above = [header for header in headers if header.path == path[: len(header.path)] and len(header.path) < len(path)]
     numbered = any(part.isdigit() for part in path)
-    if above and (len(path) - len(max(above, key=lambda one: len(one.path)).path) == 1 or numbered or above[-1].of_array):
+    if above and (
+        len(path) - len(max(above, key=lambda one: len(one.path)).path) == 1 or numbered or above[-1].of_array
+    ):
         header = max(above, key=lambda one: len(one.path))
         later = [other.first for other in headers if other.first > header.first]
         last = max(
-            (one.end for one in statements if header.end <= one.first < min(later, default=len(text))), default=header.end
+            (one.end for one in statements if header.end <= one.first < min(later, default=len(text))),
+            default=header.end,
         )
         return _line_after(text, last, f"{_dotted(path[len(header.path) :])} = {value}")
     if len(path) == 1:
         first = min((header.first for header in headers), default=len(text))
         before = max((one.end for one in statements if one.end <= first), default=0)
-        return _line_after(text, before, f"{_dotted(path)} = {value}") if before else f"{_dotted(path)} = {value}\n{text}"
+        return (
+            _line_after(text, before, f"{_dotted(path)} = {value}") if before else f"{_dotted(path)} = {value}\n{text}"
+        )
     beside = [one for one in statements if len(one.path) > 1 and one.path[:-1] == path[:-1]]
     if beside:  # dotted keys at the head of the file, or of a table above
         last_one = beside[-1]
         key = text[last_one.first : last_one.start].partition("=")[0].strip().rpartition(".")[0]
         return _line_after(text, last_one.end, f"{key}.{_dotted(path[-1:])} = {value}")
-    arrays = [header.first for header in headers if header.of_array or header.path[0] in ("tolerances", "limits")]
-    first = min(arrays, default=len(text))
+    return _with_table(text, headers, f"[{_dotted(path[:-1])}]\n{_dotted(path[-1:])} = {value}\n")
+
+
+def _with_table(text: str, headers: Sequence[_Header], table: str) -> str:
+    """The text with a table before the arrays of tables and what is no part of the drive, which stand last."""
+    last = [header.first for header in headers if header.path[0] in ("case", "tolerances", "limits")]
+    first = min(last, default=len(text))
     lines = text[:first].splitlines(keepends=True)
     while lines and lines[-1].lstrip().startswith("#"):  # what is said of the table that follows
         lines.pop()
     head = "".join(lines)
     rest = text[len(head) :]
-    table = f"[{_dotted(path[:-1])}]\n{_dotted(path[-1:])} = {value}\n"
     gap = "" if not head or head.endswith("\n\n") else "\n" if head.endswith("\n") else "\n\n"
     return head + gap + table + ("\n" if rest else "") + rest
+
+
+def with_entry(text: str, table: str) -> str:
+    """Return the text of a TOML file with a further, empty entry of an array of tables.
+
+    Raises
+    ------
+    DriveError
+        When the text is no TOML, or its entries are not written as ``[[table]]``.
+
+    Examples
+    --------
+    >>> print(with_entry("[disc]\\nthickness = 8.0\\n", "disc.of"), end="")
+    [disc]
+    thickness = 8.0
+    <BLANKLINE>
+    [[disc.of]]
+    """
+    try:
+        headers, statements = _scanned(text)
+        path = tuple(table.split("."))
+        if any(one.path == path for one in statements):
+            raise _UnreadableError
+        line = f"[[{_dotted(path)}]]\n"
+        same = [header for header in headers if header.of_array and header.path[:-1] == path]
+        if same:
+            later = [one.first for one in headers if one.first > same[-1].first and one.path[: len(path)] != path]
+            place = min(later, default=len(text))
+            head = text[:place].rstrip("\n")
+            found = f"{head}\n\n{line}" + (f"\n{text[place:]}" if text[place:] else "")
+        else:
+            found = _with_table(text, headers, line)
+        tables_of(found)
+    except (ValueError, RecursionError, _UnreadableError, LookupError, DriveError) as error:
+        told = "an entry cannot be added where they stand; change the text of the file"
+        raise DriveError([f"{shortened(table)[1:-1]}: {told}"]) from error
+    return found
 
 
 def _line_after(text: str, place: int, line: str) -> str:
