@@ -140,7 +140,8 @@ def with_values(text: str, changes: Mapping[str, str | None]) -> str:
             if wanted == before:
                 continue
             changed = _written(text, path, value)
-            if tables_of(changed) != wanted:
+            found = tables_of(changed)
+            if found != wanted and (value is not None or _without_empty(found) != _without_empty(wanted)):
                 raise _UnreadableError
         except (ValueError, RecursionError, _UnreadableError, LookupError, TypeError, DriveError) as error:
             told = "cannot be changed by itself where it stands; change the text of the file"
@@ -157,8 +158,10 @@ def _with_value(table: Mapping[str, Any], path: Path, value: Any) -> Any:
         if isinstance(branch, list):
             branch = branch[int(key)]
             continue
+        if not isinstance(branch, dict):
+            raise _UnreadableError
         below = branch.get(key)
-        if isinstance(below, str):
+        if isinstance(below, str) and _names_a_material(path[: place + 1]):
             below = branch[key] = {LIKE: below}
         elif below is None:
             if value is None:
@@ -167,13 +170,26 @@ def _with_value(table: Mapping[str, Any], path: Path, value: Any) -> Any:
                 raise _UnreadableError
             below = branch[key] = {}
         branch = below
+    if not isinstance(branch, dict):
+        raise _UnreadableError
     if value is None:
         branch.pop(path[-1], None)
-    elif isinstance(branch, list):
-        branch[int(path[-1])] = value
     else:
         branch[path[-1]] = value
     return found
+
+
+def _without_empty(table: Any) -> Any:
+    """Tables without those that hold nothing: a table of one dotted key ends with it."""
+    if not isinstance(table, dict):
+        return table
+    kept = {key: _without_empty(value) for key, value in table.items()}
+    return {key: value for key, value in kept.items() if value != {}}
+
+
+def _names_a_material(path: Path) -> bool:
+    """Whether a text in the place of a table is the name of a material."""
+    return path[-2:-1] == ("materials",) or path[-1] == "material"
 
 
 def _written(text: str, path: Path, value: str | None) -> str:

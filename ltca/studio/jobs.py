@@ -34,7 +34,7 @@ LOG = "output.txt"
 
 @cache
 def exports() -> dict[str, list[str]]:
-    """Return what ``cyclo export`` offers: ``formats``, ``parts`` and the ``simulators`` of ``--for``, empty where it has none."""
+    """Return what ``cyclo export`` offers: ``formats``, ``parts`` and the ``simulators`` of ``--for``."""
     parser = argparse.ArgumentParser()
     found: dict[str, list[str]] = {"formats": [], "parts": [], "simulators": []}
     for entry in entry_points(group="cyclo.commands", name="export"):
@@ -168,6 +168,7 @@ class Jobs:
                     if job.cancelled:
                         job.program.end()
                     status = job.program.wait()
+                    job.program.end()  # of its pipe
             except OSError as error:
                 (job.folder / LOG).write_text(f"cyclo: error: {error}\n", encoding="utf-8")
                 status = CycloError.exit_status

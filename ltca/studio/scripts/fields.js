@@ -23,7 +23,7 @@ function fieldRow(declared, path, parent, slider) {
   let range = null;
   if (slider) {
     range = html("input", { type: "range", "aria-label": `${path}, slider` }, box);
-    range.addEventListener("input", () => { input.value = range.value; change(path, range.value); });
+    range.addEventListener("input", () => { input.value = range.value + range.dataset.unit; change(path, input.value); });
     range.addEventListener("change", () => showFields());
   }
   const message = html("p", { class: "message", id: id + "-message", hidden: "" }, box);
@@ -103,12 +103,14 @@ function showFields() {
     box.classList.toggle("own", state.own.has(path));
     box.dataset.own = state.own.has(path) ? `of case ${state.case}` : "";
     if (range && document.activeElement !== range) {
-      const number = Number(value === "" ? 0 : value);
+      const [, written, unit] = value.match(/^\s*([+-]?[\d.]+(?:e[+-]?\d+)?)(\s*\S.*)?$/i) || ["", value === "" ? "0" : value, ""];
+      const number = Number(written);
       range.disabled = !Number.isFinite(number);
+      range.dataset.unit = unit || ""; // a number keeps the unit that it is written in
       if (range.disabled) continue;
       if (!(number > Number(range.min) && number < Number(range.max)) || !range.dataset.made || (number === 0) !== (range.dataset.zero === "yes")) {
         const ends = rangeOf(path, number || (path === "load.torque" ? 1000 : 0));
-        place(range, { min: ends.low.toFixed(ends.digits), max: ends.high.toFixed(ends.digits), step: ends.step.toFixed(ends.digits + 1), "data-made": "yes", "data-zero": number === 0 ? "yes" : "no" });
+        place(range, { "data-made": "yes", min: ends.low.toFixed(ends.digits), max: ends.high.toFixed(ends.digits), step: ends.step.toFixed(ends.digits + 1), "data-zero": number === 0 ? "yes" : "no" });
       }
       range.value = number;
     }

@@ -81,10 +81,11 @@ function show(answer, sequence, older) {
     return;
   }
   const fine = answer.positions >= 360 || answer.fine;
-  verdict(answer.state, answer.sentence);
+  const [, head, rest] = answer.sentence.match(/^(.*?[.])(?: (.*))?$/) || ["", answer.sentence, ""];
+  verdict(answer.state, head);
   el("name").textContent = answer.drive;
   el("about").textContent = `${answer.load}, ${answer.model}`;
-  el("quality").textContent = older ? "computing …" : `${fine ? "" : "coarse: "}${answer.positions} positions${fine ? "" : ", the fine answer is on its way"}`;
+  el("quality").textContent = older ? "computing …" : `${fine ? "" : "coarse: "}${answer.positions} positions${fine ? "" : ", the fine answer is on its way"}. ${rest || ""}`;
   el("warnings").replaceChildren(...answer.warnings.map(line => html("li", {}, null, line)));
   el("verdict-box").innerHTML = answer.html.verdict;
   el("result-box").innerHTML = answer.html.results;
