@@ -97,6 +97,7 @@ LEFT_OUT = {
     r" --write\b": "would replace tests/budget.toml; the same without it is run",
     r"validation\.levels\.other_codes": "asks codes that are not everywhere, and would replace their stored answers",
     r"validate --manual": "tests/validation/manual computes every case, tests/validation/commands runs the command",
+    r"cyclo studio\b": "serves until it is ended; tests/ltca/studio does so",
     r"mutants\.py": "its map alone takes longer than all tests; tests/test_mutants.py runs its parts",
     r"random_drives\.py --count N$": "a usage; its number is a placeholder",
 }

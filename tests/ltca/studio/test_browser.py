@@ -1,4 +1,4 @@
-"""The studio in chromium: what is typed is answered as ``cyclo run`` answers it, at once and never mixed; by keyboard, on a phone."""
+"""The studio in chromium: what is typed is answered as ``cyclo run`` answers it, never mixed; by keyboard, on a phone."""
 
 from __future__ import annotations
 
