@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 import time
 from collections.abc import Mapping, Sequence
@@ -154,7 +153,7 @@ def _run(question: Question, memory: Memory, file: DriveFile, name: str) -> dict
         "state": context["state"],
         "warnings": [minus(one) for one in context["warnings"]],
         "html": {"verdict": _part("verdict.html", context), "results": _part("answer.html", context)},
-        "data": json.loads(context["data"]),
+        "data": context["data"],
         "numbers": context["numbers"],
         "summary": _summary(summary),
     }

@@ -90,6 +90,16 @@ class Job:
         Behind ``cyclo``.
     folder : Path
         Its drive file, output and results.
+    began : float
+        When, s on the monotonic clock.
+    took : float or None
+        Time, s; None while it runs.
+    status : int or None
+        What it ended with; None while it runs.
+    cancelled : bool
+        Whether it was to end.
+    program : Supervised or None
+        The process; None before it is started.
     """
 
     number: int

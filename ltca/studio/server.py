@@ -358,6 +358,7 @@ def serve(studio: Studio, port: int, *, browser: bool, told: Callable[[str], Non
         listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             listening.bind((HOST, port))
+            listening.listen(64)  # who has the address may ask before the server looks
         except OSError as error:
             raise FaultError(f"--port {port}: cannot be had: {error.strerror or error}; 0 takes a free one") from error
         address = f"http://{HOST}:{listening.getsockname()[1]}/{token}/"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gc
+
 from threadpoolctl import threadpool_limits
 
 from ltca.reading.drive_file import shipped_drive
@@ -12,3 +14,6 @@ threadpool_limits(1)
 # Tables of laws, compiled templates and whatever libraries load late: of any drive.
 for _quality in (COARSE, FINE):
     answer(Question(text=shipped_drive(), source="paper", case="", quality=_quality), Memory())
+
+gc.collect()
+gc.freeze()  # what is there stays: collections of workers need not look through it

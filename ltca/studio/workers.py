@@ -107,7 +107,7 @@ class Worker:
     def forget(self, question: Question) -> None:
         """End the process where it answers this question."""
         if self._lock.locked() and self._asking is question:
-            self.drop()
+            self.end()  # and not the one that waits behind it
 
     def drop(self) -> None:
         """Forget the question that is being answered, if any, and end its process."""

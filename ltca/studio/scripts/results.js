@@ -33,6 +33,7 @@ async function run() {
     const coarse = await opened(await post("answer", question("coarse", text), own.signal));
     coarseAt = 0;
     if (asked !== own) return;
+    if (coarse.superseded) { soon(own); return; }
     if (sequence !== state.sequence) { // what came in between is asked now; this answer is older
       show(coarse, sequence, true);
       run();
@@ -41,7 +42,8 @@ async function run() {
     show(coarse, sequence, !current());
     if (!coarse.data) return;
     const fine = await opened(await post("answer", question("fine", text), own.signal));
-    if (!current() || fine.superseded) return;
+    if (fine.superseded) { soon(own); return; }
+    if (!current()) return;
     show(fine, sequence, false);
     await compareTo(sequence, own, current);
     await fillDerivatives(sequence, own, current);
@@ -51,8 +53,11 @@ async function run() {
   }
 }
 
+// The server has dropped the last question, for another tab say: it is asked once more.
+function soon(own) { setTimeout(() => { if (asked === own) run(); }, 300); }
+
 async function opened(answer) {
-  if (answer.numbers) answer.array = await unpacked(answer.numbers);
+  if (answer.numbers) Object.assign(answer, { data: JSON.parse(answer.data), array: await unpacked(answer.numbers) });
   return answer;
 }
 
