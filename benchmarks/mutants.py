@@ -302,7 +302,7 @@ def main() -> int:
     parser.add_argument("--out", type=Path, default=Path("out/mutants"), help="map and log; default out/mutants")
     arguments = parser.parse_args()
     if importlib.util.find_spec("coverage") is None:
-        sys.exit("the map of lines and tests needs coverage: pip install 'cyclo-ltca[mutants]'")
+        parser.exit(2, "the map of lines and tests needs coverage: pip install 'cyclo-ltca[mutants]'\n")
     arguments.out.mkdir(parents=True, exist_ok=True)
     signal.signal(signal.SIGTERM, lambda *_: sys.exit("stopped; the log goes on from here"))
     with tempfile.TemporaryDirectory(prefix="mutants-") as folder:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import importlib.util
 import os
 import sys
 import warnings
-from importlib.metadata import version as installed
+from importlib.metadata import metadata, version as installed
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,12 @@ for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
 os.environ.setdefault("MPLBACKEND", "Agg")
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent)]
+
+from sphinx.errors import ConfigError
+
+for package in ("pydata_sphinx_theme", "sphinx_gallery", "myst_parser", "numpydoc"):
+    if importlib.util.find_spec(package) is None:
+        raise ConfigError(f"the Python package {package} is not installed: pip install --editable '.[docs]'")
 
 import generated_pages  # beside this file
 from sphinx_gallery import gen_gallery
@@ -50,7 +57,7 @@ sphinx_gallery_conf = {
     "remove_config_comments": True,
     "show_memory": False,
     "show_signature": False,
-    "download_all_examples": False,
+    "download_all_examples": True,
     "min_reported_time": 1e9,
     "abort_on_example_error": False,
     "copyfile_regex": r".*\.toml",
@@ -70,7 +77,7 @@ html_copy_source = False
 smartquotes = False
 html_show_sphinx = False
 html_last_updated_fmt = None
-html_theme_options = {
+html_theme_options: dict[str, Any] = {
     "logo": {"text": "cyclo"},
     "navbar_align": "left",
     "header_links_before_dropdown": 6,
@@ -81,6 +88,11 @@ html_theme_options = {
     "pygments_light_style": "a11y-high-contrast-light",
     "pygments_dark_style": "a11y-high-contrast-dark",
 }
+# Public addresses stand in pyproject.toml; there are none before the repository is public.
+addresses = dict(line.split(", ", 1) for line in metadata("cyclo-ltca").get_all("Project-URL") or ())
+html_theme_options["external_links"] = [
+    {"name": name, "url": addresses[name]} for name in ("Repository", "Issues") if name in addresses
+]
 html_sidebars: dict[str, list[str]] = {"index": [], "start/index": []}
 
 

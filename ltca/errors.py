@@ -11,7 +11,17 @@ MOST_TOLD = 10
 
 
 class CycloError(Exception):
-    """Base class of errors with a message for the user."""
+    """Base class of errors with a message for the user.
+
+    Examples
+    --------
+    >>> import ltca
+    >>> try:
+    ...     ltca.load_drive("papre")
+    ... except CycloError as error:
+    ...     error.exit_status
+    2
+    """
 
     exit_status: ClassVar[int] = 2
     """What the program ends with: 2 for wrong input, 1 for a fault or what has no answer."""
@@ -28,6 +38,15 @@ class DriveError(CycloError):
         Where the definition came from (a file name).
     beside : str, optional
         What was not checked.
+
+    Examples
+    --------
+    >>> import ltca
+    >>> try:
+    ...     ltca.load_drive("paper").cases["CS-1"].with_fields({"disc.thickness": -1.0})
+    ... except DriveError as error:
+    ...     len(error.problems), "disc.thickness" in error.problems[0]
+    (1, True)
     """
 
     def __init__(self, problems: Sequence[str], source: str = "", beside: str = "") -> None:
@@ -55,7 +74,21 @@ class PlaceError(CycloError):
 
 
 class DamagedFileError(CycloError):
-    """A file is damaged, or is not what it should be."""
+    """A file is damaged, or is not what it should be.
+
+    Examples
+    --------
+    >>> import ltca, pathlib, tempfile
+    >>> drive = ltca.load_drive("paper").cases["CS-1"]
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     (path := pathlib.Path(folder) / "coefficients.nc").write_text("no coefficients")
+    ...     try:
+    ...         ltca.analyse(drive, 1, compliance="fe", coefficients=path)
+    ...     except DamagedFileError as error:
+    ...         error.exit_status
+    15
+    2
+    """
 
 
 class ConvergenceError(CycloError):
@@ -71,6 +104,12 @@ class ConvergenceError(CycloError):
     Notes
     -----
     ``partial`` holds what has an answer where some positions have none, marked as such; None where nothing has.
+
+    Examples
+    --------
+    >>> error = ConvergenceError("the balance at 20° has not converged", [1.0, 0.5])
+    >>> error.exit_status, error.partial, str(error)
+    (1, None, 'the balance at 20° has not converged; last residuals: 1, 0.5')
     """
 
     exit_status = 1

@@ -46,6 +46,17 @@ class AnalysisResult:
         Name of the case in the dataset.
     loaded : LoadedAnalysis
         The solution itself: poses, loads, pressures as arrays of (positions, pairs).
+
+    Examples
+    --------
+    >>> import ltca
+    >>> result = ltca.analyse(ltca.load_drive("paper").cases["CS-1"], positions=4)
+    >>> result.drive.name, result.engine.compliance, f"{result.torque / 1e3:.1f} N·m", result.warnings == []
+    ('paper', 'half-space', '377.3 N·m', False)
+    >>> round(result.summary["mean_bearing_load_N"], -1), result.dataset["pin_load"].dims
+    (8480.0, ('case', 'disc', 'position', 'pin'))
+    >>> len(result.plot.pin_load().axes)
+    1
     """
 
     case: str
@@ -190,6 +201,19 @@ class Plots:
     ----------
     dataset : xarray.Dataset
         What is drawn.
+
+    Examples
+    --------
+    >>> import ltca
+    >>> plot = ltca.analyse(ltca.load_drive("paper").cases["CS-1"], positions=4).plot
+    >>> wheel = [plot.transmission_error(), plot.pin_load(), plot.loaded_pins(), plot.pin_pressure()]
+    >>> crank = [plot.bearing_load(), plot.tangential_bearing_load(), plot.radial_bearing_load(), plot.roller_load()]
+    >>> shaft = [plot.pin_shaft_load(), plot.loaded_shaft_pins()]
+    >>> {type(figure).__name__ for figure in (*wheel, *crank, *shaft)}
+    {'Figure'}
+
+    Figures of what a drive has not are refused by name: ``plot.torque_share()`` is of several discs, ``plot.cranks()`` of several
+    cranks, ``plot.along_width()`` of slices.
     """
 
     dataset: xr.Dataset

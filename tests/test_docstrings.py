@@ -7,13 +7,19 @@ to run.
 from __future__ import annotations
 
 import ast
+import inspect
 import re
 import tomllib
 from functools import cache
+from importlib import import_module
+from operator import attrgetter
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 from numpydoc.docscrape import NumpyDocString
+
+import ltca
 
 pytestmark = pytest.mark.slow
 ROOT = Path(__file__).parents[1]
@@ -161,6 +167,52 @@ def test_examples_of_all_packages_are_run():
         assert package in options["testpaths"]
         paths = [path for path in MODULES if path.is_relative_to(ROOT / package)]
         assert any(">>> " in text for path in paths for text in docstrings(tree_of(path))), package
+
+
+def public_objects():
+    """Yield (path, object, names of the members that the page shows) of all that docs/reference/api.rst documents."""
+    page = (ROOT / "docs" / "reference" / "api.rst").read_text(encoding="utf-8")
+    for kind, path, options in re.findall(r"^\.\. auto(\w+):: (\S+)\n((?:   .*\n)*)", page, re.MULTILINE):
+        module, _, name = (path, "", "") if kind == "module" else path.rpartition(".")
+        if kind == "method":
+            module, _, owner = module.rpartition(".")
+            name = f"{owner}.{name}"
+        found = attrgetter(name)(import_module(module)) if name else import_module(module)
+        told = re.search(r":members:(.*)", options)
+        members = [one.strip() for one in told[1].split(",") if one.strip()] if told else []
+        if told and not members:
+            members = [one for one in vars(found) if not one.startswith("_") and one not in found.__annotations__]
+        yield path, found, members
+
+
+def lacking_examples():
+    """Public objects without an example; members are shown in the example of their class, or have one of their own."""
+    for path, found, members in public_objects():
+        text = found.__doc__ or ""
+        if not isinstance(found, ModuleType) and ">>> " not in text:
+            yield path
+        for member in members:
+            own = inspect.getattr_static(found, member).__doc__ or ""
+            used = "[" if member == "__getitem__" else f".{member}"
+            if ">>> " not in own and (used not in text or isinstance(found, ModuleType)):
+                yield f"{path}.{member}"
+
+
+def test_every_public_object_has_an_example():
+    """pytest runs them as doctests; public is what docs/reference/api.rst has, all of ``import ltca`` among it."""
+    assert list(lacking_examples()) == []
+    shown = [found for _, found, _ in public_objects()] + [
+        getattr(found, member)
+        for _, found, members in public_objects()
+        if isinstance(found, ModuleType)
+        for member in members
+    ]
+    assert [name for name in ltca.__all__ if name != "__version__" and getattr(ltca, name) not in shown] == []
+
+
+def test_the_check_of_examples_itself_can_fail(monkeypatch):
+    monkeypatch.setattr(ltca.check, "__doc__", "Judge a drive.")
+    assert list(lacking_examples()) == ["ltca.front.checks.check"]
 
 
 def test_the_check_itself_can_fail():

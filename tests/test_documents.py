@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import ast
 import re
+import tomllib
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -51,6 +53,17 @@ def test_set_up_lines_are_those_of_the_ci():
     ]
 
 
+def test_every_command_stands_once_under_its_question():
+    page = (ROOT / "docs" / "start" / "which_command.md").read_text(encoding="utf-8")
+    told = [row.split("|")[2].strip() for row in page.splitlines() if row.startswith("| ")]
+    names = [match[1] for cell in told if (match := re.match(r"`cyclo ([\w-]+)", cell))]
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert sorted(names) == sorted(project["entry-points"]["cyclo.commands"])
+    assert all(re.fullmatch(r"command|---|`cyclo [^`]+`", cell) for cell in told)
+    for start in ("README.md", "docs/index.md", "docs/start/index.md"):
+        assert "which_command.md" in (ROOT / start).read_text(encoding="utf-8"), start
+
+
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 def test_examples_pin_a_number_that_readers_do_not_see(path):
     """They are run by the documentation, once; here only that each can fail."""
@@ -61,3 +74,22 @@ def test_examples_pin_a_number_that_readers_do_not_see(path):
     title, line = ast.get_docstring(ast.parse(text)).splitlines()[:2]
     assert set(line) == {"="}
     assert len(line) >= len(title)
+
+
+@pytest.mark.skipif(find_spec("sphinx_gallery") is None, reason="sphinx-gallery (extra docs) is not installed")
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+def test_the_notebook_of_an_example_has_its_code(path, monkeypatch, tmp_path):
+    """Made as the pages make it; the check that readers do not see is not in it."""
+    from sphinx_gallery import gen_gallery, notebook, py_source_parser
+
+    settings = gen_gallery.DEFAULT_GALLERY_CONF | {"examples_dirs": [str(path.parent)], "src_dir": str(tmp_path)}
+    _, blocks = py_source_parser.split_code_and_text_blocks(str(path))
+    made = notebook.jupyter_notebook(
+        [(kind, py_source_parser.remove_ignore_blocks(text), line) for kind, text, line in blocks],
+        settings, str(tmp_path),
+    )  # fmt: skip
+    cells = ["".join(cell["source"]) for cell in made["cells"] if cell["cell_type"] == "code"]
+    text = path.read_text(encoding="utf-8")
+    shown = ast.parse(text[: text.index(START)])
+    code = ast.parse("\n".join(line for line in "\n".join(cells).splitlines() if not line.startswith("%")))
+    assert ast.unparse(code) == ast.unparse(ast.Module(body=shown.body[1:], type_ignores=[]))

@@ -49,6 +49,7 @@ LIGHT_COMMANDS = {
     "functools",
     "dataclasses",
     "errno",
+    "fem.solid.layer_count",
     "ltca.errors",
     "ltca.reading.arguments",
     "ltca.output.terminal",

@@ -136,14 +136,16 @@ def edge_growth(size: float) -> float:
     return min(GROWTH * size, MAX_GROWTH)
 
 
-def require_disc_memory(shape: DiscShape, stations: DiscStations, size: float = 1.0, processes: int = 1) -> None:
-    """Raise MemoryLimitError when the disc's mesh and solution would not fit into memory shared by some processes.
-
-    `size` is a multiple of all element edges and of their growth.
-    """
+def estimate_disc_unknowns(shape: DiscShape, stations: DiscStations, size: float) -> int:
+    """Return about how many unknowns the disc's mesh has; `size` is a multiple of all element edges and of their growth."""
     refinements = _refinements(stations.points, float(stations.half_width.min()), size)
     coarse = default_coarse_size(shape, size)
-    unknowns = estimate_unknowns(shape, refinements, coarse_size=coarse, growth=edge_growth(size))
+    return estimate_unknowns(shape, refinements, coarse_size=coarse, growth=edge_growth(size))
+
+
+def require_disc_memory(shape: DiscShape, stations: DiscStations, size: float = 1.0, processes: int = 1) -> None:
+    """Raise MemoryLimitError when the disc's mesh and solution would not fit into memory shared by some processes."""
+    unknowns = estimate_disc_unknowns(shape, stations, size)
     what = "the disc for its influence coefficients"
     require_memory(unknowns, solution_memory(unknowns), what, available=available_memory() / processes)
 

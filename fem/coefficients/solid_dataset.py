@@ -15,7 +15,7 @@ from scipy.linalg import eigh
 
 from fem.body.elasticity import area_loads
 from fem.body.free_body import boundary_motion_loads
-from fem.coefficients.bodies import ROUND_SIZE, WIDE_RATIO, WIDE_STEP, edge_growth
+from fem.coefficients.bodies import ROUND_SIZE, WIDE_RATIO, WIDE_STEP, edge_growth, estimate_disc_unknowns
 from fem.coefficients.patch_loads import patch_loads
 from fem.coefficients.pieces import Pieces
 from fem.coefficients.solid_bodies import Differences, SolidOptions, Support, Wall, solid_differences
@@ -32,6 +32,7 @@ from fem.mesh.body_mesh import BodyMesh
 from fem.mesh.boundary_division import MAX_TURN
 from fem.mesh.triangulation import default_coarse_size, mesh_circle, mesh_disc, mesh_ring
 from fem.shapes import CircleShape, DiscShape, DriveShapes, RingShape
+from fem.solid.layer_count import require_layers
 from fem.solid.layers import graded_layers
 from ltca.arrays import FloatArray, IntArray
 from ltca.drive.parts import Drive, Material
@@ -44,7 +45,6 @@ if TYPE_CHECKING:
 # Layers over half of the thickness, and in the convergence estimate.
 LAYERS = 2
 COARSE_RATIO = 2.0
-MAX_LAYERS = 12
 # Thickness of the last layer by that of the first.
 FINEST = 0.5
 # Places midway between stations that are solved for to measure what interpolation leaves.
@@ -239,7 +239,7 @@ def with_solid_bodies(
     """
     key = json.dumps([drive.body_shape("solid"), size, layers, places.count, plane.attrs["code_hash"]])
     options = SolidOptions(thickness=drive.disc.thickness, layers=layers, tell=tell, pieces=Pieces.of_key(key))
-    fewer = replace(options, layers=max(1, layers - 1))
+    fewer = replace(options, layers=layers - 1)
     coarser = SectionMesh(COARSE_RATIO * size, COARSE_RATIO * MAX_TURN)
     coarse = _derive(drive, shapes, places, coarser, fewer, ", coarser")
     fine = _derive(drive, shapes, places, SectionMesh(size, MAX_TURN), options, "")
@@ -331,9 +331,16 @@ def _joined(plane: xr.Dataset, drive: Drive, solid: _Solid, layers: int) -> xr.D
 
 
 def need_of_solid(shape: DiscShape, places: DiscStations, *, size: float, layers: int) -> SolidNeed:
-    """Return what the derivation of a solid disc needs."""
+    """Return what the derivation of a solid disc needs, with that of the plane one on two meshes before it."""
     wide = len(range(0, places.count, WIDE_STEP))
-    return solid_need(shape, places.count + wide + MIDWAY, size=size, growth=edge_growth(size), layers=layers)
+    return solid_need(
+        shape,
+        places.count + wide + MIDWAY,
+        size=size,
+        growth=edge_growth(size),
+        layers=layers,
+        plane_unknowns=sum(estimate_disc_unknowns(shape, places, each) for each in (size, COARSE_RATIO * size)),
+    )
 
 
 def _asymmetry(solid: _Solid) -> float:
@@ -397,5 +404,4 @@ def require_solid(state: str, layers: int) -> None:
     """Raise MeshError for options that have no meaning or are out of bounds with solid bodies."""
     if state != "strain":
         raise MeshError(f"plane {state}: has no meaning with solid bodies, which are in no plane state")
-    if not 1 <= layers <= MAX_LAYERS:
-        raise MeshError(f"layers {layers}: must be at least 1 and at most {MAX_LAYERS}, over half of the thickness")
+    require_layers(layers)

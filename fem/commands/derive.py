@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fem.commands.position_arguments import chosen_drive
+from fem.solid.layer_count import FEWEST_LAYERS, MOST_LAYERS
 from ltca.errors import CycloError
 from ltca.reading.arguments import (
     add_case_argument,
@@ -70,7 +71,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--layers",
-        type=count_argument("--layers", 1, 12),
+        type=count_argument("--layers", FEWEST_LAYERS, MOST_LAYERS),
         metavar="N",
         help="with --bodies solid: quadratic layers over half of the thickness; default 2",
     )

@@ -5,9 +5,8 @@ from __future__ import annotations
 import argparse
 
 from fem.commands.position_arguments import chosen_case
+from fem.solid.layer_count import FEWEST_LAYERS, MOST_LAYERS
 from ltca.reading.arguments import count_argument, default_folder
-
-MOST_LAYERS = 40
 
 
 def add_disc_arguments(parser: argparse.ArgumentParser) -> None:
@@ -16,7 +15,7 @@ def add_disc_arguments(parser: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--layers",
         metavar="N",
-        type=count_argument("--layers", 2, MOST_LAYERS),
+        type=count_argument("--layers", FEWEST_LAYERS, MOST_LAYERS),
         help="layers of elements over half of the width, thinner towards the ends; default 4 (--size is 3 by default)",
     )
 

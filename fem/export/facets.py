@@ -41,6 +41,16 @@ def write_facets(part: Part, path: Path, chord: float = DEFAULT_CHORD) -> int:
 
     `chord` is the largest distance of a triangle from the exact surface, mm. Walls of the part bound no body and are left out.
     MeshError when gmsh cannot be loaded or fill a section.
+
+    Examples
+    --------
+    >>> import ltca, tempfile
+    >>> from ltca.export.parts import make_parts
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     part = make_parts(ltca.load_drive("paper").cases["CS-1"], "CS-1", "pin-shaft")[0]
+    ...     count = write_facets(part, path := Path(folder) / "shaft.stl", chord=0.1)
+    ...     path.stat().st_size == 84 + 50 * count  # a binary STL file
+    True
     """
     with gmsh_model(part.name) as gmsh:
         corners = [body_facets(gmsh, body, chord) for body in part.bodies]

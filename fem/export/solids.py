@@ -40,6 +40,16 @@ def write_solids(part: Part, path: Path, note: Callable[[str], None] = lambda st
     """Write a part of bodies as a STEP file in mm; `note` is told of each step before it starts.
 
     MeshError when gmsh cannot be loaded or makes a solid of a wrong volume.
+
+    Examples
+    --------
+    >>> import ltca, tempfile
+    >>> from ltca.export.parts import make_parts
+    >>> drive = ltca.load_drive("paper").cases["CS-1"]
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     write_solids(make_parts(drive, "CS-1", "pin-wheel")[0], path := Path(folder) / "wheel.step")
+    ...     path.read_text().count("MANIFOLD_SOLID_BREP") == drive.pin_wheel.number_of_pins
+    True
     """
     with gmsh_model(part.name) as gmsh:
         for body in part.bodies:

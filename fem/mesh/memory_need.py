@@ -32,10 +32,15 @@ def solution_memory(unknowns: int) -> float:
     return float(factor + mesh_memory(unknowns))
 
 
-def solid_memory(nodes: int, per_node: int) -> float:
-    """Return the bytes that one class of an extruded body needs, of a section of so many nodes with unknowns at each."""
+def solid_values(nodes: float, per_node: int) -> float:
+    """Return about how many values the factor of an extruded body has, of a section of so many nodes with unknowns at each."""
     size = max(float(nodes), 2.0)
-    return float(SOLID_BYTES_PER_VALUE * size * per_node**2 * np.log2(size))
+    return float(size * per_node**2 * np.log2(size))
+
+
+def solid_memory(nodes: float, per_node: int) -> float:
+    """Return the bytes that one class of an extruded body needs, of a section of so many nodes with unknowns at each."""
+    return SOLID_BYTES_PER_VALUE * solid_values(nodes, per_node)
 
 
 def require_memory(unknowns: int, needed: float, what: str, *, available: float | None = None) -> None:

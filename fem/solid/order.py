@@ -2,7 +2,9 @@
 
 Vertices are the products of those of the section and of the ends of the layers; nodes in the middle of an edge, a
 face or an element stand just before the first of its vertices. Against eliminating all heights of a node of the
-section together this halves the time of the factor of a block of 100,000 unknowns (measured).
+section together this halves the time of the factor of a block of 100,000 unknowns (measured). Of a disc with two layers over
+half of its thickness, 150,000 to 245,000 unknowns, both take the same time within a tenth, factor and loads
+(measured): `fem.coefficients.solid_bodies` eliminates heights together.
 """
 
 from __future__ import annotations

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fem.drive.model import ContactPair, DrivePose, PlacedContacts
-from fem.errors import MeshError
+from fem.solid.layer_count import require_layers
 from fem.solid.layers import Layers, Parity, graded_layers
 from fem.solid_contact.widths import WidthGrid
 from ltca.drive.members.width import Contact, Inclination
@@ -20,7 +20,6 @@ from ltca.geometry.placement import Placement
 
 FINEST = 0.4
 """Thickness of the last layer at a free end by that of the first in the middle."""
-FEWEST_LAYERS = 2
 ROUNDING = 1e-9
 """Relative difference up to which two lengths are equal."""
 
@@ -41,8 +40,7 @@ class DriveWidths:
     layers: int
 
     def __post_init__(self) -> None:
-        if self.layers < FEWEST_LAYERS:
-            raise MeshError(f"layers = {self.layers}: must be at least {FEWEST_LAYERS} over half of the width")
+        require_layers(self.layers)
 
     @property
     def even(self) -> bool:

@@ -243,7 +243,7 @@ def solve_solid_disc(
         lap("mesh")
         model = condense_solids(single, shapes, contacts, meshes, widths, say)
         lap("assembly and factorisation")
-        state = _solve_moment(model, drive, moment, drive.load.torque if torque is None else torque, pose, say)
+        state = solve_held(model, drive, moment, drive.load.torque if torque is None else torque, pose, say)
         lap("contact and pose")
         along = width_results(model, state)
         if not (complaint := _shortcoming(model, state)):
@@ -277,10 +277,10 @@ def require_solid_memory(
     require_memory(unknowns, needed, "the disc as a solid body")
 
 
-def _solve_moment(
+def solve_held(
     model: SolidModel, drive: Drive, moment: float, torque: float, pose: DrivePose, say: Callable[[str], None]
 ) -> PoseSolution:
-    """Solve for the moment on the wheel: that of the torque, or on a held wheel what torque and input leave."""
+    """Solve under a moment on the wheel, N·mm, that of an output torque; on a held wheel under what torque and input leave."""
     active, history = None, list[float]()
     for _ in range(MAX_MOMENTS):
         state = solve_pose(model, moment, start=pose, start_active=active, progress=say)

@@ -90,6 +90,15 @@ class DriveCurves:
         Over all positions; its position is one of that turn.
     parts : StiffnessByPart or None
         The stiffness with and without each part, where it was asked for.
+
+    Examples
+    --------
+    >>> import ltca
+    >>> found = ltca.curves(ltca.load_drive("paper"), 4, case="CS-1")
+    >>> sorted(found.content)  # as in curves.json
+    ['bearing_life', 'pressure_safety', 'stiffness_by_part', 'torque_curve', 'transmission_error_orders']
+    >>> bool((found.curve.stiffness > 0.0).all()), found.lives.shortest.hours
+    (True, None)
     """
 
     drive: Drive

@@ -178,6 +178,15 @@ class HalfSpace:
     ------
     DriveError
         When a name is unknown or method and contacts contradict each other.
+
+    Examples
+    --------
+    >>> import ltca
+    >>> ltca.HalfSpace().contacts, ltca.HalfSpace(method="direct").contacts
+    ('tables', 'grids')
+    >>> drive = ltca.load_drive("robot-joint").cases["nominal"]  # whose own default is hybrid
+    >>> ltca.analyse(drive, 1, compliance=ltca.HalfSpace()).engine.compliance
+    'half-space'
     """
 
     compliance: ClassVar[Compliance] = "half-space"
@@ -405,14 +414,32 @@ class CoupledEngine:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlaneStrain(CoupledEngine):
-    """Contacts in plane strain on bodies by finite elements: every contact of a body feels the others (``fe``)."""
+    """Contacts in plane strain on bodies by finite elements: every contact of a body feels the others (``fe``).
+
+    Examples
+    --------
+    >>> import ltca
+    >>> drive = ltca.load_drive("robot-joint").cases["nominal"]  # its coefficients come with the package
+    >>> ltca.analyse(drive, 1, compliance=ltca.PlaneStrain()).engine.compliance
+    'fe'
+    """
 
     compliance: ClassVar[Compliance] = "fe"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Hybrid(CoupledEngine):
-    """Half-spaces of finite length at the contacts, finite elements for what the bodies have beyond (``hybrid``)."""
+    """Half-spaces of finite length at the contacts, finite elements for what the bodies have beyond (``hybrid``).
+
+    Examples
+    --------
+    >>> import ltca
+    >>> drive = ltca.load_drive("robot-joint").cases["nominal"]  # its coefficients come with the package
+    >>> soft, stiff = (ltca.analyse(drive, 1, compliance=engine) for engine in (ltca.Hybrid(), ltca.HalfSpace()))
+    >>> angles = [abs(float(found.dataset["wheel_angle"].squeeze())) for found in (soft, stiff)]
+    >>> angles[0] > angles[1]  # the bodies yield as well
+    True
+    """
 
     compliance: ClassVar[Compliance] = "hybrid"
 

@@ -22,6 +22,7 @@ from ltca.analysis.half_width_guard import (
 )
 from ltca.analysis.run_off import few_slices_warning, run_off_warning
 from ltca.arrays import ComplexArray, FloatArray, batch_layout, freeze, stack_drives, take_positions
+from ltca.compliance.coefficient_files import coefficient_warnings
 from ltca.compliance.response import ContactPressures
 from ltca.compliance.wall_stress import WallStresses, wall_stresses
 from ltca.drive.hole_contact import hole_words
@@ -302,6 +303,7 @@ class LoadedAnalysis:
         units = unit_warnings(self.as_written, self.torque)
         found = [*units, preload_warning(self.drive), self._lost_play()]
         found += [strength_warning(self.drive.materials), deep_seats_warning(self.drive)]
+        found += coefficient_warnings(contacts.coefficients for contacts in self.model.discs)
         if not units and self.drive.load.light_torque > self.torque > 0.0:
             found.append(
                 f"load.light_torque = {self.drive.load.light_torque:g} N·mm is more than the torque of {self.torque:g} N·mm "

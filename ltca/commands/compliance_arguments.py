@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -97,13 +98,16 @@ def _options(arguments: argparse.Namespace) -> dict[str, Any]:
     }
 
 
-def find_coefficients_of(cases: Mapping[str, Drive], engine: Engine, arguments: argparse.Namespace) -> None:
+def find_coefficients_of(
+    cases: Mapping[str, Drive], engine: Engine, arguments: argparse.Namespace, *, warn: bool = True
+) -> None:
     """Check the files given against all cases, or derive all that is missing together: the engine finds each again.
 
-    Of an engine that lends coefficients those of the lenders are derived.
+    Of an engine that lends coefficients those of the lenders are derived. Files less accurate than asked for are told to stderr,
+    unless `warn` is false: by commands that print the warnings of their analyses.
     """
     from ltca.analysis.engines import CoupledEngine
-    from ltca.compliance.coefficient_files import find_case_coefficients
+    from ltca.compliance.coefficient_files import coefficient_warnings, find_case_coefficients
     from ltca.compliance.near_field import NEAR_FIELDS
     from ltca.drive.members.temperatures import warm_drive
     from ltca.drive.single_discs import single_discs
@@ -119,4 +123,7 @@ def find_coefficients_of(cases: Mapping[str, Drive], engine: Engine, arguments: 
                 for number, body in enumerate(bodies)
             }
         near_field = NEAR_FIELDS[arguments.compliance]
-        find_case_coefficients(warm, arguments.coefficients or (), near_field=near_field, bodies=engine.bodies)
+        files = arguments.coefficients or ()
+        coefficients = find_case_coefficients(warm, files, near_field=near_field, bodies=engine.bodies)
+        for text in coefficient_warnings(coefficients.values()) if warn else ():
+            print(f"warning: {text}", file=sys.stderr)

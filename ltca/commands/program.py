@@ -17,7 +17,7 @@ import warnings
 from collections.abc import Sequence
 from contextlib import suppress
 from functools import cache
-from importlib.metadata import EntryPoint, entry_points, version
+from importlib.metadata import EntryPoint, entry_points, requires, version
 from typing import Any, NoReturn
 
 from ltca.errors import CycloError, did_you_mean, printable
@@ -48,6 +48,9 @@ USAGE_ERROR, FAULT = 2, 1
 OUTPUT_FAULTS = (errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EBADF, errno.EFBIG)
 NO_MEMORY = ("failed to map segment", "annot allocate memory", "can't start new thread", "can't allocate lock")
 """What the loader of libraries, and threads, say where a library or a stack finds no memory."""
+DISTRIBUTION = "cyclo-ltca"
+DISTRIBUTIONS = {"distributed": "dask", "skfem": "scikit-fem", "PIL": "pillow"}
+"""Packages whose modules have another name."""
 DEBUG = "--debug"
 EXAMPLES = "examples:"
 
@@ -107,7 +110,7 @@ def build_parser(wanted: str = "") -> argparse.ArgumentParser:
         prog="cyclo",
         description="Loaded tooth contact analysis of cycloidal gear drives, checked against finite elements.",
     )
-    parser.add_argument("--version", action="version", version=f"cyclo {version('cyclo-ltca')}")
+    parser.add_argument("--version", action="version", version=f"cyclo {version(DISTRIBUTION)}")
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True, parser_class=_Parser)
     found = _installed()
     if wanted in found:
@@ -178,6 +181,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         print(f"cyclo: error: {_told(error)}", file=sys.stderr)
         if isinstance(error, OSError) and error.errno == errno.ENAMETOOLONG:
             return USAGE_ERROR  # whichever argument it was
+        if isinstance(error, ModuleNotFoundError) and what_installs(error.name or ""):
+            return USAGE_ERROR
         return error.exit_status if isinstance(error, CycloError) else FAULT
 
 
@@ -208,10 +213,29 @@ def _decoded(word: str) -> str:
         return word
 
 
+def what_installs(module: str) -> str:
+    """Return what pip is to install for a module of a package that we ask for, by itself or in an extra; else nothing.
+
+    Examples
+    --------
+    >>> what_installs("distributed.client"), what_installs("antigravity")
+    ("'cyclo-ltca[cluster]'", '')
+    """
+    top = module.partition(".")[0]
+    package = DISTRIBUTIONS.get(top, top).lower().replace("_", "-")
+    for line in requires(DISTRIBUTION) or ():
+        if re.split(r"[^\w.-]", line)[0].lower().replace("_", "-") == package:
+            extra = re.search(r"extra == ['\"]([\w-]+)['\"]", line)
+            return f"'{DISTRIBUTION}[{extra[1]}]'" if extra else f"'{line.partition(';')[0].strip()}'"
+    return ""
+
+
 def _told(error: Exception) -> str:
     """What an exception tells the user: its own message where it has one for them, else how to report it."""
     if isinstance(error, CycloError):
         return "\n".join(printable(line) for line in str(error).split("\n"))
+    if isinstance(error, ModuleNotFoundError) and (wanted := what_installs(error.name or "")):
+        return f"the Python package {(error.name or '').partition('.')[0]} is not installed: pip install {wanted}"
     if isinstance(error, MemoryError):
         return "memory is not enough; ask for fewer positions or samples, or for larger elements"
     if any(sign in str(error) for sign in NO_MEMORY) or (isinstance(error, OSError) and error.errno == errno.ENOMEM):

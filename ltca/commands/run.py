@@ -144,7 +144,7 @@ def execute(arguments: argparse.Namespace) -> int:
     with claimed_folder(out, "run", writes=_files(arguments, cases)):
         if words := time_words(cases.values(), angles.size, task.engine):
             print(words, file=sys.stderr)
-        find_coefficients_of(cases, task.engine, arguments)
+        find_coefficients_of(cases, task.engine, arguments, warn=False)
         return solve_and_write(task, out)
 
 

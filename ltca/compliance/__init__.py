@@ -21,6 +21,7 @@ stress_coefficients  Stress along the walls of the disc by the loads on it: read
                      stress they give
 coefficients         Influence coefficients of the bodies derived from finite elements: the file, and their values at
                      any place
+solid_cylinder       What a solid cylinder with free ends yields at a contact, beyond one in plane strain
 near_field           Near fields of all contacts of a drive, and what finite elements have beyond them: the diagonal of the
                      body part C
 coefficient_files    Where influence coefficients come from: files of the user's, or derived once for each distinct

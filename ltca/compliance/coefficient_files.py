@@ -43,8 +43,6 @@ MAX_DERIVATIONS = 2
 """Most derivations at the same time: one takes 1.0 GB for a disc like the paper's, 3.1 GB with 99 teeth."""
 SECONDS, SECONDS_PER_TOOTH, SECONDS_PER_HOLE, SECONDS_PER_BORE = 0.8, 0.28, 0.45, 0.5
 """Time of a derivation on one core, s: the mesh is fine along the boundaries and the rest follows its size."""
-SOLID_SECONDS = 0.7
-"""Time of a solid disc, s, by the square of that of a plane one: as many loads as stations on unknowns that grow as they do."""
 GIGABYTES, GIGABYTES_PER_TOOTH, MUCH = 0.55, 0.026, 2.0
 """Its memory, GB, and from where on it is told beforehand."""
 _ENGINES = {near_field: engine for engine, near_field in NEAR_FIELDS.items()}
@@ -204,6 +202,11 @@ def find_case_coefficients(
     }
 
 
+def coefficient_warnings(found: Iterable[InfluenceCoefficients | None]) -> list[str]:
+    """Return what to tell of coefficients less accurate than asked for, each file once; None stands for half-spaces."""
+    return [*dict.fromkeys(own.warning for own in found if own is not None and own.warning)]
+
+
 def _discs(name: str, drive: Drive) -> list[tuple[str, Drive]]:
     """The drives of each disc with labels of their own."""
     singles = single_discs(drive)
@@ -257,16 +260,15 @@ def _kept(drive: Drive, bodies: Bodies) -> InfluenceCoefficients | None:
         return None
 
 
-def expected_seconds(drives: Iterable[Drive], bodies: Bodies = "plane") -> list[float]:
-    """Return about how long the derivation of each drive of one disc takes on one core, s (docs/theory/coefficients.md)."""
-    plane = [
+def expected_seconds(drives: Iterable[Drive]) -> list[float]:
+    """Return about how long plane bodies of each drive of one disc take on one core, s (docs/theory/coefficients.md)."""
+    return [
         SECONDS
         + SECONDS_PER_TOOTH * drive.disc.number_of_teeth
         + SECONDS_PER_HOLE * drive.number_of_holes
         + SECONDS_PER_BORE * drive.crank.number
         for drive in drives
     ]
-    return plane if bodies == "plane" else [seconds + SOLID_SECONDS * seconds**2 for seconds in plane]
 
 
 def told_seconds(seconds: float) -> str:
@@ -280,6 +282,17 @@ def told_seconds(seconds: float) -> str:
     return f"some {10 * max(round(0.1 * seconds), 1)} s" if seconds < 180.0 else f"some {round(seconds / 60.0)} min"
 
 
+def derivation_words(drives: Iterable[Drive], bodies: Bodies, at_once: int = 1) -> str:
+    """Return about how long drives of one disc take that are derived some at once, for a message.
+
+    That of solid bodies follows from the mesh of their section; what derives them tells it of each, with its memory.
+    """
+    if bodies == "solid":
+        return "minutes, told before each"
+    each = expected_seconds(drives)
+    return told_seconds(max(sum(each) / at_once, *each))
+
+
 def _derive_missing(cases: Mapping[str, Drive], bodies: Bodies) -> None:
     """Derive the coefficients of cases into the cache, those of one shape once, and say so."""
     missing: dict[Path, str] = {}
@@ -290,14 +303,13 @@ def _derive_missing(cases: Mapping[str, Drive], bodies: Bodies) -> None:
     derivation()
     require_cache()
     missing = {cache_folder() / file_name(cases[name], bodies): name for name in missing.values()}
-    each = expected_seconds((cases[name] for name in missing.values()), bodies)
-    whole = max(sum(each) / _processes(len(missing), bodies), *each)
+    whole = derivation_words((cases[name] for name in missing.values()), bodies, _processes(len(missing), bodies))
     most = max(GIGABYTES + GIGABYTES_PER_TOOTH * cases[name].disc.number_of_teeth for name in missing.values())
     # What solid bodies need is told by what derives them.
     needed = f", {most:.0f} GB of memory for each" if most > MUCH and bodies == "plane" else ""
     of = ", solid bodies," if bodies == "solid" else ","
     print(
-        f"deriving influence coefficients of {', '.join(missing.values())}{of} once for each shape ({told_seconds(whole)}"
+        f"deriving influence coefficients of {', '.join(missing.values())}{of} once for each shape ({whole}"
         f"{needed}; kept in {next(iter(missing)).parent})",
         file=sys.stderr,
     )

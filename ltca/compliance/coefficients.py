@@ -33,7 +33,7 @@ from ltca.geometry.boundary_stations import (
 )
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.placement import Placement
-from ltca.reading.coefficient_file import read_coefficients
+from ltca.reading.coefficient_file import quality_warning, read_coefficients
 from ltca.reading.coefficient_schema import (
     flank_clustering,
     is_solid,
@@ -87,6 +87,8 @@ class InfluenceCoefficients:
         Stress along the walls of the disc, where the file has it.
     code_hash : str
         Of the code that derived them, where the file says so.
+    warning : str
+        What to tell of figures that their file states about its accuracy and that are out of bounds; "" of none.
     tilting : InfluenceCoefficients or None
         Tilts by moments of solid bodies; None of plane ones, which take nothing of a tilt.
     """
@@ -108,6 +110,7 @@ class InfluenceCoefficients:
     race_logarithm: float
     stress: StressCoefficients = NO_STRESSES
     code_hash: str = ""
+    warning: str = ""
     tilting: InfluenceCoefficients | None = None
 
     @property
@@ -323,7 +326,12 @@ def load_coefficients(
     _require_places(path, data, nominal_shape(drive, keep_clearance=not shared))
     found = _coefficients_of_dataset(data, drive, shared=shared)
     stress = read_stress_coefficients(data, (found.flank, *found.bores, *found.holes))
-    return replace(found, stress=stress, code_hash=str(data.attrs.get("code_hash", "")))
+    return replace(
+        found,
+        stress=stress,
+        code_hash=str(data.attrs.get("code_hash", "")),
+        warning=quality_warning(data, str(path)),
+    )
 
 
 def bodies_of(data: Labelled) -> Bodies:

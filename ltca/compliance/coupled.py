@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 
 from ltca.arrays import ComplexArray, FloatArray, join_positions, take_positions
 from ltca.compliance import sliced
-from ltca.compliance.coefficients import InfluenceCoefficients
+from ltca.compliance.coefficients import SOLID, InfluenceCoefficients
 from ltca.compliance.near_field import NearField, NearFieldLaws, OwnParts
 from ltca.compliance.pressures import pressures_in_slices, pressures_of_law
 from ltca.compliance.response import (
@@ -146,7 +146,12 @@ class CoupledCompliance:
         geometry = replace(ContactGeometry.of_drive(drive), tip_share=tip_share(drive), tip_slope=tip_slope(drive))
         place = geometry.placement
         yields = hole_near_field and shaft_pins_yield(drive)
-        laws = NearFieldLaws.of_drive(drive, near_field, rigid_shaft_pins=hole_near_field and not yields)
+        laws = NearFieldLaws.of_drive(
+            drive,
+            near_field,
+            rigid_shaft_pins=hole_near_field and not yields,
+            solid=coefficients.plane == SOLID,
+        )
         body = coefficients.placed_in(drive).with_roller_length(drive.roller_length)
         stiffness = shaft_pin_stiffness(drive)
         slices, width = drive.contact.slices, drive.disc.thickness

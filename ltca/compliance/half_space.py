@@ -62,8 +62,12 @@ class HalfSpaceCompliance(UncoupledContacts[ContactLaw]):
     roller_laws: RollerLaws[ContactLaw]
 
     @classmethod
-    def of_drive(cls, drive: Drive, *, in_batch: bool = False) -> HalfSpaceCompliance:
+    def of_drive(
+        cls, drive: Drive, *, in_batch: bool = False, kinds: ContactKinds | None = None
+    ) -> HalfSpaceCompliance:
         """Return the half-space model of a drive of one disc.
+
+        Contacts in slices have the ends of their bodies by `kinds`, by default half-spaces.
 
         In a batch (`ltca.arrays.stack_drives`) tables of profiled parts are made for ranges of radii on a ladder, so that drives
         that differ little have the same.
@@ -89,7 +93,7 @@ class HalfSpaceCompliance(UncoupledContacts[ContactLaw]):
             )
 
         if drive.contact.slices > 1:
-            return cls.in_slices(drive, geometry)
+            return cls.in_slices(drive, geometry, kinds)
         on_flank = law_for_profile(
             drive.pin_wheel.pin_profile,
             length=drive.disc.thickness,
@@ -112,22 +116,23 @@ class HalfSpaceCompliance(UncoupledContacts[ContactLaw]):
         )
 
     @classmethod
-    def in_slices(cls, drive: Drive, geometry: ContactGeometry) -> HalfSpaceCompliance:
+    def in_slices(
+        cls, drive: Drive, geometry: ContactGeometry, kinds: ContactKinds | None = None
+    ) -> HalfSpaceCompliance:
         """Return the model with contacts in slices."""
-        parts, bearing, place, slices = drive.materials, drive.crank_bearing, geometry.placement, drive.contact.slices
+        bearing, place, slices = drive.crank_bearing, geometry.placement, drive.contact.slices
 
         def profile(given: LengthProfile, length: float, radius: float) -> FloatArray | float:
             found = generator_profile(given, length, radius)
             return 0.0 if found is None else found.relief(sliced.slice_heights(length, slices))
 
-        kinds = ContactKinds.of_drive(drive)  # the law has the lead, in which drives of a batch may differ
+        kinds = kinds or ContactKinds.of_drive(drive)  # the law has the lead, in which drives of a batch may differ
         wide, long = drive.disc.thickness, drive.roller_length
         of_pin = profile(drive.pin_wheel.pin_profile, wide, drive.pin_wheel.pin_radius)
         of_roller = profile(bearing.roller_profile, long, bearing.roller_radius)
         flank = _line(
             drive,
-            wide,
-            contact_modulus(parts.disc, drive.flank_pin),
+            kinds.pins,
             of_pin + lead_relief(drive.disc, sliced.slice_heights(wide, slices)),
             drive.pin_wheel,
         )
@@ -140,14 +145,14 @@ class HalfSpaceCompliance(UncoupledContacts[ContactLaw]):
             # A beam bends behind its contact, which says how its load lies along the width.
             rigid = not shaft_pins_yield(drive)
             modulus = hole_modulus(drive, rigid_shaft_pins=rigid)
-            hole = hole_in_slices(drive, modulus, place.shaft_pin_plays)
             kinds = replace(kinds, holes=replace(kinds.holes, contact_modulus=modulus))
+            hole = hole_in_slices(drive, kinds.holes, place.shaft_pin_plays)
         return cls(
             geometry=geometry,
             pin_law=pins,
             roller_laws=RollerLaws(
-                inner=_line(drive, long, contact_modulus(parts.inner_race, parts.roller), of_roller),
-                outer=_line(drive, long, contact_modulus(parts.disc, parts.roller), of_roller),
+                inner=_line(drive, kinds.inner, of_roller),
+                outer=_line(drive, kinds.outer, of_roller),
                 inner_radius=place.inner_effective_radii,
                 outer_radius=place.outer_effective_radii,
             ),
@@ -169,27 +174,28 @@ class HalfSpaceCompliance(UncoupledContacts[ContactLaw]):
 
 def _line(
     drive: Drive,
-    length: float,
-    modulus: float,
+    kind: ContactKind,
     relief: FloatArray | float,
     part: PinWheel | PinShaft | None = None,
 ) -> Any:
-    """Law in slices of a contact of a length, mm, with what it falls short by; of pins under sleeves with these."""
-    slices = drive.contact.slices
+    """Law in slices of a kind of contacts with what they fall short by; of pins under sleeves with these."""
+    slices, length, modulus = drive.contact.slices, kind.length, kind.contact_modulus
     held = np.zeros(sliced.slice_heights(length, slices).shape) + relief
-    found = sliced.SlicedLine(length=length, contact_modulus=modulus, slices=slices, relief=held)
+    found = sliced.SlicedLine(
+        length=length, contact_modulus=modulus, slices=slices, relief=held, free_ends=kind.free_ends
+    )
     if part is None or part.seat.kind != "sleeve":
         return found
     twice = sleeve_overlap(drive, part, HALF_SPACE_DATUM * length)
     return replace(found, sleeve=drive.materials.sleeve.plane_strain_compliance * modulus, overlap=twice)
 
 
-def hole_in_slices(drive: Drive, modulus: float, play: FloatArray) -> Any:
-    """Return the half-space law of shaft pins and holes in slices with a contact modulus, MPa, sleeves behind it.
+def hole_in_slices(drive: Drive, kind: ContactKind, play: FloatArray) -> Any:
+    """Return the law of shaft pins and holes in slices, a kind of contacts, sleeves behind it.
 
     `play` is that of the sleeves on their pins, mm.
     """
-    line = _line(drive, drive.disc.thickness, modulus, 0.0, drive.pin_shaft)
+    line = _line(drive, kind, 0.0, drive.pin_shaft)
     return sliced.back_line(line, shaft_pin_seat(drive), play)
 
 

@@ -19,9 +19,12 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
+from ltca.arrays import FloatArray
 from ltca.compliance import sliced
 from ltca.compliance.coefficients import SOLID, InfluenceCoefficients, logarithm_factor
 from ltca.compliance.half_space import HalfSpaceCompliance, hole_in_slices
+from ltca.compliance.solid_cylinder import free_ends_of_cylinder
+from ltca.contact.free_end import FreeEnds, guilbault_factor
 from ltca.contact.hertz import effective_radius, line_half_width
 from ltca.contact.tracked_grid import ContactKinds
 from ltca.drive.engine_support import require
@@ -42,6 +45,10 @@ NEAR_FIELDS: dict[str, NearField] = {"fe": "plane-strain", "hybrid": "half-space
 """The near field of a compliance, by its name."""
 POINTS_ACROSS = 12
 """Of a semi-elliptic load: exact of powers of 23."""
+IMAGE_PANELS, NEAREST_IMAGE = 24, 1e-8
+"""Of integrals over distances of images, and where they start, by the length."""
+ALIGNED_SLICES = 17
+"""Of the line that tells what one that is aligned yields less than under an even load."""
 MEAN_DISTANCE, MEAN_CUBED_DISTANCE = 256.0 / (45.0 * np.pi**2), 8192.0 / (1575.0 * np.pi**2)
 """⟨|x − x′|⟩ and ⟨|x − x′|³⟩ of two semi-ellipses of half-width 1."""
 MAX_ITERATIONS = 30
@@ -76,7 +83,7 @@ class NearFieldLaws:
     kinds: ContactKinds
 
     @classmethod
-    def of_drive(cls, drive: Drive, kind: NearField, *, rigid_shaft_pins: bool) -> NearFieldLaws:
+    def of_drive(cls, drive: Drive, kind: NearField, *, rigid_shaft_pins: bool, solid: bool = False) -> NearFieldLaws:
         """Return the near fields of a drive.
 
         Parameters
@@ -87,6 +94,8 @@ class NearFieldLaws:
             Plane strain with a datum, or half-spaces with the lengths and profiles of rollers and pins.
         rigid_shaft_pins : bool
             Whether nothing yields at the holes but their walls.
+        solid : bool
+            Whether bodies are solid ones, whose ends half-spaces in slices honour.
 
         Raises
         ------
@@ -100,7 +109,11 @@ class NearFieldLaws:
         # Only its logarithm enters, and cancels where the body part is in plane strain, too.
         datum = max(thickness, drive.pin_wheel.pin_radius, drive.crank_bearing.roller_radius)
         if kind == "half-space":
-            half_space = HalfSpaceCompliance.of_drive(drive)
+            kinds = ContactKinds.of_drive(drive)
+            if solid and drive.contact.slices > 1:
+                kinds = kinds.with_free_ends(drive, rigid_shaft_pins=rigid_shaft_pins)
+            half_space = HalfSpaceCompliance.of_drive(drive, kinds=kinds)
+            at_holes = replace(kinds.holes, contact_modulus=at_hole)
             return cls(
                 kind=kind,
                 pin=half_space.pin_law,
@@ -108,7 +121,7 @@ class NearFieldLaws:
                 inner=half_space.roller_laws.inner,
                 hole=LineContactLaw(thickness, at_hole)
                 if drive.contact.slices == 1
-                else hole_in_slices(drive, at_hole, Placement.of_drive(drive).shaft_pin_plays),
+                else hole_in_slices(drive, at_holes, Placement.of_drive(drive).shaft_pin_plays),
                 rigid_shaft_pins=rigid_shaft_pins,
                 datum=datum,
                 kinds=half_space.kinds,
@@ -209,8 +222,9 @@ class OwnParts:
         of it, which leaves smooth − κ ln D. What a half-space of finite length holds of it for the same patch is
         `finite_length_approach`; both are taken at the half-width of half the drive's load T/(e u) on one contact
         (they differ by the end effects alone, which change little with the load). A plane-stress body part joins the
-        plane-strain near field at D. Of solid bodies a half-space holds `projected_on_half_space` of the even and of the
-        linear load, plane strain the same of both, 12/t² κ of the linear one.
+        plane-strain near field at D. Of solid bodies a half-space with the images of its ends holds
+        `projected_on_half_space` of the even and of the linear load, plane strain the same of both, 12/t² κ of the linear one.
+        Of a line of one slice, a half-space without images, comes off what leaves an aligned line what it has with many.
         """
         even = _own_parts(drive, geometry, coefficients, near_field, datum, elastic_shaft_pins, tilts=False)
         if coefficients.tilting is None:
@@ -237,6 +251,8 @@ def _own_parts(
     def unit(material: Material, thickness: float, plane: str = "strain") -> float:
         return logarithm_factor(material, thickness, plane) * (12.0 / thickness**2 if tilts else 1.0)
 
+    several = drive.contact.slices > 1
+
     def remove(body: float, material: Material, radius: float, modulus: float, thickness: float) -> float:
         if body == 0.0:
             return 0.0
@@ -245,11 +261,14 @@ def _own_parts(
             return float(joined)
         half_width = float(line_half_width(load / thickness, radius, modulus))
         factor = unit(material, thickness)
-        of_length = (
-            projected_on_half_space(thickness, half_width)[1 if tilts else 0]
-            if c.plane == SOLID
-            else finite_length_approach(thickness, half_width)
-        )
+        if c.plane != SOLID:
+            of_length = finite_length_approach(thickness, half_width)
+        else:
+            images = (FreeEnds(reach=1.0, weight=guilbault_factor(material.poisson_ratio)),)
+            of_length = projected_on_half_space(thickness, half_width, images if several else ())[1 if tilts else 0]
+            if not several:
+                of_length -= redistributed_approach(thickness, half_width)
+                of_length += redistributed_approach(thickness, half_width, images)
         held = material.plane_strain_compliance * of_length
         return float(joined + factor * (np.log(2.0 * datum / half_width) + SELF_ENERGY) - held)
 
@@ -279,7 +298,11 @@ def _own_parts(
     hole = remove(disc, parts.disc, *in_hole, thickness)
     if shaft is not None and elastic_shaft_pins and disc > 0.0:  # without coupling there is no body part at all
         own = unit(parts.shaft_pin, thickness, c.plane)
-        hole += own * carried_cylinder(shaft.pin_radius, parts.shaft_pin.poisson_ratio, c.plane)
+        nu = parts.shaft_pin.poisson_ratio
+        hole += own * carried_cylinder(shaft.pin_radius, nu, c.plane)
+        if c.plane == SOLID and shaft.beam is None:
+            # On its spring it ends with the disc; as a beam it goes on.
+            hole += own * free_ends_of_cylinder(shaft.pin_radius, thickness, nu)[1 if tilts else 0]
         hole += remove(own, parts.shaft_pin, *in_hole, thickness)
     return OwnParts(
         pin=remove(disc, parts.disc, *at_pin, thickness) + (0.0 if sleeved else whole_pin),
@@ -365,7 +388,34 @@ def finite_length_approach(length: float, half_width: float) -> float:
     return (approach - half_width**2 / 8.0) / load
 
 
-def projected_on_half_space(length: float, half_width: float) -> tuple[float, float]:
+def redistributed_approach(length: float, half_width: float, free_ends: tuple[FreeEnds, ...] = ()) -> float:
+    """Return by how much less than under an even load an aligned straight line approaches, times E/(1 − ν²) per load, 1/mm.
+
+    The load is that of the half-width, mm, in plane strain; both are those of the law in slices.
+    """
+    slices = ALIGNED_SLICES
+    line = sliced.SlicedLine(
+        length=length,
+        contact_modulus=1.0,
+        slices=slices,
+        relief=np.zeros(sliced.slice_heights(length, slices).shape),
+        free_ends=free_ends,
+    )
+    load = 0.25 * np.pi * half_width**2 * length
+    even, _ = projected_on_half_space(length, half_width, free_ends)
+    approach = start = even * load + half_width**2 / 8.0
+    for _ in range(MAX_ITERATIONS):
+        found = line.respond(np.array([approach]), np.zeros(1), np.ones(1))
+        step = (load - float(found.load[0])) / float(found.by_approach[0])
+        approach += step
+        if abs(step) < 1e-10 * start:
+            return float((start - approach) / load)
+    raise ConvergenceError(f"no approach of a straight line of {length:g} mm has the half-width {half_width:g} mm")
+
+
+def projected_on_half_space(
+    length: float, half_width: float, free_ends: tuple[FreeEnds, ...] = ()
+) -> tuple[float, float]:
     r"""Return what a half-space yields under loads even and linear along the width, times E/(1 − ν²), 1/mm and 1/mm³.
 
     Loads are semi-elliptic over 2b across and spread along t as 1/t for 1 N and 12 z/t³ for 1 N·mm; the same vectors measure the
@@ -384,6 +434,9 @@ def projected_on_half_space(length: float, half_width: float) -> tuple[float, fl
         t, mm.
     half_width : float
         b, mm.
+    free_ends : tuple of FreeEnds
+        Of the body, whose images count as well: at the distances :math:`s` of points and images both loads have the densities of
+        sums of two evenly or linearly spread heights.
 
     Returns
     -------
@@ -408,4 +461,24 @@ def projected_on_half_space(length: float, half_width: float) -> tuple[float, fl
     first = float((mean * far).sum()) - MEAN_DISTANCE * b
     third = float((mean * (far**3 / 3.0 - square * far)).sum()) + 2.0 / 3.0 * MEAN_CUBED_DISTANCE * b**3
     even = 2.0 / (np.pi * t) * (zeroth - first / t)
-    return even, 24.0 / (np.pi * t**3) * (zeroth - 3.0 * first / t + 2.0 * third / t**3)
+    linear = 24.0 / (np.pi * t**3) * (zeroth - 3.0 * first / t + 2.0 * third / t**3)
+    for each in free_ends:
+        # A height and one mirrored in the end plane at s/2 from both: their sum is p = t reach − s.
+        s, ds = _distances_of_images(t, each.reach)
+        total = t * each.reach - s
+        spread = 0.5 * (t - np.abs(total))  # half the range of the one height at a given sum
+        kernel = ds * np.einsum("ij,sij->s", mean, 1.0 / np.sqrt(s[:, None, None] ** 2 + square))
+        even += each.weight * 2.0 / (np.pi * t**2) * float(kernel @ (2.0 * spread))
+        product = 2.0 * spread * (0.5 * total) ** 2 - 2.0 / 3.0 * spread**3
+        linear += each.weight * 2.0 / np.pi * (12.0 / t**3) ** 2 * float(kernel @ product)
+    return even, linear
+
+
+def _distances_of_images(length: float, reach: float) -> tuple[FloatArray, FloatArray]:
+    """Points and weights for distances of points of a line from images in a plane `reach` half-lengths from its middle, mm."""
+    nodes, weights = np.polynomial.legendre.leggauss(8)
+    nearest, middle, farthest = length * (reach - 1.0), length * reach, length * (reach + 1.0)
+    grown = nearest + np.append(0.0, np.geomspace(NEAREST_IMAGE * length, length, IMAGE_PANELS))
+    edges = np.append(grown, np.linspace(middle, farthest, 5)[1:])
+    half = 0.5 * np.diff(edges)[:, None]
+    return (edges[:-1, None] + half * (1.0 + nodes)).ravel(), (half * weights).ravel()

@@ -96,7 +96,13 @@ def _between_ends(
     slices = line_load.shape[-2]
     approach, _ = LineContactLaw(kind.length, kind.contact_modulus).approach_at_load(load, effective_radius)
     relief = np.zeros(sliced.slice_heights(kind.length, slices).shape)
-    line = sliced.SlicedLine(length=kind.length, contact_modulus=kind.contact_modulus, slices=slices, relief=relief)
+    line = sliced.SlicedLine(
+        length=kind.length,
+        contact_modulus=kind.contact_modulus,
+        slices=slices,
+        relief=relief,
+        free_ends=kind.free_ends,
+    )
     shaped = line_load * line.respond(approach, np.zeros(load.shape), effective_radius).line_load
     total = kind.length / slices * sliced.slice_means(shaped).sum(axis=-1)
     scale = np.divide(load, total, out=np.zeros(load.shape), where=total > 0.0)

@@ -25,6 +25,29 @@ what the bodies are held by.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ltca.arrays import FloatArray
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FreeEnds:
+    """Free ends of the bodies of a contact, alike at both ends.
+
+    Attributes
+    ----------
+    reach : float
+        Length of the body by that of the contact, at least 1: its end planes stand so many half-lengths from the middle.
+    weight : float
+        Of the images in them (`free_end_factor`).
+    """
+
+    reach: float
+    weight: float
+
 
 def guilbault_factor(poisson_ratio: float) -> float:
     """Overload factor ψ = 1.29 − (0.08 − 0.5 ν)/(1 − ν) of the mirror load.
@@ -63,3 +86,64 @@ def free_end_factor(poisson_ratio: float, compliance_share: float = 1.0) -> floa
     if not 0.0 <= compliance_share <= 1.0:
         raise ValueError(f"the compliance share must lie between 0 and 1, not {compliance_share}")
     return compliance_share * guilbault_factor(poisson_ratio)
+
+
+def remaining_bulge(free_ends: Iterable[FreeEnds], stretch: FloatArray) -> FloatArray:
+    r"""Return what images leave of the bulge of half-spaces at an end that carries: 1 far from end planes, none at a full image.
+
+    Parameters
+    ----------
+    free_ends : iterable of FreeEnds
+        Of the bodies.
+    stretch : array
+        Length of the stretch at the end that is asked for, by that of the contact.
+
+    Returns
+    -------
+    array
+        1 less the parts of the images: what a narrow stretch feels of its image in the plane of a body, by what it would feel of
+        one in a plane at its own end, :math:`\langle 1/(y + y' + 2g) \rangle` over the stretch with the gap g.
+    """
+
+    def felt(gap: FloatArray) -> FloatArray:
+        first, middle, last = gap, gap + 1.0, gap + 2.0
+        below = first * np.log(np.where(first > 0.0, first, 1.0))
+        return np.asarray(last * np.log(last) - 2.0 * middle * np.log(middle) + below)
+
+    at = np.asarray(stretch, dtype=float)
+    of_images = sum(
+        each.weight * felt((each.reach - 1.0) / np.maximum(at, 1e-300)) / (2.0 * np.log(2.0)) for each in free_ends
+    )
+    return np.asarray(np.maximum(1.0 - of_images, 0.0))
+
+
+def free_ends_of(
+    length: float, compliance: float, bodies: Iterable[tuple[float, float, float]]
+) -> tuple[FreeEnds, ...]:
+    """Return the free ends of the bodies of a contact.
+
+    Parameters
+    ----------
+    length : float
+        Of the contact, mm.
+    compliance : float
+        1/E* of the contact, 1/MPa.
+    bodies : iterable of tuple of float
+        Of each body that ends its length in mm, at least that of the contact, (1 − ν²)/E in 1/MPa and ν.
+
+    Returns
+    -------
+    tuple of FreeEnds
+        By their reach; bodies of one length together.
+
+    Examples
+    --------
+    >>> both = free_ends_of(12.0, 2e-5, [(12.0, 1e-5, 0.3), (12.0, 1e-5, 0.3)])
+    >>> [(each.reach, round(each.weight, 3)) for each in both]
+    [(1.0, 1.39)]
+    """
+    weights: dict[float, float] = {}
+    for own, part, poisson_ratio in bodies:
+        reach = max(own / length, 1.0)
+        weights[reach] = weights.get(reach, 0.0) + free_end_factor(poisson_ratio, min(part / compliance, 1.0))
+    return tuple(FreeEnds(reach=reach, weight=weight) for reach, weight in sorted(weights.items()))

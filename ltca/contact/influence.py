@@ -146,6 +146,18 @@ def lagged_influence(
     return np.asarray(0.5 * cell_width**2 * (total + total.transpose(0, 2, 1)))
 
 
+def end_images(cell_width: float, y_edges: FloatArray, end_plane: float) -> FloatArray:
+    """Return ∫∫ 1/r dA_i dA_j between strips of one width and their images in the planes y = ±`end_plane`, mm³, shape (n, n).
+
+    `y_edges` are the n + 1 ascending edges along y between the planes, mm.
+    """
+    lags = np.zeros(1)
+    total = sum(
+        _lagged_block(lags, cell_width, y_edges, -1.0, shift)[0] for shift in (2.0 * end_plane, -2.0 * end_plane)
+    )
+    return np.asarray(0.5 * cell_width**2 * (total + np.transpose(total)))
+
+
 def assemble_influence_matrix(
     x_edges: FloatArray,
     y_edges: FloatArray,

@@ -17,13 +17,14 @@ contacts that start from the pieces of a neighbouring pose solve the same proble
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ltca.arrays import BoolArray, FloatArray, freeze
+from ltca.contact.free_end import FreeEnds, free_ends_of
 from ltca.contact.grid_ladder import (
     RUNG,
     SHADES,
@@ -38,7 +39,8 @@ from ltca.contact.grid_ladder import (
 )
 from ltca.contact.pressure_cells import PatchGrid, PatchSolution
 from ltca.contact.unilateral import UnilateralSolution, solve_unilateral_contact
-from ltca.drive.parts import Disc, Drive, contact_modulus
+from ltca.drive.hole_contact import hole_modulus
+from ltca.drive.parts import Disc, Drive, Material, contact_modulus
 from ltca.geometry.length_profile import SummedProfile, generator_profile, has_lead, lead_relief
 
 Departure = Callable[[FloatArray], FloatArray]
@@ -71,6 +73,8 @@ class ContactKind:
         Cells over the half-width and over half the length.
     lead : Disc or None
         Disc whose flank has a lead; None where it is straight.
+    free_ends : tuple of FreeEnds
+        Of the bodies, which the law in slices knows; half-spaces where there are none.
     """
 
     length: float
@@ -79,6 +83,7 @@ class ContactKind:
     symmetric: bool
     cells: int = CELLS
     lead: Disc | None = None
+    free_ends: tuple[FreeEnds, ...] = ()
 
     def relief(self, z: ArrayLike) -> FloatArray:
         """Return by how much profile and lead fall short at heights above mid-width, mm."""
@@ -141,6 +146,43 @@ class ContactKinds:
                 cells=cells,
             ),
         )
+
+    def with_free_ends(self, drive: Drive, *, rigid_shaft_pins: bool) -> ContactKinds:
+        """Return the kinds of a drive with the ends of its bodies as they are.
+
+        Disc and race are as wide as the disc, rollers as long as they are, pins as long as their beams or, without, as wide as
+        the disc; what is under a sleeve has no part in the contact, and slices of a sleeve do not feel each other.
+        """
+        parts, wide, long = drive.materials, drive.disc.thickness, drive.roller_length
+        wheel, shaft = drive.pin_wheel, drive.pin_shaft
+        disc, flank_pin, hole_pin = (wide, parts.disc), (wide, drive.flank_pin), (wide, drive.hole_pin)
+        if wheel.beam is not None:
+            flank_pin = (_length_about(drive, drive.wheel_pin_span), drive.flank_pin)
+        if shaft is not None and shaft.beam is not None:
+            hole_pin = (_length_about(drive, drive.shaft_pin_span), drive.hole_pin)
+        sleeved = wheel.seat.kind == "sleeve", shaft is not None and shaft.seat.kind == "sleeve"
+
+        def ending(kind: ContactKind, whole: float, *bodies: tuple[float, Material] | None) -> ContactKind:
+            given = [(own, part.plane_strain_compliance, part.poisson_ratio) for own, part in filter(None, bodies)]
+            return replace(kind, free_ends=free_ends_of(kind.length, whole, given))
+
+        return replace(
+            self,
+            pins=ending(self.pins, 1.0 / self.pins.contact_modulus, disc, None if sleeved[0] else flank_pin),
+            inner=ending(self.inner, 1.0 / self.inner.contact_modulus, (wide, parts.inner_race), (long, parts.roller)),
+            outer=ending(self.outer, 1.0 / self.outer.contact_modulus, disc, (long, parts.roller)),
+            holes=ending(
+                self.holes,
+                1.0 / hole_modulus(drive, rigid_shaft_pins=rigid_shaft_pins),
+                disc,
+                None if rigid_shaft_pins or sleeved[1] else hole_pin,
+            ),
+        )
+
+
+def _length_about(drive: Drive, span: float) -> float:
+    """Length of a pin of a span that is as long to either side of the disc as to the nearer one, mm."""
+    return span - 2.0 * float(np.max(np.abs(drive.disc.disc_planes)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

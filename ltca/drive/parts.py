@@ -220,6 +220,13 @@ class Drive:
         Slices along the width of the contacts.
     case : str
         Name of the case in the file, for names of results; neither compared nor hashed.
+
+    Examples
+    --------
+    >>> import ltca
+    >>> drive = ltca.load_drive("robot-joint").cases["nominal"]
+    >>> drive.pin_wheel.number_of_pins, drive.disc.number_of_discs, drive.transmission_ratio
+    (40, 2, -39.0)
     """
 
     name: Name = "drive"

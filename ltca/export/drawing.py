@@ -43,7 +43,17 @@ _options = threading.Lock()
 
 
 def write_drawing(part: Part, path: Path) -> None:
-    """Write a part as a DXF file in mm; `FaultError` when the file cannot be written."""
+    """Write a part as a DXF file in mm; `FaultError` when the file cannot be written.
+
+    Examples
+    --------
+    >>> import ezdxf, ltca, tempfile
+    >>> from ltca.export.parts import make_parts
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     write_drawing(make_parts(ltca.load_drive("paper").cases["CS-1"], "CS-1")[0], path := Path(folder) / "disc.dxf")
+    ...     sorted(layer.dxf.name for layer in ezdxf.readfile(path).layers if layer.dxf.name not in ("0", "Defpoints"))
+    ['BORE', 'FLANK', 'HOLE']
+    """
     import ezdxf
     from ezdxf.filemanagement import new
 

@@ -251,6 +251,13 @@ def make_parts(
     ------
     DriveError
         When the drive has no such part, or nothing would be left of it.
+
+    Examples
+    --------
+    >>> import ltca
+    >>> drive = ltca.load_drive("robot-joint").cases["nominal"]
+    >>> [len(part.bodies) for part in make_parts(drive, "nominal")], len(make_parts(drive, "nominal", "pin-wheel")[0].bodies)
+    ([1, 1], 40)
     """
     drive = replace(drive, temperature=None)
     if disc is not None:

@@ -37,7 +37,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.arrays import FloatArray, by_drive
-from ltca.contact.influence import lagged_influence
+from ltca.contact.free_end import FreeEnds
+from ltca.contact.influence import end_images, lagged_influence
 from ltca.errors import ConvergenceError
 from ltca.laws.backed import HALF_SPACE_DATUM, MAX_OVERLAP, OVERLAP_SHARPNESS
 from ltca.laws.slenderness_curve import SlendernessCurve, quintic_spline_pieces
@@ -136,13 +137,19 @@ def _plane_load(place: FloatArray) -> tuple[FloatArray, FloatArray]:
 @cache
 def _lags(slices: int) -> FloatArray:
     """Pieces of a_k over ln(b/l), k = 0 … n − 1, without the softer ends, shape (6, slices, pieces)."""
+    return np.stack([quintic_spline_pieces(curve) for curve in _strips(slices)], axis=1)
+
+
+@cache
+def _strips(slices: int) -> FloatArray:
+    """a_k at the knots, shape (slices, knots)."""
     found = np.empty((_KNOTS, slices))
     for row, place in zip(found, places(), strict=True):
         width = 2.0 * STRIP * float(np.exp(place))
         row[:] = lagged_influence(width, 1, np.arange(slices + 1.0), mirrored=False)[0, 0] / width**2
     # What plane strain counts of a strip, its datum at the length of a slice.
     found[:, 0] -= 2.0 * (1.5 - np.log(2.0 * STRIP) - places())
-    return np.stack([quintic_spline_pieces(column) for column in found.T], axis=1)
+    return found.T
 
 
 def places() -> FloatArray:
@@ -153,7 +160,62 @@ def places() -> FloatArray:
 @cache
 def softer_ends(slices: int) -> FloatArray:
     """Return pieces of ε over ln(b/l) of lines of so many slices that ship with the package, shape (6, pieces)."""
-    return quintic_spline_pieces(np.array(json.loads(TABLE.read_text(encoding="utf-8"))["softer"][str(slices)]))
+    return quintic_spline_pieces(_softer_ends(slices))
+
+
+@cache
+def _softer_ends(slices: int) -> FloatArray:
+    """ε at the knots."""
+    return np.array(json.loads(TABLE.read_text(encoding="utf-8"))["softer"][str(slices)])
+
+
+@cache
+def _images(slices: int, reach: float) -> FloatArray:
+    """What strips feel of the images of others in both end planes at the knots, shape (slices, knots).
+
+    The planes stand `reach` half-lengths from the middle. Strips i and j have the coefficient of the lag |i − (n − 1 − j)|.
+    """
+    found = np.empty((_KNOTS, slices))
+    edges = np.arange(slices + 1.0) - 0.5 * slices
+    for row, place in zip(found, places(), strict=True):
+        width = 2.0 * STRIP * float(np.exp(place))
+        row[:] = end_images(width, edges, 0.5 * slices * reach)[0, ::-1] / width**2
+    return found.T
+
+
+@cache
+def _pieces(slices: int, free_ends: tuple[FreeEnds, ...]) -> FloatArray:
+    """Pieces of a_k, ε and, where ends are free, those of images, shape (6, curves, pieces).
+
+    Images with the weight 1 at the very end leave nothing of the bulge there, and others a part of it; what even slices miss
+    of its energy goes with the square. Where bodies reach beyond, images count by what the end slice feels of its own.
+    """
+    table = _softer_ends(slices)
+    if not free_ends:
+        return np.concatenate((_lags(slices), softer_ends(slices)[:, None]), axis=1)
+    images = np.sum([each.weight * _images(slices, each.reach) for each in free_ends], axis=0)
+    bulge = 1.0 - images[-1] / _images(slices, 1.0)[-1]
+    every = np.concatenate((_strips(slices), (bulge**2 * table)[None], images))
+    return np.stack([quintic_spline_pieces(curve) for curve in every], axis=1)
+
+
+def _products(lags: FloatArray, load: FloatArray, other: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Products of the matrix of lags and of its first derivative with loads of others, and the form of its second with both.
+
+    Lags have the shape (3, slices, contacts) with their derivatives, loads (slices, contacts).
+    """
+    n, count = load.shape
+    beside = np.zeros((3 * n - 2, count))
+    beside[n - 1 : 2 * n - 1] = other
+    row, column = beside.strides
+    near = np.lib.stride_tricks.as_strided(beside, (n, 2 * n - 1, count), (row, row, column))
+    products = np.einsum("kmc,imc->kic", lags[:2, np.abs(np.arange(1 - n, n))], near)
+    if other is load:
+        alike = np.einsum("ic,imc->mc", load, near[:, n - 1 :])
+        return products, 2.0 * (lags[2] * alike).sum(axis=0) - lags[2, 0] * alike[0]
+    # Of loads and others that differ both ways count.
+    alike = np.einsum("ic,imc->mc", load, near)
+    return products, (lags[2, np.abs(np.arange(1 - n, n))] * alike).sum(axis=0)
 
 
 @cache
@@ -192,6 +254,7 @@ class _Coupling:
     scale: float
     lags: FloatArray
     ends: FloatArray
+    mirrored: FloatArray | None
     smooth: FloatArray
     diagonal: FloatArray
     across: FloatArray
@@ -201,6 +264,8 @@ class _Coupling:
         """Return ∂u/∂F, shape (slices, slices, contacts)."""
         n = self.grow.shape[0]
         found = self.lags.take(_between(n), axis=0)
+        if self.mirrored is not None:
+            found += self.mirrored.take(_between(n)[:, ::-1], axis=0)
         both = self.across[:, None] * self.grow
         found += both
         found += both.swapaxes(0, 1)
@@ -233,7 +298,9 @@ class SlicedLine:
     overlap : float
         Compliance of the whole line that the law of that sleeve has as well, mm/N (`ltca.laws.backed.BackedLaw`).
     ends : array, shape (6, pieces), optional
-        By how much end slices are softer, ε over ln(b/l); default `softer_ends` of as many slices.
+        By how much end slices are softer, ε over ln(b/l); default `softer_ends` of as many slices, less where ends are free.
+    free_ends : tuple of FreeEnds
+        Of the bodies that end at the line's ends or beyond them; half-spaces where there are none.
     """
 
     length: float
@@ -243,6 +310,7 @@ class SlicedLine:
     sleeve: float = 0.0
     overlap: float = 0.0
     ends: FloatArray | None = None
+    free_ends: tuple[FreeEnds, ...] = ()
 
     def respond(
         self,
@@ -302,7 +370,10 @@ class SlicedLine:
         """Tell whether another law says the same of contacts."""
         numbers = ("length", "contact_modulus", "slices", "sleeve", "overlap")
         return all(getattr(self, name) == getattr(other, name) for name in numbers) and (
-            self.ends is other.ends and self.relief.ndim == 2 and np.array_equal(self.relief, other.relief)
+            self.ends is other.ends
+            and self.free_ends == other.free_ends
+            and self.relief.ndim == 2
+            and np.array_equal(self.relief, other.relief)
         )
 
     def _sizes(self) -> dict[str, tuple[int, ...]]:
@@ -362,19 +433,17 @@ class SlicedLine:
         place -= np.log(size)
         # How ln b follows the loads.
         grow = load / square - 0.5 / total
-        lags, ends = self._coefficients(place)
+        lags, ends, mirrored = self._coefficients(place)
         lags[0, 0] -= 2.0 * np.log(DATUM * n)
         if self.sleeve:
             lags = (1.0 - self.sleeve) * lags
             lags[0, 0] -= 2.0 * self.sleeve * np.log(DATUM / SLEEVE_DATUM)
-        # Products of the matrix and of its first two derivatives by ln b with the loads: a lag each way.
-        beside = np.zeros((3 * n - 2, place.size))
-        beside[n - 1 : 2 * n - 1] = load
-        row, column = beside.strides
-        near = np.lib.stride_tricks.as_strided(beside, (n, 2 * n - 1, place.size), (row, row, column))
-        products = np.einsum("kmc,imc->kic", lags[:2, np.abs(np.arange(1 - n, n))], near)
-        alike = np.einsum("ic,imc->mc", load, near[:, n - 1 :])
-        form = 2.0 * (lags[2] * alike).sum(axis=0) - lags[2, 0] * square
+        products, form = _products(lags, load, load)
+        if mirrored is not None:
+            # A slice feels the images of those as far from the other end.
+            of_images = _products(mirrored, load, load[::-1])
+            products += of_images[0]
+            form += of_images[1]
         # Second differences count where slices are narrower than the contact: the kernel of wide strips hardly knows of loads
         # that alternate from slice to slice.
         wide = np.exp(2.0 * place)
@@ -400,6 +469,7 @@ class SlicedLine:
             scale=scale,
             lags=lags[0],
             ends=ends[0],
+            mirrored=None if mirrored is None else mirrored[0],
             smooth=smooth[0],
             diagonal=slope / square - by_load / scale,
             across=by_width + (0.5 * curved - slope) * grow - slope / total,
@@ -427,10 +497,12 @@ class SlicedLine:
         narrow = np.where(deep > 0.5, 0.5 * part / (1.0 + part) / deep, 0.0)
         return stored, off[-1], (bounded * (1.0 - narrow))[-1]
 
-    def _coefficients(self, place: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """a_k and ε with first and second derivatives by ln(b/l), shapes (3, slices, contacts) and (3, contacts)."""
-        ends = softer_ends(self.slices) if self.ends is None else self.ends
-        pieces = np.concatenate((_lags(self.slices), ends[:, None]), axis=1)
+    def _coefficients(self, place: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray | None]:
+        """a_k, ε and those of images with two derivatives by ln(b/l), shapes (3, slices, contacts), (3, contacts) and as a_k."""
+        n, pieces = self.slices, _pieces(self.slices, self.free_ends)
+        if self.ends is not None:
+            pieces = pieces.copy()
+            pieces[:, n] = self.ends
         start, stop = np.log(NARROWEST), np.log(WIDEST)
         spacing = (stop - start) / (_KNOTS - 1)
         held = place.clip(start, stop)
@@ -438,7 +510,7 @@ class SlicedLine:
         piece = np.minimum(at.astype(np.intp), _KNOTS - 2)
         t = at - piece
         c0, c1, c2, c3, c4, c5 = pieces.take(piece, axis=2)
-        curve = np.empty((3, self.slices + 1, place.size))
+        curve = np.empty((3, pieces.shape[1], place.size))
         curve[0] = c0 + t * (c1 + t * (c2 + t * (c3 + t * (c4 + t * c5))))
         curve[1] = (c1 + t * (2.0 * c2 + t * (3.0 * c3 + t * (4.0 * c4 + t * (5.0 * c5))))) / spacing
         curve[2] = (2.0 * c2 + t * (6.0 * c3 + t * (12.0 * c4 + t * (20.0 * c5)))) / spacing**2
@@ -447,7 +519,7 @@ class SlicedLine:
             # Curves are nearly straight there.
             curve[0][:, beyond] += curve[1][:, beyond] * (place - held)[beyond]
             curve[2][:, beyond] = 0.0
-        return curve[:, :-1], curve[:, -1]
+        return curve[:, :n], curve[:, n], curve[:, n + 1 :] if self.free_ends else None
 
     def _closed(
         self, free: FloatArray, radius: FloatArray, start: FloatArray | None, exactness: Exactness

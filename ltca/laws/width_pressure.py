@@ -17,6 +17,7 @@ import numpy as np
 
 from ltca.arrays import BoolArray, FloatArray
 from ltca.contact.end_pressure import find_cylinder_ratio
+from ltca.contact.free_end import FreeEnds, remaining_bulge
 from ltca.contact.tilted_grid import SAMPLES, TiltedPatch, TiltedPiece, recover_tilted
 from ltca.contact.tracked_grid import ContactKind, Separation
 from ltca.laws.sliced_contact import POINTS, slice_heights, slice_means
@@ -26,6 +27,8 @@ HEIGHTS = 33
 """Heights at which pressures are given where none are asked for."""
 NODES = 61
 """Aligned straight lines between which others are interpolated."""
+PEAK_BY_BULGE = 1.45
+"""Power of what images leave of the bulge at an end with which its peak goes: grids have 1.25 to 1.7."""
 _PEAK_BIAS = 0.114
 """Of the first of n cells over a half-width, by 1/n² (`ltca.contact.pressure_cells`)."""
 
@@ -60,11 +63,6 @@ class WidthPressures:
     place: FloatArray
     end_load: FloatArray
 
-    @property
-    def runs_off(self) -> BoolArray:
-        """Whether a contact carries right up to the lower and the upper end, shape (…, 2)."""
-        return np.asarray(self.end_load > 0.0)
-
 
 def estimate_along_width(kind: ContactKind, line_load: FloatArray, effective_radius: FloatArray) -> WidthPressures:
     """Return pressures of contacts in slices by their line loads, at the middles of the slices.
@@ -88,7 +86,7 @@ def estimate_along_width(kind: ContactKind, line_load: FloatArray, effective_rad
 
     inner = pressure_of(line, 2)
     # What the two slices at an end carry beyond the line is the bulge there, by aligned lines of as many slices.
-    nodes, bulges = _end_bulges(line.shape[-2])
+    nodes, bulges = _end_bulges(line.shape[-2], kind.free_ends)
     size = kind.length / line.shape[-2]
     carried = []
     for last, beside, outermost in (
@@ -105,7 +103,10 @@ def estimate_along_width(kind: ContactKind, line_load: FloatArray, effective_rad
     ends = np.stack(carried, axis=-1)
     # An end carries as one of a line that is even and long has its peak by the half-width there.
     half_width = np.sqrt(4.0 * ends * radius[..., None] / (np.pi * kind.contact_modulus))
-    at_ends = pressure_of(ends, 1) * find_cylinder_ratio(kind, half_width)
+    peak = find_cylinder_ratio(kind, half_width) - 1.0
+    if kind.free_ends:
+        peak = peak * remaining_bulge(kind.free_ends, (half_width + kind.end_cell) / kind.length) ** PEAK_BY_BULGE
+    at_ends = pressure_of(ends, 1) * (1.0 + peak)
     flat = inner.reshape(*radius.shape, line.shape[-2] * line.shape[-1])
     every = np.concatenate((flat, at_ends), axis=-1)
     places = np.concatenate((z.ravel(), (-0.5 * kind.length, 0.5 * kind.length)))
@@ -246,9 +247,10 @@ def _peaks(pressure: FloatArray, symmetric: bool) -> FloatArray:
 
 
 @cache
-def _aligned_loads(slices: int) -> tuple[FloatArray, FloatArray]:
+def _aligned_loads(slices: int, free_ends: tuple[FreeEnds, ...] = ()) -> tuple[FloatArray, FloatArray]:
     """ln(b/L) of the mean line load, and loads of the slices by their mean, of aligned straight lines, shape (nodes, slices)."""
-    line = SlicedLine(length=1.0, contact_modulus=1.0, slices=slices, relief=np.zeros((slices, POINTS)))
+    relief = np.zeros((slices, POINTS))
+    line = SlicedLine(length=1.0, contact_modulus=1.0, slices=slices, relief=relief, free_ends=free_ends)
     # Up to lines four half-widths long, or slices a quarter of one.
     approach = np.geomspace(1e-8, min(1.0 / 16.0, 16.0 / slices**2), NODES)
     found = line.respond(approach, np.zeros(NODES), np.ones(NODES))
@@ -256,9 +258,9 @@ def _aligned_loads(slices: int) -> tuple[FloatArray, FloatArray]:
 
 
 @cache
-def _end_bulges(slices: int) -> tuple[FloatArray, FloatArray]:
+def _end_bulges(slices: int, free_ends: tuple[FreeEnds, ...] = ()) -> tuple[FloatArray, FloatArray]:
     """Nodes of ln(b/l) in the middle, and loads of the two slices at an end by the middle one, (2, nodes)."""
-    place, shares = _aligned_loads(slices)
+    place, shares = _aligned_loads(slices, free_ends)
     middle = shares[:, slices // 2]
     return place + 0.5 * np.log(middle) + np.log(slices), shares[:, :2].T / middle
 
@@ -269,7 +271,7 @@ def _bulges(kind: ContactKind, line_load: FloatArray, radius: FloatArray, carrie
     `line_load` are those of the slices, shape (…, slices), and `carries` says whether the lower and the upper end do.
     """
     slices = line_load.shape[-1]
-    nodes, shares = _aligned_loads(slices)
+    nodes, shares = _aligned_loads(slices, kind.free_ends)
     mean = line_load.mean(axis=-1)
     wide = np.maximum(np.sqrt(4.0 * mean * radius / (np.pi * kind.contact_modulus)) / kind.length, 1e-300)
     at = np.log(wide).clip(nodes[0], nodes[-1])

@@ -19,8 +19,15 @@ from numpy.typing import NDArray
 from ltca.errors import DamagedFileError, PlaceError
 from ltca.output.files import whole_file
 from ltca.output.netcdf import DAMAGE, opened_hdf5, read_netcdf, write_netcdf
-from ltca.reading.coefficient_laws import STATED_QUALITY, check_coefficients
-from ltca.reading.coefficient_schema import NEEDED, require_schema
+from ltca.reading.coefficient_laws import (
+    INTERPOLATION,
+    TILT_CONVERGENCE,
+    TILT_INTERPOLATION,
+    Check,
+    check_laws,
+    check_stated_quality,
+)
+from ltca.reading.coefficient_schema import NEEDED, is_solid, require_schema
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -98,10 +105,41 @@ def _read(path: Path, stamp: tuple[int, ...]) -> tuple[LabelledDataset, str]:
 
 def require_laws(dataset: Labelled, source: str) -> None:
     """Refuse coefficients of the right schema that break a law, all that are broken named: DamagedFileError."""
-    broken = [check for check in check_coefficients(dataset) if not check.passed and check.name not in STATED_QUALITY]
-    if broken:
-        said = "; ".join(f"{check.name} is {check.value:.4g}: must be {check.bounds}" for check in broken)
+    if broken := _failed(check_laws(dataset)):
+        said = _words(broken)
         raise DamagedFileError(f"{source}: breaks laws of influence coefficients (cyclo derive --check): {said}")
+
+
+def _failed(checks: tuple[Check, ...]) -> list[Check]:
+    return [check for check in checks if not check.passed]
+
+
+def _words(failed: list[Check]) -> str:
+    return "; ".join(f"{check.name} is {check.value:.4g}: must be {check.bounds}" for check in failed)
+
+
+def quality_warning(dataset: Labelled, source: str) -> str:
+    """Return what to tell of coefficients less accurate than asked for, by what they state, with what derives finer ones.
+
+    "" where the figures that they state are within their bounds.
+    """
+    if not (failed := _failed(check_stated_quality(dataset))):
+        return ""
+    between, names = {INTERPOLATION, TILT_INTERPOLATION}, {check.name for check in failed}
+    words = ["cyclo derive DRIVE"]
+    if is_solid(dataset):
+        words.append("--bodies solid")
+    elif str(dataset.attrs["plane"]) == "stress":
+        words.append("--plane stress")
+    size, told, _ = str(dataset.attrs.get("mesh_size", "")).partition(":")
+    if names - between and told:
+        words.append(f"--size {0.5 * float(size):g}")
+    if TILT_CONVERGENCE in names and "layer_height" in dataset:
+        # Heights are those of both ends of the layers.
+        words.append(f"--layers {dataset['layer_height'].values.size}")
+    if names & between:
+        words.append("--stations 2")
+    return f"{source}: {_words(failed)}; derive anew ({' '.join(words)}) and give the file with --coefficients"
 
 
 def require_replaceable(path: Path) -> None:

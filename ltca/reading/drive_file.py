@@ -55,6 +55,12 @@ class DriveFile:
         Limits of results by case and key (`ltca.drive.members.limits`).
     text : str
         Text of the file.
+
+    Examples
+    --------
+    >>> file = load_drive("paper")
+    >>> list(file.cases), file.cases["CS-3"].clearance.bearing
+    (['CS-1', 'CS-2', 'CS-3', 'CS-4', 'CS-5', 'CS-6'], 0.03)
     """
 
     name: str
@@ -76,6 +82,11 @@ class DriveFile:
         ------
         DriveError
             When a name is not a case of the drive.
+
+        Examples
+        --------
+        >>> list(load_drive("paper").select(["CS-3", "CS-1"]))
+        ['CS-3', 'CS-1']
         """
         if not names:
             return dict(self.cases)
@@ -98,6 +109,14 @@ class DriveFile:
         ------
         DriveError
             When a name is not a case of the drive.
+
+        Examples
+        --------
+        The shipped drive has no temperatures, so its parts stay as they are.
+
+        >>> file = load_drive("paper")
+        >>> file.select_warm(["CS-1"]) == file.select(["CS-1"])
+        True
         """
         return {name: warm_drive(drive) for name, drive in self.select(names).items()}
 

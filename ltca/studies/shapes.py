@@ -21,7 +21,8 @@ from ltca.analysis.engines import CoupledEngine, Engine, ring_lender
 from ltca.compliance.coefficient_files import (
     GROUP,
     cache_folder,
-    expected_seconds,
+    coefficient_warnings,
+    derivation_words,
     find_case_coefficients,
     has_coefficients,
     require_cache,
@@ -148,9 +149,10 @@ def find_beforehand(engine: Engine, shapes: Mapping[str, Drive], told: Callable[
         missing = [drive for drive in wanted if not has_coefficients(drive, engine.bodies)]
         if missing:
             few = "1 shape has" if len(missing) == 1 else f"{len(missing)} shapes have"
-            each = expected_seconds(missing, engine.bodies)
-            whole = f", {told_seconds(sum(each))} in all" if len(missing) > 1 else ""
-            told(f"{few} no influence coefficients yet: derived first, {told_seconds(max(each))} each{whole}")
+            words = derivation_words(missing, engine.bodies, len(missing))
+            if engine.bodies == "plane":
+                words += " each" + (f", {derivation_words(missing, 'plane')} in all" if len(missing) > 1 else "")
+            told(f"{few} no influence coefficients yet: derived first, {words}")
         for first in range(0, len(missing), MAX_KEPT_SHAPES) if len(missing) > 1 else ():
             group = {
                 f"shape {first + number}": drive
@@ -161,16 +163,19 @@ def find_beforehand(engine: Engine, shapes: Mapping[str, Drive], told: Callable[
                 near_field = NEAR_FIELDS[engine.compliance]
                 find_case_coefficients(group, near_field=near_field, bodies=engine.bodies)
         wanted = missing or wanted[:1]
-    failures = []
+    failures, found = [], list[InfluenceCoefficients]()
     for drive in wanted:
         try:
-            with_kept_coefficients(engine, drive)
+            given_now = _given(with_kept_coefficients(engine, drive))
+            found += given_now if isinstance(given_now, tuple) else [given_now]
         except CycloError as error:
             if given is not None:
                 raise
             failures.append(error)
     if len(failures) == len(wanted) == len(shapes):
         raise failures[0]
+    for text in coefficient_warnings(found):
+        told(f"warning: {text}")
 
 
 def coefficients_identity(engine: Engine) -> str:
@@ -187,8 +192,8 @@ def _coefficients_identity(engine: Engine) -> str:
     if _are_coefficients(given):
         digest = hashlib.sha256()
         for own in given if isinstance(given, tuple) else (given,):
-            for item in fields(own):
-                value = getattr(own, item.name)
+            # What is said of a file names its place.
+            for value in (getattr(own, item.name) for item in fields(own) if item.name != "warning"):
                 digest.update(value.tobytes() if isinstance(value, np.ndarray) else repr(value).encode())
         return f"given {digest.hexdigest()[:16]}"
     if given is not None:

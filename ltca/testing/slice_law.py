@@ -15,6 +15,7 @@ from scipy.interpolate import BSpline, CubicSpline, make_interp_spline
 
 import ltca.laws.sliced_line as shipped
 from ltca.arrays import FloatArray
+from ltca.contact.free_end import FreeEnds
 
 STEP = 1e-5
 """Step of the differences of V, by the largest load of a slice: curvature and round-off are both of 1e-10."""
@@ -42,19 +43,52 @@ def _kernel(slices: int) -> CubicSpline:
 
 
 @cache
-def _softer_table(slices: int) -> BSpline:
-    values = json.loads(shipped.TABLE.read_text(encoding="utf-8"))["softer"][str(slices)]
+def _softer_table(slices: int, free_ends: tuple[FreeEnds, ...]) -> BSpline:
+    values = np.array(json.loads(shipped.TABLE.read_text(encoding="utf-8"))["softer"][str(slices)])
+    if free_ends:
+        knots = shipped.places()
+        felt = sum(each.weight * _image_kernel(slices, each.reach)(knots)[:, 0, 0] for each in free_ends)
+        values = values * (1.0 - felt / _image_kernel(slices, 1.0)(knots)[:, 0, 0]) ** 2
     return make_interp_spline(shipped.places(), values, k=5)
 
 
-def _softer(slices: int, place: FloatArray) -> FloatArray:
+def _softer(slices: int, place: FloatArray, free_ends: tuple[FreeEnds, ...]) -> FloatArray:
     """By how much the end slices are softer at ln(b/l): the table, and straight on beyond it."""
-    table, knots = _softer_table(slices), shipped.places()
+    table, knots = _softer_table(slices, free_ends), shipped.places()
     held = np.clip(place, knots[0], knots[-1])
     return np.asarray(table(held) + table(held, 1) * (place - held))
 
 
-def pressed_in(load: FloatArray, length: float, modulus: float, radius: FloatArray) -> FloatArray:
+@cache
+def _image_kernel(slices: int, reach: float) -> CubicSpline:
+    """The same of the images of strips in both end planes, `reach` half-lengths from the middle, for all pairs of strips."""
+    nodes, weights = np.polynomial.legendre.leggauss(40)
+    middle = np.arange(slices) - 0.5 * (slices - 1)
+    # The sum of two places in strips is triangular about that of their middles; by the square of its distance from either end.
+    u, w = 0.5 * (1.0 + nodes), 0.5 * weights
+    t = u**4
+    inside = np.concatenate((t - 1.0, 1.0 - t))
+    weight = np.tile(4.0 * u**3 * w * t, 2)
+    strip = 2.0 * np.exp(1.25 - np.log(4.0)) * np.exp(_WIDTHS)[:, None]
+    sums = np.round(2.0 * (middle[:, None] + middle)).astype(int)
+    by_sum = {}
+    for total in np.unique(sums).tolist():
+        found = np.zeros(_WIDTHS.size)
+        for side in (1.0, -1.0):
+            apart = np.maximum(slices * reach - side * (0.5 * total + inside), 1e-300)
+            even = 2.0 * (np.arcsinh(strip / apart) / strip - (np.hypot(apart, strip) - apart) / strip**2)
+            found += (even * weight).sum(axis=1)
+        by_sum[total] = found
+    return CubicSpline(_WIDTHS, np.array([[by_sum[each] for each in row] for row in sums.tolist()]).transpose(2, 0, 1))
+
+
+def pressed_in(
+    load: FloatArray,
+    length: float,
+    modulus: float,
+    radius: FloatArray,
+    free_ends: tuple[FreeEnds, ...] = (),
+) -> FloatArray:
     """Return u of the slices of contacts that carry, mm, shape (contacts, slices), by differences of V."""
     step = STEP * load.max(axis=1)
     found = np.empty(load.shape)
@@ -63,12 +97,14 @@ def pressed_in(load: FloatArray, length: float, modulus: float, radius: FloatArr
         for side in (1.0, -1.0):
             moved = load.copy()
             moved[:, number] += side * step
-            ends.append(_together(moved, length, modulus, radius))
+            ends.append(_together(moved, length, modulus, radius, free_ends))
         found[:, number] = (ends[0] - ends[1]) / (2.0 * step)
     return found
 
 
-def _together(load: FloatArray, length: float, modulus: float, radius: FloatArray) -> FloatArray:
+def _together(
+    load: FloatArray, length: float, modulus: float, radius: FloatArray, free_ends: tuple[FreeEnds, ...]
+) -> FloatArray:
     """V, N·mm."""
     n, size = load.shape[1], length / load.shape[1]
     mean = (load**2).sum(axis=1) / (size * load.sum(axis=1))
@@ -79,7 +115,10 @@ def _together(load: FloatArray, length: float, modulus: float, radius: FloatArra
     lag = np.abs(np.arange(n)[:, None] - np.arange(n))
     form = np.einsum("ci,cij,cj->c", load, kernel[:, lag], load)
     form += ratio**2 / (1.0 + ratio**2) * (np.diff(load, 2, axis=1) ** 2).sum(axis=1)
-    form -= _softer(n, np.log(ratio)) * (load[:, 0] ** 2 + load[:, -1] ** 2)
+    softer = _softer(n, np.log(ratio), free_ends)
+    for each in free_ends:
+        form += each.weight * np.einsum("ci,cij,cj->c", load, _image_kernel(n, each.reach)(np.log(ratio)), load)
+    form -= softer * (load[:, 0] ** 2 + load[:, -1] ** 2)
     return np.asarray(form / (2.0 * np.pi * modulus * size))
 
 

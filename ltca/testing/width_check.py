@@ -28,6 +28,7 @@ from typing import Any
 import numpy as np
 
 from ltca.arrays import ComplexArray, FloatArray
+from ltca.contact.free_end import FreeEnds
 from ltca.drive.members.pins import PinShaft, PinWheel
 from ltca.drive.parts import Drive, LengthProfile, Material
 from ltca.equilibrium.balance import Equilibrium
@@ -510,7 +511,8 @@ class WidthCheck:
         pins, holes = disc.answer.leaning_pins.contact, disc.answer.leaning_holes.contact
         # Of loose pins and sleeves gaps are those of both sides of the seat.
         if drive.pin_wheel.seat.kind == "fixed":
-            off = _off(pins.line_load[row], pins.slice_load[row], gap, thick, parts["flank"], radius, rounding)
+            ends = self._free_ends(disc.number, "pins")
+            off = _off(pins.line_load[row], pins.slice_load[row], gap, thick, parts["flank"], radius, rounding, ends)
             told(f"{name}: gap of a wheel pin beside its line load", off, GAPS, "of its approach")
         if disc.in_holes is not None and drive.pin_shaft is not None and drive.pin_shaft.seat.kind == "fixed":
             law: Any = self.model.discs[disc.number].hole_law  # type: ignore[attr-defined]
@@ -520,7 +522,8 @@ class WidthCheck:
             if hasattr(law, "contact_modulus"):
                 _, radii = disc.parts.shaft_pins
                 effective = 1.0 / (1.0 / radii - 1.0 / disc.parts.holes[1])
-                off = _off(line, holes.slice_load[row], there, thick, law.contact_modulus, effective, rounding)
+                ends = self._free_ends(disc.number, "holes")
+                off = _off(line, holes.slice_load[row], there, thick, law.contact_modulus, effective, rounding, ends)
             else:
                 assert drive.pin_shaft is not None
                 assert drive.pin_shaft.stiffness is not None
@@ -531,8 +534,14 @@ class WidthCheck:
         for gaps, radii, loads in zip(*(disc.of_rollers[key] for key in ("gap", "radius", "load")), strict=True):
             for kind, where in enumerate(("on the race", "in the bore")):
                 modulus = parts["inner" if kind == 0 else "outer"]
-                off = _off(None, loads[kind], gaps[kind], long, modulus, radii[kind], rounding)
+                ends = self._free_ends(disc.number, "inner" if kind == 0 else "outer")
+                off = _off(None, loads[kind], gaps[kind], long, modulus, radii[kind], rounding, ends)
                 told(f"{name}: load of a slice of a roller {where} beside its gap", off, GAPS, "of the largest")
+
+    def _free_ends(self, number: int, kind: str) -> tuple[FreeEnds, ...]:
+        """Of the bodies of a kind of contacts of a disc; half-spaces where the model knows no ends."""
+        near: Any = getattr(self.model.discs[number], "near_field", None)
+        return () if near is None else getattr(near.kinds, kind).free_ends
 
     def _members(self, told: Any, torque: float | None) -> None:
         """Journals, wheel, ring of tips and the torque of the output."""
@@ -710,6 +719,7 @@ def _off(
     modulus: float,
     radius: FloatArray,
     rounding: float,
+    free_ends: tuple[FreeEnds, ...] = (),
 ) -> float:
     """Largest difference of gap and what plane strain and the coupling of the slices make of the line load, by the gap.
 
@@ -721,7 +731,7 @@ def _off(
     if not on.any():
         return float(np.max(gap, initial=0.0) > rounding)
     load, gap, radius = slices[on], gap[on], np.broadcast_to(radius, on.shape)[on]
-    points = np.repeat(pressed_in(load, length, modulus, radius), POINTS, axis=1)
+    points = np.repeat(pressed_in(load, length, modulus, radius, free_ends), POINTS, axis=1)
     largest = gap.max(axis=1)
     local = gap - points
     if line is None:

@@ -53,6 +53,8 @@ class OtherCode:
         Of the code.
     installed : callable
         Whether it can be asked here.
+    installation : str
+        The command that installs it.
     definition : callable
         Everything that defines the problem, as plain numbers and texts.
     ours, theirs : callable
@@ -61,6 +63,7 @@ class OtherCode:
 
     name: str
     installed: Callable[[], bool]
+    installation: str
     definition: Callable[[], dict[str, Any]]
     ours: Callable[[], Answer]
     theirs: Callable[[], Answer]
@@ -326,15 +329,22 @@ def their_pairs() -> Answer:
     return found
 
 
+CALCULIX = "sh .ci/system-libraries --referees (Debian: apt install calculix-ccx)"
+TAMAAS = "pip install 'cyclo-ltca[referee]'"
 CODES = {
     code.name: code
     for code in (
-        OtherCode(name="CalculiX", installed=has_calculix, definition=define_drive, ours=our_drive, theirs=their_drive),
         OtherCode(
-            name="tamaas", installed=has_tamaas, definition=define_rollers, ours=our_rollers, theirs=their_rollers
+            name="CalculiX", installed=has_calculix, installation=CALCULIX,
+            definition=define_drive, ours=our_drive, theirs=their_drive,
         ),
         OtherCode(
-            name="CalculiX C3D20R", installed=has_calculix, definition=define_pairs, ours=our_pairs, theirs=their_pairs
+            name="tamaas", installed=has_tamaas, installation=TAMAAS,
+            definition=define_rollers, ours=our_rollers, theirs=their_rollers,
+        ),
+        OtherCode(
+            name="CalculiX C3D20R", installed=has_calculix, installation=CALCULIX,
+            definition=define_pairs, ours=our_pairs, theirs=their_pairs,
         ),
     )
-}
+}  # fmt: skip

@@ -110,7 +110,8 @@ def stored_answer(name: str) -> Answer:
     found = fitting_answers(content)
     if name not in found:
         raise CycloError(
-            f"{name} is not installed and its stored answer belongs to another problem: where it is installed, {COMMAND}"
+            f"{name} is not installed and its stored answer belongs to another problem: "
+            f"{CODES[name].installation}, then {COMMAND}"
         )
     return found[name]
 
@@ -137,6 +138,12 @@ def _code() -> str:
 def with_problems(answers: dict[str, Answer]) -> dict[str, Any]:
     """Return answers, by code, as files hold them: each with the fingerprint of its problem."""
     return {name: {"problem": CODES[name].fingerprint(), "answer": answer} for name, answer in answers.items()}
+
+
+def add_answers(path: Path, answers: dict[str, Answer]) -> None:
+    """Write answers, by code, into a file; those of other codes that it holds stay, those of the same codes are replaced."""
+    held = json.loads(read_regular(path, LARGEST_KEPT)) if path.exists() else {}
+    write_json(path, held | with_problems(answers))
 
 
 def compare_answers(name: str, ours: Answer, theirs: Answer, against: str) -> list[Row]:
@@ -215,4 +222,6 @@ if __name__ == "__main__":
     parser.add_argument("codes", nargs="*", default=list(CODES), help="default: all")
     parser.add_argument("--out", type=Path, default=Path(__file__).parent / STORED, help="default: the stored answers")
     arguments = parser.parse_args()
-    write_json(arguments.out, with_problems({name: CODES[name].theirs() for name in arguments.codes}))
+    for missing in [name for name in arguments.codes if not CODES[name].installed()]:
+        parser.exit(2, f"{COMMAND}: error: {missing} is not installed: {CODES[missing].installation}\n")
+    add_answers(arguments.out, {name: CODES[name].theirs() for name in arguments.codes})

@@ -21,8 +21,8 @@ ROUND_OFF = 1e-12
 """Least error bar of a ratio, whatever its changes."""
 
 
-def error_by_size(values: Sequence[float]) -> float:
-    """Return the error bar of the last of values found with elements, cells or steps halved each time.
+def error_by_size(values: Sequence[float], ratio: float = 2.0) -> float:
+    """Return the error bar of the last of values found with elements, cells or steps divided by a ratio each time.
 
     Of three and more values the grid convergence index, with the state of convergence of the last three; of two, as of positions
     over a turn, the change.
@@ -31,6 +31,8 @@ def error_by_size(values: Sequence[float]) -> float:
     ----------
     values : sequence of float
         At least two, coarsest first.
+    ratio : float
+        By which each is finer than the one before; halves by default.
 
     Examples
     --------
@@ -41,7 +43,7 @@ def error_by_size(values: Sequence[float]) -> float:
     """
     if len(values) == 2:
         return abs(values[1] - values[0])
-    return estimate_error(values, FORMAL_ORDER).bar
+    return estimate_error(values, FORMAL_ORDER, [ratio] * (len(values) - 1)).bar
 
 
 def figures_by_size(

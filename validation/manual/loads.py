@@ -446,7 +446,7 @@ CASES = (
         "of a wheel sleeve.",
         references=(
             Reference(
-                source="Król, Wikło, Olejarczyk, Kołodziejczyk, Zieja, *Mechanism and Machine Theory* 73 (2019) "
+                source="Król, Wikło, Olejarczyk, Kołodziejczyk, Zieja, *Mechanisms and Machine Science* 73 (2019) "
                 "1039–1048, code DOI "
                 "10.5281/zenodo.2166718 (re-run): F = 4 M/(z_C z_P e), σ = 0.5642 √(F/h (1/ρ + 1/q) E/(2(1 − ν²)))",
                 uncertainty="Forces to 0.05 N; printed pressures are up to 2.4 % below those of their own code.",

@@ -48,7 +48,13 @@ def all_cases() -> dict[str, Case]:
 
 
 def chosen_cases(names: list[str]) -> tuple[Case, ...]:
-    """Return the cases of these names in the order of the manual, all without names; DriveError for others and for repeats."""
+    """Return the cases of these names in the order of the manual, all without names; DriveError for others and for repeats.
+
+    Examples
+    --------
+    >>> [case.title for case in chosen_cases(["lame_ring"])]
+    ["Lamé's ring under inner pressure"]
+    """
     known = all_cases()
     listed = ", ".join(known)
     problems = [

@@ -9,7 +9,6 @@ from functools import cache
 import numpy as np
 from scipy.optimize import brentq
 
-from fem.discretisation_error import estimate_error
 from fem.solid_contact.pair_shapes import SolidPair
 from fem.solid_contact.solved_pair import PairLoad, PairMeshes, SolvedPair, solve_pair
 from ltca.arrays import FloatArray
@@ -24,7 +23,7 @@ from ltca.laws.width_pressure import solve_along_width
 from validation.levels.other_code_problems import CODES, CROWNED_PAIRS
 from validation.levels.other_codes import compare_answers, stored_answer
 from validation.manual.case import Case, Figure, Reference, absolute_figure, relative_figure
-from validation.manual.error_bars import FORMAL_ORDER
+from validation.manual.error_bars import error_by_size
 
 STEEL = Material(youngs_modulus=210e3, poisson_ratio=0.3)
 MODULUS = contact_modulus(STEEL, STEEL)
@@ -36,21 +35,12 @@ BLOCKS = (
     "at sides and bottom, free along the axis; nine-node quadrilaterals times quadratic layers, pressure bilinear over arc and "
     "height, p ≥ 0 and gap ≥ 0 in the mean."
 )
+SIZE_RATIO = float(np.sqrt(2.0))
+"""By which elements of each size are finer than those of the one before."""
 NOT_NESTED = (
     "Where the rim of a contact falls within a cell changes with the size, so that values swing; the error bar is then their "
     "whole spread, or three times that (`fem.discretisation_error`)."
 )
-
-
-def error_of_sizes(values: Sequence[float]) -> float:
-    """Return the error bar of the last of three values, each with elements 1/√2 of the size of the one before.
-
-    Examples
-    --------
-    >>> round(error_of_sizes([1.4, 1.2, 1.1]), 3)
-    0.125
-    """
-    return estimate_error(values, FORMAL_ORDER, [np.sqrt(2.0)] * (len(values) - 1)).bar
 
 
 def _origin(sizes: Sequence[float]) -> str:
@@ -92,7 +82,7 @@ def _point() -> list[Figure]:
     return [
         relative_figure(
             quantity, values[-1], reference, unit, bound, reason,
-            numerical_error=error_of_sizes(values) / reference, numerical_origin=_origin(POINT_SIZES),
+            numerical_error=error_by_size(values, SIZE_RATIO) / reference, numerical_origin=_origin(POINT_SIZES),
         )
         for quantity, values, reference, unit, bound, reason in (
             ("largest pressure", [one.largest_pressure for one in found], peak, "MPa", PRESSURE_BOUND, ASKED),
@@ -134,7 +124,7 @@ def _long_line() -> list[Figure]:
         relative_figure(
             quantity, values[-1], reference, unit, 1e-2,
             "60 half-widths from either end; five elements and more for the half-width leave some tenths of a per cent",
-            numerical_error=error_of_sizes(values) / reference, numerical_origin=origin,
+            numerical_error=error_by_size(values, SIZE_RATIO) / reference, numerical_origin=origin,
         )
         for quantity, values, reference, unit in (
             ("pressure in the middle", [_middle(one, one.peak) for one in found], peak, "MPa"),
@@ -147,7 +137,7 @@ def _long_line() -> list[Figure]:
         relative_figure(
             "line load along the width, integrated", totals[-1], LINE_LOAD, "N", 5e-3,
             "line loads are straight lines between the heights of the mesh, thin at the ends, where they fall",
-            numerical_error=error_of_sizes(totals) / LINE_LOAD, numerical_origin=origin,
+            numerical_error=error_by_size(totals, SIZE_RATIO) / LINE_LOAD, numerical_origin=origin,
         ),
     ]  # fmt: skip
 
@@ -204,7 +194,7 @@ def _free_ends() -> list[Figure]:
             absolute_figure(
                 name, float(found[-1, number]), float(laws[number]), "", None if near else 5e-2,
                 "no bound nearer to the end than a half-width: images leave more there than solid bodies have" if near else asked,
-                numerical_error=error_of_sizes(found[:, number].tolist()), numerical_origin=_origin(LINE_SIZES),
+                numerical_error=error_by_size(found[:, number].tolist(), SIZE_RATIO), numerical_origin=_origin(LINE_SIZES),
                 reference_error=abs(float(laws[number] - coarse[number])),
             )
         )  # fmt: skip
@@ -290,12 +280,12 @@ def _crown(tilt: float) -> list[Figure]:
     figures = [
         relative_figure(
             "largest pressure", peaks[-1], grid.largest, "MPa", PRESSURE_BOUND, ASKED,
-            numerical_error=error_of_sizes(peaks) / grid.largest, numerical_origin=origin,
+            numerical_error=error_by_size(peaks, SIZE_RATIO) / grid.largest, numerical_origin=origin,
             reference_error=abs(coarse.largest / grid.largest - 1.0),
         ),
         relative_figure(
             "load at the approach of half-spaces", loads[-1], CROWN_LOAD, "N", LOAD_BOUND, ASKED,
-            numerical_error=float(np.hypot(error_of_sizes(loads), error * grid.stiffness)) / CROWN_LOAD,
+            numerical_error=float(np.hypot(error_by_size(loads, SIZE_RATIO), error * grid.stiffness)) / CROWN_LOAD,
             numerical_origin=f"{origin}; with what is beyond the blocks, from blocks of 6, 12 and 24 mm",
             reference_error=abs(coarse.approach - grid.approach) * grid.stiffness / CROWN_LOAD,
         ),
@@ -305,7 +295,7 @@ def _crown(tilt: float) -> list[Figure]:
             relative_figure(
                 "moment about mid-length", moments[-1], grid.moment, "N·mm", PRESSURE_BOUND,
                 "a crown rolls by R θ, 0.24 mm: layers of 0.2 to 0.35 mm at the ends of the contact leave a per cent in doubt",
-                numerical_error=error_of_sizes(moments) / grid.moment, numerical_origin=origin,
+                numerical_error=error_by_size(moments, SIZE_RATIO) / grid.moment, numerical_origin=origin,
                 # The grids find a crown's roll exactly: what is left is that of their balance.
                 reference_error=max(abs(coarse.moment / grid.moment - 1.0), 1e-6),
             )

@@ -48,6 +48,16 @@ class DriveCheck:
         Inputs that drive the value of a quantity, the strongest first, and what would mend it; empty without advice.
     notes : tuple of str
         What to know beside the checks, one sentence each.
+
+    Examples
+    --------
+    >>> import ltca
+    >>> file = ltca.load_drive("paper")
+    >>> found = ltca.check(file, 28, case="CS-1", limits={"max_pin_load": "1 kN"}, advice=False)
+    >>> found.passes, [check.value.quantity for check in found.failed], found["pin_load"].verdict
+    (False, ['pin_load'], 'fail')
+    >>> print(found.advice.strip())
+    largest load of a wheel pin fails (limit: [limits], no source given)
     """
 
     drive: Drive

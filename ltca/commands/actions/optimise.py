@@ -13,7 +13,7 @@ from ltca.analysis.engines import SHARED_BODY, Engine, HalfSpace, describe_engin
 from ltca.analysis.extremes import sampling_warning
 from ltca.analysis.time_need import TOLD_FROM
 from ltca.commands.actions.study import name_width, tell
-from ltca.compliance.coefficient_files import expected_seconds, told_seconds
+from ltca.compliance.coefficient_files import derivation_words, expected_seconds, told_seconds
 from ltca.compliance.ring import expected_ring_seconds
 from ltca.drive.fields import read_field, whose, with_whose
 from ltca.drive.parts import Drive
@@ -135,20 +135,21 @@ def _prepared(problem: Problem, engine: Engine, arguments: argparse.Namespace) -
                     f"{' '.join(arguments.vary)} changes it; leave it out, so that each candidate gets its own"
                 ]
             )
-        seconds = sum(expected_seconds(shapes_of([problem.drive]).values(), engine.bodies))
-        each = told_seconds(seconds)
+        bodies = shapes_of([problem.drive], engine).values()
+        each = derivation_words(bodies, engine.bodies) + (" each" if engine.bodies == "plane" else "")
         if arguments.engine_is_named:
             most = most_candidates(problem, arguments.generations)
             named = "--compliance" if arguments.compliance_is_given else "[analysis] of the drive file"
+            all_of_them = f"{each}, {told_seconds(most * sum(expected_seconds(bodies)))} in all"
             tell(
                 f"every candidate is a shape of its own, and {named} names {engine.compliance}: up to {most} of them are "
-                f"derived, {each} each, {told_seconds(most * seconds)} in all, and kept; --quick solves all on half-spaces"
+                f"derived, {all_of_them if engine.bodies == 'plane' else each}, and kept; --quick solves all on half-spaces"
             )
         else:
             search = HalfSpace().lending_rings([problem.drive])
             tell(
                 f"candidates reshape the bodies by more than {SHARED_BODY:.1%}: they are solved on half-spaces, the drive as it "
-                f"is and the optimum on {engine.compliance} ({each} each); --compliance {engine.compliance} derives the "
+                f"is and the optimum on {engine.compliance} ({each}); --compliance {engine.compliance} derives the "
                 "coefficients of every candidate"
             )
     find_beforehand(engine, shapes_of([problem.drive]), tell)

@@ -186,9 +186,9 @@ NAMES = [
     "roller against the compressed cylinder",
     "pin against the held ring",
     "race against the held ring, worst angle",
-    "convergence: change from a mesh of twice the size",
     "stress left by even pressure on all walls",
     "stress along closed walls against their displacement",
+    "convergence: change from a mesh of twice the size",
     "convergence of the stresses: change from a mesh of twice the size",
 ]
 

@@ -14,6 +14,7 @@ from ltca.compliance.in_slices import ContactsInSlices, stacked
 from ltca.compliance.near_field import projected_on_half_space
 from ltca.compliance.response import Start
 from ltca.compliance.rollers import RollerLaws
+from ltca.contact.free_end import FreeEnds, guilbault_factor
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.output_torque import solve_at_output
@@ -312,7 +313,8 @@ def taken_of(drive, scale=1.0):
     def left(length, radius, tilts, modulus=modulus):
         """ln D of what is taken off a half-plane's unit: Love's strips."""
         b = np.sqrt(4.0 * load / length * radius / (np.pi * modulus))
-        held = projected_on_half_space(length, b)[1 if tilts else 0] * (np.pi * length / 2.0)
+        images = (FreeEnds(reach=1.0, weight=guilbault_factor(nu)),)
+        held = projected_on_half_space(length, b, images)[1 if tilts else 0] * (np.pi * length / 2.0)
         return held * (length**2 / 12.0 if tilts else 1.0) + np.log(0.5 * b) - 0.25
 
     def matrices(disc, pose, answer, tilts):

@@ -55,7 +55,7 @@ def test_largest_pressure_by_line_loads_and_by_grids(drop, approach, tilt, toler
     assert estimate.largest[0] == pytest.approx(grid.largest[0], rel=tolerance)
     # Flat tops are found within a slice.
     assert estimate.place[0] == pytest.approx(grid.place[0], abs=LENGTH / 9.0) or tilt == 0.0
-    np.testing.assert_array_equal(estimate.runs_off, grid.runs_off)
+    np.testing.assert_array_equal(estimate.end_load > 0.0, grid.end_load > 0.0)
 
 
 def test_a_long_straight_line_has_the_pressure_of_hertz_in_the_middle():

@@ -194,6 +194,16 @@ def test_our_side_is_computed_beside_kept_answers(echo, tmp_path, monkeypatch):
     assert len(echo) == 1
 
 
+def test_an_answer_of_one_code_leaves_those_of_others(tmp_path):
+    """Asked for one code, the file of stored answers lost those of all others."""
+    path = tmp_path / "answers.json"
+    other_codes.add_answers(path, {"tamaas": {"a": 1.0}, "CalculiX": {"b": 2.0}})
+    other_codes.add_answers(path, {"tamaas": {"a": 3.0}})
+    found = json.loads(path.read_text(encoding="utf-8"))
+    assert {name: own["answer"] for name, own in found.items()} == {"tamaas": {"a": 3.0}, "CalculiX": {"b": 2.0}}
+    assert found["CalculiX"]["problem"] == CODES["CalculiX"].fingerprint()
+
+
 @pytest.mark.slow
 def test_a_code_that_fails_is_one_error(monkeypatch):
     only(monkeypatch, "CalculiX", installed=lambda: True, ours=dict)

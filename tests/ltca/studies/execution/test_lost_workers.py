@@ -211,27 +211,3 @@ def test_scheduler_that_does_not_answer_is_told(study, tmp_path, monkeypatch):
     pytest.importorskip("distributed", reason="dask.distributed (extra 'cluster') is not installed")
     with pytest.raises(CycloError, match="no scheduler answers there"):
         run_study(study, StudyFolder(path=tmp_path), Workers(scheduler="tcp://127.0.0.1:9"))
-
-
-def test_a_scheduler_without_dask_names_what_is_missing(monkeypatch, tmp_path, capsys):
-    """It was an unforeseen ModuleNotFoundError."""
-    from ltca.commands.program import main
-
-    for name in [name for name in sys.modules if name.split(".")[0] == "distributed"]:
-        monkeypatch.delitem(sys.modules, name)
-    monkeypatch.setattr(sys, "meta_path", [_Without("distributed"), *sys.meta_path])
-    words = ["tolerance", "paper", "--samples", "2", "--positions", "2", "--scheduler", "tcp://127.0.0.1:1"]
-    assert main([*words, "--out", str(tmp_path / "out")]) == 2
-    assert "--scheduler needs dask.distributed, which is not installed" in capsys.readouterr().err
-
-
-class _Without:
-    """Finder that has not got a package."""
-
-    def __init__(self, name):
-        self.name = name
-
-    def find_spec(self, name, path=None, target=None):
-        if name.split(".")[0] == self.name:
-            raise ModuleNotFoundError(f"No module named {name!r}", name=name)
-        return None
