@@ -23,6 +23,7 @@ from ltca.analysis.verdict.proportions import odd_proportions
 from ltca.analysis.verdict.values import judge_analysis
 from ltca.arrays import FloatArray
 from ltca.drive.fields import field_kind
+from ltca.drive.members.verdict_words import CLOSE
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import ARCMIN
 from ltca.errors import ConvergenceError, CycloError, DriveError
@@ -207,9 +208,15 @@ def _summary(summary: Mapping[str, float | None]) -> list[dict[str, Any]]:
     for row in rows_of({"": with_residual_part(summary)}, yields=False):
         value = refined_value(summary, row.key)
         if value is not None:
-            text = minus(printed(value, f"{{:{row.digits}}}", row.unit))
-            rows.append({"key": row.key, "title": row.title, "value": value, "text": f"{text} {unit_sign(row.unit)}"})
+            text = _with_unit(printed(value, f"{{:{row.digits}}}", row.unit), row.unit)
+            rows.append({"key": row.key, "title": row.title, "value": value, "text": text})
     return rows
+
+
+def _with_unit(text: str, unit: str) -> str:
+    """A printed number with its unit; signs of angles close to it."""
+    sign = unit_sign(unit)
+    return minus(text) + (sign if sign in CLOSE else f" {sign}" if sign else "")
 
 
 def _derivative(question: Question, memory: Memory, file: DriveFile, name: str) -> dict[str, Any]:
@@ -232,8 +239,7 @@ def _derivative(question: Question, memory: Memory, file: DriveFile, name: str) 
         if scalar.key not in slopes:
             continue
         change = float(slopes[scalar.key].values[0]) * step
-        sign = unit_sign(scalar.unit)
-        cells.append({"title": scalar.title, "value": change, "text": f"{minus(f'{change:+.3g}')} {sign}"})
+        cells.append({"title": scalar.title, "value": change, "text": _with_unit(f"{change:+.3g}", scalar.unit)})
     return {"field": question.field, "step": words, "cells": cells}
 
 

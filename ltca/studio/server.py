@@ -354,7 +354,8 @@ def serve(studio: Studio, port: int, *, browser: bool, told: Callable[[str], Non
     import uvicorn
 
     token = secrets.token_urlsafe(24)
-    with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as listening:
+    # Named as TCP: asyncio sends small packets of no other socket at once, and each answer would wait for 40 ms.
+    with socket.socket(socket.AF_INET, socket.SOCK_STREAM, socket.IPPROTO_TCP) as listening:
         listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             listening.bind((HOST, port))

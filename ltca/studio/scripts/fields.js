@@ -133,8 +133,9 @@ function showProblems(problems) {
     const path = box.dataset.table;
     box.classList.toggle("wrong", first.declared.tables[path].fields.some(field => of(field.path).length));
   }
-  el("problems").replaceChildren(...problems.map(problem => html("li", {}, null, problem.text)));
-  el("problems").hidden = !problems.length;
+  const others = problems.filter(problem => !problem.fields.some(path => path in first.declared.turned)); // those have it beside them
+  el("problems").replaceChildren(...others.map(problem => html("li", {}, null, problem.text)));
+  el("problems").hidden = !others.length;
 }
 
 function search() {
