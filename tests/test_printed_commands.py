@@ -77,6 +77,7 @@ SMALLER = {
     "benchmarks/random_drives.py": "--count 4",
     "benchmarks/run_paper.py": "--rounds 1",
     "benchmarks/solid_cylinder.py": "--size 4 --layers 1",
+    "benchmarks/solid_free_ends.py": "--size 8 --cells 6",
     "benchmarks/solid_moves.py": "examples/drives/plastic.toml --positions 1",
     "benchmarks/solid_ltca.py": "examples/drives/plastic.toml --size 8 --layers 2",
     "benchmarks/solid_or_plane.py": "--widths 8 --size 8 --layers 2",

@@ -100,7 +100,7 @@ def execute_pair(arguments: argparse.Namespace) -> int:
     Returns
     -------
     int
-        0.
+        0, or 1 when the referee's answer is beyond a bound.
 
     Raises
     ------
@@ -122,6 +122,13 @@ def execute_pair(arguments: argparse.Namespace) -> int:
     out = arguments.out or default_folder(file.name, "fem")
     pair = SolidPair.of_drive(drive, arguments.pair, arguments.angle, arguments.contact, torque=arguments.torque)
     load, words = _load(arguments, pair.expected_load, pair.name)
+    if program and pair.opposite_material is None:
+        raise DriveError(
+            [
+                f"--referee calculix: has no effect on a rigid {pair.opposite}, of which CalculiX gets no elements; "
+                "leave it out or set pin_shaft.elastic_contact = true"
+            ]
+        )
     block = pair.radius if arguments.block is None else arguments.block
     writes = [*FILES, *(["calculix.inp", "calculix.dat"] if program else [])]
     with claimed_folder(out, "fem", writes=writes):
@@ -130,12 +137,12 @@ def execute_pair(arguments: argparse.Namespace) -> int:
         print(f"{file.name} {case}, {pair.name}, solid bodies, φ_C = {arguments.angle:g} rad, {words}")
         for line in tabulate_pair(solved):
             print(line)
-        more = _ask(solved, out, program)
+        more, passed = _ask(solved, out, program)
         write_pair(
             solved, out, more | {"case": case, "crank_angle_rad": arguments.angle, "fingerprint": drive.fingerprint()}
         )
         print(f"written to {out}")
-    return 0
+    return 0 if passed else 1
 
 
 def _load(arguments: argparse.Namespace, expected: float, name: str) -> tuple[PairLoad, str]:
@@ -152,21 +159,22 @@ def _load(arguments: argparse.Namespace, expected: float, name: str) -> tuple[Pa
     return PairLoad(load=expected, tilt=tilt), f"load {expected:.5g} N of rigid bodies on springs"
 
 
-def _ask(solved: SolvedPair, out: Path, program: str | None) -> dict[str, Any]:
-    """Let the other code solve the pair where asked for, print both answers and return them for the summary."""
+def _ask(solved: SolvedPair, out: Path, program: str | None) -> tuple[dict[str, Any], bool]:
+    """Let the other code solve the pair where asked for; return its answer for the summary, and whether all rows passed."""
     if program is None:
-        return {}
-    from fem.referee.calculix_pair import ask_about_pair, tabulate_referee
+        return {}, True
+    from fem.referee.calculix_pair import ask_about_pair, referee_rows, tabulate_referee
 
     answer = ask_about_pair(solved, out / "calculix.inp", program)
     for line in tabulate_referee(solved, answer):
         print(line)
-    return {
-        "calculix": {
-            "load_N": answer.load,
-            "largest_face_mean_MPa": answer.largest,
-            "own_largest_face_mean_MPa": answer.own_largest,
-            "face_mean_deviation": answer.deviation,
-            "seconds": answer.seconds,
-        }
+    passed = all(row.passed for row in referee_rows(solved, answer))
+    found = {
+        "load_N": answer.load,
+        "largest_face_mean_MPa": answer.largest,
+        "own_largest_face_mean_MPa": answer.own_largest,
+        "face_mean_deviation": answer.deviation,
+        "passed": passed,
+        "seconds": answer.seconds,
     }
+    return {"calculix": found}, passed

@@ -11,6 +11,7 @@ block        A block of a body around a contact: structured quadrilaterals grade
 pressing     One or more faces pressed together: gaps with profile and tilt, unilateral pressures, balance and energy
 reliefs      By how much the surfaces of a drive's contacts fall short along the width
 pair_shapes  One pair of bodies cut out of a drive: surfaces, lengths, materials, profile, lead, expected load
+displaced    Gaps between displaced surfaces, and what they differ by from linear ones
 solved_pair  Two blocks pressed together: meshes graded to the contact, solution, pressures along the width, errors
 pair_files   Files and words of a solved pair
 ===========  ============================================================

@@ -8,7 +8,7 @@ thickness 1) the weighted gap of the hat φ_i along the arc and χ_k along the w
 
 and a motion of the body opposite by d(z) along a direction opens it by :math:`\int\varphi_i\,n\cdot d\,ds \int\chi_k
 d(z)\,dz`. Left out are squares: what a relief or a tilt turns the normal out of the plane, and the shift of partners
-along the arc.
+along the arc, which `fem.solid_contact.displaced` finds from a solution and gives as a correction.
 """
 
 from __future__ import annotations
@@ -114,6 +114,7 @@ def press_faces(
     tilt: float = 0.0,
     moment: float | None = None,
     start: BoolArray | None = None,
+    correction: FloatArray | None = None,
 ) -> PressedFaces:
     """Press two bodies together at an approach or by a load, at a tilt or by a moment.
 
@@ -137,6 +138,8 @@ def press_faces(
         N·mm about mid-height; the tilt is then found.
     start : array of bool, optional
         First guess of what touches, shape (arc hats · heights,); by default where undeformed surfaces overlap, or all.
+    correction : array, optional
+        Weighted gap on top, arc by arc, mm·mm²: see `fem.solid_contact.displaced`.
 
     Raises
     ------
@@ -150,6 +153,8 @@ def press_faces(
     if width.even and (tilt != 0.0 or moment):
         raise ValueError("an even pressure knows no tilt")
     free = weighted_gap(integrals, width, relief, breaks)
+    if correction is not None:
+        free = free + correction
     push = opening_of_motion(integrals, width, direction)
     # Of even pressures the moment is zero.
     turn = np.zeros(push.size) if width.even else opening_of_motion(integrals, width, direction, _height)

@@ -21,6 +21,7 @@ from fem.mesh.memory_need import require_memory
 from fem.solid.layers import Layers, Parity, with_middles
 from fem.solid_contact.block import Block, circle_height, graded_columns, graded_rows, make_block
 from fem.solid_contact.bodies import CondensedSolid, Face, condense_solid
+from fem.solid_contact.displaced import surface_gaps, weighted_correction
 from fem.solid_contact.pair_shapes import SolidPair
 from fem.solid_contact.pressing import PressedFaces, press_faces
 from fem.solid_contact.widths import WidthGrid
@@ -39,6 +40,8 @@ END_CELL = 1.0 / 3.0
 RIM, RIM_CELL = 0.15, 0.4
 """Stretch to both sides of the end of a contact that does not reach the end of the line, by its height, and the thickness of
 layers there by that in the middle."""
+NARROWEST = 5e-4
+"""Least half-width by the depth of the block: meshes span both, and get larger without end; a surface is rough long before."""
 ROUNDS = 4
 """Of meshes at most."""
 REFINE, COARSEN = 1.15, 0.6
@@ -47,6 +50,9 @@ REFINE, COARSEN = 1.15, 0.6
 ENTRIES = 25.0
 # Entries of the matrix for an unknown, 160 to 175, held as such and as the factor's input with their indices.
 MATRIX_ENTRIES = 600.0
+CORRECTION_TOLERANCE, CORRECTIONS = 1e-5, 12
+"""Change of the gaps between displaced surfaces by the approach at which they have settled, and how often they are found anew:
+each time leaves about the strain's share of the change before, some per cent in plastics."""
 BEARING = 0.1
 """Gaps left are told where the pressure is above this part of the largest."""
 
@@ -312,6 +318,11 @@ def _solve_on(
             f"the contact of {pair.name} is {width:.3g} mm wide to each side: too wide for a block of "
             f"{meshes.block:g} mm whose surfaces have their shape up to {pair.shape_reach:.3g} mm"
         )
+    if width < NARROWEST * meshes.block:
+        raise MeshError(
+            f"the contact of {pair.name} is {width:.2g} mm wide to each side: must be at least {NARROWEST:g} of the depth of the "
+            f"block, {NARROWEST * meshes.block:.2g} mm; give a larger load or approach, or a smaller block"
+        )
     columns, zone_columns = graded_columns(edge, zone, meshes.block)
     rows = graded_rows(edge, 0.5 * width, meshes.block)
     lower = make_block(
@@ -338,7 +349,9 @@ def _solve_on(
     ]
     needed = sum(factor_memory(count) for count in unknowns)
     require_memory(sum(unknowns), needed, f"blocks of {pair.name} with size {size:g}")
-    progress(f"mesh {number}: {sum(unknowns):,} unknowns, about {needed / 1e9:.2g} GB")
+    progress(
+        f"mesh {number}: {sum(unknowns):,} unknowns, about {needed / 1e9:.2g} GB; an interrupt waits for a body's factor"
+    )
     zone_below = lower.pressure_zone(pair.curve)
     opposite = upper.opposite_zone(1j * pair.radius) if len(blocks) == 2 else None
     integrals = integrate_pair(zone_below, Pose(), Pose(centre=1j * pair.radius), pair.radius, opposite)
@@ -354,10 +367,7 @@ def _solve_on(
         if material is not None
     )  # fmt: skip
     share = 2.0 if pair.symmetric else 1.0
-    pressed = press_faces(
-        bodies, integrals, heights, direction=1j, relief=pair.relief, breaks=np.array(pair.breaks),
-        approach=load.approach, load=None if load.load is None else load.load / share, tilt=load.tilt,
-    )  # fmt: skip
+    pressed = _press(pair, load, (lower, upper), heights, bodies, integrals, share)
     return _read(
         pair,
         meshes,
@@ -398,8 +408,7 @@ def _read(
     if pair.symmetric:
         pressure, arc = np.concatenate([pressure[:0:-1], pressure]), np.concatenate([-arc[:0:-1], arc])
         x = np.concatenate([-x[:0:-1], x])
-    # Vertex values of a projection lie above a smooth pressure by h²|p″|/12, means under their hats below it as much.
-    smooth = 0.5 * (pressure + _hat_means(along, pressure))
+    smooth = smooth_along_width(along, pressure)
     line, peak, half = np.zeros(along.size), np.zeros(along.size), np.zeros(along.size)
     for place in range(along.size):
         total, _, square = pressure_moments(arc, smooth[:, place])
@@ -420,6 +429,14 @@ def _read(
     )  # fmt: skip
 
 
+def smooth_along_width(along: FloatArray, pressure: FloatArray) -> FloatArray:
+    """Return vertex values of a pressure, shape (places, heights), without what projection adds along the width, MPa.
+
+    Vertex values of a projection lie above a smooth pressure by h²|p″|/12, means under their hats below it as much.
+    """
+    return np.asarray(0.5 * (pressure + _hat_means(along, pressure)))
+
+
 def _hat_means(along: FloatArray, values: FloatArray) -> FloatArray:
     """Means of piecewise linear values under the hats of the inner vertices; the outer two keep theirs."""
     cell = np.diff(along)
@@ -430,6 +447,44 @@ def _hat_means(along: FloatArray, values: FloatArray) -> FloatArray:
     return found
 
 
+def _press(
+    pair: SolidPair,
+    load: PairLoad,
+    blocks: tuple[Block, Block],
+    width: WidthGrid,
+    bodies: tuple[CondensedSolid, ...],
+    integrals: PairIntegrals,
+    share: float,
+) -> PressedFaces:
+    """Faces pressed together until gaps close between the displaced surfaces."""
+    zone = blocks[0].pressure_zone(pair.curve)
+    correction = start = None
+    history: list[float] = []
+    while True:
+        pressed = press_faces(
+            bodies, integrals, width, direction=1j, relief=pair.relief, breaks=np.array(pair.breaks),
+            approach=load.approach, load=None if load.load is None else load.load / share, tilt=load.tilt,
+            correction=correction, start=start,
+        )  # fmt: skip
+        if pressed.load == 0.0:
+            return pressed
+        found = weighted_correction(zone, width, surface_gaps(pair, blocks, width, bodies, pressed))
+        # Where nothing touches a gap is not what pressures depend on.
+        carries = pressed.pressure.ravel() > 0.0
+        change = found if correction is None else found - correction
+        scale = np.outer(integrals.measure, width.moments(np.ones_like)).ravel() * abs(pressed.approach)
+        history.append(float(np.max(np.abs(change / scale)[carries])))
+        if history[-1] < CORRECTION_TOLERANCE:
+            return pressed
+        if len(history) > CORRECTIONS:
+            raise ConvergenceError(
+                "gaps between displaced surfaces do not settle: strains are too large for linear elasticity; changes by the "
+                "approach",
+                history,
+            )
+        correction, start = found, pressed.solution.active
+
+
 def _gap_left(
     pair: SolidPair,
     blocks: tuple[Block, Block],
@@ -437,34 +492,13 @@ def _gap_left(
     bodies: tuple[CondensedSolid, ...],
     pressed: PressedFaces,
 ) -> tuple[float, float]:
-    """Gap or overlap left at nodes of the surface under high pressure, root mean square and largest, by the approach.
-
-    Both blocks have the same columns and, within the contact, the same layers: partners are nodes of the same number,
-    up to what normals turn by over the contact.
-    """
+    """Gap or overlap left between displaced surfaces under high pressure, root mean square and largest, by the approach."""
     if pressed.load == 0.0:
         return 0.0, 0.0
-    nodes = np.unique(blocks[0].surface_edges)
-    x, y = blocks[0].section.places[:, nodes]
-    inner = width.heights[width.heights >= 0.0]
-    z = with_middles(inner)
-    signs = (1.0,) if width.even else (1.0, -1.0)
-    opening = circle_height(1.0 / pair.radius, pair.shape_reach)(x) - y
-    left = []
-    for sign in signs:
-        gap = opening[:, None] + pair.relief(sign * z) - pressed.approach - pressed.tilt * sign * z
-        for body, way in zip(bodies, (-1.0, 1.0), strict=False):
-            for each in body.classes:
-                moved = each.displacement(pressed.solution.pressure)
-                own = each.body.unknowns_of(nodes, 1)
-                values = np.zeros((nodes.size, each.body.layers.heights.size))
-                values[:, each.body.layers.free_in_plane] = moved[own]
-                factor = sign if each.body.layers.parity == "antisymmetric" else 1.0
-                gap = gap + way * factor * values[:, : z.size]
-        hats = width.hats(sign * z)
-        at_vertices = pressed.pressure[::-1] @ hats.T
-        spots = np.empty((nodes.size, z.size))
-        spots[0::2], spots[1::2] = at_vertices, 0.5 * (at_vertices[1:] + at_vertices[:-1])
-        left.append(gap[spots > BEARING * pressed.pressure.max()])
-    every = np.concatenate(left) / np.max(np.abs(pressed.approach))
+    z = with_middles(width.heights)
+    at_vertices = pressed.pressure[::-1] @ width.hats(z).T
+    spots = np.empty((2 * at_vertices.shape[0] - 1, z.size))
+    spots[0::2], spots[1::2] = at_vertices, 0.5 * (at_vertices[1:] + at_vertices[:-1])
+    gaps = surface_gaps(pair, blocks, width, bodies, pressed).displaced
+    every = gaps[spots > BEARING * pressed.pressure.max()] / np.abs(pressed.approach)
     return float(np.sqrt(np.mean(every**2))), float(np.max(np.abs(every)))

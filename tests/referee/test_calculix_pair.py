@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import shutil
+from dataclasses import replace
 
 import pytest
 
 from fem.referee.calculix_deck import find_calculix
-from fem.referee.calculix_pair import ask_about_pair, tabulate_referee, write_pair_deck
+from fem.referee.calculix_pair import ask_about_pair, referee_rows, tabulate_referee, write_pair_deck
 from fem.solid_contact.pair_shapes import SolidPair
 from fem.solid_contact.solved_pair import PairLoad, PairMeshes, solve_pair
 from ltca.drive.parts import Material
@@ -35,9 +36,18 @@ def test_a_crowned_pair_on_the_same_mesh(tilt, tmp_path):
     assert any("C3D20R" in line for line in tabulate_referee(solved, answer))
 
 
-def test_rigid_bodies_are_refused(tmp_path):
-    from dataclasses import replace
+def test_a_soft_body_on_a_hard_one_in_a_hollow(tmp_path):
+    """Issue 31, the same bounds where points slide along each other: p/E is some per cent."""
+    pair = SolidPair.round_bodies(1.0, 0.4, Material(youngs_modulus=2700.0, poisson_ratio=0.35), 2.0)
+    pair = replace(pair, opposite_material=STEEL)
+    solved = solve_pair(pair, PairLoad(load=50.0), PairMeshes(size=2.0, block=1.0))
+    answer = ask_about_pair(solved, tmp_path / "pair.inp", find_calculix())
+    assert all(row.passed for row in referee_rows(solved, answer))
+    # In the middle faces have fewer points than further out, and are compared all the same.
+    assert answer.own_largest > 0.95 * solved.largest_pressure
 
+
+def test_rigid_bodies_are_refused(tmp_path):
     pair = SolidPair.round_bodies(10.0, 0.0, STEEL, 1.0)
     solved = solve_pair(replace(pair, opposite_material=None), PairLoad(load=100.0), PairMeshes(size=8.0, block=1.0))
     with pytest.raises(CycloError, match="the body opposite is rigid"):

@@ -41,6 +41,14 @@ def run(*words):
             "approach = 0 mm of .*: must be greater than 0 mm",
         ),
         (["--bodies", "solid", "--pair", "bore", "--block", "0.05"], "too wide for a block of 0.05 mm"),
+        (
+            ["--bodies", "solid", "--pair", "bore", "--load", "1e-3"],
+            "must be at least 0.0005 of the depth of the block",
+        ),
+        (
+            ["--bodies", "solid", "--pair", "bore", "--approach", "1e-8"],
+            "must be at least 0.0005 of the depth of the block",
+        ),
     ],
 )
 def test_what_does_not_go_together_is_refused(words, message, tmp_path):
@@ -75,15 +83,25 @@ def test_files_of_a_pair(tmp_path, capsys):
     assert "approach 3 µm" in printed
 
 
+@pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX is not installed (apt install calculix-ccx)")
+def test_a_rigid_shaft_pin_has_no_referee(tmp_path):
+    """It was refused after the solution only, and left a folder behind."""
+    words = ("examples/drives/plastic.toml", "--bodies", "solid", "--pair", "hole", "--load", "200")
+    with pytest.raises(DriveError, match=r"--referee calculix: has no effect on a rigid shaft pin"):
+        run(*words, "--referee", "calculix", "--out", str(tmp_path / "out"))
+    assert not (tmp_path / "out").exists()
+
+
 @pytest.mark.slow
 @pytest.mark.nightly
 @pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX is not installed (apt install calculix-ccx)")
 def test_calculix_solves_the_pair_of_a_drive(tmp_path, capsys):
-    """Bounds of the comparison are those of `tests/referee/test_calculix_pair.py`, on finer meshes than this one."""
+    """One element for the half-width is too few: the row is FAILED, and the command says so by its status."""
     words = ("paper", "--case", "CS-1", "--angle", "0.5", "--bodies", "solid", "--pair", "bore", "--size", "8")
-    assert run(*words, "--referee", "calculix", "--load", "2000", "--out", str(tmp_path)) == 0
+    status = run(*words, "--referee", "calculix", "--load", "2000", "--out", str(tmp_path))
     summary = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))
-    # One element for the half-width.
     assert summary["calculix"]["load_N"] == pytest.approx(summary["load_N"], rel=0.02)
     assert (tmp_path / "calculix.inp").exists()
-    assert "ccx C3D20R" in capsys.readouterr().out
+    printed = capsys.readouterr().out
+    assert "ccx C3D20R" in printed
+    assert status == (0 if summary["calculix"]["passed"] else 1) == int("FAILED" in printed)
