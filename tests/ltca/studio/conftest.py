@@ -12,9 +12,6 @@ from urllib.parse import urlsplit
 
 import pytest
 
-pytest.importorskip("starlette", reason="no starlette (pip install 'cyclo-ltca[studio]')")
-pytest.importorskip("uvicorn", reason="no uvicorn (pip install 'cyclo-ltca[studio]')")
-
 
 def asker(address):
     """Return a function that asks a path below an address; it gives status, headers and body, a table where it is JSON."""
@@ -41,6 +38,8 @@ def asker(address):
 @contextmanager
 def studio(drive, folder, *words):
     """Run ``cyclo studio`` in a folder; give its process and address."""
+    for name in ("starlette", "uvicorn"):
+        pytest.importorskip(name, reason=f"no {name} (pip install 'cyclo-ltca[studio]')")
     command = [sys.executable, "-m", "ltca.commands.program", "studio", str(drive), "--no-browser", *words]
     process = subprocess.Popen(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     try:
