@@ -31,7 +31,7 @@ export         Parts carried out: exact outlines, DXF drawings, tables of points
 studio         A drive in the browser, its answer beside it: the server of ``cyclo studio``
 testing        What serves checking alone, importable by tests of your own
 facade         The front door: `analyse`, its result, derivatives
-front          What else ``import ltca`` gives: `check`, `curves`, `concat`
+front          What else ``import ltca`` gives: `check`, `curves`, `vibration`, `concat`
 commands       The program ``cyclo``
 drives         Drives that ship with the package
 =============  ============================================================
@@ -49,6 +49,7 @@ if TYPE_CHECKING:
     from ltca.front.checks import check
     from ltca.front.curves import curves
     from ltca.front.joined import concat
+    from ltca.front.vibrations import vibration
     from ltca.reading.drive_file import load_drive
 
     __version__: str
@@ -66,11 +67,12 @@ _HOMES = {
     "curves": "ltca.front.curves",
     "derivatives": "ltca.facade",
     "load_drive": "ltca.reading.drive_file",
+    "vibration": "ltca.front.vibrations",
 }
 
 __all__ = [
     "Drive", "DriveError", "HalfSpace", "Hybrid", "PlaneStrain", "__version__", "analyse", "check", "concat",
-    "curves", "derivatives", "load_drive",
+    "curves", "derivatives", "load_drive", "vibration",
 ]  # fmt: skip
 
 

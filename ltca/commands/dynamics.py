@@ -6,10 +6,8 @@ import argparse
 
 from ltca.commands.compliance_arguments import (
     add_compliance_arguments,
-    check_compliance,
-    compliance_of,
     find_coefficients_of,
-    settle_compliance,
+    open_drives,
 )
 from ltca.reading.arguments import (
     add_case_argument,
@@ -18,9 +16,7 @@ from ltca.reading.arguments import (
     add_out_argument,
     add_page_argument,
     count_argument,
-    default_folder,
     quantity_argument,
-    tell_unit_mistakes,
 )
 
 SUMMARY = "eigenfrequencies and modes under load, Campbell diagram, critical speeds, response over speed"
@@ -63,29 +59,20 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Solve every case; write dynamics.json, page and figures, print the results."""
-    from glob import escape
+    from ltca.output.run_folder import claimed_folder, figure_files
 
-    from ltca.output.run_folder import claimed_folder, figure_files, require_folder
-    from ltca.reading.drive_file import load_drive
-
-    check_compliance(arguments)
-    file = load_drive(arguments.drive)
-    cases = file.select_warm(arguments.case)
-    settle_compliance(arguments, cases.values())
-    tell_unit_mistakes(file.cases[name] for name in cases)
-    out = arguments.out or default_folder(file.name, "dynamics")
-    require_folder(out)
+    opened = open_drives(arguments, "dynamics")
+    file, cases, engine, out = opened.file, opened.cases, opened.engine, opened.out
     from ltca.analysis.drive_curves import require_turns
-    from ltca.analysis.engines import lending_between
     from ltca.commands.actions.dynamics import require_vibrations, solve_and_write
 
-    engine = lending_between(file.cases.values(), compliance_of(arguments, cases.values()))
     for name, drive in cases.items():
         require_vibrations(file.cases[name])
         if arguments.turns is not None:
             require_turns(drive, arguments.turns)
-    endings = [f"_{escape(name)}" for name in cases] if len(cases) > 1 else [""]
-    figures = figure_files(arguments.figures, *(name + ending for name in FIGURES for ending in endings))
+    figures = figure_files(
+        arguments.figures, *(name + ending for name in FIGURES for ending in opened.figure_endings())
+    )
     writes = ["dynamics.json", *([] if arguments.no_page else ["report.html"])]
     with claimed_folder(out, "dynamics", writes=[*writes, *figures]):
         find_coefficients_of(cases, engine, arguments)
