@@ -28,6 +28,7 @@ studies        Studies at scale: tolerances, sweeps, optimiser
 figures        Pictures of results, by matplotlib and pyvista
 page           Pages of results that open offline
 export         Parts carried out: exact outlines, DXF drawings, tables of points (STEP and STL: ``fem.export``)
+studio         A drive in the browser, its answer beside it: the server of ``cyclo studio``
 testing        What serves checking alone, importable by tests of your own
 facade         The front door: `analyse`, its result, derivatives
 front          What else ``import ltca`` gives: `check`, `curves`, `vibration`, `concat`

@@ -101,6 +101,7 @@ LEFT_OUT = {
     r"validation\.levels\.other_codes": "asks codes that are not everywhere, and would replace their stored answers",
     r"moving_arm\.py out/": "needs what the command before it wrote; tests/ltca/commands/test_robot_joint.py runs the page",
     r"validate --manual": "tests/validation/manual computes every case, tests/validation/commands runs the command",
+    r"cyclo studio\b": "serves until it is ended; tests/ltca/studio does so",
     r"mutants\.py": "its map alone takes longer than all tests; tests/test_mutants.py runs its parts",
     r"random_drives\.py --count N$": "a usage; its number is a placeholder",
 }
