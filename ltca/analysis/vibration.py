@@ -204,6 +204,14 @@ def speed_range(drive: Drive) -> tuple[float, float]:
     return (min(speeds), max(speeds)) if speeds else (0.0, FASTEST)
 
 
+def walked_positions(drive: Drive, positions: int) -> int:
+    """Return the crank angles of each turn behind orders and pulsation, an even number: those asked for, or the more that the
+    highest order of the transmission error needs.
+    """
+    each = max(positions, positions_per_turn(drive))
+    return each + each % 2
+
+
 @names_unit_mistakes
 def vibration(
     drive: Drive,
@@ -223,7 +231,7 @@ def vibration(
     engine : Engine
         How bodies yield.
     positions : int
-        Crank angles of a turn.
+        Crank angles of a turn; more of them than the orders of the transmission error need are those of the pulsation too.
     torque_parts : sequence of float
         Torques by that of the load; the whole one is added.
     turns : int
@@ -267,7 +275,7 @@ def vibration(
     first, at_zero = int(rigid is not None), found[0]
     shown = first + np.argsort(at_zero.frequency[first:], kind="stable")
     ahead = np.array([disc.geometry.placement.eccentric_direction(angles[:1])[0] for disc in model.discs])
-    walked = _walk(model, motion, warm, turns, lever, advance)
+    walked = _walk(model, motion, warm, turns, walked_positions(warm, positions), lever, advance)
     try:
         spectrum = fit_orders(walked.angle, walked.error, known_orders_of(warm))
     except ValueError as problem:
@@ -308,11 +316,16 @@ class _Walked:
 
 
 def _walk(
-    model: Reducer, motion: Motion, drive: Drive, turns: int, lever: FloatArray, advance: Callable[[int], None]
+    model: Reducer,
+    motion: Motion,
+    drive: Drive,
+    turns: int,
+    each: int,
+    lever: FloatArray,
+    advance: Callable[[int], None],
 ) -> _Walked:
-    """Balance some turns at the load."""
-    each, torque = positions_per_turn(drive), drive.load.torque
-    each += each % 2
+    """Balance some turns of so many positions at the load."""
+    torque = drive.load.torque
     angle = 2.0 * np.pi * np.arange(turns * each) / each
     parts, over_turn, squares = [], np.zeros((each, motion.size, motion.size)), 0.0
     scale, first = np.outer(lever, lever), 0
