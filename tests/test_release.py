@@ -65,6 +65,13 @@ def test_version_without_tags(repository, tmp_path):
     assert version(tmp_path / "shallow") == f"{NEXT}.dev1"
 
 
+def test_the_version_is_tested_with_what_builds_it():
+    builds = [line for line in PROJECT["build-system"]["requires"] if line.startswith("setuptools-scm")]
+    assert builds == [
+        line for line in PROJECT["project"]["optional-dependencies"]["test"] if line.startswith("setuptools-scm")
+    ]
+
+
 def test_version_of_a_release(repository, tmp_path):
     """The tag says it, in the clone and in the archive that Zenodo keeps; a commit later the next one is in development."""
     run("git", "tag", f"v{NEXT}", cwd=repository)

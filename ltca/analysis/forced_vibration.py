@@ -4,14 +4,17 @@ Seen from the crank, the contacts of a drive stand nearly still. In that frame (
 :math:`\dot\varphi` of the crank, the drive would follow its quasi-static motion :math:`X_s(\varphi_C)`, whose orders are fitted
 with the input turning evenly; its masses do not let it, and it departs by Y:
 
-.. math:: M D^2 Y + C \dot Y + K Y = -M D^2 X_s - f_0, \quad D = \frac{d}{dt} + \dot\varphi J
+.. math:: M D^2 Y + C \dot Y + K(\varphi_C) Y = -M D^2 X_s - f_0, \quad D = \frac{d}{dt} + \dot\varphi J
 
-with stiffness and masses in the mean of a turn, the spin J of the frame (Coriolis and centrifugal terms) and the inertia forces
-:math:`f_0` of the nominal motion: discs on their eccentrics. What torque the input takes at rest it has at every speed: an input
-whose inertia is given vibrates about that. A damping ratio is that of every mode of K and M, a loss factor makes K(1 + iη) of K.
+with the tangent K of every position of a turn, the masses in the mean of a turn, the spin J of the frame (Coriolis and
+centrifugal terms) and the inertia forces :math:`f_0` of the nominal motion: discs on their eccentrics. The pulsation of the
+stiffness makes of every whole order all others (`ltca.dynamics.harmonic_balance`). What of it does not come again after a turn
+is left out and told; so are the speeds at which the balance does not converge and the mean stiffness answers. What torque the
+input takes at rest it has at every speed: an input whose inertia is given vibrates about that. A damping ratio is that of every
+mode of the mean of K and M, a loss factor makes K̄(1 + iη) of the mean.
 
-That the stiffness itself pulses over the turn is in :math:`X_s` and left out of the response (no parametric resonance), and
-contacts are taken to stay closed: from where the transmitted torque would pass through zero, that is told.
+Where the pulsation shakes modes up by itself, and from where the transmitted torque would pass through zero, so that contacts
+part, the response is not valid: both are told.
 """
 
 from __future__ import annotations
@@ -21,18 +24,19 @@ from typing import Any
 
 import numpy as np
 
-from ltca.analysis.transmission_error_orders import order_amplitudes
+from ltca.analysis.transmission_error_orders import OrderFit
 from ltca.analysis.vibration import Vibration, speed_range
-from ltca.arrays import ComplexArray, FloatArray
+from ltca.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from ltca.compliance.response import Response, Start
+from ltca.dynamics.harmonic_balance import HillSystem, UnstableRange, unstable_ranges
 from ltca.dynamics.kinetics import moving_bodies
 from ltca.dynamics.masses import drive_masses
-from ltca.dynamics.modes import solve_modes
+from ltca.dynamics.modes import Modes, solve_modes
 from ltca.dynamics.stiffness import levers
 from ltca.equilibrium.balance import lever_arms
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.reducer import Reducer, bearing_forces
-from ltca.errors import DriveError
+from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.placement import position_angles
 
@@ -40,6 +44,10 @@ SPEEDS = 300
 """Evenly spaced speeds of a response; critical ones come to them."""
 POSITIONS = 96
 """Crank angles of a turn at which loads are told."""
+GIVEN_UP = 3
+"""Speeds in a row, faster than one that balances, whose failure ends the balance with the pulsation."""
+SAME_ORDER = 1e-9
+"""Distance from a whole number below which an order is one."""
 STEP = 1e-6
 """Displacement by which loads are differenced, mm: approaches are micrometres."""
 KINDS = ("wheel pins", "rollers", "shaft pins", "crank bearings")
@@ -57,7 +65,13 @@ class ForcedVibration:
     order_amplitude : array, shape (speeds, orders)
         Of the transmission error in motion, the orders of the spectrum, rad.
     amplitude : array, shape (speeds,)
-        Root of the sum of their squares by √2: root mean square of the transmission error about its mean, rad.
+        Root mean square of the transmission error about its mean, rad, with orders that only the motion has.
+    mean_at : array, shape (speeds,)
+        Those of the speeds at which the mean stiffness answers, since the balance with its pulsation does not converge.
+    truncation : float
+        Change of the transmission error, by itself, that half of the orders of the balance make where it is largest.
+    unstable : tuple of UnstableRange
+        Speeds of the input, turns a minute, at which the stiffness shakes modes up by its pulsation.
     torque_ratio : array, shape (speeds,)
         Largest departure of the moment between wheel and discs by its mean over the turn: from 1 on contacts part.
     factors : dict of str to array, shape (speeds,)
@@ -67,6 +81,9 @@ class ForcedVibration:
     speed: FloatArray
     order_amplitude: FloatArray
     amplitude: FloatArray
+    mean_at: FloatArray
+    truncation: float
+    unstable: tuple[UnstableRange, ...]
     torque_ratio: FloatArray
     factors: dict[str, FloatArray]
 
@@ -77,7 +94,7 @@ class ForcedVibration:
         return float(beyond[0]) if beyond.size else None
 
 
-def forced_vibration(found: Vibration, *, fastest: float | None = None) -> ForcedVibration:
+def forced_vibration(found: Vibration, *, fastest: float | None = None, speeds: int = SPEEDS) -> ForcedVibration:
     """Return the response of a drive over the speed of its input.
 
     Parameters
@@ -86,6 +103,8 @@ def forced_vibration(found: Vibration, *, fastest: float | None = None) -> Force
         Its vibrations; its drive has damping.
     fastest : float, optional
         Largest speed of the input, turns a minute; that of `speed_range` by default.
+    speeds : int
+        Evenly spaced speeds; critical ones come to them.
 
     Returns
     -------
@@ -101,57 +120,99 @@ def forced_vibration(found: Vibration, *, fastest: float | None = None) -> Force
         raise DriveError(["damping.ratio: must be given (or damping.loss_factor) for a response over speed"])
     top = speed_range(drive)[1] if fastest is None else fastest
     critical = [one.speed for one in found.critical_speeds(top) if one.speed <= top]
-    speeds = np.unique(np.concatenate((top * np.arange(1, SPEEDS + 1) / SPEEDS, critical)))
+    speed = np.unique(np.concatenate((top * np.arange(1, speeds + 1) / speeds, critical)))
     model = replace(found.engine.prepare(drive).model, friction=None)
     orders, resting = _orders(found), _quasi_static(found)
-    crank = abs(drive.crank_turns_per_input) * speeds * 2.0 * np.pi / 60.0
-    departure, outward = _departures(found, crank, orders, resting)
-    order_amplitude = np.abs(np.einsum("n,snm->sm", _deviation(found), resting + departure))
+    crank = abs(drive.crank_turns_per_input) * speed * 2.0 * np.pi / 60.0
+    system, nominal = _system(found), _nominal_forces(found)
+    forces = np.array([_force(system, one, orders, resting, nominal) for one in crank])
+    answers, balanced = _answers(system, crank, orders, forces)
+    departure, outward = answers[:, 1:].transpose(0, 2, 1), answers[:, 0].real
+    every = np.abs(np.einsum("n,snm->sm", _deviation(found), resting + departure))
+    amplitude = np.sqrt(0.5 * np.sum(every**2, axis=1))
+    worst = int(np.argmax(np.where(balanced, amplitude, 0.0)))
+    fewer = system.respond(
+        crank[worst], orders, forces[worst], pulsates=bool(balanced[worst]), highest=system.stiffness.orders // 2
+    )
+    changed = _deviation(found) @ (fewer - answers[worst])[1:].T
     loads = _Loads.at_load(found, model)
     waves = np.exp(1j * orders[:, None] * loads.angle)
     seen = np.matmul(departure, waves).real + outward[:, :, None]
     moved = np.einsum("pij,sjp->sip", motion.turned(loads.angle), seen)
     return ForcedVibration(
-        speed=speeds,
-        order_amplitude=order_amplitude,
-        amplitude=np.sqrt(0.5 * np.sum(order_amplitude**2, axis=1)),
+        speed=speed,
+        order_amplitude=every[:, _places(found, orders)],
+        amplitude=amplitude,
+        mean_at=speed[~balanced],
+        truncation=float(np.sqrt(0.5 * np.sum(np.abs(changed) ** 2)) / amplitude[worst]),
+        unstable=_unstable(found, system, top),
         torque_ratio=loads.torque_ratio(moved),
         factors=loads.factors(moved),
     )
 
 
-def _departures(
-    found: Vibration, crank: FloatArray, orders: FloatArray, resting: ComplexArray
-) -> tuple[ComplexArray, FloatArray]:
-    """Amplitudes of the departure by speed, coordinate and order; what centrifugal forces displace, by speed and coordinate."""
-    motion, basis = found.motion, found.basis
-    mass, stiffness = found.mean_mass, found.mean_stiffness
+def _answers(
+    system: HillSystem, crank: FloatArray, orders: FloatArray, forces: ComplexArray
+) -> tuple[ComplexArray, BoolArray]:
+    """Amplitudes by speed, order and coordinate, the mean first; and at which speeds the stiffness pulses."""
+    found, balanced = list[ComplexArray](), np.zeros(crank.size, dtype=bool)
+    for number, (speed, force) in enumerate(zip(crank.tolist(), forces, strict=True)):
+        # Beyond speeds that balance, what does not converge does so less and less; below, an input may turn too freely.
+        if not balanced.any() or balanced[max(number - GIVEN_UP, 0) : number].any():
+            try:
+                found.append(system.respond(speed, orders, force))
+                balanced[number] = True
+                continue
+            except ConvergenceError:
+                pass
+        found.append(system.respond(speed, orders, force, pulsates=False))
+    return np.array(found), balanced
+
+
+def _system(found: Vibration) -> HillSystem:
+    """What vibrates, seen from the crank; on average the turning of a whole free drive, on which no torque changes, stays."""
     damping, losses = _damping(found)
-    spin, size = motion.spin, found.motion.size
-    departure = np.zeros((crank.size, size, orders.size), dtype=complex)
-    outward = np.zeros((crank.size, size))
-    nominal = _nominal_forces(found)
-    for row, speed in enumerate(crank.tolist()):
-        rates = 1j * speed * orders[:, None, None] * np.eye(size) + speed * spin
-        inertia = mass @ rates @ rates
-        whole = inertia + 1j * speed * orders[:, None, None] * damping + stiffness * (1.0 + 1j * losses)
-        force = -(inertia @ resting.T[:, :, None])
-        answer = np.linalg.solve(basis.T @ whole @ basis, basis.T @ force)
-        departure[row] = (basis @ answer)[:, :, 0].T
-        steady = stiffness + speed**2 * mass @ spin @ spin
-        turning = motion.rigid if not found.input_is_held else None
-        outward[row] = _steady(steady, speed**2 * nominal, basis, turning)
-    return departure, outward
+    steady = np.eye(found.basis.shape[1])
+    if not found.input_is_held:
+        along = np.linalg.lstsq(found.basis, found.motion.rigid, rcond=None)[0]
+        steady = np.linalg.svd(along[None])[2][1:].T
+    return HillSystem(
+        mass=found.mean_mass,
+        damping=damping,
+        spin=found.motion.spin,
+        loss_factor=losses,
+        stiffness=found.stiffness,
+        basis=found.basis,
+        steady=steady,
+    )
 
 
-def _steady(stiffness: FloatArray, force: FloatArray, basis: FloatArray, turning: FloatArray | None) -> FloatArray:
-    """Displacement under steady forces; the turning of the whole drive, on which they do no work, is left as it is."""
-    free = basis
-    if turning is not None:
-        along = np.linalg.lstsq(basis, turning, rcond=None)[0]
-        _, _, rest = np.linalg.svd(along[None])
-        free = basis @ rest[1:].T
-    return np.asarray(free @ np.linalg.solve(free.T @ stiffness @ free, free.T @ force))
+def _force(
+    system: HillSystem, speed: float, orders: FloatArray, resting: ComplexArray, nominal: FloatArray
+) -> ComplexArray:
+    """Inertia forces of the nominal and the quasi-static motion at a speed of the crank, mean and orders, shape (1 + orders,
+    coordinates).
+    """
+    rates = 1j * speed * orders[:, None, None] * np.eye(nominal.size) + speed * system.spin
+    moving = -(system.mass @ rates @ rates @ resting.T[:, :, None])[:, :, 0]
+    return np.concatenate((speed**2 * nominal[None], moving))
+
+
+def _unstable(found: Vibration, system: HillSystem, top: float) -> tuple[UnstableRange, ...]:
+    """Ranges of parametric resonance up to a speed of the input, turns a minute, speeds as those of the input."""
+    damping, modes = found.drive.damping, _mean_modes(found)
+    if damping is None:
+        return ()
+    first = int(modes.turns_freely)
+    frequency, shapes = 2.0 * np.pi * modes.frequency[first:], modes.shapes[:, first:]
+    by_crank = 60.0 / (2.0 * np.pi * abs(found.drive.crank_turns_per_input))
+    ranges = unstable_ranges(system.stiffness, frequency, shapes, damping.ratio_at_resonance, top / by_crank)
+    return tuple(replace(one, slowest=by_crank * one.slowest, fastest=by_crank * one.fastest) for one in ranges)
+
+
+def _mean_modes(found: Vibration) -> Modes:
+    rigid = None if found.input_is_held else found.motion.rigid
+    return solve_modes(found.stiffness.mean, found.mean_mass, found.basis, rigid)
 
 
 def _damping(found: Vibration) -> tuple[FloatArray, float]:
@@ -160,15 +221,22 @@ def _damping(found: Vibration) -> tuple[FloatArray, float]:
     nothing = np.zeros_like(found.mean_mass)
     if damping is None or damping.ratio is None:
         return nothing, 0.0 if damping is None else damping.loss_factor or 0.0
-    rigid = None if found.input_is_held else found.motion.rigid
-    modes = solve_modes(found.mean_stiffness, found.mean_mass, found.basis, rigid)
+    modes = _mean_modes(found)
     each = 2.0 * damping.ratio * 2.0 * np.pi * modes.frequency
     on_modes = found.mean_mass @ modes.shapes
     return np.asarray((on_modes * each) @ on_modes.T), 0.0
 
 
 def _orders(found: Vibration) -> FloatArray:
-    return np.array([order.value for order in found.spectrum.orders])
+    """Whole orders that the positions of a turn resolve, then those of the spectrum that are no whole numbers."""
+    spectrum = np.array([order.value for order in found.spectrum.orders])
+    between = spectrum[np.abs(spectrum - np.round(spectrum)) > SAME_ORDER]
+    return np.concatenate((np.arange(1.0, found.stiffness.orders + 1.0), between))
+
+
+def _places(found: Vibration, orders: FloatArray) -> IntArray:
+    """Places of the orders of the spectrum among all."""
+    return np.array([int(np.argmin(np.abs(orders - order.value))) for order in found.spectrum.orders])
 
 
 def _deviation(found: Vibration) -> FloatArray:
@@ -180,7 +248,7 @@ def _deviation(found: Vibration) -> FloatArray:
 
 def _quasi_static(found: Vibration) -> ComplexArray:
     """Orders of the quasi-static motion of all coordinates with the input turning evenly, seen from the crank, shape
-    (coordinates, orders).
+    (coordinates, orders): those of the spectrum, the others zero.
     """
     motion = found.motion
     moved = np.zeros((found.walked_angle.size, motion.size))
@@ -189,7 +257,11 @@ def _quasi_static(found: Vibration) -> ComplexArray:
     evenly = moved @ motion.input_turns / float(motion.input_turns @ motion.rigid)
     moved -= evenly[:, None] * motion.rigid
     moved = np.einsum("pji,pj->pi", motion.turned(found.walked_angle), moved)
-    return np.asarray(order_amplitudes(found.walked_angle, moved, found.spectrum.orders).T)
+    fit, orders = OrderFit(np.array([order.value for order in found.spectrum.orders])), _orders(found)
+    fit.add(found.walked_angle, moved)
+    every = np.zeros((motion.size, orders.size), dtype=complex)
+    every[:, _places(found, orders)] = fit.solve()[1].T
+    return every
 
 
 def _nominal_forces(found: Vibration) -> FloatArray:
@@ -272,6 +344,44 @@ def _kinds(model: Reducer, angle: FloatArray, response: Response) -> dict[str, A
     return {kind: values for kind, values in zip(KINDS, each, strict=True) if values.size}
 
 
+RANGES_TOLD = 4
+"""Ranges of parametric resonance that are told in words; files have all."""
+
+
+def response_notes(found: ForcedVibration, vibration: Vibration) -> list[str]:
+    """Return what to know of a response, one sentence each.
+
+    Parameters
+    ----------
+    found : ForcedVibration
+        The response.
+    vibration : Vibration
+        Whose it is.
+    """
+    notes = [
+        f"stiffness pulses over the turn; {vibration.stiffness_rest:.2%} of it does not come again after one and is left out; "
+        f"half of the orders change the transmission error by {found.truncation:.2g} of it"
+    ]
+    if found.mean_at.size:
+        low, high = found.mean_at.min(), found.mean_at.max()
+        notes.append(
+            f"at {found.mean_at.size} of {found.speed.size} speeds, from {low:.4g} to {high:.4g} rpm, the balance with the "
+            "pulsation does not converge: mean stiffness there"
+        )
+    notes += [
+        f"from {one.slowest:.4g} to {one.fastest:.4g} rpm order {one.order} of the stiffness shakes modes "
+        f"{one.modes[0] + 1} and {one.modes[1] + 1} up by itself (parametric resonance): unstable"
+        for one in found.unstable[:RANGES_TOLD]
+    ]
+    if len(found.unstable) > RANGES_TOLD:
+        notes.append(f"and {len(found.unstable) - RANGES_TOLD} more such ranges in dynamics.json")
+    if found.parts_from is not None:
+        notes.append(
+            f"from {found.parts_from:.4g} rpm the torque would pass through zero: contacts part, and the linear response ends"
+        )
+    return notes
+
+
 def response_content(found: ForcedVibration, vibration: Vibration) -> dict[str, Any]:
     """Return a response as files hold it.
 
@@ -293,6 +403,18 @@ def response_content(found: ForcedVibration, vibration: Vibration) -> dict[str, 
                 "amplitude_rad": found.order_amplitude[:, place].tolist(),
             }
             for place in orders
+        ],
+        "stiffness_that_does_not_repeat": vibration.stiffness_rest,
+        "truncation": found.truncation,
+        "mean_stiffness_at_rpm": found.mean_at.tolist(),
+        "unstable_ranges": [
+            {
+                "least_rpm": one.slowest,
+                "largest_rpm": one.fastest,
+                "order": one.order,
+                "modes": [m + 1 for m in one.modes],
+            }
+            for one in found.unstable
         ],
         "torque_ratio": found.torque_ratio.tolist(),
         "contacts_part_from_rpm": found.parts_from,

@@ -184,18 +184,43 @@ def fit_orders(crank_angle: FloatArray, error: FloatArray, orders: tuple[Order, 
     )
 
 
-def order_amplitudes(crank_angle: FloatArray, values: FloatArray, orders: tuple[Order, ...]) -> ComplexArray:
-    """Return complex amplitudes a of orders, Re a·exp(i·order·φ_C), of several columns, shape (orders, columns).
+class OrderFit:
+    """Least squares of a mean and orders, a·cos(order·φ_C − phase), on values that come a part of the positions at a time.
 
     Parameters
     ----------
-    crank_angle : array, shape (positions,)
-        φ_C, rad, over turns at which `fit_orders` tells the orders apart.
-    values : array, shape (positions, columns)
-        What has these orders.
-    orders : tuple of Order
-        What to fit.
+    orders : array, shape (orders,)
+        By turn of the crank; the positions must tell them apart as `fit_orders` asks for.
     """
-    columns = _columns(np.asarray(crank_angle), np.array([order.value for order in orders]))
-    solution = np.linalg.lstsq(columns, values, rcond=None)[0]
-    return np.asarray(solution[1 : len(orders) + 1] - 1j * solution[len(orders) + 1 :])
+
+    def __init__(self, orders: FloatArray) -> None:
+        self.orders = orders
+        count = 2 * orders.size + 1
+        self._gram = np.zeros((count, count))
+        self._right: Any = 0.0
+        self._square: Any = 0.0
+        self._positions = 0
+
+    def add(self, crank_angle: FloatArray, values: FloatArray) -> None:
+        """Add values at crank angles, shape (positions, …)."""
+        columns = _columns(crank_angle, self.orders)
+        self._gram += columns.T @ columns
+        self._right = self._right + np.tensordot(columns, values, axes=(0, 0))
+        self._square = self._square + np.sum(values**2, axis=0)
+        self._positions += crank_angle.size
+
+    @property
+    def singular_ratio(self) -> float:
+        """Least singular value of the columns by the largest one (`LEAST_SINGULAR_RATIO`)."""
+        sizes = np.linalg.eigvalsh(self._gram)
+        return float(np.sqrt(max(sizes[0], 0.0) / sizes[-1]))
+
+    def solve(self) -> tuple[FloatArray, ComplexArray, FloatArray]:
+        """Return the mean, shape (…), complex amplitudes a of Re a·exp(i·order·φ_C), shape (orders, …), and the root mean square
+        of what no order explains, shape (…).
+        """
+        found = np.linalg.solve(self._gram, self._right.reshape(self._gram.shape[0], -1)).reshape(self._right.shape)
+        left = self._square - np.sum(found * self._right, axis=0)
+        count = self.orders.size
+        amplitude = found[1 : count + 1] - 1j * found[count + 1 :]
+        return found[0], np.asarray(amplitude), np.sqrt(np.maximum(left, 0.0) / self._positions)

@@ -21,6 +21,7 @@ from ltca.arrays import FloatArray
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Drive
 from ltca.drive.unit_mistakes import names_unit_mistakes
+from ltca.dynamics.harmonic_balance import PulsatingStiffness
 from ltca.dynamics.kinetics import Motion, mass_matrix, moving_bodies, require_masses
 from ltca.dynamics.masses import drive_masses
 from ltca.dynamics.modes import Modes, free_coordinates, mode_words, solve_modes
@@ -91,8 +92,12 @@ class Vibration:
         What moves in each mode at the load and crank angle 0.
     shapes : array, shape (coordinates, modes)
         The same as coordinates, mm and rad, mass-normalised (t·mm²).
-    mean_stiffness, mean_mass : array, shape (coordinates, coordinates)
-        K and M at the load in the frame that turns with the crank (`Motion.turned`), mean over the turn.
+    stiffness : PulsatingStiffness
+        K at the load in the frame that turns with the crank (`Motion.turned`), mean of the turns behind the spectrum.
+    stiffness_rest : float
+        Of it what does not come again after a turn, as root mean square by the mean.
+    mean_mass : array, shape (coordinates, coordinates)
+        M in that frame, mean over the turn.
     basis : array, shape (coordinates, free coordinates)
         Motions that are free in that frame.
     spectrum : Spectrum
@@ -115,7 +120,8 @@ class Vibration:
     frequency: FloatArray
     words: tuple[str, ...]
     shapes: FloatArray
-    mean_stiffness: FloatArray
+    stiffness: PulsatingStiffness
+    stiffness_rest: float
     mean_mass: FloatArray
     basis: FloatArray
     spectrum: Spectrum
@@ -248,23 +254,22 @@ def vibration(
     bodies = [moving_bodies(motion, masses, float(angle)) for angle in angles]
     mass = np.array([mass_matrix(each, motion.size) for each in bodies])
     frequency, found, start = [], list[Modes](), None
-    stiffness = np.zeros((0, motion.size, motion.size))
     for part in parts[::-1]:
         balanced = solve_at_output(model, [warm], angles, part * warm.load.torque, start)
         start = balanced.pose
         own = stiffness_matrices(model, motion, balanced)
         modes = [solve_modes(k, m, basis, rigid) for k, m in zip(own, mass, strict=True)]
         if part == 1.0:
-            found, stiffness = modes, own
+            found = modes
         first = int(rigid is not None)
         frequency.append([np.sort(each.frequency[first:]) for each in modes])
         advance(positions)
     first, at_zero = int(rigid is not None), found[0]
     shown = first + np.argsort(at_zero.frequency[first:], kind="stable")
     ahead = np.array([disc.geometry.placement.eccentric_direction(angles[:1])[0] for disc in model.discs])
-    walked_angle, error, pose, lag = _walk(model, warm, turns, advance)
+    walked = _walk(model, motion, warm, turns, lever, advance)
     try:
-        spectrum = fit_orders(walked_angle, error, known_orders_of(warm))
+        spectrum = fit_orders(walked.angle, walked.error, known_orders_of(warm))
     except ValueError as problem:
         raise DriveError([f"turns = {turns}: {problem}"]) from problem
     return Vibration(
@@ -276,31 +281,61 @@ def vibration(
         frequency=np.array(frequency[::-1]),
         words=tuple(mode_words(motion, bodies[0], at_zero.shapes[:, mode], ahead) for mode in shown),
         shapes=at_zero.shapes[:, shown],
-        mean_stiffness=np.mean(turned.swapaxes(1, 2) @ stiffness @ turned, axis=0),
+        stiffness=walked.stiffness,
+        stiffness_rest=walked.stiffness_rest,
         mean_mass=np.mean(turned.swapaxes(1, 2) @ mass @ turned, axis=0),
         basis=free_coordinates(np.mean(row @ turned, axis=0), lever),
         spectrum=spectrum,
         turns=turns,
-        walked_angle=walked_angle,
-        walked_pose=pose,
-        walked_lag=lag,
+        walked_angle=walked.angle,
+        walked_pose=walked.pose,
+        walked_lag=walked.lag,
     )
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Walked:
+    """Crank angles of some turns, and there, at the load, transmission error, poses, lags of the cranks, and the stiffness of a
+    mean turn with what departs from it.
+    """
+
+    angle: FloatArray
+    error: FloatArray
+    pose: FloatArray
+    lag: FloatArray
+    stiffness: PulsatingStiffness
+    stiffness_rest: float
+
+
 def _walk(
-    model: Reducer, drive: Drive, turns: int, advance: Callable[[int], None]
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Crank angles of some turns, and there, at the load, transmission error, poses and lags of the cranks."""
+    model: Reducer, motion: Motion, drive: Drive, turns: int, lever: FloatArray, advance: Callable[[int], None]
+) -> _Walked:
+    """Balance some turns at the load."""
     each, torque = positions_per_turn(drive), drive.load.torque
+    each += each % 2
     angle = 2.0 * np.pi * np.arange(turns * each) / each
-    parts = []
+    parts, over_turn, squares = [], np.zeros((each, motion.size, motion.size)), 0.0
+    scale, first = np.outer(lever, lever), 0
     for rows in np.array_split(angle, -(-angle.size // positions_together(drive))):
         found = solve_at_output(model, [drive], rows, torque, gaps=False)
+        turned = motion.turned(rows)
+        stiffness = turned.swapaxes(1, 2) @ stiffness_matrices(model, motion, found) @ turned
+        np.add.at(over_turn, (first + np.arange(rows.size)) % each, stiffness / turns)
+        squares += float(np.sum((stiffness / scale) ** 2)) / turns
         error = drive.output_deviation(wheel_angle_of_input(model, found), np.full(rows.size, torque))
         parts.append((error, found.pose, crank_lag(model, found)))
+        first += rows.size
         advance(rows.size)
     error, pose, lag = (np.concatenate(values) for values in zip(*parts, strict=True))
-    return angle, error, pose, lag
+    kept = float(np.sum((over_turn / scale) ** 2))
+    return _Walked(
+        angle=angle,
+        error=error,
+        pose=pose,
+        lag=lag,
+        stiffness=PulsatingStiffness(over_turn=over_turn),
+        stiffness_rest=float(np.sqrt(max(squares - kept, 0.0) / kept)),
+    )
 
 
 def vibration_content(found: Vibration, fastest: float | None = None) -> dict[str, Any]:

@@ -4,17 +4,26 @@ from __future__ import annotations
 
 import argparse
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ltca.errors import DamagedFileError, DriveError
-from ltca.reading.arguments import DifferentValues, bodies_for, compliance_for, refuse_idle_options
+from ltca.reading.arguments import (
+    DifferentValues,
+    bodies_for,
+    compliance_for,
+    default_folder,
+    refuse_idle_options,
+    tell_unit_mistakes,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from ltca.analysis.engines import Engine
     from ltca.drive.parts import Drive
+    from ltca.reading.drive_file import DriveFile
 
 
 def add_compliance_arguments(parser: argparse.ArgumentParser) -> None:
@@ -85,6 +94,60 @@ def compliance_of(arguments: argparse.Namespace, drives: Iterable[Drive]) -> Eng
     compliance, given = settle_compliance(arguments, drives), _options(arguments)
     files = None if given["coefficients"] is None else tuple(arguments.coefficients)
     return engine_named(compliance, **{**given, "coefficients": files})
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OpenedDrives:
+    """Drive file of a command over some of its cases, before anything is solved.
+
+    Attributes
+    ----------
+    file : DriveFile
+        The file.
+    cases : dict of str to Drive
+        Those asked for, warm.
+    engine : Engine
+        Whose cases lend each other coefficients.
+    out : Path
+        Folder of the results.
+    """
+
+    file: DriveFile
+    cases: dict[str, Drive]
+    engine: Engine
+    out: Path
+
+    def figure_endings(self) -> list[str]:
+        """Endings of the names of figures, as patterns: of several cases their names."""
+        from glob import escape
+
+        return [f"_{escape(name)}" for name in self.cases] if len(self.cases) > 1 else [""]
+
+
+def open_drives(arguments: argparse.Namespace, command: str) -> OpenedDrives:
+    """Read the drive file of a command that takes ``--case`` repeatedly, settle how bodies yield and where results go.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+        Of the command.
+    command : str
+        Its name, after which the folder is called.
+    """
+    from ltca.output.run_folder import require_folder
+    from ltca.reading.drive_file import load_drive
+
+    check_compliance(arguments)
+    file = load_drive(arguments.drive)
+    cases = file.select_warm(arguments.case)
+    settle_compliance(arguments, cases.values())
+    tell_unit_mistakes(file.cases[name] for name in cases)
+    out = arguments.out or default_folder(file.name, command)
+    require_folder(out)
+    from ltca.analysis.engines import lending_between
+
+    engine = lending_between(file.cases.values(), compliance_of(arguments, cases.values()))
+    return OpenedDrives(file=file, cases=cases, engine=engine, out=out)
 
 
 def _options(arguments: argparse.Namespace) -> dict[str, Any]:

@@ -6,10 +6,8 @@ import argparse
 
 from ltca.commands.compliance_arguments import (
     add_compliance_arguments,
-    check_compliance,
-    compliance_of,
     find_coefficients_of,
-    settle_compliance,
+    open_drives,
 )
 from ltca.errors import DriveError
 from ltca.reading.arguments import (
@@ -19,9 +17,7 @@ from ltca.reading.arguments import (
     add_out_argument,
     add_page_argument,
     count_argument,
-    default_folder,
     quantity_argument,
-    tell_unit_mistakes,
 )
 
 SUMMARY = "torque curve and lost motion, orders of the transmission error, bearing life, pressure safety"
@@ -89,26 +85,16 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Solve every case; write curves.json and figures, print the results."""
-    from glob import escape
+    from ltca.output.run_folder import claimed_folder, figure_files
 
-    from ltca.output.run_folder import claimed_folder, figure_files, require_folder
-    from ltca.reading.drive_file import load_drive
-
-    check_compliance(arguments)
-    file = load_drive(arguments.drive)
-    cases = file.select_warm(arguments.case)
-    settle_compliance(arguments, cases.values())
-    tell_unit_mistakes(file.cases[name] for name in cases)
-    out = arguments.out or default_folder(file.name, "curves")
-    require_folder(out)
+    opened = open_drives(arguments, "curves")
+    file, cases, engine, out = opened.file, opened.cases, opened.engine, opened.out
     from ltca.analysis.drive_curves import CurveSettings, positions_per_turn, require_turns
-    from ltca.analysis.engines import lending_between
     from ltca.analysis.memory_need import require_room_for_parts
     from ltca.commands.actions.curves import solve_and_write, tell_of_turns
 
     asked = (arguments.pressure_limit, arguments.load_rating, arguments.speed, arguments.lost_motion, arguments.parts)
     settings = CurveSettings(*asked)
-    engine = lending_between(file.cases.values(), compliance_of(arguments, cases.values()))
     for drive in cases.values():
         if drive.duty and settings.speed is not None:
             raise DriveError(["--speed: has no effect with [[duty]], whose entries have their own"])
@@ -119,8 +105,9 @@ def execute(arguments: argparse.Namespace) -> int:
             require_turns(drive, turns)
         elif arguments.turns is None and positions > MANY_POSITIONS:
             tell_of_turns(drive, turns, positions)
-    endings = [f"_{escape(name)}" for name in cases] if len(cases) > 1 else [""]
-    figures = figure_files(arguments.figures, *(name + ending for name in FIGURES for ending in endings))
+    figures = figure_files(
+        arguments.figures, *(name + ending for name in FIGURES for ending in opened.figure_endings())
+    )
     writes = ["curves.json", *([] if arguments.no_page else ["report.html"])]
     with claimed_folder(out, "curves", writes=[*writes, *figures]):
         find_coefficients_of(cases, engine, arguments)

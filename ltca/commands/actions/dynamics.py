@@ -11,7 +11,7 @@ import numpy as np
 
 from ltca.analysis.drive_curves import fewest_turns, positions_per_turn
 from ltca.analysis.engines import Engine, describe_engine
-from ltca.analysis.forced_vibration import ForcedVibration, forced_vibration, response_content
+from ltca.analysis.forced_vibration import ForcedVibration, forced_vibration, response_content, response_notes
 from ltca.analysis.half_space_errors import half_space_words
 from ltca.analysis.vibration import TORQUE_PARTS, Vibration, speed_range, vibration, vibration_content
 from ltca.arrays import FloatArray
@@ -164,12 +164,7 @@ def _response_lines(found: Found) -> list[str]:
     for kind, factor in answer.factors.items():
         at = int(np.argmax(factor))
         lines.append(f"  dynamic factor of {kind:<16} {factor[at]:.4f} at {answer.speed[at]:.4g} rpm")
-    part = answer.parts_from
-    if part is not None:
-        lines.append(
-            f"  from {part:.4g} rpm the torque would pass through zero: contacts part, and the linear response ends"
-        )
-    return lines
+    return lines + [f"  {note}" for note in response_notes(answer, found.vibration)]
 
 
 def _hertz(value: float) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ltca.analysis.forced_vibration import ForcedVibration
+from ltca.analysis.forced_vibration import ForcedVibration, response_notes
 from ltca.analysis.vibration import Vibration
 from ltca.drive.units.quantities import ARCSEC
 from ltca.dynamics.mass_values import mass_rows
@@ -75,13 +75,10 @@ def _campbell(case: str, ending: str, found: Vibration, fastest: float) -> Secti
         for mode in range(len(found.words))
         if mode == 0 or found.at_load[:, mode].min() <= reach
     }
-    dashed = []
     for place in found.told_orders:
         order = float(found.input_orders[place])
-        name = f"order {order:.5g} by turn of the input, {found.spectrum.orders[place].name}"
-        lines[name] = order * x / 60.0
-        dashed.append(name)
-    plot = Curves(title="Campbell diagram", unit="Hz", axis="speed of the input, rpm", x=x, lines=lines, dashed=dashed)
+        lines[f"order {order:.5g}, {found.spectrum.orders[place].name}"] = order * x / 60.0
+    plot = Curves(title="Campbell diagram", unit="Hz", axis="speed of the input, rpm", x=x, lines=lines)
     speeds = found.critical_speeds(fastest)
     rows = [
         [
@@ -100,7 +97,8 @@ def _campbell(case: str, ending: str, found: Vibration, fastest: float) -> Secti
     table = Table(name=f"critical_speeds{ending}", caption="", columns=columns, rows=rows)
     notes = [
         f"Where the {len(found.told_orders)} largest orders of the transmission error meet an eigenfrequency, up to "
-        f"{fastest:g} rpm of the input; {len(speeds)} in all. Orders are counted by turn of the crank against the pin shaft."
+        f"{fastest:g} rpm of the input; {len(speeds)} in all. Orders are counted by turn of the input in "
+        "the diagram, by turn of the crank against the pin shaft in the table."
     ]
     return Section(
         heading=_heading(case, "Critical speeds"), notes=notes, curves=[plot], tables=[table] if rows else []
@@ -116,9 +114,6 @@ def _response(case: str, found: Vibration, answer: ForcedVibration) -> Section:
         title="Transmission error in motion", unit="arc seconds", axis="speed of the input, rpm", x=x, lines=lines
     )
     factors = Curves(title="Dynamic factor", unit="", axis="speed of the input, rpm", x=x, lines=answer.factors)
-    notes = [
-        "Largest load of a contact in motion by the largest at rest. Stiffness in the mean of a turn, contacts closed."
-    ]
-    if answer.parts_from is not None:
-        notes.append(f"From {answer.parts_from:.4g} rpm on the torque would pass through zero: contacts part.")
+    told = [f"{note[0].upper()}{note[1:]}." for note in response_notes(answer, found)]
+    notes = ["Largest load of a contact in motion by the largest at rest, contacts closed.", *told]
     return Section(heading=_heading(case, "Response over speed"), notes=notes, curves=[error, factors])

@@ -1,0 +1,293 @@
+r"""Linear motion on a stiffness that pulses with the crank angle: Hill's equation of several coordinates.
+
+In the frame that turns with the crank at the speed :math:`\dot\varphi`,
+
+.. math:: M D^2 Y + C \dot Y + K(\varphi) Y = f(\varphi), \quad D = \frac{d}{dt} + \dot\varphi J
+
+with a stiffness that comes again after a turn. Whole orders below half the positions of a turn are balanced together: inertia,
+spin and damping act on orders, the stiffness at positions (alternating by FFT). GMRES solves them; its preconditioner lets
+motions a, whose inertia counts, answer by the mean of what they feel, and the others, b, at every position at once:
+
+.. math:: b = K_{bb}^{-1} (f_b - K_{ba} a), \quad K_{eff} = K_{aa} - K_{ab} K_{bb}^{-1} K_{ba} .
+
+Orders of a force that are no whole numbers (rollers that pass, pins with errors) answer by the mean stiffness.
+
+By the same pulsation a drive is unstable where an order o meets the sum of two eigenfrequencies (Hsu, J. Appl. Mech. 30 (1963)
+367–372; Nayfeh and Mook, Nonlinear Oscillations, 1979, sec. 5.5), to first order of the pulsation where
+
+.. math:: |o \dot\varphi - \omega_i - \omega_j| < (\mu_i + \mu_j) \sqrt{g/(\mu_i \mu_j) - 1}, \quad
+          g = \frac{|x_i^T K_o x_j|^2}{16\, \omega_i \omega_j}, \quad \mu = \zeta \omega .
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import eigh
+from scipy.sparse.linalg import LinearOperator, gmres
+
+from ltca.arrays import ComplexArray, FloatArray
+from ltca.errors import ConvergenceError
+
+SOLVED = 1e-9
+"""Part of a force that a balance may leave, in displacements."""
+DIRECTIONS, CYCLES = 30, 2
+"""Of GMRES at most: each strong resonance takes some. Beyond, many modes are coupled over many orders."""
+BEYOND = 2.0
+"""Eigenfrequency by that of the highest order from which motions answer at every position at once in the preconditioner."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PulsatingStiffness:
+    """Stiffness over a turn of the crank, N/mm, N and N·mm, symmetric.
+
+    Attributes
+    ----------
+    over_turn : array, shape (positions, n, n)
+        At evenly spaced crank angles 2πk/N, an even number of them.
+    """
+
+    over_turn: FloatArray
+
+    @classmethod
+    def constant(cls, stiffness: FloatArray, positions: int) -> PulsatingStiffness:
+        """Return a stiffness that does not pulse."""
+        return cls(over_turn=np.broadcast_to(stiffness, (positions, *stiffness.shape)))
+
+    @property
+    def mean(self) -> FloatArray:
+        """K̄, shape (n, n)."""
+        return np.asarray(self.over_turn.mean(axis=0))
+
+    @property
+    def orders(self) -> int:
+        """Largest order that its positions resolve."""
+        return len(self.over_turn) // 2 - 1
+
+    @property
+    def amplitude(self) -> ComplexArray:
+        """K_o of Re K_o·exp(i·o·φ), orders 1, 2, …, shape (orders, n, n)."""
+        return np.asarray(2.0 * np.fft.rfft(self.over_turn, axis=0, norm="forward")[1 : self.orders + 1])
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HillSystem:
+    """What vibrates, seen from the crank.
+
+    Attributes
+    ----------
+    mass, damping, spin : array, shape (n, n)
+        M, t; C, N·s/mm; J.
+    loss_factor : float
+        η of the mean stiffness: K̄ (1 + iη).
+    stiffness : PulsatingStiffness
+        K(φ).
+    basis : array, shape (n, m)
+        Motions that are free, as displacements.
+    steady : array, shape (m, k)
+        Those of them that are free on average of a turn.
+    """
+
+    mass: FloatArray
+    damping: FloatArray
+    spin: FloatArray
+    loss_factor: float
+    stiffness: PulsatingStiffness
+    basis: FloatArray
+    steady: FloatArray
+
+    def compliance(self, speed: float, orders: FloatArray) -> ComplexArray:
+        """Return what the mean stiffness yields at a speed of the crank, rad/s, over the free motions, shape (orders, m, m).
+
+        Orders are not negative, and zero is the first.
+        """
+        rates = 1j * speed * orders[:, None, None] * np.eye(self.mass.shape[0]) + speed * self.spin
+        damped = 1j * speed * orders[:, None, None] * self.damping
+        lossy = 1.0 + 1j * self.loss_factor * (orders > 0.0)[:, None, None]
+        whole = self.basis.T @ (self.mass @ rates @ rates + damped + self.stiffness.mean * lossy) @ self.basis
+        found = np.zeros_like(whole)
+        found[1:] = np.linalg.inv(whole[1:])
+        found[0] = self.steady @ np.linalg.inv(self.steady.T @ whole[0].real @ self.steady) @ self.steady.T
+        return np.asarray(found)
+
+    def respond(
+        self,
+        speed: float,
+        orders: FloatArray,
+        force: ComplexArray,
+        *,
+        pulsates: bool = True,
+        highest: int | None = None,
+    ) -> ComplexArray:
+        """Return amplitudes of the motion under those of a force, shape (1 + orders, n): its mean, then a of Re a·exp(i·order·φ).
+
+        Parameters
+        ----------
+        speed : float
+            Of the crank, rad/s.
+        orders : array, shape (orders,)
+            1, 2, … `PulsatingStiffness.orders`, then those that are no whole numbers.
+        force : array of complex, shape (1 + orders, n)
+            Mean of the force, real, and its amplitudes.
+        pulsates : bool
+            Whether the stiffness does; without, its mean answers.
+        highest : int, optional
+            Whole order from which on the motion is cut off; all are taken by default.
+
+        Raises
+        ------
+        ConvergenceError
+            When the pulsation is not balanced in `DIRECTIONS`.
+        """
+        compliance = self.compliance(speed, np.concatenate(([0.0], orders)))
+        still = np.einsum("oij,oj->oi", compliance, force @ self.basis)
+        whole = self.stiffness.orders + 1 if highest is None else highest
+        if pulsates and np.any(self.stiffness.over_turn != self.stiffness.over_turn[0]):
+            still[: self.stiffness.orders + 1] = 0.0
+            still[:whole] = self._balanced(speed, force[:whole] @ self.basis)
+        return np.asarray(still @ self.basis.T)
+
+    def _balanced(self, speed: float, force: ComplexArray) -> ComplexArray:
+        """Whole orders of the motion, zero first, over the free motions."""
+        samples, (whole, size) = self.stiffness.over_turn.shape[0], force.shape
+        orders, basis = np.arange(float(whole)), self.basis
+        rates = 1j * speed * orders[:, None, None] * np.eye(self.mass.shape[0]) + speed * self.spin
+        mean, mass = basis.T @ self.stiffness.mean @ basis, basis.T @ self.mass @ basis
+        lossy = 1j * self.loss_factor * (orders > 0.0)[:, None, None] * mean
+        damped = 1j * speed * orders[:, None, None] * self.damping
+        moving = basis.T @ (self.mass @ rates @ rates + damped) @ basis + lossy
+        stiffness = basis.T @ self.stiffness.over_turn @ basis
+        held = self.steady @ self.steady.T
+        slow = _slow_motions(mean, mass, BEYOND * whole * speed)
+        split = np.concatenate((slow, _beside(slow, mass)), axis=1)
+        count = slow.shape[1]
+        parts = split.T @ stiffness @ split
+        at_once: FloatArray = np.asarray(np.linalg.inv(parts[:, count:, count:]), dtype=np.float64)
+        across: FloatArray = np.asarray(at_once @ parts[:, count:, :count], dtype=np.float64)
+        felt = np.mean(parts[:, :count, :count] - parts[:, :count, count:] @ across, axis=0)
+        answers = _inverses(slow.T @ moving @ slow + felt)
+        scale = np.concatenate(([samples], np.full(whole - 1, 0.5 * samples)))[:, None]
+
+        def in_time(amplitudes: ComplexArray) -> FloatArray:
+            return np.asarray(np.fft.irfft(amplitudes, samples, axis=0))
+
+        def by_orders(values: FloatArray) -> ComplexArray:
+            found: ComplexArray = np.fft.rfft(values, axis=0)[:whole]
+            found[0] = held @ found[0]
+            return found
+
+        # What is cut off, or does not move on average, is nothing in the answer: both operators leave it as it is.
+        def balance(values: FloatArray) -> FloatArray:
+            given = values.reshape(samples, size)
+            amplitudes = by_orders(given)
+            motion = in_time(amplitudes)
+            forces = by_orders(_times(stiffness, motion)) + np.einsum("oij,oj->oi", moving, amplitudes)
+            forces[0] = held @ forces[0]
+            return np.asarray(in_time(forces) + given - motion).ravel()
+
+        def prepared(values: FloatArray) -> FloatArray:
+            given = values.reshape(samples, size)
+            taken = in_time(by_orders(given))
+            turned: FloatArray = np.asarray(taken @ split, dtype=np.float64)
+            quick = _times(at_once, turned[:, count:])
+            pushed = turned[:, :count] - np.einsum("pba,pb->pa", parts[:, count:, :count], quick)
+            slowly = in_time(np.einsum("oij,oj->oi", answers, np.fft.rfft(pushed, axis=0)[:whole]))
+            found = np.concatenate((slowly, quick - _times(across, slowly)), axis=1) @ split.T
+            return np.asarray(in_time(by_orders(found)) + given - taken).ravel()
+
+        right = force * scale
+        right[0] = held @ right[0]
+        operator, preconditioner = (
+            LinearOperator((samples * size,) * 2, matvec=one, dtype=np.float64) for one in (balance, prepared)
+        )
+        found, missed = gmres(
+            operator,
+            in_time(right).ravel(),
+            M=preconditioner,
+            rtol=SOLVED,
+            atol=0.0,
+            restart=DIRECTIONS,
+            maxiter=CYCLES,
+        )
+        if missed:
+            raise ConvergenceError(f"no periodic motion found at {speed:.6g} rad/s of the crank", [])
+        return np.asarray(by_orders(found.reshape(samples, size)) / scale)
+
+
+def _inverses(matrices: ComplexArray) -> ComplexArray:
+    """Inverses by order; at order zero, where the turning of a whole drive may have no stiffness, a generalised one."""
+    return np.concatenate((np.linalg.pinv(matrices[:1]), np.linalg.inv(matrices[1:])))
+
+
+def _times(matrices: FloatArray, vectors: FloatArray) -> FloatArray:
+    """Product position by position."""
+    return np.asarray(np.matmul(matrices, vectors[..., None])[..., 0])
+
+
+def _slow_motions(stiffness: FloatArray, mass: FloatArray, fastest: float) -> FloatArray:
+    """Modes up to an angular frequency, rad/s, at least one, as columns of length 1."""
+    # A stiffness of a drive that turns freely may be singular: modes by the reciprocal need a shift that changes none of them.
+    shift = np.trace(stiffness) / np.trace(mass)
+    inverse, shapes = eigh(mass, stiffness + shift * mass)
+    order = np.argsort(-inverse)
+    count = max(1, int(np.count_nonzero(inverse * (shift + fastest**2) >= 1.0)))
+    found = shapes[:, order[:count]]
+    return np.asarray(found / np.linalg.norm(found, axis=0))
+
+
+def _beside(motions: FloatArray, mass: FloatArray) -> FloatArray:
+    """Columns that span what no inertia couples to motions."""
+    rows = motions.T @ mass
+    return np.asarray(np.linalg.svd(rows / np.linalg.norm(rows, axis=1, keepdims=True))[2][motions.shape[1] :].T)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class UnstableRange:
+    """Speeds of the crank at which an order of the stiffness shakes two modes up, to first order of the pulsation.
+
+    Attributes
+    ----------
+    slowest, fastest : float
+        Of the crank, rad/s.
+    order : int
+        By turn of the crank.
+    modes : tuple of int
+        Both modes, the same twice where the order meets twice its frequency.
+    """
+
+    slowest: float
+    fastest: float
+    order: int
+    modes: tuple[int, int]
+
+
+def unstable_ranges(
+    stiffness: PulsatingStiffness, frequency: FloatArray, shapes: FloatArray, damping_ratio: float, fastest: float
+) -> tuple[UnstableRange, ...]:
+    """Return speeds up to a fastest one at which parametric resonances grow, ascending.
+
+    Parameters
+    ----------
+    stiffness : PulsatingStiffness
+        K(φ).
+    frequency : array, shape (modes,)
+        ω of the mean stiffness, rad/s, positive.
+    shapes : array, shape (n, modes)
+        Mass-normalised.
+    damping_ratio : float
+        ζ of every mode, positive.
+    fastest : float
+        Of the crank, rad/s.
+    """
+    found = []
+    damped = damping_ratio * frequency
+    growth = np.abs(shapes.T @ stiffness.amplitude @ shapes) ** 2 / (16.0 * np.multiply.outer(frequency, frequency))
+    excess = growth / np.multiply.outer(damped, damped) - 1.0
+    for place, first, second in np.argwhere(np.triu(excess > 0.0)).tolist():
+        order, middle = place + 1, frequency[first] + frequency[second]
+        half = (damped[first] + damped[second]) * np.sqrt(excess[place, first, second])
+        slowest, top = float(middle - half) / order, float(middle + half) / order
+        if slowest < fastest:
+            found.append(UnstableRange(slowest=max(slowest, 0.0), fastest=top, order=order, modes=(first, second)))
+    return tuple(sorted(found, key=lambda one: (one.slowest, one.order, one.modes)))
