@@ -9,9 +9,9 @@ brings a row of its velocity z and one of its rotation, and the mass matrix is
 .. math:: M = \sum m\, \mathrm{Re}(z^H z) + \sum J\, r^T r .
 
 Rollers move by the mean of race and bore; their cage turns by `cage_speed`, they roll on the bore. Pins, sleeves, ring and posts
-are rigid with wheel and shaft, shafts of cranks bend as their stiffness lets them. Where contacts have slices discs lean, with
-their transverse moments of inertia; leans of cranks and wheel have none and follow as springs do. Frozen at a crank angle: accelerations by the
-square of the speed (centrifugal and Coriolis terms) are no part of it.
+are rigid with wheel and shaft, shafts of cranks bend as their stiffness lets them. Where contacts
+have slices discs lean, with their transverse moments of inertia; leans of cranks and wheel have none and follow as springs do.
+Frozen at a crank angle: accelerations by the square of the speed (centrifugal and Coriolis terms) are no part of it.
 """
 
 from __future__ import annotations
@@ -354,7 +354,7 @@ def _discs_and_rollers(motion: Motion, masses: DriveMasses, angle: float) -> Ite
 
 
 def _leaning(motion: Motion, disc: Solid, number: int) -> Iterator[Body]:
-    """Transverse moments of inertia of a disc that leans: points at (x, y, z) move by z l in the plane, −(x l_x + y l_y) along z."""
+    """Transverse moments of inertia of a disc that leans: points move by z l in the plane and −(x l_x + y l_y) along z."""
     tensor = disc.inertia
     if not motion.pose.leans or tensor is None:
         return
