@@ -27,7 +27,7 @@ By the same pulsation a drive is unstable where an order o meets the sum of two 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.linalg import eigh, expm
@@ -38,13 +38,14 @@ from ltca.errors import ConvergenceError
 
 SOLVED = 1e-9
 """Part of a force that a balance may leave, in displacements."""
-DIRECTIONS, CYCLES = 30, 2
+DIRECTIONS, CYCLES = 60, 2
 """Of GMRES at most: each strong resonance takes some. Beyond, many modes are coupled over many orders."""
 BEYOND = 2.0
 """Eigenfrequency by that of the highest order from which motions answer at every position at once in the preconditioner."""
 FINER = 2
-RESOLVED = 1.8
-"""The same up to which positions resolve motions, which are solved over the turn."""
+"""Pushes of slow motions by positions of a turn."""
+RESOLVED = 0.9 * FINER
+"""Eigenfrequency as above up to which these pushes resolve motions."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -96,6 +97,8 @@ class HillSystem:
         Motions that are free, as displacements.
     steady : array, shape (m, k)
         Those of them that are free on average of a turn.
+    splits : dict
+        Slow motions and those beside them by how many are slow, kept from speed to speed.
     """
 
     mass: FloatArray
@@ -105,6 +108,7 @@ class HillSystem:
     stiffness: PulsatingStiffness
     basis: FloatArray
     steady: FloatArray
+    splits: dict[int, _Split] = field(default_factory=dict, init=False, compare=False, repr=False)
 
     def compliance(self, speed: float, orders: FloatArray) -> ComplexArray:
         """Return what the mean stiffness yields at a speed of the crank, rad/s, over the free motions, shape (orders, m, m).
@@ -157,6 +161,13 @@ class HillSystem:
             still[:whole] = self._balanced(speed, force[:whole] @ self.basis)
         return np.asarray(still @ self.basis.T)
 
+    def _split(self, stiffness: FloatArray, mean: FloatArray, mass: FloatArray, fastest: float) -> _Split:
+        """Motions up to an angular frequency and those beside them, the same ones at neighbouring speeds."""
+        slow = _slow_motions(mean, mass, fastest)
+        if slow.shape[1] not in self.splits:
+            self.splits[slow.shape[1]] = _Split.of(stiffness, mass, slow)
+        return self.splits[slow.shape[1]]
+
     def _balanced(self, speed: float, force: ComplexArray) -> ComplexArray:
         """Whole orders of the motion, zero first, over the free motions."""
         samples, (whole, size) = self.stiffness.over_turn.shape[0], force.shape
@@ -168,8 +179,7 @@ class HillSystem:
         moving = basis.T @ (self.mass @ rates @ rates + damped) @ basis + lossy
         stiffness = basis.T @ self.stiffness.over_turn @ basis
         held = self.steady @ self.steady.T
-        split = _Split.of(stiffness, mean, mass, BEYOND * whole * speed)
-        resolved = _Split.of(stiffness, mean, mass, RESOLVED * whole * speed)
+        split, resolved = (self._split(stiffness, mean, mass, part * whole * speed) for part in (BEYOND, RESOLVED))
         answers = _inverses(split.slow.T @ moving @ split.slow + split.condensed.mean(axis=0))
         slow = resolved.slow
         over_turn = _PushedMotion.over_turn(
@@ -190,14 +200,11 @@ class HillSystem:
             found[0] = held @ found[0]
             return found
 
-        # What is cut off, or does not move on average, is nothing in the answer: both operators leave it as it is.
         def balance(values: FloatArray) -> FloatArray:
-            given = values.reshape(samples, size)
-            amplitudes = by_orders(given)
-            motion = in_time(amplitudes)
-            forces = by_orders(_times(stiffness, motion)) + np.einsum("oij,oj->oi", moving, amplitudes)
+            amplitudes = values.view(np.complex128).reshape(whole, size)
+            forces = by_orders(_times(stiffness, in_time(amplitudes))) + np.einsum("oij,oj->oi", moving, amplitudes)
             forces[0] = held @ forces[0]
-            return np.asarray(in_time(forces) + given - motion).ravel()
+            return forces.ravel().view(np.float64)
 
         def by_mean(pushed: FloatArray) -> FloatArray:
             return in_time(np.einsum("oij,oj->oi", answers, np.fft.rfft(pushed, axis=0)[:whole]))
@@ -206,22 +213,20 @@ class HillSystem:
             return _at_positions(over_turn.answer(_at_positions(pushed, FINER * samples)), samples)
 
         def prepared(values: FloatArray) -> FloatArray:
-            given = values.reshape(samples, size)
-            taken = in_time(by_orders(given))
-            found = in_time(by_orders(split.answer(taken, by_mean))) + given - taken
+            found = by_orders(split.answer(in_time(values.view(np.complex128).reshape(whole, size)), by_mean))
             if slow.shape[1]:
-                left = in_time(by_orders((values - balance(found.ravel())).reshape(samples, size)))
-                found = found + in_time(by_orders(resolved.answer(left, pushed_between)))
-            return np.asarray(found).ravel()
+                left = (values - balance(found.ravel().view(np.float64))).view(np.complex128).reshape(whole, size)
+                found += by_orders(resolved.answer(in_time(left), pushed_between))
+            return found.ravel().view(np.float64)
 
         right = force * scale
         right[0] = held @ right[0]
         operator, preconditioner = (
-            LinearOperator((samples * size,) * 2, matvec=one, dtype=np.float64) for one in (balance, prepared)
+            LinearOperator((2 * whole * size,) * 2, matvec=one, dtype=np.float64) for one in (balance, prepared)
         )
         found, missed = gmres(
             operator,
-            in_time(right).ravel(),
+            right.ravel().view(np.float64),
             M=preconditioner,
             rtol=SOLVED,
             atol=0.0,
@@ -230,7 +235,7 @@ class HillSystem:
         )
         if missed:
             raise ConvergenceError(f"no periodic motion found at {speed:.6g} rad/s of the crank", [])
-        return np.asarray(by_orders(found.reshape(samples, size)) / scale)
+        return np.asarray(found.view(np.complex128).reshape(whole, size) / scale)
 
 
 def _at_positions(values: FloatArray, samples: int) -> FloatArray:
@@ -259,8 +264,7 @@ class _Split:
     """K_eff of the slow ones."""
 
     @classmethod
-    def of(cls, stiffness: FloatArray, mean: FloatArray, mass: FloatArray, fastest: float) -> _Split:
-        slow = _slow_motions(mean, mass, fastest)
+    def of(cls, stiffness: FloatArray, mass: FloatArray, slow: FloatArray) -> _Split:
         motions = np.concatenate((slow, _beside(slow, mass)), axis=1)
         count = slow.shape[1]
         parts = motions.T @ stiffness @ motions
@@ -349,7 +353,7 @@ class _PushedMotion:
 
 def _times(matrices: FloatArray, vectors: FloatArray) -> FloatArray:
     """Product position by position."""
-    return np.asarray(np.matmul(matrices, vectors[..., None])[..., 0])
+    return np.asarray(np.einsum("...ij,...j->...i", matrices, vectors))
 
 
 def _slow_motions(stiffness: FloatArray, mass: FloatArray, fastest: float) -> FloatArray:
