@@ -35,6 +35,7 @@ from ltca.analysis.reduced_model.wind_up import (
     wind_up,
 )
 from ltca.analysis.transmission_error_orders import known_orders
+from ltca.arrays import FloatArray
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Drive
 from ltca.drive.unit_mistakes import names_unit_mistakes
