@@ -6,7 +6,10 @@ the torque of the drive without friction at the same wind-up: an element moves b
 :math:`c\,T_r (|f|/T_r)^p` with the rated torque :math:`T_r` and p = 1 (Coulomb) or 2 (more contacts carry). Its stiffness by its
 strength says at which part of the torque of the reversal it slips back. Torque along a path is linear in the strengths, which are
 found by non-negative least squares. What contacts hold goes with the crank angle as well: the strength of all elements has a
-factor for it, of one in the mean, by orders, found from the drive loaded slowly at many crank angles.
+factor for it, of one in the mean, by orders, found from the drive loaded slowly at many crank angles. So does where they slip
+back: some elements have a weight :math:`1 + \cos(o\varphi_C - \psi)` besides, with an order o and ψ of 0, π/2, π or 3π/2,
+which is never negative; a sum of them is a distribution of elements that goes with the crank angle. Factor and weight act on
+strength and stiffness alike.
 """
 
 from __future__ import annotations
@@ -26,6 +29,12 @@ LEAST_FACTOR = 0.005
 """Amplitude of an order of the factor, by one, up to which it is left out."""
 LEAST_STRENGTH = 1e-5
 """By the rated torque; weaker elements are left out."""
+PHASES = (0.0, 0.5 * np.pi, np.pi, 1.5 * np.pi)
+"""Of weights, rad: sums of them have any phase."""
+MOST_ORDERS = 3
+"""Of weights; each has four times as many strengths as there are elements without one."""
+LEAST_GAIN = 0.8
+"""Squares that are left on paths not fitted to, by those without one more order, above which it is not taken."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,11 +45,16 @@ class HysteresisElements:
     ----------
     exponent, strength, stiffness : array, shape (elements,)
         p, c and κ.
+    order, amplitude, phase : array, shape (elements,)
+        Of the weight 1 + amplitude·cos(order·φ_C − phase) on strength and stiffness; phase in rad.
     """
 
     exponent: FloatArray
     strength: FloatArray
     stiffness: FloatArray
+    order: FloatArray
+    amplitude: FloatArray
+    phase: FloatArray
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -86,7 +100,14 @@ class StrengthFactor:
 
 
 NO_FACTOR = StrengthFactor(orders=(), cosine=np.zeros((2, 0)), sine=np.zeros((2, 0)))
-NO_ELEMENTS = HysteresisElements(exponent=np.zeros(0), strength=np.zeros(0), stiffness=np.zeros(0))
+NO_ELEMENTS = HysteresisElements(
+    exponent=np.zeros(0),
+    strength=np.zeros(0),
+    stiffness=np.zeros(0),
+    order=np.zeros(0),
+    amplitude=np.zeros(0),
+    phase=np.zeros(0),
+)
 
 
 def _responses(
@@ -101,14 +122,21 @@ def _responses(
     state, found = np.zeros(strength.size), np.zeros((elastic.size, strength.size))
     before = 0.0
     for place, value in enumerate(elastic.tolist()):
-        most = factors[int(value > 0.0)] * strength * rated * (abs(value) / rated) ** exponent
-        state = np.clip(state + stiffness * (value - before), -most, most)
+        factor = factors[int(value > 0.0)]
+        most = factor * strength * rated * (abs(value) / rated) ** exponent
+        state = np.clip(state + factor * stiffness * (value - before), -most, most)
         before, found[place] = value, state
     return found
 
 
 def fit_elements(
-    elastic: list[FloatArray], torque: list[FloatArray], rated: float, factors: list[tuple[float, float]]
+    elastic: list[FloatArray],
+    torque: list[FloatArray],
+    rated: float,
+    factors: list[tuple[float, float]],
+    crank_angle: FloatArray | None = None,
+    orders: tuple[float, ...] = (),
+    judged: int = 0,
 ) -> HysteresisElements:
     """Fit elements to paths of torque.
 
@@ -122,16 +150,60 @@ def fit_elements(
         T_r, N·mm.
     factors : list of tuple of float
         Of the strength at negative and positive torque, path by path.
+    crank_angle : array, shape (paths,), optional
+        Of each path, rad; needed with `orders`.
+    orders : tuple of float
+        By turn of the crank, that weights may have: `MOST_ORDERS` of them at most are taken.
+    judged : int
+        Last paths that choose the orders, by elements fitted to the others; the elements returned are fitted to all.
     """
     exponent = np.repeat(EXPONENTS, len(SLIPS_BACK_AT))
     back = np.tile(SLIPS_BACK_AT, len(EXPONENTS))
     # What slips back at the part ρ has gone from c to −c ρ^p over 1 − ρ; an element follows its own strength while it grows.
     slope = np.maximum((1.0 + back**exponent) / (1.0 - back), exponent)
     one = np.ones(exponent.size)
-    columns = np.vstack(
-        [_responses(path, rated, exponent, one, slope, factor) for path, factor in zip(elastic, factors, strict=True)]
-    )
-    beside = np.concatenate([value - path for path, value in zip(elastic, torque, strict=True)])
-    strength = nnls(columns / rated, beside / rated)[0]
+    alone = [
+        _responses(path, rated, exponent, one, slope, factor) / rated
+        for path, factor in zip(elastic, factors, strict=True)
+    ]
+    beside = [(value - path) / rated for path, value in zip(elastic, torque, strict=True)]
+    angle = np.zeros(len(elastic)) if crank_angle is None else crank_angle
+
+    def fitted(chosen: tuple[float, ...], last: int) -> FloatArray:
+        columns = [np.kron(_weights(chosen, angle[place]), alone[place]) for place in range(last)]
+        return np.asarray(nnls(np.vstack(columns), np.concatenate(beside[:last]), maxiter=20 * columns[0].shape[1])[0])
+
+    def left(chosen: tuple[float, ...]) -> float:
+        """Return the squares that elements leave of the paths they are not fitted to."""
+        first = len(elastic) - judged
+        strength = fitted(chosen, first)
+        every = range(first, len(elastic))
+        rest = [np.kron(_weights(chosen, angle[at]), alone[at]) @ strength - beside[at] for at in every]
+        return float(np.sum(np.square(rest)))
+
+    taken: tuple[float, ...] = ()
+    least = left(taken) if orders else 0.0
+    while len(taken) < min(MOST_ORDERS, len(orders)):
+        tried = {order: left((*taken, order)) for order in orders if order not in taken}
+        best = min(tried, key=lambda order: tried[order])
+        if tried[best] > LEAST_GAIN * least:
+            break
+        taken, least = (*taken, best), tried[best]
+    strength = fitted(taken, len(elastic))
     kept = strength > LEAST_STRENGTH
-    return HysteresisElements(exponent=exponent[kept], strength=strength[kept], stiffness=(slope * strength)[kept])
+    weights = 1 + len(PHASES) * len(taken)
+    order = np.concatenate([[0.0], np.repeat(taken, len(PHASES))])
+    return HysteresisElements(
+        exponent=np.tile(exponent, weights)[kept],
+        strength=strength[kept],
+        stiffness=(np.tile(slope, weights) * strength)[kept],
+        order=np.repeat(order, exponent.size)[kept],
+        amplitude=np.repeat(np.where(order > 0.0, 1.0, 0.0), exponent.size)[kept],
+        phase=np.repeat(np.concatenate([[0.0], np.tile(PHASES, len(taken))]), exponent.size)[kept],
+    )
+
+
+def _weights(orders: tuple[float, ...], crank_angle: float) -> FloatArray:
+    """Weight one, and those of each order and phase, at a crank angle, shape (1, weights)."""
+    of_orders = [1.0 + np.cos(order * crank_angle - phase) for order in orders for phase in PHASES]
+    return np.array([[1.0, *of_orders]])

@@ -31,9 +31,11 @@ from ltca.analysis.reduced_model.wind_up import (
     WindUp,
     frictionless,
     scattered_angles,
+    scattered_by,
     wind_up,
 )
 from ltca.analysis.transmission_error_orders import known_orders
+from ltca.arrays import FloatArray
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Drive
 from ltca.drive.unit_mistakes import names_unit_mistakes
@@ -47,22 +49,24 @@ Paths = list[list[tuple[float, float, float]]]
 """Paths of crank angle (rad), wind-up (rad) and torque (N·mm)."""
 NEWTON_METRE = 1e3
 """N·mm of 1 N·m."""
-FORMAT = 1
+FORMAT = 2
 """Of the JSON file; a later one says so."""
 BRISTLE_ANGLE = 1e-3
 """Angle of the input over which its friction builds up in the reduced law, rad; at the output it is less by the ratio."""
 LOOP_PARTS = (0.01, 0.03, 0.06, 0.12, 0.2, 0.3, 0.4, 0.5, 0.6, 0.68, 0.74, 0.79, 0.84, 0.88, 0.92, 0.96, 1.0)
 """Torques of the loop by the largest one, either way."""
-LOOP_ANGLES = (0.7, 2.8, 3.9, 5.4)
-"""Crank angles whose loops the elements are fitted to, rad."""
+LOOP_ANGLES = 24
+"""Crank angles over all turns whose loops the elements are fitted to."""
+JUDGED_ANGLES = 6
+"""Of them, that choose the orders of their weights."""
 FACTOR_POSITIONS = 5
 """Positions for each unknown of that strength."""
 RISING_PARTS = (0.06, 0.2, 0.45, 0.7, 1.0)
 """Torques by which the largest one is reached there: with ten of them the wind-up at the last differs by less than 0.01′."""
 FACTOR_HARMONICS = 1
 """Multiples of each origin of an order of the strength of the elements."""
-OTHER_ANGLE = 2.3
-"""Crank angle of the path that they are not fitted to, rad."""
+OTHER_ANGLES = 6
+"""Crank angles besides, of loops and of the path that they are not fitted to."""
 OTHER_PATH = (0.01, 0.15, 0.45, 0.8, 0.6, 0.35, 0.55, 0.8, 0.3, 0.05, -0.1, -0.4, -0.7, -0.5, -0.2, 0.0, 0.2, 0.5)
 """That path, by the largest torque: reversals within the loop; its zero is passed at 1e-4."""
 CHECKED_PARTS = (2e-3, 0.02, 0.08, 0.21, 0.43, 0.68, 0.94)
@@ -128,7 +132,8 @@ class ReducedModel:
         Materials whose density is not known.
     errors : dict of str to FitError
         ``without_friction`` at other torques and crank angles than those of the tables; of a drive with friction
-        ``loop`` along the loops that the elements are fitted to, ``other_path`` along one they are not.
+        ``loop`` along the loops that the elements are fitted to, ``other_loops`` along loops at other crank angles and
+        ``other_path`` along a path with reversals there.
     """
 
     drive: Drive
@@ -288,28 +293,42 @@ def _with_elements(found: ReducedModel) -> tuple[ReducedModel, dict[str, FitErro
         held.append(_way(drive) * rising[-1] / sprung_at - 1.0)
     found = replace(found, strength_factor=StrengthFactor.fitted(around, held, orders))
     law = law_of(found)
-    of_loops = locked_path(drive, np.array(LOOP_ANGLES), found.largest * loop, engine=found.engine)
-    of_other = locked_path(drive, np.array([OTHER_ANGLE]), found.largest * other, engine=found.engine)
-    way = _way(drive)
+    angles = scattered_by(drive, LOOP_ANGLES + OTHER_ANGLES)
+    of_loops = locked_path(drive, angles, found.largest * loop, engine=found.engine)
+    of_other = locked_path(drive, angles[LOOP_ANGLES:], found.largest * other, engine=found.engine)
+    way, fitted_to = _way(drive), angles[:LOOP_ANGLES]
 
     torque = way * found.largest * loop
     sprung = [
-        np.array([_elastic(law, angle, one) for one in path]) for angle, path in zip(LOOP_ANGLES, of_loops, strict=True)
+        np.array([_elastic(law, angle, one) for one in path]) for angle, path in zip(fitted_to, of_loops, strict=False)
     ]
     factors = [
         (law.strength_factor(angle / law.cranks, -1.0), law.strength_factor(angle / law.cranks, 1.0))
-        for angle in LOOP_ANGLES
+        for angle in fitted_to
     ]
-    fitted = replace(found, elements=fit_elements(sprung, [torque] * len(sprung), drive.load.torque, factors))
+    elements = fit_elements(
+        sprung,
+        [torque] * len(sprung),
+        drive.load.torque,
+        factors,
+        fitted_to,
+        tuple(order.value for order in orders),
+        JUDGED_ANGLES,
+    )
+    fitted = replace(found, elements=elements)
     own = law_of(fitted)
-    loops = [
-        list(zip(np.full(path.size, angle), path, torque, strict=True))
-        for angle, path in zip(LOOP_ANGLES, of_loops, strict=True)
-    ]
-    beside = list(zip(np.full(other.size, OTHER_ANGLE), of_other[0], way * found.largest * other, strict=True))
+
+    def paths(at: FloatArray, wound: FloatArray, parts: FloatArray) -> Paths:
+        along = way * found.largest * parts
+        return [
+            list(zip(np.full(parts.size, one), path, along, strict=True)) for one, path in zip(at, wound, strict=True)
+        ]
+
+    beside = angles[LOOP_ANGLES:]
     return fitted, {
-        "loop": _largest(own, loops, found.largest),
-        "other_path": _largest(own, [beside], found.largest),
+        "loop": _largest(own, paths(fitted_to, of_loops[:LOOP_ANGLES], loop), found.largest),
+        "other_loops": _largest(own, paths(beside, of_loops[LOOP_ANGLES:], loop), found.largest),
+        "other_path": _largest(own, paths(beside, of_other, other), found.largest),
     }
 
 
@@ -417,6 +436,9 @@ def _content(found: ReducedModel) -> dict[str, Any]:
             "exponent": found.elements.exponent.tolist(),
             "strength": found.elements.strength.tolist(),
             "stiffness": found.elements.stiffness.tolist(),
+            "weight_order": found.elements.order.tolist(),
+            "weight_amplitude": found.elements.amplitude.tolist(),
+            "weight_phase_rad": found.elements.phase.tolist(),
             "factor_orders": [
                 {
                     "order": order.value,

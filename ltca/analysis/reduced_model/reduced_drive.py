@@ -10,8 +10,9 @@ turns of the input by those of the output:
 
 - wind-up x = output angle − input angle/i; at the nodes T_j of the table x_j(φ) = mean + Σ cos·cos(order φ) + sin·sin(order φ)
   with the crank angle φ; the elastic torque f is linear between the nodes, and beyond them;
-- Maxwell-slip elements on f: z moves by stiffness·Δf and stays within ± g·strength·T_r·(\\|f\\|/T_r)^exponent with the rated
-  torque T_r and the factor g of the crank angle, 1 + Σ cos·cos(order φ) + sin·sin(order φ), one for either sign of f;
+- Maxwell-slip elements on f: z moves by g·w·stiffness·Δf and stays within ± g·w·strength·T_r·(\\|f\\|/T_r)^exponent with the
+  rated torque T_r, the factor g of the crank angle, 1 + Σ cos·cos(order φ) + sin·sin(order φ), one for either sign of f, and the
+  weight w of each element, 1 + amplitude·cos(order φ − phase);
 - the drive holds the output with T = f + Σz and turns the input with T/i;
 - friction at the input is a bristle: it moves by Δ(input angle) and stays within the friction of the table at f and the sense.
 """
@@ -54,6 +55,9 @@ class ReducedDrive:
         self.exponent = column("hysteresis", "exponent")
         self.strength = column("hysteresis", "strength")
         self.stiffness = column("hysteresis", "stiffness")
+        self.weight_order = column("hysteresis", "weight_order")
+        self.weight_amplitude = column("hysteresis", "weight_amplitude")
+        self.weight_phase = column("hysteresis", "weight_phase_rad")
         around = tables["hysteresis"]["factor_orders"]
         self.factor_order = np.array([entry["order"] for entry in around], dtype=np.float64)
         self.factor = {
@@ -138,11 +142,10 @@ class ReducedDrive:
         elastic : float
             N·m.
         """
-        rated = self.rated_torque
-        most = (
-            self.strength_factor(input_angle, elastic) * self.strength * rated * (abs(elastic) / rated) ** self.exponent
-        )
-        return np.asarray(np.clip(self.elements + self.stiffness * (elastic - self.elastic), -most, most))
+        rated, phase = self.rated_torque, self.weight_order * (self.cranks * input_angle) - self.weight_phase
+        factor = self.strength_factor(input_angle, elastic) * (1.0 + self.weight_amplitude * np.cos(phase))
+        most = factor * self.strength * rated * (abs(elastic) / rated) ** self.exponent
+        return np.asarray(np.clip(self.elements + factor * self.stiffness * (elastic - self.elastic), -most, most))
 
     def torque_of(self, input_angle: float, output_angle: float) -> float:
         """Return the torque with which the output is held, N·m; the state stays.

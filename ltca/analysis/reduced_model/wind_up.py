@@ -130,7 +130,11 @@ def wind_up(drive: Drive, model: Reducer, largest: float, advance: Callable[[int
 
 def scattered_angles(drive: Drive, orders: int, by_unknown: int = POSITIONS_PER_UNKNOWN) -> FloatArray:
     """Return crank angles over as many turns as there are wheel pins, so many for each unknown of the orders, rad."""
-    count = by_unknown * (2 * orders + 1)
+    return scattered_by(drive, by_unknown * (2 * orders + 1))
+
+
+def scattered_by(drive: Drive, count: int) -> FloatArray:
+    """Return so many crank angles over as many turns as there are wheel pins, rad."""
     return np.asarray(2.0 * np.pi * drive.pin_wheel.number_of_pins * np.mod(GOLDEN * np.arange(count), 1.0))
 
 

@@ -77,6 +77,9 @@ def tables_header(tables: dict[str, Any]) -> str:
         vector("EXPONENT", loop["exponent"]),
         vector("STRENGTH", loop["strength"]),
         vector("STIFFNESS", loop["stiffness"]),
+        vector("WEIGHT_ORDER", loop["weight_order"]),
+        vector("WEIGHT_AMPLITUDE", loop["weight_amplitude"]),
+        vector("WEIGHT_PHASE", loop["weight_phase_rad"]),
         vector("FACTOR_ORDER", [one["order"] for one in around]),
         *(
             f"static const double FACTOR_{way.upper()}[][2] = {{{', '.join(map(_row, rows))}}};"

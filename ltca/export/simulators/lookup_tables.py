@@ -32,7 +32,7 @@ def csv_texts(tables: dict[str, Any]) -> dict[str, str]:
                 for name in ("order", "cos_ccw", "sin_ccw", "cos_cw", "sin_cw")
             }
         ),
-        "hysteresis.csv": _csv({name: loop[name] for name in ("exponent", "strength", "stiffness")}),
+        "hysteresis.csv": _csv({name: column for name, column in loop.items() if name != "factor_orders"}),
     }
 
 
@@ -67,7 +67,7 @@ Written by cyclo {tables["cyclo_version"]} from the drive {tables["drive"]}, cas
 | `{name}.json` | everything |
 | `{name}_wind_up.csv` | by the torque on the output: mean wind-up over the crank angle, and cosine and sine of each order of the transmission error |
 | `{name}_friction.csv` | by the torque on the output: friction torque at the input that turns ccw and cw, efficiency with input and output driving |
-| `{name}_hysteresis.csv` | Maxwell-slip elements, a row each; none without friction |
+| `{name}_hysteresis.csv` | Maxwell-slip elements, a row each, with the weight 1 + amplitude·cos(order·φ − phase) on strength and stiffness; none without friction |
 | `{name}_hysteresis_factor.csv` | orders over the crank angle of the factor of their strength, for a torque on the output that turns it ccw and cw |
 | `reduced_drive.py` | the law that these tables are for, numpy alone |
 

@@ -104,6 +104,9 @@ package {name} "{told}"
     constant Real exponent[{len(loop["exponent"])}] = {_vector(loop["exponent"])};
     constant Real strength[{len(loop["strength"])}] = {_vector(loop["strength"])};
     constant Real stiffness[{len(loop["stiffness"])}] = {_vector(loop["stiffness"])};
+    constant Real weightOrder[size(strength, 1)] = {_vector(loop["weight_order"])};
+    constant Real weightAmplitude[size(strength, 1)] = {_vector(loop["weight_amplitude"])};
+    constant Real weightPhase[size(strength, 1)] = {_vector(loop["weight_phase_rad"])};
     constant Real factorOrder[{len(around)}] = {_vector([one["order"] for one in around])};
     constant Real factorCcw[{len(around)}, 2] = {_matrix([[one["cos_ccw"], one["sin_ccw"]] for one in around], 2)};
     constant Real factorCw[{len(around)}, 2] = {_matrix([[one["cos_cw"], one["sin_cw"]] for one in around], 2)};
@@ -115,7 +118,8 @@ package {name} "{told}"
     Modelica.Units.SI.Torque followed(start = 0, fixed = true) "The same, filtered";
     Modelica.Units.SI.Torque element[size(strength, 1)](each start = 0, each fixed = true) "Maxwell-slip elements";
     Modelica.Units.SI.Torque most[size(strength, 1)] "At which they slip";
-    Real factor "Of their strength";
+    Real factor "Of all their strengths and stiffnesses";
+    Real weight[size(strength, 1)] "Factor with what each has of its own";
     Modelica.Units.SI.Torque torque "With which the output is held";
     Modelica.Units.SI.Torque friction "At the input";
     Modelica.Units.SI.AngularVelocity w "Of the input";
@@ -126,8 +130,9 @@ package {name} "{told}"
     settling*der(followed) = elastic - followed;
     factor = max(0, 1 + strengthFactor(cranks*flange_a.phi, factorOrder, if followed > 0 then factorCcw else factorCw));
     for e in 1:size(strength, 1) loop
-      most[e] = factor*strength[e]*rated*(abs(followed)/rated)^exponent[e];
-      der(element[e]) = stiffness[e]*(elastic - followed)/settling - max(0, element[e] - most[e])/settling
+      weight[e] = factor*(1 + weightAmplitude[e]*cos(weightOrder[e]*cranks*flange_a.phi - weightPhase[e]));
+      most[e] = weight[e]*strength[e]*rated*(abs(followed)/rated)^exponent[e];
+      der(element[e]) = weight[e]*stiffness[e]*(elastic - followed)/settling - max(0, element[e] - most[e])/settling
         + max(0, -most[e] - element[e])/settling;
     end for;
     torque = elastic + sum(element) + d*der(windUp);

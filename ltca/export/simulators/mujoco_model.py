@@ -23,7 +23,9 @@ def flange_inertia(tables: dict[str, Any]) -> tuple[float, str]:
 
 def time_step(tables: dict[str, Any]) -> float:
     """Return a time step for an explicit integrator, s, one digit."""
-    stiffness = tables["linear_spring"]["stiffness_N_m_per_rad"] * (1.0 + sum(tables["hysteresis"]["stiffness"]))
+    loop = tables["hysteresis"]
+    most = [one * (1.0 + part) for one, part in zip(loop["stiffness"], loop["weight_amplitude"], strict=True)]
+    stiffness = tables["linear_spring"]["stiffness_N_m_per_rad"] * (1.0 + sum(most))
     rotor = rotor_inertia(tables) * tables["transmission_ratio"] ** 2
     fastest = np.sqrt(stiffness * (1.0 / flange_inertia(tables)[0] + 1.0 / rotor))
     step = 1.0 / (STEPS_PER_RADIAN * fastest)

@@ -96,9 +96,11 @@ static void answer(const State *state, Answer *found) {
     }
     if (factor < 0.0) factor = 0.0;
     for (e = 0; e < ELEMENTS; e++) {
-        most = factor * STRENGTH[e] * RATED * pow(fabs(found->elastic) / RATED, EXPONENT[e]);
+        double weight =
+            factor * (1.0 + WEIGHT_AMPLITUDE[e] * cos(WEIGHT_ORDER[e] * CRANKS * state->input_angle - WEIGHT_PHASE[e]));
+        most = weight * STRENGTH[e] * RATED * pow(fabs(found->elastic) / RATED, EXPONENT[e]);
         found->after.elements[e] =
-            within(state->elements[e] + STIFFNESS[e] * (found->elastic - state->elastic), -most, most);
+            within(state->elements[e] + weight * STIFFNESS[e] * (found->elastic - state->elastic), -most, most);
         torque += found->after.elements[e];
     }
     forward = friction(FRICTION_CCW, found->elastic);
