@@ -6,8 +6,8 @@ evenly in time are kept. Contacts that close and open set its step: drives have 
 methods with the tangent gain nothing.
 
 The balance of energy is that of input, output, damping, friction, of what is stored, and of the work of contacts that move to
-another radius of curvature or over bodies that yield otherwise there (`ltca.compliance.stored_energy`): their forces act along the
-normal alone.
+another radius of curvature or over bodies that yield otherwise there (`ltca.compliance.stored_energy`): their forces act along
+the normal alone.
 """
 
 from __future__ import annotations
