@@ -487,6 +487,8 @@ def _sense(drive: Drive) -> float:
 
 def _require_supported(drive: Drive, model: Reducer, course: Course) -> None:
     problems = []
+    if drive.contact.slices > 1:
+        problems.append(f"contact.slices = {drive.contact.slices}: must be 1 for a run in time, which leaves tilts out")
     if model._teeth_press:
         problems.append(
             "first_stage: its teeth press on cranks or main bearing that yield, which a run in time leaves out"
