@@ -56,6 +56,7 @@ def time_dataset(run: TimeRun) -> LabelledDataset:
         "kinetic_energy": ("time", taken.kinetic, told("N mm", "kinetic energy")),
         "stored_energy": ("time", taken.stored, told("N mm", "energy stored in contacts and supports")),
         "curvature_work": ("time", taken.curvature, told("N mm", "work of changing radii of curvature")),
+        "station_work": ("time", taken.stations, told("N mm", "work of contacts that move over the bodies")),
         **{
             f"{name}_work": ("time", taken.works[:, place], told("N mm", words))
             for place, (name, words) in enumerate(

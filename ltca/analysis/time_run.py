@@ -5,8 +5,9 @@ them. `ltca.dynamics.motion` has the equations; scipy's DOP853 solves them with 
 evenly in time are kept. Contacts that close and open set its step: drives have vibrations up to some 10 kHz, so that implicit
 methods with the tangent gain nothing.
 
-The balance of energy is that of input, output, damping, friction, of what is stored, and of the work that the law books where
-contacts move to another radius of curvature (∂U/∂ρ ρ̇: their forces act along the normal alone).
+The balance of energy is that of input, output, damping, friction, of what is stored, and of the work of contacts that move to
+another radius of curvature or over bodies that yield otherwise there (`ltca.compliance.stored_energy`): their forces act along the
+normal alone.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from scipy.integrate import DOP853
 
 from ltca.analysis.engines import Engine
 from ltca.arrays import FloatArray
+from ltca.compliance.stored_energy import StoredEnergy
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Drive
 from ltca.dynamics.contact_forces import ContactForces
@@ -201,9 +203,11 @@ class Samples:
         Force of the crank bearings, N.
     works : array, shape (samples, 4)
         Done since the start at input, by the output on its load, lost in damping and friction, N·mm.
-    kinetic, stored, curvature : array, shape (samples,)
-        Kinetic and stored energy, and the work of changing radii of curvature since the start, N·mm; not a number where the
-        model does not tell what it stores.
+    kinetic, stored : array, shape (samples,)
+        Kinetic and stored energy, N·mm; this and the following not a number where the model does not tell what it stores.
+    curvature, stations : array, shape (samples,)
+        Work of changing radii of curvature, and of contacts that move over bodies which yield otherwise there, since the start,
+        N·mm.
     """
 
     time: FloatArray
@@ -219,6 +223,7 @@ class Samples:
     kinetic: FloatArray
     stored: FloatArray
     curvature: FloatArray
+    stations: FloatArray
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -231,8 +236,8 @@ class EnergyBalance:
         Work done at the input, on the load, and lost.
     kinetic, stored : float
         Change of what is stored.
-    curvature : float
-        Work of changing radii of curvature.
+    curvature, stations : float
+        Work of changing radii of curvature, and of contacts that move over bodies which yield otherwise there.
     throughput : float
         Larger of the works that went through input and output, both ways counted.
     """
@@ -244,13 +249,14 @@ class EnergyBalance:
     kinetic: float
     stored: float
     curvature: float
+    stations: float
     throughput: float
 
     @property
     def left(self) -> float:
-        """Input and the work of curvature less output, losses and what is stored; not a number where that is not known."""
+        """Input and the work of moving contacts less output, losses and what is stored; not a number where it is not known."""
         taken = self.output + self.damping + self.friction + self.kinetic + self.stored
-        return self.input + self.curvature - taken
+        return self.input + self.curvature + self.stations - taken
 
     @property
     def relative(self) -> float:
@@ -268,8 +274,6 @@ class Checkpoint:
         s; the next step of the solver.
     state : array
         Of `Equation`.
-    radii, slope : array, shape (pins,)
-        Radii of curvature of the last sample, mm, and ∂U/∂ρ there, N.
     rows : int
         Samples taken.
     samples : dict of str to array
@@ -279,8 +283,6 @@ class Checkpoint:
     time: float
     step: float
     state: FloatArray
-    radii: FloatArray
-    slope: FloatArray
     rows: int
     samples: dict[str, FloatArray]
 
@@ -340,6 +342,7 @@ class TimeRun:
             kinetic=float(taken.kinetic[-1] - taken.kinetic[0]),
             stored=float(taken.stored[-1] - taken.stored[0]),
             curvature=float(taken.curvature[-1]),
+            stations=float(taken.stations[-1]),
             throughput=float(through.max()),
         )
 
@@ -537,8 +540,7 @@ class Recorder:
     def __init__(self, run: PreparedRun, count: int) -> None:
         self._run, self.rows = run, 0
         self.times = np.linspace(0.0, run.course.time, count)
-        self.radii = np.zeros(0)
-        self._slope = np.zeros(0)
+        self._before: tuple[StoredEnergy, ...] = ()
         self.arrays: dict[str, FloatArray] = {}
 
     def take(self, state: FloatArray) -> None:
@@ -548,15 +550,16 @@ class Recorder:
         _, torque, now = equation.solved(time, state)
         x, rate = equation.place(time, state)
         contacts = equation.contacts
-        stored, curvature = np.nan, np.nan
+        stored, curvature, stations = np.nan, np.nan, np.nan
         if contacts.has_energy:
-            slope, radii = contacts.energy_by_radius()
-            curvature = 0.0
-            if row:
-                curvature = float(self.arrays["curvature"][row - 1])
-                curvature += float(0.5 * (slope + self._slope) @ (radii - self.radii))
-            self._slope, self.radii = slope, radii
-            stored = contacts.energy(x)
+            curvature, stations = (
+                float(self.arrays[name][row - 1]) if row else 0.0 for name in ("curvature", "stations")
+            )
+            stored, discs_store = contacts.stored(x)
+            for before, there in zip(self._before, discs_store, strict=row > 0):
+                by_radius, by_place = before.work_to(there)
+                curvature, stations = curvature + float(by_radius[0]), stations + float(by_place[0])
+            self._before = discs_store
         discs = now.discs
         taken: dict[str, Any] = {
             "time": time,
@@ -572,6 +575,7 @@ class Recorder:
             "kinetic": equation.kinetic.energy(x, rate),
             "stored": stored,
             "curvature": curvature,
+            "stations": stations,
         }
         for name, values in taken.items():
             if name not in self.arrays:
@@ -585,18 +589,21 @@ class Recorder:
             time=time,
             step=step,
             state=state.copy(),
-            radii=self.radii,
-            slope=self._slope,
             rows=self.rows,
             samples={name: values[: self.rows] for name, values in self.arrays.items()},
         )
 
     def go_on(self, found: Checkpoint) -> None:
         """Take over the samples of an interrupted run."""
-        self.rows, self.radii, self._slope = found.rows, found.radii, found.slope
+        self.rows = found.rows
         for name, values in found.samples.items():
             self.arrays[name] = np.zeros((self.times.size, *values.shape[1:]))
             self.arrays[name][: self.rows] = values
+        contacts, last = self._run.equation.contacts, found.rows - 1
+        if contacts.has_energy:
+            x = self.arrays["place"][last]
+            contacts.at(x, self.arrays["rate"][last])
+            self._before = contacts.stored(x)[1]
 
     def samples(self) -> Samples:
         """Return what was taken."""

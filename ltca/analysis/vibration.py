@@ -238,7 +238,7 @@ def vibration(
     Raises
     ------
     DriveError
-        When a density is missing, contacts have slices, the torque is zero, or turns are too few.
+        When a density is missing, the torque is zero, or turns are too few.
     ConvergenceError
         When a position does not balance or is not stable.
     """

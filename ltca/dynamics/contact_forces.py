@@ -17,8 +17,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ltca.arrays import FloatArray
+from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.response import Response, Start, bearing_pushes
+from ltca.compliance.stored_energy import StoredEnergy
 from ltca.dynamics.disc_forces import DiscContacts, DiscForces
 from ltca.dynamics.kinetics import Motion
 from ltca.dynamics.stiffness import crank_force
@@ -26,6 +28,7 @@ from ltca.equilibrium.friction.slip import Slip
 from ltca.equilibrium.friction.turning import TurningFriction
 from ltca.equilibrium.reducer import Reducer
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, X, Y
+from ltca.geometry.rotation import unit
 
 FADING = 1e-2
 """Slip by the speed of the eccentric at which friction has 0.7 of its size."""
@@ -76,15 +79,16 @@ class ContactForces:
         self._columns = [coordinates.columns(disc) for disc in range(len(model.discs))]
         self._places = [np.append(own, motion.crank) for own in self._columns]
         self._start: Start | None = None
-        self._latest: Response | None = None
+        self._latest: tuple[FloatArray, FloatArray, Response] | None = None
         discs = [disc for disc in model.discs if isinstance(disc, HalfSpaceCompliance)]
         plain = model.pins is None and len(discs) == len(model.discs)
+        self._telling = [disc for disc in model.discs if isinstance(disc, HalfSpaceCompliance | CoupledCompliance)]
         self._each = [DiscContacts(disc) for disc in discs] if plain else []
 
     @property
     def has_energy(self) -> bool:
-        """Whether the stored energy is known: of contacts that do not feel each other, on pins that do not bend together."""
-        return bool(self._each)
+        """Whether the stored energy is known: of all but contact grids."""
+        return len(self._telling) == len(self._model.discs)
 
     def at(self, x: FloatArray, rate: FloatArray) -> Instant:
         """Return the forces at coordinates and their rates, each of shape (n,)."""
@@ -107,17 +111,34 @@ class ContactForces:
         friction = np.zeros(size) if self._friction is None else self._rubbed(self._friction, discs, rate)
         return Instant(force=force, friction=friction, stiffness=stiffness, discs=discs)
 
-    def energy(self, x: FloatArray) -> float:
-        """Return the energy stored at the last instant, whose coordinates these are, N·mm."""
+    def stored(self, x: FloatArray) -> tuple[float, tuple[StoredEnergy, ...]]:
+        """Return the energy stored at the last instant, whose coordinates these are, N·mm, and that of each disc's contacts."""
         pose = x[: self._motion.pose.size]
-        total = sum(each.energy() for each in self._each) + 0.5 * float(x @ self._springs @ x)
-        supports = self._model.supports
-        return total if supports is None else total + float(supports.energy(pose[None])[0])
+        total, supports = 0.5 * float(x @ self._springs @ x), self._model.supports
+        if self._latest is None:
+            discs = [each.stored() for each in self._each]
+        else:
+            angle, row, response = self._latest
+            discs = [
+                disc.stored(angle, row[:, own], part)
+                for disc, own, part in zip(self._telling, self._columns, response.parts, strict=True)
+            ]
+            total += self._bent(angle, row, response)
+        if supports is not None:
+            total += float(supports.energy(pose[None])[0])
+        return total + sum(float(disc.energy[0]) for disc in discs), tuple(discs)
 
-    def energy_by_radius(self) -> tuple[FloatArray, FloatArray]:
-        """Return ∂U/∂ρ and ρ of all wheel pins at the last instant, N and mm."""
-        found = [each.energy_by_radius() for each in self._each]
-        return np.concatenate([one[0] for one in found]), np.concatenate([one[1] for one in found])
+    def _bent(self, angle: FloatArray, pose: FloatArray, response: Response) -> float:
+        """Energy of what holds pins together, ½ Σ f·u with their displacements u: wheel pins have those in the turning wheel."""
+        if response.shifts is None:
+            return 0.0
+        wheel = unit(self._model.discs[0].geometry.placement.wheel_rotation(angle) + pose[:, WHEEL_ANGLE])
+        total = 0.0
+        for number, part in enumerate(response.parts):
+            force = part.pin_forces.copy()
+            force[:, : part.pin_load.shape[1]] *= wheel.conjugate()[:, None]
+            total += 0.5 * float((force.conjugate() * response.shifts[:, number]).real.sum())
+        return total
 
     def _asked(
         self, angle: float, pose: FloatArray, force: FloatArray, stiffness: FloatArray
@@ -126,7 +147,7 @@ class ContactForces:
         model, size, crank = self._model, pose.size, self._motion.crank
         at, row = np.array([angle]), pose[None]
         response = model.respond(at, row, self._start)
-        self._start = Start.after(response)
+        self._start, self._latest = Start.after(response), (at, row, response)
         force[:size] += response.force[0]
         force[crank] += float(crank_force(model, at, row, response)[0])
         own = 0.5 * (response.tangent[0] + response.tangent[0].T)

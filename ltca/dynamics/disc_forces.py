@@ -14,6 +14,7 @@ import numpy as np
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.rollers import balance_rollers
+from ltca.compliance.stored_energy import StoredEnergy
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, X, Y
 from ltca.geometry.flank import CurvePoints, NearestPoint
 from ltca.geometry.pair_motion import RollerRays, cross, dot
@@ -329,21 +330,15 @@ class DiscContacts:
         self.state["outer_approach"] = np.maximum(found.outer_approach[0], 0.0)
         return found.inner_load[0], found.outer_load[0], found.outer_direction[0], found.tangent[0].reshape(-1, 4)
 
-    def energy(self) -> float:
-        """Return the energy stored at the last instant, N·mm."""
-        model, state = self._model, self.state
-        total = float(np.sum(model.pin_law.energy(state["pin_approach"], state["pin_radius"])))
-        total += float(np.sum(model.hole_law.energy(state["hole_approach"], self._place.hole_effective_radii)))
-        laws = model.roller_laws
-        total += float(np.sum(laws.inner.energy(state["inner_approach"], laws.inner_radius)))
-        return total + float(np.sum(laws.outer.energy(state["outer_approach"], laws.outer_radius)))
-
-    def energy_by_radius(self) -> tuple[FloatArray, FloatArray]:
-        """Return ∂U/∂ρ of wheel pins and flank at the last instant, N, and ρ, mm, shapes (pins,)."""
-        law, delta, radius = self._model.pin_law, self.state["pin_approach"], self.state["pin_radius"]
-        low, high = (law.energy(delta, radius * (1.0 + side)) for side in (-RADIUS_STEP, RADIUS_STEP))
-        return (high - low) / (2.0 * RADIUS_STEP * radius), radius
-
-
-RADIUS_STEP = 1e-4
-"""Relative step of an effective radius for the derivative of an energy."""
+    def stored(self) -> StoredEnergy:
+        """Return what is stored at the last instant, as one position."""
+        model, laws = self._model, self._model.roller_laws
+        at = {name: values[None] for name, values in self.state.items()}
+        return StoredEnergy.of_laws(
+            (model.pin_law, at["pin_approach"], at["pin_radius"]),
+            [
+                (model.hole_law, at["hole_approach"], self._place.hole_effective_radii),
+                (laws.inner, at["inner_approach"], laws.inner_radius),
+                (laws.outer, at["outer_approach"], laws.outer_radius),
+            ],
+        )

@@ -5,10 +5,15 @@ In the frame that turns with the crank at the speed :math:`\dot\varphi`,
 .. math:: M D^2 Y + C \dot Y + K(\varphi) Y = f(\varphi), \quad D = \frac{d}{dt} + \dot\varphi J
 
 with a stiffness that comes again after a turn. Whole orders below half the positions of a turn are balanced together: inertia,
-spin and damping act on orders, the stiffness at positions (alternating by FFT). GMRES solves them; its preconditioner lets
-motions a, whose inertia counts, answer by the mean of what they feel, and the others, b, at every position at once:
+spin and damping act on orders, the stiffness at positions (alternating by FFT). GMRES solves them. Its preconditioner lets
+motions b, whose inertia does not count, answer at every position at once,
 
-.. math:: b = K_{bb}^{-1} (f_b - K_{ba} a), \quad K_{eff} = K_{aa} - K_{ab} K_{bb}^{-1} K_{ba} .
+.. math:: b = K_{bb}^{-1} (f_b - K_{ba} a), \quad K_{eff} = K_{aa} - K_{ab} K_{bb}^{-1} K_{ba} ,
+
+and solves the others, a, directly over the turn: between positions they move freely on the mean of what they feel,
+:math:`\dot z = A z`, and at each one the force and what :math:`K_{eff}` is beside that mean push them,
+:math:`z_{k+1} = e^{Ah} (z_k + h M^{-1} (f_k - \Delta K_k a_k))`, with :math:`a_k = S z_k` less what pushes at positions hold of
+orders beyond them. Positions are eliminated two by two.
 
 Orders of a force that are no whole numbers (rollers that pass, pins with errors) answer by the mean stiffness.
 
@@ -21,10 +26,11 @@ By the same pulsation a drive is unstable where an order o meets the sum of two 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.linalg import eigh
+from scipy.linalg import eigh, expm
 from scipy.sparse.linalg import LinearOperator, gmres
 
 from ltca.arrays import ComplexArray, FloatArray
@@ -32,10 +38,14 @@ from ltca.errors import ConvergenceError
 
 SOLVED = 1e-9
 """Part of a force that a balance may leave, in displacements."""
-DIRECTIONS, CYCLES = 30, 2
+DIRECTIONS, CYCLES = 60, 2
 """Of GMRES at most: each strong resonance takes some. Beyond, many modes are coupled over many orders."""
 BEYOND = 2.0
 """Eigenfrequency by that of the highest order from which motions answer at every position at once in the preconditioner."""
+FINER = 2
+"""Pushes of slow motions by positions of a turn."""
+RESOLVED = 0.9 * FINER
+"""Eigenfrequency as above up to which these pushes resolve motions."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -87,6 +97,8 @@ class HillSystem:
         Motions that are free, as displacements.
     steady : array, shape (m, k)
         Those of them that are free on average of a turn.
+    splits : dict
+        Slow motions and those beside them by how many are slow, kept from speed to speed.
     """
 
     mass: FloatArray
@@ -96,6 +108,7 @@ class HillSystem:
     stiffness: PulsatingStiffness
     basis: FloatArray
     steady: FloatArray
+    splits: dict[int, _Split] = field(default_factory=dict, init=False, compare=False, repr=False)
 
     def compliance(self, speed: float, orders: FloatArray) -> ComplexArray:
         """Return what the mean stiffness yields at a speed of the crank, rad/s, over the free motions, shape (orders, m, m).
@@ -148,6 +161,13 @@ class HillSystem:
             still[:whole] = self._balanced(speed, force[:whole] @ self.basis)
         return np.asarray(still @ self.basis.T)
 
+    def _split(self, stiffness: FloatArray, mean: FloatArray, mass: FloatArray, fastest: float) -> _Split:
+        """Motions up to an angular frequency and those beside them, the same ones at neighbouring speeds."""
+        slow = _slow_motions(mean, mass, fastest)
+        if slow.shape[1] not in self.splits:
+            self.splits[slow.shape[1]] = _Split.of(stiffness, mass, slow)
+        return self.splits[slow.shape[1]]
+
     def _balanced(self, speed: float, force: ComplexArray) -> ComplexArray:
         """Whole orders of the motion, zero first, over the free motions."""
         samples, (whole, size) = self.stiffness.over_turn.shape[0], force.shape
@@ -159,14 +179,17 @@ class HillSystem:
         moving = basis.T @ (self.mass @ rates @ rates + damped) @ basis + lossy
         stiffness = basis.T @ self.stiffness.over_turn @ basis
         held = self.steady @ self.steady.T
-        slow = _slow_motions(mean, mass, BEYOND * whole * speed)
-        split = np.concatenate((slow, _beside(slow, mass)), axis=1)
-        count = slow.shape[1]
-        parts = split.T @ stiffness @ split
-        at_once: FloatArray = np.asarray(np.linalg.inv(parts[:, count:, count:]), dtype=np.float64)
-        across: FloatArray = np.asarray(at_once @ parts[:, count:, :count], dtype=np.float64)
-        felt = np.mean(parts[:, :count, :count] - parts[:, :count, count:] @ across, axis=0)
-        answers = _inverses(slow.T @ moving @ slow + felt)
+        split, resolved = (self._split(stiffness, mean, mass, part * whole * speed) for part in (BEYOND, RESOLVED))
+        answers = _inverses(split.slow.T @ moving @ split.slow + split.condensed.mean(axis=0))
+        slow = resolved.slow
+        over_turn = _PushedMotion.over_turn(
+            _at_positions(resolved.condensed, FINER * samples),
+            slow.T @ mass @ slow,
+            slow.T @ basis.T @ (self.damping + 2.0 * speed * self.mass @ self.spin) @ basis @ slow,
+            slow.T @ basis.T @ (speed**2 * self.mass @ self.spin @ self.spin) @ basis @ slow,
+            self.loss_factor * slow.T @ mean @ slow,
+            speed,
+        )
         scale = np.concatenate(([samples], np.full(whole - 1, 0.5 * samples)))[:, None]
 
         def in_time(amplitudes: ComplexArray) -> FloatArray:
@@ -177,33 +200,33 @@ class HillSystem:
             found[0] = held @ found[0]
             return found
 
-        # What is cut off, or does not move on average, is nothing in the answer: both operators leave it as it is.
         def balance(values: FloatArray) -> FloatArray:
-            given = values.reshape(samples, size)
-            amplitudes = by_orders(given)
-            motion = in_time(amplitudes)
-            forces = by_orders(_times(stiffness, motion)) + np.einsum("oij,oj->oi", moving, amplitudes)
+            amplitudes = values.view(np.complex128).reshape(whole, size)
+            forces = by_orders(_times(stiffness, in_time(amplitudes))) + np.einsum("oij,oj->oi", moving, amplitudes)
             forces[0] = held @ forces[0]
-            return np.asarray(in_time(forces) + given - motion).ravel()
+            return forces.ravel().view(np.float64)
+
+        def by_mean(pushed: FloatArray) -> FloatArray:
+            return in_time(np.einsum("oij,oj->oi", answers, np.fft.rfft(pushed, axis=0)[:whole]))
+
+        def pushed_between(pushed: FloatArray) -> FloatArray:
+            return _at_positions(over_turn.answer(_at_positions(pushed, FINER * samples)), samples)
 
         def prepared(values: FloatArray) -> FloatArray:
-            given = values.reshape(samples, size)
-            taken = in_time(by_orders(given))
-            turned: FloatArray = np.asarray(taken @ split, dtype=np.float64)
-            quick = _times(at_once, turned[:, count:])
-            pushed = turned[:, :count] - np.einsum("pba,pb->pa", parts[:, count:, :count], quick)
-            slowly = in_time(np.einsum("oij,oj->oi", answers, np.fft.rfft(pushed, axis=0)[:whole]))
-            found = np.concatenate((slowly, quick - _times(across, slowly)), axis=1) @ split.T
-            return np.asarray(in_time(by_orders(found)) + given - taken).ravel()
+            found = by_orders(split.answer(in_time(values.view(np.complex128).reshape(whole, size)), by_mean))
+            if slow.shape[1]:
+                left = (values - balance(found.ravel().view(np.float64))).view(np.complex128).reshape(whole, size)
+                found += by_orders(resolved.answer(in_time(left), pushed_between))
+            return found.ravel().view(np.float64)
 
         right = force * scale
         right[0] = held @ right[0]
         operator, preconditioner = (
-            LinearOperator((samples * size,) * 2, matvec=one, dtype=np.float64) for one in (balance, prepared)
+            LinearOperator((2 * whole * size,) * 2, matvec=one, dtype=np.float64) for one in (balance, prepared)
         )
         found, missed = gmres(
             operator,
-            in_time(right).ravel(),
+            right.ravel().view(np.float64),
             M=preconditioner,
             rtol=SOLVED,
             atol=0.0,
@@ -212,7 +235,13 @@ class HillSystem:
         )
         if missed:
             raise ConvergenceError(f"no periodic motion found at {speed:.6g} rad/s of the crank", [])
-        return np.asarray(by_orders(found.reshape(samples, size)) / scale)
+        return np.asarray(found.view(np.complex128).reshape(whole, size) / scale)
+
+
+def _at_positions(values: FloatArray, samples: int) -> FloatArray:
+    """Values at more positions of a turn, or those at fewer without the orders that they do not resolve."""
+    orders = np.fft.rfft(values, axis=0, norm="forward")[: min(samples, len(values)) // 2]
+    return np.asarray(np.fft.irfft(orders, samples, axis=0, norm="forward"))
 
 
 def _inverses(matrices: ComplexArray) -> ComplexArray:
@@ -220,18 +249,120 @@ def _inverses(matrices: ComplexArray) -> ComplexArray:
     return np.concatenate((np.linalg.pinv(matrices[:1]), np.linalg.inv(matrices[1:])))
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Split:
+    """Slow motions a, as columns, and those beside them, b, which answer at every position at once."""
+
+    slow: FloatArray
+    motions: FloatArray
+    """Both, a first."""
+    at_once: FloatArray
+    """K_bb⁻¹."""
+    across: FloatArray
+    """K_bb⁻¹ K_ba."""
+    condensed: FloatArray
+    """K_eff of the slow ones."""
+
+    @classmethod
+    def of(cls, stiffness: FloatArray, mass: FloatArray, slow: FloatArray) -> _Split:
+        motions = np.concatenate((slow, _beside(slow, mass)), axis=1)
+        count = slow.shape[1]
+        parts = motions.T @ stiffness @ motions
+        at_once: FloatArray = np.asarray(np.linalg.inv(parts[:, count:, count:]), dtype=np.float64)
+        across: FloatArray = np.asarray(at_once @ parts[:, count:, :count], dtype=np.float64)
+        condensed = parts[:, :count, :count] - parts[:, :count, count:] @ across
+        return cls(slow=slow, motions=motions, at_once=at_once, across=across, condensed=condensed)
+
+    def answer(self, force: FloatArray, slowly: Callable[[FloatArray], FloatArray]) -> FloatArray:
+        """Motion under forces at the positions, of which the slow ones are told what pushes them."""
+        count = self.slow.shape[1]
+        turned: FloatArray = np.asarray(force @ self.motions, dtype=np.float64)
+        moved = slowly(turned[:, :count] - np.einsum("pba,pb->pa", self.across, turned[:, count:]))
+        quick = _times(self.at_once, turned[:, count:]) - _times(self.across, moved)
+        return np.asarray(np.concatenate((moved, quick), axis=1) @ self.motions.T)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _PushedMotion:
+    """Motions over a turn that positions push: z_{k+1} = F_k z_k + G_k f_k, a_k = P_k (S z_k − D f_k)."""
+
+    levels: tuple[FloatArray, ...]
+    """F of single positions, of two together, of four, …; the first are filled up with ones to a power of two."""
+    closing: FloatArray
+    """(1 − F of the turn)⁻¹."""
+    push: FloatArray
+    direct: FloatArray
+    """D of orders beyond the positions."""
+    here: FloatArray
+
+    @classmethod
+    def over_turn(
+        cls,
+        stiffness: FloatArray,
+        mass: FloatArray,
+        damping: FloatArray,
+        outward: FloatArray,
+        loss: FloatArray,
+        speed: float,
+    ) -> _PushedMotion:
+        """Eliminate the positions of a turn; a loss is taken as the damping of each motion at its own frequency."""
+        samples, count, _ = stiffness.shape
+        mean = stiffness.mean(axis=0)
+        lossy = np.sqrt(np.diag(mass) / np.maximum(np.diag(mean), np.finfo(float).tiny))
+        damping = damping + np.sqrt(np.outer(lossy, lossy)) * loss
+        inverse, step = np.linalg.inv(mass), 2.0 * np.pi / (samples * speed)
+        system = np.block([[np.zeros((count, count)), np.eye(count)], [-inverse @ (mean + outward), -inverse @ damping]])
+        onward = expm(system * step)
+        pushed = onward[:, count:] @ inverse * step
+        # Pushes have every order that looks alike at the positions: what these add to the first is all but the same to all.
+        turn = np.exp(2j * np.pi / samples) * np.eye(2 * count)
+        own = np.linalg.inv(mean + outward + 1j * speed * damping - speed**2 * mass)
+        direct: FloatArray = np.asarray((np.linalg.solve(turn - onward, pushed)[:count] - own).real, dtype=np.float64)
+        beside = stiffness - mean
+        here = np.linalg.inv(np.eye(count) - direct @ beside)
+        factors = np.tile(onward, (1 << (samples - 1).bit_length(), 1, 1))
+        factors[:samples, :, :count] -= pushed @ beside @ here
+        factors[samples:] = np.eye(2 * count)
+        levels = [factors]
+        while len(levels[-1]) > 1:
+            levels.append(levels[-1][1::2] @ levels[-1][::2])
+        return cls(
+            levels=tuple(levels[:-1]),
+            closing=np.linalg.pinv(np.eye(2 * count) - levels[-1][0]),
+            push=pushed @ (np.eye(count) + beside @ here @ direct),
+            direct=direct,
+            here=here,
+        )
+
+    def answer(self, force: FloatArray) -> FloatArray:
+        """Periodic motion under forces at the positions, shape (positions, motions)."""
+        samples = len(force)
+        pushes = np.zeros(self.levels[0].shape[:2])
+        pushes[:samples] = _times(self.push, force)
+        each = []
+        for factors in self.levels:
+            each.append(pushes)
+            pushes = pushes[1::2] + _times(factors[1::2], pushes[::2])
+        state = pushes @ self.closing.T
+        for factors, own in zip(self.levels[::-1], each[::-1], strict=True):
+            both = np.repeat(state, 2, axis=0)
+            both[1::2] = own[::2] + _times(factors[::2], state)
+            state = both
+        return _times(self.here, state[:samples, : force.shape[1]] - force @ self.direct.T)
+
+
 def _times(matrices: FloatArray, vectors: FloatArray) -> FloatArray:
     """Product position by position."""
-    return np.asarray(np.matmul(matrices, vectors[..., None])[..., 0])
+    return np.asarray(np.einsum("...ij,...j->...i", matrices, vectors))
 
 
 def _slow_motions(stiffness: FloatArray, mass: FloatArray, fastest: float) -> FloatArray:
-    """Modes up to an angular frequency, rad/s, at least one, as columns of length 1."""
+    """Modes up to an angular frequency, rad/s, as columns of length 1."""
     # A stiffness of a drive that turns freely may be singular: modes by the reciprocal need a shift that changes none of them.
     shift = np.trace(stiffness) / np.trace(mass)
     inverse, shapes = eigh(mass, stiffness + shift * mass)
     order = np.argsort(-inverse)
-    count = max(1, int(np.count_nonzero(inverse * (shift + fastest**2) >= 1.0)))
+    count = int(np.count_nonzero(inverse * (shift + fastest**2) >= 1.0))
     found = shapes[:, order[:count]]
     return np.asarray(found / np.linalg.norm(found, axis=0))
 

@@ -9,8 +9,9 @@ brings a row of its velocity z and one of its rotation, and the mass matrix is
 .. math:: M = \sum m\, \mathrm{Re}(z^H z) + \sum J\, r^T r .
 
 Rollers move by the mean of race and bore; their cage turns by `cage_speed`, they roll on the bore. Pins, sleeves, ring and posts
-are rigid with wheel and shaft, shafts of cranks bend as their stiffness lets them. Frozen at a crank angle: accelerations by the
-square of the speed (centrifugal and Coriolis terms) are no part of it.
+are rigid with wheel and shaft, shafts of cranks bend as their stiffness lets them. Where contacts
+have slices discs lean, with their transverse moments of inertia; leans of cranks and wheel have none and follow as springs do.
+Frozen at a crank angle: accelerations by the square of the speed (centrifugal and Coriolis terms) are no part of it.
 """
 
 from __future__ import annotations
@@ -77,11 +78,7 @@ class Motion:
 
     @classmethod
     def of_drive(cls, drive: Drive) -> Motion:
-        """Return the coordinates of a warm drive; DriveError for contacts in slices, whose tilts have no inertia here."""
-        if drive.contact.slices != 1:
-            raise DriveError(
-                [f"contact.slices = {drive.contact.slices}: must be 1 for vibrations, which leave tilts of discs out"]
-            )
+        """Return the coordinates of a warm drive; with contacts in slices leans of its parts are among them."""
         pose, mesh = Coordinates.of_drive(drive), StageMesh.of_drive(drive)
         compliance, by_pose = 0.0, np.zeros(pose.size)
         if mesh is not None:
@@ -211,17 +208,20 @@ class Body:
     name : str
         What moves, for words: ``disc 0``, ``output``, …
     turns : bool
-        Whether it is a moment of inertia.
+        Whether it is a moment of inertia about z.
     size : float
         t, or t·mm².
     row : array, shape (coordinates,)
-        Velocity x + iy, or rotation, by the rates of the coordinates.
+        Velocity x + iy, rotation, or one direction of a lean, by the rates of the coordinates.
+    leans : bool
+        Whether it is a moment of inertia about a line in the plane.
     """
 
     name: str
     turns: bool
     size: float
     row: ComplexArray
+    leans: bool = False
 
     @property
     def matrix(self) -> FloatArray:
@@ -338,6 +338,7 @@ def _discs_and_rollers(motion: Motion, masses: DriveMasses, angle: float) -> Ite
         row = _at(motion, stands + middle, moves + nominal + 1j * middle * turns)
         yield Body(name=name, turns=False, size=_mass(disc), row=row)
         yield Body(name=name, turns=True, size=disc.about_own_axis or 0.0, row=_turning(motion, turns))
+        yield from _leaning(motion, disc, number)
         rollers = [solid for solid in masses.of(ROLLERS) if solid.name.endswith(f"of {name}")]
         mass, centres = sum(map(_mass, rollers)) / place.cranks, place.race_centres(at)[0]
         radius = float(np.mean(place.roller_radii))
@@ -350,6 +351,19 @@ def _discs_and_rollers(motion: Motion, masses: DriveMasses, angle: float) -> Ite
             yield Body(name=ROLLERS, turns=True, size=mass * orbit**2, row=_turning(motion, cage * crank))
             spin = _turning(motion, -cage * orbit / radius * crank)
             yield Body(name=ROLLERS, turns=True, size=0.5 * mass * radius**2, row=spin)
+
+
+def _leaning(motion: Motion, disc: Solid, number: int) -> Iterator[Body]:
+    """Transverse moments of inertia of a disc that leans: points move by z l in the plane and −(x l_x + y l_y) along z."""
+    tensor = disc.inertia
+    if not motion.pose.leans or tensor is None:
+        return
+    own = motion.pose.columns(number)[motion.pose.lean_place]
+    # A lean along x turns the disc about y.
+    by_lean = np.array([[tensor[1, 1], -tensor[0, 1]], [-tensor[0, 1], tensor[0, 0]]])
+    for size, direction in zip(*np.linalg.eigh(by_lean), strict=True):
+        row = direction[0] * motion.unit(int(own[0])) + direction[1] * motion.unit(int(own[1]))
+        yield Body(name=f"disc {number}", turns=False, size=float(size), row=row.astype(complex), leans=True)
 
 
 def _eccentric_velocity(motion: Motion, masses: DriveMasses, disc: int, crank: int, angle: float) -> ComplexArray:

@@ -133,7 +133,7 @@ def energy_shares(bodies: Sequence[Body], shape: FloatArray) -> dict[str, float]
     found: dict[str, float] = {}
     for body in bodies:
         name = "discs" if body.name.startswith("disc") else body.name
-        key = f"{name} {'turn' if body.turns else 'move'}"
+        key = f"{name} {'lean' if body.leans else 'turn' if body.turns else 'move'}"
         found[key] = found.get(key, 0.0) + body.size * float(abs(body.row @ shape) ** 2)
     total = sum(found.values())
     return dict(sorted(((name, size / total) for name, size in found.items()), key=lambda one: -one[1]))
@@ -159,29 +159,28 @@ def mode_words(motion: Motion, bodies: Sequence[Body], shape: FloatArray, eccent
             continue
         words = name
         if name.startswith("discs"):
-            turns = name.endswith("turn")
-            words = _of_discs(motion, shape, eccentric, turns)
+            words = _of_discs(motion, shape, eccentric, name.removeprefix("discs "))
         elif name.startswith(("input", "output")):
             words = f"{name}s"
         told.append(f"{words} ({100.0 * share:.0f} %)")
     return ", ".join(told)
 
 
-def _of_discs(motion: Motion, shape: FloatArray, eccentric: ComplexArray, turns: bool) -> str:
-    """How the discs of a mode move: which, along or across their eccentricities, together or against each other."""
+def _of_discs(motion: Motion, shape: FloatArray, eccentric: ComplexArray, verb: str) -> str:
+    """How the discs of a mode move, turn or lean: which, along or across their eccentricities, together or against each other."""
     own = [motion.pose.columns(disc) for disc in range(motion.pose.discs)]
-    if turns:
+    if verb == "turn":
         moved = np.array([complex(shape[one[DISC_ROTATION]]) for one in own])
     else:
-        moved = np.array([shape[one[X]] + 1j * shape[one[Y]] for one in own])
+        places = (X, Y) if verb == "move" else tuple(range(motion.pose.own))[motion.pose.lean_place]
+        moved = np.array([shape[one[places[0]]] + 1j * shape[one[places[1]]] for one in own])
     sizes = np.abs(moved)
     several = sizes > 0.5 * sizes.max()
     names = "disc" if moved.size == 1 else "discs"
     if moved.size > 1 and np.count_nonzero(several) == 1:
         names = f"disc {int(np.argmax(sizes))}"
-    verb = ("turns" if turns else "moves") if names != "discs" else ("turn" if turns else "move")
-    words = f"{names} {verb}"
-    if not turns and sizes.max() > 0.0:
+    words = f"{names} {verb}" if names == "discs" else f"{names} {verb}s"
+    if verb != "turn" and sizes.max() > 0.0:
         along = np.sum((moved * eccentric.conjugate()).real ** 2) / np.sum(sizes**2)
         words += (
             " along its eccentricity" if along > ALONG else " across its eccentricity" if along < 1.0 - ALONG else ""

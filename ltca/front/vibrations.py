@@ -126,7 +126,7 @@ def vibration(
     Raises
     ------
     DriveError
-        When a name, a number or their combination makes no sense, a density is missing, contacts have slices, or turns are too
+        When a name, a number or their combination makes no sense, a density is missing, or turns are too
         few to tell the orders apart.
     ConvergenceError
         When a position does not balance or is not stable.

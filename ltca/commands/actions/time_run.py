@@ -28,7 +28,7 @@ from ltca.reading.drive_file import DriveFile
 
 CHECKPOINTS = "checkpoint"
 """Folder of interrupted runs, a file for each case."""
-KEPT = ("time", "step", "state", "radii", "slope", "rows")
+KEPT = ("time", "step", "state", "rows")
 """What of a checkpoint stands beside its samples."""
 SAVED_EVERY = 20.0
 """Seconds of work between two checkpoints."""
@@ -149,8 +149,6 @@ def _read(path: Path, mark: str) -> Checkpoint:
             time=float(held["time"]),
             step=float(held["step"]),
             state=held["state"],
-            radii=held["radii"],
-            slope=held["slope"],
             rows=int(held["rows"]),
             samples={
                 name.removeprefix("samples_"): values for name, values in held.items() if name.startswith("samples_")
@@ -187,6 +185,7 @@ def _lines(found: TimeRun, title: str) -> list[str]:
         for name, value in (
             ("input", energy.input), ("output", energy.output), ("damping", energy.damping), ("friction", energy.friction),
             ("kinetic", energy.kinetic), ("stored", energy.stored), ("curvature", energy.curvature),
+            ("stations", energy.stations),
         )
         if np.isfinite(value)
     )  # fmt: skip
@@ -194,7 +193,7 @@ def _lines(found: TimeRun, title: str) -> list[str]:
     return [*lines, f"  energy, J                 {parts}; {closed}"]
 
 
-NOT_TOLD = "stored energy is told on half-spaces alone"
+NOT_TOLD = "stored energy is not told on contact grids (method = direct)"
 
 
 def _metres(values: Mapping[str, float]) -> str:

@@ -86,6 +86,7 @@ def _energy(heading: str, ending: str, found: TimeRun) -> Section:
         ("change of kinetic energy", energy.kinetic),
         ("change of stored energy", energy.stored),
         ("work of changing radii of curvature", energy.curvature),
+        ("work of contacts that move over the bodies", energy.stations),
         ("left", energy.left),
     )
     rows = [[word(words), number(value / 1e3, "{:.6g}", "J")] for words, value in told if np.isfinite(value)]
