@@ -43,7 +43,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         type=count_argument("--positions", 4, 1000),
         default=POSITIONS,
-        help=f"crank angles of a turn at which modes are told; default {POSITIONS}",
+        help="crank angles of a turn at which modes are told, and the stiffness, whose orders ask for some by themselves; "
+        f"default {POSITIONS}",
     )
     parser.add_argument(
         "--turns",
