@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import hmac
 import json
+import re
 import secrets
 import socket
 import webbrowser
@@ -36,6 +37,8 @@ MOST_BYTES = 4_000_000
 LOOKING = 0.25
 """Time, s, between two looks whether who asked is still there."""
 COMPLIANCES = ("half-space", "hybrid", "fe", "file")
+PORTABLE = re.compile(r"[\w .-]+")
+"""Names of saved files: signs that no file system refuses or reads in another way, letters of any script among them."""
 HEADERS = {
     "X-Content-Type-Options": "nosniff",
     "Referrer-Policy": "no-referrer",
@@ -240,6 +243,12 @@ class Studio:
             text, name = _text(asked), _word(asked, "name").removesuffix(".toml")
             if not names_a_file(name) or name.startswith("."):
                 raise DriveError([f"name = {shortened(name)}: {NAMING}"])
+            if not PORTABLE.fullmatch(name):
+                raise DriveError(
+                    [
+                        f"name = {shortened(name)}: must have only letters, digits, spaces and . _ -, which any system takes"
+                    ]
+                )
             path = self.folder / f"{name}.toml"
             if path.is_symlink() or (path.exists() and not path.is_file()):
                 raise FaultError(f"{path.name}: is no file of its own; take another name")

@@ -68,6 +68,18 @@ def test_files_are_saved_in_the_folder_alone(running, name):
     assert sorted(running.folder.iterdir()) == before
 
 
+@pytest.mark.parametrize("name", ["con:|", "a?b", "a*", 'a"b', "<a>", "a$b"])
+def test_names_that_are_not_portable_are_refused(running, name):
+    before = sorted(running.folder.iterdir())
+    found = running.ask("save", {"text": PAPER, "name": name}).body
+    assert "only letters, digits, spaces and . _ -" in found["problems"][0]["text"]
+    assert sorted(running.folder.iterdir()) == before
+
+
+def test_letters_of_any_script_name_a_saved_file(running):
+    assert running.ask("save", {"text": PAPER, "name": "Getriebe ü_2.1-б"}).body == {"saved": "Getriebe ü_2.1-б.toml"}
+
+
 def test_a_saved_file_is_replaced_on_demand_and_never_through_a_link(running, tmp_path):
     save = lambda **more: running.ask("save", {"text": PAPER, "name": "mine", **more}).body  # noqa: E731
     assert save() == {"saved": "mine.toml"}
