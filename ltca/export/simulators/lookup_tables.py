@@ -57,7 +57,7 @@ def readme_text(tables: dict[str, Any]) -> str:
         f"{10800.0 / 3.141592653589793 * one['angle_rad']:.2g}′ | {one['points']} |"
         for kind, one in tables["fit_error"].items()
     )
-    speed = limits["input_speed_rpm"]
+    speed, damping = limits["input_speed_rpm"], tables["damping"]["at_output_N_m_s_per_rad"]
     return f"""# {name}: a reduced drive
 
 Written by cyclo {tables["cyclo_version"]} from the drive {tables["drive"]}, case {tables["case"]}, fingerprint {tables["fingerprint"]}, engine {tables["engine"]}.
@@ -92,5 +92,5 @@ Largest differences from the analysis, torques at its wind-up by the range of {2
 {errors}
 
 A linear spring of {spring["stiffness_N_m_per_rad"]:.6g} N·m/rad behind the mean play of {spring["play_rad"]:.4g} rad is within {100.0 * spring["part_of_torque_range"]:.3g} % of the range of the mean curve.
-Damping at the output: {tables["damping"]["at_output_N_m_s_per_rad"]} N·m·s/rad ({tables["damping"]["words"]}).
+Damping at the output: {"not given" if damping is None else f"{damping:.6g} N·m·s/rad"} ({tables["damping"]["words"]}).
 """

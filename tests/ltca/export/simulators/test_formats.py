@@ -17,6 +17,7 @@ from ltca.dynamics.kinetics import reflected_inertia
 from ltca.dynamics.masses import INERTIA
 from ltca.export.simulators.files import write_simulator
 from ltca.export.simulators.functional_mockup_unit import find_compiler
+from ltca.export.simulators.lookup_tables import readme_text
 from ltca.output.run_folder import MANIFEST
 from ltca.reading.drive_file import load_drive, shipped_drive
 
@@ -68,6 +69,13 @@ def test_model_says_whose_it_is_and_how_good(tables):
     assert tables["limits"]["input_speed_rpm"] == 1500.0
     assert tables["fit_error"]["worst"]["part_of_torque_range"] < 0.02
     assert tables["fit_error"]["worst"]["angle_rad"] < MOST_ANGLE
+
+
+def test_damping_that_is_missing_is_told_in_words(tables):
+    given = {"at_output_N_m_s_per_rad": 2.5, "words": "of [damping]"}
+    missing = {"at_output_N_m_s_per_rad": None, "words": "no [damping]"}
+    assert "Damping at the output: 2.5 N·m·s/rad (of [damping])." in readme_text({**tables, "damping": given})
+    assert "Damping at the output: not given (no [damping])." in readme_text({**tables, "damping": missing})
 
 
 def test_wind_up_is_that_of_the_analysis(tables):
