@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 from ltca.analysis.engines import Engine, describe_engine
@@ -12,6 +13,9 @@ from ltca.drive.units.quantities import ARCMIN
 from ltca.dynamics.masses import drive_masses
 from ltca.export.simulators.files import file_names, require_exportable, write_simulator
 from ltca.output.progress import progress
+
+WIDE_FIT = 2.0
+"""Error of the fit, % of the torque range, beyond which a warning is printed."""
 
 
 def check_drive(kind: str, drive: Drive) -> None:
@@ -26,6 +30,9 @@ def reduce_and_write(kind: str, drive: Drive, engine: Engine, name: str, out: Pa
         found = reduce_drive(drive, engine, lambda size: advance(drive.case, size))
     remarks = write_simulator(kind, {"name": name, **found.content}, out)
     print("\n".join(_lines(found)))
+    if (part := _part_of_range(found)) > WIDE_FIT:
+        told = f"error of the fit beyond {WIDE_FIT:g} %: {part:.3g} % of the torque range"
+        print(f"warning: {told}; simulate with the model only what may be off by that much", file=sys.stderr)
     for remark in remarks:
         print(f"  {remark}")
     for file in file_names(kind, name):
@@ -55,8 +62,13 @@ def _lines(found: ReducedModel) -> list[str]:
         )
     else:
         lines.append("  neither hysteresis nor friction: the drive file has no [friction]")
-    part = 50.0 * worst.torque / found.largest
     lines.append(
-        f"  error of the fit at {worst.points} points: {part:.3g} % of the torque range, {worst.angle * ARCMIN:.2g}′"
+        f"  error of the fit at {worst.points} points: {_part_of_range(found):.3g} % of the torque range, "
+        f"{worst.angle * ARCMIN:.2g}′"
     )
     return lines
+
+
+def _part_of_range(found: ReducedModel) -> float:
+    """Largest error of the fit in torque, % of the range from one end of the tables to the other."""
+    return 50.0 * found.worst.torque / found.largest
