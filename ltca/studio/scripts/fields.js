@@ -61,7 +61,7 @@ function buildFields() {
     title.title = table.meaning;
     const inside = html("div", { class: "fields" }, box);
     if (table.meaning) html("p", { class: "meaning" }, inside, table.meaning + (table.optional ? " May be left out." : ""));
-    box.addEventListener("toggle", () => { if (box.open) { fillSection(box, path, table); showFields(); } });
+    box.addEventListener("toggle", () => { if (box.open) { fillSection(box, path, table); showFields(); showProblems(problemsTold); } });
   }
 }
 
@@ -118,8 +118,20 @@ function showFields() {
   if (document.activeElement !== el("text")) el("text").value = state.text;
 }
 
-// Mistakes beside their fields, and all of them above.
+// A message is of what was typed before: it goes with the next edit of its field.
+function clearMessage(path) {
+  problemsTold = problemsTold.map(problem => ({ ...problem, fields: problem.fields.filter(name => name !== path) }));
+  for (const { input, message } of inputs.get(path) || []) {
+    message.hidden = true;
+    message.textContent = "";
+    input.removeAttribute("aria-invalid");
+  }
+}
+
+// Mistakes beside their fields; above, those of fields that are not the one just changed.
+let problemsTold = []; // a section that is opened later shows them too
 function showProblems(problems) {
+  problemsTold = problems;
   const told = new Map();
   for (const problem of problems) for (const path of problem.fields) told.set(path, [...(told.get(path) || []), problem.text]);
   const of = path => [...told].filter(([name]) => name === path || name === path.replace(/\.like$/, "")).flatMap(([, words]) => words);
@@ -133,7 +145,7 @@ function showProblems(problems) {
     const path = box.dataset.table;
     box.classList.toggle("wrong", first.declared.tables[path].fields.some(field => of(field.path).length));
   }
-  const others = problems.filter(problem => !problem.fields.some(path => path in first.declared.turned)); // those have it beside them
+  const others = problems.filter(problem => !problem.fields.some(path => path in first.declared.turned && (path === changed.what || !(changed.what in first.declared.turned)))); // those have it beside them
   el("problems").replaceChildren(...others.map(problem => html("li", {}, null, problem.text)));
   el("problems").hidden = !others.length;
 }

@@ -81,7 +81,7 @@ function show(answer, sequence, older) {
   if (answer.problems || answer.failure) {
     const count = (answer.problems || []).length;
     verdict("fail", answer.failure ? `No answer: ${answer.failure}` : count === 1 ? "A field is wrong" : `${count} mistakes`);
-    el("quality").textContent = shown ? "the numbers below are those of an earlier state" : "";
+    el("quality").textContent = shown ? "the numbers below are those of an earlier state" : "nothing was answered before in this page";
     document.body.dataset.answer = older ? "older" : "refused";
     return;
   }

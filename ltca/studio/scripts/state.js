@@ -33,6 +33,7 @@ function recall() {
 // Changes wait while one is on its way: each is made in the text that the one before has left.
 let queue = [], pumping = false;
 function change(path, typed) {
+  clearMessage(path);
   const last = queue[queue.length - 1];
   if (last && last.changes && last.what === path) last.changes[path] = typed;
   else queue.push({ what: path, changes: { [path]: typed } });

@@ -136,6 +136,21 @@ def test_a_wrong_field_is_told_beside_it_and_the_older_answer_is_greyed(open_pag
     type_into(page, "pin_wheel.pin_radius", "6.5")
     settled(page)
     assert row.locator(".message").is_hidden()
+    type_into(page, "disc.equidistant_offset", "-5")
+    offset = page.locator('#turned [data-path="disc.equidistant_offset"]')
+    page.wait_for_function("() => el('turn-disc-equidistant-offset').ariaInvalid === 'true'")
+    before = offset.locator(".message").inner_text()
+    type_into(page, "disc.equidistant_offset", "1e6")  # refused by other fields: the earlier message goes at once
+    assert offset.locator(".message").is_hidden() or offset.locator(".message").inner_text() != before
+    page.wait_for_function("() => !el('problems').hidden")
+    assert offset.locator(".message").is_hidden()
+    assert offset.locator("input[type=text]").get_attribute("aria-invalid") is None
+    assert "must be less than" in row.locator(".message").inner_text()
+    assert "pin_wheel.pin_radius" in page.locator("#problems").inner_text()
+    assert page.locator("#results").is_visible()
+    type_into(page, "disc.equidistant_offset", "0.15")
+    settled(page)
+    assert row.locator(".message").is_hidden()
     assert page.evaluate("document.body.dataset.answer") == "fine"
 
 
