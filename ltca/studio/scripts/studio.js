@@ -13,6 +13,7 @@ function showTools() {
   fill("variant", names, now || "", "not kept");
   fill("beside-variant", names, state.beside in state.variants ? state.beside : "", "none");
   fill("case", state.cases.length ? state.cases : ["nominal"], state.cases.length ? state.case : "nominal");
+  showSimulators();
   el("case-field").hidden = state.cases.length < 2;
 }
 

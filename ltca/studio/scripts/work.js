@@ -55,12 +55,22 @@ function showJobs(jobs) {
   }
 }
 
+// A URDF has a velocity: it cannot be had of a drive without a speed.
+function showSimulators() {
+  const option = [...el("simulator").options].find(each => each.value === "urdf");
+  if (!option) return;
+  option.disabled = !Object.keys(state.values).some(name => name === "load.speed" || /^duty\.\d+\.speed$/.test(name));
+  el("urdf-note").hidden = !option.disabled;
+  el("simulate").disabled = option.disabled && el("simulator").value === "urdf";
+}
+
 function listenWork() {
   const fill = (id, names) => { for (const name of names) html("option", { value: name }, el(id), name); };
   fill("export-format", first.exports.formats);
   fill("export-part", first.exports.parts);
   fill("simulator", first.exports.simulators);
-  el("simulators").hidden = !first.exports.simulators.length;
+  el("simulators").hidden = el("simulator-note").hidden = !first.exports.simulators.length;
+  el("simulator").addEventListener("change", showSimulators);
   el("save").addEventListener("click", () => saveFile(false));
   el("overwrite").addEventListener("click", () => saveFile(true));
   el("file-name").addEventListener("input", () => { el("overwrite").hidden = true; });

@@ -125,6 +125,23 @@ def test_an_edit_changes_the_verdict_as_a_run_says(open_page):
 
 
 @pytest.mark.nightly
+def test_a_urdf_is_offered_with_a_speed_alone(open_page):
+    page = open_page()
+    option = page.locator("#simulator option[value=urdf]")
+    assert "may take minutes" in page.locator("#simulator-note").inner_text()
+    assert option.is_disabled()
+    assert "urdf needs load.speed" in page.locator("#urdf-note").inner_text()
+    page.evaluate("change('load.speed', '1500')")
+    settled(page)
+    assert option.is_enabled()
+    assert page.locator("#urdf-note").is_hidden()
+    page.select_option("#simulator", "urdf")
+    page.evaluate("change('load.speed', '')")
+    settled(page)
+    assert page.locator("#simulate").is_disabled()
+
+
+@pytest.mark.nightly
 def test_a_wrong_field_is_told_beside_it_and_the_older_answer_is_greyed(open_page):
     page = open_page()
     type_into(page, "pin_wheel.pin_radius", "-1")
