@@ -37,7 +37,7 @@ EXAMPLES = (
 # Options of a derivation, and their defaults.
 DERIVING = {
     "part": "bodies",
-    "bodies": "plane",
+    "bodies": None,
     "stations": 1.0,
     "size": 1.0,
     "layers": None,
@@ -65,7 +65,6 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--bodies",
         choices=("plane", "solid"),
-        default="plane",
         help="plane bodies (default), or solid ones with free ends, which also yield to loads linear along the width: minutes "
         "instead of seconds; time and memory are told before, and what is done is kept until all is",
     )
@@ -77,7 +76,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--stations",
-        type=quantity_argument("--stations", "dimensionless", ge=1e-2, le=1e2),
+        type=quantity_argument("--stations", "dimensionless", ge=0.25, le=8.0),  # as fem.coefficients.stations
         default=1.0,
         metavar="N",
         help="number of stations as a multiple of the default (16 for each lobe and at least 8, 48 on each bore, 24 on "
@@ -132,6 +131,7 @@ def execute(arguments: argparse.Namespace) -> int:
         raise CycloError("derive: give a drive file, or a file of coefficients with --check")
     if arguments.part == "ring":
         return _derive_ring(arguments)
+    arguments.bodies = arguments.bodies or "plane"
     if arguments.bodies == "solid" and arguments.plane is not None:
         raise CycloError(f"--plane {arguments.plane}: has no meaning with --bodies solid, which are in no plane state")
     if arguments.bodies == "plane" and arguments.layers is not None:

@@ -336,6 +336,11 @@ def _solve_on(
             f"the contact of {pair.name} is {width:.2g} mm wide to each side: must be at least {NARROWEST:g} of the depth of the "
             f"block, {NARROWEST * meshes.block:.2g} mm; give a larger load or approach, or a smaller block"
         )
+    if edge > zone:
+        raise MeshError(
+            f"--size {size:g}: must be at most {zone / width * ELEMENTS_PER_HALF_WIDTH:.3g} for this contact, one element "
+            f"for the {zone:.3g} mm to each side that are meshed for its pressure"
+        )
     columns, zone_columns = graded_columns(edge, zone, meshes.block)
     rows = graded_rows(edge, 0.5 * width, meshes.block)
     lower = make_block(

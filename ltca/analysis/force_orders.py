@@ -95,7 +95,7 @@ def force_orders(drive: Drive, crank_angle: FloatArray, forces: dict[str, FloatA
     for name, values in forces.items():
         passage = next((order for kind, order in passages.items() if name.startswith(kind)), 1.0)
         for count in range(min(MULTIPLES, int(0.9 * resolved / passage)), 0, -1):
-            fit = OrderFit(passage * np.arange(1, count + 1))
+            fit = OrderFit(passage * np.arange(1.0, count + 1.0, dtype=np.float64))
             fit.add(crank_angle, values)
             if fit.singular_ratio >= LEAST_SINGULAR_RATIO:
                 mean, amplitude, rest = fit.solve()

@@ -20,7 +20,7 @@ from ltca.analysis.half_width_guard import (
     unborne_warning,
     wide_holes_warning,
 )
-from ltca.analysis.run_off import few_slices_warning, run_off_warning
+from ltca.analysis.run_off import few_slices_warning, run_off_warning, undivided_ends_warning
 from ltca.arrays import ComplexArray, FloatArray, batch_layout, freeze, stack_drives, take_positions
 from ltca.compliance.coefficient_files import coefficient_warnings
 from ltca.compliance.response import ContactPressures
@@ -319,6 +319,7 @@ class LoadedAnalysis:
         found += [
             run_off_warning(self.drive, self.pressures),
             few_slices_warning(self.drive.contact.slices, self.pressures),
+            undivided_ends_warning(self.drive.contact.slices, self._solid, self.pressures),
         ]
         discs = self.discs if np.all(self.balanced) else ()
         for number, disc in enumerate(discs):
@@ -328,6 +329,11 @@ class LoadedAnalysis:
                 told = separation_warning(contacts, disc.drive, disc.full, disc.pressures)
                 found.append(None if told is None else of + told)
         return [warning for warning in found if warning is not None]
+
+    @property
+    def _solid(self) -> bool:
+        """Whether the bodies are solid ones."""
+        return any(one.coefficients is not None and one.coefficients.tilting is not None for one in self.model.discs)
 
     @property
     def _yielding(self) -> dict[str, tuple[str, FloatArray]]:

@@ -58,6 +58,19 @@ def _run_off_words(kind: KindPressures) -> str:
     return f"(at the {' and the '.join(sides)} end, with {100.0 * np.max(ends):.2g} % of the largest line load)"
 
 
+def undivided_ends_warning(slices: int, solid: bool, pressures: ContactPressures) -> str | None:
+    """Return a warning where lines of one slice have the ends of half-spaces on solid bodies; None elsewhere.
+
+    Plane strain has no largest pressure beyond that at mid-width.
+    """
+    if slices > 1 or not solid or not np.isfinite(pressures.pins.largest).any():
+        return None
+    return (
+        "contact.slices = 1: the largest pressures anywhere along the width are those of half-spaces, which peak where solid "
+        "bodies end; contact.slices = 9 has the ends of the bodies"
+    )
+
+
 def few_slices_warning(slices: int, pressures: ContactPressures) -> str | None:
     """Return a warning where contacts that carry notably end within their width and reach over few slices; None elsewhere."""
     told, fewest = [], slices

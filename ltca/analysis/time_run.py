@@ -6,8 +6,8 @@ evenly in time are kept. Contacts that close and open set its step: drives have 
 methods with the tangent gain nothing.
 
 The balance of energy is that of input, output, damping, friction, of what is stored, and of the work of contacts that move to
-another radius of curvature or over bodies that yield otherwise there (`ltca.compliance.stored_energy`): their forces act along the
-normal alone.
+another radius of curvature or over bodies that yield otherwise there (`ltca.compliance.stored_energy`): their forces act along
+the normal alone.
 """
 
 from __future__ import annotations
@@ -487,6 +487,8 @@ def _sense(drive: Drive) -> float:
 
 def _require_supported(drive: Drive, model: Reducer, course: Course) -> None:
     problems = []
+    if drive.contact.slices > 1:
+        problems.append(f"contact.slices = {drive.contact.slices}: must be 1 for a run in time, which leaves tilts out")
     if model._teeth_press:
         problems.append(
             "first_stage: its teeth press on cranks or main bearing that yield, which a run in time leaves out"

@@ -311,7 +311,9 @@ class _PushedMotion:
         lossy = np.sqrt(np.diag(mass) / np.maximum(np.diag(mean), np.finfo(float).tiny))
         damping = damping + np.sqrt(np.outer(lossy, lossy)) * loss
         inverse, step = np.linalg.inv(mass), 2.0 * np.pi / (samples * speed)
-        system = np.block([[np.zeros((count, count)), np.eye(count)], [-inverse @ (mean + outward), -inverse @ damping]])
+        system = np.block(
+            [[np.zeros((count, count)), np.eye(count)], [-inverse @ (mean + outward), -inverse @ damping]]
+        )
         onward = expm(system * step)
         pushed = onward[:, count:] @ inverse * step
         # Pushes have every order that looks alike at the positions: what these add to the first is all but the same to all.
