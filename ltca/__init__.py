@@ -28,6 +28,7 @@ studies        Studies at scale: tolerances, sweeps, optimiser
 figures        Pictures of results, by matplotlib and pyvista
 page           Pages of results that open offline
 export         Parts carried out: exact outlines, DXF drawings, tables of points (STEP and STL: ``fem.export``)
+studio         A drive in the browser, its answer beside it: the server of ``cyclo studio``
 testing        What serves checking alone, importable by tests of your own
 facade         The front door: `analyse`, its result, derivatives
 front          What else ``import ltca`` gives: `check`, `curves`, `vibration`, `concat`
@@ -48,6 +49,7 @@ if TYPE_CHECKING:
     from ltca.front.checks import check
     from ltca.front.curves import curves
     from ltca.front.joined import concat
+    from ltca.front.motions import motion
     from ltca.front.vibrations import vibration
     from ltca.reading.drive_file import load_drive
 
@@ -66,12 +68,13 @@ _HOMES = {
     "curves": "ltca.front.curves",
     "derivatives": "ltca.facade",
     "load_drive": "ltca.reading.drive_file",
+    "motion": "ltca.front.motions",
     "vibration": "ltca.front.vibrations",
 }
 
 __all__ = [
     "Drive", "DriveError", "HalfSpace", "Hybrid", "PlaneStrain", "__version__", "analyse", "check", "concat",
-    "curves", "derivatives", "load_drive", "vibration",
+    "curves", "derivatives", "load_drive", "motion", "vibration",
 ]  # fmt: skip
 
 

@@ -23,7 +23,7 @@ PACKAGES = ("ltca", "fem", "validation")
 FLOORS = (
     "ltca.errors", "ltca.arrays", "ltca.quantities", "ltca.output", "ltca.drive", "ltca.geometry", "ltca.contact",
     "ltca.reading", "ltca.laws", "ltca.compliance", "ltca.equilibrium", "ltca.dynamics", "ltca.analysis", "ltca.studies",
-    "ltca.figures", "ltca.page", "ltca.export", "ltca.testing", "ltca",
+    "ltca.figures", "ltca.page", "ltca.export", "ltca.studio", "ltca.testing", "ltca",
     "fem.errors", "fem.discretisation_error", "fem.shapes", "fem.mesh", "fem.body", "fem.solid", "fem.options", "fem.contact",
     "fem.drive", "fem.solid_contact", "fem.reducer",
     "fem.solid_drive", "fem.coefficients", "fem.referee", "fem.pictures", "fem.export", "fem.testing", "fem",
@@ -41,6 +41,8 @@ FEM_MAY_IMPORT = (
     "ltca.page.verdict_tables",
     "ltca.figures.house_style",
     "ltca.export",
+    # One command writes parts and, handed on whole, models for simulators: nothing of these comes back.
+    "ltca.commands.reduced_model",
 )  # fmt: skip
 # A change is checked as a drive file is read, above the drive; users look for it on the drive. It is loaded when called.
 METHODS_FROM_ABOVE = {("ltca.drive.parts", "ltca.reading.changes")}

@@ -63,6 +63,7 @@ def derive_coefficients(
     layers: int = LAYERS,
     processes: int = 1,
     progress: Callable[[str], None] | None = None,
+    store: Callable[[xr.Dataset], object] | None = None,
 ) -> xr.Dataset:
     """Derive the influence coefficients of all bodies of a drive.
 
@@ -85,13 +86,15 @@ def derive_coefficients(
         all clearance cases approximately, and says so.
     bodies : {"plane", "solid"}
         Solid bodies have true ends, and coefficients for the tilt of contacts as well (`fem.coefficients.solid_dataset`); time
-        and memory are told on stderr, and what is done is kept until all is.
+        and memory are told on stderr, and what is done is kept until all is stored.
     layers : int
         Of solid bodies, over half of their thickness.
     processes : int
         How many derivations share the memory of the machine.
     progress : callable, optional
         Called with the name of each step before it starts.
+    store : callable, optional
+        Called with the result, to write it: what is kept of solid bodies is removed after that, not where it fails.
 
     Returns
     -------
@@ -175,9 +178,11 @@ def derive_coefficients(
         gmsh=str(load_gmsh().__version__),
         **elastic_constants(nominal.body_materials),
     )
+    keep = store or (lambda derived: None)
     if bodies == "plane":
+        keep(dataset)
         return dataset
-    return with_solid_bodies(dataset, nominal, shapes, places, size=size, layers=layers, tell=plane.tell)
+    return with_solid_bodies(dataset, nominal, shapes, places, size=size, layers=layers, tell=plane.tell, store=keep)
 
 
 class _Derived(NamedTuple):

@@ -36,6 +36,7 @@ from fem.solid.layer_count import require_layers
 from fem.solid.layers import graded_layers
 from ltca.arrays import FloatArray, IntArray
 from ltca.drive.parts import Drive, Material
+from ltca.errors import CycloError, FaultError
 from ltca.geometry.boundary_stations import boundaries_of, clustered_parameter, weights_of
 from ltca.reading.coefficient_laws import project_rigid_motions
 
@@ -232,10 +233,12 @@ def with_solid_bodies(
     size: float,
     layers: int,
     tell: Callable[[str], None],
+    store: Callable[[xr.Dataset], object],
 ) -> xr.Dataset:
     """Return the coefficients of solid bodies: those of plane strain, of a nominal drive, with what solid ones have beyond them.
 
-    Each class of each body is kept in the cache until all are done: a derivation that was interrupted goes on.
+    Each class of each body is kept in the cache until the result is stored: a derivation that was interrupted, or whose result
+    found no room, goes on.
     """
     key = json.dumps([drive.body_shape("solid"), size, layers, places.count, plane.attrs["code_hash"]])
     options = SolidOptions(thickness=drive.disc.thickness, layers=layers, tell=tell, pieces=Pieces.of_key(key))
@@ -264,6 +267,13 @@ def with_solid_bodies(
         **_convergence(plane, found, fine, coarse),
         **_bracket(plane, fine.disc, places),
     }
+    try:
+        store(found)
+    except CycloError as error:
+        # What broke a law is not kept; what found no room is.
+        if not isinstance(error, FaultError):
+            options.pieces.forget()
+        raise
     options.pieces.forget()
     return found
 

@@ -177,7 +177,7 @@ def _derive(name: str, case: str, drive: Drive, arguments: argparse.Namespace, o
 
     start = time.perf_counter()
     with steps("deriving coefficients") as show:
-        dataset = derive_coefficients(
+        derive_coefficients(
             drive,
             case=case,
             stations=arguments.stations,
@@ -187,8 +187,8 @@ def _derive(name: str, case: str, drive: Drive, arguments: argparse.Namespace, o
             layers=arguments.layers or LAYERS,
             keep_clearance=not arguments.without_clearance,
             progress=show,
+            store=lambda derived: write_coefficients(derived, out),
         )
-    write_coefficients(dataset, out)
     written = read_coefficients(out, lawful=False)
     checks = check_coefficients(written)
     attributes = written.attrs

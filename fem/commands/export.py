@@ -1,4 +1,4 @@
-"""``cyclo export``: discs, pins and their assembly for CAD, printers, grinders and measuring machines."""
+"""``cyclo export``: parts for CAD, printers, grinders and measuring machines; the whole drive for simulators."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ltca.commands.reduced_model import add_simulator_arguments, export_model, refuse_compliance
 from ltca.errors import DriveError
 from ltca.reading.arguments import (
     add_case_argument,
@@ -20,11 +21,12 @@ from ltca.reading.arguments import (
 if TYPE_CHECKING:
     from ltca.export.parts import Part
 
-SUMMARY = "write parts of a drive for CAD, printers and measuring machines: DXF, STEP, STL or CSV"
+SUMMARY = "write parts of a drive for CAD (DXF, STEP, STL, CSV), or a reduced model of it for simulators"
 EXAMPLES = (
     ("cyclo export my.toml --format step", "the discs as solids, in their own frame"),
     ("cyclo export my.toml --format dxf --part assembly", "everything at φ_C = 0, a layer a part"),
     ("cyclo export my.toml --format stl --compensate 0.1", "for a printer whose walls grow by 0.1 mm"),
+    ("cyclo export my.toml --for mujoco", "the drive in a robot's joint: MJCF, tables and callback"),
 )
 FORMATS = ("dxf", "step", "stl", "csv")
 PARTS = ("disc", "pin-wheel", "pin-shaft", "carrier", "assembly")
@@ -36,8 +38,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add_drive_argument(parser)
     add_case_argument(parser, "case; default the first", several=False)
     add_out_argument(parser, "export", "folder for the files; what earlier exports wrote there stays")
-    parser.add_argument("--format", choices=FORMATS, required=True, help="of the files")
-    parser.add_argument("--part", choices=PARTS, default="disc", help="what to write; default disc")
+    which = parser.add_mutually_exclusive_group(required=True)
+    which.add_argument("--format", choices=FORMATS, help="of the files of a part")
+    parser.add_argument("--part", choices=PARTS, help="what to write; default disc")
     parser.add_argument(
         "--disc",
         metavar="K",
@@ -48,7 +51,6 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--compensate",
         metavar="C",
         type=quantity_argument("--compensate", "mm", ge=-1.0, le=1.0),
-        default=0.0,
         help="for printers: move every face into the material by so much, mm: outlines shrink, bores and holes grow",
     )
     parser.add_argument(
@@ -57,10 +59,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
         type=quantity_argument("--chord", "mm", gt=1e-6, le=1.0),
         help="of STL: largest distance of a triangle from the exact surface, mm; default 0.001",
     )
+    add_simulator_arguments(parser, which)
 
 
 def execute(arguments: argparse.Namespace) -> int:
-    """Write the files of a part.
+    """Write the files of a part, or of a simulator.
 
     Returns
     -------
@@ -72,6 +75,17 @@ def execute(arguments: argparse.Namespace) -> int:
     CycloError
         For wrong input, what cannot be exported, or missing libraries.
     """
+    if arguments.simulator is not None:
+        for option in ("part", "disc", "compensate", "chord"):
+            if getattr(arguments, option) is not None:
+                raise DriveError([f"--{option}: has no effect with --for {arguments.simulator}; leave one of them out"])
+        return export_model(arguments)
+    refuse_compliance(arguments)
+    return _export_part(arguments)
+
+
+def _export_part(arguments: argparse.Namespace) -> int:
+    """Write the files of a part; return the exit status."""
     from glob import escape
 
     from ltca.export.parts import make_parts
@@ -84,7 +98,8 @@ def execute(arguments: argparse.Namespace) -> int:
     case, drive = next(iter(file.select([arguments.case] if arguments.case else None).items()))
     tell_unit_mistakes([drive])
     _require_libraries(arguments.format)
-    parts = make_parts(drive, case, arguments.part, disc=arguments.disc, compensation=arguments.compensate)
+    arguments.part = arguments.part or "disc"
+    parts = make_parts(drive, case, arguments.part, disc=arguments.disc, compensation=arguments.compensate or 0.0)
     for part in parts:
         _require_straight(part, arguments.format)
     out = arguments.out or default_folder(file.name, "export")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -134,6 +135,7 @@ def execute_pair(arguments: argparse.Namespace) -> int:
     with claimed_folder(out, "fem", writes=writes):
         with steps() as show:
             solved = solve_pair(pair, load, PairMeshes(size=arguments.size, block=block), show)
+        _warn_of_coarse_mesh(solved, arguments.size)
         print(f"{file.name} {case}, {pair.name}, solid bodies, φ_C = {arguments.angle:g} rad, {words}")
         for line in tabulate_pair(solved):
             print(line)
@@ -143,6 +145,20 @@ def execute_pair(arguments: argparse.Namespace) -> int:
         )
         print(f"written to {out}")
     return 0 if passed else 1
+
+
+def _warn_of_coarse_mesh(solved: SolvedPair, size: float) -> None:
+    """Tell of a mesh that has few elements for the half-width found."""
+    from fem.solid_contact.solved_pair import ELEMENTS_PER_HALF_WIDTH, FEWEST_ELEMENTS
+
+    found = solved.elements_per_half_width
+    if 0.0 < found < FEWEST_ELEMENTS:
+        print(
+            f"warning: --size {size:g}: {found:.2g} elements for the half-width of {solved.pair.name}, fewer than "
+            f"{FEWEST_ELEMENTS}: load and pressures may be off by per cents; give --size "
+            f"{ELEMENTS_PER_HALF_WIDTH / FEWEST_ELEMENTS:g} or less (1 has {ELEMENTS_PER_HALF_WIDTH})",
+            file=sys.stderr,
+        )
 
 
 def _load(arguments: argparse.Namespace, expected: float, name: str) -> tuple[PairLoad, str]:

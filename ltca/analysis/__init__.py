@@ -31,9 +31,13 @@ torque_curve               Torque against wind-up over both directions, and what
 stiffness_by_part          Torsional stiffness with and without each part that a file describes
 transmission_error_orders  Orders of the transmission error by name, fitted together
 life                       Rating life and static safety of the crank bearings from the loads of their rollers
+force_orders               Spectra of single forces at rest, by the orders of their own passage
 vibration                  Modes over a turn and over torque, orders that excite them, critical speeds
 forced_vibration           Response to the orders of the transmission error over speed, dynamic factors of contacts
+time_run                   A drive in time on the laws of its contacts: start, ramp, torque step, reversal, swinging load
+time_dataset               What a run in time leaves: dataset and numbers
 drive_curves               Curves of one drive: torque curve, orders, lives and pressure over turns
+reduced_model              A drive reduced to what simulators of robots and machines hold, with the error of the fit
 verdict                    A verdict on a design: values against limits that each have a source, and advice
 pressure_safety            Safety of the flank pressure against a limit
 memory_need                Memory and disc that an analysis of many positions will need, estimated before it starts

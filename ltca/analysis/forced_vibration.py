@@ -44,6 +44,10 @@ SPEEDS = 300
 """Evenly spaced speeds of a response; critical ones come to them."""
 POSITIONS = 96
 """Crank angles of a turn at which loads are told."""
+MOST_TRUNCATION = 0.05
+"""Change of the transmission error by half of the orders, relative to it, beyond which more positions are asked for."""
+MOST_POSITIONS = 1000
+"""Positions of a turn that are asked for at most."""
 GIVEN_UP = 3
 """Speeds in a row, faster than one that balances, whose failure ends the balance with the pulsation."""
 SAME_ORDER = 1e-9
@@ -362,6 +366,12 @@ def response_notes(found: ForcedVibration, vibration: Vibration) -> list[str]:
         f"stiffness pulses over the turn; {vibration.stiffness_rest:.2%} of it does not come again after one and is left out; "
         f"half of the orders change the transmission error by {found.truncation:.2g} of it"
     ]
+    if found.truncation > MOST_TRUNCATION:
+        more = min(2 * len(vibration.stiffness.over_turn), MOST_POSITIONS)
+        notes.append(
+            f"that is more than {MOST_TRUNCATION:g}: the orders are too few for the resonances up to this speed; take more "
+            f"positions (--positions {more}) or a lower --speed"
+        )
     if found.mean_at.size:
         low, high = found.mean_at.min(), found.mean_at.max()
         notes.append(

@@ -466,11 +466,12 @@ def _prepared(drive: Drive, torque: float | None, engine: Engine | None) -> _Cas
     return _Case(drive=warm, written=written, torque=checked, engine=used, prepared=used.prepare(warm))
 
 
-def _poses_near(near: LoadedAnalysis | None, model: Reducer) -> FloatArray | None:
+def _poses_near(near: LoadedAnalysis | None, model: Reducer, *, light: bool = False) -> FloatArray | None:
     """Poses of an analysis to start others from; None where the model has other coordinates, or one pose is not known."""
-    if near is None or not np.all(near.balanced) or near.full.pose.shape[1] != model.coordinates.size:
+    if near is None or near.full.pose.shape[1] != model.coordinates.size:
         return None
-    return near.full.pose
+    found, balanced = (near.light, near.balanced_light) if light else (near.full, near.balanced)
+    return found.pose if np.all(balanced) else None
 
 
 def _balanced_together(
@@ -535,8 +536,10 @@ def _analysed(
         if seized is None:
             raise
         raise DriveError([f"temperature: {seized}; {problem}" for problem in error.problems]) from error
-    start = np.full((angle.size, full.found.pose.shape[1]), np.nan)
-    start[full.rows] = full.found.pose
+    start = _poses_near(near, prepared.model, light=True)
+    if start is None:
+        start = np.full((angle.size, full.found.pose.shape[1]), np.nan)
+        start[full.rows] = full.found.pose
     light = full
     if light_torque != case.torque:
         try:

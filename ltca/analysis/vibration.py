@@ -15,6 +15,7 @@ import numpy as np
 
 from ltca.analysis.drive_curves import known_orders_of, positions_per_turn
 from ltca.analysis.engines import Engine
+from ltca.analysis.force_orders import ForceOrders, force_content, force_orders, single_forces
 from ltca.analysis.memory_need import positions_together
 from ltca.analysis.transmission_error_orders import Order, Spectrum, fit_orders
 from ltca.arrays import FloatArray
@@ -110,6 +111,8 @@ class Vibration:
         Balanced poses there.
     walked_lag : array, shape (walked,)
         Angle of the cranks less the one that the held input gives them, rad.
+    forces : tuple of ForceOrders
+        Spectra of single forces there.
     """
 
     drive: Drive
@@ -129,6 +132,7 @@ class Vibration:
     walked_angle: FloatArray
     walked_pose: FloatArray
     walked_lag: FloatArray
+    forces: tuple[ForceOrders, ...]
 
     @property
     def input_is_held(self) -> bool:
@@ -204,6 +208,14 @@ def speed_range(drive: Drive) -> tuple[float, float]:
     return (min(speeds), max(speeds)) if speeds else (0.0, FASTEST)
 
 
+def walked_positions(drive: Drive, positions: int) -> int:
+    """Return the crank angles of each turn behind orders and pulsation, an even number: those asked for, or the more that the
+    highest order of the transmission error needs.
+    """
+    each = max(positions, positions_per_turn(drive))
+    return each + each % 2
+
+
 @names_unit_mistakes
 def vibration(
     drive: Drive,
@@ -223,7 +235,7 @@ def vibration(
     engine : Engine
         How bodies yield.
     positions : int
-        Crank angles of a turn.
+        Crank angles of a turn; more of them than the orders of the transmission error need are those of the pulsation too.
     torque_parts : sequence of float
         Torques by that of the load; the whole one is added.
     turns : int
@@ -267,7 +279,7 @@ def vibration(
     first, at_zero = int(rigid is not None), found[0]
     shown = first + np.argsort(at_zero.frequency[first:], kind="stable")
     ahead = np.array([disc.geometry.placement.eccentric_direction(angles[:1])[0] for disc in model.discs])
-    walked = _walk(model, motion, warm, turns, lever, advance)
+    walked = _walk(model, motion, warm, turns, walked_positions(warm, positions), lever, advance)
     try:
         spectrum = fit_orders(walked.angle, walked.error, known_orders_of(warm))
     except ValueError as problem:
@@ -290,31 +302,43 @@ def vibration(
         walked_angle=walked.angle,
         walked_pose=walked.pose,
         walked_lag=walked.lag,
+        forces=force_orders(warm, walked.angle, walked.forces),
     )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Walked:
-    """Crank angles of some turns, and there, at the load, transmission error, poses, lags of the cranks, and the stiffness of a
-    mean turn with what departs from it.
+    """Crank angles of some turns, and there, at the load, transmission error, poses, lags of the cranks, single forces, and the
+    stiffness of a mean turn with what departs from it.
     """
 
     angle: FloatArray
     error: FloatArray
     pose: FloatArray
     lag: FloatArray
+    forces: dict[str, FloatArray]
     stiffness: PulsatingStiffness
     stiffness_rest: float
 
 
 def _walk(
-    model: Reducer, motion: Motion, drive: Drive, turns: int, lever: FloatArray, advance: Callable[[int], None]
+    model: Reducer,
+    motion: Motion,
+    drive: Drive,
+    turns: int,
+    each: int,
+    lever: FloatArray,
+    advance: Callable[[int], None],
 ) -> _Walked:
-    """Balance some turns at the load."""
-    each, torque = positions_per_turn(drive), drive.load.torque
-    each += each % 2
+    """Balance some turns of so many positions at the load."""
+    torque = drive.load.torque
     angle = 2.0 * np.pi * np.arange(turns * each) / each
-    parts, over_turn, squares = [], np.zeros((each, motion.size, motion.size)), 0.0
+    parts, forces, over_turn, squares = (
+        [],
+        list[dict[str, FloatArray]](),
+        np.zeros((each, motion.size, motion.size)),
+        0.0,
+    )
     scale, first = np.outer(lever, lever), 0
     for rows in np.array_split(angle, -(-angle.size // positions_together(drive))):
         found = solve_at_output(model, [drive], rows, torque, gaps=False)
@@ -324,6 +348,7 @@ def _walk(
         squares += float(np.sum((stiffness / scale) ** 2)) / turns
         error = drive.output_deviation(wheel_angle_of_input(model, found), np.full(rows.size, torque))
         parts.append((error, found.pose, crank_lag(model, found)))
+        forces.append(single_forces(model, found))
         first += rows.size
         advance(rows.size)
     error, pose, lag = (np.concatenate(values) for values in zip(*parts, strict=True))
@@ -333,6 +358,7 @@ def _walk(
         error=error,
         pose=pose,
         lag=lag,
+        forces={name: np.concatenate([part[name] for part in forces]) for name in forces[0]},
         stiffness=PulsatingStiffness(over_turn=over_turn),
         stiffness_rest=float(np.sqrt(max(squares - kept, 0.0) / kept)),
     )
@@ -379,6 +405,7 @@ def vibration_content(found: Vibration, fastest: float | None = None) -> dict[st
             ],
             "residual_rms_rad": spectrum.residual,
         },
+        "forces_at_rest": force_content(found.forces),
         "speed_range_rpm": [low, high],
         "critical_speeds": [
             {

@@ -37,6 +37,7 @@ ORDER = (
     "sweep",
     "optimise",
     "design",
+    "studio",
     "mesh",
     "fem",
     "derive",

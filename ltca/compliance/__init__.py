@@ -8,6 +8,7 @@ rollers              A roller between the races: two contact laws in series, its
 leaning_rollers      Rollers of a crank bearing in slices: place and lean at which both contacts balance in force and
                      moment
 sliced               What contacts in slices are made of, loaded when a drive has them
+stored_energy        Energy that the contacts of a disc store, and the work of contacts that move over the bodies
 response             What a compliance model answers: loads of all contact pairs at a pose, their generalised force and
                      its tangent
 pressures            Pressures behind the loads found: read from the laws of the contacts, for shaft pins from their

@@ -1,7 +1,8 @@
 """Where influence coefficients come from: files of the user's, or derived once for each distinct shape and kept.
 
 `ltca` reads files only. What derives them registers in the entry-point group ``cyclo.derivations`` (the package
-`fem` does), so that `ltca` imports nothing to its right: a function of a drive, ``state`` or ``bodies`` and ``processes`` (how
+`fem` does), so that `ltca` imports nothing to its right: a function of a drive, ``state`` or ``bodies``, ``store`` (what writes
+the result; of solid bodies alone) and ``processes`` (how
 many of its kind share the memory) that returns the dataset of ``docs/theory/coefficients.md``.
 """
 
@@ -17,7 +18,7 @@ from concurrent.futures import as_completed
 from contextlib import suppress
 from importlib.metadata import entry_points
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ltca.compliance.coefficients import InfluenceCoefficients, load_coefficients
 from ltca.compliance.near_field import NEAR_FIELDS, NearField
@@ -30,6 +31,9 @@ from ltca.output.processes import interrupts_held
 from ltca.output.progress import progress
 from ltca.output.provenance import cache_home, code_hash, code_version
 from ltca.reading.coefficient_file import require_laws, write_coefficients
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 GROUP = "cyclo.derivations"
 DERIVATION = "finite-elements"
@@ -345,10 +349,16 @@ def _processes(derivations: int, bodies: Bodies) -> int:
 
 def _derive_file(drive: Drive, path: Path, processes: int, bodies: Bodies) -> None:
     """Derive the coefficients of one drive into a file, one of some processes that share the memory."""
-    of: dict[str, str] = {"bodies": bodies} if bodies == "solid" else {"state": "strain"}
-    dataset = derivation()(drive, **of, processes=processes)
-    require_laws(dataset, str(path))
-    write_coefficients(dataset, path)
+
+    def store(dataset: xr.Dataset) -> None:
+        require_laws(dataset, str(path))
+        write_coefficients(dataset, path)
+
+    if bodies == "solid":
+        # Hours of work are kept until its file stands.
+        derivation()(drive, bodies=bodies, processes=processes, store=store)
+    else:
+        store(derivation()(drive, state="strain", processes=processes))
 
 
 def derivation(name: str = DERIVATION) -> Callable[..., Any]:

@@ -20,6 +20,7 @@ the roller and the inner contacts of the other rollers; the place of the roller 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
@@ -42,6 +43,7 @@ from ltca.compliance.response import (
     split_shifts,
 )
 from ltca.compliance.rollers import RollerState
+from ltca.compliance.stored_energy import StoredEnergy
 from ltca.compliance.undeformed import UndeformedBodies
 from ltca.contact.tracked_grid import ContactKind
 from ltca.drive.hole_contact import shaft_pins_yield
@@ -232,6 +234,41 @@ class CoupledCompliance:
         joined: DiscResponse = join_positions(parts)
         return joined
 
+    def body_matrix(self, bodies: UndeformedBodies, loaded: Sequence[NDArray[np.intp]]) -> FloatArray:
+        """Return C of all contacts by the loads of some, pins, rollers and holes, mm/N, shape (positions, contacts, loaded)."""
+        flank, place = bodies.flank.parameter, self.geometry.placement
+        on_flank, profile = self.geometry.profile.flank(flank), float(place.bore_radius)
+        found = self.coefficients.disc_matrix(flank, bodies.bore_places, bodies.hole_places, on_flank, profile, loaded)
+        first = np.cumsum((0, flank.shape[1], bodies.bore_places.shape[1]))
+        chosen = np.concatenate([at + part for at, part in zip(first, loaded, strict=True)], axis=1)
+        own = (self.own.pin, self.own.outer, self.own.hole + self.hole_spring)
+        rows, columns = np.arange(chosen.shape[0])[:, None], np.arange(chosen.shape[1])
+        found[rows, chosen, columns] += np.repeat(own, [part.shape[1] for part in loaded])
+        return found
+
+    def stored(self, crank_angle: FloatArray, pose: FloatArray, response: DiscResponse) -> StoredEnergy:
+        """Return what all contacts in the plane store at a response of this model, its angles and poses given."""
+        laws, near, rollers = self.near_field, np.stack(list(response.warm_start)), response.rollers
+        pins, last = response.pin_load.shape[1], response.pin_load.shape[1] + self.outer_radius.size
+        inner, _ = laws.inner.approach_at_load(rollers.inner_load, self.inner_radius)
+        alone = StoredEnergy.of_laws(
+            (laws.pin, near[:, :pins], response.flank.effective_radius),
+            [
+                (laws.outer, near[:, pins:last], self.outer_radius),
+                (self.hole_law, near[:, last:], self.hole_radius),
+                (laws.inner, inner, self.inner_radius),
+            ],
+        )
+        load = np.concatenate((response.pin_load, rollers.outer_load, response.hole_load), axis=1)
+        bodies = UndeformedBodies(self.geometry, crank_angle, pose, (response.flank, response.holes, response.shifts))
+        every = [np.tile(np.arange(kind.shape[1]), (load.shape[0], 1)) for kind in np.split(near, (pins, last), axis=1)]
+        matrix = self.body_matrix(bodies, every)
+        yields = 0.5 * np.einsum("bi,bij,bj->b", load, matrix, load)
+        on_race = rollers.inner_load
+        yields += 0.5 * np.einsum("bi,ij,bj->b", on_race, self.race, on_race)
+        yields += self.coefficients.roller[0, 1] * (on_race * rollers.outer_load).sum(axis=1)
+        return replace(alone, energy=alone.energy + yields, load=load, coefficients=matrix)
+
     def _solve(self, bodies: UndeformedBodies, start: Start | None, rows: NDArray[np.intp]) -> DiscResponse:
         guess = bodies.geometric * np.where(bodies.geometric > 0.0, 0.5, 1.0)  # a fair share of a rigid overlap
         if start is not None:
@@ -277,22 +314,13 @@ class _Batch:
     def __init__(self, model: CoupledCompliance, bodies: UndeformedBodies, margin: float) -> None:
         self.bodies, self.model, flank = bodies, model, bodies.flank
         pins, rollers = flank.approach.shape[1], model.outer_radius.size
-        own = (model.own.pin, model.own.outer, model.own.hole + model.hole_spring)
         self.loaded = bodies.within(margin)
-        self.body = model.coefficients.disc_matrix(
-            flank.parameter,
-            bodies.bore_places,
-            bodies.hole_places,
-            model.geometry.profile.flank(flank.parameter),
-            float(model.geometry.placement.bore_radius),
-            self.loaded,
-        )
         on_flank, in_bore, in_holes = self.loaded
         self.chosen = np.concatenate((on_flank, pins + in_bore, pins + rollers + in_holes), axis=1)
         self.outer = slice(on_flank.shape[1], on_flank.shape[1] + in_bore.shape[1])
         self.all_outer = slice(pins, pins + rollers)
-        rows, columns = np.arange(self.chosen.shape[0])[:, None], np.arange(self.chosen.shape[1])
-        self.body[rows, self.chosen, columns] += np.repeat(own, [part.shape[1] for part in self.loaded])
+        rows = np.arange(self.chosen.shape[0])[:, None]
+        self.body = model.body_matrix(bodies, self.loaded)
         self.among = self.body[rows, self.chosen]
         self.race = model.race[in_bore[:, :, None], in_bore[:, None, :]]
         self.effective_radius = np.take_along_axis(flank.effective_radius, on_flank, axis=1)

@@ -51,7 +51,7 @@ def stiffness_matrices(model: Reducer, motion: Motion, found: Equilibrium) -> Fl
     for sense in (-1.0, 1.0):
         turned = angle + sense * STEP
         response = contacts.respond(turned, pose, start)
-        ends.append(np.concatenate((response.force, _crank_force(contacts, turned, pose, response)[:, None]), axis=1))
+        ends.append(np.concatenate((response.force, crank_force(contacts, turned, pose, response)[:, None]), axis=1))
     by_crank = (ends[1] - ends[0]) / (2.0 * STEP)
     stiffness = np.zeros((angle.size, motion.size, motion.size))
     pose_size = motion.pose.size
@@ -68,7 +68,7 @@ def stiffness_matrices(model: Reducer, motion: Motion, found: Equilibrium) -> Fl
     return stiffness
 
 
-def _crank_force(model: Reducer, crank_angle: FloatArray, pose: FloatArray, response: Response) -> FloatArray:
+def crank_force(model: Reducer, crank_angle: FloatArray, pose: FloatArray, response: Response) -> FloatArray:
     """∂U/∂φ_C at a held pose, with which discs and wheel go along, N·mm: the moments that hold the cranks, and the work of the
     forces on discs and wheel on their nominal motion.
     """

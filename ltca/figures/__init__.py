@@ -17,6 +17,7 @@ drive_picture      Picture of a drive at one crank angle: its parts with their n
 curve_figures      Figures of `cyclo curves`: torque against wind-up, orders of the transmission error, flank pressure
                    and its limit
 vibration_figures  Figures of `cyclo dynamics`: Campbell diagram, and response over speed
+time_figures       Figure of `cyclo dynamics --time`: transmission error, torque and loads over time, orders
 pressure_figures   Pictures of contact pressure, corresponding to the paper's Fig. 27 and 31–33
 study_figures      Figures of a study: distribution of every quantity, what they come from, and responses of a sweep
 optimum_figures    Figures of an optimisation: the search in one aim over every variable, or the Pareto front of two

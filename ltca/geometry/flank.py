@@ -257,7 +257,7 @@ class FlankProfile:
             When a point does not settle; the history holds the largest steps.
         """
         theta = np.array(np.broadcast_to(start, np.shape(point)), dtype=float)
-        return self._nearer_side(point, self._settle(point, theta))
+        return self.nearer_side(point, self._settle(point, theta))
 
     def _settle(self, point: ComplexArray, start: FloatArray) -> NearestPoint:
         """Find the foot next to every start; points that have converged are dropped as soon as they are the majority.
@@ -310,9 +310,23 @@ class FlankProfile:
                 )
         raise ConvergenceError("contact points on the flank not found; largest step in rad", history)
 
-    def _nearer_side(self, point: ComplexArray, found: NearestPoint) -> NearestPoint:
-        """Change to the other side of the root where the flank is nearer there.
+    @property
+    def has_cusps(self) -> BoolArray:
+        """Whether the path of a pin centre is so sharp at the root that a point may have a nearest one on either side."""
+        return np.asarray(self.eccentricity * self.reduction_ratio**2 > self.generating_radius)
 
+    def nearer_side(self, point: ComplexArray, found: NearestPoint) -> NearestPoint:
+        """Return the nearest points, on the other side of the root where the flank is nearer there.
+
+        Parameters
+        ----------
+        point : array of complex
+            Points in the disc frame, mm.
+        found : NearestPoint
+            What is nearest on one side.
+
+        Notes
+        -----
         With e z_P/R_C near 1 the path of a pin centre is nearly a cusp at the root, and a pin farther from it than its radius
         of curvature there has a nearest point on either side.
         """

@@ -22,6 +22,7 @@ from ltca.output.regular_files import read_regular
 SOURCES = (".py", ".toml", ".json", ".nc")
 
 
+@cache
 def code_version() -> str:
     """Return the version of the installed distribution."""
     return version("cyclo-ltca")

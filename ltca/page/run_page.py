@@ -35,7 +35,8 @@ if TYPE_CHECKING:
     from ltca.output.labelled import Labelled
 
 PAGE = "report.html"
-SCRIPTS = ("drawing", "plots", "motion", "stage", "width", "run")
+STAGE = ("drawing", "plots", "motion", "stage", "width", "run")
+"""Scripts of the moving drive."""
 LOSSES = {kind: SCALARS[f"power_loss_{kind}"].title.removeprefix("power lost: ") for kind in KINDS}
 
 
@@ -78,9 +79,24 @@ class Run:
 
 def run_page(run: Run) -> str:
     """Return the page of a run; the same run gives the same page."""
+    return page_text("run.html", run_context(run), scripts=(*STAGE, "opened"))
+
+
+def run_context(run: Run) -> dict[str, Any]:
+    """Return what the templates of the page of a run are filled with."""
+    drives = {case: warm_drive(drive) for case, drive in run.drives.items()}
+    return answer_context(run, drives) | {
+        "inputs": input_tables(run.drives),
+        "derived": derived_tables(run.drives, drives),
+        "made": _made(run, drives),
+        "text": run.dataset.attrs["drive_file"],
+    }
+
+
+def answer_context(run: Run, drives: Mapping[str, Drive]) -> dict[str, Any]:
+    """Return what the templates are filled with of the answer alone; `drives` are warm."""
     dataset, cases = run.dataset, list(run.drives)
     name, positions = str(dataset.attrs["drive"]), dataset.sizes["position"]
-    drives = {case: warm_drive(drive) for case, drive in run.drives.items()}
     loads = [drive.load_words(_torque(dataset, place)) for place, drive in enumerate(drives.values())]
     shown = shown_positions(dataset)
     sentence, state = verdict_of(run.checks)
@@ -88,10 +104,41 @@ def run_page(run: Run) -> str:
     if unjudged and run.checks:
         sentence, state = f"No answer at some positions, not judged: {', '.join(unjudged)}. {sentence}", "fail"
     sections = [wind_up(dataset, run.summaries, run.drives), lives_of_cases(run.lives)]
+    content, numbers = script_numbers(run, drives)
+    return {
+        "title": f"{name}: loaded tooth contact analysis",
+        "drive": name,
+        "cases": cases,
+        "model": describe_engine(run.engine),
+        "loads": list(dict.fromkeys(loads)),
+        "positions": positions,
+        "thinned": 0 if shown.size == positions else int(shown[1]),
+        "version": dataset.attrs["version"],
+        "sentence": sentence,
+        "state": state,
+        "verdicts": verdict_tables(run.checks),
+        "summary": summary_tables(drives, run.summaries),
+        "orders": orders_table(dataset, drives),
+        "sections": list(zip(("wind_up", "life"), sections, strict=True)),
+        "friction": has_friction(dataset.isel(case=0)),
+        "several": len(cases) > 1,
+        "sliced": "slice" in dataset.sizes,
+        "comparison": _comparison(run),
+        "compared": run.compared,
+        "warnings": [line.removeprefix("warning: ") for line in run.sampling if line.startswith("warning: ")],
+        "sampling": [line for line in run.sampling if not line.startswith("warning: ")],
+        "data": script_data(content),
+        "numbers": numbers,
+    }
+
+
+def script_numbers(run: Run, drives: Mapping[str, Drive]) -> tuple[dict[str, Any], str]:
+    """Return what the scripts of the moving drive read, and its arrays as text (`ltca.page.packing`); `drives` are warm."""
+    dataset = run.dataset
     places, numbers = pack(_arrays(run, drives))
     content = {
         "cases": [_case(dataset, place, drive) for place, drive in enumerate(drives.values())],
-        "names": cases,
+        "names": list(run.drives),
         "places": places,
         "cranks": dataset.sizes["crank"],
         "discs": dataset.sizes["disc"],
@@ -99,39 +146,7 @@ def run_page(run: Run) -> str:
         "axes": _axes(run),
         "compared": _compared(run),
     }
-    return page_text(
-        "run.html",
-        {
-            "title": f"{name}: loaded tooth contact analysis",
-            "drive": name,
-            "cases": cases,
-            "model": describe_engine(run.engine),
-            "loads": list(dict.fromkeys(loads)),
-            "positions": positions,
-            "thinned": 0 if shown.size == positions else int(shown[1]),
-            "version": dataset.attrs["version"],
-            "sentence": sentence,
-            "state": state,
-            "verdicts": verdict_tables(run.checks),
-            "summary": summary_tables(drives, run.summaries),
-            "orders": orders_table(dataset, drives),
-            "sections": list(zip(("wind_up", "life"), sections, strict=True)),
-            "friction": has_friction(dataset.isel(case=0)),
-            "several": len(cases) > 1,
-            "sliced": "slice" in dataset.sizes,
-            "comparison": _comparison(run),
-            "compared": run.compared,
-            "warnings": [line.removeprefix("warning: ") for line in run.sampling if line.startswith("warning: ")],
-            "sampling": [line for line in run.sampling if not line.startswith("warning: ")],
-            "inputs": input_tables(run.drives),
-            "derived": derived_tables(run.drives, drives),
-            "made": _made(run, drives),
-            "text": dataset.attrs["drive_file"],
-            "data": script_data(content),
-            "numbers": numbers,
-        },
-        scripts=SCRIPTS,
-    )
+    return content, numbers
 
 
 def _torque(dataset: Labelled, place: int) -> float:

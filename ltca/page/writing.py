@@ -6,6 +6,7 @@ import json
 import re
 from base64 import b64encode
 from collections.abc import Mapping, Sequence
+from functools import cache
 from hashlib import sha256
 from importlib import resources
 from pathlib import Path
@@ -26,17 +27,41 @@ def page_text(
     scripts: Sequence[str] = (),
     styles: Sequence[str] = (),
     package: str | None = None,
+    live: bool = False,
 ) -> str:
     """Return a page from a template that extends ``base.html``; names from drive files in its context are texts.
 
     `scripts`, of `ltca.page.scripts` or of the package, follow `SCRIPTS`, and `styles` of the package follow ``page.css``;
-    `package` has further templates in its folder ``templates``.
+    `package` has further templates in its folder ``templates`` and scripts in ``scripts``. A `live` page may ask the server it
+    came from.
 
     Notes
     -----
     The page's own script and style are all that a browser runs and applies, by their hashes: what comes into a page otherwise,
     whatever fault let it in, is not executed, and nothing is loaded.
     """
+    own = resources.files("ltca.page")
+    folders = [own / "scripts", own / "templates"]
+    if package:
+        folders += [resources.files(package) / name for name in ("templates", "scripts")]
+
+    def joined(*names: str) -> str:
+        found = [next(file for folder in folders if (file := folder / name).is_file()) for name in names]
+        return "\n".join(file.read_text(encoding="utf-8") for file in found)
+
+    script = joined(*(f"{name}.js" for name in (*SCRIPTS, *scripts)))
+    style = joined(*(f"{name}.css" for name in ("page", *styles)))
+    page = {"style": style, "scripts": script, "policy": _policy(script, style, live), **context}
+    return fragment(template, page, package) + "\n"
+
+
+def fragment(template: str, context: Mapping[str, Any], package: str | None = None) -> str:
+    """Return a template filled in, of `ltca.page` or of the package; names from drive files in its context are texts."""
+    return str(_environment(package).get_template(template).render(context))
+
+
+@cache
+def _environment(package: str | None) -> Any:
     import jinja2
 
     loaders = [jinja2.PackageLoader("ltca.page"), *([jinja2.PackageLoader(package)] if package else [])]
@@ -46,28 +71,18 @@ def page_text(
     )  # fmt: skip
     environment.filters["signs"] = _with_signs
     environment.filters["breaks"] = _with_breaks
-    own = resources.files("ltca.page")
-    folders = [own / "scripts", own / "templates", *([resources.files(package) / "templates"] if package else [])]
-
-    def joined(*names: str) -> str:
-        found = [next(file for folder in folders if (file := folder / name).is_file()) for name in names]
-        return "\n".join(file.read_text(encoding="utf-8") for file in found)
-
-    script = joined(*(f"{name}.js" for name in (*SCRIPTS, *scripts)))
-    style = joined(*(f"{name}.css" for name in ("page", *styles)))
-    page = {"style": style, "scripts": script, "policy": _policy(script, style), **context}
-    return environment.get_template(template).render(page) + "\n"
+    return environment
 
 
-def _policy(script: str, style: str) -> str:
-    """The content security policy of a page: its one script, its one style, pictures within it."""
+def _policy(script: str, style: str, live: bool) -> str:
+    """The content security policy of a page: its one script, its one style, pictures within it, and its server if it has one."""
 
     def source(text: str) -> str:
         return f"'sha256-{b64encode(sha256(text.encode()).digest()).decode('ascii')}'"
 
     return (
         f"default-src 'none'; script-src {source(script)}; style-src {source(style)}; img-src data: blob:; "
-        "base-uri 'none'; form-action 'none'"
+        f"{'connect-src ' + repr('self') + '; ' if live else ''}base-uri 'none'; form-action 'none'"
     )
 
 

@@ -6,6 +6,7 @@ Modules in the order data passes:
 arguments           Arguments that commands share: the same names, metavars, units, bounds and default folders in all of
                     them
 toml_text           TOML files as plain tables: any file is read, or refused in one sentence
+toml_edit           A value changed in the text of a TOML file, everything else to the letter
 drive_file          Reading drive files: TOML to validated drives, one for each case, with every mistake reported at
                     once
 bearing_names       Bought bearings in drive files, as fields: names, clearance classes, entries of the user's own

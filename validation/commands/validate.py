@@ -31,6 +31,8 @@ EXAMPLES = (
 )
 MANUAL_FOLDER = Path("out") / "manual"
 """Default folder of the manual."""
+KEPT = "kept"
+"""Folder beside the results of what later runs, or the rest of an interrupted one, need not compute again."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -59,7 +61,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="CASE",
         help="write the verification manual instead, a page for each case and an index: all cases, or these. It needs "
         "no DRIVE and "
-        f"takes no other option than --out (default {MANUAL_FOLDER}); exit status 1 when a verdict is FAILED",
+        f"takes no other option than --out (default {MANUAL_FOLDER}); each page is written when it is made, and the same command "
+        "goes on where it was interrupted; exit status 1 when a verdict is FAILED",
     )
     add_out_argument(parser, "validate", "folder of report and kept solutions")
 
@@ -101,7 +104,7 @@ def execute(arguments: argparse.Namespace) -> int:
             require_solution_memory(drive, plan.crank_angles[0], plan.options)
     except MemoryLimitError as error:
         raise CycloError(f"--size {size:g}: {error}") from error
-    with claimed_folder(out, "validate", writes=("report.html", "validation.json", "rows.csv"), beside=("kept",)):
+    with claimed_folder(out, "validate", writes=("report.html", "validation.json", "rows.csv"), beside=(KEPT,)):
         return _run_and_write(plan, out)
 
 
@@ -123,30 +126,35 @@ def _write_manual(arguments: argparse.Namespace) -> int:
     require_folder(out)
     from threadpoolctl import threadpool_limits
 
-    from validation.manual.case import solve_case
-    from validation.manual.page import file_names, printed_difference, verdict_word, write_manual
+    from validation.manual.kept import KeptOutcomes
+    from validation.manual.page import file_names, printed_difference, verdict_word, write_index, write_page
     from validation.manual.register import chosen_cases
 
     cases = chosen_cases(arguments.manual)
-    with claimed_folder(out, "validate", writes=file_names(cases)):
-        outcomes, seconds = [], []
+    kept = KeptOutcomes(folder=out / KEPT)
+    with claimed_folder(out, "validate", writes=file_names(cases), beside=(KEPT,)):
+        outcomes, times = [], []
         # One thread: sums in another order would change last digits.
         with steps() as show, threadpool_limits(limits=1):
             for number, case in enumerate(cases, start=1):
                 show(f"[{number}/{len(cases)}] {case.title}")
                 began = time.perf_counter()
-                outcomes.append(solve_case(case))
-                seconds.append(time.perf_counter() - began)
-        paths = write_manual(outcomes, out)
-    for outcome, spent in zip(outcomes, seconds, strict=True):
-        print(f"{verdict_word(outcome)}  {outcome.case.name:<22}{len(outcome.figures):>4} figures {spent:>6.1f} s")
+                outcome, was_kept = kept.get(case)
+                times.append(f"{'kept':>8}" if was_kept else f"{time.perf_counter() - began:>6.1f} s")
+                outcomes.append(outcome)
+                # An interruption leaves the pages of what is finished.
+                write_page(outcome, out)
+                write_index(outcomes, out, left=len(cases) - number)
+        kept.forget(cases)
+    for outcome, spent in zip(outcomes, times, strict=True):
+        print(f"{verdict_word(outcome)}  {outcome.case.name:<22}{len(outcome.figures):>4} figures {spent}")
         for figure in outcome.failed:
             print(
                 f"        {figure.quantity}: {figure.value:.6g} {figure.unit}, difference {printed_difference(figure)}"
             )
     failed = sum(not outcome.passed for outcome in outcomes)
     print(f"{len(outcomes)} cases, {failed} failed")
-    print(f"written: {len(paths)} pages in {out}, first {out / 'index.md'}")
+    print(f"written: {len(file_names(cases))} pages in {out}, first {out / 'index.md'}")
     return 1 if failed else 0
 
 
@@ -162,7 +170,7 @@ def _run_and_write(plan: Plan, out: Path) -> int:
     # One thread: sums in another order would change last digits, and a resumed run shall end with the same bytes.
     with steps() as show, threadpool_limits(limits=1):
         progress = _Progress(plan, show)
-        study = run_validation(plan, out / "kept", progress.step, progress.say)
+        study = run_validation(plan, out / KEPT, progress.step, progress.say)
         progress.step("report")
         paths = [write_report(study, out / "report.html"), *write_files(study, out)]
     failed = failed_rows(study.rows)

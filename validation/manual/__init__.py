@@ -18,6 +18,7 @@ losses        Cases: slip and losses of wheel pins, efficiency
 other_codes   Cases: tamaas and CalculiX on the same problems
 solid_bodies  Cases: solid slab between flats, bar under its own weight, ring of finite length
 solid_pairs   Cases: pairs of solid bodies in contact, against Hertz, images, half-space grids and CalculiX
+kept          Figures of finished cases, kept until the whole manual is written
 register      All cases by heading; solid ones have their own list
 page          Pages and index
 ============  ============================================================

@@ -213,11 +213,16 @@ class Outcome:
     case : Case
         The case.
     figures : tuple of Figure
-        At least one.
+        At least one with a bound; ValueError without.
     """
 
     case: Case
     figures: tuple[Figure, ...]
+
+    def __post_init__(self) -> None:
+        """Refuse a case that holds nothing."""
+        if all(figure.bound is None for figure in self.figures):
+            raise ValueError(f"{self.case.name}: no figure has a bound")
 
     @property
     def failed(self) -> tuple[Figure, ...]:
@@ -231,7 +236,7 @@ class Outcome:
 
 
 def solve_case(case: Case) -> Outcome:
-    """Compute a case; ValueError when it has no figure with a bound.
+    """Compute a case.
 
     Examples
     --------
@@ -240,7 +245,4 @@ def solve_case(case: Case) -> Outcome:
     >>> found.passed, len(found.figures), found.failed
     (True, 2, ())
     """
-    figures = tuple(case.run())
-    if all(figure.bound is None for figure in figures):
-        raise ValueError(f"{case.name}: no figure has a bound")
-    return Outcome(case=case, figures=figures)
+    return Outcome(case=case, figures=tuple(case.run()))

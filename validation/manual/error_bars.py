@@ -21,7 +21,7 @@ ROUND_OFF = 1e-12
 """Least error bar of a ratio, whatever its changes."""
 
 
-def error_by_size(values: Sequence[float], ratio: float = 2.0) -> float:
+def error_by_size(values: Sequence[float], ratios: Sequence[float] | None = None) -> float:
     """Return the error bar of the last of values found with elements, cells or steps divided by a ratio each time.
 
     Of three and more values the grid convergence index, with the state of convergence of the last three; of two, as of positions
@@ -31,8 +31,8 @@ def error_by_size(values: Sequence[float], ratio: float = 2.0) -> float:
     ----------
     values : sequence of float
         At least two, coarsest first.
-    ratio : float
-        By which each is finer than the one before; halves by default.
+    ratios : sequence of float, optional
+        By which each is finer than the one before, one less than values; halves by default.
 
     Examples
     --------
@@ -43,7 +43,7 @@ def error_by_size(values: Sequence[float], ratio: float = 2.0) -> float:
     """
     if len(values) == 2:
         return abs(values[1] - values[0])
-    return estimate_error(values, FORMAL_ORDER, [ratio] * (len(values) - 1)).bar
+    return estimate_error(values, FORMAL_ORDER, ratios).bar
 
 
 def figures_by_size(

@@ -20,15 +20,20 @@ TIGHT = ("′", "'", '"', "°")
 NOTE = f"<!-- Written by `{COMMAND}`: do not edit. -->\n"
 
 
-def write_manual(outcomes: Sequence[Outcome], folder: Path) -> list[Path]:
-    """Write the pages of cases and the index into a folder; return the files."""
-    texts = {f"{outcome.case.name}.md": page(outcome) for outcome in outcomes} | {"index.md": index(outcomes)}
-    paths = []
-    for name, text in texts.items():
-        with whole_file(folder / name) as part:
-            part.write_text(text, encoding="utf-8")
-        paths.append(folder / name)
-    return paths
+def write_page(outcome: Outcome, folder: Path) -> Path:
+    """Write the page of a case into a folder; return the file."""
+    return _write(folder / f"{outcome.case.name}.md", page(outcome))
+
+
+def write_index(outcomes: Sequence[Outcome], folder: Path, *, left: int = 0) -> Path:
+    """Write the index of the cases that were computed, of which so many are `left`, into a folder; return the file."""
+    return _write(folder / "index.md", index(outcomes, left=left))
+
+
+def _write(path: Path, text: str) -> Path:
+    with whole_file(path) as part:
+        part.write_text(text, encoding="utf-8")
+    return path
 
 
 def file_names(cases: Iterable[Case]) -> list[str]:
@@ -55,21 +60,22 @@ def page(outcome: Outcome) -> str:
     )
 
 
-def index(outcomes: Sequence[Outcome]) -> str:
-    """Return the index of the cases that were computed."""
+def index(outcomes: Sequence[Outcome], *, left: int = 0) -> str:
+    """Return the index of the cases that were computed; it tells how many are left."""
     found = {outcome.case.name: outcome for outcome in outcomes}
     passed, bounded = (
         sum(one.passed for one in outcomes),
         [f for one in outcomes for f in one.figures if f.bound is not None],
     )
     beyond = sum(figure.beyond_error_bar for figure in bounded)
+    unfinished = f"**Unfinished: {left} of {len(outcomes) + left} cases have not been computed.** " if left else ""
     text = f"""# Verification manual
 
 {NOTE}
 One page for each case in one form: problem, reference with its source and its uncertainty, model, result with error bar, verdict,
 command. `{COMMAND}` writes all of them, `{COMMAND} CASE` some; exit status 1 when a verdict is FAILED.
 
-**{passed} of {len(outcomes)} cases pass**; {len(bounded)} figures have a bound. Three uncertainties are kept apart
+{unfinished}**{passed} of {len(outcomes)} cases pass**; {len(bounded)} figures have a bound. Three uncertainties are kept apart
 (ASME V&V 10, V&V 20): that of the input, that of numbers (meshes, cells, positions, tables, round-off) and that of the model.
 A difference beyond the error bars of numbers, reference and input together is one of the model, or of what the reference leaves
 out; {beyond} of the figures with a bound have one. A bound is no error bar: each page gives its reason.

@@ -9,15 +9,22 @@ from pathlib import Path
 
 import numpy as np
 
-from ltca.analysis.drive_curves import fewest_turns, positions_per_turn
+from ltca.analysis.drive_curves import fewest_turns
 from ltca.analysis.engines import Engine, describe_engine
 from ltca.analysis.forced_vibration import ForcedVibration, forced_vibration, response_content, response_notes
 from ltca.analysis.half_space_errors import half_space_words
-from ltca.analysis.vibration import TORQUE_PARTS, Vibration, speed_range, vibration, vibration_content
+from ltca.analysis.vibration import (
+    TORQUE_PARTS,
+    Vibration,
+    speed_range,
+    vibration,
+    vibration_content,
+    walked_positions,
+)
 from ltca.arrays import FloatArray
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import ARCSEC
-from ltca.dynamics.kinetics import Motion, require_masses
+from ltca.dynamics.kinetics import require_masses
 from ltca.dynamics.masses import drive_masses
 from ltca.output.files import write_json
 from ltca.output.progress import progress
@@ -50,7 +57,6 @@ class Found:
 
 def require_vibrations(drive: Drive) -> None:
     """Refuse a drive whose vibrations cannot be told, before anything is solved."""
-    Motion.of_drive(drive)
     require_masses(drive_masses(drive))
 
 
@@ -63,7 +69,7 @@ def solve_and_write(
         name: arguments.turns or fewest_turns(drive, drive.pin_wheel.number_of_pins) for name, drive in cases.items()
     }
     at_modes = len(TORQUE_PARTS) * arguments.positions
-    total = sum(turns[name] * positions_per_turn(drive) + at_modes for name, drive in cases.items())
+    total = sum(turns[name] * walked_positions(drive, arguments.positions) + at_modes for name, drive in cases.items())
     with progress("positions", total) as advance:
         for name, drive in cases.items():
             found = vibration(

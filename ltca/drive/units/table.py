@@ -104,6 +104,8 @@ _TABLE: tuple[tuple[str, tuple[str, ...], Fraction | int, Fraction | int], ...] 
     ("power", ("W",), 1, 0),
     ("pressure times speed", ("MPa·m/s", "MPa m/s", "MPa*m/s"), 1, 0),
     ("time", ("h",), 1, 0),
+    ("time", ("s",), Fraction(1, 3600), 0),
+    ("time", ("ms",), Fraction(1, 3_600_000), 0),
     ("density", ("kg/m³", "kg/m3"), 1, 0),
     ("density", ("g/cm³", "g/cm3"), 1000, 0),
     ("viscosity", ("mm²/s", "mm2/s", "cSt"), 1, 0),

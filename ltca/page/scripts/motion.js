@@ -1,15 +1,19 @@
 // Numbers of a run, and where everything stands at a position.
 let content = null, numbers = null;
 
-async function openNumbers() {
-  content = JSON.parse(el("data").textContent);
-  const packed = Uint8Array.from(atob(el("numbers").textContent), sign => sign.charCodeAt(0));
+// Arrays as a page has them (ltca/page/packing.py), unpacked.
+async function unpacked(text) {
+  const packed = Uint8Array.from(atob(text), sign => sign.charCodeAt(0));
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
   const planes = new Uint8Array(await new Response(stream).arrayBuffer()), count = planes.length / 4, bytes = new Uint8Array(planes.length);
   for (let plane = 0; plane < 4; plane++) for (let i = 0, from = plane * count; i < count; i++) bytes[4 * i + plane] = planes[from + i];
-  const view = new DataView(bytes.buffer);
-  numbers = new Float32Array(count);
-  for (let i = 0; i < count; i++) numbers[i] = view.getFloat32(4 * i, true);
+  const view = new DataView(bytes.buffer), found = new Float32Array(count);
+  for (let i = 0; i < count; i++) found[i] = view.getFloat32(4 * i, true);
+  return found;
+}
+async function openNumbers() {
+  content = JSON.parse(el("data").textContent);
+  numbers = await unpacked(el("numbers").textContent);
 }
 
 const has = name => name in content.places;

@@ -54,11 +54,14 @@ function tellOfColumns(wide, tools) {
   watch.observe(wide);
   watch.observe(wide.firstElementChild);
 }
-for (const box of document.querySelectorAll(".tablebox")) {
-  const table = box.querySelector("table"), tools = html("div", { class: "tools" }, box);
-  const what = table.dataset.name.replace(/_/g, " ");
-  html("button", { type: "button", class: "tool", "aria-label": `Copy table ${what}` }, tools, "Copy").addEventListener("click", () => copyTable(table));
-  html("button", { type: "button", class: "tool", "aria-label": `Table ${what} as CSV` }, tools, "CSV").addEventListener("click", () => save(`${fileName(table.dataset.name)}.csv`, csvText(table), "text/csv;charset=utf-8"));
-  foldRows(table, tools);
-  tellOfColumns(box.querySelector(".wide"), tools);
+function equipTables(parent) {
+  for (const box of parent.querySelectorAll(".tablebox")) {
+    const table = box.querySelector("table"), tools = html("div", { class: "tools" }, box);
+    const what = table.dataset.name.replace(/_/g, " ");
+    html("button", { type: "button", class: "tool", "aria-label": `Copy table ${what}` }, tools, "Copy").addEventListener("click", () => copyTable(table));
+    html("button", { type: "button", class: "tool", "aria-label": `Table ${what} as CSV` }, tools, "CSV").addEventListener("click", () => save(`${fileName(table.dataset.name)}.csv`, csvText(table), "text/csv;charset=utf-8"));
+    foldRows(table, tools);
+    tellOfColumns(box.querySelector(".wide"), tools);
+  }
 }
+equipTables(document);

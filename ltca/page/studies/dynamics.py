@@ -12,6 +12,8 @@ from ltca.page.study_page import Curves, Section
 from ltca.page.tables import Table, minus, number, texts, word
 
 SPEEDS_SHOWN = 40
+FORCE_MULTIPLES = 6
+"""Multiples of the passage of a force that are shown; files have all."""
 POINTS = 2
 """Of a straight line."""
 
@@ -34,9 +36,36 @@ def dynamics_sections(case: str, found: Vibration, answer: ForcedVibration | Non
     sections = [_modes(case, ending, found), _campbell(case, ending, found, fastest)]
     if answer is not None:
         sections.append(_response(case, found, answer))
+    sections.append(_forces(case, ending, found))
     rows = texts(mass_rows(found.drive))
     table = Table(name=f"masses{ending}", caption="", columns=["", "value"], rows=rows, words=1)
     return [*sections, Section(heading=_heading(case, "Masses"), tables=[table])]
+
+
+def _forces(case: str, ending: str, found: Vibration) -> Section:
+    columns = [
+        "force",
+        "mean, N",
+        "order of passage",
+        *(f"{multiple} ×, N" for multiple in range(1, FORCE_MULTIPLES + 1)),
+    ]
+    rows = [
+        [
+            word(one.name),
+            number(one.mean, "{:.5g}"),
+            number(one.passage, "{:.6g}"),
+            *(number(float(size), "{:.4g}") for size in one.amplitude[:FORCE_MULTIPLES]),
+            *[word("")] * max(FORCE_MULTIPLES - one.amplitude.size, 0),
+            number(one.rest, "{:.4g}"),
+        ]
+        for one in found.forces
+    ]
+    notes = [
+        f"At the load and at rest, over {found.turns} turns of the crank: amplitudes of the multiples of the order, by turn of "
+        "the crank against the pin shaft, in which a part meets its load again; more of them in dynamics.json."
+    ]
+    table = Table(name=f"force_orders{ending}", caption="", columns=[*columns, "rest, rms, N"], rows=rows)
+    return Section(heading=_heading(case, "Orders of single forces"), notes=notes, tables=[table])
 
 
 def _heading(case: str, words: str) -> str:

@@ -15,7 +15,7 @@ from fem.errors import MemoryLimitError, MeshError
 from fem.shapes import DriveShapes
 from ltca.commands.program import main
 from ltca.drive.single_discs import nominal_shape
-from ltca.errors import DamagedFileError
+from ltca.errors import DamagedFileError, FaultError
 from ltca.output.provenance import cache_home, code_hash
 from ltca.reading.changes import with_fields
 from ltca.reading.coefficient_file import read_coefficients, require_laws, write_coefficients
@@ -219,14 +219,24 @@ def test_what_was_interrupted_goes_on(drive, monkeypatch, derived):
         derive_coefficients(drive, bodies="solid", **COARSE)
     (kept,) = cache_home().glob("pieces-*")
     assert len(list(kept.glob("*.npy"))) == 3
-    again = []
+    again, full = [], []
+
+    def store(dataset):
+        full.append(dataset)
+        if len(full) == 1:
+            raise FaultError("coefficients.nc: cannot be written: No space left on device")
+
     monkeypatch.setattr(
         "fem.coefficients.solid_bodies.solve_solid",
         lambda *args, **options: again.append(options["parity"]) or solve(*args, **options),
     )
-    found = derive_coefficients(drive, bodies="solid", **COARSE)
-    # Four bodies, two classes, two meshes.
+    with pytest.raises(FaultError, match="No space left"):
+        derive_coefficients(drive, bodies="solid", **COARSE, store=store)
+    # Four bodies, two classes, two meshes; no room for the file costs none of them.
     assert len(again) == 16 - 3
+    found = derive_coefficients(drive, bodies="solid", **COARSE, store=store)
+    assert len(again) == 16 - 3
+    assert full[-1] is found
     np.testing.assert_array_equal(found["disc_tilt_approach"].values, derived["disc_tilt_approach"].values)
     assert not list(cache_home().glob("pieces-*"))
 

@@ -2,6 +2,7 @@
 
 import argparse
 import json
+import re
 import shutil
 
 import numpy as np
@@ -78,8 +79,12 @@ def test_files_of_a_pair(tmp_path, capsys):
         # Vertex values along the width are smoothed for reading: a per cent at the ends.
         assert line == pytest.approx(summary["load_N"], rel=0.02)
         assert data.attrs["load_N"] == summary["load_N"]
-    printed = capsys.readouterr().out
+    printed, warned = capsys.readouterr()
     assert "held in all directions at sides and bottom" in printed
+    # An eighth of the default's eight elements, by the half-width that was expected.
+    assert re.search(
+        r"warning: --size 8: [01](\.\d+)? elements for the half-width of .*, fewer than 4: .* --size 2 or less", warned
+    )
     assert "approach 3 µm" in printed
 
 

@@ -9,7 +9,14 @@ import numpy as np
 import pytest
 
 from ltca.analysis.engines import HalfSpace
-from ltca.analysis.forced_vibration import _force, _nominal_forces, _system, forced_vibration
+from ltca.analysis.forced_vibration import (
+    MOST_TRUNCATION,
+    _force,
+    _nominal_forces,
+    _system,
+    forced_vibration,
+    response_notes,
+)
 from ltca.analysis.vibration import vibration
 from ltca.commands.program import main
 from ltca.dynamics.harmonic_balance import PulsatingStiffness
@@ -130,6 +137,23 @@ def test_pulsation_of_the_stiffness_moves_the_answer(usual):
     assert 0.0 < both[0].truncation < 1e-2
     assert np.max(np.abs(both[0].amplitude / both[1].amplitude - 1.0)) > 1e-3
     assert 0.0 < usual.stiffness_rest < 0.05  # rollers that pass
+
+
+@pytest.mark.slow
+def test_too_few_orders_ask_for_positions_that_suffice():
+    """Light parts resonate at orders beyond those of the usual positions; a line says so, and the positions that it asks for
+    change the transmission error by less than its bound when halved.
+    """
+    light = with_fields(PAPER, {"damping.ratio": 0.02})
+    found = []
+    for positions in (24, 384):
+        shaken = vibration(light, engine=HalfSpace(), positions=positions, turns=4, torque_parts=())
+        found.append((forced_vibration(shaken, speeds=60), shaken))
+    notes = [" ".join(response_notes(*one)) for one in found]
+    assert found[0][0].truncation > MOST_TRUNCATION
+    assert "--positions 384" in notes[0]
+    assert found[1][0].truncation < MOST_TRUNCATION
+    assert "--positions" not in notes[1]
 
 
 def test_a_balance_that_does_not_converge_leaves_the_mean_there(usual, monkeypatch):

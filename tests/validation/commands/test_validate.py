@@ -127,6 +127,56 @@ def test_manual_writes_the_pages_that_are_named(tmp_path):
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
 
 
+def test_an_interrupted_manual_goes_on_where_it_stood(tmp_path, monkeypatch, capsys):
+    from validation.manual import register
+
+    computed = []
+
+    def first():
+        computed.append("first")
+        return [figure_of_the_manual(1.0 / 3.0), replace(figure_of_the_manual(float("nan")), bound=None)]
+
+    def second():
+        computed.append("second")
+        if computed == ["first", "second"]:
+            raise KeyboardInterrupt
+        return [figure_of_the_manual(1.0)]
+
+    known = register.all_cases()
+    cases = tuple(replace(known[name], run=run) for name, run in (("patch_test", first), ("tied_pins", second)))
+    monkeypatch.setattr(register, "chosen_cases", lambda names: cases)
+    with pytest.raises(KeyboardInterrupt):
+        run("--manual", "--out", str(tmp_path))
+    assert {path.name for path in tmp_path.iterdir()} == {"patch_test.md", "index.md", "kept", MANIFEST}
+    assert "Unfinished: 1 of 2 cases" in (tmp_path / "index.md").read_text(encoding="utf-8")
+    page = (tmp_path / "patch_test.md").read_bytes()
+    assert run("--manual", "--out", str(tmp_path)) == 1
+    assert computed == ["first", "second", "second"]
+    assert (tmp_path / "patch_test.md").read_bytes() == page
+    assert {path.name for path in tmp_path.iterdir()} == {"patch_test.md", "tied_pins.md", "index.md", MANIFEST}
+    assert "Unfinished" not in (tmp_path / "index.md").read_text(encoding="utf-8")
+    assert "kept" in capsys.readouterr().out
+    # A whole manual is computed anew.
+    run("--manual", "--out", str(tmp_path))
+    assert computed[3:] == ["first", "second"]
+
+
+@pytest.mark.parametrize("damage", [b"", b"{}", b"[{}]", b"[1]", b"\xff"])
+def test_damaged_figures_are_computed_again(damage, tmp_path):
+    from validation.manual.kept import KeptOutcomes
+    from validation.manual.register import all_cases
+
+    kept = KeptOutcomes(folder=tmp_path)
+    case = replace(all_cases()["patch_test"], run=lambda: [figure_of_the_manual(1.0)])
+    kept.get(case)
+    (file,) = tmp_path.iterdir()
+    file.write_bytes(damage)
+    assert not kept.get(case)[1]
+    outcome, was_kept = kept.get(case)
+    assert was_kept
+    assert outcome.figures == (figure_of_the_manual(1.0),)
+
+
 @pytest.mark.parametrize(
     ("words", "messages"),
     [

@@ -1,0 +1,62 @@
+"""Reduce a drive for ``cyclo export --for``, write its files, print how good it is."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ltca.analysis.engines import Engine, describe_engine
+from ltca.analysis.half_space_errors import half_space_words
+from ltca.analysis.reduced_model.model import NEWTON_METRE, ReducedModel, largest_speed, positions_of, reduce_drive
+from ltca.drive.parts import Drive
+from ltca.drive.units.quantities import ARCMIN
+from ltca.dynamics.masses import drive_masses
+from ltca.export.simulators.files import file_names, require_exportable, write_simulator
+from ltca.output.progress import progress
+
+
+def check_drive(kind: str, drive: Drive) -> None:
+    """Refuse what a format needs and the drive does not say, before anything is solved."""
+    drive.require_torque("a reduced model, whose tables go up to it")
+    require_exportable(kind, largest_speed(drive), drive_masses(drive).without_density)
+
+
+def reduce_and_write(kind: str, drive: Drive, engine: Engine, name: str, out: Path) -> int:
+    """Reduce a drive, write the files of a format, print the results; return the exit status."""
+    with progress("positions", positions_of(drive)) as advance:
+        found = reduce_drive(drive, engine, lambda size: advance(drive.case, size))
+    remarks = write_simulator(kind, {"name": name, **found.content}, out)
+    print("\n".join(_lines(found)))
+    for remark in remarks:
+        print(f"  {remark}")
+    for file in file_names(kind, name):
+        print(f"  written: {out / file}")
+    return 0
+
+
+def _lines(found: ReducedModel) -> list[str]:
+    drive, table, worst, friction = found.drive, found.wind_up, found.worst, found.friction
+    lines = [
+        f"{drive.name} {drive.case}, {drive.load_words()}, {describe_engine(found.engine)}: reduced model to "
+        f"{found.largest / NEWTON_METRE:.6g} N·m either way",
+        *(f"  {words}" for words in [half_space_words(found.engine, drive)] if words),
+        f"  play {table.play * ARCMIN:.4g}′, spring behind it {table.stiffness / NEWTON_METRE / ARCMIN:.4g} N·m/′, "
+        f"{len(table.orders)} orders of the transmission error over {table.turns} turns",
+    ]
+    if drive.friction is not None:
+        back = friction.driving_back_torque(1.0)
+        told = (
+            "no load of the output moves the input"
+            if back is None
+            else f"driven back from {back / NEWTON_METRE:.4g} N·m"
+        )
+        lines.append(
+            f"  hysteresis of {found.elements.strength.size} Maxwell-slip elements; {told}; efficiency "
+            f"{friction.efficiency[-1]:.4g} at the largest torque"
+        )
+    else:
+        lines.append("  neither hysteresis nor friction: the drive file has no [friction]")
+    part = 50.0 * worst.torque / found.largest
+    lines.append(
+        f"  error of the fit at {worst.points} points: {part:.3g} % of the torque range, {worst.angle * ARCMIN:.2g}′"
+    )
+    return lines

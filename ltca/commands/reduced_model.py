@@ -1,0 +1,66 @@
+"""``cyclo export --for``: a reduced model of a drive for simulators of robots and machines."""
+
+from __future__ import annotations
+
+import argparse
+
+from ltca.commands.compliance_arguments import (
+    add_compliance_arguments,
+    check_compliance,
+    compliance_of,
+    find_coefficients_of,
+    settle_compliance,
+)
+from ltca.errors import DriveError
+from ltca.reading.arguments import default_folder, tell_unit_mistakes
+
+SIMULATORS = ("json", "mujoco", "urdf", "modelica", "fmu")
+COMPLIANCE = ("compliance", "quick", "coefficients", "bodies", "no_hole_near_field")
+"""Arguments of `add_compliance_arguments`, none of which is given by default."""
+
+
+def add_simulator_arguments(parser: argparse.ArgumentParser, which: argparse._MutuallyExclusiveGroup) -> None:
+    """Add the simulator to the options of which one is given, and how bodies yield in what its model is made of."""
+    which.add_argument(
+        "--for",
+        dest="simulator",
+        choices=SIMULATORS,
+        help="in place of --format: a reduced model of the drive (wind-up with play and hysteresis, friction, transmission "
+        "error, inertias, limits) as lookup tables, MJCF, URDF, Modelica package or functional mock-up unit",
+    )
+    add_compliance_arguments(parser)
+
+
+def refuse_compliance(arguments: argparse.Namespace) -> None:
+    """Refuse what is said of yielding bodies where parts are written as they are made."""
+    for name in COMPLIANCE:
+        if getattr(arguments, name):
+            raise DriveError([f"--{name.replace('_', '-')}: has no effect with --format, only with --for"])
+
+
+def export_model(arguments: argparse.Namespace) -> int:
+    """Reduce a case and write it in the format of a simulator; return the exit status."""
+    from glob import escape
+
+    from ltca.output.run_folder import claimed_folder, require_folder
+    from ltca.reading.drive_file import load_drive
+
+    check_compliance(arguments)
+    file = load_drive(arguments.drive)
+    name = next(iter(file.select([arguments.case] if arguments.case else None)))
+    cases = file.select_warm([name])
+    settle_compliance(arguments, cases.values())
+    tell_unit_mistakes([file.cases[name]])
+    out = arguments.out or default_folder(file.name, "export")
+    require_folder(out)
+    from ltca.analysis.engines import lending_between
+    from ltca.commands.actions.reduced_model import check_drive, reduce_and_write
+    from ltca.export.simulators.files import file_names, model_name
+
+    own = model_name(file.name, name)
+    check_drive(arguments.simulator, file.cases[name])
+    engine = lending_between(file.cases.values(), compliance_of(arguments, cases.values()))
+    writes = [escape(one) for one in file_names(arguments.simulator, own)]
+    with claimed_folder(out, "export", writes=writes, adding=True):
+        find_coefficients_of(cases, engine, arguments)
+        return reduce_and_write(arguments.simulator, file.cases[name], engine, own, out)

@@ -1,0 +1,162 @@
+r"""Motion of a drive in time: Lagrange's equations on the contacts' own laws.
+
+Coordinates are :math:`x = B y + g\,s(t)`: s the angle of the input, g the rigid motion of all parts by it, and y what departs
+from that. Where the input turns as it is told, B spans the motions that leave it still; where a torque drives it, B spans all.
+
+.. math:: B^T (M\ddot x + h(x, \dot x) + \partial U/\partial x + R + C\dot x - Q) = 0
+
+with inertia forces h (`ltca.dynamics.kinetic_energy`), forces of contacts and supports, friction R
+(`ltca.dynamics.contact_forces`), and the torques Q at both ends. Damping is that of every vibration about the state of the
+moment alike, with the ratio ζ: of modes :math:`\Phi` with frequencies ω under the stiffness K of the contacts that are closed,
+
+.. math:: C = K\Phi\,\mathrm{diag}(2\zeta/\omega^3)\,\Phi^T K ,
+
+which takes energy from changes of the contacts' forces only: none in a free flight, and next to none from a slow motion.
+
+Beside y and its rate the state has the works of input, output, damping and friction, N·mm.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.linalg.lapack import dposv, dsygv
+
+from ltca.arrays import FloatArray
+from ltca.dynamics.contact_forces import ContactForces, Instant
+from ltca.dynamics.kinetic_energy import KineticEnergy
+from ltca.errors import ConvergenceError
+
+WORKS = ("input", "output", "damping", "friction")
+"""Works that the state ends with."""
+SOFTEST = 1e-3
+"""Frequency by the highest one below which a motion counts as free, and is not damped."""
+REST_STEPS, REST_SETTLED = 200, 1e-10
+"""Steps to a balanced state, and the last one by the largest coordinate, mm."""
+
+Profile = Callable[[float], tuple[float, float, float]]
+"""Angle, speed and acceleration of the input at a time."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Equation:
+    """Equation of motion of a drive.
+
+    Attributes
+    ----------
+    kinetic : KineticEnergy
+        Of all bodies.
+    contacts : ContactForces
+        Contacts and supports.
+    basis : array, shape (n, m)
+        B, mm and rad by mm.
+    lead : array, shape (n,)
+        g, by rad of the input.
+    input_turns, output_turns : array, shape (n,)
+        Rows of the rotations of both ends.
+    input_motion : callable
+        s and its rates at a time, rad.
+    output_torque : callable
+        Torque on the output at a time, ccw positive, N·mm.
+    input_torque : float or None
+        Torque that drives the input, ccw positive, N·mm; None where it turns as told.
+    damping_ratio : float
+        ζ; 0 for none.
+    """
+
+    kinetic: KineticEnergy
+    contacts: ContactForces
+    basis: FloatArray
+    lead: FloatArray
+    input_turns: FloatArray
+    output_turns: FloatArray
+    input_motion: Profile
+    output_torque: Callable[[float], float]
+    input_torque: float | None
+    damping_ratio: float
+
+    @property
+    def freedoms(self) -> int:
+        """Number m of coordinates y."""
+        return int(self.basis.shape[1])
+
+    def place(self, time: float, state: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return x and its rate of a state, shape (2m + 4,)."""
+        m, (angle, speed, _) = self.freedoms, self.input_motion(time)
+        return self.basis @ state[:m] + self.lead * angle, self.basis @ state[m : 2 * m] + self.lead * speed
+
+    def rates(self, time: float, state: FloatArray) -> FloatArray:
+        """Return the rate of a state, shape (2m + 4,)."""
+        return self.solved(time, state)[0]
+
+    def solved(self, time: float, state: FloatArray) -> tuple[FloatArray, float, Instant]:
+        """Return the rate of a state, the torque at the input, ccw positive, N·mm, and the forces."""
+        m, basis = self.freedoms, self.basis
+        x, rate = self.place(time, state)
+        mass, inertia = self.kinetic.at(x, rate)
+        now = self.contacts.at(x, rate)
+        projected = basis.T @ mass @ basis
+        damped = self._damping(now.stiffness, projected) @ rate if self.damping_ratio else np.zeros(x.size)
+        loaded = self.output_torque(time) * self.output_turns
+        told = self.input_motion(time)[2]
+        inner = now.force + now.friction + damped + inertia
+        outer = loaded if self.input_torque is None else loaded + self.input_torque * self.input_turns
+        known = outer - inner - mass @ self.lead * told
+        faster = _checked(dposv(projected, basis.T @ known))[
+            1
+        ]  # LAPACK itself: a system of five takes numpy ten times as long
+        if self.input_torque is None:
+            # By virtual work on the rigid motion; the input's own angle is s.
+            torque = float(self.lead @ (mass @ (basis @ faster + self.lead * told) + inner - loaded))
+        else:
+            torque = self.input_torque
+        found = np.empty_like(state)
+        found[:m], found[m : 2 * m] = state[m : 2 * m], faster
+        found[2 * m] = torque * (self.input_turns @ rate)
+        found[2 * m + 1] = -(loaded @ rate)
+        found[2 * m + 2] = damped @ rate
+        found[2 * m + 3] = now.friction @ rate
+        return found, torque, now
+
+    def _damping(self, stiffness: FloatArray, mass: FloatArray) -> FloatArray:
+        """C at the state of the moment, shape (n, n)."""
+        pressed = stiffness @ self.basis
+        square, shapes = _checked(dsygv(self.basis.T @ pressed, mass))[:2]
+        felt = square > SOFTEST**2 * square[-1]
+        on_modes = pressed @ shapes[:, felt]
+        return np.asarray((on_modes * (2.0 * self.damping_ratio / square[felt] ** 1.5)) @ on_modes.T)
+
+    def at_rest(self, time: float, start: FloatArray) -> FloatArray:
+        """Return y of balance under the torques of a time, the input held, without friction, shape (m,).
+
+        Raises
+        ------
+        ConvergenceError
+            Where it is not found.
+        """
+        y, still = start.copy(), np.zeros(self.basis.shape[0])
+        history: list[float] = []
+        for _ in range(REST_STEPS):
+            x = self.basis @ y + self.lead * self.input_motion(time)[0]
+            now = self.contacts.at(x, still)
+            left = self.basis.T @ (now.force - self.output_torque(time) * self.output_turns)
+            matrix = self.basis.T @ now.stiffness @ self.basis
+            try:
+                step = np.linalg.solve(matrix, left)
+            except np.linalg.LinAlgError as problem:
+                raise ConvergenceError("no balanced state to start from: nothing holds a part", history) from problem
+            y = y - step
+            history.append(float(np.abs(step).max()))
+            if history[-1] <= REST_SETTLED * max(1.0, float(np.abs(y).max())):
+                return y
+        raise ConvergenceError("no balanced state to start from; last steps in mm", history)
+
+
+def _checked(found: tuple[Any, ...]) -> tuple[Any, ...]:
+    """Return what LAPACK answers; ConvergenceError where it fails, as for a motion that is not a number."""
+    if found[-1] != 0:
+        raise ConvergenceError("the motion has become no number: its masses or forces are not finite", [])
+    return found

@@ -1,0 +1,53 @@
+"""The page that walks a robot joint from its drive file to a moving arm, with its commands and its tables as they are printed."""
+
+from __future__ import annotations
+
+import os
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from ltca.commands.program import main
+
+ROOT = Path(__file__).parents[3]
+PAGE = ROOT / "docs" / "how-to" / "robot_joint.md"
+
+
+def blocks(language):
+    return re.findall(rf"```{language}\n(.*?)```", PAGE.read_text(encoding="utf-8"), flags=re.DOTALL)
+
+
+@pytest.mark.slow
+@pytest.mark.nightly
+def test_the_page_runs_as_it_is_printed(tmp_path, monkeypatch, capsys):
+    pytest.importorskip("mujoco", reason="mujoco (pip install cyclo-ltca[robotics]) is not installed")
+    monkeypatch.chdir(tmp_path)
+    (added,), (first, rest) = blocks("toml"), blocks("sh")
+    assert main(shlex.split(first)[1:]) == 0
+    with Path("joint.toml").open("a", encoding="utf-8") as file:
+        file.write(f"\n{added}")
+    export, script = rest.strip().splitlines()
+    assert main(shlex.split(export)[1:]) == 0
+    told = capsys.readouterr().out
+    assert "driven back from" in told
+    _, path, *words = shlex.split(script)
+    environment = os.environ | {"MPLBACKEND": "Agg"}
+    environment.setdefault("MUJOCO_GL", "egl")
+    done = subprocess.run(
+        [sys.executable, str(ROOT / path), *words],
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=900,
+    )
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "out" / "joint" / "moving_arm.png").read_bytes()[:4] == b"\x89PNG"
+    # Up to the weight of arm and load and what swings them: m g l and m l² φ'' of the page's arm, 54 and 122 N·m, and no more.
+    low, high = map(float, re.search(r"torque (-?\d+) … (\d+) N·m", done.stdout).groups())
+    assert -190.0 < low < -100.0
+    assert 130.0 < high < 190.0

@@ -1,0 +1,83 @@
+"""``cyclo dynamics --time`` as a program: files, options used or refused by name, an interruption and what goes on after it."""
+
+from __future__ import annotations
+
+import json
+from contextlib import suppress
+
+import numpy as np
+import pytest
+
+from ltca.commands.actions import time_run
+from ltca.commands.program import main
+from ltca.output.netcdf import read_netcdf
+
+RUN = ["dynamics", "paper", "--case", "CS-1", "--speed", "1500", "--compliance", "half-space"]
+
+
+@pytest.mark.slow
+def test_a_run_writes_what_it_says(tmp_path, capsys):
+    out = tmp_path / "here"
+    assert main([*RUN, "--time", "0.3 ms", "--motion", "step", "--factor", "1.5", "--out", str(out)]) == 0
+    assert "of the throughput left" in capsys.readouterr().out
+    content = json.loads((out / "time.json").read_text())
+    assert content["motion"]["factor"] == 1.5
+    assert abs(content["energy_N_mm"]["left_by_throughput"]) < 1e-5
+    found = read_netcdf(out / "time.nc", "run")
+    assert found["pin_load"].values.shape == (content["samples"], 1, 14)
+    # The torque has changed by the factor to the end: 1e-12 of a polynomial.
+    torque = found["output_torque"].values
+    assert torque[-1] / torque[0] == pytest.approx(1.5, rel=1e-12)
+    assert (out / "report.html").exists()
+    assert not (out / "checkpoint").exists()
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--motion", "start"], "--motion: has no effect without --time"),
+        (["--resume"], "--resume: has no effect without --time"),
+        (["--time", "1 ms", "--turns", "3"], "--turns = 3: has no effect with --time"),
+        (["--time", "1 ms", "--positions", "5"], "--positions = 5: has no effect with --time"),
+        (["--time", "1 ms", "--factor", "2"], "factor = 2: the motion 'steady' takes none"),
+        (["--time", "1 ms", "--motion", "sine"], "frequency: must be given"),
+    ],
+)
+def test_options_are_used_or_refused(options, words, tmp_path, capsys):
+    out = tmp_path / "here"
+    assert main([*RUN, *options, "--out", str(out)]) == 2
+    assert words in capsys.readouterr().err
+    assert not out.exists()
+
+
+@pytest.mark.slow
+def test_an_interrupted_run_goes_on(tmp_path, capsys, monkeypatch):
+    out, asked = tmp_path / "here", [*RUN, "--time", "2 ms", "--no-page"]
+    monkeypatch.setattr(time_run, "SAVED_EVERY", 0.0)
+    written = time_run._saving
+
+    def saving(path, mark):
+        save = written(path, mark)
+
+        def once(state):
+            save(state)
+            raise KeyboardInterrupt
+
+        return once
+
+    with monkeypatch.context() as patch:
+        patch.setattr(time_run, "_saving", saving)
+        with suppress(KeyboardInterrupt):
+            assert main([*asked, "--out", str(out)]) != 0
+    assert list((out / "checkpoint").glob("*.npz"))
+    assert main([*asked, "--out", str(out)]) == 2
+    assert "--resume" in capsys.readouterr().err
+    assert main([*asked[:-2], "3 ms", "--no-page", "--resume", "--out", str(out)]) != 0
+    assert "holds another run" in capsys.readouterr().err
+    assert main([*asked, "--resume", "--out", str(out)]) == 0
+    assert main([*asked, "--out", str(tmp_path / "whole")]) == 0
+    again, whole = (read_netcdf(path / "time.nc", "run") for path in (out, tmp_path / "whole"))
+    # The solver begins its step anew: the same to its tolerance, some 1e-5 of the loads.
+    for name in ("pin_load", "transmission_error", "input_torque"):
+        values = whole[name].values
+        assert again[name].values == pytest.approx(values, abs=1e-4 * np.abs(values).max())

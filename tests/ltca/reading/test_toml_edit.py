@@ -1,0 +1,96 @@
+"""A value changed in the text of a drive file: TOML's own reader says what was meant, everything else stays to the letter."""
+
+import difflib
+import tomllib
+
+import pytest
+
+from ltca.drive.declaration import declared_fields
+from ltca.errors import DriveError
+from ltca.reading.arguments import SHIPPED_DRIVES
+from ltca.reading.drive_file import shipped_drive
+from ltca.reading.toml_edit import literal, with_entry, with_values
+
+FIELDS = [path for path in declared_fields() if ".N." not in path]
+
+
+def read(table, path):
+    for key in path.split("."):
+        table = table[int(key)] if isinstance(table, list) else table[key]
+    return table
+
+
+def written(text, path):
+    try:
+        return read(tomllib.loads(text), path)
+    except (KeyError, TypeError):
+        return None
+
+
+@pytest.mark.parametrize("name", SHIPPED_DRIVES)
+def test_every_field_of_every_shipped_drive_can_be_set_and_taken_away(name):
+    text = shipped_drive(name)
+    for path in FIELDS[:: 1 if name == "paper" else 5]:
+        if isinstance(written(text, path.rpartition(".")[0]), str) and not path.startswith("materials."):
+            with pytest.raises(DriveError, match=f"^{path}: cannot be changed"):
+                with_values(text, {path: "1.25"})  # preload = "80 N"
+            continue
+        changed = with_values(text, {path: "1.25"})
+        assert read(tomllib.loads(changed), path) == 1.25
+        gone = with_values(changed, {path: None})
+        with pytest.raises(KeyError):
+            read(tomllib.loads(gone), path)
+
+
+def test_one_line_differs_and_its_comment_stays():
+    text = shipped_drive("paper")
+    changed = with_values(text, {"disc.shifting_offset": "0.1"})
+    lines = [line for line in difflib.ndiff(text.splitlines(), changed.splitlines()) if line[0] in "+-"]
+    assert lines == ["- shifting_offset = 0.09        # ΔR_C", "+ shifting_offset = 0.1        # ΔR_C"]
+
+
+@pytest.mark.parametrize(
+    ("text", "path", "value", "expected"),
+    [
+        ('a = "# no comment"  # one\n', "a", "2", "a = 2  # one\n"),
+        ("[t]\nx = [1, # one\n  2]\ny = 3\n", "t.x", "[4]", "[t]\nx = [4]\ny = 3\n"),
+        ("m = { n = { o = 1 }, p = 2 }", "m.n.o", "5", "m = { n = { o = 5 }, p = 2 }"),
+        ("m = {}\n", "m.n", "5", "m = { n = 5 }\n"),
+        ("[[c]]\na = 1\n[[c]]\na = 2\n[c.b]\nd = 3\n", "c.1.b.d", "4", "[[c]]\na = 1\n[[c]]\na = 2\n[c.b]\nd = 4\n"),
+        ("l = [{ a = 1 }, { a = 2 }]\n", "l.1.a", "3", "l = [{ a = 1 }, { a = 3 }]\n"),
+        ('"quoted key" = 1\n[t]\nx = """\n[no] = 1"""\n', "t.x", "1", '"quoted key" = 1\n[t]\nx = 1\n'),
+        ("materials.disc = 'PA12'\n", "materials.disc.density", "1.1",
+         "materials.disc = { like = 'PA12', density = 1.1 }\n"),
+    ],
+)  # fmt: skip
+def test_ways_to_write_a_value(text, path, value, expected):
+    assert with_values(text, {path: value}) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "path"), [("a = [1, 2]\n", "a.b"), ("a = 1\n", "a.b"), ("a = \n", "a"), ("a = 1979-05-27\n", "a.x.y")]
+)
+def test_what_cannot_be_changed_alone_is_refused_by_name(text, path):
+    with pytest.raises(DriveError, match=f"^{path}: cannot be changed"):
+        with_values(text, {path: "1"})
+
+
+@pytest.mark.parametrize(
+    ("path", "typed", "expected"),
+    [
+        ("clearance.bearing", ".5", 0.5), ("clearance.bearing", "5.", 5.0), ("clearance.bearing", "20 µm", "20 µm"),
+        ("clearance.bearing", '"\\', '"\\'), ("disc.number_of_discs", "02", 2), ("disc.number_of_discs", "2.5", "2.5"),
+        ("load.direction", "cw", "cw"), ("pin_shaft.elastic_contact", "true", True), ("disc.phases", "0, 1.5", [0, 1.5]),
+        ("disc.phases", "", []), ("name", "a\x7fb", "a\x7fb"),
+    ],
+)  # fmt: skip
+def test_what_is_typed_is_what_is_read(path, typed, expected):
+    assert tomllib.loads(f"a = {literal(declared_fields()[path], typed)}")["a"] == expected
+
+
+def test_entries_are_added_after_those_that_are_there():
+    text = "[[duty]]\ntorque = 1.0\n\n[[case]]\nname = 'a'\n"
+    assert [list(one) for one in tomllib.loads(with_entry(text, "duty"))["duty"]] == [["torque"], []]
+    assert tomllib.loads(with_entry(text, "disc.of"))["disc"] == {"of": [{}]}
+    with pytest.raises(DriveError, match=r"^disc.of: an entry cannot be added"):
+        with_entry("[disc]\nof = [{}]\n", "disc.of")

@@ -1,0 +1,81 @@
+"""Commands in the background: their words, their files, their end."""
+
+from __future__ import annotations
+
+import time
+
+import pytest
+
+from ltca.errors import DriveError
+from ltca.reading.drive_file import load_drive, shipped_drive
+from ltca.studio.jobs import Jobs, exports, job_words
+
+PAPER = shipped_drive("paper")
+
+
+@pytest.mark.parametrize(
+    ("asked", "expected"),
+    [
+        ({"kind": "fem"}, ["fem"]),
+        ({"kind": "tolerance", "samples": 12}, ["tolerance", "--samples", "12"]),
+        ({"kind": "export", "format": "dxf", "part": "disc"}, ["export", "--format", "dxf", "--part", "disc"]),
+    ],
+)
+def test_known_jobs_are_known_words(asked, expected):
+    assert job_words(asked) == expected
+
+
+@pytest.mark.parametrize(
+    "asked",
+    [{}, {"kind": "run"}, {"kind": ["fem"]}, {"kind": "tolerance"}, {"kind": "tolerance", "samples": "1 --out /"},
+     {"kind": "tolerance", "samples": True}, {"kind": "tolerance", "samples": 0}, {"kind": "export", "format": "exe"},
+     {"kind": "export", "format": "dxf", "part": "--out"}, {"kind": "simulator", "simulator": "; rm"}],
+)  # fmt: skip
+def test_anything_else_is_refused(asked):
+    with pytest.raises(DriveError, match="must be"):
+        job_words(asked)
+
+
+def test_what_is_offered_is_what_the_command_has():
+    assert {"dxf", "step", "stl"} <= set(exports()["formats"])
+    assert "disc" in exports()["parts"]
+
+
+def finished(jobs, number):
+    until = time.monotonic() + 120.0
+    while time.monotonic() < until:
+        (job,) = (one for one in jobs.told() if one["number"] == number)
+        if job["state"] != "running":
+            return job
+        time.sleep(0.05)
+    raise AssertionError(job)
+
+
+@pytest.mark.slow
+def test_an_export_is_a_file_of_the_text_as_it_is(tmp_path):
+    jobs = Jobs(tmp_path)
+    text = PAPER.replace("thickness = 11.8 ", "thickness = 12.5 ")
+    number = jobs.start({"kind": "export", "format": "dxf", "part": "disc"}, text, "paper", "CS-3")
+    job = finished(jobs, number)
+    assert job["state"] == "done", job
+    (drawing,) = (path for path in job["files"] if path.endswith(".dxf"))
+    assert jobs.file(drawing).read_text().startswith("  0\nSECTION")
+    (own,) = (path for path in job["files"] if path.endswith(".toml"))
+    assert load_drive(jobs.file(own)).cases["CS-3"].disc.thickness == 12.5
+    assert jobs.file("out/paper_studio") is None
+
+
+@pytest.mark.slow
+def test_a_job_is_cancelled_and_a_wrong_drive_is_told(tmp_path):
+    jobs = Jobs(tmp_path)
+    first = jobs.start({"kind": "tolerance", "samples": 90_000}, PAPER, "paper", "CS-1")
+    second = jobs.start({"kind": "fem"}, PAPER.replace("number_of_teeth = 13", "number_of_teeth = -1"), "paper", "CS-1")
+    with pytest.raises(DriveError, match="2 jobs run already"):
+        jobs.start({"kind": "fem"}, PAPER, "paper", "CS-1")
+    assert jobs.cancel(first)
+    assert finished(jobs, first)["state"] == "cancelled"
+    wrong = finished(jobs, second)
+    assert wrong["state"] == "failed"
+    assert "disc.number_of_teeth = -1" in " ".join(wrong["lines"])
+    assert not jobs.cancel(first)
+    jobs.close()
