@@ -2,8 +2,8 @@ r"""A drive run in time: start, steady speed, speed ramp, torque step, reversal 
 
 The run begins in balance at crank angle 0, with the friction of the speed it begins with; where it begins at speed all parts
 move as slow motion would have them. `ltca.dynamics.motion` has the equations; scipy's DOP853 solves them with its own step and
-dense output, of which samples evenly in time are kept. Contacts that close and open set its step: drives have vibrations up to some 10 kHz, so that implicit
-methods with the tangent gain nothing.
+dense output, of which samples evenly in time are kept. Contacts that close and open set its step: drives
+have vibrations up to some 10 kHz, so that implicit methods with the tangent gain nothing.
 
 The balance of energy is that of input, output, damping, friction, of what is stored, and of the work of contacts that move to
 another radius of curvature or over bodies that yield otherwise there (`ltca.compliance.stored_energy`): their forces act along
@@ -550,15 +550,21 @@ def _require_mass(kinetic: KineticEnergy, motion: Motion, basis: FloatArray, lev
         motion.sun: "inertia.input: sun of the first stage",
         motion.twist: "inertia.output: twist of the carrier",
     }
+    beam = motion.drive.pin_shaft.beam
+    tip = "" if beam is None else f" = {beam.tip!r}"
     flange = (
         "carrier.posts: far flange of the carrier"
         if motion.drive.posts
-        else "pin_shaft.beam.tip: ring of the pin shaft"
+        else f"pin_shaft.beam.tip{tip}: ring of the pin shaft"
     )
+    ways = {} if motion.drive.posts else {flange: "; must be 'free' there"}
     ring = range(*motion.pose.ring_place.indices(motion.pose.size))
     words = [named.get(place, flange if place in ring else f"coordinate {place}") for place in light]
     raise DriveError(
-        [f"{word}: yields, but has no mass, which a run in time needs" for word in dict.fromkeys(words)]
+        [
+            f"{word} yields, but has no mass, which a run in time needs{ways.get(word, '')}"
+            for word in dict.fromkeys(words)
+        ]
         or ["masses: some motion that yields has none, which a run in time needs"]
     )
 
