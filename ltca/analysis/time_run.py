@@ -452,6 +452,10 @@ def prepare_run(drive: Drive, engine: Engine, course: Course) -> PreparedRun:
     """
     warm = warm_drive(drive)
     warm.require_torque("a run in time, which starts under load")
+    if warm.contact.slices != 1:
+        raise DriveError(
+            [f"contact.slices = {warm.contact.slices}: must be 1 for a run in time, whose discs do not lean"]
+        )
     masses, motion = require_masses(drive_masses(drive)), Motion.of_drive(warm)
     model = engine.prepare(drive).model
     _require_supported(warm, model, course)

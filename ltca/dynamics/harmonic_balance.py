@@ -204,7 +204,7 @@ class HillSystem:
             amplitudes = values.view(np.complex128).reshape(whole, size)
             forces = by_orders(_times(stiffness, in_time(amplitudes))) + np.einsum("oij,oj->oi", moving, amplitudes)
             forces[0] = held @ forces[0]
-            return forces.ravel().view(np.float64)
+            return np.asarray(forces.ravel().view(np.float64), dtype=np.float64)
 
         def by_mean(pushed: FloatArray) -> FloatArray:
             return in_time(np.einsum("oij,oj->oi", answers, np.fft.rfft(pushed, axis=0)[:whole]))
@@ -217,7 +217,7 @@ class HillSystem:
             if slow.shape[1]:
                 left = (values - balance(found.ravel().view(np.float64))).view(np.complex128).reshape(whole, size)
                 found += by_orders(resolved.answer(in_time(left), pushed_between))
-            return found.ravel().view(np.float64)
+            return np.asarray(found.ravel().view(np.float64), dtype=np.float64)
 
         right = force * scale
         right[0] = held @ right[0]

@@ -24,7 +24,7 @@ from ltca.analysis.vibration import (
 from ltca.arrays import FloatArray
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import ARCSEC
-from ltca.dynamics.kinetics import Motion, require_masses
+from ltca.dynamics.kinetics import require_masses
 from ltca.dynamics.masses import drive_masses
 from ltca.output.files import write_json
 from ltca.output.progress import progress
@@ -57,7 +57,6 @@ class Found:
 
 def require_vibrations(drive: Drive) -> None:
     """Refuse a drive whose vibrations cannot be told, before anything is solved."""
-    Motion.of_drive(drive)
     require_masses(drive_masses(drive))
 
 

@@ -97,6 +97,28 @@ def test_two_coupled_masses_follow_direct_integration():
     assert np.max(np.abs(mean - expected)) > 0.1 * np.max(np.abs(expected))
 
 
+@pytest.mark.parametrize(("depth", "speed", "order"), [(0.6, 0.02, 20), (0.6, 0.02, 50)])
+def test_a_spring_that_pulses_slowly_follows_direct_integration(depth, speed, order):
+    """The mass swings 50 times while its spring pulses once, by 60 %: an iteration about the mean spring stalls there."""
+    angle, damping = 2.0 * np.pi * np.arange(256) / 256, 0.03
+    system = system_of((1.0 + depth * np.cos(angle))[:, None, None], damping)
+    orders, force = np.arange(1.0, 128.0), np.zeros((128, 1), dtype=complex)
+    force[order] = 1.0
+    found = system.respond(speed, orders, force)[:, 0]
+
+    def rates(time, state):
+        pushed = np.cos(order * speed * time) - (1.0 + depth * np.cos(speed * time)) * state[0]
+        return np.array([state[1], pushed - 2.0 * damping * state[1]])
+
+    times = (2.0 * np.pi * 3.0 + angle) / speed  # e^(−0.03·942): the start is 1e-12
+    expected = solve_ivp(rates, (0.0, times[-1]), np.zeros(2), t_eval=times, rtol=1e-9, atol=1e-12, method="DOP853").y[
+        0
+    ]
+    got = found[0].real + (np.exp(1j * np.multiply.outer(angle, orders)) @ found[1:]).real
+    # The spring is 1.6 at most: √1.6 swings 63 times a turn, and orders from 128 on are cut off.
+    assert np.max(np.abs(got - expected)) < 1e-6 * np.max(np.abs(expected))
+
+
 def test_a_constant_stiffness_answers_order_by_order():
     """All but no pulsation goes through the balance, none through the mean: both are one to what GMRES leaves."""
     stiffness = np.array([[2.0, 0.3], [0.3, 1.0]])
