@@ -554,7 +554,7 @@ def _require_mass(kinetic: KineticEnergy, motion: Motion, basis: FloatArray, lev
         motion.sun: "inertia.input: sun of the first stage",
         motion.twist: "inertia.output: twist of the carrier",
     }
-    beam = motion.drive.pin_shaft.beam
+    beam = None if motion.drive.pin_shaft is None else motion.drive.pin_shaft.beam
     tip = "" if beam is None else f" = {beam.tip!r}"
     flange = (
         "carrier.posts: far flange of the carrier"
