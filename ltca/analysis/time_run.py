@@ -1,9 +1,9 @@
 r"""A drive run in time: start, steady speed, speed ramp, torque step, reversal through the play, sinusoidal load.
 
-The run begins in balance, without friction, at crank angle 0; where it begins at speed all parts move as slow motion would have
-them. `ltca.dynamics.motion` has the equations; scipy's DOP853 solves them with its own step and dense output, of which samples
-evenly in time are kept. Contacts that close and open set its step: drives have vibrations up to some 10 kHz, so that implicit
-methods with the tangent gain nothing.
+The run begins in balance at crank angle 0, with the friction of the speed it begins with; where it begins at speed all parts
+move as slow motion would have them. `ltca.dynamics.motion` has the equations; scipy's DOP853 solves them with its own step and
+dense output, of which samples evenly in time are kept. Contacts that close and open set its step: drives
+have vibrations up to some 10 kHz, so that implicit methods with the tangent gain nothing.
 
 The balance of energy is that of input, output, damping, friction, of what is stored, and of the work of contacts that move to
 another radius of curvature or over bodies that yield otherwise there (`ltca.compliance.stored_energy`): their forces act along
@@ -51,12 +51,18 @@ VALUES = {
 """Values that each motion takes."""
 DEFAULTS = {"within": 0.1, "at": 0.5, "from_speed": 0.0, "factor": 2.0, "amplitude": 0.5}
 """Parts of the whole time, turns a minute, parts of the load."""
+FASTEST, HIGHEST = 1e6, 1e6
+"""Largest speeds, rpm, and frequency of a torque, Hz: beyond any drive, and of vibrations up to some 10 kHz."""
+ROUND_OFF = 1e-9
+"""By which times that are given, as 1.5 ms and 0.5 ms, may pass the end of the run."""
 RELATIVE_TOLERANCE, PLACE_TOLERANCE = 1e-5, 5e-8
 """Of a step, relative and in mm: contacts approach by some micrometres, of which this is some 1e-5."""
 WORK_TOLERANCE = 1e-9
 """Of a step, works, by the energy that the load takes in the whole run."""
 QUASI_STATIC_STEP = 1e-4
 """Step of the angle of the crank for the rates of slow motion, rad."""
+BALANCED_PER_TURN = 72
+"""Positions in a turn of the crank whose mean is the torque that drives a drive with friction."""
 PER_TURN, FEWEST_SAMPLES, MOST_SAMPLES = 720, 400, 40_000
 """Samples to a turn of the crank, and their bounds, by which memory is bounded."""
 FIRST_STEP = 0.1
@@ -82,7 +88,7 @@ class Course:
     speed : float
         Of the input, turns a minute, without its sense, which is that of the load's direction.
     driven_by : {"speed", "torque"}
-        Whether the input turns as told or is driven by the even torque that balances the load in the mean of a turn.
+        Whether the input turns as told or is driven by the even torque that balances load and friction in the mean of a turn.
     within, at : float or None
         Time that a change takes, and when it begins, s.
     from_speed : float or None
@@ -113,6 +119,8 @@ class Course:
         for name, bound in (("time", time), ("speed", speed)):
             if not (np.isfinite(bound) and bound > 0.0):
                 problems.append(f"{name} = {bound:g}: must be greater than 0 {'s' if name == 'time' else 'rpm'}")
+            elif name == "speed" and bound > FASTEST:
+                problems.append(f"speed = {bound:g}: must be at most {FASTEST:g} rpm")
         taken = VALUES[motion]
         given = {name: value for name, value in values.items() if value is not None}
         problems += [
@@ -136,8 +144,19 @@ class Course:
                 problems.append(
                     f"{name} = {chosen[name]:g}: must be greater than 0 {'s' if name == 'within' else 'Hz'}"
                 )
-        if "at" in chosen and not 0.0 <= chosen["at"] < time:
-            problems.append(f"at = {chosen['at']:g}: must be at least 0 and less than the time, {time:g} s")
+        if "at" in chosen:
+            if not 0.0 <= chosen["at"] < time:
+                problems.append(f"at = {chosen['at']:g}: must be at least 0 and less than the time, {time:g} s")
+            elif chosen["at"] + chosen["within"] > time * (1.0 + ROUND_OFF):
+                problems.append(
+                    f"within = {chosen['within']:g}: must be at most {time - chosen['at']:g} s, what is left of the time, "
+                    f"{time:g} s, after at = {chosen['at']:g} s"
+                )
+        elif "within" in chosen and chosen["within"] > time * (1.0 + ROUND_OFF):
+            problems.append(f"within = {chosen['within']:g}: must be at most the time, {time:g} s")
+        for name, bound, unit in (("from_speed", FASTEST, "rpm"), ("frequency", HIGHEST, "Hz")):
+            if name in chosen and chosen[name] > bound:
+                problems.append(f"{name} = {chosen[name]:g}: must be at most {bound:g} {unit}")
         for name in ("from_speed", "amplitude"):
             if name in chosen and not 0.0 <= chosen[name] < np.inf:
                 problems.append(f"{name} = {chosen[name]:g}: must be at least 0")
@@ -470,18 +489,34 @@ def prepare_run(drive: Drive, engine: Engine, course: Course) -> PreparedRun:
     first -= lead * float(turns @ first)
     y = equation.at_rest(0.0, np.asarray(np.linalg.lstsq(held, first, rcond=None)[0], dtype=float))
     slow = QUASI_STATIC_STEP / abs(float(lead[motion.crank]))
-    ends = [
-        replace(equation, input_motion=lambda _, by=side * slow: (by, 0.0, 0.0)).at_rest(0.0, y)  # type: ignore[misc]
-        for side in (-1.0, 1.0)
-    ]
+    ends = [replace(equation, input_motion=_passing(side * slow, told(0.0)[1])).at_rest(0.0, y) for side in (-1.0, 1.0)]
     rate = (ends[1] - ends[0]) / (2.0 * slow) * told(0.0)[1]
     if course.driven_by == "torque":
-        # What balances the load in the mean of a turn, by the ratio.
-        torque = -float(equation.output_torque(0.0) * (equation.output_turns @ lead))
+        torque = _mean_input_torque(equation, y, 2.0 * np.pi / abs(float(lead[motion.crank])), told(0.0)[1])
         y, rate = lever * (held @ y), lever * (held @ rate)
         equation = replace(equation, basis=np.diag(1.0 / lever), input_torque=torque)
     start = np.concatenate((y, rate, np.zeros(len(WORKS))))
     return PreparedRun(drive=warm, engine=engine, course=course, motion=motion, equation=equation, start=start)
+
+
+def _passing(angle: float, speed: float) -> Profile:
+    """The input as it passes an angle at a speed, at any time."""
+    return lambda _: (angle, speed, 0.0)
+
+
+def _mean_input_torque(equation: Equation, y: FloatArray, turn: float, speed: float) -> float:
+    """Torque that balances the load with friction in the mean of a turn of the crank, ccw positive, N·mm.
+
+    `turn` is that of the input, rad; positions follow one another from the state `y` at its begin.
+    """
+    if not equation.contacts.rubs:
+        return -float(equation.output_torque(0.0) * (equation.output_turns @ equation.lead))  # by the ratio
+    torques = []
+    for part in range(BALANCED_PER_TURN):
+        there = replace(equation, input_motion=_passing(part * turn / BALANCED_PER_TURN * np.sign(speed), speed))
+        y = there.at_rest(0.0, y)
+        torques.append(there.input_torque_at_rest(0.0, y))
+    return float(np.mean(torques))
 
 
 def _sense(drive: Drive) -> float:
@@ -519,15 +554,21 @@ def _require_mass(kinetic: KineticEnergy, motion: Motion, basis: FloatArray, lev
         motion.sun: "inertia.input: sun of the first stage",
         motion.twist: "inertia.output: twist of the carrier",
     }
+    beam = None if motion.drive.pin_shaft is None else motion.drive.pin_shaft.beam
+    tip = "" if beam is None else f" = {beam.tip!r}"
     flange = (
         "carrier.posts: far flange of the carrier"
         if motion.drive.posts
-        else "pin_shaft.beam.tip: ring of the pin shaft"
+        else f"pin_shaft.beam.tip{tip}: ring of the pin shaft"
     )
+    ways = {} if motion.drive.posts else {flange: "; must be 'free' there"}
     ring = range(*motion.pose.ring_place.indices(motion.pose.size))
     words = [named.get(place, flange if place in ring else f"coordinate {place}") for place in light]
     raise DriveError(
-        [f"{word}: yields, but has no mass, which a run in time needs" for word in dict.fromkeys(words)]
+        [
+            f"{word} yields, but has no mass, which a run in time needs{ways.get(word, '')}"
+            for word in dict.fromkeys(words)
+        ]
         or ["masses: some motion that yields has none, which a run in time needs"]
     )
 

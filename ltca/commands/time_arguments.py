@@ -33,7 +33,8 @@ def add_time_arguments(parser: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--driven-by",
         choices=("speed", "torque"),
-        help="whether the input turns as told (default) or inertia.input is driven by the torque that balances the load",
+        help="whether the input turns as told (default) or inertia.input is driven by the even torque that balances load and "
+        "friction in the mean of a turn",
     )
     for option, unit, words in (
         ("--within", "s", "time that start, step or reverse takes; default a tenth of the whole"),

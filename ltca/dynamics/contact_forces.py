@@ -86,6 +86,11 @@ class ContactForces:
         self._each = [DiscContacts(disc) for disc in discs] if plain else []
 
     @property
+    def rubs(self) -> bool:
+        """Whether there is friction."""
+        return self._friction is not None
+
+    @property
     def has_energy(self) -> bool:
         """Whether the stored energy is known: of all but contact grids."""
         return len(self._telling) == len(self._model.discs)

@@ -129,20 +129,27 @@ class Equation:
         on_modes = pressed @ shapes[:, felt]
         return np.asarray((on_modes * (2.0 * self.damping_ratio / square[felt] ** 1.5)) @ on_modes.T)
 
+    def input_torque_at_rest(self, time: float, y: FloatArray) -> float:
+        """Return the torque at the input that balances a time in a state of `at_rest`, ccw positive, N·mm."""
+        angle, speed, _ = self.input_motion(time)
+        now = self.contacts.at(self.basis @ y + self.lead * angle, self.lead * speed)
+        return float(self.lead @ (now.force + now.friction - self.output_torque(time) * self.output_turns))
+
     def at_rest(self, time: float, start: FloatArray) -> FloatArray:
-        """Return y of balance under the torques of a time, the input held, without friction, shape (m,).
+        """Return y of balance under the torques of a time, the input held, shape (m,).
+
+        Friction is that of the slips which the rigid motion has at the speed of the input, none where the input stands.
 
         Raises
         ------
         ConvergenceError
             Where it is not found.
         """
-        y, still = start.copy(), np.zeros(self.basis.shape[0])
+        y, (angle, speed, _) = start.copy(), self.input_motion(time)
         history: list[float] = []
         for _ in range(REST_STEPS):
-            x = self.basis @ y + self.lead * self.input_motion(time)[0]
-            now = self.contacts.at(x, still)
-            left = self.basis.T @ (now.force - self.output_torque(time) * self.output_turns)
+            now = self.contacts.at(self.basis @ y + self.lead * angle, self.lead * speed)
+            left = self.basis.T @ (now.force + now.friction - self.output_torque(time) * self.output_turns)
             matrix = self.basis.T @ now.stiffness @ self.basis
             try:
                 step = np.linalg.solve(matrix, left)

@@ -47,7 +47,8 @@ def motion(
     kind : {"steady", "start", "ramp", "step", "reverse", "sine"}
         Evenly under the load; from rest; from one speed to the other; the torque changes by a factor, or its sign; it swings.
     driven_by : {"speed", "torque"}
-        Whether the input turns as told, or ``inertia.input`` is driven by the torque that balances the load.
+        Whether the input turns as told, or ``inertia.input`` is driven by the even torque that balances load and friction in the
+        mean of a turn.
     within, at : float or str, optional
         Time that start, step or reverse takes, a tenth of the whole by default, and when it begins, half of it; s.
     from_speed : float or str, optional

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import hashlib
+import re
 import time
 from collections.abc import Callable, Mapping
 from functools import partial
@@ -44,7 +45,15 @@ def course_of(drive: Drive, arguments: argparse.Namespace) -> Course:
         name: getattr(arguments, name) for name in ("within", "at", "from_speed", "factor", "amplitude", "frequency")
     }
     motion, driven = arguments.motion or "steady", arguments.driven_by or "speed"
-    return Course.of_values(motion, arguments.time, speed, driven, **values)
+    try:
+        return Course.of_values(motion, arguments.time, speed, driven, **values)
+    except DriveError as error:
+        raise DriveError([_of_option(problem) for problem in error.problems]) from error
+
+
+def _of_option(problem: str) -> str:
+    """Name the option in what is wrong with a value of the course."""
+    return re.sub(r"^(\w+)|(?<=after )(at)\b", lambda name: f"--{name[0].replace('_', '-')}", problem)
 
 
 def require_checkpoints(out: Path, resume: bool) -> None:

@@ -91,6 +91,7 @@ _TABLE: tuple[tuple[str, tuple[str, ...], Fraction | int, Fraction | int], ...] 
     ("load deflection constant", ("N/mmⁿ", "N/mm^n"), 1, 0),
     ("speed", ("rpm", "rev/min"), 1, 0),
     ("speed", ("Hz", "rev/s"), 60, 0),
+    ("speed", ("kHz",), 60_000, 0),
     ("speed", ("rad/s",), 30 / PI, 0),
     ("speed", ("deg/s",), Fraction(1, 6), 0),
     ("torsional stiffness", _spelled("N·mm/rad"), 1, 0),

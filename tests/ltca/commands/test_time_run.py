@@ -39,8 +39,19 @@ def test_a_run_writes_what_it_says(tmp_path, capsys):
         (["--resume"], "--resume: has no effect without --time"),
         (["--time", "1 ms", "--turns", "3"], "--turns = 3: has no effect with --time"),
         (["--time", "1 ms", "--positions", "5"], "--positions = 5: has no effect with --time"),
-        (["--time", "1 ms", "--factor", "2"], "factor = 2: the motion 'steady' takes none"),
-        (["--time", "1 ms", "--motion", "sine"], "frequency: must be given"),
+        (["--time", "1 ms", "--factor", "2"], "--factor = 2: the motion 'steady' takes none"),
+        (["--time", "1 ms", "--motion", "sine"], "--frequency: must be given"),
+        (["--time", "1 ms", "--speed", "1e9"], "--speed = 1e+09: must be at most 1e+06 rpm"),
+        (
+            ["--time", "2 ms", "--motion", "step", "--at", "1.5 ms", "--within", "1 ms"],
+            "--within = 0.001: must be at most 0.0005 s, what is left of the time, 0.002 s, after --at = 0.0015 s",
+        ),
+        (["--time", "1 ms", "--motion", "sine", "--frequency", "5 kHz", "--at", "1"], "--at = 1: the motion 'sine'"),
+        (["--time", "1 ms", "--motion", "sine", "--frequency", "1 GHz"], "--frequency = '1 GHz'"),
+        (
+            ["--time", "1 ms", "--motion", "sine", "--frequency", "2e3 kHz"],
+            "--frequency = 2e+06: must be at most 1e+06 Hz",
+        ),
     ],
 )
 def test_options_are_used_or_refused(options, words, tmp_path, capsys):
