@@ -29,7 +29,7 @@ def test_every_command_is_looked_at():
     assert tuple(COMMANDS) == ORDER
 
 
-WITHOUT_FOLDER = {"init", "fields", "quantities"}
+WITHOUT_FOLDER = {"init", "fields", "quantities", "studio"}
 """Commands that write no folder of results."""
 
 
@@ -59,6 +59,8 @@ QUANTITIES = [
         ("--pressure", "30′", math.radians(0.5)), ("--torque", "377.3 N m", 377_300.0), ("--torque", "377.3", 377.3),
         ("--pressure-limit", "1.5 GPa", 1500.0), ("--load-rating", "40 kN", 40_000.0), ("--speed", "1500 rpm", 1500.0),
         ("--load", "1.5 kN", 1500.0), ("--speed", "1500", 1500.0), ("--size", "50 %", 0.5), ("--stations", "2", 2.0),
+        ("--at", "2 ms", 0.002), ("--within", "2 s", 2.0), ("--from-speed", "10 rpm", 10.0), ("--frequency", "1 kHz", 1000.0),
+        ("--amplitude", "50 %", 0.5), ("--factor", "2", 2.0),
     )
     for name in ORDER
     if word in options(name)
