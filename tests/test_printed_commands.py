@@ -82,6 +82,7 @@ SMALLER = {
     "benchmarks/solid_ltca.py": "examples/drives/plastic.toml --size 8 --layers 2",
     "benchmarks/solid_or_plane.py": "--widths 8 --size 8 --layers 2",
     "benchmarks/startup.py": "--runs 1",
+    "benchmarks/studio.py": "--edits 2",
     "benchmarks/suite_times.py": "--processes 1 -- tests/analytic",
     "benchmarks/summary_numbers.py": "--positions 4",
     "benchmarks/tolerance.py": "--samples 40",
