@@ -452,10 +452,6 @@ def prepare_run(drive: Drive, engine: Engine, course: Course) -> PreparedRun:
     """
     warm = warm_drive(drive)
     warm.require_torque("a run in time, which starts under load")
-    if warm.contact.slices != 1:
-        raise DriveError(
-            [f"contact.slices = {warm.contact.slices}: must be 1 for a run in time, whose discs do not lean"]
-        )
     masses, motion = require_masses(drive_masses(drive)), Motion.of_drive(warm)
     model = engine.prepare(drive).model
     _require_supported(warm, model, course)
@@ -526,8 +522,6 @@ def _sense(drive: Drive) -> float:
 
 def _require_supported(drive: Drive, model: Reducer, course: Course) -> None:
     problems = []
-    if drive.contact.slices > 1:
-        problems.append(f"contact.slices = {drive.contact.slices}: must be 1 for a run in time, which leaves tilts out")
     if model._teeth_press:
         problems.append(
             "first_stage: its teeth press on cranks or main bearing that yield, which a run in time leaves out"

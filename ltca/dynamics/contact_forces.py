@@ -19,7 +19,7 @@ import numpy as np
 from ltca.arrays import FloatArray
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
-from ltca.compliance.response import Response, Start, bearing_pushes
+from ltca.compliance.response import DiscResponse, Response, Start, bearing_pushes
 from ltca.compliance.stored_energy import StoredEnergy
 from ltca.dynamics.disc_forces import DiscContacts, DiscForces
 from ltca.dynamics.kinetics import Motion
@@ -27,7 +27,8 @@ from ltca.dynamics.stiffness import crank_force
 from ltca.equilibrium.friction.slip import Slip
 from ltca.equilibrium.friction.turning import TurningFriction
 from ltca.equilibrium.reducer import Reducer
-from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, X, Y
+from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION, WHEEL_ANGLE, X, Y
+from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.rotation import unit
 
 FADING = 1e-2
@@ -81,7 +82,7 @@ class ContactForces:
         self._start: Start | None = None
         self._latest: tuple[FloatArray, FloatArray, Response] | None = None
         discs = [disc for disc in model.discs if isinstance(disc, HalfSpaceCompliance)]
-        plain = model.pins is None and len(discs) == len(model.discs)
+        plain = model.pins is None and len(discs) == len(model.discs) and not model.coordinates.leans
         self._telling = [disc for disc in model.discs if isinstance(disc, HalfSpaceCompliance | CoupledCompliance)]
         self._each = [DiscContacts(disc) for disc in discs] if plain else []
 
@@ -134,15 +135,20 @@ class ContactForces:
         return total + sum(float(disc.energy[0]) for disc in discs), tuple(discs)
 
     def _bent(self, angle: FloatArray, pose: FloatArray, response: Response) -> float:
-        """Energy of what holds pins together, ½ Σ f·u with their displacements u: wheel pins have those in the turning wheel."""
+        """Energy of what holds pins together, ½ Σ f·u with their displacements u, in slices with ½ Σ m·l of their leans: wheel pins
+        have both in the turning wheel.
+        """
         if response.shifts is None:
             return 0.0
         wheel = unit(self._model.discs[0].geometry.placement.wheel_rotation(angle) + pose[:, WHEEL_ANGLE])
         total = 0.0
         for number, part in enumerate(response.parts):
-            force = part.pin_forces.copy()
-            force[:, : part.pin_load.shape[1]] *= wheel.conjugate()[:, None]
-            total += 0.5 * float((force.conjugate() * response.shifts[:, number]).real.sum())
+            work = [(part.pin_forces.copy(), response.shifts[:, number])]
+            if part.leans is not None:
+                work.append((part.pin_moments.copy(), part.leans))
+            for force, moved in work:
+                force[:, : part.pin_load.shape[1]] *= wheel.conjugate()[:, None]
+                total += 0.5 * float((force.conjugate() * moved).real.sum())
         return total
 
     def _asked(
@@ -164,11 +170,12 @@ class ContactForces:
             along[X], along[Y], along[WHEEL_ANGLE] = velocity.real, velocity.imag, 1.0 / place.reduction_ratio
             nominal[columns] = along
             moved = geometry.bores(at, row[:, columns]).gradient[0]
-            each = part.rollers.tangent[0].reshape(place.cranks, -1, 4).sum(axis=1).reshape(-1, 2, 2)
+            rollers = part.rollers.tangent[0]
+            each = rollers.reshape(place.cranks, -1, *rollers.shape[1:]).sum(axis=1)[:, :2, :2]
             for stiff, gradient in zip(each, moved, strict=True):
                 both = np.stack((gradient.real, gradient.imag))
                 bearings[np.ix_(columns, columns)] += both.T @ stiff @ both
-            slip, pins = Slip.of_disc(geometry, at, row[:, columns], part).by_pose[0], part.pin_load.shape[1]
+            slip, pins = _slip(geometry, at, row[:, columns], part), part.pin_load.shape[1]
             normal = part.flank.gradient[0, :, X] + 1j * part.flank.gradient[0, :, Y]
             discs.append(
                 DiscForces(
@@ -185,7 +192,7 @@ class ContactForces:
                     push=bearing_pushes(part.rollers, place.cranks)[0],
                     inner_load=part.rollers.inner_load[0],
                     outer_load=part.rollers.outer_load[0],
-                    wheel_force=complex(part.pin_load[0] @ normal),
+                    wheel_force=complex(part.pin_forces[0, :pins].sum()),
                     wheel_along=-1j * normal,
                 )
             )
@@ -227,6 +234,24 @@ class ContactForces:
         total[motion.wheel_angle] += held
         total[motion.crank] += held / ratio
         return total
+
+
+def _slip(geometry: ContactGeometry, crank_angle: FloatArray, pose: FloatArray, part: DiscResponse) -> FloatArray:
+    """Slip of wheel pins, then shaft pins, by the pose where each is loaded, shape (pairs, k): in slices leans move it as well,
+    by as far as its load is off the middle.
+    """
+    slip = Slip.of_disc(geometry, crank_angle, pose, part).by_pose[0]
+    if part.leaning_pins is None or part.leaning_holes is None:
+        return slip
+    coordinates, pins = geometry.coordinates_of(pose), part.pin_load.shape[1]
+    load = np.concatenate((part.pin_load[0], part.hole_load[0]))
+    moment = np.concatenate((part.leaning_pins.contact.moment[0], part.leaning_holes.contact.moment[0]))
+    height = np.divide(moment, load, out=np.zeros_like(load), where=load > 0.0)
+    along = height[:, None] * np.concatenate((part.flank.along[0], part.holes.along[0]))[:, DISC_PLACE]
+    slip[:, coordinates.lean_place] += along
+    if coordinates.wheel_leans:
+        slip[:pins, coordinates.wheel_lean_place] -= along[:pins]
+    return slip
 
 
 def _springs(motion: Motion) -> FloatArray:

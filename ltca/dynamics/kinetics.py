@@ -213,15 +213,26 @@ class Body:
         t, or t·mm².
     row : array, shape (coordinates,)
         Velocity x + iy, rotation, or one direction of a lean, by the rates of the coordinates.
-    leans : bool
-        Whether it is a moment of inertia about a line in the plane.
+    across : array, shape (coordinates,), or None
+        Of a moment of inertia about a line in the plane, by the lean in one direction, what a frame that turns by 1 rad adds to
+        that: the lean across. None of others.
     """
 
     name: str
     turns: bool
     size: float
     row: ComplexArray
-    leans: bool = False
+    across: ComplexArray | None = None
+
+    @property
+    def leans(self) -> bool:
+        """Whether it is a moment of inertia about a line in the plane."""
+        return self.across is not None
+
+    @property
+    def carried(self) -> ComplexArray:
+        """Velocity that a frame which turns by 1 rad adds, by the displacements of the row."""
+        return 1j * self.row if self.across is None else self.across
 
     @property
     def matrix(self) -> FloatArray:
@@ -362,8 +373,9 @@ def _leaning(motion: Motion, disc: Solid, number: int) -> Iterator[Body]:
     # A lean along x turns the disc about y.
     by_lean = np.array([[tensor[1, 1], -tensor[0, 1]], [-tensor[0, 1], tensor[0, 0]]])
     for size, direction in zip(*np.linalg.eigh(by_lean), strict=True):
-        row = direction[0] * motion.unit(int(own[0])) + direction[1] * motion.unit(int(own[1]))
-        yield Body(name=f"disc {number}", turns=False, size=float(size), row=row.astype(complex), leans=True)
+        along, beside = motion.unit(int(own[0])), motion.unit(int(own[1]))
+        row, across = (first * along + second * beside for first, second in (direction, (direction[1], -direction[0])))
+        yield Body(name=f"disc {number}", turns=False, size=float(size), row=row.astype(complex), across=across.astype(complex))
 
 
 def _eccentric_velocity(motion: Motion, masses: DriveMasses, disc: int, crank: int, angle: float) -> ComplexArray:
