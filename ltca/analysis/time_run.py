@@ -460,7 +460,7 @@ def prepare_run(drive: Drive, engine: Engine, course: Course) -> PreparedRun:
     turns = motion.input_turns
     lead = motion.rigid / float(turns @ motion.rigid)
     lever = levers(replace(model, friction=None), motion, np.atleast_2d(lever_arms(replace(model, friction=None)))[0])
-    held = free_coordinates(turns, lever)
+    held = _free_motions(motion, turns, lever)
     against = (1.0 if warm.wheel_is_held else -1.0) * warm.driving_sign * warm.load.torque
     told = course.input_motion(sense)
     crank_speed = course.speed * 2.0 * np.pi / 60.0 * abs(warm.crank_turns_per_input)
@@ -489,10 +489,20 @@ def prepare_run(drive: Drive, engine: Engine, course: Course) -> PreparedRun:
     rate = (ends[1] - ends[0]) / (2.0 * slow) * told(0.0)[1]
     if course.driven_by == "torque":
         torque = _mean_input_torque(equation, y, 2.0 * np.pi / abs(float(lead[motion.crank])), told(0.0)[1])
-        y, rate = lever * (held @ y), lever * (held @ rate)
-        equation = replace(equation, basis=np.diag(1.0 / lever), input_torque=torque)
+        heavy = np.delete(np.arange(motion.size), motion.following)
+        y, rate = (lever[heavy] * (held @ each)[heavy] for each in (y, rate))
+        equation = replace(equation, basis=np.diag(1.0 / lever)[:, heavy], input_torque=torque)
     start = np.concatenate((y, rate, np.zeros(len(WORKS))))
     return PreparedRun(drive=warm, engine=engine, course=course, motion=motion, equation=equation, start=start)
+
+
+def _free_motions(motion: Motion, turns: FloatArray, lever: FloatArray) -> FloatArray:
+    """Motions that leave the input still, of coordinates with mass, shape (n, m)."""
+    heavy = np.delete(np.arange(motion.size), motion.following)
+    free = free_coordinates(turns[heavy], lever[heavy])
+    found = np.zeros((motion.size, free.shape[1]))
+    found[heavy] = free
+    return found
 
 
 def _passing(angle: float, speed: float) -> Profile:
@@ -596,7 +606,7 @@ class Recorder:
             curvature, stations = (
                 float(self.arrays[name][row - 1]) if row else 0.0 for name in ("curvature", "stations")
             )
-            stored, discs_store = contacts.stored(x)
+            stored, discs_store = contacts.stored(now.place)
             for before, there in zip(self._before, discs_store, strict=row > 0):
                 by_radius, by_place = before.work_to(there)
                 curvature, stations = curvature + float(by_radius[0]), stations + float(by_place[0])
@@ -604,7 +614,7 @@ class Recorder:
         discs = now.discs
         taken: dict[str, Any] = {
             "time": time,
-            "place": x,
+            "place": now.place,
             "rate": rate,
             "input_torque": torque,
             "output_torque": equation.output_torque(time),
@@ -642,9 +652,8 @@ class Recorder:
             self.arrays[name][: self.rows] = values
         contacts, last = self._run.equation.contacts, found.rows - 1
         if contacts.has_energy:
-            x = self.arrays["place"][last]
-            contacts.at(x, self.arrays["rate"][last])
-            self._before = contacts.stored(x)[1]
+            now = contacts.at(self.arrays["place"][last], self.arrays["rate"][last])
+            self._before = contacts.stored(now.place)[1]
 
     def samples(self) -> Samples:
         """Return what was taken."""

@@ -15,6 +15,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ltca.arrays import FloatArray
 from ltca.compliance.coupled import CoupledCompliance
@@ -27,12 +28,17 @@ from ltca.dynamics.stiffness import crank_force
 from ltca.equilibrium.friction.slip import Slip
 from ltca.equilibrium.friction.turning import TurningFriction
 from ltca.equilibrium.reducer import Reducer
+from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION, WHEEL_ANGLE, X, Y
 from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.rotation import unit
 
 FADING = 1e-2
 """Slip by the speed of the eccentric at which friction has 0.7 of its size."""
+
+FOLLOWED, FOLLOWING_STEPS = 1e-7, 40
+"""Last step to where leans without mass balance, mm at half the thickness: forces are right but for its square, some 1e-8 of
+them; and steps that are tried."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -47,6 +53,8 @@ class Instant:
         Force that has to overcome friction.
     stiffness : array, shape (n, n)
         Σ k g gᵀ of contacts and springs: symmetric, without what forces add as they turn.
+    place : array, shape (n,)
+        x with what follows without mass where it is. Forces and stiffness have no part along that, which is balanced.
     discs : tuple of DiscForces
         Contacts of each disc.
     """
@@ -54,7 +62,25 @@ class Instant:
     force: FloatArray
     friction: FloatArray
     stiffness: FloatArray
+    place: FloatArray
     discs: tuple[DiscForces, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Follower:
+    """Where coordinates without mass stood, and how they follow the others.
+
+    Attributes
+    ----------
+    place, others : array
+        x of both, shapes (f,) and (n,).
+    by_others : array, shape (f, n)
+        Zero of themselves.
+    """
+
+    place: FloatArray
+    others: FloatArray
+    by_others: FloatArray
 
 
 class ContactForces:
@@ -81,6 +107,8 @@ class ContactForces:
         self._places = [np.append(own, motion.crank) for own in self._columns]
         self._start: Start | None = None
         self._latest: tuple[FloatArray, FloatArray, Response] | None = None
+        self._following = motion.following
+        self._followed: _Follower | None = None
         discs = [disc for disc in model.discs if isinstance(disc, HalfSpaceCompliance)]
         plain = model.pins is None and len(discs) == len(model.discs) and not model.coordinates.leans
         self._telling = [disc for disc in model.discs if isinstance(disc, HalfSpaceCompliance | CoupledCompliance)]
@@ -97,7 +125,40 @@ class ContactForces:
         return len(self._telling) == len(self._model.discs)
 
     def at(self, x: FloatArray, rate: FloatArray) -> Instant:
-        """Return the forces at coordinates and their rates, each of shape (n,)."""
+        """Return the forces at coordinates and their rates, each of shape (n,); those without mass take the place of balance.
+
+        Raises
+        ------
+        ConvergenceError
+            Where they find none.
+        """
+        if not self._following.size:
+            return self._at(x, rate)
+        own, before = self._following, self._followed
+        x, rate, length = x.copy(), rate.copy(), float(np.max(self._model.discs[0].geometry.half_width))
+        by_others = np.zeros((own.size, x.size)) if before is None else before.by_others
+        x[own] = 0.0 if before is None else before.place + before.by_others @ (x - before.others)
+        history: list[float] = []
+        for _ in range(FOLLOWING_STEPS):
+            rate[own] = 0.0
+            rate[own] = by_others @ rate
+            now = self._at(x, rate)
+            soft = np.linalg.inv(now.stiffness[np.ix_(own, own)])
+            by_others = -soft @ now.stiffness[own]
+            by_others[:, own] = 0.0
+            step = -soft @ (now.force[own] + now.friction[own])
+            history.append(length * float(np.abs(step).max()))
+            if history[-1] <= FOLLOWED:
+                x[own] += step
+                others = x.copy()
+                others[own] = 0.0
+                self._followed = _Follower(place=x[own], others=others, by_others=by_others)
+                return _condensed(now, x, own, by_others)
+            x[own] += step
+        raise ConvergenceError("leans of cranks or of the wheel do not balance; last steps in mm", history)
+
+    def _at(self, x: FloatArray, rate: FloatArray) -> Instant:
+        """Forces with every coordinate at its place."""
         motion, size = self._motion, self._motion.size
         pose, angle = x[: motion.pose.size], float(x[motion.crank])
         stiffness = self._springs.copy()
@@ -115,7 +176,7 @@ class ContactForces:
         else:
             discs = self._asked(angle, pose, force, stiffness)
         friction = np.zeros(size) if self._friction is None else self._rubbed(self._friction, discs, rate)
-        return Instant(force=force, friction=friction, stiffness=stiffness, discs=discs)
+        return Instant(force=force, friction=friction, stiffness=stiffness, place=x, discs=discs)
 
     def stored(self, x: FloatArray) -> tuple[float, tuple[StoredEnergy, ...]]:
         """Return the energy stored at the last instant, whose coordinates these are, N·mm, and that of each disc's contacts."""
@@ -234,6 +295,21 @@ class ContactForces:
         total[motion.wheel_angle] += held
         total[motion.crank] += held / ratio
         return total
+
+
+def _condensed(now: Instant, x: FloatArray, own: NDArray[np.intp], by_others: FloatArray) -> Instant:
+    """Forces and stiffness over the other coordinates, x being where those without mass are, which follow the others: works
+    along both are the same.
+    """
+    condensed = np.eye(x.size)
+    condensed[own] = by_others
+    return replace(
+        now,
+        force=condensed.T @ now.force,
+        friction=condensed.T @ now.friction,
+        stiffness=condensed.T @ now.stiffness @ condensed,
+        place=x,
+    )
 
 
 def _slip(geometry: ContactGeometry, crank_angle: FloatArray, pose: FloatArray, part: DiscResponse) -> FloatArray:

@@ -20,6 +20,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.drive.parts import Drive
@@ -115,6 +116,15 @@ class Motion:
     def size(self) -> int:
         """Number of coordinates."""
         return self.pose.size + 1 + bool(self.mesh_compliance) + (self.twist is not None)
+
+    @property
+    def following(self) -> NDArray[np.intp]:
+        """Places of coordinates that yield without mass: leans of cranks at the discs and of the wheel."""
+        pose = self.pose
+        first = pose.own - 2 * (pose.cranks + 1) * pose.leans
+        each = (pose.own * np.arange(pose.discs)[:, None] + np.arange(first, pose.lean_place.start)).ravel()
+        wheel = np.arange(*pose.wheel_lean_place.indices(pose.size))
+        return np.concatenate((each, wheel)).astype(np.intp)
 
     def unit(self, place: int | None) -> FloatArray:
         """Return the row of one coordinate; zeros of none."""
