@@ -36,8 +36,8 @@ from ltca.geometry.rotation import unit
 FADING = 1e-2
 """Slip by the speed of the eccentric at which friction has 0.7 of its size."""
 
-FOLLOWED, FOLLOWING_STEPS = 1e-7, 40
-"""Last step to where leans without mass balance, mm at half the thickness: forces are right but for its square, some 1e-8 of
+FOLLOWED, FOLLOWING_STEPS = 1e-8, 40
+"""Last step to where leans without mass balance, mm at half the thickness: forces are right but for its square, some 1e-10 of
 them; and steps that are tried."""
 
 
@@ -149,11 +149,11 @@ class ContactForces:
             step = -soft @ (now.force[own] + now.friction[own])
             history.append(length * float(np.abs(step).max()))
             if history[-1] <= FOLLOWED:
-                x[own] += step
                 others = x.copy()
                 others[own] = 0.0
-                self._followed = _Follower(place=x[own], others=others, by_others=by_others)
-                return _condensed(now, x, own, by_others)
+                self._followed = _Follower(place=x[own] + step, others=others, by_others=by_others)
+                return _condensed(now, own, by_others)
+            x = x.copy()  # forces remember where they were asked for
             x[own] += step
         raise ConvergenceError("leans of cranks or of the wheel do not balance; last steps in mm", history)
 
@@ -297,18 +297,15 @@ class ContactForces:
         return total
 
 
-def _condensed(now: Instant, x: FloatArray, own: NDArray[np.intp], by_others: FloatArray) -> Instant:
-    """Forces and stiffness over the other coordinates, x being where those without mass are, which follow the others: works
-    along both are the same.
-    """
-    condensed = np.eye(x.size)
+def _condensed(now: Instant, own: NDArray[np.intp], by_others: FloatArray) -> Instant:
+    """Forces and stiffness over the other coordinates, which those without mass follow: works along both are the same."""
+    condensed = np.eye(now.force.size)
     condensed[own] = by_others
     return replace(
         now,
         force=condensed.T @ now.force,
         friction=condensed.T @ now.friction,
         stiffness=condensed.T @ now.stiffness @ condensed,
-        place=x,
     )
 
 
