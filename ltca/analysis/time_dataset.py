@@ -8,6 +8,7 @@ import numpy as np
 
 from ltca.analysis.engines import describe_engine
 from ltca.analysis.time_run import EnergyBalance, TimeRun
+from ltca.analysis.width import AXES
 from ltca.arrays import FloatArray
 from ltca.output.labelled import LabelledDataset
 from ltca.quantities import SCHEMA_VERSION
@@ -69,11 +70,18 @@ def time_dataset(run: TimeRun) -> LabelledDataset:
             )
         },
     }
+    coords: dict[str, Any] = {"time": (("time",), taken.time, told("s", "time"))}
+    if motion.pose.leans:
+        leans = taken.place[:, [motion.pose.columns(disc)[motion.pose.lean_place] for disc in range(discs)]]
+        # A tilt is a rotation vector, a lean what x and y change by along z.
+        tilt = np.stack((-leans[:, :, 1], leans[:, :, 0]), axis=-1)
+        words = "small rotation of the disc about x and y of the frame of the pin shaft"
+        data["disc_tilt"] = ((*wide, "axis"), tilt, told("rad", words))
+        coords["axis"] = (("axis",), np.array(AXES))
     each: dict[str, tuple[Any, ...]] = {
         name: ((dims,) if isinstance(dims, str) else dims, values, attributes)
         for name, (dims, values, attributes) in data.items()
     }
-    coords = {"time": (("time",), taken.time, told("s", "time"))}
     attributes = {"schema_version": SCHEMA_VERSION, "engine": describe_engine(run.engine), **run.course.values}
     return LabelledDataset.build(each, coords, attributes)
 

@@ -12,7 +12,9 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
+import ltca
 from ltca.analysis.engines import HalfSpace, Hybrid, PlaneStrain
+from ltca.analysis.time_dataset import time_dataset
 from ltca.analysis.time_run import Course, prepare_run, run_in_time
 from ltca.compliance.coefficients import load_coefficients
 from ltca.drive.members.temperatures import warm_drive
@@ -300,3 +302,13 @@ def test_inertia_forces_of_leans_are_those_of_lagrange():
     expected, leans = (ahead - behind) / (2.0 * step) - slope, leans_of(motion)
     assert bias[leans] == pytest.approx(expected[leans], abs=1e-6 * np.abs(expected[leans]).max())
     assert bias == pytest.approx(expected, abs=1e-6 * np.abs(expected).max())
+
+
+def test_tilts_of_a_run_are_those_of_the_analysis():
+    """At the begin, which is in balance: rotation vectors about the same axes as the quasi-static dataset has, 1e-3 asked for."""
+    course = Course.of_values("steady", 1e-6, 1.0)
+    found = time_dataset(run_in_time(prepared("paper", course), samples=2))
+    still = ltca.analyse(drive_of("paper"), positions=1, compliance="half-space").dataset
+    expected = still["disc_tilt"].values[0, :, 0]
+    assert found.variables["disc_tilt"].dims == ("time", "disc", "axis")
+    assert found.variables["disc_tilt"].values[0] == pytest.approx(expected, abs=1e-3 * np.abs(expected).max())
