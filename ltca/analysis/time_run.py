@@ -17,6 +17,7 @@ from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.integrate import DOP853
 
 from ltca.analysis.engines import Engine
@@ -28,6 +29,7 @@ from ltca.dynamics.contact_forces import ContactForces
 from ltca.dynamics.kinetic_energy import KineticEnergy
 from ltca.dynamics.kinetics import Motion, require_masses
 from ltca.dynamics.masses import drive_masses
+from ltca.dynamics.massless import MasslessParts
 from ltca.dynamics.modes import free_coordinates
 from ltca.dynamics.motion import WORKS, Equation, Profile
 from ltca.dynamics.stiffness import levers
@@ -445,8 +447,8 @@ def prepare_run(drive: Drive, engine: Engine, course: Course) -> PreparedRun:
     Raises
     ------
     DriveError
-        For what a run in time leaves out, by name: contacts in slices, teeth or outside forces that press on parts that yield,
-        drag of seals and oil, parts without mass, an input of no inertia that a torque drives, a torque of zero.
+        For what a run in time leaves out, by name: contacts in slices, teeth that press on parts that yield, a twist of the carrier
+        without mass, an input of no inertia that a torque drives, a torque of zero.
     ConvergenceError
         Where no balanced state is found to start from.
     """
@@ -464,11 +466,12 @@ def prepare_run(drive: Drive, engine: Engine, course: Course) -> PreparedRun:
     turns = motion.input_turns
     lead = motion.rigid / float(turns @ motion.rigid)
     lever = levers(replace(model, friction=None), motion, np.atleast_2d(lever_arms(replace(model, friction=None)))[0])
-    held = free_coordinates(turns, lever)
     against = (1.0 if warm.wheel_is_held else -1.0) * warm.driving_sign * warm.load.torque
     told = course.input_motion(sense)
     crank_speed = course.speed * 2.0 * np.pi / 60.0 * abs(warm.crank_turns_per_input)
     kinetic = KineticEnergy.of_drive(motion, masses)
+    massless = _massless(kinetic, motion)
+    held, columns = _spans(turns, lever, massless)
     _require_mass(kinetic, motion, held, lever)
     equation = Equation(
         kinetic=kinetic,
@@ -481,22 +484,43 @@ def prepare_run(drive: Drive, engine: Engine, course: Course) -> PreparedRun:
         output_torque=lambda time: against * course.load_factor(time),
         input_torque=None,
         damping_ratio=0.0 if warm.damping is None else warm.damping.ratio_at_resonance,
+        massless=MasslessParts(columns, np.zeros(massless.size)) if massless.size else None,
     )
     smooth = replace(model, friction=None)
     found = solve_at_output(smooth, [warm], np.zeros(1), warm.load.torque * course.load_factor(0.0), gaps=False)
     first = np.zeros(motion.size)
     first[: motion.pose.size] = found.pose[0]
     first -= lead * float(turns @ first)
-    y = equation.at_rest(0.0, np.asarray(np.linalg.lstsq(held, first, rcond=None)[0], dtype=float))
+    whole = equation.whole
+    y = equation.at_rest(0.0, np.asarray(np.linalg.lstsq(whole, first, rcond=None)[0], dtype=float))
     slow = QUASI_STATIC_STEP / abs(float(lead[motion.crank]))
     ends = [replace(equation, input_motion=_passing(side * slow, told(0.0)[1])).at_rest(0.0, y) for side in (-1.0, 1.0)]
     rate = (ends[1] - ends[0]) / (2.0 * slow) * told(0.0)[1]
     if course.driven_by == "torque":
         torque = _mean_input_torque(equation, y, 2.0 * np.pi / abs(float(lead[motion.crank])), told(0.0)[1])
-        y, rate = lever * (held @ y), lever * (held @ rate)
-        equation = replace(equation, basis=np.diag(1.0 / lever), input_torque=torque)
-    start = np.concatenate((y, rate, np.zeros(len(WORKS))))
+        free = _spans(np.zeros(motion.size), lever, massless)[0]
+        equation = replace(equation, basis=free, input_torque=torque)
+        y, rate = (np.linalg.solve(equation.whole, whole @ each) for each in (y, rate))
+    m = equation.freedoms
+    if massless.size:
+        equation = replace(equation, massless=MasslessParts(columns, y[m:]))
+    start = np.concatenate((y[:m], rate[:m], np.zeros(len(WORKS))))
     return PreparedRun(drive=warm, engine=engine, course=course, motion=motion, equation=equation, start=start)
+
+
+def _massless(kinetic: KineticEnergy, motion: Motion) -> NDArray[np.intp]:
+    """Places of what ties or carries the shaft pins, a ring or the far flange of a carrier, where it has no mass."""
+    ring = np.arange(motion.size)[motion.pose.ring_place]
+    return ring[np.diag(kinetic.mass[0])[ring] == 0.0]
+
+
+def _spans(row: FloatArray, lever: FloatArray, massless: NDArray[np.intp]) -> tuple[FloatArray, FloatArray]:
+    """Columns that span the motions under which a row is zero: of what has mass, and of what has none."""
+    kept = np.delete(np.arange(lever.size), massless)
+    part = free_coordinates(row[kept], lever[kept])
+    found = np.zeros((lever.size, part.shape[1]))
+    found[kept] = part
+    return found, np.asarray(np.diag(1.0 / lever)[:, massless])
 
 
 def _passing(angle: float, speed: float) -> Profile:
@@ -532,10 +556,6 @@ def _require_supported(drive: Drive, model: Reducer, course: Course) -> None:
         problems.append(
             "first_stage: its teeth press on cranks or main bearing that yield, which a run in time leaves out"
         )
-    if model.external is not None:
-        problems.append("external_force: a run in time leaves out forces from outside on the output")
-    if drive.friction is not None and drive.friction.no_load_torque:
-        problems.append("friction.no_load_torque: a run in time leaves out the drag of seals and oil; must be 0")
     if course.driven_by == "torque" and (drive.inertia is None or drive.inertia.input is None):
         problems.append("inertia.input: must be given for an input that a torque drives, kg·m²")
     if problems:
@@ -543,7 +563,7 @@ def _require_supported(drive: Drive, model: Reducer, course: Course) -> None:
 
 
 def _require_mass(kinetic: KineticEnergy, motion: Motion, basis: FloatArray, lever: FloatArray) -> None:
-    """Refuse coordinates that have no mass."""
+    """Refuse coordinates that have no mass and do not follow as springs."""
     matrix = kinetic.at(np.zeros(motion.size), np.zeros(motion.size))[0]
     size = np.sqrt(np.maximum(np.diag(matrix), 0.0)) * (1.0 / lever)
     least = np.linalg.eigvalsh(basis.T @ matrix @ basis)
@@ -554,21 +574,9 @@ def _require_mass(kinetic: KineticEnergy, motion: Motion, basis: FloatArray, lev
         motion.sun: "inertia.input: sun of the first stage",
         motion.twist: "inertia.output: twist of the carrier",
     }
-    beam = None if motion.drive.pin_shaft is None else motion.drive.pin_shaft.beam
-    tip = "" if beam is None else f" = {beam.tip!r}"
-    flange = (
-        "carrier.posts: far flange of the carrier"
-        if motion.drive.posts
-        else f"pin_shaft.beam.tip{tip}: ring of the pin shaft"
-    )
-    ways = {} if motion.drive.posts else {flange: "; must be 'free' there"}
-    ring = range(*motion.pose.ring_place.indices(motion.pose.size))
-    words = [named.get(place, flange if place in ring else f"coordinate {place}") for place in light]
+    words = [named.get(place, f"coordinate {place}") for place in light]
     raise DriveError(
-        [
-            f"{word} yields, but has no mass, which a run in time needs{ways.get(word, '')}"
-            for word in dict.fromkeys(words)
-        ]
+        [f"{word} yields, but has no mass, which a run in time needs" for word in dict.fromkeys(words)]
         or ["masses: some motion that yields has none, which a run in time needs"]
     )
 

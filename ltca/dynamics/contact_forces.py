@@ -5,8 +5,12 @@ the force on it (`ltca.dynamics.stiffness.crank_force`). Contacts that do not fe
 (`ltca.dynamics.disc_forces`); all others are asked as equilibria ask them.
 
 Friction works against the slip that a contact has in motion, :math:`v = s_q \dot q + s_\varphi \dot\varphi`, by
-:math:`\mu F v/\sqrt{v^2 + v_0^2}`; rolling resistance likewise with the speed of the crank. The slip :math:`v_0` is `FADING` of
-the speed of the eccentric.
+:math:`\mu F v/\sqrt{v^2 + v_0^2}`; rolling resistance likewise with the speed of the crank, and the drag of seals and oil with that
+of the input. The slip :math:`v_0` is `FADING` of the speed of the eccentric.
+
+Forces from outside act at the axis of the output, of wheel or pin shaft: with the displacement w of the wheel against the shaft
+and a force G on the wheel (`ltca.equilibrium.external_force`) their work is :math:`G \cdot (\dot w + i \omega w)` in a frame that
+turns by ω.
 """
 
 from __future__ import annotations
@@ -44,6 +48,8 @@ class Instant:
         ∂U/∂x of contacts and supports, N and N·mm.
     friction : array, shape (n,)
         Force that has to overcome friction.
+    outside : array, shape (n,)
+        Force from outside on the output.
     stiffness : array, shape (n, n)
         Σ k g gᵀ of contacts and springs: symmetric, without what forces add as they turn.
     discs : tuple of DiscForces
@@ -52,6 +58,7 @@ class Instant:
 
     force: FloatArray
     friction: FloatArray
+    outside: FloatArray
     stiffness: FloatArray
     discs: tuple[DiscForces, ...]
 
@@ -73,7 +80,10 @@ class ContactForces:
         friction = model.friction
         self._friction = replace(friction, motion=1) if isinstance(friction, TurningFriction) else None
         self._model = replace(model, stage=None, friction=None, external=None)
+        self._external = model.external
         self._motion, self._speed = motion, abs(crank_speed)
+        rubs = motion.drive.friction
+        self._drag = 0.0 if rubs is None else rubs.no_load_torque
         self._springs = _springs(motion)
         coordinates = self._model.coordinates
         self._columns = [coordinates.columns(disc) for disc in range(len(model.discs))]
@@ -113,8 +123,9 @@ class ContactForces:
                 stiffness[: pose.size, : pose.size] += stiff.reshape(pose.size, pose.size)
         else:
             discs = self._asked(angle, pose, force, stiffness)
-        friction = np.zeros(size) if self._friction is None else self._rubbed(self._friction, discs, rate)
-        return Instant(force=force, friction=friction, stiffness=stiffness, discs=discs)
+        outside, on_wheel = self._outside(angle, pose)
+        friction = np.zeros(size) if self._friction is None else self._rubbed(self._friction, discs, rate, on_wheel)
+        return Instant(force=force, friction=friction, outside=outside, stiffness=stiffness, discs=discs)
 
     def stored(self, x: FloatArray) -> tuple[float, tuple[StoredEnergy, ...]]:
         """Return the energy stored at the last instant, whose coordinates these are, N·mm, and that of each disc's contacts."""
@@ -144,6 +155,18 @@ class ContactForces:
             force[:, : part.pin_load.shape[1]] *= wheel.conjugate()[:, None]
             total += 0.5 * float((force.conjugate() * response.shifts[:, number]).real.sum())
         return total
+
+    def _outside(self, angle: float, pose: FloatArray) -> tuple[FloatArray, complex]:
+        """Force from outside on the output over the coordinates, and on the wheel relative to the shaft, N."""
+        found, motion = np.zeros(self._motion.size), self._motion
+        if self._external is None:
+            return found, 0j
+        force = complex(self._external.on_wheel(np.array([angle]))[0])
+        if motion.pose.wheel:
+            x, y = pose[motion.pose.wheel_place]
+            found[motion.pose.wheel_place] = force.real, force.imag
+            found += (x * force.imag - y * force.real) * motion.frame_turns
+        return found, force
 
     def _asked(
         self, angle: float, pose: FloatArray, force: FloatArray, stiffness: FloatArray
@@ -196,13 +219,14 @@ class ContactForces:
         stiffness[crank, crank] += nominal @ column
         return tuple(discs)
 
-    def _rubbed(self, friction: TurningFriction, discs: Sequence[DiscForces], rate: FloatArray) -> FloatArray:
-        """Force that has to overcome friction, shape (n,)."""
+    def _rubbed(
+        self, friction: TurningFriction, discs: Sequence[DiscForces], rate: FloatArray, on_wheel: complex
+    ) -> FloatArray:
+        """Force that has to overcome friction, shape (n,); `on_wheel` is that from outside, N."""
         motion, place = self._motion, self._model.discs[0].geometry.placement
         total, turning = np.zeros(motion.size), float(rate[motion.crank])
         slow = FADING * float(place.mean_eccentricity.ravel()[0]) * self._speed
         rolls = turning / np.hypot(turning, FADING * self._speed)
-        on_wheel = 0j
         for columns, disc in zip(self._columns, discs, strict=True):
             going = rate[columns] + disc.nominal * turning
             force = np.zeros(columns.size)
@@ -226,6 +250,11 @@ class ContactForces:
         held = max(abs(on_wheel), friction.wheel_preload) * friction.support * rolls * np.sign(ratio)
         total[motion.wheel_angle] += held
         total[motion.crank] += held / ratio
+        if self._drag:
+            turns = motion.input_turns
+            at_input = float(turns @ rate)
+            slow = FADING * self._speed / abs(motion.drive.crank_turns_per_input)
+            total += self._drag * at_input / np.hypot(at_input, slow) * turns
         return total
 
 
