@@ -447,8 +447,8 @@ def prepare_run(drive: Drive, engine: Engine, course: Course) -> PreparedRun:
     Raises
     ------
     DriveError
-        For what a run in time leaves out, by name: contacts in slices, teeth that press on parts that yield, a twist of the carrier
-        without mass, an input of no inertia that a torque drives, a torque of zero.
+        For what a run in time leaves out, by name: contacts in slices, teeth that press on parts that yield, a twist of the
+        carrier without mass, an input of no inertia that a torque drives, a torque of zero.
     ConvergenceError
         Where no balanced state is found to start from.
     """
@@ -497,7 +497,7 @@ def prepare_run(drive: Drive, engine: Engine, course: Course) -> PreparedRun:
     ends = [replace(equation, input_motion=_passing(side * slow, told(0.0)[1])).at_rest(0.0, y) for side in (-1.0, 1.0)]
     rate = (ends[1] - ends[0]) / (2.0 * slow) * told(0.0)[1]
     if course.driven_by == "torque":
-        torque = _mean_input_torque(equation, y, 2.0 * np.pi / abs(float(lead[motion.crank])), told(0.0)[1])
+        torque = _mean_input_torque(equation, motion, y, told(0.0)[1])
         free = _spans(np.zeros(motion.size), lever, massless)[0]
         equation = replace(equation, basis=free, input_torque=torque)
         y, rate = (np.linalg.solve(equation.whole, whole @ each) for each in (y, rate))
@@ -528,17 +528,19 @@ def _passing(angle: float, speed: float) -> Profile:
     return lambda _: (angle, speed, 0.0)
 
 
-def _mean_input_torque(equation: Equation, y: FloatArray, turn: float, speed: float) -> float:
+def _mean_input_torque(equation: Equation, motion: Motion, y: FloatArray, speed: float) -> float:
     """Torque that balances the load with friction in the mean of a turn of the crank, ccw positive, N·mm.
 
-    `turn` is that of the input, rad; positions follow one another from the state `y` at its begin.
+    Positions follow one another from the state `y` at the begin of the turn; displacements go round with the crank.
     """
     if not equation.contacts.rubs:
         return -float(equation.output_torque(0.0) * (equation.output_turns @ equation.lead))  # by the ratio
-    torques = []
+    torques, by_crank = [], float(equation.lead[motion.crank])
+    step = np.sign(speed * by_crank) * 2.0 * np.pi / BALANCED_PER_TURN
+    onward = np.linalg.pinv(equation.whole) @ motion.turned(np.array([step]))[0] @ equation.whole
     for part in range(BALANCED_PER_TURN):
-        there = replace(equation, input_motion=_passing(part * turn / BALANCED_PER_TURN * np.sign(speed), speed))
-        y = there.at_rest(0.0, y)
+        there = replace(equation, input_motion=_passing(part * step / by_crank, speed))
+        y = there.at_rest(0.0, onward @ y if part else y)
         torques.append(there.input_torque_at_rest(0.0, y))
     return float(np.mean(torques))
 

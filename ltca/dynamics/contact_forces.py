@@ -5,8 +5,8 @@ the force on it (`ltca.dynamics.stiffness.crank_force`). Contacts that do not fe
 (`ltca.dynamics.disc_forces`); all others are asked as equilibria ask them.
 
 Friction works against the slip that a contact has in motion, :math:`v = s_q \dot q + s_\varphi \dot\varphi`, by
-:math:`\mu F v/\sqrt{v^2 + v_0^2}`; rolling resistance likewise with the speed of the crank, and the drag of seals and oil with that
-of the input. The slip :math:`v_0` is `FADING` of the speed of the eccentric.
+:math:`\mu F v/\sqrt{v^2 + v_0^2}`; rolling resistance likewise with the speed of the crank, and the drag of seals and oil
+with that of the input. The slip :math:`v_0` is `FADING` of the speed of the eccentric.
 
 Forces from outside act at the axis of the output, of wheel or pin shaft: with the displacement w of the wheel against the shaft
 and a force G on the wheel (`ltca.equilibrium.external_force`) their work is :math:`G \cdot (\dot w + i \omega w)` in a frame that

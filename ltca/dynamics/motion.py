@@ -6,8 +6,9 @@ from that. Where the input turns as it is told, B spans the motions that leave i
 .. math:: B^T (M\ddot x + h(x, \dot x) + \partial U/\partial x + R + C\dot x - Q) = 0
 
 with inertia forces h (`ltca.dynamics.kinetic_energy`), forces of contacts and supports, friction R
-(`ltca.dynamics.contact_forces`), and the torques and outside forces Q at both ends. Damping is that of every vibration about the state of the
-moment alike, with the ratio ζ: of modes :math:`\Phi` with frequencies ω under the stiffness K of the contacts that are closed,
+(`ltca.dynamics.contact_forces`), and torques Q at both ends with forces from outside. Parts without mass follow
+(`ltca.dynamics.massless`). Damping is that of every vibration about the state of the moment alike, with the ratio ζ: of modes
+:math:`\Phi` with frequencies ω under the stiffness K of the contacts that are closed,
 
 .. math:: C = K\Phi\,\mathrm{diag}(2\zeta/\omega^3)\,\Phi^T K ,
 
@@ -35,8 +36,8 @@ WORKS = ("input", "output", "damping", "friction")
 """Works that the state ends with."""
 SOFTEST = 1e-3
 """Frequency by the highest one below which a motion counts as free, and is not damped."""
-REST_STEPS, REST_SETTLED = 200, 1e-10
-"""Steps to a balanced state, and the last one by the largest coordinate, mm."""
+REST_STEPS, REST_SETTLED, REST_HALVINGS = 200, 1e-10, 4
+"""Steps to a balanced state, the last one by the largest coordinate, mm, and how often one is halved that leaves more."""
 
 Profile = Callable[[float], tuple[float, float, float]]
 """Angle, speed and acceleration of the input at a time."""
@@ -172,16 +173,21 @@ class Equation:
         """
         y, (angle, speed, _), whole = start.copy(), self.input_motion(time), self.whole
         history: list[float] = []
+        step, before, halved = np.zeros(y.size), np.inf, 0
         for _ in range(REST_STEPS):
             now = self.contacts.at(whole @ y + self.lead * angle, self.lead * speed)
             loaded = self.output_torque(time) * self.output_turns + now.outside
             left = whole.T @ (now.force + now.friction - loaded)
+            if (size := float(np.linalg.norm(left))) > before and halved < REST_HALVINGS:
+                step, halved = 0.5 * step, halved + 1
+                y = y + step
+                continue
             matrix = whole.T @ now.stiffness @ whole
             try:
                 step = np.linalg.solve(matrix, left)
             except np.linalg.LinAlgError as problem:
                 raise ConvergenceError("no balanced state to start from: nothing holds a part", history) from problem
-            y = y - step
+            y, before, halved = y - step, size, 0
             history.append(float(np.abs(step).max()))
             if history[-1] <= REST_SETTLED * max(1.0, float(np.abs(y).max())):
                 return y

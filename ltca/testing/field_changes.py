@@ -206,7 +206,10 @@ _VIBRATIONS = {
         for path, reason in _NAME.items()
         if path.startswith("ring.material.") and not path.endswith(".density")
     },
-    **{path: _NAME[path] for path in ("disc.axial_play", "analysis.compliance", "analysis.bodies", "disc.planes", "disc.gap")},
+    **{
+        path: _NAME[path]
+        for path in ("disc.axial_play", "analysis.compliance", "analysis.bodies", "disc.planes", "disc.gap")
+    },
     **{path: _NAME[path] for path in _NAME if path.startswith("main_bearing.")},
     **{path: reason for path, reason in _OF_LIFE.items() if path != "duty.0.speed"},
     **dict.fromkeys(
@@ -237,7 +240,9 @@ EXCEPTIONS: Mapping[str, Mapping[str, str]] = {
     | _TILTING
     | dict.fromkeys(_SHAFT_PIN, "vibrations tell no pressure of the holes, and in half-spaces nothing else sees it")
     | {"materials.wheel_seat.density": "slots are in the housing, whose size no file gives and which has no mass"},
-    "time": {path: reason for path, reason in _VIBRATIONS.items() if not path.startswith(("friction.", "load.", "duty."))}
+    "time": {
+        path: reason for path, reason in _VIBRATIONS.items() if not path.startswith(("friction.", "load.", "duty."))
+    }
     | _SPRINGS_ALONE
     | _TILTING
     | dict.fromkeys(("load.speed", "load.light_torque"), "a run in time has a speed and a load of its own")
