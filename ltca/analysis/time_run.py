@@ -215,7 +215,8 @@ class Samples:
     time : array, shape (samples,)
         s.
     place, rate : array, shape (samples, n)
-        Coordinates of `Motion` and their rates, mm and rad, mm/s and rad/s.
+        Coordinates of `Motion` and their rates, mm and rad, mm/s and rad/s; rates of parts without mass are without the turning
+        of normals where nothing rubs (`ltca.dynamics.massless`).
     input_torque, output_torque : array, shape (samples,)
         External torques, ccw positive, N·mm.
     pin_load, roller_load, hole_load : array, shape (samples, discs, parts)
@@ -484,7 +485,7 @@ def prepare_run(drive: Drive, engine: Engine, course: Course) -> PreparedRun:
         output_torque=lambda time: against * course.load_factor(time),
         input_torque=None,
         damping_ratio=0.0 if warm.damping is None else warm.damping.ratio_at_resonance,
-        massless=MasslessParts(columns, np.zeros(massless.size)) if massless.size else None,
+        massless=MasslessParts(columns, np.zeros(massless.size), model.friction is not None) if massless.size else None,
     )
     smooth = replace(model, friction=None)
     found = solve_at_output(smooth, [warm], np.zeros(1), warm.load.torque * course.load_factor(0.0), gaps=False)
@@ -500,10 +501,10 @@ def prepare_run(drive: Drive, engine: Engine, course: Course) -> PreparedRun:
         torque = _mean_input_torque(equation, motion, y, told(0.0)[1])
         free = _spans(np.zeros(motion.size), lever, massless)[0]
         equation = replace(equation, basis=free, input_torque=torque)
-        y, rate = (np.linalg.solve(equation.whole, whole @ each) for each in (y, rate))
+        y, rate = (np.asarray(np.linalg.solve(equation.whole, whole @ each)) for each in (y, rate))
     m = equation.freedoms
     if massless.size:
-        equation = replace(equation, massless=MasslessParts(columns, y[m:]))
+        equation = replace(equation, massless=MasslessParts(columns, y[m:], model.friction is not None))
     start = np.concatenate((y[:m], rate[:m], np.zeros(len(WORKS))))
     return PreparedRun(drive=warm, engine=engine, course=course, motion=motion, equation=equation, start=start)
 
@@ -511,7 +512,7 @@ def prepare_run(drive: Drive, engine: Engine, course: Course) -> PreparedRun:
 def _massless(kinetic: KineticEnergy, motion: Motion) -> NDArray[np.intp]:
     """Places of what ties or carries the shaft pins, a ring or the far flange of a carrier, where it has no mass."""
     ring = np.arange(motion.size)[motion.pose.ring_place]
-    return ring[np.diag(kinetic.mass[0])[ring] == 0.0]
+    return np.asarray(ring[np.diag(kinetic.mass[0])[ring] == 0.0])
 
 
 def _spans(row: FloatArray, lever: FloatArray, massless: NDArray[np.intp]) -> tuple[FloatArray, FloatArray]:

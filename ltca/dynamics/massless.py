@@ -1,13 +1,15 @@
 r"""Coordinates of parts that yield and have no mass: they follow all others as springs do.
 
 A file gives no mass to the ring that ties the tips of shaft pins, nor to the far flange of a carrier. Such coordinates
-:math:`x = \dots + N z` stand wherever their forces balance, :math:`N^T (\partial U/\partial x + R - Q) = 0`, and with the
-stiffness K they move with the rates of the others,
+:math:`x = \dots + N z` stand wherever their forces balance, :math:`f = N^T (\partial U/\partial x + R - Q) = 0`, and move with the
+others so that f stays zero,
 
-.. math:: \dot z = -(N^T K N)^{-1} N^T K \dot x .
+.. math:: \dot z = -(N^T K N)^{-1} \dot f|_z .
 
 What is stored is then the least energy over z, whose slopes by the other coordinates are the forces at that place: the
-balance of energy needs nothing besides. Modes do likewise with parts without mass (`ltca.dynamics.modes`).
+balance of energy needs nothing besides, but where they rub the work of friction on :math:`\dot z`. There the change of f is
+differenced along the motion, since it has the turning of the normals in it; elsewhere nothing feels the rates, and
+:math:`N^T K \dot x` of the stiffness K serves. Modes do likewise with parts without mass (`ltca.dynamics.modes`).
 """
 
 from __future__ import annotations
@@ -23,6 +25,8 @@ from ltca.errors import ConvergenceError
 
 SETTLED = 1e-8
 """Last step, mm, to first order of which forces are corrected: 1e-5 of approaches, whose square is left."""
+ONWARD = 1e-7
+"""Motion by which the change of forces is differenced, mm or rad: 1e-4 of approaches, and 1e4 times the round-off of forces."""
 STEPS, HALVINGS = 60, 12
 """Steps tried, and how often one is halved that leaves more than there was."""
 
@@ -39,10 +43,12 @@ class MasslessParts:
         N, mm and rad by mm.
     place : array, shape (k,)
         Where they begin, mm.
+    rubs : bool
+        Whether friction acts on them.
     """
 
-    def __init__(self, columns: FloatArray, place: FloatArray) -> None:
-        self.columns = columns
+    def __init__(self, columns: FloatArray, place: FloatArray, rubs: bool) -> None:
+        self.columns, self.rubs = columns, rubs
         self._place, self._slope = place.copy(), np.zeros((columns.shape[1], columns.shape[0]))
         self._others: FloatArray | None = None
 
@@ -65,24 +71,37 @@ class MasslessParts:
         """
         columns = self.columns
         place = self._place if self._others is None else self._place + self._slope @ (others - self._others)
-        step, before, history = np.zeros(place.size), np.inf, [0.0]
-        halved = 0
+        fastest = float(np.abs(rate).max())
+        onward = ONWARD / fastest if self.rubs and fastest > 0.0 else 0.0
+        moving = rate + columns @ (self._slope @ rate)
+
+        def left_over(now: Instant, outer: FloatArray) -> FloatArray:
+            return np.asarray(columns.T @ (now.force + now.friction - outer))
+
+        ahead = left_over(*respond(others + rate * onward + columns @ place, moving)) if onward else None
+        step: FloatArray = np.zeros(place.size)
+        before, halved, following = np.inf, 0, self._slope @ rate
+        history: list[float] = []
         for _ in range(STEPS):
-            moving = rate + columns @ (self._slope @ rate)
             now, outer = respond(others + columns @ place, moving)
-            left = columns.T @ (now.force + now.friction - outer)
-            if (size := float(np.linalg.norm(left))) > before and halved < HALVINGS and history[-1] > SETTLED:
+            left = left_over(now, outer)
+            if (size := float(np.linalg.norm(left))) > before and halved < HALVINGS:
                 step, halved = 0.5 * step, halved + 1
                 place = place + step
                 continue
             pressed = columns.T @ now.stiffness
-            solved = np.linalg.solve(pressed @ columns, np.column_stack((pressed, left)))
-            self._slope, step, before, halved = -solved[:, :-1], solved[:, -1], size, 0
-            place = place - step
+            changes = (pressed, left[:, None]) if ahead is None else (pressed, left[:, None], ahead[:, None])
+            solved = np.asarray(np.linalg.solve(pressed @ columns, np.hstack(changes)), dtype=float)
+            count = columns.shape[0]
+            self._slope, step, before, halved = -solved[:, :count], solved[:, count], size, 0
+            if ahead is not None:
+                following, ahead = (step - solved[:, count + 1]) / onward, None
+            elif not onward:
+                following = self._slope @ rate
+            moving, place = rate + columns @ following, place - step
             history.append(float(np.abs(step).max()))
             if history[-1] <= SETTLED:
                 self._place, self._others = place, others
-                moved = columns @ step
-                now = replace(now, force=now.force - now.stiffness @ moved)
-                return others + columns @ place, rate + columns @ (self._slope @ rate), now, self._slope
+                now = replace(now, force=now.force - now.stiffness @ (columns @ step))
+                return others + columns @ place, moving, now, self._slope
         raise ConvergenceError("parts without mass find no balance in motion; last steps in mm", history)

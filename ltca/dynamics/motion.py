@@ -173,7 +173,8 @@ class Equation:
         """
         y, (angle, speed, _), whole = start.copy(), self.input_motion(time), self.whole
         history: list[float] = []
-        step, before, halved = np.zeros(y.size), np.inf, 0
+        step: FloatArray = np.zeros(y.size)
+        before, halved = np.inf, 0
         for _ in range(REST_STEPS):
             now = self.contacts.at(whole @ y + self.lead * angle, self.lead * speed)
             loaded = self.output_torque(time) * self.output_turns + now.outside
@@ -184,7 +185,7 @@ class Equation:
                 continue
             matrix = whole.T @ now.stiffness @ whole
             try:
-                step = np.linalg.solve(matrix, left)
+                step = np.asarray(np.linalg.solve(matrix, left), dtype=float)
             except np.linalg.LinAlgError as problem:
                 raise ConvergenceError("no balanced state to start from: nothing holds a part", history) from problem
             y, before, halved = y - step, size, 0

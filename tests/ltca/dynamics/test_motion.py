@@ -268,11 +268,14 @@ LONG = ((), (pytest.mark.slow, pytest.mark.nightly), pytest.mark.slow)
     [pytest.param(*one, marks=LONG[min(number, len(LONG) - 1)]) for number, one in enumerate(COURSES)],
 )
 def test_energy_closes(name, course):
-    """Input and work of curvature less output, losses and change of what is stored: 1e-5 of the throughput was asked for."""
+    """Input and work of curvature less output, losses and change of what is stored: 1e-5 of the throughput was asked for.
+
+    Where parts without mass rub, 1e-6, which is below the work of friction on them.
+    """
     samples = 51 if name in DEAR else 201 if name == "paper, damped" else 601
     found = run_in_time(prepared(name, course), samples=samples)
     energy = found.energy
-    assert abs(energy.relative) < 1e-5
+    assert abs(energy.relative) < (1e-6 if name == "paper, tied, rubs" else 1e-5)
     assert energy.damping >= 0.0
     assert energy.friction >= 0.0
     if name == "paper, rubs":
