@@ -1,8 +1,8 @@
 r"""Coordinates of parts that yield and have no mass: they follow all others as springs do.
 
 A file gives no mass to the ring that ties the tips of shaft pins, nor to the far flange of a carrier. Such coordinates
-:math:`x = \dots + N z` stand wherever their forces balance, :math:`f = N^T (\partial U/\partial x + R - Q) = 0`, and move with the
-others so that f stays zero,
+:math:`x = \dots + N z` stand wherever their forces balance, :math:`f = N^T (\partial U/\partial x + R - Q) = 0`, and move with
+the others so that f stays zero,
 
 .. math:: \dot z = -(N^T K N)^{-1} \dot f|_z .
 
