@@ -1,8 +1,8 @@
 """The registry of quantities: what results hold, each declared once.
 
-A quantity is an array of a dataset (``results.nc``, ``pressure.nc``, ``fem.nc``), or a number of a case, or both: an array and
-the scalars that sum it up over positions and parts. Datasets, ``summary.json``, ``[limits]``, verdicts, studies, tables and
-reference pages take names, units, dimensions and words from here; where a value is computed only its name is written.
+A quantity is an array of a dataset (``results.nc``, ``pressure.nc``, ``fem.nc``, ``time.nc``), or a number of a case, or both: an
+array and the scalars that sum it up over positions and parts. Datasets, ``summary.json``, ``[limits]``, verdicts, studies,
+tables and reference pages take names, units, dimensions and words from here; where a value is computed only its name is written.
 """
 
 from __future__ import annotations
@@ -45,6 +45,13 @@ DIMENSIONS = {
     "lobe number": ("lobe",),
     "wall node": ("wall_node",),
     "sample": ("sample",),
+    "drive in time": ("time",),
+    "disc in time": ("time", "disc"),
+    "axes of a disc in time": ("time", "disc", "axis"),
+    "crank in time": ("time", "disc", "crank"),
+    "pin in time": ("time", "disc", "pin"),
+    "roller in time": ("time", "disc", "crank", "roller"),
+    "hole in time": ("time", "disc", "hole"),
 }
 """Dimensions by what a quantity belongs to."""
 
@@ -793,6 +800,40 @@ _DECLARED = (
 
 QUANTITIES = {quantity.name: quantity for quantity in _DECLARED}
 """Every quantity by name, arrays in the order of the datasets."""
+_IN_TIME = (
+    Quantity("time", "drive in time", "s", "time"),
+    Quantity("crank_angle", "drive in time", "rad", "crank angle against the pin shaft"),
+    Quantity("wheel_angle", "drive in time", "rad", "deviation of the wheel from φ_C/u"),
+    Quantity("transmission_error", "drive in time", "rad", "transmission error at the output"),
+    Quantity("input_speed", "drive in time", "rpm", "speed of the input, ccw positive"),
+    Quantity("input_torque", "drive in time", "N mm", "external torque at the input, ccw positive"),
+    Quantity("output_torque", "drive in time", "N mm", "external torque at the output, ccw positive"),
+    Quantity("disc_displacement_x", "disc in time", "mm", "displacement of the disc along x"),
+    Quantity("disc_displacement_y", "disc in time", "mm", "displacement of the disc along y"),
+    Quantity("disc_rotation", "disc in time", "rad", "rotation of the disc"),
+    Quantity(
+        "disc_tilt",
+        "axes of a disc in time",
+        "rad",
+        "small rotation of the disc about x and y of the frame of the pin shaft, of contacts in slices",
+    ),
+    Quantity("pin_load", "pin in time", "N", "load of each wheel pin"),
+    Quantity("roller_load", "roller in time", "N", "load of each roller in the bore"),
+    Quantity("pin_shaft_load", "hole in time", "N", "load of each pin of the pin shaft"),
+    Quantity("bearing_load", "crank in time", "N", "force of each crank bearing"),
+    Quantity("kinetic_energy", "drive in time", "N mm", "kinetic energy"),
+    Quantity("stored_energy", "drive in time", "N mm", "energy stored in contacts and supports"),
+    Quantity("curvature_work", "drive in time", "N mm", "work of changing radii of curvature"),
+    Quantity("station_work", "drive in time", "N mm", "work of contacts that move over the bodies"),
+    Quantity("input_work", "drive in time", "N mm", "work done at the input"),
+    Quantity(
+        "output_work", "drive in time", "N mm", "work done by the output on its load, forces from outside among it"
+    ),
+    Quantity("damping_work", "drive in time", "N mm", "work lost in damping"),
+    Quantity("friction_work", "drive in time", "N mm", "work lost in friction, seals and oil among it"),
+)
+IN_TIME = {quantity.name: quantity for quantity in _IN_TIME}
+"""Arrays of a run in time by name, whose dimensions are others than those of the same names along positions."""
 NEED_SLICES = frozenset(quantity.name for quantity in _ALONG_WIDTH)
 """Quantities that only contacts in slices have."""
 SCALARS = {

@@ -18,12 +18,15 @@ from fem.drive.disc_stress import STRESSES, recover_disc_stress, stress_variable
 from fem.options import SolutionOptions
 from fem.reducer.solution import solve_reducer
 from fem.reducer.solution_files import ARRAYS, build_dataset as build_fem_dataset, summarise as summarise_fem
+from ltca.analysis.engines import HalfSpace
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.pressure_fields import build_pressure_dataset
 from ltca.analysis.results import build_dataset
 from ltca.analysis.summary import summarise
+from ltca.analysis.time_dataset import time_dataset
+from ltca.analysis.time_run import Course, prepare_run, run_in_time
 from ltca.analysis.verdict.values import find_values
-from ltca.quantities import LIMITED, QUANTITIES, REFINED, SCALARS, SCHEMA_VERSION, Quantity, scalar_named
+from ltca.quantities import IN_TIME, LIMITED, QUANTITIES, REFINED, SCALARS, SCHEMA_VERSION, Quantity, scalar_named
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import parse_drive, shipped_drive
 from ltca.studies.quantities import STAGES
@@ -59,6 +62,7 @@ def schema():
     """What is seen outside: arrays with unit and dimensions, keys of summaries, limits and scalars of studies with units."""
     return {
         "arrays": {name: [one.unit, *one.dimensions] for name, one in QUANTITIES.items() if one.of},
+        "arrays_in_time": {name: [one.unit, *one.dimensions] for name, one in IN_TIME.items()},
         "summary": [scalar.key for scalar in SCALARS.values() if scalar.in_summary],
         "refined": [scalar.key for scalar in REFINED.values()],
         "fem_summary": [key for name in (*ARRAYS, *STRESSES) for key in _fem_keys(QUANTITIES[name])],
@@ -137,6 +141,21 @@ def test_runs_write_what_is_declared_and_nothing_else(drives):
     told = set(summarise_fem(solution) | summarise_stress(stresses)) - INFORMATION
     arrays_of_fem = {QUANTITIES[name].fem_key for name in arrays}
     assert set(kept["fem_summary"]) <= told <= {*kept["fem_summary"], *arrays_of_fem}
+
+
+@pytest.mark.slow
+def test_a_run_in_time_writes_what_is_declared_and_nothing_else():
+    """Of two discs on three cranks, so that no two dimensions are alike."""
+    drive = next(iter(parse_drive(shipped_drive("rv"), "rv").cases.values()))
+    found = time_dataset(
+        run_in_time(prepare_run(drive, HalfSpace(), Course.of_values("steady", 1e-5, 1500.0)), samples=2)
+    )
+    kept = json.loads(SCHEMA.read_text(encoding="utf-8"))["arrays_in_time"]
+    assert found.attrs["schema_version"] == SCHEMA_VERSION
+    assert {str(name) for name in found.variables} == set(kept)
+    for name, expected in kept.items():
+        assert [found[name].attrs["units"], *found[name].dims] == expected, name
+        assert found[name].attrs["long_name"] == IN_TIME[name].description
 
 
 def check_arrays(dataset, kept):

@@ -10,8 +10,9 @@ from ltca.analysis.engines import describe_engine
 from ltca.analysis.time_run import EnergyBalance, TimeRun
 from ltca.analysis.width import AXES
 from ltca.arrays import FloatArray
+from ltca.dynamics.motion import WORKS
 from ltca.output.labelled import LabelledDataset
-from ltca.quantities import SCHEMA_VERSION
+from ltca.quantities import IN_TIME, SCHEMA_VERSION
 
 KINDS = {"pin": "pin_load", "roller": "roller_load", "hole": "hole_load", "crank bearing": "bearing_load"}
 """Loads of `ltca.analysis.time_run.Samples` by what carries them."""
@@ -29,59 +30,35 @@ def time_dataset(run: TimeRun) -> LabelledDataset:
     taken, motion = run.samples, run.motion
     discs, rollers = taken.pin_load.shape[1], taken.roller_load.shape[2]
     cranks = taken.bearing_load.shape[2]
-    wide = ("time", "disc")
-
-    def told(unit: str, words: str) -> dict[str, str]:
-        return {"units": unit, "long_name": words}
-
     places = np.array([motion.pose.columns(disc)[:3] for disc in range(discs)])
     centre = taken.place[:, places]
     data = {
-        "crank_angle": ("time", taken.place[:, motion.crank], told("rad", "crank angle against the pin shaft")),
-        "wheel_angle": ("time", taken.place[:, motion.wheel_angle], told("rad", "deviation of the wheel from φ_C/u")),
-        "transmission_error": ("time", run.transmission_error, told("rad", "transmission error at the output")),
-        "input_speed": ("time", run.input_speed, told("rpm", "speed of the input, ccw positive")),
-        "input_torque": ("time", taken.input_torque, told("N mm", "external torque at the input, ccw positive")),
-        "output_torque": ("time", taken.output_torque, told("N mm", "external torque at the output, ccw positive")),
-        "disc_displacement_x": (wide, centre[:, :, 0], told("mm", "displacement of the disc along x")),
-        "disc_displacement_y": (wide, centre[:, :, 1], told("mm", "displacement of the disc along y")),
-        "disc_rotation": (wide, centre[:, :, 2], told("rad", "rotation of the disc")),
-        "pin_load": ((*wide, "pin"), taken.pin_load, told("N", "load of each wheel pin")),
-        "roller_load": (
-            (*wide, "crank", "roller"),
-            taken.roller_load.reshape(-1, discs, cranks, rollers // cranks),
-            told("N", "load of each roller in the bore"),
-        ),
-        "pin_shaft_load": ((*wide, "hole"), taken.hole_load, told("N", "load of each pin of the pin shaft")),
-        "bearing_load": ((*wide, "crank"), taken.bearing_load, told("N", "force of each crank bearing")),
-        "kinetic_energy": ("time", taken.kinetic, told("N mm", "kinetic energy")),
-        "stored_energy": ("time", taken.stored, told("N mm", "energy stored in contacts and supports")),
-        "curvature_work": ("time", taken.curvature, told("N mm", "work of changing radii of curvature")),
-        "station_work": ("time", taken.stations, told("N mm", "work of contacts that move over the bodies")),
-        **{
-            f"{name}_work": ("time", taken.works[:, place], told("N mm", words))
-            for place, (name, words) in enumerate(
-                (
-                    ("input", "work done at the input"),
-                    ("output", "work done by the output on its load"),
-                    ("damping", "work lost in damping"),
-                    ("friction", "work lost in friction"),
-                )
-            )
-        },
+        "crank_angle": taken.place[:, motion.crank],
+        "wheel_angle": taken.place[:, motion.wheel_angle],
+        "transmission_error": run.transmission_error,
+        "input_speed": run.input_speed,
+        "input_torque": taken.input_torque,
+        "output_torque": taken.output_torque,
+        "disc_displacement_x": centre[:, :, 0],
+        "disc_displacement_y": centre[:, :, 1],
+        "disc_rotation": centre[:, :, 2],
+        "pin_load": taken.pin_load,
+        "roller_load": taken.roller_load.reshape(-1, discs, cranks, rollers // cranks),
+        "pin_shaft_load": taken.hole_load,
+        "bearing_load": taken.bearing_load,
+        "kinetic_energy": taken.kinetic,
+        "stored_energy": taken.stored,
+        "curvature_work": taken.curvature,
+        "station_work": taken.stations,
+        **{f"{name}_work": taken.works[:, place] for place, name in enumerate(WORKS)},
     }
-    coords: dict[str, Any] = {"time": (("time",), taken.time, told("s", "time"))}
+    coords: dict[str, Any] = {"time": IN_TIME["time"].labelled(taken.time)}
     if motion.pose.leans:
         leans = taken.place[:, [motion.pose.columns(disc)[motion.pose.lean_place] for disc in range(discs)]]
         # A tilt is a rotation vector, a lean what x and y change by along z.
-        tilt = np.stack((-leans[:, :, 1], leans[:, :, 0]), axis=-1)
-        words = "small rotation of the disc about x and y of the frame of the pin shaft"
-        data["disc_tilt"] = ((*wide, "axis"), tilt, told("rad", words))
-        coords["axis"] = (("axis",), np.array(AXES))
-    each: dict[str, tuple[Any, ...]] = {
-        name: ((dims,) if isinstance(dims, str) else dims, values, attributes)
-        for name, (dims, values, attributes) in data.items()
-    }
+        data["disc_tilt"] = np.stack((-leans[:, :, 1], leans[:, :, 0]), axis=-1)
+        coords["axis"] = list(AXES)
+    each = {name: IN_TIME[name].labelled(values) for name, values in data.items()}
     attributes = {"schema_version": SCHEMA_VERSION, "engine": describe_engine(run.engine), **run.course.values}
     return LabelledDataset.build(each, coords, attributes)
 

@@ -17,6 +17,7 @@ from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.integrate import DOP853
 
 from ltca.analysis.engines import Engine
@@ -28,6 +29,7 @@ from ltca.dynamics.contact_forces import ContactForces
 from ltca.dynamics.kinetic_energy import KineticEnergy
 from ltca.dynamics.kinetics import Motion, require_masses
 from ltca.dynamics.masses import drive_masses
+from ltca.dynamics.massless import MasslessParts
 from ltca.dynamics.modes import free_coordinates
 from ltca.dynamics.motion import WORKS, Equation, Profile
 from ltca.dynamics.stiffness import levers
@@ -213,7 +215,8 @@ class Samples:
     time : array, shape (samples,)
         s.
     place, rate : array, shape (samples, n)
-        Coordinates of `Motion` and their rates, mm and rad, mm/s and rad/s.
+        Coordinates of `Motion` and their rates, mm and rad, mm/s and rad/s; rates of parts without mass are without the turning
+        of normals where nothing rubs (`ltca.dynamics.massless`).
     input_torque, output_torque : array, shape (samples,)
         External torques, ccw positive, N·mm.
     pin_load, roller_load, hole_load : array, shape (samples, discs, parts)
@@ -445,8 +448,8 @@ def prepare_run(drive: Drive, engine: Engine, course: Course) -> PreparedRun:
     Raises
     ------
     DriveError
-        For what a run in time leaves out, by name: contacts in slices, teeth or outside forces that press on parts that yield,
-        drag of seals and oil, parts without mass, an input of no inertia that a torque drives, a torque of zero.
+        For what a run in time leaves out, by name: teeth that press on parts that yield, a twist of the
+        carrier without mass, an input of no inertia that a torque drives, a torque of zero.
     ConvergenceError
         Where no balanced state is found to start from.
     """
@@ -460,11 +463,12 @@ def prepare_run(drive: Drive, engine: Engine, course: Course) -> PreparedRun:
     turns = motion.input_turns
     lead = motion.rigid / float(turns @ motion.rigid)
     lever = levers(replace(model, friction=None), motion, np.atleast_2d(lever_arms(replace(model, friction=None)))[0])
-    held = _free_motions(motion, turns, lever)
     against = (1.0 if warm.wheel_is_held else -1.0) * warm.driving_sign * warm.load.torque
     told = course.input_motion(sense)
     crank_speed = course.speed * 2.0 * np.pi / 60.0 * abs(warm.crank_turns_per_input)
     kinetic = KineticEnergy.of_drive(motion, masses)
+    massless = _massless(kinetic, motion)
+    held, columns = _spans(turns, lever, massless)
     _require_mass(kinetic, motion, held, lever)
     equation = Equation(
         kinetic=kinetic,
@@ -477,32 +481,45 @@ def prepare_run(drive: Drive, engine: Engine, course: Course) -> PreparedRun:
         output_torque=lambda time: against * course.load_factor(time),
         input_torque=None,
         damping_ratio=0.0 if warm.damping is None else warm.damping.ratio_at_resonance,
+        massless=MasslessParts(columns, np.zeros(massless.size), model.friction is not None) if massless.size else None,
     )
     smooth = replace(model, friction=None)
     found = solve_at_output(smooth, [warm], np.zeros(1), warm.load.torque * course.load_factor(0.0), gaps=False)
     first = np.zeros(motion.size)
     first[: motion.pose.size] = found.pose[0]
     first -= lead * float(turns @ first)
-    y = equation.at_rest(0.0, np.asarray(np.linalg.lstsq(held, first, rcond=None)[0], dtype=float))
+    whole = equation.whole
+    y = equation.at_rest(0.0, np.asarray(np.linalg.lstsq(whole, first, rcond=None)[0], dtype=float))
     slow = QUASI_STATIC_STEP / abs(float(lead[motion.crank]))
     ends = [replace(equation, input_motion=_passing(side * slow, told(0.0)[1])).at_rest(0.0, y) for side in (-1.0, 1.0)]
     rate = (ends[1] - ends[0]) / (2.0 * slow) * told(0.0)[1]
     if course.driven_by == "torque":
-        torque = _mean_input_torque(equation, y, 2.0 * np.pi / abs(float(lead[motion.crank])), told(0.0)[1])
-        heavy = np.delete(np.arange(motion.size), motion.following)
-        y, rate = (lever[heavy] * (held @ each)[heavy] for each in (y, rate))
-        equation = replace(equation, basis=np.diag(1.0 / lever)[:, heavy], input_torque=torque)
-    start = np.concatenate((y, rate, np.zeros(len(WORKS))))
+        torque = _mean_input_torque(equation, motion, y, told(0.0)[1])
+        free = _spans(np.zeros(motion.size), lever, massless)[0]
+        equation = replace(equation, basis=free, input_torque=torque)
+        y, rate = (np.asarray(np.linalg.solve(equation.whole, whole @ each)) for each in (y, rate))
+    m = equation.freedoms
+    if massless.size:
+        equation = replace(equation, massless=MasslessParts(columns, y[m:], model.friction is not None))
+    start = np.concatenate((y[:m], rate[:m], np.zeros(len(WORKS))))
     return PreparedRun(drive=warm, engine=engine, course=course, motion=motion, equation=equation, start=start)
 
 
-def _free_motions(motion: Motion, turns: FloatArray, lever: FloatArray) -> FloatArray:
-    """Motions that leave the input still, of coordinates with mass, shape (n, m)."""
-    heavy = np.delete(np.arange(motion.size), motion.following)
-    free = free_coordinates(turns[heavy], lever[heavy])
-    found = np.zeros((motion.size, free.shape[1]))
-    found[heavy] = free
-    return found
+def _massless(kinetic: KineticEnergy, motion: Motion) -> NDArray[np.intp]:
+    """Places of what ties or carries the shaft pins, a ring or the far flange of a carrier, where it has no mass, and of leans
+    of cranks and of the wheel.
+    """
+    ring = np.arange(motion.size)[motion.pose.ring_place]
+    return np.concatenate((motion.light_leans, ring[np.diag(kinetic.mass[0])[ring] == 0.0])).astype(np.intp)
+
+
+def _spans(row: FloatArray, lever: FloatArray, massless: NDArray[np.intp]) -> tuple[FloatArray, FloatArray]:
+    """Columns that span the motions under which a row is zero: of what has mass, and of what has none."""
+    kept = np.delete(np.arange(lever.size), massless)
+    part = free_coordinates(row[kept], lever[kept])
+    found = np.zeros((lever.size, part.shape[1]))
+    found[kept] = part
+    return found, np.asarray(np.diag(1.0 / lever)[:, massless])
 
 
 def _passing(angle: float, speed: float) -> Profile:
@@ -510,17 +527,19 @@ def _passing(angle: float, speed: float) -> Profile:
     return lambda _: (angle, speed, 0.0)
 
 
-def _mean_input_torque(equation: Equation, y: FloatArray, turn: float, speed: float) -> float:
+def _mean_input_torque(equation: Equation, motion: Motion, y: FloatArray, speed: float) -> float:
     """Torque that balances the load with friction in the mean of a turn of the crank, ccw positive, N·mm.
 
-    `turn` is that of the input, rad; positions follow one another from the state `y` at its begin.
+    Positions follow one another from the state `y` at the begin of the turn; displacements go round with the crank.
     """
     if not equation.contacts.rubs:
         return -float(equation.output_torque(0.0) * (equation.output_turns @ equation.lead))  # by the ratio
-    torques = []
+    torques, by_crank = [], float(equation.lead[motion.crank])
+    step = np.sign(speed * by_crank) * 2.0 * np.pi / BALANCED_PER_TURN
+    onward = np.linalg.pinv(equation.whole) @ motion.turned(np.array([step]))[0] @ equation.whole
     for part in range(BALANCED_PER_TURN):
-        there = replace(equation, input_motion=_passing(part * turn / BALANCED_PER_TURN * np.sign(speed), speed))
-        y = there.at_rest(0.0, y)
+        there = replace(equation, input_motion=_passing(part * step / by_crank, speed))
+        y = there.at_rest(0.0, onward @ y if part else y)
         torques.append(there.input_torque_at_rest(0.0, y))
     return float(np.mean(torques))
 
@@ -536,10 +555,6 @@ def _require_supported(drive: Drive, model: Reducer, course: Course) -> None:
         problems.append(
             "first_stage: its teeth press on cranks or main bearing that yield, which a run in time leaves out"
         )
-    if model.external is not None:
-        problems.append("external_force: a run in time leaves out forces from outside on the output")
-    if drive.friction is not None and drive.friction.no_load_torque:
-        problems.append("friction.no_load_torque: a run in time leaves out the drag of seals and oil; must be 0")
     if course.driven_by == "torque" and (drive.inertia is None or drive.inertia.input is None):
         problems.append("inertia.input: must be given for an input that a torque drives, kg·m²")
     if problems:
@@ -547,7 +562,7 @@ def _require_supported(drive: Drive, model: Reducer, course: Course) -> None:
 
 
 def _require_mass(kinetic: KineticEnergy, motion: Motion, basis: FloatArray, lever: FloatArray) -> None:
-    """Refuse coordinates that have no mass."""
+    """Refuse coordinates that have no mass and do not follow as springs."""
     matrix = kinetic.at(np.zeros(motion.size), np.zeros(motion.size))[0]
     size = np.sqrt(np.maximum(np.diag(matrix), 0.0)) * (1.0 / lever)
     least = np.linalg.eigvalsh(basis.T @ matrix @ basis)
@@ -558,21 +573,9 @@ def _require_mass(kinetic: KineticEnergy, motion: Motion, basis: FloatArray, lev
         motion.sun: "inertia.input: sun of the first stage",
         motion.twist: "inertia.output: twist of the carrier",
     }
-    beam = None if motion.drive.pin_shaft is None else motion.drive.pin_shaft.beam
-    tip = "" if beam is None else f" = {beam.tip!r}"
-    flange = (
-        "carrier.posts: far flange of the carrier"
-        if motion.drive.posts
-        else f"pin_shaft.beam.tip{tip}: ring of the pin shaft"
-    )
-    ways = {} if motion.drive.posts else {flange: "; must be 'free' there"}
-    ring = range(*motion.pose.ring_place.indices(motion.pose.size))
-    words = [named.get(place, flange if place in ring else f"coordinate {place}") for place in light]
+    words = [named.get(place, f"coordinate {place}") for place in light]
     raise DriveError(
-        [
-            f"{word} yields, but has no mass, which a run in time needs{ways.get(word, '')}"
-            for word in dict.fromkeys(words)
-        ]
+        [f"{word} yields, but has no mass, which a run in time needs" for word in dict.fromkeys(words)]
         or ["masses: some motion that yields has none, which a run in time needs"]
     )
 
@@ -606,7 +609,7 @@ class Recorder:
             curvature, stations = (
                 float(self.arrays[name][row - 1]) if row else 0.0 for name in ("curvature", "stations")
             )
-            stored, discs_store = contacts.stored(now.place)
+            stored, discs_store = contacts.stored(x)
             for before, there in zip(self._before, discs_store, strict=row > 0):
                 by_radius, by_place = before.work_to(there)
                 curvature, stations = curvature + float(by_radius[0]), stations + float(by_place[0])
@@ -614,7 +617,7 @@ class Recorder:
         discs = now.discs
         taken: dict[str, Any] = {
             "time": time,
-            "place": now.place,
+            "place": x,
             "rate": rate,
             "input_torque": torque,
             "output_torque": equation.output_torque(time),
@@ -652,8 +655,9 @@ class Recorder:
             self.arrays[name][: self.rows] = values
         contacts, last = self._run.equation.contacts, found.rows - 1
         if contacts.has_energy:
-            now = contacts.at(self.arrays["place"][last], self.arrays["rate"][last])
-            self._before = contacts.stored(now.place)[1]
+            x = self.arrays["place"][last]
+            contacts.at(x, self.arrays["rate"][last])
+            self._before = contacts.stored(x)[1]
 
     def samples(self) -> Samples:
         """Return what was taken."""

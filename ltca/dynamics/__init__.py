@@ -11,6 +11,7 @@ harmonic_balance  Motion on a stiffness that pulses over the turn: Hill's equati
 kinetic_energy    Kinetic energy over the crank angle, and the inertia forces of a motion
 disc_forces       Contacts of one disc at one instant, without a batch axis
 contact_forces    Forces of contacts, supports and friction of a drive at one instant
+massless          Parts that yield and have no mass, which follow all others
 motion            Equation of motion
 mass_values       Masses, unbalance and inertias as results hold and print them
 ================  =======================================================================================

@@ -5,8 +5,12 @@ the force on it (`ltca.dynamics.stiffness.crank_force`). Contacts that do not fe
 (`ltca.dynamics.disc_forces`); all others are asked as equilibria ask them.
 
 Friction works against the slip that a contact has in motion, :math:`v = s_q \dot q + s_\varphi \dot\varphi`, by
-:math:`\mu F v/\sqrt{v^2 + v_0^2}`; rolling resistance likewise with the speed of the crank. The slip :math:`v_0` is `FADING` of
-the speed of the eccentric.
+:math:`\mu F v/\sqrt{v^2 + v_0^2}`; rolling resistance likewise with the speed of the crank, and the drag of seals and oil
+with that of the input. The slip :math:`v_0` is `FADING` of the speed of the eccentric.
+
+Forces from outside act at the axis of the output, of wheel or pin shaft: with the displacement w of the wheel against the shaft
+and a force G on the wheel (`ltca.equilibrium.external_force`) their work is :math:`G \cdot (\dot w + i \omega w)` in a frame that
+turns by ω.
 """
 
 from __future__ import annotations
@@ -15,7 +19,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ltca.arrays import FloatArray
 from ltca.compliance.coupled import CoupledCompliance
@@ -28,17 +31,12 @@ from ltca.dynamics.stiffness import crank_force
 from ltca.equilibrium.friction.slip import Slip
 from ltca.equilibrium.friction.turning import TurningFriction
 from ltca.equilibrium.reducer import Reducer
-from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION, WHEEL_ANGLE, X, Y
 from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.rotation import unit
 
 FADING = 1e-2
 """Slip by the speed of the eccentric at which friction has 0.7 of its size."""
-
-FOLLOWED, FOLLOWING_STEPS = 1e-8, 40
-"""Last step to where leans without mass balance, mm at half the thickness: forces are right but for its square, some 1e-10 of
-them; and steps that are tried."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,36 +49,19 @@ class Instant:
         ∂U/∂x of contacts and supports, N and N·mm.
     friction : array, shape (n,)
         Force that has to overcome friction.
+    outside : array, shape (n,)
+        Force from outside on the output.
     stiffness : array, shape (n, n)
         Σ k g gᵀ of contacts and springs: symmetric, without what forces add as they turn.
-    place : array, shape (n,)
-        x with what follows without mass where it is. Forces and stiffness have no part along that, which is balanced.
     discs : tuple of DiscForces
         Contacts of each disc.
     """
 
     force: FloatArray
     friction: FloatArray
+    outside: FloatArray
     stiffness: FloatArray
-    place: FloatArray
     discs: tuple[DiscForces, ...]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Follower:
-    """Where coordinates without mass stood, and how they follow the others.
-
-    Attributes
-    ----------
-    place, others : array
-        x of both, shapes (f,) and (n,).
-    by_others : array, shape (f, n)
-        Zero of themselves.
-    """
-
-    place: FloatArray
-    others: FloatArray
-    by_others: FloatArray
 
 
 class ContactForces:
@@ -100,15 +81,16 @@ class ContactForces:
         friction = model.friction
         self._friction = replace(friction, motion=1) if isinstance(friction, TurningFriction) else None
         self._model = replace(model, stage=None, friction=None, external=None)
+        self._external = model.external
         self._motion, self._speed = motion, abs(crank_speed)
+        rubs = motion.drive.friction
+        self._drag = 0.0 if rubs is None else rubs.no_load_torque
         self._springs = _springs(motion)
         coordinates = self._model.coordinates
         self._columns = [coordinates.columns(disc) for disc in range(len(model.discs))]
         self._places = [np.append(own, motion.crank) for own in self._columns]
         self._start: Start | None = None
         self._latest: tuple[FloatArray, FloatArray, Response] | None = None
-        self._following = motion.following
-        self._followed: _Follower | None = None
         discs = [disc for disc in model.discs if isinstance(disc, HalfSpaceCompliance)]
         plain = model.pins is None and len(discs) == len(model.discs) and not model.coordinates.leans
         self._telling = [disc for disc in model.discs if isinstance(disc, HalfSpaceCompliance | CoupledCompliance)]
@@ -125,40 +107,7 @@ class ContactForces:
         return len(self._telling) == len(self._model.discs)
 
     def at(self, x: FloatArray, rate: FloatArray) -> Instant:
-        """Return the forces at coordinates and their rates, each of shape (n,); those without mass take the place of balance.
-
-        Raises
-        ------
-        ConvergenceError
-            Where they find none.
-        """
-        if not self._following.size:
-            return self._at(x, rate)
-        own, before = self._following, self._followed
-        x, rate, length = x.copy(), rate.copy(), float(np.max(self._model.discs[0].geometry.half_width))
-        by_others = np.zeros((own.size, x.size)) if before is None else before.by_others
-        x[own] = 0.0 if before is None else before.place + before.by_others @ (x - before.others)
-        history: list[float] = []
-        for _ in range(FOLLOWING_STEPS):
-            rate[own] = 0.0
-            rate[own] = by_others @ rate
-            now = self._at(x, rate)
-            soft = np.linalg.inv(now.stiffness[np.ix_(own, own)])
-            by_others = -soft @ now.stiffness[own]
-            by_others[:, own] = 0.0
-            step = -soft @ (now.force[own] + now.friction[own])
-            history.append(length * float(np.abs(step).max()))
-            if history[-1] <= FOLLOWED:
-                others = x.copy()
-                others[own] = 0.0
-                self._followed = _Follower(place=x[own] + step, others=others, by_others=by_others)
-                return _condensed(now, own, by_others)
-            x = x.copy()  # forces remember where they were asked for
-            x[own] += step
-        raise ConvergenceError("leans of cranks or of the wheel do not balance; last steps in mm", history)
-
-    def _at(self, x: FloatArray, rate: FloatArray) -> Instant:
-        """Forces with every coordinate at its place."""
+        """Return the forces at coordinates and their rates, each of shape (n,)."""
         motion, size = self._motion, self._motion.size
         pose, angle = x[: motion.pose.size], float(x[motion.crank])
         stiffness = self._springs.copy()
@@ -175,8 +124,9 @@ class ContactForces:
                 stiffness[: pose.size, : pose.size] += stiff.reshape(pose.size, pose.size)
         else:
             discs = self._asked(angle, pose, force, stiffness)
-        friction = np.zeros(size) if self._friction is None else self._rubbed(self._friction, discs, rate)
-        return Instant(force=force, friction=friction, stiffness=stiffness, place=x, discs=discs)
+        outside, on_wheel = self._outside(angle, pose)
+        friction = np.zeros(size) if self._friction is None else self._rubbed(self._friction, discs, rate, on_wheel)
+        return Instant(force=force, friction=friction, outside=outside, stiffness=stiffness, discs=discs)
 
     def stored(self, x: FloatArray) -> tuple[float, tuple[StoredEnergy, ...]]:
         """Return the energy stored at the last instant, whose coordinates these are, N·mm, and that of each disc's contacts."""
@@ -196,8 +146,8 @@ class ContactForces:
         return total + sum(float(disc.energy[0]) for disc in discs), tuple(discs)
 
     def _bent(self, angle: FloatArray, pose: FloatArray, response: Response) -> float:
-        """Energy of what holds pins together, ½ Σ f·u with their displacements u, in slices with ½ Σ m·l of their leans: wheel pins
-        have both in the turning wheel.
+        """Energy of what holds pins together, ½ Σ f·u with their displacements u, in slices ½ Σ m·l of their leans as well: wheel
+        pins have both in the turning wheel.
         """
         if response.shifts is None:
             return 0.0
@@ -211,6 +161,23 @@ class ContactForces:
                 force[:, : part.pin_load.shape[1]] *= wheel.conjugate()[:, None]
                 total += 0.5 * float((force.conjugate() * moved).real.sum())
         return total
+
+    def _outside(self, angle: float, pose: FloatArray) -> tuple[FloatArray, complex]:
+        """Force from outside on the output over the coordinates, and on the wheel relative to the shaft, N."""
+        found, motion = np.zeros(self._motion.size), self._motion
+        if self._external is None:
+            return found, 0j
+        force = complex(self._external.on_wheel(np.array([angle]))[0])
+        if motion.pose.wheel:
+            x, y = pose[motion.pose.wheel_place]
+            found[motion.pose.wheel_place] = force.real, force.imag
+            found += (x * force.imag - y * force.real) * motion.frame_turns
+        if motion.pose.wheel_leans:
+            tilting = complex(self._external.tilting(np.array([angle]))[0])
+            x, y = pose[motion.pose.wheel_lean_place]
+            found[motion.pose.wheel_lean_place] += tilting.real, tilting.imag
+            found += (x * tilting.imag - y * tilting.real) * motion.frame_turns
+        return found, force
 
     def _asked(
         self, angle: float, pose: FloatArray, force: FloatArray, stiffness: FloatArray
@@ -264,13 +231,14 @@ class ContactForces:
         stiffness[crank, crank] += nominal @ column
         return tuple(discs)
 
-    def _rubbed(self, friction: TurningFriction, discs: Sequence[DiscForces], rate: FloatArray) -> FloatArray:
-        """Force that has to overcome friction, shape (n,)."""
+    def _rubbed(
+        self, friction: TurningFriction, discs: Sequence[DiscForces], rate: FloatArray, on_wheel: complex
+    ) -> FloatArray:
+        """Force that has to overcome friction, shape (n,); `on_wheel` is that from outside, N."""
         motion, place = self._motion, self._model.discs[0].geometry.placement
         total, turning = np.zeros(motion.size), float(rate[motion.crank])
         slow = FADING * float(place.mean_eccentricity.ravel()[0]) * self._speed
         rolls = turning / np.hypot(turning, FADING * self._speed)
-        on_wheel = 0j
         for columns, disc in zip(self._columns, discs, strict=True):
             going = rate[columns] + disc.nominal * turning
             force = np.zeros(columns.size)
@@ -294,19 +262,12 @@ class ContactForces:
         held = max(abs(on_wheel), friction.wheel_preload) * friction.support * rolls * np.sign(ratio)
         total[motion.wheel_angle] += held
         total[motion.crank] += held / ratio
+        if self._drag:
+            turns = motion.input_turns
+            at_input = float(turns @ rate)
+            slow = FADING * self._speed / abs(motion.drive.crank_turns_per_input)
+            total += self._drag * at_input / np.hypot(at_input, slow) * turns
         return total
-
-
-def _condensed(now: Instant, own: NDArray[np.intp], by_others: FloatArray) -> Instant:
-    """Forces and stiffness over the other coordinates, which those without mass follow: works along both are the same."""
-    condensed = np.eye(now.force.size)
-    condensed[own] = by_others
-    return replace(
-        now,
-        force=condensed.T @ now.force,
-        friction=condensed.T @ now.friction,
-        stiffness=condensed.T @ now.stiffness @ condensed,
-    )
 
 
 def _slip(geometry: ContactGeometry, crank_angle: FloatArray, pose: FloatArray, part: DiscResponse) -> FloatArray:

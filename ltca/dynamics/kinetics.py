@@ -118,8 +118,8 @@ class Motion:
         return self.pose.size + 1 + bool(self.mesh_compliance) + (self.twist is not None)
 
     @property
-    def following(self) -> NDArray[np.intp]:
-        """Places of coordinates that yield without mass: leans of cranks at the discs and of the wheel."""
+    def light_leans(self) -> NDArray[np.intp]:
+        """Places of the leans of cranks at the discs and of the wheel, which have no mass."""
         pose = self.pose
         first = pose.own - 2 * (pose.cranks + 1) * pose.leans
         each = (pose.own * np.arange(pose.discs)[:, None] + np.arange(first, pose.lean_place.start)).ravel()

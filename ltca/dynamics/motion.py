@@ -6,8 +6,9 @@ from that. Where the input turns as it is told, B spans the motions that leave i
 .. math:: B^T (M\ddot x + h(x, \dot x) + \partial U/\partial x + R + C\dot x - Q) = 0
 
 with inertia forces h (`ltca.dynamics.kinetic_energy`), forces of contacts and supports, friction R
-(`ltca.dynamics.contact_forces`), and the torques Q at both ends. Damping is that of every vibration about the state of the
-moment alike, with the ratio ζ: of modes :math:`\Phi` with frequencies ω under the stiffness K of the contacts that are closed,
+(`ltca.dynamics.contact_forces`), and torques Q at both ends with forces from outside. Parts without mass follow
+(`ltca.dynamics.massless`). Damping is that of every vibration about the state of the moment alike, with the ratio ζ: of modes
+:math:`\Phi` with frequencies ω under the stiffness K of the contacts that are closed,
 
 .. math:: C = K\Phi\,\mathrm{diag}(2\zeta/\omega^3)\,\Phi^T K ,
 
@@ -28,14 +29,15 @@ from scipy.linalg.lapack import dposv, dsygv
 from ltca.arrays import FloatArray
 from ltca.dynamics.contact_forces import ContactForces, Instant
 from ltca.dynamics.kinetic_energy import KineticEnergy
+from ltca.dynamics.massless import MasslessParts
 from ltca.errors import ConvergenceError
 
 WORKS = ("input", "output", "damping", "friction")
 """Works that the state ends with."""
 SOFTEST = 1e-3
 """Frequency by the highest one below which a motion counts as free, and is not damped."""
-REST_STEPS, REST_SETTLED = 200, 1e-10
-"""Steps to a balanced state, and the last one by the largest coordinate, mm."""
+REST_STEPS, REST_SETTLED, REST_HALVINGS = 200, 1e-10, 4
+"""Steps to a balanced state, the last one by the largest coordinate, mm, and how often one is halved that leaves more."""
 
 Profile = Callable[[float], tuple[float, float, float]]
 """Angle, speed and acceleration of the input at a time."""
@@ -65,6 +67,8 @@ class Equation:
         Torque that drives the input, ccw positive, N·mm; None where it turns as told.
     damping_ratio : float
         ζ; 0 for none.
+    massless : MasslessParts or None
+        Motions of parts without mass, which B leaves out.
     """
 
     kinetic: KineticEnergy
@@ -77,16 +81,37 @@ class Equation:
     output_torque: Callable[[float], float]
     input_torque: float | None
     damping_ratio: float
+    massless: MasslessParts | None = None
 
     @property
     def freedoms(self) -> int:
         """Number m of coordinates y."""
         return int(self.basis.shape[1])
 
+    @property
+    def whole(self) -> FloatArray:
+        """B and, last, the motions of parts without mass, shape (n, m + k)."""
+        return self.basis if self.massless is None else np.hstack((self.basis, self.massless.columns))
+
     def place(self, time: float, state: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return x and its rate of a state, shape (2m + 4,)."""
+        x, rate, _, _ = self._moment(time, state)
+        return x, rate
+
+    def _moment(self, time: float, state: FloatArray) -> tuple[FloatArray, FloatArray, Instant | None, FloatArray]:
+        """x, its rate, the forces where they are known already, and B with what follows its motions."""
         m, (angle, speed, _) = self.freedoms, self.input_motion(time)
-        return self.basis @ state[:m] + self.lead * angle, self.basis @ state[m : 2 * m] + self.lead * speed
+        x, rate = self.basis @ state[:m] + self.lead * angle, self.basis @ state[m : 2 * m] + self.lead * speed
+        if self.massless is None:
+            return x, rate, None, self.basis
+        torque = self.output_torque(time) * self.output_turns
+
+        def respond(there: FloatArray, moving: FloatArray) -> tuple[Instant, FloatArray]:
+            now = self.contacts.at(there, moving)
+            return now, torque + now.outside
+
+        x, rate, now, slope = self.massless.settle(x, rate, respond)
+        return x, rate, now, self.basis + self.massless.columns @ (slope @ self.basis)
 
     def rates(self, time: float, state: FloatArray) -> FloatArray:
         """Return the rate of a state, shape (2m + 4,)."""
@@ -95,12 +120,12 @@ class Equation:
     def solved(self, time: float, state: FloatArray) -> tuple[FloatArray, float, Instant]:
         """Return the rate of a state, the torque at the input, ccw positive, N·mm, and the forces."""
         m, basis = self.freedoms, self.basis
-        x, rate = self.place(time, state)
+        x, rate, known_forces, followed = self._moment(time, state)
         mass, inertia = self.kinetic.at(x, rate)
-        now = self.contacts.at(x, rate)
+        now = self.contacts.at(x, rate) if known_forces is None else known_forces
         projected = basis.T @ mass @ basis
-        damped = self._damping(now.stiffness, projected) @ rate if self.damping_ratio else np.zeros(x.size)
-        loaded = self.output_torque(time) * self.output_turns
+        damped = self._damping(now.stiffness, projected, followed) @ rate if self.damping_ratio else np.zeros(x.size)
+        loaded = self.output_torque(time) * self.output_turns + now.outside
         told = self.input_motion(time)[2]
         inner = now.force + now.friction + damped + inertia
         outer = loaded if self.input_torque is None else loaded + self.input_torque * self.input_turns
@@ -121,10 +146,10 @@ class Equation:
         found[2 * m + 3] = now.friction @ rate
         return found, torque, now
 
-    def _damping(self, stiffness: FloatArray, mass: FloatArray) -> FloatArray:
-        """C at the state of the moment, shape (n, n)."""
-        pressed = stiffness @ self.basis
-        square, shapes = _checked(dsygv(self.basis.T @ pressed, mass))[:2]
+    def _damping(self, stiffness: FloatArray, mass: FloatArray, basis: FloatArray) -> FloatArray:
+        """C at the state of the moment, shape (n, n), of motions that parts without mass follow."""
+        pressed = stiffness @ basis
+        square, shapes = _checked(dsygv(basis.T @ pressed, mass))[:2]
         felt = square > SOFTEST**2 * square[-1]
         on_modes = pressed @ shapes[:, felt]
         return np.asarray((on_modes * (2.0 * self.damping_ratio / square[felt] ** 1.5)) @ on_modes.T)
@@ -132,11 +157,12 @@ class Equation:
     def input_torque_at_rest(self, time: float, y: FloatArray) -> float:
         """Return the torque at the input that balances a time in a state of `at_rest`, ccw positive, N·mm."""
         angle, speed, _ = self.input_motion(time)
-        now = self.contacts.at(self.basis @ y + self.lead * angle, self.lead * speed)
-        return float(self.lead @ (now.force + now.friction - self.output_torque(time) * self.output_turns))
+        now = self.contacts.at(self.whole @ y + self.lead * angle, self.lead * speed)
+        loaded = self.output_torque(time) * self.output_turns + now.outside
+        return float(self.lead @ (now.force + now.friction - loaded))
 
     def at_rest(self, time: float, start: FloatArray) -> FloatArray:
-        """Return y of balance under the torques of a time, the input held, shape (m,).
+        """Return y of balance under the torques of a time, the input held, and the places of parts without mass, shape (m + k,).
 
         Friction is that of the slips which the rigid motion has at the speed of the input, none where the input stands.
 
@@ -145,17 +171,24 @@ class Equation:
         ConvergenceError
             Where it is not found.
         """
-        y, (angle, speed, _) = start.copy(), self.input_motion(time)
+        y, (angle, speed, _), whole = start.copy(), self.input_motion(time), self.whole
         history: list[float] = []
+        step: FloatArray = np.zeros(y.size)
+        before, halved = np.inf, 0
         for _ in range(REST_STEPS):
-            now = self.contacts.at(self.basis @ y + self.lead * angle, self.lead * speed)
-            left = self.basis.T @ (now.force + now.friction - self.output_torque(time) * self.output_turns)
-            matrix = self.basis.T @ now.stiffness @ self.basis
+            now = self.contacts.at(whole @ y + self.lead * angle, self.lead * speed)
+            loaded = self.output_torque(time) * self.output_turns + now.outside
+            left = whole.T @ (now.force + now.friction - loaded)
+            if (size := float(np.linalg.norm(left))) > before and halved < REST_HALVINGS:
+                step, halved = 0.5 * step, halved + 1
+                y = y + step
+                continue
+            matrix = whole.T @ now.stiffness @ whole
             try:
-                step = np.linalg.solve(matrix, left)
+                step = np.asarray(np.linalg.solve(matrix, left), dtype=float)
             except np.linalg.LinAlgError as problem:
                 raise ConvergenceError("no balanced state to start from: nothing holds a part", history) from problem
-            y = y - step
+            y, before, halved = y - step, size, 0
             history.append(float(np.abs(step).max()))
             if history[-1] <= REST_SETTLED * max(1.0, float(np.abs(y).max())):
                 return y

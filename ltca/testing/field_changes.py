@@ -206,7 +206,10 @@ _VIBRATIONS = {
         for path, reason in _NAME.items()
         if path.startswith("ring.material.") and not path.endswith(".density")
     },
-    **{path: _NAME[path] for path in ("disc.axial_play", "analysis.compliance", "disc.planes", "disc.gap")},
+    **{
+        path: _NAME[path]
+        for path in ("disc.axial_play", "analysis.compliance", "analysis.bodies", "disc.planes", "disc.gap")
+    },
     **{path: _NAME[path] for path in _NAME if path.startswith("main_bearing.")},
     **{path: reason for path, reason in _OF_LIFE.items() if path != "duty.0.speed"},
     **dict.fromkeys(
@@ -236,6 +239,17 @@ EXCEPTIONS: Mapping[str, Mapping[str, str]] = {
     | _SPRINGS_ALONE
     | _TILTING
     | dict.fromkeys(_SHAFT_PIN, "vibrations tell no pressure of the holes, and in half-spaces nothing else sees it")
+    | {"materials.wheel_seat.density": "slots are in the housing, whose size no file gives and which has no mass"},
+    "time": {
+        path: reason for path, reason in _VIBRATIONS.items() if not path.startswith(("friction.", "load.", "duty."))
+    }
+    | _SPRINGS_ALONE
+    | _TILTING
+    | dict.fromkeys(("load.speed", "load.light_torque"), "a run in time has a speed and a load of its own")
+    | dict.fromkeys(
+        ("duty.0.torque", "duty.0.speed", "duty.0.share"), "a run in time has a speed and a load of its own"
+    )
+    | dict.fromkeys(_SHAFT_PIN, "runs in time tell no pressure of the holes, and in half-spaces nothing else sees it")
     | {"materials.wheel_seat.density": "slots are in the housing, whose size no file gives and which has no mass"},
     "full FE": _EVERYWHERE
     | {
@@ -521,6 +535,21 @@ def change_of(drive: Drive, path: str) -> tuple[Drive, dict[str, Any]]:
             change[partner[path]] = sensible_change(base, partner[path])
         return base, change
     return drive, {path: sensible_change(drive, path)}
+
+
+def with_densities(drive: Drive) -> Drive:
+    """Return a drive with the densities of sleeves, carrier and ring that a change has put into it."""
+    given: dict[str, Any] = {}
+    for part in ("sleeve", "carrier"):
+        if getattr(drive.materials, part).density is None:
+            given[f"materials.{part}.density"] = 7000.0
+    if drive.ring is not None and drive.ring.material.density is None:
+        given["ring.material.density"] = 7000.0
+    used = {
+        "sleeve": "sleeve" in (drive.pin_wheel.seat.kind, drive.pin_shaft and drive.pin_shaft.seat.kind),
+        "carrier": drive.posts,
+    }
+    return with_fields(drive, {path: value for path, value in given.items() if used.get(path.split(".")[1], True)})
 
 
 def moves(before: FloatArray, after: FloatArray) -> bool:

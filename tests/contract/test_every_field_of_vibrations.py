@@ -17,7 +17,7 @@ from ltca.dynamics.mass_values import mass_values
 from ltca.errors import DriveError
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
-from ltca.testing.field_changes import EXCEPTIONS, change_of, goes_with, leaf_fields, moves
+from ltca.testing.field_changes import EXCEPTIONS, change_of, goes_with, leaf_fields, moves, with_densities
 
 PARTS = ("disc", "wheel_pin", "roller", "inner_race", "shaft_pin")
 BASE = with_fields(
@@ -27,21 +27,6 @@ BASE = with_fields(
 )
 NEW = tuple(path for path in field_kinds() if path.startswith(("inertia.", "damping.")))
 QUICK = (*NEW, "materials.disc.density", "load.direction", "crank.eccentricity")
-
-
-def with_densities(drive):
-    """A drive with the densities of what a change has put into it."""
-    given = {}
-    for part in ("sleeve", "carrier"):
-        if getattr(drive.materials, part).density is None:
-            given[f"materials.{part}.density"] = 7000.0
-    if drive.ring is not None and drive.ring.material.density is None:
-        given["ring.material.density"] = 7000.0
-    used = {
-        "sleeve": "sleeve" in (drive.pin_wheel.seat.kind, drive.pin_shaft and drive.pin_shaft.seat.kind),
-        "carrier": drive.posts,
-    }
-    return with_fields(drive, {path: value for path, value in given.items() if used.get(path.split(".")[1], True)})
 
 
 def answer(drive):

@@ -37,6 +37,17 @@ from ltca.testing.closed_form_bodies import closed_form_coefficients
 
 ARCSEC = 206264.806
 RUBBING = {"friction.pin": 0.05, "friction.hole": 0.05, "friction.roller": 0.002}
+TIED = {"pin_shaft.stiffness": None, "pin_shaft.beam.span": 22.0, "pin_shaft.beam.tip": "tied-clamped"}
+POSTS = {
+    "carrier.posts.number": 3, "carrier.posts.radius": 42.0, "carrier.posts.size": 20.0, "carrier.flange": (10.0, 8.0),
+    "materials.carrier.density": 7850.0,
+}  # fmt: skip
+RING = {
+    "ring.inner_radius": 60.0, "ring.outer_radius": 75.0, "ring.width": 25.0, "ring.material.density": 7850.0,
+}  # fmt: skip
+ARM = {"load.external.0.force.x": 3000.0, "load.external.0.force.y": 1000.0, "main_bearing.radial_stiffness": 1e5}
+DRAG = 100.0
+BEARINGS = {"friction.support_bearing": 0.01, "friction.support_bearing_radius": 50.0}
 
 
 @cache
@@ -56,6 +67,19 @@ def drive_of(name):
         "bent pins": with_fields(
             first["robot-joint"], {"pin_wheel.beam.span": 30.0, "pin_wheel.beam.ends": "supported"}
         ),
+        "paper, tied": with_fields(first["paper"], TIED),
+        "paper, tied, damped": with_fields(first["paper"], {**TIED, "damping.ratio": 0.03}),
+        "paper, tied, rubs": with_fields(first["paper"], {**TIED, **RUBBING, "inertia.input": "1.2 kg cm²"}),
+        "tied": with_fields(first["robot-joint"], TIED),
+        "rv, posts": with_fields(first["rv"], POSTS),
+        "rv, posts, twist": with_fields(
+            first["rv"], {**POSTS, "carrier.stiffness_torsion": 4e8, "inertia.output": 1.0, "damping.ratio": 0.03}
+        ),
+        "elastic ring": with_fields(first["robot-joint"], RING),
+        "paper, pushed": with_fields(first["paper"], {**ARM, **RUBBING, **BEARINGS, "friction.no_load_torque": DRAG}),
+        "pushed, held pin-wheel": with_fields(
+            first["robot-joint"], {**ARM, **RUBBING, "friction.no_load_torque": DRAG, "load.external.0.frame": "output"}
+        ),
         "paper, light": with_fields(first["paper"], {"load.torque": 2e4}),
         "paper, driven": with_fields(first["paper"], {"inertia.input": "1.2 kg cm²", "damping.ratio": 0.03}),
     }[name]
@@ -71,6 +95,10 @@ def standing(name):
     return replace(run, equation=replace(run.equation, input_motion=lambda _: (0.0, 0.0, 0.0)))
 
 
+DEAR = ("sleeved", "tied", "elastic ring")
+"""Kinds whose pins are displaced by several discs, which takes ten times as long: they turn less far."""
+
+
 @pytest.mark.parametrize(
     "name",
     [
@@ -79,11 +107,15 @@ def standing(name):
         pytest.param("two discs held pin-wheel", marks=pytest.mark.slow),
         pytest.param("plastic", marks=pytest.mark.slow),
         pytest.param("rv", marks=pytest.mark.slow),
+        pytest.param("paper, tied", marks=pytest.mark.slow),
+        pytest.param("rv, posts", marks=pytest.mark.slow),
+        pytest.param("rv, posts, twist", marks=pytest.mark.slow),
+        *(pytest.param(name, marks=pytest.mark.slow) for name in DEAR),
     ],
 )
 def test_slow_motion_is_the_quasi_static_one(name):
     """At 30 rpm inertia forces are a millionth of the loads; 0.01″ and 1e-3 of the largest load were asked for beforehand."""
-    run = prepared(name, Course.of_values("steady", 2e-3, 30.0))
+    run = prepared(name, Course.of_values("steady", 1e-4 if name in DEAR else 2e-3, 30.0))
     found = run_in_time(run, samples=5)
     taken, drive, motion = found.samples, found.drive, found.motion
     model = replace(HalfSpace().prepare(drive_of(name)).model, friction=None)
@@ -94,11 +126,85 @@ def test_slow_motion_is_the_quasi_static_one(name):
     assert taken.pin_load == pytest.approx(loads, abs=1e-3 * loads.max())
     loads = still.response.rollers.outer_load.reshape(taken.roller_load.shape)
     assert taken.roller_load == pytest.approx(loads, abs=1e-3 * loads.max())
+    # What has no mass stands where statics have it: places settle to 1e-8 mm, and follow the 0.01″ of the wheel besides.
+    place = motion.pose.ring_place
+    assert taken.place[:, place] == pytest.approx(still.pose[:, place], abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param("paper, pushed", marks=pytest.mark.slow),
+        pytest.param("pushed, held pin-wheel", marks=pytest.mark.slow),
+        pytest.param("paper, tied, rubs", marks=pytest.mark.slow),
+    ],
+)
+def test_slow_motion_with_friction_is_the_quasi_static_one(name):
+    """Forces from outside, drag of seals and oil, and parts without mass that rub, at 30 rpm against the losses of statics.
+
+    The torque at the input has the arm's work and the drag in it; 1e-4 of it was asked for beforehand, where friction takes 5 %
+    and more: slips fade in over 1 % of the eccentrics' speed.
+    """
+    found = run_in_time(prepared(name, Course.of_values("steady", 5e-4, 30.0)), samples=3)
+    taken, drive, motion = found.samples, found.drive, found.motion
+    model = HalfSpace().prepare(drive_of(name)).model
+    still = solve_at_output(model, [drive], taken.place[:, motion.crank], drive.load.torque)
+    assert taken.place[:, motion.wheel_angle] * ARCSEC == pytest.approx(still.pose[:, -1] * ARCSEC, abs=0.01)
+    place = motion.pose.wheel_place
+    assert taken.place[:, place] == pytest.approx(still.pose[:, place], abs=1e-6)
+    loads = still.response.pin_load.reshape(taken.pin_load.shape)
+    assert taken.pin_load == pytest.approx(loads, abs=1e-3 * loads.max())
+    expected = losses(model, [drive], still, drive.load.torque).input_torque
+    assert taken.input_torque == pytest.approx(expected, abs=1e-4 * np.abs(expected).max())
+    assert abs(found.energy.relative) < 1e-5
+
+
+def test_drag_of_seals_and_oil_is_overcome_by_the_input():
+    """Its torque stands at the input alone, against the sense of either: 5e-5 of it by the fading at full speed."""
+    at_rest = []
+    for drag, direction in ((0.0, "ccw"), (DRAG, "ccw"), (0.0, "cw"), (DRAG, "cw")):
+        change = {"friction.pin": 0.05, "friction.no_load_torque": drag, "load.direction": direction}
+        drive = with_fields(drive_of("paper"), change)
+        run = prepare_run(drive, HalfSpace(), Course.of_values("steady", 1e-3, 1500.0))
+        torque = run.equation.input_torque_at_rest(0.0, run.start[: run.equation.freedoms])
+        at_rest.append((run.start, torque * np.sign(run.equation.input_motion(0.0)[1])))
+    for without, rubbed in (at_rest[:2], at_rest[2:]):
+        assert rubbed[1] - without[1] == pytest.approx(DRAG, rel=1e-4)
+        assert rubbed[0] == pytest.approx(without[0], rel=1e-9)
+
+
+def test_an_arm_turned_with_a_displaced_output_has_a_moment():
+    """With the wheel held the output is the pin shaft, whose axis a soft main bearing displaces by w: the work of a force G on
+    it is that on its displacement in space, −R(θ) w, by central differences of exact turns: 1e-6 of second order.
+    """
+    drive = drive_of("pushed, held pin-wheel")
+    model, warm = HalfSpace().prepare(drive).model, warm_drive(drive)
+    motion, rng = Motion.of_drive(warm), np.random.default_rng(5)
+    contacts = ContactForces(model, motion, 1.0)
+    x = np.zeros(motion.size)
+    x[motion.pose.wheel_place] = 0.04, -0.03
+    way = 1e-2 * rng.standard_normal(motion.size)
+    outside = contacts.at(x, np.zeros(motion.size)).outside
+
+    def axis(side):
+        there = x + side * 1e-4 * way
+        turned = np.exp(1j * motion.frame_turns @ (there - x))
+        return -turned * complex(*there[motion.pose.wheel_place])
+
+    moved = (axis(1.0) - axis(-1.0)) / 2e-4
+    force = complex(3000.0, 1000.0)  # in the frame of the output, here that of the analysis
+    assert outside @ way == pytest.approx((force.conjugate() * moved).real, rel=1e-6)
+    # The turning is a thousandth of it: w by R.
+    assert abs(outside @ motion.frame_turns) > 1.0
 
 
 @pytest.mark.parametrize(
     ("name", "mode"),
-    [("paper, damped", 0), *(pytest.param("two discs held pin-wheel", n, marks=pytest.mark.slow) for n in (0, 2))],
+    [
+        ("paper, damped", 0),
+        pytest.param("paper, tied, damped", 0, marks=pytest.mark.slow),
+        *(pytest.param("two discs held pin-wheel", n, marks=pytest.mark.slow) for n in (0, 2)),
+    ],
 )
 def test_small_vibrations_are_the_modes(name, mode):
     """A mode displaced by ten nanometres decays with its frequency, 1e-3, and damping, 1 %: zeros and logarithmic decrement."""
@@ -108,9 +214,10 @@ def test_small_vibrations_are_the_modes(name, mode):
     still = solve_at_output(model, [run.drive], np.zeros(1), run.drive.load.torque)
     stiffness = stiffness_matrices(model, motion, still)[0]
     mass = mass_matrix(moving_bodies(motion, drive_masses(drive_of(name)), 0.0), motion.size)
-    modes = solve_modes(stiffness, mass, equation.basis, None)
+    modes = solve_modes(stiffness, mass, equation.whole, None)
     shape = modes.shapes[:, mode]
-    m, own = equation.freedoms, np.linalg.lstsq(equation.basis, shape, rcond=None)[0]
+    m = equation.freedoms
+    own = np.linalg.lstsq(equation.whole, shape, rcond=None)[0][:m]
     start = run.start.copy()
     start[m : 2 * m] = 0.0
     rest = start[:m].copy()
@@ -144,6 +251,13 @@ COURSES = [
     ("two discs held pin-wheel", Course.of_values("ramp", 4e-3, 1500.0, from_speed=1200.0)),
     ("plastic", Course.of_values("reverse", 6e-3, 1500.0)),
     ("rv", Course.of_values("steady", 2e-3, 1500.0)),
+    ("paper, tied, damped", Course.of_values("steady", 4e-4, 1500.0)),
+    ("paper, tied, rubs", Course.of_values("sine", 2e-3, 1500.0, "torque", frequency=500.0)),
+    ("rv, posts, twist", Course.of_values("step", 3e-4, 1500.0)),
+    ("paper, pushed", Course.of_values("start", 4e-3, 1500.0, within=2e-3)),
+    ("pushed, held pin-wheel", Course.of_values("steady", 3e-4, 1500.0)),
+    ("sleeved", Course.of_values("steady", 3e-5, 1500.0)),
+    ("elastic ring", Course.of_values("steady", 3e-5, 1500.0)),
 ]
 LONG = ((), (pytest.mark.slow, pytest.mark.nightly), pytest.mark.slow)
 """Marks of the first, the second, and all others."""
@@ -154,10 +268,14 @@ LONG = ((), (pytest.mark.slow, pytest.mark.nightly), pytest.mark.slow)
     [pytest.param(*one, marks=LONG[min(number, len(LONG) - 1)]) for number, one in enumerate(COURSES)],
 )
 def test_energy_closes(name, course):
-    """Input and work of curvature less output, losses and change of what is stored: 1e-5 of the throughput was asked for."""
-    found = run_in_time(prepared(name, course), samples=201 if name == "paper, damped" else 601)
+    """Input and work of curvature less output, losses and change of what is stored: 1e-5 of the throughput was asked for.
+
+    Where parts without mass rub, 1e-6, which is below the work of friction on them.
+    """
+    samples = 51 if name in DEAR else 201 if name == "paper, damped" else 601
+    found = run_in_time(prepared(name, course), samples=samples)
     energy = found.energy
-    assert abs(energy.relative) < 1e-5
+    assert abs(energy.relative) < (1e-6 if name == "paper, tied, rubs" else 1e-5)
     assert energy.damping >= 0.0
     assert energy.friction >= 0.0
     if name == "paper, rubs":
@@ -360,7 +478,9 @@ class OneContact:
         pressed = max(float(x[0]), 0.0)
         slope = 1.5 * self.stiffness * np.sqrt(pressed)
         force = np.array([self.stiffness * pressed**1.5])
-        return SimpleNamespace(force=force, friction=self.damping * rate, stiffness=np.array([[slope]]), discs=())
+        return SimpleNamespace(
+            force=force, friction=self.damping * rate, outside=np.zeros(1), stiffness=np.array([[slope]]), discs=()
+        )
 
 
 @pytest.mark.parametrize(
@@ -464,7 +584,6 @@ def test_values_are_used_or_refused(values, words):
     [
         ({"materials.disc.density": None}, "materials.disc.density"),
         ({"load.torque": 0.0}, "load.torque"),
-        ({"friction.no_load_torque": 50.0}, "friction.no_load_torque"),
     ],
 )
 def test_what_a_run_leaves_out_is_refused_by_name(change, words):
@@ -473,14 +592,10 @@ def test_what_a_run_leaves_out_is_refused_by_name(change, words):
         prepare_run(drive, HalfSpace(), Course.of_values("steady", 1.0, 1500.0))
 
 
-def test_a_ring_without_mass_is_refused_by_name():
-    words = (
-        r"pin_shaft\.beam\.tip = 'tied-clamped': ring of the pin shaft yields, but has no mass.*; must be 'free' there"
-    )
-    with pytest.raises(DriveError, match=words):
-        prepare_run(drive_of("sleeved"), HalfSpace(), Course.of_values("steady", 1.0, 1500.0))
-    free = with_fields(drive_of("sleeved"), {"pin_shaft.beam.tip": "free"})
-    prepare_run(free, HalfSpace(), Course.of_values("steady", 1.0, 1500.0))
+def test_a_twist_without_mass_is_refused_by_name():
+    drive = with_fields(drive_of("rv, posts"), {"carrier.stiffness_torsion": 4e8})
+    with pytest.raises(DriveError, match=r"inertia\.output: twist of the carrier yields, but has no mass"):
+        prepare_run(drive, HalfSpace(), Course.of_values("steady", 1.0, 1500.0))
 
 
 @pytest.mark.slow

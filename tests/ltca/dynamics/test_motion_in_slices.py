@@ -200,7 +200,10 @@ def test_forces_are_slopes_of_what_is_stored(name, kind, tilt_depth, tmp_path):
     force = contacts.at(x, at_rest).force
 
     def slopes(step):
-        ends = [contacts.stored(contacts.at(x + side * step * way, at_rest).place) for side in (-1.0, 1.0)]
+        ends = []
+        for side in (-1.0, 1.0):
+            contacts.at(x + side * step * way, at_rest)
+            ends.append(contacts.stored(x + side * step * way))
         (low, before), (high, after) = ends
         moved = sum(np.array(one.work_to(other))[:, 0] for one, other in zip(before, after, strict=True))
         return np.append(moved, high - low) / (2.0 * step)
@@ -216,28 +219,34 @@ def test_forces_are_slopes_of_what_is_stored(name, kind, tilt_depth, tmp_path):
 
 @pytest.mark.parametrize("name", ["wheel leans", pytest.param("rv", marks=SLOW)])
 def test_leans_without_mass_are_in_balance(name):
-    """Beside balance of all others: what is left on them by their stiffness is below 1e-8 mm at half the thickness, and the
-    others move on their stiffness as if they were not there: differences of forces to 1e-3 of the largest, radii being left out
-    of it, and on the crank what forces that turn with it add.
+    """Beside the balance of all others: what is left on leans of cranks or wheel by their stiffness is below 1e-8 mm at half the
+    thickness, to which they settle.
     """
-    model, motion, still = balanced(name, 0.3)
-    x = np.zeros(motion.size)
-    x[: motion.pose.size], x[motion.crank] = still.pose[0] * 1.02, 0.3
-    own, at_rest = motion.following, np.zeros(motion.size)
+    run = prepared(name, Course.of_values("steady", 1e-3, 30.0))
+    state, equation = run.start.copy(), run.equation
+    state[: equation.freedoms] += 1e-4 * np.random.default_rng(4).standard_normal(equation.freedoms)
+    x, rate = equation.place(0.0, state)
+    own, half_width = run.motion.light_leans, float(np.max(equation.contacts._model.discs[0].geometry.half_width))
     assert own.size
-    contacts = ContactForces(model, motion, 1.0)
-    now = contacts.at(x, at_rest)
-    assert not np.any(now.force[own])
-    response = model.respond(np.array([0.3]), now.place[None, : motion.pose.size])
-    soft = np.linalg.solve(response.tangent[0][np.ix_(own, own)], response.force[0, own])
-    assert model.discs[0].geometry.half_width * np.abs(soft).max() < 1e-8
-    lever = levers(model, motion, np.atleast_2d(lever_arms(model))[0])
-    way = np.random.default_rng(4).standard_normal(motion.size) / lever
-    way[own] = way[motion.crank] = 0.0
-    ends = [contacts.at(x + side * 1e-6 * way, at_rest).force for side in (-1.0, 1.0)]
-    found, expected = ((ends[1] - ends[0]) / 2e-6 / lever, now.stiffness @ way / lever)
-    rest = np.delete(np.arange(motion.size), motion.crank)
-    assert found[rest] == pytest.approx(expected[rest], abs=1e-3 * np.abs(expected).max())
+    now, before = equation.contacts.at(x, rate), equation.place(0.0, run.start)[0]
+    assert half_width * np.abs(np.linalg.solve(now.stiffness[np.ix_(own, own)], now.force[own])).max() < 1e-8
+    assert half_width * np.abs(x - before)[own].max() > 1e-6  # they do follow
+
+
+def test_stiffness_in_slices_is_that_in_the_plane():
+    """Of an aligned drive, over all that does not lean, the crank angle with it: loads by slices are those of the length to
+    0.5 %; 1e-2 of the largest was asked for.
+    """
+    found = []
+    for name in ("plane", "aligned"):
+        model, motion, still = balanced(name, 0.3)
+        x = np.append(still.pose[0], 0.3)
+        contacts = ContactForces(model, motion, 1.0)
+        lever = levers(model, motion, np.atleast_2d(lever_arms(model))[0])
+        stiffness = contacts.at(x, np.zeros(motion.size)).stiffness / np.outer(lever, lever)
+        rest = np.delete(np.arange(motion.size), leans_of(motion)) if name == "aligned" else np.arange(motion.size)
+        found.append(stiffness[np.ix_(rest, rest)])
+    assert found[1] == pytest.approx(found[0], abs=1e-2 * np.abs(found[0]).max())
 
 
 def test_friction_presses_the_leans_as_in_statics():

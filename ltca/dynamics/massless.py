@@ -1,0 +1,108 @@
+r"""Coordinates of parts that yield and have no mass: they follow all others as springs do.
+
+A file gives no mass to the ring that ties the tips of shaft pins, nor to the far flange of a carrier; leans of cranks and of the
+wheel are so stiff for what they move (some 100 kHz) that theirs is left out. Such coordinates
+:math:`x = \dots + N z` stand wherever their forces balance, :math:`f = N^T (\partial U/\partial x + R - Q) = 0`, and move with
+the others so that f stays zero,
+
+.. math:: \dot z = -(N^T K N)^{-1} \dot f|_z .
+
+What is stored is then the least energy over z, whose slopes by the other coordinates are the forces at that place: the
+balance of energy needs nothing besides, but where they rub the work of friction on :math:`\dot z`. There the change of f is
+differenced along the motion, since it has the turning of the normals in it; elsewhere nothing feels the rates, and
+:math:`N^T K \dot x` of the stiffness K serves. Modes do likewise with parts without mass (`ltca.dynamics.modes`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from ltca.arrays import FloatArray
+from ltca.dynamics.contact_forces import Instant
+from ltca.errors import ConvergenceError
+
+SETTLED = 1e-8
+"""Last step, mm, to first order of which forces are corrected: 1e-5 of approaches, whose square is left."""
+ONWARD = 1e-7
+"""Motion by which the change of forces is differenced, mm or rad: 1e-4 of approaches, and 1e4 times the round-off of forces."""
+STEPS, HALVINGS = 60, 12
+"""Steps tried, and how often one is halved that leaves more than there was."""
+
+Respond = Callable[[FloatArray, FloatArray], tuple[Instant, FloatArray]]
+"""Forces at coordinates and their rates, and what presses from outside."""
+
+
+class MasslessParts:
+    """Parts without mass, followed in time.
+
+    Parameters
+    ----------
+    columns : array, shape (n, k)
+        N, mm and rad by mm.
+    place : array, shape (k,)
+        Where they begin, mm.
+    rubs : bool
+        Whether friction acts on them.
+    """
+
+    def __init__(self, columns: FloatArray, place: FloatArray, rubs: bool) -> None:
+        self.columns, self.rubs = columns, rubs
+        self._place, self._slope = place.copy(), np.zeros((columns.shape[1], columns.shape[0]))
+        self._others: FloatArray | None = None
+
+    def settle(
+        self, others: FloatArray, rate: FloatArray, respond: Respond
+    ) -> tuple[FloatArray, FloatArray, Instant, FloatArray]:
+        """Return coordinates and rates of all, each of shape (n,), the forces there, and ∂z/∂x, shape (k, n).
+
+        Parameters
+        ----------
+        others, rate : array, shape (n,)
+            Coordinates and rates without these parts.
+        respond : callable
+            Returns the forces.
+
+        Raises
+        ------
+        ConvergenceError
+            Where they find no balance.
+        """
+        columns = self.columns
+        place = self._place if self._others is None else self._place + self._slope @ (others - self._others)
+        fastest = float(np.abs(rate).max())
+        onward = ONWARD / fastest if self.rubs and fastest > 0.0 else 0.0
+        moving = rate + columns @ (self._slope @ rate)
+
+        def left_over(now: Instant, outer: FloatArray) -> FloatArray:
+            return np.asarray(columns.T @ (now.force + now.friction - outer))
+
+        ahead = left_over(*respond(others + rate * onward + columns @ place, moving)) if onward else None
+        step: FloatArray = np.zeros(place.size)
+        before, halved, following = np.inf, 0, self._slope @ rate
+        history: list[float] = []
+        for _ in range(STEPS):
+            now, outer = respond(others + columns @ place, moving)
+            left = left_over(now, outer)
+            if (size := float(np.linalg.norm(left))) > before and halved < HALVINGS:
+                step, halved = 0.5 * step, halved + 1
+                place = place + step
+                continue
+            pressed = columns.T @ now.stiffness
+            changes = (pressed, left[:, None]) if ahead is None else (pressed, left[:, None], ahead[:, None])
+            solved = np.asarray(np.linalg.solve(pressed @ columns, np.hstack(changes)), dtype=float)
+            count = columns.shape[0]
+            self._slope, step, before, halved = -solved[:, :count], solved[:, count], size, 0
+            if ahead is not None:
+                following, ahead = (step - solved[:, count + 1]) / onward, None
+            elif not onward:
+                following = self._slope @ rate
+            moving, place = rate + columns @ following, place - step
+            history.append(float(np.abs(step).max()))
+            if history[-1] <= SETTLED:
+                self._place, self._others = place, others
+                now = replace(now, force=now.force - now.stiffness @ (columns @ step))
+                return others + columns @ place, moving, now, self._slope
+        raise ConvergenceError("parts without mass find no balance in motion; last steps in mm", history)
