@@ -469,6 +469,8 @@ def prepare_run(drive: Drive, engine: Engine, course: Course) -> PreparedRun:
     kinetic = KineticEnergy.of_drive(motion, masses)
     massless = _massless(kinetic, motion)
     held, columns = _spans(turns, lever, massless)
+    # Friction and forces from outside do work on rates of what has no mass.
+    works = model.friction is not None or (model.external is not None and motion.pose.wheel_leans)
     _require_mass(kinetic, motion, held, lever)
     equation = Equation(
         kinetic=kinetic,
@@ -481,7 +483,7 @@ def prepare_run(drive: Drive, engine: Engine, course: Course) -> PreparedRun:
         output_torque=lambda time: against * course.load_factor(time),
         input_torque=None,
         damping_ratio=0.0 if warm.damping is None else warm.damping.ratio_at_resonance,
-        massless=MasslessParts(columns, np.zeros(massless.size), model.friction is not None) if massless.size else None,
+        massless=MasslessParts(columns, np.zeros(massless.size), works) if massless.size else None,
     )
     smooth = replace(model, friction=None)
     found = solve_at_output(smooth, [warm], np.zeros(1), warm.load.torque * course.load_factor(0.0), gaps=False)
@@ -500,7 +502,7 @@ def prepare_run(drive: Drive, engine: Engine, course: Course) -> PreparedRun:
         y, rate = (np.asarray(np.linalg.solve(equation.whole, whole @ each)) for each in (y, rate))
     m = equation.freedoms
     if massless.size:
-        equation = replace(equation, massless=MasslessParts(columns, y[m:], model.friction is not None))
+        equation = replace(equation, massless=MasslessParts(columns, y[m:], works))
     start = np.concatenate((y[:m], rate[:m], np.zeros(len(WORKS))))
     return PreparedRun(drive=warm, engine=engine, course=course, motion=motion, equation=equation, start=start)
 
