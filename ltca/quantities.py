@@ -825,6 +825,7 @@ _IN_TIME = (
     Quantity("stored_energy", "drive in time", "N mm", "energy stored in contacts and supports"),
     Quantity("curvature_work", "drive in time", "N mm", "work of changing radii of curvature"),
     Quantity("station_work", "drive in time", "N mm", "work of contacts that move over the bodies"),
+    Quantity("teeth_work", "drive in time", "N mm", "work of teeth of a first stage by what planets carry unevenly"),
     Quantity("input_work", "drive in time", "N mm", "work done at the input"),
     Quantity(
         "output_work", "drive in time", "N mm", "work done by the output on its load, forces from outside among it"

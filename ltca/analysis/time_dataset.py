@@ -50,6 +50,7 @@ def time_dataset(run: TimeRun) -> LabelledDataset:
         "stored_energy": taken.stored,
         "curvature_work": taken.curvature,
         "station_work": taken.stations,
+        "teeth_work": taken.teeth,
         **{f"{name}_work": taken.works[:, place] for place, name in enumerate(WORKS)},
     }
     coords: dict[str, Any] = {"time": IN_TIME["time"].labelled(taken.time)}

@@ -33,7 +33,9 @@ from ltca.dynamics.massless import MasslessParts
 from ltca.dynamics.modes import free_coordinates
 from ltca.dynamics.motion import WORKS, Equation, Profile
 from ltca.dynamics.stiffness import levers
+from ltca.dynamics.teeth import TeethForces
 from ltca.equilibrium.balance import lever_arms
+from ltca.equilibrium.output_angle import crank_lag
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError, DriveError
@@ -230,6 +232,8 @@ class Samples:
     curvature, stations : array, shape (samples,)
         Work of changing radii of curvature, and of contacts that move over bodies which yield otherwise there, since the start,
         N·mm.
+    teeth : array, shape (samples,)
+        Work of teeth of a first stage by what planets carry unevenly, since the start, N·mm.
     """
 
     time: FloatArray
@@ -246,6 +250,7 @@ class Samples:
     stored: FloatArray
     curvature: FloatArray
     stations: FloatArray
+    teeth: FloatArray
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -260,6 +265,8 @@ class EnergyBalance:
         Change of what is stored.
     curvature, stations : float
         Work of changing radii of curvature, and of contacts that move over bodies which yield otherwise there.
+    teeth : float
+        Work of teeth of a first stage by what planets carry unevenly (`ltca.dynamics.teeth`).
     throughput : float
         Larger of the works that went through input and output, both ways counted.
     """
@@ -272,13 +279,14 @@ class EnergyBalance:
     stored: float
     curvature: float
     stations: float
+    teeth: float
     throughput: float
 
     @property
     def left(self) -> float:
         """Input and the work of moving contacts less output, losses and what is stored; not a number where it is not known."""
         taken = self.output + self.damping + self.friction + self.kinetic + self.stored
-        return self.input + self.curvature + self.stations - taken
+        return self.input + self.curvature + self.stations + self.teeth - taken
 
     @property
     def relative(self) -> float:
@@ -365,6 +373,7 @@ class TimeRun:
             stored=float(taken.stored[-1] - taken.stored[0]),
             curvature=float(taken.curvature[-1]),
             stations=float(taken.stations[-1]),
+            teeth=float(taken.teeth[-1]),
             throughput=float(through.max()),
         )
 
@@ -489,6 +498,8 @@ def prepare_run(drive: Drive, engine: Engine, course: Course) -> PreparedRun:
     found = solve_at_output(smooth, [warm], np.zeros(1), warm.load.torque * course.load_factor(0.0), gaps=False)
     first = np.zeros(motion.size)
     first[: motion.pose.size] = found.pose[0]
+    if motion.sun is not None:
+        first[motion.sun] = -crank_lag(smooth, found)[0]
     first -= lead * float(turns @ first)
     whole = equation.whole
     y = equation.at_rest(0.0, np.asarray(np.linalg.lstsq(whole, first, rcond=None)[0], dtype=float))
@@ -553,10 +564,6 @@ def _sense(drive: Drive) -> float:
 
 def _require_supported(drive: Drive, model: Reducer, course: Course) -> None:
     problems = []
-    if model._teeth_press:
-        problems.append(
-            "first_stage: its teeth press on cranks or main bearing that yield, which a run in time leaves out"
-        )
     if course.driven_by == "torque" and (drive.inertia is None or drive.inertia.input is None):
         problems.append("inertia.input: must be given for an input that a torque drives, kg·m²")
     if problems:
@@ -597,6 +604,7 @@ class Recorder:
         self._run, self.rows = run, 0
         self.times = np.linspace(0.0, run.course.time, count)
         self._before: tuple[StoredEnergy, ...] = ()
+        self._teeth: TeethForces | None = None
         self.arrays: dict[str, FloatArray] = {}
 
     def take(self, state: FloatArray) -> None:
@@ -616,6 +624,10 @@ class Recorder:
                 by_radius, by_place = before.work_to(there)
                 curvature, stations = curvature + float(by_radius[0]), stations + float(by_place[0])
             self._before = discs_store
+        teeth = float(self.arrays["teeth"][row - 1]) if row else 0.0
+        if self._teeth is not None and now.teeth is not None:
+            teeth += self._teeth.work_to(now.teeth)
+        self._teeth = now.teeth
         discs = now.discs
         taken: dict[str, Any] = {
             "time": time,
@@ -632,6 +644,7 @@ class Recorder:
             "stored": stored,
             "curvature": curvature,
             "stations": stations,
+            "teeth": teeth,
         }
         for name, values in taken.items():
             if name not in self.arrays:
@@ -656,9 +669,9 @@ class Recorder:
             self.arrays[name] = np.zeros((self.times.size, *values.shape[1:]))
             self.arrays[name][: self.rows] = values
         contacts, last = self._run.equation.contacts, found.rows - 1
+        x = self.arrays["place"][last]
+        self._teeth = contacts.at(x, self.arrays["rate"][last]).teeth
         if contacts.has_energy:
-            x = self.arrays["place"][last]
-            contacts.at(x, self.arrays["rate"][last])
             self._before = contacts.stored(x)[1]
 
     def samples(self) -> Samples:

@@ -28,6 +28,7 @@ from ltca.compliance.stored_energy import StoredEnergy
 from ltca.dynamics.disc_forces import DiscContacts, DiscForces
 from ltca.dynamics.kinetics import Motion
 from ltca.dynamics.stiffness import crank_force
+from ltca.dynamics.teeth import Teeth, TeethForces
 from ltca.equilibrium.friction.slip import Slip
 from ltca.equilibrium.friction.turning import TurningFriction
 from ltca.equilibrium.reducer import Reducer
@@ -55,6 +56,8 @@ class Instant:
         Σ k g gᵀ of contacts and springs: symmetric, without what forces add as they turn.
     discs : tuple of DiscForces
         Contacts of each disc.
+    teeth : TeethForces or None
+        Of a first stage.
     """
 
     force: FloatArray
@@ -62,6 +65,7 @@ class Instant:
     outside: FloatArray
     stiffness: FloatArray
     discs: tuple[DiscForces, ...]
+    teeth: TeethForces | None
 
 
 class ContactForces:
@@ -80,8 +84,11 @@ class ContactForces:
     def __init__(self, model: Reducer, motion: Motion, crank_speed: float) -> None:
         friction = model.friction
         self._friction = replace(friction, motion=1) if isinstance(friction, TurningFriction) else None
-        self._model = replace(model, stage=None, friction=None, external=None)
+        self._model = replace(model, supports=None, stage=None, friction=None, external=None)
+        self._supports = model.supports
         self._external = model.external
+        self._teeth = None if model.stage is None else Teeth(model, motion)
+        self._teeth_now: TeethForces | None = None
         self._motion, self._speed = motion, abs(crank_speed)
         rubs = motion.drive.friction
         self._drag = 0.0 if rubs is None else rubs.no_load_torque
@@ -118,20 +125,43 @@ class ContactForces:
                 force[places[:-1]] += disc.force
                 force[motion.crank] += disc.by_crank
                 stiffness[np.ix_(places, places)] += disc.stiffness
-            if self._model.supports is not None:
-                held, stiff = self._model.supports.respond(pose[None])
-                force[: pose.size] += held[0]
-                stiffness[: pose.size, : pose.size] += stiff.reshape(pose.size, pose.size)
         else:
             discs = self._asked(angle, pose, force, stiffness)
+        teeth = self._pressed(x, rate, discs, force, stiffness)
+        if self._supports is not None:
+            carried = None if teeth is None or teeth.carried is None else teeth.carried[None]
+            held, stiff = self._supports.respond(pose[None], carried)
+            force[: pose.size] += held[0]
+            stiffness[: pose.size, : pose.size] += stiff.reshape(pose.size, pose.size)
         outside, on_wheel = self._outside(angle, pose)
         friction = np.zeros(size) if self._friction is None else self._rubbed(self._friction, discs, rate, on_wheel)
-        return Instant(force=force, friction=friction, outside=outside, stiffness=stiffness, discs=discs)
+        return Instant(force=force, friction=friction, outside=outside, stiffness=stiffness, discs=discs, teeth=teeth)
+
+    def _pressed(
+        self, x: FloatArray, rate: FloatArray, discs: Sequence[DiscForces], force: FloatArray, stiffness: FloatArray
+    ) -> TeethForces | None:
+        """Teeth of a first stage; adds their force and stiffness in place."""
+        if self._teeth is None:
+            return None
+        moments = np.sum([disc.crank_moment for disc in discs], axis=0)
+        if self._friction is not None:
+            moments = moments + self._rolls(rate) * self._friction.of_cranks([disc.push[None] for disc in discs])[0]
+        teeth = self._teeth_now = self._teeth.at(x, moments)
+        force += teeth.force
+        stiffness += teeth.stiffness
+        return teeth
+
+    def _rolls(self, rate: FloatArray) -> float:
+        """Sense in which the crank rolls, fading where it stands."""
+        turning = float(rate[self._motion.crank])
+        return float(turning / np.hypot(turning, FADING * self._speed))
 
     def stored(self, x: FloatArray) -> tuple[float, tuple[StoredEnergy, ...]]:
         """Return the energy stored at the last instant, whose coordinates these are, N·mm, and that of each disc's contacts."""
         pose = x[: self._motion.pose.size]
-        total, supports = 0.5 * float(x @ self._springs @ x), self._model.supports
+        total, teeth, carried = 0.5 * float(x @ self._springs @ x), self._teeth_now, None
+        if teeth is not None:
+            total, carried = total + teeth.energy, None if teeth.carried is None else teeth.carried[None]
         if self._latest is None:
             discs = [each.stored() for each in self._each]
         else:
@@ -141,8 +171,8 @@ class ContactForces:
                 for disc, own, part in zip(self._telling, self._columns, response.parts, strict=True)
             ]
             total += self._bent(angle, row, response)
-        if supports is not None:
-            total += float(supports.energy(pose[None])[0])
+        if self._supports is not None:
+            total += float(self._supports.energy(pose[None], carried)[0])
         return total + sum(float(disc.energy[0]) for disc in discs), tuple(discs)
 
     def _bent(self, angle: FloatArray, pose: FloatArray, response: Response) -> float:
@@ -217,6 +247,7 @@ class ContactForces:
                     pin_slip=slip[:pins],
                     hole_slip=slip[pins:],
                     stiffness=part.tangent[0],
+                    crank_moment=Reducer(discs=(disc,)).crank_moments(at, row[:, columns], (part,))[0],
                     push=bearing_pushes(part.rollers, place.cranks)[0],
                     inner_load=part.rollers.inner_load[0],
                     outer_load=part.rollers.outer_load[0],
@@ -238,7 +269,7 @@ class ContactForces:
         motion, place = self._motion, self._model.discs[0].geometry.placement
         total, turning = np.zeros(motion.size), float(rate[motion.crank])
         slow = FADING * float(place.mean_eccentricity.ravel()[0]) * self._speed
-        rolls = turning / np.hypot(turning, FADING * self._speed)
+        rolls = self._rolls(rate)
         for columns, disc in zip(self._columns, discs, strict=True):
             going = rate[columns] + disc.nominal * turning
             force = np.zeros(columns.size)
@@ -289,13 +320,8 @@ def _slip(geometry: ContactGeometry, crank_angle: FloatArray, pose: FloatArray, 
 
 
 def _springs(motion: Motion) -> FloatArray:
-    """Stiffness of the mesh of a first stage and of the carrier's twist, shape (n, n)."""
-    found = np.zeros((motion.size, motion.size))
-    if motion.sun is not None:
-        row = motion.unit(motion.crank) - motion.unit(motion.sun)
-        row[: motion.pose.size] += motion.mesh_by_pose
-        found += np.outer(row, row) / motion.mesh_compliance
-    carrier = motion.drive.carrier
+    """Stiffness of the carrier's twist, shape (n, n)."""
+    found, carrier = np.zeros((motion.size, motion.size)), motion.drive.carrier
     if motion.twist is not None and carrier is not None:
         found[motion.twist, motion.twist] += carrier.stiffness_torsion or 0.0
     return found
