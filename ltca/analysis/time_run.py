@@ -466,7 +466,7 @@ def prepare_run(drive: Drive, engine: Engine, course: Course) -> PreparedRun:
     warm.require_torque("a run in time, which starts under load")
     masses, motion = require_masses(drive_masses(drive)), Motion.of_drive(warm)
     model = engine.prepare(drive).model
-    _require_supported(warm, model, course)
+    _require_supported(warm, motion, course)
     sense = _sense(warm)
     # A first stage turns the cranks against its sun.
     turns = motion.input_turns
@@ -562,8 +562,14 @@ def _sense(drive: Drive) -> float:
     return float(np.sign(drive.motion_sign * drive.crank_turns_per_input))
 
 
-def _require_supported(drive: Drive, model: Reducer, course: Course) -> None:
-    problems = []
+def _require_supported(drive: Drive, motion: Motion, course: Course) -> None:
+    problems, stage = [], drive.first_stage
+    if stage is not None and motion.sun is None:
+        rigid = "with rigid teeth and cranks a run in time has nothing between sun and cranks"
+        if stage.backlash:
+            problems.append(f"first_stage.backlash = {stage.backlash:g} mm: {rigid}; first_stage.mesh_stiffness must be given")
+        elif np.any(motion.mesh_by_pose):
+            problems.append(f"carrier.posts: {rigid}, and the far flange has no mass; first_stage.mesh_stiffness must be given")
     if course.driven_by == "torque" and (drive.inertia is None or drive.inertia.input is None):
         problems.append("inertia.input: must be given for an input that a torque drives, kg·m²")
     if problems:

@@ -83,10 +83,8 @@ class Motion:
         pose, mesh = Coordinates.of_drive(drive), StageMesh.of_drive(drive)
         compliance, by_pose = 0.0, np.zeros(pose.size)
         if mesh is not None:
-            pushed = mesh.on_planets(np.full((1, drive.crank.number), -float(drive.driving_sign)))[1][0]
-            own = np.einsum("ci,ij,cj->c", pushed.conjugate(), mesh.own, pushed).real
-            compliance = float(np.mean(np.squeeze(mesh.twist) + own)) / drive.crank.number
-            by_pose = np.einsum("ci,cin->cn", pushed.conjugate(), mesh.by_pose).real.mean(axis=0)
+            # The load drives the cranks against the teeth in this sense.
+            compliance, by_pose = mesh.together(float(drive.driving_sign))
         return cls(drive=drive, pose=pose, mesh=mesh, mesh_compliance=compliance, mesh_by_pose=by_pose)
 
     @property

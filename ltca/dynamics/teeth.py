@@ -81,6 +81,7 @@ class Teeth:
         self._cranks = motion.drive.crank.number
         self._half_free = float(np.squeeze(stage.half_free))
         self._pushed = {sense: stage.on_planets(np.full((1, self._cranks), sense))[1][0] for sense in (1.0, -1.0)}
+        self._together = {sense: stage.together(sense) for sense in (1.0, -1.0)}
         self._bears = model.supports is not None and bool(model.supports.cranks) and stage.yields
         wheel = [motion.pose.wheel_place] if motion.pose.wheel else []
         self._wheel = np.concatenate(
@@ -94,8 +95,7 @@ class Teeth:
         by_pose = np.matmul(stage.by_pose, pose)
         sense, total, given, closed = self._carried(x, own, by_pose, float(moments.sum()))
         shares = (own + total / self._cranks)[None]
-        pushed = self._pushed[sense]
-        row, each = self._row(pushed), self._lag(pushed, by_pose, given)
+        compliance, by_coordinates = self._together[sense]
         force, stiffness, energy = np.zeros(motion.size), np.zeros((motion.size, motion.size)), 0.0
         on_planets = stage.on_planets(shares)[0]
         force[: pose.size] -= stage.on_coordinates(on_planets)[0]
@@ -105,9 +105,11 @@ class Teeth:
         else:
             force[motion.crank] -= total
             force[motion.sun] += total
-            energy = 0.5 * motion.mesh_compliance * total**2
+            energy = 0.5 * compliance * total**2
             if closed:
-                stiffness += np.outer(row, row) / motion.mesh_compliance
+                row = motion.unit(motion.crank) - motion.unit(motion.sun)
+                row[: pose.size] += by_coordinates
+                stiffness += np.outer(row, row) / compliance
         on_wheel = self._on_wheel(shares)
         force[self._wheel] -= on_wheel
         return TeethForces(
@@ -116,7 +118,7 @@ class Teeth:
             carried=stage.beside_discs(on_planets)[0] if self._bears else None,
             energy=energy,
             uneven=np.concatenate((own, on_wheel)),
-            moved=np.concatenate((each, x[self._wheel])),
+            moved=np.concatenate((self._lag(self._pushed[sense], by_pose, given), x[self._wheel])),
         )
 
     def _carried(
@@ -125,7 +127,7 @@ class Teeth:
         """Flank that carries, moment of all cranks, displacements in their bearings, and whether a flank touches."""
         motion = self._motion
         if motion.sun is None:
-            sense = -float(motion.drive.driving_sign)
+            sense = float(motion.drive.driving_sign)
             return sense, without_sun, self._given(x, own, without_sun), True
         apart = float(x[motion.crank] - x[motion.sun])
 
@@ -133,7 +135,7 @@ class Teeth:
             given, found = self._given(x, own, total), 0.0
             for sense, pushed in self._pushed.items():
                 lag = apart + float(self._lag(pushed, by_pose, given).mean())
-                found -= sense * min(sense * lag + self._half_free, 0.0) / motion.mesh_compliance
+                found -= sense * min(sense * lag + self._half_free, 0.0) / self._together[sense][0]
             return found, given
 
         total, given = follows(0.0)
@@ -161,13 +163,6 @@ class Teeth:
         """p·u of every crank, rad."""
         moved = by_pose if given is None else by_pose + np.matmul(given, self._stage.by_bearings)
         return np.asarray((pushed.conjugate() * moved).real.sum(axis=-1))
-
-    def _row(self, pushed: ComplexArray) -> FloatArray:
-        """Derivative of e by the coordinates, bearings held."""
-        motion = self._motion
-        found = motion.unit(motion.crank) - motion.unit(motion.sun)
-        found[: motion.pose.size] += np.einsum("ci,cin->cn", pushed.conjugate(), self._stage.by_pose).real.mean(axis=0)
-        return found
 
     def _on_wheel(self, shares: FloatArray) -> FloatArray:
         """Force of the sun on the wheel, and what it presses its lean with, over their coordinates."""
