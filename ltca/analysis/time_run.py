@@ -674,6 +674,12 @@ def samples_of(course: Course, drive: Drive) -> int:
     return 1 + int(min(max(np.ceil(PER_TURN * turns), FEWEST_SAMPLES), MOST_SAMPLES))
 
 
+def longest_step(run: PreparedRun) -> float:
+    """Return the longest step of the solver, s: `STEPS_PER_PIN` while the crank turns by the pitch of the wheel pins."""
+    crank_speed = run.course.speed * 2.0 * np.pi / 60.0 * abs(run.drive.crank_turns_per_input)
+    return 2.0 * np.pi / (run.drive.pin_wheel.number_of_pins * crank_speed * STEPS_PER_PIN)
+
+
 def run_in_time(
     run: PreparedRun,
     *,
@@ -716,8 +722,6 @@ def run_in_time(
         recorder.go_on(resumed)
         time, state, step = resumed.time, resumed.state, resumed.step
         advance(resumed.rows)
-    crank_speed = run.course.speed * 2.0 * np.pi / 60.0 * abs(run.drive.crank_turns_per_input)
-    longest = 2.0 * np.pi / (run.drive.pin_wheel.number_of_pins * crank_speed * STEPS_PER_PIN)
     evaluations = 0
     if time < end:
         solver = DOP853(
@@ -725,7 +729,7 @@ def run_in_time(
             time,
             state,
             end,
-            max_step=longest,
+            max_step=longest_step(run),
             rtol=RELATIVE_TOLERANCE,
             atol=run.tolerances(),
             first_step=min(step, end - time),
