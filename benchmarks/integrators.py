@@ -53,8 +53,8 @@ def loads_in_time(run: PreparedRun, states: FloatArray, times: FloatArray) -> Fl
     """Return the loads of all wheel pins at times, shape (times, pins)."""
     found = []
     for at, state in zip(times.tolist(), states.T, strict=True):
-        _, _, now = run.equation.solved(at, state)
-        found.append(np.concatenate([disc.pin_load for disc in now.discs]))
+        discs = run.equation.solved(at, state).forces.discs
+        found.append(np.concatenate([disc.pin_load for disc in discs]))
     return np.array(found)
 
 

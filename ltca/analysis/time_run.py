@@ -417,8 +417,9 @@ class PreparedRun:
     def fastest(self) -> float:
         """Highest frequency at the start, rad/s."""
         equation = self.equation
-        mass = equation.kinetic.at(*equation.place(0.0, self.start))[0]
-        stiffness, basis = equation.solved(0.0, self.start)[2].stiffness, equation.basis
+        there = equation.solved(0.0, self.start)
+        mass = equation.kinetic.at(there.place, there.rate)[0]
+        stiffness, basis = there.forces.stiffness, equation.basis
         square = np.linalg.eigvals(np.linalg.solve(basis.T @ mass @ basis, basis.T @ stiffness @ basis))
         return float(np.sqrt(np.abs(square).max()))
 
@@ -605,8 +606,7 @@ class Recorder:
         """Take the next sample, of a state."""
         run, row = self._run, self.rows
         time, equation = float(self.times[row]), run.equation
-        _, torque, now = equation.solved(time, state)
-        x, rate = equation.place(time, state)
+        _, torque, now, x, rate = equation.solved(time, state)
         contacts = equation.contacts
         stored, curvature, stations = np.nan, np.nan, np.nan
         if contacts.has_energy:

@@ -21,7 +21,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.linalg.lapack import dposv, dsygv
@@ -41,6 +41,18 @@ REST_STEPS, REST_SETTLED, REST_HALVINGS = 200, 1e-10, 4
 
 Profile = Callable[[float], tuple[float, float, float]]
 """Angle, speed and acceleration of the input at a time."""
+
+
+class Moment(NamedTuple):
+    """What the equation of motion gives for a state: its rate, the torque at the input, ccw positive, N·mm, the forces, and the
+    coordinates of all parts and their rates.
+    """
+
+    state_rate: FloatArray
+    input_torque: float
+    forces: Instant
+    place: FloatArray
+    rate: FloatArray
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -115,10 +127,10 @@ class Equation:
 
     def rates(self, time: float, state: FloatArray) -> FloatArray:
         """Return the rate of a state, shape (2m + 4,)."""
-        return self.solved(time, state)[0]
+        return self.solved(time, state).state_rate
 
-    def solved(self, time: float, state: FloatArray) -> tuple[FloatArray, float, Instant]:
-        """Return the rate of a state, the torque at the input, ccw positive, N·mm, and the forces."""
+    def solved(self, time: float, state: FloatArray) -> Moment:
+        """Return the rate of a state, and what goes with it."""
         m, basis = self.freedoms, self.basis
         x, rate, known_forces, followed = self._moment(time, state)
         mass, inertia = self.kinetic.at(x, rate)
@@ -144,7 +156,7 @@ class Equation:
         found[2 * m + 1] = -(loaded @ rate)
         found[2 * m + 2] = damped @ rate
         found[2 * m + 3] = now.friction @ rate
-        return found, torque, now
+        return Moment(found, torque, now, x, rate)
 
     def _damping(self, stiffness: FloatArray, mass: FloatArray, basis: FloatArray) -> FloatArray:
         """C at the state of the moment, shape (n, n), of motions that parts without mass follow."""
