@@ -488,18 +488,22 @@ def prepare_run(drive: Drive, engine: Engine, course: Course) -> PreparedRun:
         damping_ratio=0.0 if warm.damping is None else warm.damping.ratio_at_resonance,
         massless=MasslessParts(columns, np.zeros(massless.size), model.friction is not None) if massless.size else None,
     )
-    smooth = replace(model, friction=None)
-    found = solve_at_output(smooth, [warm], np.zeros(1), warm.load.torque * course.load_factor(0.0), gaps=False)
-    first = np.zeros(motion.size)
-    first[: motion.pose.size] = found.pose[0]
-    first -= lead * float(turns @ first)
-    whole = equation.whole
-    y = equation.at_rest(0.0, np.asarray(np.linalg.lstsq(whole, first, rcond=None)[0], dtype=float))
+    whole, at_first = equation.whole, warm.load.torque * course.load_factor(0.0)
+
+    def balanced(crank_angle: FloatArray) -> FloatArray:
+        """Balanced without friction, y of each position, shape (positions, m + k)."""
+        found = solve_at_output(replace(model, friction=None), [warm], crank_angle, at_first, gaps=False)
+        places = np.zeros((crank_angle.size, motion.size))
+        places[:, : motion.pose.size] = found.pose
+        places -= np.outer(places @ turns, lead)
+        return np.asarray(np.linalg.lstsq(whole, places.T, rcond=None)[0].T, dtype=float)
+
+    y = equation.at_rest(0.0, balanced(np.zeros(1))[0])
     slow = QUASI_STATIC_STEP / abs(float(lead[motion.crank]))
     ends = [replace(equation, input_motion=_passing(side * slow, told(0.0)[1])).at_rest(0.0, y) for side in (-1.0, 1.0)]
     rate = (ends[1] - ends[0]) / (2.0 * slow) * told(0.0)[1]
     if course.driven_by == "torque":
-        torque = _mean_input_torque(equation, motion, y, told(0.0)[1])
+        torque = _mean_input_torque(equation, motion, balanced, told(0.0)[1])
         free = _spans(np.zeros(motion.size), lever, massless)[0]
         equation = replace(equation, basis=free, input_torque=torque)
         y, rate = (np.asarray(np.linalg.solve(equation.whole, whole @ each)) for each in (y, rate))
@@ -530,20 +534,20 @@ def _passing(angle: float, speed: float) -> Profile:
     return lambda _: (angle, speed, 0.0)
 
 
-def _mean_input_torque(equation: Equation, motion: Motion, y: FloatArray, speed: float) -> float:
+def _mean_input_torque(
+    equation: Equation, motion: Motion, balanced: Callable[[FloatArray], FloatArray], speed: float
+) -> float:
     """Torque that balances the load with friction in the mean of a turn of the crank, ccw positive, N·mm.
 
-    Positions follow one another from the state `y` at the begin of the turn; displacements go round with the crank.
+    `balanced` gives states without friction at crank angles, from which those with friction are found.
     """
     if not equation.contacts.rubs:
         return -float(equation.output_torque(0.0) * (equation.output_turns @ equation.lead))  # by the ratio
     torques, by_crank = [], float(equation.lead[motion.crank])
-    step = np.sign(speed * by_crank) * 2.0 * np.pi / BALANCED_PER_TURN
-    onward = np.linalg.pinv(equation.whole) @ motion.turned(np.array([step]))[0] @ equation.whole
-    for part in range(BALANCED_PER_TURN):
-        there = replace(equation, input_motion=_passing(part * step / by_crank, speed))
-        y = there.at_rest(0.0, onward @ y if part else y)
-        torques.append(there.input_torque_at_rest(0.0, y))
+    angles = np.arange(BALANCED_PER_TURN) * 2.0 * np.pi / BALANCED_PER_TURN
+    for angle, start in zip(angles.tolist(), balanced(angles), strict=True):
+        there = replace(equation, input_motion=_passing(angle / by_crank, speed))
+        torques.append(there.input_torque_at_rest(0.0, there.at_rest(0.0, start)))
     return float(np.mean(torques))
 
 

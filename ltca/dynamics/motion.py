@@ -36,8 +36,10 @@ WORKS = ("input", "output", "damping", "friction")
 """Works that the state ends with."""
 SOFTEST = 1e-3
 """Frequency by the highest one below which a motion counts as free, and is not damped."""
-REST_STEPS, REST_SETTLED, REST_HALVINGS = 200, 1e-10, 4
+REST_STEPS, REST_SETTLED, REST_HALVINGS = 200, 1e-10, 8
 """Steps to a balanced state, the last one by the largest coordinate, mm, and how often one is halved that leaves more."""
+REST_PLAIN, REST_ASIDE = 12, 1e-7
+"""Steps by the stiffness alone, which leaves friction out, and places aside by which it is differenced after them, mm."""
 
 Profile = Callable[[float], tuple[float, float, float]]
 """Angle, speed and acceleration of the input at a time."""
@@ -184,18 +186,26 @@ class Equation:
             Where it is not found.
         """
         y, (angle, speed, _), whole = start.copy(), self.input_motion(time), self.whole
+        torque = self.output_torque(time) * self.output_turns
+
+        def left_over(there: FloatArray) -> tuple[FloatArray, Instant]:
+            now = self.contacts.at(whole @ there + self.lead * angle, self.lead * speed)
+            return np.asarray(whole.T @ (now.force + now.friction - torque - now.outside)), now
+
         history: list[float] = []
         step: FloatArray = np.zeros(y.size)
         before, halved = np.inf, 0
         for _ in range(REST_STEPS):
-            now = self.contacts.at(whole @ y + self.lead * angle, self.lead * speed)
-            loaded = self.output_torque(time) * self.output_turns + now.outside
-            left = whole.T @ (now.force + now.friction - loaded)
+            left, now = left_over(y)
             if (size := float(np.linalg.norm(left))) > before and halved < REST_HALVINGS:
                 step, halved = 0.5 * step, halved + 1
                 y = y + step
                 continue
-            matrix = whole.T @ now.stiffness @ whole
+            if len(history) < REST_PLAIN:
+                matrix = whole.T @ now.stiffness @ whole
+            else:
+                aside = REST_ASIDE * np.eye(y.size)
+                matrix = np.array([(left_over(y + one)[0] - left) / REST_ASIDE for one in aside]).T
             try:
                 step = np.asarray(np.linalg.solve(matrix, left), dtype=float)
             except np.linalg.LinAlgError as problem:
