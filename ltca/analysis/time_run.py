@@ -426,8 +426,9 @@ class PreparedRun:
     def fastest(self) -> float:
         """Highest frequency at the start, rad/s."""
         equation = self.equation
-        mass = equation.kinetic.at(*equation.place(0.0, self.start))[0]
-        stiffness, basis = equation.solved(0.0, self.start)[2].stiffness, equation.basis
+        there = equation.solved(0.0, self.start)
+        mass = equation.kinetic.at(there.place, there.rate)[0]
+        stiffness, basis = there.forces.stiffness, equation.basis
         square = np.linalg.eigvals(np.linalg.solve(basis.T @ mass @ basis, basis.T @ stiffness @ basis))
         return float(np.sqrt(np.abs(square).max()))
 
@@ -457,7 +458,7 @@ def prepare_run(drive: Drive, engine: Engine, course: Course) -> PreparedRun:
     Raises
     ------
     DriveError
-        For what a run in time leaves out, by name: teeth that press on parts that yield, a twist of the
+        For what a run in time leaves out, by name: rigid teeth with backlash, or before posts, on rigid cranks, a twist of the
         carrier without mass, an input of no inertia that a torque drives, a torque of zero.
     ConvergenceError
         Where no balanced state is found to start from.
@@ -494,20 +495,25 @@ def prepare_run(drive: Drive, engine: Engine, course: Course) -> PreparedRun:
         damping_ratio=0.0 if warm.damping is None else warm.damping.ratio_at_resonance,
         massless=MasslessParts(columns, np.zeros(massless.size), works) if massless.size else None,
     )
-    smooth = replace(model, friction=None)
-    found = solve_at_output(smooth, [warm], np.zeros(1), warm.load.torque * course.load_factor(0.0), gaps=False)
-    first = np.zeros(motion.size)
-    first[: motion.pose.size] = found.pose[0]
-    if motion.sun is not None:
-        first[motion.sun] = -crank_lag(smooth, found)[0]
-    first -= lead * float(turns @ first)
-    whole = equation.whole
-    y = equation.at_rest(0.0, np.asarray(np.linalg.lstsq(whole, first, rcond=None)[0], dtype=float))
+    whole, at_first = equation.whole, warm.load.torque * course.load_factor(0.0)
+
+    def balanced(crank_angle: FloatArray) -> FloatArray:
+        """Balanced without friction, y of each position, shape (positions, m + k)."""
+        smooth = replace(model, friction=None)
+        found = solve_at_output(smooth, [warm], crank_angle, at_first, gaps=False)
+        places = np.zeros((crank_angle.size, motion.size))
+        places[:, : motion.pose.size] = found.pose
+        if motion.sun is not None:
+            places[:, motion.sun] = -crank_lag(smooth, found)
+        places -= np.outer(places @ turns, lead)
+        return np.asarray(np.linalg.lstsq(whole, places.T, rcond=None)[0].T, dtype=float)
+
+    y = equation.at_rest(0.0, balanced(np.zeros(1))[0])
     slow = QUASI_STATIC_STEP / abs(float(lead[motion.crank]))
     ends = [replace(equation, input_motion=_passing(side * slow, told(0.0)[1])).at_rest(0.0, y) for side in (-1.0, 1.0)]
     rate = (ends[1] - ends[0]) / (2.0 * slow) * told(0.0)[1]
     if course.driven_by == "torque":
-        torque = _mean_input_torque(equation, motion, y, told(0.0)[1])
+        torque = _mean_input_torque(equation, motion, balanced, told(0.0)[1])
         free = _spans(np.zeros(motion.size), lever, massless)[0]
         equation = replace(equation, basis=free, input_torque=torque)
         y, rate = (np.asarray(np.linalg.solve(equation.whole, whole @ each)) for each in (y, rate))
@@ -540,20 +546,20 @@ def _passing(angle: float, speed: float) -> Profile:
     return lambda _: (angle, speed, 0.0)
 
 
-def _mean_input_torque(equation: Equation, motion: Motion, y: FloatArray, speed: float) -> float:
+def _mean_input_torque(
+    equation: Equation, motion: Motion, balanced: Callable[[FloatArray], FloatArray], speed: float
+) -> float:
     """Torque that balances the load with friction in the mean of a turn of the crank, ccw positive, N·mm.
 
-    Positions follow one another from the state `y` at the begin of the turn; displacements go round with the crank.
+    `balanced` gives states without friction at crank angles, from which those with friction are found.
     """
     if not equation.contacts.rubs:
         return -float(equation.output_torque(0.0) * (equation.output_turns @ equation.lead))  # by the ratio
     torques, by_crank = [], float(equation.lead[motion.crank])
-    step = np.sign(speed * by_crank) * 2.0 * np.pi / BALANCED_PER_TURN
-    onward = np.linalg.pinv(equation.whole) @ motion.turned(np.array([step]))[0] @ equation.whole
-    for part in range(BALANCED_PER_TURN):
-        there = replace(equation, input_motion=_passing(part * step / by_crank, speed))
-        y = there.at_rest(0.0, onward @ y if part else y)
-        torques.append(there.input_torque_at_rest(0.0, y))
+    angles = np.arange(BALANCED_PER_TURN) * 2.0 * np.pi / BALANCED_PER_TURN
+    for angle, start in zip(angles.tolist(), balanced(angles), strict=True):
+        there = replace(equation, input_motion=_passing(angle / by_crank, speed))
+        torques.append(there.input_torque_at_rest(0.0, there.at_rest(0.0, start)))
     return float(np.mean(torques))
 
 
@@ -617,8 +623,7 @@ class Recorder:
         """Take the next sample, of a state."""
         run, row = self._run, self.rows
         time, equation = float(self.times[row]), run.equation
-        _, torque, now = equation.solved(time, state)
-        x, rate = equation.place(time, state)
+        _, torque, now, x, rate = equation.solved(time, state)
         contacts = equation.contacts
         stored, curvature, stations = np.nan, np.nan, np.nan
         if contacts.has_energy:
@@ -691,6 +696,12 @@ def samples_of(course: Course, drive: Drive) -> int:
     return 1 + int(min(max(np.ceil(PER_TURN * turns), FEWEST_SAMPLES), MOST_SAMPLES))
 
 
+def longest_step(run: PreparedRun) -> float:
+    """Return the longest step of the solver, s: `STEPS_PER_PIN` while the crank turns by the pitch of the wheel pins."""
+    crank_speed = run.course.speed * 2.0 * np.pi / 60.0 * abs(run.drive.crank_turns_per_input)
+    return 2.0 * np.pi / (run.drive.pin_wheel.number_of_pins * crank_speed * STEPS_PER_PIN)
+
+
 def run_in_time(
     run: PreparedRun,
     *,
@@ -733,8 +744,6 @@ def run_in_time(
         recorder.go_on(resumed)
         time, state, step = resumed.time, resumed.state, resumed.step
         advance(resumed.rows)
-    crank_speed = run.course.speed * 2.0 * np.pi / 60.0 * abs(run.drive.crank_turns_per_input)
-    longest = 2.0 * np.pi / (run.drive.pin_wheel.number_of_pins * crank_speed * STEPS_PER_PIN)
     evaluations = 0
     if time < end:
         solver = DOP853(
@@ -742,7 +751,7 @@ def run_in_time(
             time,
             state,
             end,
-            max_step=longest,
+            max_step=longest_step(run),
             rtol=RELATIVE_TOLERANCE,
             atol=run.tolerances(),
             first_step=min(step, end - time),

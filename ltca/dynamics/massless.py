@@ -52,6 +52,7 @@ class MasslessParts:
         self.columns, self.rubs = columns, rubs
         self._place, self._slope = place.copy(), np.zeros((columns.shape[1], columns.shape[0]))
         self._others: FloatArray | None = None
+        self._following = np.zeros(columns.shape[1])
 
     def settle(
         self, others: FloatArray, rate: FloatArray, respond: Respond
@@ -74,14 +75,16 @@ class MasslessParts:
         place = self._place if self._others is None else self._place + self._slope @ (others - self._others)
         fastest = float(np.abs(rate).max())
         onward = ONWARD / fastest if self.rubs and fastest > 0.0 else 0.0
-        moving = rate + columns @ (self._slope @ rate)
+        # Last rates are those of a hair before: what K misses of the slope of f, friction above all, counts for their change.
+        following = self._following if onward else self._slope @ rate
+        moving = rate + columns @ following
 
         def left_over(now: Instant, outer: FloatArray) -> FloatArray:
             return np.asarray(columns.T @ (now.force + now.friction - outer))
 
-        ahead = left_over(*respond(others + rate * onward + columns @ place, moving)) if onward else None
+        ahead = left_over(*respond(others + columns @ place + onward * moving, moving)) if onward else None
         step: FloatArray = np.zeros(place.size)
-        before, halved, following = np.inf, 0, self._slope @ rate
+        before, halved = np.inf, 0
         history: list[float] = []
         for _ in range(STEPS):
             now, outer = respond(others + columns @ place, moving)
@@ -96,13 +99,13 @@ class MasslessParts:
             count = columns.shape[0]
             self._slope, step, before, halved = -solved[:, :count], solved[:, count], size, 0
             if ahead is not None:
-                following, ahead = (step - solved[:, count + 1]) / onward, None
+                following, ahead = following + (step - solved[:, count + 1]) / onward, None
             elif not onward:
                 following = self._slope @ rate
             moving, place = rate + columns @ following, place - step
             history.append(float(np.abs(step).max()))
             if history[-1] <= SETTLED:
-                self._place, self._others = place, others
+                self._place, self._others, self._following = place, others, following
                 now = replace(now, force=now.force - now.stiffness @ (columns @ step))
                 return others + columns @ place, moving, now, self._slope
         raise ConvergenceError("parts without mass find no balance in motion; last steps in mm", history)

@@ -21,7 +21,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.linalg.lapack import dposv, dsygv
@@ -36,11 +36,25 @@ WORKS = ("input", "output", "damping", "friction")
 """Works that the state ends with."""
 SOFTEST = 1e-3
 """Frequency by the highest one below which a motion counts as free, and is not damped."""
-REST_STEPS, REST_SETTLED, REST_HALVINGS = 200, 1e-10, 4
+REST_STEPS, REST_SETTLED, REST_HALVINGS = 200, 1e-10, 8
 """Steps to a balanced state, the last one by the largest coordinate, mm, and how often one is halved that leaves more."""
+REST_PLAIN, REST_ASIDE = 12, 1e-7
+"""Steps by the stiffness alone, which leaves friction out, and places aside by which it is differenced after them, mm."""
 
 Profile = Callable[[float], tuple[float, float, float]]
 """Angle, speed and acceleration of the input at a time."""
+
+
+class Moment(NamedTuple):
+    """What the equation of motion gives for a state: its rate, the torque at the input, ccw positive, N·mm, the forces, and the
+    coordinates of all parts and their rates.
+    """
+
+    state_rate: FloatArray
+    input_torque: float
+    forces: Instant
+    place: FloatArray
+    rate: FloatArray
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -115,10 +129,10 @@ class Equation:
 
     def rates(self, time: float, state: FloatArray) -> FloatArray:
         """Return the rate of a state, shape (2m + 4,)."""
-        return self.solved(time, state)[0]
+        return self.solved(time, state).state_rate
 
-    def solved(self, time: float, state: FloatArray) -> tuple[FloatArray, float, Instant]:
-        """Return the rate of a state, the torque at the input, ccw positive, N·mm, and the forces."""
+    def solved(self, time: float, state: FloatArray) -> Moment:
+        """Return the rate of a state, and what goes with it."""
         m, basis = self.freedoms, self.basis
         x, rate, known_forces, followed = self._moment(time, state)
         mass, inertia = self.kinetic.at(x, rate)
@@ -144,7 +158,7 @@ class Equation:
         found[2 * m + 1] = -(loaded @ rate)
         found[2 * m + 2] = damped @ rate
         found[2 * m + 3] = now.friction @ rate
-        return found, torque, now
+        return Moment(found, torque, now, x, rate)
 
     def _damping(self, stiffness: FloatArray, mass: FloatArray, basis: FloatArray) -> FloatArray:
         """C at the state of the moment, shape (n, n), of motions that parts without mass follow."""
@@ -172,18 +186,26 @@ class Equation:
             Where it is not found.
         """
         y, (angle, speed, _), whole = start.copy(), self.input_motion(time), self.whole
+        torque = self.output_torque(time) * self.output_turns
+
+        def left_over(there: FloatArray) -> tuple[FloatArray, Instant]:
+            now = self.contacts.at(whole @ there + self.lead * angle, self.lead * speed)
+            return np.asarray(whole.T @ (now.force + now.friction - torque - now.outside)), now
+
         history: list[float] = []
         step: FloatArray = np.zeros(y.size)
         before, halved = np.inf, 0
         for _ in range(REST_STEPS):
-            now = self.contacts.at(whole @ y + self.lead * angle, self.lead * speed)
-            loaded = self.output_torque(time) * self.output_turns + now.outside
-            left = whole.T @ (now.force + now.friction - loaded)
+            left, now = left_over(y)
             if (size := float(np.linalg.norm(left))) > before and halved < REST_HALVINGS:
                 step, halved = 0.5 * step, halved + 1
                 y = y + step
                 continue
-            matrix = whole.T @ now.stiffness @ whole
+            if len(history) < REST_PLAIN:
+                matrix = whole.T @ now.stiffness @ whole
+            else:
+                aside = REST_ASIDE * np.eye(y.size)
+                matrix = np.array([(left_over(y + one)[0] - left) / REST_ASIDE for one in aside]).T
             try:
                 step = np.asarray(np.linalg.solve(matrix, left), dtype=float)
             except np.linalg.LinAlgError as problem:

@@ -10,7 +10,11 @@ import pytest
 
 from ltca.commands.actions import time_run
 from ltca.commands.program import main
+from ltca.drive.members.temperatures import warm_drive
+from ltca.drive.single_discs import single_discs
 from ltca.output.netcdf import read_netcdf
+from ltca.reading.drive_file import load_drive
+from ltca.testing.closed_form_bodies import closed_form_coefficients
 
 RUN = ["dynamics", "paper", "--case", "CS-1", "--speed", "1500", "--compliance", "half-space"]
 
@@ -30,6 +34,22 @@ def test_a_run_writes_what_it_says(tmp_path, capsys):
     assert torque[-1] / torque[0] == pytest.approx(1.5, rel=1e-12)
     assert (out / "report.html").exists()
     assert not (out / "checkpoint").exists()
+
+
+@pytest.mark.slow
+def test_a_run_on_bodies_that_feel_each_other(tmp_path, capsys):
+    """From coefficients to the page; the energy of contacts that move over the bodies closes to 1e-4, asked for beforehand."""
+    bodies, out = tmp_path / "bodies.nc", tmp_path / "here"
+    single, *_ = single_discs(warm_drive(load_drive("paper").cases["CS-1"]))
+    closed_form_coefficients(single, half_width=0.02, depth=300.0).to_netcdf(bodies, engine="h5netcdf")
+    asked = [*RUN[:-1], "hybrid", "--coefficients", str(bodies), "--time", "0.02 ms", "--out", str(out)]
+    assert main(asked) == 0
+    assert "CS-1, 377.3 N·m ccw, hybrid: steady in time" in capsys.readouterr().out
+    energy = json.loads((out / "time.json").read_text())["energy_N_mm"]
+    assert abs(energy["left_by_throughput"]) < 1e-4
+    assert abs(energy["stations"]) > 10.0 * abs(energy["left"])
+    assert read_netcdf(out / "time.nc", "run").attrs["engine"].startswith("hybrid")
+    assert (out / "report.html").exists()
 
 
 @pytest.mark.parametrize(

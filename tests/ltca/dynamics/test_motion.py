@@ -58,6 +58,17 @@ def drive_of(name):
     return {
         **first,
         "plastic": with_fields(next(iter(load_drive(path).cases.values())), {"contact.slices": 1}),
+        "plastic, tied, jams nearly": with_fields(
+            next(iter(load_drive(path).cases.values())),
+            {
+                "contact.slices": 1,
+                "pin_shaft.stiffness": None,
+                "pin_shaft.beam.tip": "tied-pinned",
+                "friction.pin": 0.2,
+                "friction.hole": 0.2,
+                "inertia.input": 1e-4,
+            },
+        ),
         "two discs held pin-wheel": with_fields(
             first["robot-joint"], {"installation.held": "pin-wheel", "damping.ratio": 0.03}
         ),
@@ -252,9 +263,10 @@ COURSES = [
     ("plastic", Course.of_values("reverse", 6e-3, 1500.0)),
     ("rv", Course.of_values("steady", 2e-3, 1500.0)),
     ("paper, tied, damped", Course.of_values("steady", 4e-4, 1500.0)),
-    ("paper, tied, rubs", Course.of_values("sine", 2e-3, 1500.0, "torque", frequency=500.0)),
+    ("paper, tied, rubs", Course.of_values("sine", 1e-3, 1500.0, "torque", frequency=500.0)),
+    ("plastic, tied, jams nearly", Course.of_values("steady", 5e-4, 1500.0, "torque")),
     ("rv, posts, twist", Course.of_values("step", 3e-4, 1500.0)),
-    ("paper, pushed", Course.of_values("start", 4e-3, 1500.0, within=2e-3)),
+    ("paper, pushed", Course.of_values("start", 2e-3, 1500.0, within=1e-3)),
     ("pushed, held pin-wheel", Course.of_values("steady", 3e-4, 1500.0)),
     ("sleeved", Course.of_values("steady", 3e-5, 1500.0)),
     ("elastic ring", Course.of_values("steady", 3e-5, 1500.0)),

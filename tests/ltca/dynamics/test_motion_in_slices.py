@@ -147,7 +147,7 @@ def test_small_rocking_is_the_mode():
 @pytest.mark.parametrize(
     ("name", "course"),
     [
-        ("paper, rubs", Course.of_values("steady", 1e-4, 1500.0)),
+        ("paper, rubs", Course.of_values("steady", 5e-5, 1500.0)),
         pytest.param("paper, light", Course.of_values("reverse", 1e-3, 1500.0, at=1e-4, within=6e-4), marks=NIGHTLY),
         pytest.param("two discs held pin-wheel", Course.of_values("steady", 5e-5, 1500.0), marks=SLOW),
         pytest.param("wheel leans", Course.of_values("steady", 5e-5, 1500.0), marks=SLOW),
@@ -156,7 +156,7 @@ def test_small_rocking_is_the_mode():
 )
 def test_energy_closes(name, course):
     """Input and work of curvature less output, losses and change of what is stored: 1e-5 of the throughput was asked for."""
-    energy = run_in_time(prepared(name, course), samples=41).energy
+    energy = run_in_time(prepared(name, course), samples=11).energy
     assert abs(energy.relative) < 1e-5
     if name == "paper, rubs":
         assert energy.friction > 1e-3 * energy.throughput
@@ -232,7 +232,8 @@ def test_leans_without_mass_are_in_balance(name):
     own, half_width = run.motion.light_leans, float(np.max(equation.contacts._model.discs[0].geometry.half_width))
     assert own.size
     now, before = equation.contacts.at(x, rate), equation.place(0.0, run.start)[0]
-    assert half_width * np.abs(np.linalg.solve(now.stiffness[np.ix_(own, own)], now.force[own])).max() < 1e-8
+    left = (now.force - now.outside)[own]
+    assert half_width * np.abs(np.linalg.solve(now.stiffness[np.ix_(own, own)], left)).max() < 1e-8
     assert half_width * np.abs(x - before)[own].max() > 1e-6  # they do follow
 
 
@@ -319,6 +320,7 @@ def test_inertia_forces_of_leans_are_those_of_lagrange():
     assert bias == pytest.approx(expected, abs=1e-6 * np.abs(expected).max())
 
 
+@pytest.mark.slow
 def test_tilts_of_a_run_are_those_of_the_analysis():
     """At the begin, which is in balance: rotation vectors about the same axes as the quasi-static dataset has, 1e-3 asked for."""
     course = Course.of_values("steady", 1e-6, 1.0)
