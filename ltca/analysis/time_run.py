@@ -37,7 +37,6 @@ from ltca.dynamics.teeth import TeethForces
 from ltca.equilibrium.balance import lever_arms
 from ltca.equilibrium.output_angle import crank_lag
 from ltca.equilibrium.output_torque import solve_at_output
-from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError, DriveError
 
 MOTIONS = {
@@ -573,9 +572,13 @@ def _require_supported(drive: Drive, motion: Motion, course: Course) -> None:
     if stage is not None and motion.sun is None:
         rigid = "with rigid teeth and cranks a run in time has nothing between sun and cranks"
         if stage.backlash:
-            problems.append(f"first_stage.backlash = {stage.backlash:g} mm: {rigid}; first_stage.mesh_stiffness must be given")
+            problems.append(
+                f"first_stage.backlash = {stage.backlash:g} mm: {rigid}; first_stage.mesh_stiffness must be given"
+            )
         elif np.any(motion.mesh_by_pose):
-            problems.append(f"carrier.posts: {rigid}, and the far flange has no mass; first_stage.mesh_stiffness must be given")
+            problems.append(
+                f"carrier.posts: {rigid}, and the far flange has no mass; first_stage.mesh_stiffness must be given"
+            )
     if course.driven_by == "torque" and (drive.inertia is None or drive.inertia.input is None):
         problems.append("inertia.input: must be given for an input that a torque drives, kg·m²")
     if problems:

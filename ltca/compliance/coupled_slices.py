@@ -125,9 +125,7 @@ def stored_by_bodies(
     model: CoupledBodies, crank_angle: FloatArray, pose: FloatArray, response: DiscResponse
 ) -> StoredEnergy:
     """Return what the contacts of a response and the bodies between them store, its angles and poses given."""
-    here = ContactsInSlices(
-        model.geometry, crank_angle, pose, response.flank, response.shifts, response.leans
-    )
+    here = ContactsInSlices(model.geometry, crank_angle, pose, response.flank, response.shifts, response.leans)
     bodies, rollers = _Bodies(model, here, pose), response.rollers
     pins, holes = response.leaning_pins, response.leaning_holes
     near = stacked(response.warm_start)

@@ -239,8 +239,8 @@ def stored_in_slices(
     hole_radii : array
         Effective radii of shaft pins in their holes, mm.
     given, given_tilts : tuple of array
-        What bodies take of the approaches, mm, and tilts, rad, of wheel pins, bores, holes and races; tilts of rollers are without
-        it.
+        What bodies take of the approaches, mm, and tilts, rad, of wheel pins, bores, holes and races; tilts of rollers are
+        without it.
     """
     pins, holes, own = response.leaning_pins, response.leaning_holes, response.rollers
     assert pins is not None
@@ -256,7 +256,13 @@ def stored_in_slices(
             pins.contact.near,
         ),
         [
-            (laws[1], response.holes.approach - given[2], holes.tilt.tilt - given_tilts[2], hole_radii, holes.contact.near),
+            (
+                laws[1],
+                response.holes.approach - given[2],
+                holes.tilt.tilt - given_tilts[2],
+                hole_radii,
+                holes.contact.near,
+            ),
             (rollers.outer, own.outer_approach - given[1], own.outer_tilt, rollers.outer_radius, own.outer_near),
             (rollers.inner, own.inner_approach - given[3], own.inner_tilt, rollers.inner_radius, own.inner_near),
         ],

@@ -307,7 +307,7 @@ def _slip(geometry: ContactGeometry, crank_angle: FloatArray, pose: FloatArray, 
     """
     slip = Slip.of_disc(geometry, crank_angle, pose, part).by_pose[0]
     if part.leaning_pins is None or part.leaning_holes is None:
-        return slip
+        return np.asarray(slip)
     coordinates, pins = geometry.coordinates_of(pose), part.pin_load.shape[1]
     load = np.concatenate((part.pin_load[0], part.hole_load[0]))
     moment = np.concatenate((part.leaning_pins.contact.moment[0], part.leaning_holes.contact.moment[0]))
@@ -316,7 +316,7 @@ def _slip(geometry: ContactGeometry, crank_angle: FloatArray, pose: FloatArray, 
     slip[:, coordinates.lean_place] += along
     if coordinates.wheel_leans:
         slip[:pins, coordinates.wheel_lean_place] -= along[:pins]
-    return slip
+    return np.asarray(slip)
 
 
 def _springs(motion: Motion) -> FloatArray:

@@ -383,7 +383,9 @@ def _leaning(motion: Motion, disc: Solid, number: int) -> Iterator[Body]:
     for size, direction in zip(*np.linalg.eigh(by_lean), strict=True):
         along, beside = motion.unit(int(own[0])), motion.unit(int(own[1]))
         row, across = (first * along + second * beside for first, second in (direction, (direction[1], -direction[0])))
-        yield Body(name=f"disc {number}", turns=False, size=float(size), row=row.astype(complex), across=across.astype(complex))
+        yield Body(
+            name=f"disc {number}", turns=False, size=float(size), row=row.astype(complex), across=across.astype(complex)
+        )
 
 
 def _eccentric_velocity(motion: Motion, masses: DriveMasses, disc: int, crank: int, angle: float) -> ComplexArray:

@@ -8,8 +8,8 @@ the mean of all (`ltca.equilibrium.first_stage`): with the moments :math:`T_c` t
    \textstyle\sum T_c = -\frac{1}{\bar k}\left[\min(e_+ + h, 0) + \max(e_- - h, 0)\right] ,
 
 k̄ being the compliance of all teeth and shafts together and h half of the free angle: one spring on either flank, with the radial
-force of that flank in :math:`p_c`. Between the two nothing touches. Cranks are alike, so that each planet carries an even share of
-:math:`\sum T_c` and what the contacts of its own crank depart from their mean by, whatever accelerates. The forces press the
+force of that flank in :math:`p_c`. Between the two nothing touches. Cranks are alike, so that each planet carries an even
+share of :math:`\sum T_c` and what the contacts of its own crank depart from their mean by, whatever accelerates. The forces press the
 coordinates of cranks, flange and wheel.
 
 What the even shares do comes of the energy :math:`\tfrac12 \bar k (\sum T_c)^2`. The work of the uneven ones on their own
@@ -85,7 +85,8 @@ class Teeth:
         self._bears = model.supports is not None and bool(model.supports.cranks) and stage.yields
         wheel = [motion.pose.wheel_place] if motion.pose.wheel else []
         self._wheel = np.concatenate(
-            [np.arange(motion.size)[one] for one in (*wheel, motion.pose.wheel_lean_place)] or [np.zeros(0, dtype=np.intp)]
+            [np.arange(motion.size)[one] for one in (*wheel, motion.pose.wheel_lean_place)]
+            or [np.zeros(0, dtype=np.intp)]
         )
 
     def at(self, x: FloatArray, moments: FloatArray) -> TeethForces:

@@ -102,7 +102,7 @@ def test_slow_motion_is_the_quasi_static_one(name):
 
 @pytest.mark.slow
 def test_an_aligned_drive_moves_in_slices_as_in_the_plane():
-    """Loads of an aligned pair in slices are those of its length to 0.5 %, what contacts yield likewise; nothing makes it lean."""
+    """Loads of an aligned pair in slices are those of its length to 0.5 %, what contacts yield likewise; nothing leans."""
     course = Course.of_values("steady", 2e-4, 1500.0)
     plane, slices = (run_in_time(prepared(name, course), samples=21) for name in ("plane", "aligned"))
     load = plane.samples.pin_load
@@ -190,7 +190,13 @@ def test_forces_are_slopes_of_what_is_stored(name, kind, tilt_depth, tmp_path):
     loads bodies are solid and yield to moments.
     """
     drive = drive_of(name)
-    engine = kind() if kind is HalfSpace else kind(coefficients=in_closed_form(drive, tmp_path, tilt_depth), **({"bodies": "solid"} if tilt_depth else {}))
+    engine = (
+        kind()
+        if kind is HalfSpace
+        else kind(
+            coefficients=in_closed_form(drive, tmp_path, tilt_depth), **({"bodies": "solid"} if tilt_depth else {})
+        )
+    )
     model, warm, rng = replace(engine.prepare(drive).model, friction=None), warm_drive(drive), np.random.default_rng(2)
     motion = Motion.of_drive(warm)
     still = solve_at_output(model, [warm], np.array([0.3]), warm.load.torque)
@@ -271,7 +277,7 @@ def test_friction_presses_the_leans_as_in_statics():
 
 
 def test_kinetic_energy_is_that_of_a_body_that_spins_and_leans():
-    """½ ω·J ω of a body unlike in x and y, ω from its rotation in space: a turn about its axis, which leans in a frame that turns.
+    """½ ω·J ω of a body unlike in x and y, ω from its rotation in space: its own axis leans in a frame that turns.
 
     The model keeps second order of leans and turn: with leans of 1e-4 what is left is some 1e-4 of what leans add.
     """

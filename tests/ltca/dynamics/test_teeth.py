@@ -1,4 +1,4 @@
-"""Teeth of a first stage in runs in time, on cranks, flange and main bearing that yield: against statics, energy, springs by hand."""
+"""Teeth of a first stage in runs in time, on parts that yield: against statics, energy, springs by hand."""
 
 from __future__ import annotations
 
@@ -79,7 +79,10 @@ def prepared(name, course):
         "bent cranks",
         "housing held",
         "rigid cranks, housing held",
-        *(pytest.param(one, marks=SLOW) for one in ("posts", "rigid teeth", "rubs", "helical, preloaded", "whole reducer")),
+        *(
+            pytest.param(one, marks=SLOW)
+            for one in ("posts", "rigid teeth", "rubs", "helical, preloaded", "whole reducer")
+        ),
         pytest.param("in slices", marks=NIGHTLY),
     ],
 )
