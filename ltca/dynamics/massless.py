@@ -8,9 +8,10 @@ the others so that f stays zero,
 .. math:: \dot z = -(N^T K N)^{-1} \dot f|_z .
 
 What is stored is then the least energy over z, whose slopes by the other coordinates are the forces at that place: the
-balance of energy needs nothing besides, but where they rub, or forces from outside press them, the work on
-:math:`\dot z`. There the change of f is differenced along the motion, since it has the turning of the normals in it; elsewhere nothing feels the rates, and
-:math:`N^T K \dot x` of the stiffness K serves. Modes do likewise with parts without mass (`ltca.dynamics.modes`).
+balance of energy needs nothing besides, but where they rub, or forces from outside press them, the work on :math:`\dot z`.
+There the change of f is differenced along the motion, since it has the turning of the normals in it; elsewhere nothing
+feels the rates, and :math:`N^T K \dot x` of the stiffness K serves. Modes do likewise with parts without mass
+(`ltca.dynamics.modes`).
 """
 
 from __future__ import annotations

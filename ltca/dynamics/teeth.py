@@ -7,10 +7,10 @@ the mean of all (`ltca.equilibrium.first_stage`): with the moments :math:`T_c` t
 .. math:: e_\pm = \varphi_C - \varphi_{sun} + \overline{p_c \cdot u_c}, \qquad
    \textstyle\sum T_c = -\frac{1}{\bar k}\left[\min(e_+ + h, 0) + \max(e_- - h, 0)\right] ,
 
-k̄ being the compliance of all teeth and shafts together and h half of the free angle: one spring on either flank, with the radial
-force of that flank in :math:`p_c`. Between the two nothing touches. Cranks are alike, so that each planet carries an even
-share of :math:`\sum T_c` and what the contacts of its own crank depart from their mean by, whatever accelerates. The forces press the
-coordinates of cranks, flange and wheel.
+k̄ being the compliance of all teeth and shafts together and h half of the free angle: one spring on either flank, with the
+radial force of that flank in :math:`p_c`. Between the two nothing touches. Cranks are alike, so that each planet carries an
+even share of :math:`\sum T_c` and what the contacts of its own crank depart from their mean by, whatever accelerates. The
+forces press the coordinates of cranks, flange and wheel.
 
 What the even shares do comes of the energy :math:`\tfrac12 \bar k (\sum T_c)^2`. The work of the uneven ones on their own
 displacements would turn single cranks, which the contacts of this model do not feel; it is booked by itself, with that of the

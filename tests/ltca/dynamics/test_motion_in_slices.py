@@ -34,7 +34,7 @@ from ltca.testing.closed_form_bodies import closed_form_coefficients
 ARCSEC = 206264.806
 SLOPED = {"contact.slices": 3, "disc.lead_slope": 5e-4}
 """A flank that slopes by 5 µm over 10 mm makes discs lean by as much."""
-PULLED = {"load.external.0.force.x": 3000.0, "load.external.0.at.z": 40.0, "load.external.0.moment.y": 1e5}
+PULLED = {"load.external.0.force.x": 3000.0, "load.external.0.at.z": 90.0, "load.external.0.moment.y": 1e6}
 RUBBING = {"friction.pin": 0.05, "friction.hole": 0.05, "friction.roller": 0.002}
 SLOW = pytest.mark.slow
 NIGHTLY = (pytest.mark.slow, pytest.mark.nightly)
