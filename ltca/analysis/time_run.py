@@ -534,8 +534,8 @@ def _require_supported(drive: Drive, model: Reducer, course: Course) -> None:
         )
     if model.stage is not None and model.stage.runs_out:
         problems.append(
-            "first_stage.sun_runout, first_stage.planet_runout: a run in time leaves out teeth that stand off their axes, by which "
-            "cranks turn apart; must be 0"
+            "first_stage.sun_runout, first_stage.planet_runout: a run in time leaves out teeth that stand off their axes, "
+            "by which cranks turn apart; must be 0"
         )
     if model.external is not None:
         problems.append("external_force: a run in time leaves out forces from outside on the output")
