@@ -20,8 +20,8 @@ from ltca.equilibrium.balance import Equilibrium, lever_arms
 from ltca.equilibrium.reducer import Reducer
 from ltca.geometry.coordinates import WHEEL_ANGLE
 
-LITTLE_MORE = 1e-4
-"""More torque, by that of all pins, at which shares of cranks are taken: their change over it is some ten-thousandth."""
+LITTLE_MORE = 1e-3
+"""More torque, by that of all pins, at which shares of cranks are taken: over it they change by some 1e-4 of a part."""
 FLOATS = 1e-9
 """Stiffness by the largest one, as forces at the pitch circles, below which nothing holds a motion."""
 

@@ -17,6 +17,7 @@ from ltca.errors import DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
+from ltca.studies.batch_analysis import BatchSettings, analyse_samples
 
 ANGLES = np.array([0.31, 1.7, 4.4])
 SUN, PLANET = 14.0, 28.0
@@ -275,3 +276,15 @@ def test_a_run_in_time_refuses_it(rv):
         DriveError, match=r"first_stage\.sun_runout, first_stage\.planet_runout: a run in time leaves out"
     ):
         prepare_run(drive, HalfSpace(), Course(motion="steady", time=0.01, speed=100.0))
+
+
+@pytest.mark.slow
+def test_samples_of_a_tolerance_study_are_those_of_each_drive(rv):
+    """A batch of drives whose teeth run out each by its own, one of them not at all; the play of the output as well."""
+    drives = [with_fields(rv, RUNOUT | {"first_stage.sun_runout.amount": one}) for one in (0.012, -0.004)] + [rv]
+    names = ("ptp_transmission_error", "max_backlash_output")
+    settings = BatchSettings(crank_angle=ANGLES, quantities=names, engine=HalfSpace())
+    together = analyse_samples(drives, settings).values
+    alone = np.concatenate([analyse_samples([drive], settings).values for drive in drives])
+    np.testing.assert_allclose(together, alone, rtol=1e-9)
+    assert np.ptp(together[:, 0]) > 1e-3 * together[0, 0]
