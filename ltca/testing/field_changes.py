@@ -139,7 +139,9 @@ _FIRST_STAGE = {
 _RUNOUT = {
     "first_stage.backlash": 0.05,
     "first_stage.sun_runout.amount": 0.01,
+    "first_stage.sun_runout.angle": 0.1,
     "first_stage.planet_runout.amount": (0.01, -0.004, 0.006),
+    "first_stage.planet_runout.angle": (0.1, 0.2, 0.3),
 }
 """Eccentricities of teeth, with the backlash that they need."""
 _EXTERNAL = {f"load.external.0.{name}": 300.0 for name in ("force.x", "force.y", "force.z", "at.z")}
