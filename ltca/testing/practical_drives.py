@@ -413,7 +413,7 @@ def compare(drive: Drive, crank_angle: FloatArray) -> list[Comparison]:
     drive = replace(drive, load=replace(drive.load, external=()))  # an arm takes the play on its side (`torque_curve`)
     model = replace(HalfSpace().prepare(drive).model, friction=None)
     discs, scale = model.geometries, abs(drive.output_per_wheel_angle) * ARCMIN
-    found, before = free_play(discs, crank_angle), scale * play_before_cranks(model, crank_angle)
+    found, before = free_play(discs, crank_angle), (scale * play_before_cranks(model, crank_angle)).tolist()
     answers, own, loose = [], model.coordinates.own, any(disc.has_loose_supports for disc in discs)
     known = not loose and not any(disc.stands_askew for disc in discs)
     for row, angle in enumerate(crank_angle):
