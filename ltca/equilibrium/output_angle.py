@@ -59,6 +59,8 @@ def shares_of_cranks(model: Reducer, found: Equilibrium, moments: FloatArray) ->
     """
     response, shares = found.response, np.full(moments.shape, np.nan)
     rows = np.nonzero(np.isfinite(response.tangent).all(axis=(1, 2)) & np.isfinite(moments).all(axis=1))[0]
+    if not rows.size:
+        return shares
     arms = np.broadcast_to(lever_arms(model), found.pose.shape)[rows]
     own, angle, pose = model.take(rows), found.crank_angle[rows], found.pose[rows]
     response = take_positions(response, rows)
@@ -66,7 +68,8 @@ def shares_of_cranks(model: Reducer, found: Equilibrium, moments: FloatArray) ->
     # What floats without load moves no crank: the least motion of all.
     motion = np.linalg.pinv(scaled, rcond=FLOATS)[:, :, WHEEL_ANGLE] / arms / arms[:, WHEEL_ANGLE, None]
     pressed = np.abs(response.flank.gradient[:, :, WHEEL_ANGLE] * response.pin_load)
-    step = LITTLE_MORE * pressed.sum(axis=1, keepdims=True)
+    sense = np.where(found.wheel_moment[rows] < 0.0, -1.0, 1.0)  # more of what is there, in both directions
+    step = (LITTLE_MORE * sense * pressed.sum(axis=1))[:, None]
     moved = pose + step * motion
     after = own.respond(angle, moved, Start.after(response))
     more = own.crank_moments(angle, moved, after.parts) - moments[rows]
