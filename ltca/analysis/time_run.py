@@ -446,7 +446,7 @@ def prepare_run(drive: Drive, engine: Engine, course: Course) -> PreparedRun:
     ------
     DriveError
         For what a run in time leaves out, by name: contacts in slices, teeth or outside forces that press on parts that yield,
-        drag of seals and oil, parts without mass, an input of no inertia that a torque drives, a torque of zero.
+        eccentric teeth, drag of seals and oil, parts without mass, an input of no inertia that a torque drives, a torque of zero.
     ConvergenceError
         Where no balanced state is found to start from.
     """
