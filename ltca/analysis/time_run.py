@@ -37,6 +37,7 @@ from ltca.dynamics.teeth import TeethForces
 from ltca.equilibrium.balance import lever_arms
 from ltca.equilibrium.output_angle import crank_lag
 from ltca.equilibrium.output_torque import solve_at_output
+from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError, DriveError
 
 MOTIONS = {
@@ -457,8 +458,8 @@ def prepare_run(drive: Drive, engine: Engine, course: Course) -> PreparedRun:
     Raises
     ------
     DriveError
-        For what a run in time leaves out, by name: rigid teeth with backlash, or before posts, on rigid cranks, a twist of the
-        carrier without mass, an input of no inertia that a torque drives, a torque of zero.
+        For what a run in time leaves out, by name: eccentric teeth, rigid ones with backlash, or before posts, on rigid cranks,
+        a twist of the carrier without mass, an input of no inertia that a torque drives, a torque of zero.
     ConvergenceError
         Where no balanced state is found to start from.
     """
@@ -466,7 +467,7 @@ def prepare_run(drive: Drive, engine: Engine, course: Course) -> PreparedRun:
     warm.require_torque("a run in time, which starts under load")
     masses, motion = require_masses(drive_masses(drive)), Motion.of_drive(warm)
     model = engine.prepare(drive).model
-    _require_supported(warm, motion, course)
+    _require_supported(warm, model, motion, course)
     sense = _sense(warm)
     # A first stage turns the cranks against its sun.
     turns = motion.input_turns
@@ -567,8 +568,13 @@ def _sense(drive: Drive) -> float:
     return float(np.sign(drive.motion_sign * drive.crank_turns_per_input))
 
 
-def _require_supported(drive: Drive, motion: Motion, course: Course) -> None:
+def _require_supported(drive: Drive, model: Reducer, motion: Motion, course: Course) -> None:
     problems, stage = [], drive.first_stage
+    if model.stage is not None and model.stage.runs_out:
+        problems.append(
+            "first_stage.sun_runout, first_stage.planet_runout: a run in time leaves out teeth that stand off their axes, "
+            "by which cranks turn apart; must be 0"
+        )
     if stage is not None and motion.sun is None:
         rigid = "with rigid teeth and cranks a run in time has nothing between sun and cranks"
         if stage.backlash:
