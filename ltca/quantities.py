@@ -47,6 +47,7 @@ DIMENSIONS = {
     "sample": ("sample",),
     "drive in time": ("time",),
     "disc in time": ("time", "disc"),
+    "axes of a disc in time": ("time", "disc", "axis"),
     "crank in time": ("time", "disc", "crank"),
     "pin in time": ("time", "disc", "pin"),
     "roller in time": ("time", "disc", "crank", "roller"),
@@ -810,6 +811,12 @@ _IN_TIME = (
     Quantity("disc_displacement_x", "disc in time", "mm", "displacement of the disc along x"),
     Quantity("disc_displacement_y", "disc in time", "mm", "displacement of the disc along y"),
     Quantity("disc_rotation", "disc in time", "rad", "rotation of the disc"),
+    Quantity(
+        "disc_tilt",
+        "axes of a disc in time",
+        "rad",
+        "small rotation of the disc about x and y of the frame of the pin shaft, of contacts in slices",
+    ),
     Quantity("pin_load", "pin in time", "N", "load of each wheel pin"),
     Quantity("roller_load", "roller in time", "N", "load of each roller in the bore"),
     Quantity("pin_shaft_load", "hole in time", "N", "load of each pin of the pin shaft"),
@@ -818,6 +825,7 @@ _IN_TIME = (
     Quantity("stored_energy", "drive in time", "N mm", "energy stored in contacts and supports"),
     Quantity("curvature_work", "drive in time", "N mm", "work of changing radii of curvature"),
     Quantity("station_work", "drive in time", "N mm", "work of contacts that move over the bodies"),
+    Quantity("teeth_work", "drive in time", "N mm", "work of teeth of a first stage by what planets carry unevenly"),
     Quantity("input_work", "drive in time", "N mm", "work done at the input"),
     Quantity(
         "output_work", "drive in time", "N mm", "work done by the output on its load, forces from outside among it"

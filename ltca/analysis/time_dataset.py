@@ -8,6 +8,7 @@ import numpy as np
 
 from ltca.analysis.engines import describe_engine
 from ltca.analysis.time_run import EnergyBalance, TimeRun
+from ltca.analysis.width import AXES
 from ltca.arrays import FloatArray
 from ltca.dynamics.motion import WORKS
 from ltca.output.labelled import LabelledDataset
@@ -49,10 +50,16 @@ def time_dataset(run: TimeRun) -> LabelledDataset:
         "stored_energy": taken.stored,
         "curvature_work": taken.curvature,
         "station_work": taken.stations,
+        "teeth_work": taken.teeth,
         **{f"{name}_work": taken.works[:, place] for place, name in enumerate(WORKS)},
     }
+    coords: dict[str, Any] = {"time": IN_TIME["time"].labelled(taken.time)}
+    if motion.pose.leans:
+        leans = taken.place[:, [motion.pose.columns(disc)[motion.pose.lean_place] for disc in range(discs)]]
+        # A tilt is a rotation vector, a lean what x and y change by along z.
+        data["disc_tilt"] = np.stack((-leans[:, :, 1], leans[:, :, 0]), axis=-1)
+        coords["axis"] = list(AXES)
     each = {name: IN_TIME[name].labelled(values) for name, values in data.items()}
-    coords = {"time": IN_TIME["time"].labelled(taken.time)}
     attributes = {"schema_version": SCHEMA_VERSION, "engine": describe_engine(run.engine), **run.course.values}
     return LabelledDataset.build(each, coords, attributes)
 

@@ -33,9 +33,10 @@ from ltca.dynamics.massless import MasslessParts
 from ltca.dynamics.modes import free_coordinates
 from ltca.dynamics.motion import WORKS, Equation, Profile
 from ltca.dynamics.stiffness import levers
+from ltca.dynamics.teeth import TeethForces
 from ltca.equilibrium.balance import lever_arms
+from ltca.equilibrium.output_angle import crank_lag
 from ltca.equilibrium.output_torque import solve_at_output
-from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError, DriveError
 
 MOTIONS = {
@@ -230,6 +231,8 @@ class Samples:
     curvature, stations : array, shape (samples,)
         Work of changing radii of curvature, and of contacts that move over bodies which yield otherwise there, since the start,
         N·mm.
+    teeth : array, shape (samples,)
+        Work of teeth of a first stage by what planets carry unevenly, since the start, N·mm.
     """
 
     time: FloatArray
@@ -246,6 +249,7 @@ class Samples:
     stored: FloatArray
     curvature: FloatArray
     stations: FloatArray
+    teeth: FloatArray
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -260,6 +264,8 @@ class EnergyBalance:
         Change of what is stored.
     curvature, stations : float
         Work of changing radii of curvature, and of contacts that move over bodies which yield otherwise there.
+    teeth : float
+        Work of teeth of a first stage by what planets carry unevenly (`ltca.dynamics.teeth`).
     throughput : float
         Larger of the works that went through input and output, both ways counted.
     """
@@ -272,13 +278,14 @@ class EnergyBalance:
     stored: float
     curvature: float
     stations: float
+    teeth: float
     throughput: float
 
     @property
     def left(self) -> float:
         """Input and the work of moving contacts less output, losses and what is stored; not a number where it is not known."""
         taken = self.output + self.damping + self.friction + self.kinetic + self.stored
-        return self.input + self.curvature + self.stations - taken
+        return self.input + self.curvature + self.stations + self.teeth - taken
 
     @property
     def relative(self) -> float:
@@ -365,6 +372,7 @@ class TimeRun:
             stored=float(taken.stored[-1] - taken.stored[0]),
             curvature=float(taken.curvature[-1]),
             stations=float(taken.stations[-1]),
+            teeth=float(taken.teeth[-1]),
             throughput=float(through.max()),
         )
 
@@ -449,20 +457,16 @@ def prepare_run(drive: Drive, engine: Engine, course: Course) -> PreparedRun:
     Raises
     ------
     DriveError
-        For what a run in time leaves out, by name: contacts in slices, teeth that press on parts that yield, a twist of the
+        For what a run in time leaves out, by name: rigid teeth with backlash, or before posts, on rigid cranks, a twist of the
         carrier without mass, an input of no inertia that a torque drives, a torque of zero.
     ConvergenceError
         Where no balanced state is found to start from.
     """
     warm = warm_drive(drive)
     warm.require_torque("a run in time, which starts under load")
-    if warm.contact.slices != 1:
-        raise DriveError(
-            [f"contact.slices = {warm.contact.slices}: must be 1 for a run in time, whose discs do not lean"]
-        )
     masses, motion = require_masses(drive_masses(drive)), Motion.of_drive(warm)
     model = engine.prepare(drive).model
-    _require_supported(warm, model, course)
+    _require_supported(warm, motion, course)
     sense = _sense(warm)
     # A first stage turns the cranks against its sun.
     turns = motion.input_turns
@@ -474,6 +478,8 @@ def prepare_run(drive: Drive, engine: Engine, course: Course) -> PreparedRun:
     kinetic = KineticEnergy.of_drive(motion, masses)
     massless = _massless(kinetic, motion)
     held, columns = _spans(turns, lever, massless)
+    # Friction and forces from outside do work on rates of what has no mass.
+    works = model.friction is not None or (model.external is not None and motion.pose.wheel_leans)
     _require_mass(kinetic, motion, held, lever)
     equation = Equation(
         kinetic=kinetic,
@@ -486,15 +492,18 @@ def prepare_run(drive: Drive, engine: Engine, course: Course) -> PreparedRun:
         output_torque=lambda time: against * course.load_factor(time),
         input_torque=None,
         damping_ratio=0.0 if warm.damping is None else warm.damping.ratio_at_resonance,
-        massless=MasslessParts(columns, np.zeros(massless.size), model.friction is not None) if massless.size else None,
+        massless=MasslessParts(columns, np.zeros(massless.size), works) if massless.size else None,
     )
     whole, at_first = equation.whole, warm.load.torque * course.load_factor(0.0)
 
     def balanced(crank_angle: FloatArray) -> FloatArray:
         """Balanced without friction, y of each position, shape (positions, m + k)."""
-        found = solve_at_output(replace(model, friction=None), [warm], crank_angle, at_first, gaps=False)
+        smooth = replace(model, friction=None)
+        found = solve_at_output(smooth, [warm], crank_angle, at_first, gaps=False)
         places = np.zeros((crank_angle.size, motion.size))
         places[:, : motion.pose.size] = found.pose
+        if motion.sun is not None:
+            places[:, motion.sun] = -crank_lag(smooth, found)
         places -= np.outer(places @ turns, lead)
         return np.asarray(np.linalg.lstsq(whole, places.T, rcond=None)[0].T, dtype=float)
 
@@ -509,15 +518,17 @@ def prepare_run(drive: Drive, engine: Engine, course: Course) -> PreparedRun:
         y, rate = (np.asarray(np.linalg.solve(equation.whole, whole @ each)) for each in (y, rate))
     m = equation.freedoms
     if massless.size:
-        equation = replace(equation, massless=MasslessParts(columns, y[m:], model.friction is not None))
+        equation = replace(equation, massless=MasslessParts(columns, y[m:], works))
     start = np.concatenate((y[:m], rate[:m], np.zeros(len(WORKS))))
     return PreparedRun(drive=warm, engine=engine, course=course, motion=motion, equation=equation, start=start)
 
 
 def _massless(kinetic: KineticEnergy, motion: Motion) -> NDArray[np.intp]:
-    """Places of what ties or carries the shaft pins, a ring or the far flange of a carrier, where it has no mass."""
+    """Places of what ties or carries the shaft pins, a ring or the far flange of a carrier, where it has no mass, and of leans
+    of cranks and of the wheel.
+    """
     ring = np.arange(motion.size)[motion.pose.ring_place]
-    return np.asarray(ring[np.diag(kinetic.mass[0])[ring] == 0.0])
+    return np.concatenate((motion.light_leans, ring[np.diag(kinetic.mass[0])[ring] == 0.0])).astype(np.intp)
 
 
 def _spans(row: FloatArray, lever: FloatArray, massless: NDArray[np.intp]) -> tuple[FloatArray, FloatArray]:
@@ -556,14 +567,18 @@ def _sense(drive: Drive) -> float:
     return float(np.sign(drive.motion_sign * drive.crank_turns_per_input))
 
 
-def _require_supported(drive: Drive, model: Reducer, course: Course) -> None:
-    problems = []
-    if drive.contact.slices > 1:
-        problems.append(f"contact.slices = {drive.contact.slices}: must be 1 for a run in time, which leaves tilts out")
-    if model._teeth_press:
-        problems.append(
-            "first_stage: its teeth press on cranks or main bearing that yield, which a run in time leaves out"
-        )
+def _require_supported(drive: Drive, motion: Motion, course: Course) -> None:
+    problems, stage = [], drive.first_stage
+    if stage is not None and motion.sun is None:
+        rigid = "with rigid teeth and cranks a run in time has nothing between sun and cranks"
+        if stage.backlash:
+            problems.append(
+                f"first_stage.backlash = {stage.backlash:g} mm: {rigid}; first_stage.mesh_stiffness must be given"
+            )
+        elif np.any(motion.mesh_by_pose):
+            problems.append(
+                f"carrier.posts: {rigid}, and the far flange has no mass; first_stage.mesh_stiffness must be given"
+            )
     if course.driven_by == "torque" and (drive.inertia is None or drive.inertia.input is None):
         problems.append("inertia.input: must be given for an input that a torque drives, kg·m²")
     if problems:
@@ -604,6 +619,7 @@ class Recorder:
         self._run, self.rows = run, 0
         self.times = np.linspace(0.0, run.course.time, count)
         self._before: tuple[StoredEnergy, ...] = ()
+        self._teeth: TeethForces | None = None
         self.arrays: dict[str, FloatArray] = {}
 
     def take(self, state: FloatArray) -> None:
@@ -622,6 +638,10 @@ class Recorder:
                 by_radius, by_place = before.work_to(there)
                 curvature, stations = curvature + float(by_radius[0]), stations + float(by_place[0])
             self._before = discs_store
+        teeth = float(self.arrays["teeth"][row - 1]) if row else 0.0
+        if self._teeth is not None and now.teeth is not None:
+            teeth += self._teeth.work_to(now.teeth)
+        self._teeth = now.teeth
         discs = now.discs
         taken: dict[str, Any] = {
             "time": time,
@@ -638,6 +658,7 @@ class Recorder:
             "stored": stored,
             "curvature": curvature,
             "stations": stations,
+            "teeth": teeth,
         }
         for name, values in taken.items():
             if name not in self.arrays:
@@ -662,9 +683,9 @@ class Recorder:
             self.arrays[name] = np.zeros((self.times.size, *values.shape[1:]))
             self.arrays[name][: self.rows] = values
         contacts, last = self._run.equation.contacts, found.rows - 1
+        x = self.arrays["place"][last]
+        self._teeth = contacts.at(x, self.arrays["rate"][last]).teeth
         if contacts.has_energy:
-            x = self.arrays["place"][last]
-            contacts.at(x, self.arrays["rate"][last])
             self._before = contacts.stored(x)[1]
 
     def samples(self) -> Samples:

@@ -247,7 +247,11 @@ class CoupledCompliance:
         return found
 
     def stored(self, crank_angle: FloatArray, pose: FloatArray, response: DiscResponse) -> StoredEnergy:
-        """Return what all contacts in the plane store at a response of this model, its angles and poses given."""
+        """Return what all contacts store at a response of this model, its angles and poses given."""
+        if response.leaning_pins is not None:
+            from ltca.compliance.coupled_slices import stored_by_bodies
+
+            return stored_by_bodies(self, crank_angle, pose, response)
         laws, near, rollers = self.near_field, np.stack(list(response.warm_start)), response.rollers
         pins, last = response.pin_load.shape[1], response.pin_load.shape[1] + self.outer_radius.size
         inner, _ = laws.inner.approach_at_load(rollers.inner_load, self.inner_radius)

@@ -24,10 +24,11 @@ import numpy as np
 
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.coefficients import InfluenceCoefficients
-from ltca.compliance.in_slices import ContactsInSlices, roller_start, stacked, warm_rows
+from ltca.compliance.in_slices import ContactsInSlices, roller_start, stacked, stored_in_slices, warm_rows
 from ltca.compliance.near_field import NearFieldLaws, OwnParts
 from ltca.compliance.response import DiscResponse, LeaningPairs, PairSlopes, Start
 from ltca.compliance.rollers import RollerLaws, RollerState
+from ltca.compliance.stored_energy import StoredEnergy
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_ROTATION, X, Y
 from ltca.geometry.pairs import ContactGeometry
@@ -118,6 +119,32 @@ def respond_in_slices(
     state = _settled(bodies, begin, near)
     found = here.response(state.pairs, state.rollers, warm_rows(state.pairs, state.rollers, state.given))
     return bodies.with_coupling(found, state)
+
+
+def stored_by_bodies(
+    model: CoupledBodies, crank_angle: FloatArray, pose: FloatArray, response: DiscResponse
+) -> StoredEnergy:
+    """Return what the contacts of a response and the bodies between them store, its angles and poses given."""
+    here = ContactsInSlices(model.geometry, crank_angle, pose, response.flank, response.shifts, response.leans)
+    bodies, rollers = _Bodies(model, here, pose), response.rollers
+    pins, holes = response.leaning_pins, response.leaning_holes
+    near = stacked(response.warm_start)
+    assert near is not None
+    assert pins is not None
+    assert holes is not None
+    given, tilts = bodies.split(near[-1])
+    of_pins: Any = model.near_field.pin
+    of_holes: Any = model.hole_law
+    alone = stored_in_slices(
+        response, (of_pins, of_holes), bodies.laws, here.radii[1], given, tilts or (0.0, 0.0, 0.0, 0.0)
+    )
+    load = bodies.joined(
+        (response.pin_load, rollers.outer_load, response.hole_load, rollers.inner_load),
+        (pins.contact.moment, rollers.outer_moment, holes.contact.moment, rollers.inner_moment),
+    )
+    whole = bodies.whole
+    yields = 0.5 * np.einsum("bi,bij,bj->b", load, whole, load)
+    return replace(alone, energy=alone.energy + yields, load=load, coefficients=whole)
 
 
 class _State:
@@ -223,6 +250,15 @@ class _Bodies:
         found = [np.matmul(part, every[:, number]) for number, part in enumerate(self.parts)]
         return np.stack(found, axis=1).reshape(load.shape)
 
+    @property
+    def whole(self) -> FloatArray:
+        """B, shape (positions, unknowns, unknowns)."""
+        found = np.zeros((*self.shape, self.shape[1]))
+        for number, part in enumerate(self.parts):
+            own = slice(number * self.count, (number + 1) * self.count)
+            found[:, own, own] = part
+        return found
+
     def stiffness(self, state: _State) -> FloatArray:
         """K = −∂f/∂g, shape (positions, unknowns, unknowns)."""
         found = np.zeros((*self.shape, self.shape[1]))
@@ -254,11 +290,8 @@ class _Bodies:
 
     def with_coupling(self, found: DiscResponse, state: _State) -> DiscResponse:
         """Return the response of contacts with what the bodies give added to the tangent and the slopes."""
-        stiffness, whole = self.stiffness(state), np.zeros((*self.shape, self.shape[1]))
-        for number, part in enumerate(self.parts):
-            own = slice(number * self.count, (number + 1) * self.count)
-            whole[:, own, own] = part
-        give = np.linalg.solve(self.system(stiffness), whole)
+        stiffness = self.stiffness(state)
+        give = np.linalg.solve(self.system(stiffness), self.whole)
         give = 0.5 * (give + give.swapaxes(1, 2))
         pairs = self.here.slopes(state.pairs)
         positions, cranks = self.here.bores.arm.shape

@@ -167,8 +167,11 @@ class HalfSpaceCompliance(UncoupledContacts[ContactLaw]):
         return PairLaws(pins=self.pin_law, rollers=self.roller_laws)
 
     def stored(self, crank_angle: FloatArray, pose: FloatArray, response: DiscResponse) -> StoredEnergy:
-        """Return what all contacts in the plane store at a response of this model, its angles and poses given."""
+        """Return what all contacts store at a response of this model, its angles and poses given."""
         place, flank, rollers, laws = self.geometry.placement, response.flank, response.rollers, self.roller_laws
+        if response.leaning_pins is not None:
+            of_holes: Any = self.hole_law
+            return sliced.stored_in_slices(response, (self.pin_law, of_holes), laws, place.hole_effective_radii)
         return StoredEnergy.of_laws(
             (self.pin_law, flank.approach, flank.effective_radius),
             [

@@ -23,6 +23,7 @@ from ltca.compliance.response import (
     split_shifts,
 )
 from ltca.compliance.rollers import RollerLaws, RollerState
+from ltca.compliance.stored_energy import StoredEnergy
 from ltca.geometry.pair_motion import FlankMotion, PairMotion, dot
 from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.sliced_contact import EXACT, Exactness, SlicedContact
@@ -215,3 +216,54 @@ def stacked(warm: NDArray[np.object_] | None) -> list[FloatArray] | None:
     if warm is None or any(each is None for each in warm):
         return None
     return [np.stack(parts) for parts in zip(*warm, strict=True)]
+
+
+def stored_in_slices(
+    response: DiscResponse,
+    laws: tuple[Any, Any],
+    rollers: RollerLaws[Any],
+    hole_radii: FloatArray,
+    given: tuple[FloatArray | float, ...] = (0.0, 0.0, 0.0, 0.0),
+    given_tilts: tuple[FloatArray | float, ...] = (0.0, 0.0, 0.0, 0.0),
+) -> StoredEnergy:
+    """Return what the contacts of a response store themselves.
+
+    Parameters
+    ----------
+    response : DiscResponse
+        Contacts in slices, not `kept`.
+    laws : tuple of SlicedLaw
+        Of wheel pins and of shaft pins, with their energy.
+    rollers : RollerLaws
+        Of the rollers.
+    hole_radii : array
+        Effective radii of shaft pins in their holes, mm.
+    given, given_tilts : tuple of array
+        What bodies take of the approaches, mm, and tilts, rad, of wheel pins, bores, holes and races; tilts of rollers are
+        without it.
+    """
+    pins, holes, own = response.leaning_pins, response.leaning_holes, response.rollers
+    assert pins is not None
+    assert holes is not None
+    assert own.inner_tilt is not None
+    assert own.outer_tilt is not None
+    return StoredEnergy.of_slices(
+        (
+            laws[0],
+            response.flank.approach - given[0],
+            pins.tilt.tilt - given_tilts[0],
+            response.flank.effective_radius,
+            pins.contact.near,
+        ),
+        [
+            (
+                laws[1],
+                response.holes.approach - given[2],
+                holes.tilt.tilt - given_tilts[2],
+                hole_radii,
+                holes.contact.near,
+            ),
+            (rollers.outer, own.outer_approach - given[1], own.outer_tilt, rollers.outer_radius, own.outer_near),
+            (rollers.inner, own.inner_approach - given[3], own.inner_tilt, rollers.inner_radius, own.inner_near),
+        ],
+    )

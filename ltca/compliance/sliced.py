@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from ltca.compliance.in_slices import ContactsInSlices, roller_start, stacked, warm_rows
+    from ltca.compliance.in_slices import ContactsInSlices, roller_start, stacked, stored_in_slices, warm_rows
     from ltca.contact.tilted_grid import press_tilted
     from ltca.laws.sliced_contact import EXACT, ROUGH, Exactness, SlicedContact, slice_heights, slice_means
     from ltca.laws.sliced_line import SlicedLine
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from ltca.laws.width_pressure import estimate_along_width, solve_along_width
 
 _HOMES = {
-    "ltca.compliance.in_slices": ("ContactsInSlices", "roller_start", "stacked", "warm_rows"),
+    "ltca.compliance.in_slices": ("ContactsInSlices", "roller_start", "stacked", "stored_in_slices", "warm_rows"),
     "ltca.contact.tilted_grid": ("press_tilted",),
     "ltca.laws.sliced_contact": ("EXACT", "ROUGH", "Exactness", "SlicedContact", "slice_heights", "slice_means"),
     "ltca.laws.sliced_line": ("SlicedLine",),
@@ -32,7 +32,7 @@ _HOMES = {
 __all__ = [
     "EXACT", "ROUGH", "ContactsInSlices", "Exactness", "SlicedContact", "SlicedLine", "SlicedPlane", "SlicedSeat",
     "SlicedSpring", "back_line", "estimate_along_width", "press_tilted", "roller_start", "slice_heights", "slice_means",
-    "solve_along_width", "stacked", "warm_rows",
+    "solve_along_width", "stacked", "stored_in_slices", "warm_rows",
 ]  # fmt: skip
 
 

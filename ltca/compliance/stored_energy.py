@@ -9,25 +9,48 @@ normals alone, so that along a motion
 
 .. math:: dU = F^T d\delta + \sum_i \frac{\partial U_i}{\partial\varrho_i} d\varrho_i - \tfrac12 F^T\,dC\,F ,
 
-the derivative by ρ being that of the law at a held ε. Contacts that do not feel each other have no C.
+the derivative by ρ being that of the law at a held ε. Contacts that do not feel each other have no C. Of contacts in slices ε are
+approaches and tilts, F loads and moments, and a law stores what its slices do together.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import TYPE_CHECKING, Protocol, TypeAlias
 
 import numpy as np
 
 from ltca.arrays import FloatArray
 from ltca.laws.contact_law import ContactLaw
 
+if TYPE_CHECKING:
+    from ltca.laws.sliced_contact import SlicedContact
+
 RADIUS_STEP = 1e-4
 """Relative step of an effective radius for the derivative of an energy."""
 
 Pressed: TypeAlias = tuple[ContactLaw, FloatArray, FloatArray]
 """Law of contacts of one kind, their approaches, shape (positions, pairs), and effective radii, mm."""
+
+
+class LawInSlices(Protocol):
+    """Law of contacts in slices that tells what they store."""
+
+    def respond(
+        self, approach: FloatArray, tilt: FloatArray, effective_radius: FloatArray, start: FloatArray | None = None
+    ) -> SlicedContact:
+        """Return what contacts carry, as `ltca.laws.sliced_line.SlicedLine.respond`."""
+        ...
+
+    def energy(self, contact: SlicedContact, effective_radius: FloatArray) -> FloatArray:
+        """Return the energy of contacts, N·mm."""
+        ...
+
+
+PressedInSlices: TypeAlias = tuple[LawInSlices, FloatArray, FloatArray, FloatArray, FloatArray | None]
+"""Law of contacts of one kind in slices, their approaches and tilts, shape (positions, pairs), effective radii, mm, and what they
+start from (`ltca.laws.sliced_contact.SlicedContact.near`)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -56,13 +79,29 @@ class StoredEnergy:
     def of_laws(cls, pins: Pressed, others: Sequence[Pressed]) -> StoredEnergy:
         """Return what the laws store, of wheel pins and of the other kinds: of contacts that do not feel each other."""
         law, approach, radius = pins
-        low, high = (law.energy(approach, radius * (1.0 + side)) for side in (-RADIUS_STEP, RADIUS_STEP))
-        energy = law.energy(approach, radius).sum(axis=-1)
-        for other, pressed, curved in others:
-            energy = energy + other.energy(pressed, curved).sum(axis=-1)
-        positions = approach.shape[0]
+        energy = sum(other.energy(pressed, curved).sum(axis=-1) for other, pressed, curved in others)
+        return cls._of_kinds(lambda curved: law.energy(approach, curved), radius, energy)
+
+    @classmethod
+    def of_slices(cls, pins: PressedInSlices, others: Sequence[PressedInSlices]) -> StoredEnergy:
+        """Return the same of contacts in slices, each kind at its approaches and tilts."""
+
+        def stored(kind: PressedInSlices, curved: FloatArray) -> FloatArray:
+            law, approach, tilt, _, start = kind
+            return law.energy(law.respond(approach, tilt, curved, start), curved)
+
+        energy = sum(stored(kind, np.broadcast_to(kind[3], kind[1].shape)).sum(axis=-1) for kind in others)
+        return cls._of_kinds(lambda curved: stored(pins, curved), pins[3], energy)
+
+    @classmethod
+    def _of_kinds(
+        cls, on_pins: Callable[[FloatArray], FloatArray], radius: FloatArray, others: FloatArray | float
+    ) -> StoredEnergy:
+        """What wheel pins store by their radii, and what the other kinds do."""
+        low, high = (on_pins(radius * (1.0 + side)) for side in (-RADIUS_STEP, RADIUS_STEP))
+        positions = radius.shape[0]
         return cls(
-            energy=np.asarray(energy),
+            energy=np.asarray(on_pins(radius).sum(axis=-1) + others),
             radius=radius,
             by_radius=(high - low) / (2.0 * RADIUS_STEP * radius),
             load=np.zeros((positions, 0)),

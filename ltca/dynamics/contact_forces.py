@@ -23,15 +23,17 @@ import numpy as np
 from ltca.arrays import FloatArray
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
-from ltca.compliance.response import Response, Start, bearing_pushes
+from ltca.compliance.response import DiscResponse, Response, Start, bearing_pushes
 from ltca.compliance.stored_energy import StoredEnergy
 from ltca.dynamics.disc_forces import DiscContacts, DiscForces
 from ltca.dynamics.kinetics import Motion
 from ltca.dynamics.stiffness import crank_force
+from ltca.dynamics.teeth import Teeth, TeethForces
 from ltca.equilibrium.friction.slip import Slip
 from ltca.equilibrium.friction.turning import TurningFriction
 from ltca.equilibrium.reducer import Reducer
-from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, X, Y
+from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION, WHEEL_ANGLE, X, Y
+from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.rotation import unit
 
 FADING = 1e-2
@@ -54,6 +56,8 @@ class Instant:
         Σ k g gᵀ of contacts and springs: symmetric, without what forces add as they turn.
     discs : tuple of DiscForces
         Contacts of each disc.
+    teeth : TeethForces or None
+        Of a first stage.
     """
 
     force: FloatArray
@@ -61,6 +65,7 @@ class Instant:
     outside: FloatArray
     stiffness: FloatArray
     discs: tuple[DiscForces, ...]
+    teeth: TeethForces | None
 
 
 class ContactForces:
@@ -79,8 +84,11 @@ class ContactForces:
     def __init__(self, model: Reducer, motion: Motion, crank_speed: float) -> None:
         friction = model.friction
         self._friction = replace(friction, motion=1) if isinstance(friction, TurningFriction) else None
-        self._model = replace(model, stage=None, friction=None, external=None)
+        self._model = replace(model, supports=None, stage=None, friction=None, external=None)
+        self._supports = model.supports
         self._external = model.external
+        self._teeth = None if model.stage is None else Teeth(model, motion)
+        self._teeth_now: TeethForces | None = None
         self._motion, self._speed = motion, abs(crank_speed)
         rubs = motion.drive.friction
         self._drag = 0.0 if rubs is None else rubs.no_load_torque
@@ -91,7 +99,7 @@ class ContactForces:
         self._start: Start | None = None
         self._latest: tuple[FloatArray, FloatArray, Response] | None = None
         discs = [disc for disc in model.discs if isinstance(disc, HalfSpaceCompliance)]
-        plain = model.pins is None and len(discs) == len(model.discs)
+        plain = model.pins is None and len(discs) == len(model.discs) and not model.coordinates.leans
         self._telling = [disc for disc in model.discs if isinstance(disc, HalfSpaceCompliance | CoupledCompliance)]
         self._each = [DiscContacts(disc) for disc in discs] if plain else []
 
@@ -117,20 +125,43 @@ class ContactForces:
                 force[places[:-1]] += disc.force
                 force[motion.crank] += disc.by_crank
                 stiffness[np.ix_(places, places)] += disc.stiffness
-            if self._model.supports is not None:
-                held, stiff = self._model.supports.respond(pose[None])
-                force[: pose.size] += held[0]
-                stiffness[: pose.size, : pose.size] += stiff.reshape(pose.size, pose.size)
         else:
             discs = self._asked(angle, pose, force, stiffness)
+        teeth = self._pressed(x, rate, discs, force, stiffness)
+        if self._supports is not None:
+            carried = None if teeth is None or teeth.carried is None else teeth.carried[None]
+            held, stiff = self._supports.respond(pose[None], carried)
+            force[: pose.size] += held[0]
+            stiffness[: pose.size, : pose.size] += stiff.reshape(pose.size, pose.size)
         outside, on_wheel = self._outside(angle, pose)
         friction = np.zeros(size) if self._friction is None else self._rubbed(self._friction, discs, rate, on_wheel)
-        return Instant(force=force, friction=friction, outside=outside, stiffness=stiffness, discs=discs)
+        return Instant(force=force, friction=friction, outside=outside, stiffness=stiffness, discs=discs, teeth=teeth)
+
+    def _pressed(
+        self, x: FloatArray, rate: FloatArray, discs: Sequence[DiscForces], force: FloatArray, stiffness: FloatArray
+    ) -> TeethForces | None:
+        """Teeth of a first stage; adds their force and stiffness in place."""
+        if self._teeth is None:
+            return None
+        moments = np.sum([disc.crank_moment for disc in discs], axis=0)
+        if self._friction is not None:
+            moments = moments + self._rolls(rate) * self._friction.of_cranks([disc.push[None] for disc in discs])[0]
+        teeth = self._teeth_now = self._teeth.at(x, moments)
+        force += teeth.force
+        stiffness += teeth.stiffness
+        return teeth
+
+    def _rolls(self, rate: FloatArray) -> float:
+        """Sense in which the crank rolls, fading where it stands."""
+        turning = float(rate[self._motion.crank])
+        return float(turning / np.hypot(turning, FADING * self._speed))
 
     def stored(self, x: FloatArray) -> tuple[float, tuple[StoredEnergy, ...]]:
         """Return the energy stored at the last instant, whose coordinates these are, N·mm, and that of each disc's contacts."""
         pose = x[: self._motion.pose.size]
-        total, supports = 0.5 * float(x @ self._springs @ x), self._model.supports
+        total, teeth, carried = 0.5 * float(x @ self._springs @ x), self._teeth_now, None
+        if teeth is not None:
+            total, carried = total + teeth.energy, None if teeth.carried is None else teeth.carried[None]
         if self._latest is None:
             discs = [each.stored() for each in self._each]
         else:
@@ -140,20 +171,25 @@ class ContactForces:
                 for disc, own, part in zip(self._telling, self._columns, response.parts, strict=True)
             ]
             total += self._bent(angle, row, response)
-        if supports is not None:
-            total += float(supports.energy(pose[None])[0])
+        if self._supports is not None:
+            total += float(self._supports.energy(pose[None], carried)[0])
         return total + sum(float(disc.energy[0]) for disc in discs), tuple(discs)
 
     def _bent(self, angle: FloatArray, pose: FloatArray, response: Response) -> float:
-        """Energy of what holds pins together, ½ Σ f·u with their displacements u: wheel pins have those in the turning wheel."""
+        """Energy of what holds pins together, ½ Σ f·u with their displacements u, in slices ½ Σ m·l of their leans as well: wheel
+        pins have both in the turning wheel.
+        """
         if response.shifts is None:
             return 0.0
         wheel = unit(self._model.discs[0].geometry.placement.wheel_rotation(angle) + pose[:, WHEEL_ANGLE])
         total = 0.0
         for number, part in enumerate(response.parts):
-            force = part.pin_forces.copy()
-            force[:, : part.pin_load.shape[1]] *= wheel.conjugate()[:, None]
-            total += 0.5 * float((force.conjugate() * response.shifts[:, number]).real.sum())
+            work = [(part.pin_forces.copy(), response.shifts[:, number])]
+            if part.leans is not None:
+                work.append((part.pin_moments.copy(), part.leans))
+            for force, moved in work:
+                force[:, : part.pin_load.shape[1]] *= wheel.conjugate()[:, None]
+                total += 0.5 * float((force.conjugate() * moved).real.sum())
         return total
 
     def _outside(self, angle: float, pose: FloatArray) -> tuple[FloatArray, complex]:
@@ -166,6 +202,11 @@ class ContactForces:
             x, y = pose[motion.pose.wheel_place]
             found[motion.pose.wheel_place] = force.real, force.imag
             found += (x * force.imag - y * force.real) * motion.frame_turns
+        if motion.pose.wheel_leans:
+            tilting = complex(self._external.tilting(np.array([angle]))[0])
+            x, y = pose[motion.pose.wheel_lean_place]
+            found[motion.pose.wheel_lean_place] += tilting.real, tilting.imag
+            found += (x * tilting.imag - y * tilting.real) * motion.frame_turns
         return found, force
 
     def _asked(
@@ -187,11 +228,12 @@ class ContactForces:
             along[X], along[Y], along[WHEEL_ANGLE] = velocity.real, velocity.imag, 1.0 / place.reduction_ratio
             nominal[columns] = along
             moved = geometry.bores(at, row[:, columns]).gradient[0]
-            each = part.rollers.tangent[0].reshape(place.cranks, -1, 4).sum(axis=1).reshape(-1, 2, 2)
+            rollers = part.rollers.tangent[0]
+            each = rollers.reshape(place.cranks, -1, *rollers.shape[1:]).sum(axis=1)[:, :2, :2]
             for stiff, gradient in zip(each, moved, strict=True):
                 both = np.stack((gradient.real, gradient.imag))
                 bearings[np.ix_(columns, columns)] += both.T @ stiff @ both
-            slip, pins = Slip.of_disc(geometry, at, row[:, columns], part).by_pose[0], part.pin_load.shape[1]
+            slip, pins = _slip(geometry, at, row[:, columns], part), part.pin_load.shape[1]
             normal = part.flank.gradient[0, :, X] + 1j * part.flank.gradient[0, :, Y]
             discs.append(
                 DiscForces(
@@ -205,10 +247,11 @@ class ContactForces:
                     pin_slip=slip[:pins],
                     hole_slip=slip[pins:],
                     stiffness=part.tangent[0],
+                    crank_moment=Reducer(discs=(disc,)).crank_moments(at, row[:, columns], (part,))[0],
                     push=bearing_pushes(part.rollers, place.cranks)[0],
                     inner_load=part.rollers.inner_load[0],
                     outer_load=part.rollers.outer_load[0],
-                    wheel_force=complex(part.pin_load[0] @ normal),
+                    wheel_force=complex(part.pin_forces[0, :pins].sum()),
                     wheel_along=-1j * normal,
                 )
             )
@@ -226,7 +269,7 @@ class ContactForces:
         motion, place = self._motion, self._model.discs[0].geometry.placement
         total, turning = np.zeros(motion.size), float(rate[motion.crank])
         slow = FADING * float(place.mean_eccentricity.ravel()[0]) * self._speed
-        rolls = turning / np.hypot(turning, FADING * self._speed)
+        rolls = self._rolls(rate)
         for columns, disc in zip(self._columns, discs, strict=True):
             going = rate[columns] + disc.nominal * turning
             force = np.zeros(columns.size)
@@ -258,14 +301,27 @@ class ContactForces:
         return total
 
 
+def _slip(geometry: ContactGeometry, crank_angle: FloatArray, pose: FloatArray, part: DiscResponse) -> FloatArray:
+    """Slip of wheel pins, then shaft pins, by the pose where each is loaded, shape (pairs, k): in slices leans move it as well,
+    by as far as its load is off the middle.
+    """
+    slip = Slip.of_disc(geometry, crank_angle, pose, part).by_pose[0]
+    if part.leaning_pins is None or part.leaning_holes is None:
+        return np.asarray(slip)
+    coordinates, pins = geometry.coordinates_of(pose), part.pin_load.shape[1]
+    load = np.concatenate((part.pin_load[0], part.hole_load[0]))
+    moment = np.concatenate((part.leaning_pins.contact.moment[0], part.leaning_holes.contact.moment[0]))
+    height = np.divide(moment, load, out=np.zeros_like(load), where=load > 0.0)
+    along = height[:, None] * np.concatenate((part.flank.along[0], part.holes.along[0]))[:, DISC_PLACE]
+    slip[:, coordinates.lean_place] += along
+    if coordinates.wheel_leans:
+        slip[:pins, coordinates.wheel_lean_place] -= along[:pins]
+    return np.asarray(slip)
+
+
 def _springs(motion: Motion) -> FloatArray:
-    """Stiffness of the mesh of a first stage and of the carrier's twist, shape (n, n)."""
-    found = np.zeros((motion.size, motion.size))
-    if motion.sun is not None:
-        row = motion.unit(motion.crank) - motion.unit(motion.sun)
-        row[: motion.pose.size] += motion.mesh_by_pose
-        found += np.outer(row, row) / motion.mesh_compliance
-    carrier = motion.drive.carrier
+    """Stiffness of the carrier's twist, shape (n, n)."""
+    found, carrier = np.zeros((motion.size, motion.size)), motion.drive.carrier
     if motion.twist is not None and carrier is not None:
         found[motion.twist, motion.twist] += carrier.stiffness_torsion or 0.0
     return found

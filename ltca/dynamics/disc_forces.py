@@ -51,6 +51,8 @@ class DiscForces:
         Slip of the pin against the disc along the tangent by q (`ltca.equilibrium.friction.slip`).
     stiffness : array, shape (k + 1, k + 1)
         Σ k g gᵀ over the contacts, of the pose and, last, the crank angle: without what turns with them.
+    crank_moment : array, shape (cranks,)
+        Moment that holds each crank against this disc, N·mm.
     push : array of complex, shape (cranks,)
         Force of every crank bearing on the disc, N.
     inner_load, outer_load : array, shape (rollers,)
@@ -71,6 +73,7 @@ class DiscForces:
     pin_slip: FloatArray
     hole_slip: FloatArray
     stiffness: FloatArray
+    crank_moment: FloatArray
     push: ComplexArray
     inner_load: FloatArray
     outer_load: FloatArray
@@ -125,11 +128,11 @@ class DiscContacts:
             whole = np.column_stack((gradient, gradient @ nominal))
             stiffness += whole.T @ (stiff[:, None] * whole)
         push, displacement, lever, inner, outer = self._bearings(angle, q, middle, races, turn, force, stiffness)
-        held = float(np.sum((lever.conjugate() * push).imag + self._cage * (displacement.conjugate() * push).imag))
+        held = (lever.conjugate() * push).imag + self._cage * (displacement.conjugate() * push).imag
         normal = pins[2][:, X] + 1j * pins[2][:, Y]
         return DiscForces(
             force=force,
-            by_crank=held + float(force @ nominal),
+            by_crank=float(held.sum() + force @ nominal),
             nominal=nominal,
             pin_load=pins[0],
             hole_load=holes[0],
@@ -138,6 +141,7 @@ class DiscContacts:
             pin_slip=pins[3],
             hole_slip=holes[3],
             stiffness=stiffness,
+            crank_moment=held,
             push=push,
             inner_load=inner,
             outer_load=outer,

@@ -20,6 +20,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.drive.parts import Drive
@@ -82,10 +83,8 @@ class Motion:
         pose, mesh = Coordinates.of_drive(drive), StageMesh.of_drive(drive)
         compliance, by_pose = 0.0, np.zeros(pose.size)
         if mesh is not None:
-            pushed = mesh.on_planets(np.full((1, drive.crank.number), -float(drive.driving_sign)))[1][0]
-            own = np.einsum("ci,ij,cj->c", pushed.conjugate(), mesh.own, pushed).real
-            compliance = float(np.mean(np.squeeze(mesh.twist) + own)) / drive.crank.number
-            by_pose = np.einsum("ci,cin->cn", pushed.conjugate(), mesh.by_pose).real.mean(axis=0)
+            # The load drives the cranks against the teeth in this sense.
+            compliance, by_pose = mesh.together(float(drive.driving_sign))
         return cls(drive=drive, pose=pose, mesh=mesh, mesh_compliance=compliance, mesh_by_pose=by_pose)
 
     @property
@@ -115,6 +114,15 @@ class Motion:
     def size(self) -> int:
         """Number of coordinates."""
         return self.pose.size + 1 + bool(self.mesh_compliance) + (self.twist is not None)
+
+    @property
+    def light_leans(self) -> NDArray[np.intp]:
+        """Places of the leans of cranks at the discs and of the wheel, which have no mass."""
+        pose = self.pose
+        first = pose.own - 2 * (pose.cranks + 1) * pose.leans
+        each = (pose.own * np.arange(pose.discs)[:, None] + np.arange(first, pose.lean_place.start)).ravel()
+        wheel = np.arange(*pose.wheel_lean_place.indices(pose.size))
+        return np.concatenate((each, wheel)).astype(np.intp)
 
     def unit(self, place: int | None) -> FloatArray:
         """Return the row of one coordinate; zeros of none."""
@@ -213,15 +221,26 @@ class Body:
         t, or t·mm².
     row : array, shape (coordinates,)
         Velocity x + iy, rotation, or one direction of a lean, by the rates of the coordinates.
-    leans : bool
-        Whether it is a moment of inertia about a line in the plane.
+    across : array, shape (coordinates,), or None
+        Of a moment of inertia about a line in the plane, by the lean in one direction, what a frame that turns by 1 rad adds to
+        that: the lean across. None of others.
     """
 
     name: str
     turns: bool
     size: float
     row: ComplexArray
-    leans: bool = False
+    across: ComplexArray | None = None
+
+    @property
+    def leans(self) -> bool:
+        """Whether it is a moment of inertia about a line in the plane."""
+        return self.across is not None
+
+    @property
+    def carried(self) -> ComplexArray:
+        """Velocity that a frame which turns by 1 rad adds, by the displacements of the row."""
+        return 1j * self.row if self.across is None else self.across
 
     @property
     def matrix(self) -> FloatArray:
@@ -362,8 +381,11 @@ def _leaning(motion: Motion, disc: Solid, number: int) -> Iterator[Body]:
     # A lean along x turns the disc about y.
     by_lean = np.array([[tensor[1, 1], -tensor[0, 1]], [-tensor[0, 1], tensor[0, 0]]])
     for size, direction in zip(*np.linalg.eigh(by_lean), strict=True):
-        row = direction[0] * motion.unit(int(own[0])) + direction[1] * motion.unit(int(own[1]))
-        yield Body(name=f"disc {number}", turns=False, size=float(size), row=row.astype(complex), leans=True)
+        along, beside = motion.unit(int(own[0])), motion.unit(int(own[1]))
+        row, across = (first * along + second * beside for first, second in (direction, (direction[1], -direction[0])))
+        yield Body(
+            name=f"disc {number}", turns=False, size=float(size), row=row.astype(complex), across=across.astype(complex)
+        )
 
 
 def _eccentric_velocity(motion: Motion, masses: DriveMasses, disc: int, crank: int, angle: float) -> ComplexArray:

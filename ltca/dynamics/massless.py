@@ -1,15 +1,17 @@
 r"""Coordinates of parts that yield and have no mass: they follow all others as springs do.
 
-A file gives no mass to the ring that ties the tips of shaft pins, nor to the far flange of a carrier. Such coordinates
+A file gives no mass to the ring that ties the tips of shaft pins, nor to the far flange of a carrier; leans of cranks and of the
+wheel are so stiff for what they move (some 100 kHz) that theirs is left out. Such coordinates
 :math:`x = \dots + N z` stand wherever their forces balance, :math:`f = N^T (\partial U/\partial x + R - Q) = 0`, and move with
 the others so that f stays zero,
 
 .. math:: \dot z = -(N^T K N)^{-1} \dot f|_z .
 
 What is stored is then the least energy over z, whose slopes by the other coordinates are the forces at that place: the
-balance of energy needs nothing besides, but where they rub the work of friction on :math:`\dot z`. There the change of f is
-differenced along the motion, since it has the turning of the normals in it; elsewhere nothing feels the rates, and
-:math:`N^T K \dot x` of the stiffness K serves. Modes do likewise with parts without mass (`ltca.dynamics.modes`).
+balance of energy needs nothing besides, but where they rub, or forces from outside press them, the work on :math:`\dot z`.
+There the change of f is differenced along the motion, since it has the turning of the normals in it; elsewhere nothing
+feels the rates, and :math:`N^T K \dot x` of the stiffness K serves. Modes do likewise with parts without mass
+(`ltca.dynamics.modes`).
 """
 
 from __future__ import annotations
@@ -44,7 +46,7 @@ class MasslessParts:
     place : array, shape (k,)
         Where they begin, mm.
     rubs : bool
-        Whether friction acts on them.
+        Whether friction or forces from outside act on them.
     """
 
     def __init__(self, columns: FloatArray, place: FloatArray, rubs: bool) -> None:

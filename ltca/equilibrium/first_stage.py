@@ -217,6 +217,20 @@ class StageMesh:
         both = np.stack((forces.in_plane, forces.couple), axis=-1)
         return both, np.stack(self._slope(np.sign(moments)), axis=-1)
 
+    def together(self, sense: float) -> tuple[float, FloatArray]:
+        """Return how the cranks of one drive lag together on one flank: by the moment of all of them, shared evenly,
+        rad/(N·mm), and by the coordinates, rad by mm or rad, shape (coordinates,).
+
+        Parameters
+        ----------
+        sense : float
+            Of the moments that hold the cranks, ±1.
+        """
+        pushed = self.on_planets(np.full((1, self.outward.shape[-1]), sense))[1][0]
+        own = np.einsum("ci,ij,cj->c", pushed.conjugate(), self.own, pushed).real
+        by_pose = np.einsum("ci,cin->cn", pushed.conjugate(), self.by_pose).real.mean(axis=0)
+        return float(np.mean(np.squeeze(self.twist) + own)) / own.size, np.asarray(by_pose)
+
     def beside_discs(self, on_planets: ComplexArray) -> ComplexArray:
         """Return what the two bearings of every crank carry of forces and couples on the planets while the planes of the discs
         stand still, N, shape (positions, cranks, 2).

@@ -103,10 +103,10 @@ class BearingSupport:
         both = np.stack((force.real, force.imag), axis=-1).reshape(pose.shape[0], -1, 1)
         return np.matmul(back, both)[..., 0], np.matmul(back, found)
 
-    def energy(self, pose: FloatArray) -> FloatArray:
-        """Return the stored energy, N·mm, shape (positions,)."""
+    def energy(self, pose: FloatArray, beside: ComplexArray | None = None) -> FloatArray:
+        """Return the stored energy, N·mm, shape (positions,); `beside` as for `respond`."""
         displaced = self._displaced(pose)
-        given, _ = self._settle(displaced)
+        given, _ = self._settle(displaced, beside)
         rest = displaced - _times(self.shares, given)
         size = np.abs(given)
         lifted = np.where(self.beyond > 0.0, size, 0.0)
@@ -274,11 +274,12 @@ class Supports:
         each = enumerate(self.bearings[: self.cranks])
         return np.stack([support.given(pose, beside[:, number]) for number, support in each], axis=1)
 
-    def energy(self, pose: FloatArray) -> FloatArray:
-        """Return the energy stored at poses, N·mm, shape (positions,)."""
+    def energy(self, pose: FloatArray, beside: ComplexArray | None = None) -> FloatArray:
+        """Return the energy stored at poses, N·mm, shape (positions,); `beside` as for `respond`."""
         total: FloatArray = 0.5 * (pose * np.matmul(self.matrix, pose[..., None])[..., 0]).sum(axis=1)
-        for support in self.bearings:
-            total = total + support.energy(pose)
+        for number, support in enumerate(self.bearings):
+            of_crank = beside is not None and number < self.cranks
+            total = total + support.energy(pose, beside[:, number] if of_crank and beside is not None else None)
         return total
 
 

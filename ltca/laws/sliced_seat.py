@@ -115,6 +115,13 @@ class SlicedSeat:
         ConvergenceError
             When no line of travel carries these.
         """
+        travel, lean = self.under(load, moment, play)
+        end = travel + 0.5 * self.law.length * np.abs(lean)
+        level, _ = self._level(np.log(end / (self.law.series.load_scale * np.maximum(play, LEAST_PLAY))))
+        return np.asarray(self.law.contact_modulus * self.law.length * end / level)
+
+    def under(self, load: FloatArray, moment: FloatArray, play: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return travels, mm, and leans, rad, of seats under loads and moments; arguments and errors as for `heaviest`."""
         travel, _ = self.law.approach_and_compliance(load, np.maximum(play, LEAST_PLAY))
         lean, half = np.zeros_like(travel), 0.5 * self.law.length
         history = []
@@ -123,13 +130,9 @@ class SlicedSeat:
             left = np.maximum(np.abs(seat.load - load), np.abs(seat.moment - moment) / half) / load
             history.append(float(np.max(left, initial=0.0)))
             if history[-1] <= 1e-9:
-                break
+                return travel, lean
             travel, lean = self._carry(load, moment, play, (travel, lean), seat)
-        else:
-            raise ConvergenceError("seats in slices do not carry loads and moments; left over by the load", history)
-        end = travel + half * np.abs(lean)
-        level, _ = self._level(np.log(end / (self.law.series.load_scale * np.maximum(play, LEAST_PLAY))))
-        return np.asarray(self.law.contact_modulus * self.law.length * end / level)
+        raise ConvergenceError("seats in slices do not carry loads and moments; left over by the load", history)
 
     def _carry(
         self,
@@ -246,6 +249,17 @@ class BackedLine:
                 values[closed] = getattr(found, name)
         answer = SlicedContact(**{name: values.reshape((*shape, *values.shape[1:])) for name, values in whole.items()})
         return answer, travel.reshape(shape), lean.reshape(shape)
+
+    def energy(self, contact: SlicedContact, effective_radius: FloatArray) -> FloatArray:
+        """Return the energy of contacts and their seats, N·mm, shape (…)."""
+        found = self.contact.energy(contact, effective_radius)
+        presses = contact.load > 0.0
+        load, moment, play = (
+            np.broadcast_to(each, presses.shape)[presses] for each in (contact.load, contact.moment, self.play)
+        )
+        seat = self.seat.press(*self.seat.under(load, moment, play), play)
+        found[presses] += self.seat.energy(seat.line_load, play)
+        return found
 
     def _closed(
         self, delta: FloatArray, theta: FloatArray, radius: FloatArray, play: FloatArray, start: FloatArray | None

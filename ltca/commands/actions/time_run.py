@@ -195,6 +195,7 @@ def _lines(found: TimeRun, title: str) -> list[str]:
             ("input", energy.input), ("output", energy.output), ("damping", energy.damping), ("friction", energy.friction),
             ("kinetic", energy.kinetic), ("stored", energy.stored), ("curvature", energy.curvature),
             ("stations", energy.stations),
+            ("teeth", energy.teeth),
         )
         if np.isfinite(value)
     )  # fmt: skip

@@ -87,6 +87,7 @@ def _energy(heading: str, ending: str, found: TimeRun) -> Section:
         ("change of stored energy", energy.stored),
         ("work of changing radii of curvature", energy.curvature),
         ("work of contacts that move over the bodies", energy.stations),
+        ("work of teeth that planets carry unevenly", energy.teeth),
         ("left", energy.left),
     )
     rows = [[word(words), number(value / 1e3, "{:.6g}", "J")] for words, value in told if np.isfinite(value)]

@@ -594,7 +594,6 @@ def test_values_are_used_or_refused(values, words):
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"contact.slices": 5}, "contact.slices"),
         ({"materials.disc.density": None}, "materials.disc.density"),
         ({"load.torque": 0.0}, "load.torque"),
     ],
