@@ -3,7 +3,7 @@ r"""A drive run in time: start, steady speed, speed ramp, torque step, reversal 
 The run begins in balance at crank angle 0, with the friction of the speed it begins with; where it begins at speed all parts
 move as slow motion would have them. `ltca.dynamics.motion` has the equations; scipy's DOP853 solves them with its own step and
 dense output, of which samples evenly in time are kept. Contacts that close and open set its step: drives
-have vibrations up to some 10 kHz, so that implicit methods with the tangent gain nothing.
+have vibrations up to some 10 kHz, and implicit methods are no cheaper at equal error (``benchmarks/integrators.py``).
 
 The balance of energy is that of input, output, damping, friction, of what is stored, and of the work of contacts that move to
 another radius of curvature or over bodies that yield otherwise there (`ltca.compliance.stored_energy`): their forces act along
@@ -457,8 +457,8 @@ def prepare_run(drive: Drive, engine: Engine, course: Course) -> PreparedRun:
     Raises
     ------
     DriveError
-        For what a run in time leaves out, by name: rigid teeth with backlash, or before posts, on rigid cranks, a twist of the
-        carrier without mass, an input of no inertia that a torque drives, a torque of zero.
+        For what a run in time leaves out, by name: rigid teeth with backlash, or before posts, on rigid cranks, eccentric
+        teeth, a twist of the carrier without mass, an input of no inertia that a torque drives, a torque of zero.
     ConvergenceError
         Where no balanced state is found to start from.
     """
@@ -579,6 +579,11 @@ def _require_supported(drive: Drive, motion: Motion, course: Course) -> None:
             problems.append(
                 f"carrier.posts: {rigid}, and the far flange has no mass; first_stage.mesh_stiffness must be given"
             )
+    if stage is not None and stage.runs_out:
+        problems.append(
+            "first_stage.sun_runout, first_stage.planet_runout: a run in time leaves out teeth that stand off their axes, "
+            "by which cranks turn apart; must be 0"
+        )
     if course.driven_by == "torque" and (drive.inertia is None or drive.inertia.input is None):
         problems.append("inertia.input: must be given for an input that a torque drives, kg·m²")
     if problems:
