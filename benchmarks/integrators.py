@@ -1,6 +1,6 @@
 """Integrators of runs in time: processor time at equal error of scipy's DOP853, Radau, BDF and LSODA.
 
-    OPENBLAS_NUM_THREADS=1 python benchmarks/integrators.py [--time 0.002] [--speed 1500]
+    OPENBLAS_NUM_THREADS=1 python benchmarks/integrators.py [NAME …] [--time 0.01] [--speed 1500]
 
 The paper's drive, without and with damping, and a plastic one run steadily on half-spaces from the same start with each
 integrator at several tolerances. The error is the largest difference of any pin load from a run of DOP853 at a thousandth of the
@@ -93,11 +93,14 @@ def at_error(errors: list[float], seconds: list[float], wanted: float) -> str:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--time", type=float, default=2e-3, help="s")
+    parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join(drives())}; default all")
+    parser.add_argument("--time", type=float, default=1e-2, help="s")
     parser.add_argument("--speed", type=float, default=1500.0, help="rpm")
     arguments = parser.parse_args()
     course = Course.of_values("steady", arguments.time, arguments.speed)
     for name, drive in drives().items():
+        if arguments.names and name not in arguments.names:
+            continue
         exact = solved(drive, course, DOP853, REFERENCE)[0]
         print(f"{name}: {arguments.time:g} s at {arguments.speed:g} rpm")
         for label, method in METHODS.items():

@@ -3,7 +3,7 @@ r"""A drive run in time: start, steady speed, speed ramp, torque step, reversal 
 The run begins in balance at crank angle 0, with the friction of the speed it begins with; where it begins at speed all parts
 move as slow motion would have them. `ltca.dynamics.motion` has the equations; scipy's DOP853 solves them with its own step and
 dense output, of which samples evenly in time are kept. Contacts that close and open set its step: drives
-have vibrations up to some 10 kHz, so that implicit methods with the tangent gain nothing.
+have vibrations up to some 10 kHz, and implicit methods are no cheaper at equal error (``benchmarks/integrators.py``).
 
 The balance of energy is that of input, output, damping, friction, of what is stored, and of the work of contacts that move to
 another radius of curvature or over bodies that yield otherwise there (`ltca.compliance.stored_energy`): their forces act along
@@ -37,7 +37,6 @@ from ltca.dynamics.teeth import TeethForces
 from ltca.equilibrium.balance import lever_arms
 from ltca.equilibrium.output_angle import crank_lag
 from ltca.equilibrium.output_torque import solve_at_output
-from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError, DriveError
 
 MOTIONS = {
@@ -458,8 +457,8 @@ def prepare_run(drive: Drive, engine: Engine, course: Course) -> PreparedRun:
     Raises
     ------
     DriveError
-        For what a run in time leaves out, by name: eccentric teeth, rigid ones with backlash, or before posts, on rigid cranks,
-        a twist of the carrier without mass, an input of no inertia that a torque drives, a torque of zero.
+        For what a run in time leaves out, by name: rigid teeth with backlash, or before posts, on rigid cranks, eccentric
+        teeth, a twist of the carrier without mass, an input of no inertia that a torque drives, a torque of zero.
     ConvergenceError
         Where no balanced state is found to start from.
     """
@@ -467,7 +466,7 @@ def prepare_run(drive: Drive, engine: Engine, course: Course) -> PreparedRun:
     warm.require_torque("a run in time, which starts under load")
     masses, motion = require_masses(drive_masses(drive)), Motion.of_drive(warm)
     model = engine.prepare(drive).model
-    _require_supported(warm, model, motion, course)
+    _require_supported(warm, motion, course)
     sense = _sense(warm)
     # A first stage turns the cranks against its sun.
     turns = motion.input_turns
@@ -568,13 +567,8 @@ def _sense(drive: Drive) -> float:
     return float(np.sign(drive.motion_sign * drive.crank_turns_per_input))
 
 
-def _require_supported(drive: Drive, model: Reducer, motion: Motion, course: Course) -> None:
+def _require_supported(drive: Drive, motion: Motion, course: Course) -> None:
     problems, stage = [], drive.first_stage
-    if model.stage is not None and model.stage.runs_out:
-        problems.append(
-            "first_stage.sun_runout, first_stage.planet_runout: a run in time leaves out teeth that stand off their axes, "
-            "by which cranks turn apart; must be 0"
-        )
     if stage is not None and motion.sun is None:
         rigid = "with rigid teeth and cranks a run in time has nothing between sun and cranks"
         if stage.backlash:
@@ -585,6 +579,11 @@ def _require_supported(drive: Drive, model: Reducer, motion: Motion, course: Cou
             problems.append(
                 f"carrier.posts: {rigid}, and the far flange has no mass; first_stage.mesh_stiffness must be given"
             )
+    if stage is not None and stage.runs_out:
+        problems.append(
+            "first_stage.sun_runout, first_stage.planet_runout: a run in time leaves out teeth that stand off their axes, "
+            "by which cranks turn apart; must be 0"
+        )
     if course.driven_by == "torque" and (drive.inertia is None or drive.inertia.input is None):
         problems.append("inertia.input: must be given for an input that a torque drives, kg·m²")
     if problems:
