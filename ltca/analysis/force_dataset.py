@@ -52,8 +52,8 @@ def force_dataset(found: Vibration, answer: ForcedVibration | None) -> LabelledD
             mean, amplitude, rest = mean[None], amplitude[:, None], rest[None]
         values = {
             "over_speed": mean,
-            "order_amplitude": np.moveaxis(np.abs(amplitude), 0, -1),
-            "order_phase": np.moveaxis(-np.angle(amplitude), 0, -1),
+            "order_amplitude": np.moveaxis(np.abs(amplitude), 0, -1).astype(np.float32),
+            "order_phase": np.moveaxis(-np.angle(amplitude), 0, -1).astype(np.float32),
             "order_rest": rest,
         }
         data |= {f"{name}_{ending}": QUANTITIES[f"{name}_{ending}"].labelled(each) for ending, each in values.items()}

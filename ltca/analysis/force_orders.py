@@ -88,14 +88,13 @@ class ForceSpectrum:
             rest=np.asarray(self.rest[speed]),
         )
 
-    def largest(self) -> tuple[FloatArray, tuple[str, ...]]:
-        """Return the largest amplitude of each order among all parts, N, shape (orders,), and which parts have them."""
+    def largest(self) -> tuple[FloatArray, tuple[tuple[int, ...], ...]]:
+        """Return the largest amplitude of each order among all parts, N, shape (orders,), and the numbers of the parts."""
         sizes = np.abs(self.amplitude)
         flat = sizes.reshape(len(sizes), -1)
         places = np.argmax(flat, axis=1)
-        return np.asarray(flat.max(axis=1)), tuple(
-            self.name(tuple(map(int, np.unravel_index(place, sizes.shape[1:])))) for place in places
-        )
+        numbers = [tuple(map(int, np.unravel_index(place, sizes.shape[1:]))) for place in places]
+        return np.asarray(flat.max(axis=1)), tuple(numbers)
 
     @property
     def strongest(self) -> tuple[int, ...]:
@@ -215,7 +214,7 @@ def force_content(found: tuple[ForceSpectrum, ...]) -> list[dict[str, Any]]:
     """
     content = []
     for one in found:
-        part, (sizes, names) = one.strongest, one.largest()
+        part, (sizes, parts) = one.strongest, one.largest()
         told = np.sort(np.argsort(-sizes, kind="stable")[:TOLD])
         content.append(
             {
@@ -227,7 +226,7 @@ def force_content(found: tuple[ForceSpectrum, ...]) -> list[dict[str, Any]]:
                 "amplitude_N": np.abs(one.amplitude[(told, *part)]).tolist(),
                 "rest_rms_N": float(one.rest[part]),
                 "largest_amplitude_N": sizes[told].tolist(),
-                "largest_of": [names[place] for place in told],
+                "largest_of": [one.name(parts[place]) for place in told],
             }
         )
     return content

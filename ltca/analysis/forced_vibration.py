@@ -40,6 +40,7 @@ from ltca.geometry.placement import position_angles
 
 SPEEDS = 300
 """Evenly spaced speeds of a response; critical ones come to them."""
+OPERATION = "speed of operation"
 TOLD_BETWEEN, TOLD_CRITICAL = 24, 8
 """Speeds whose forces are told: evenly over all, and critical ones of the largest orders; those of operation come to them."""
 MOST_TRUNCATION = 0.05
@@ -179,7 +180,7 @@ def _told(found: Vibration, speed: FloatArray, top: float) -> tuple[IntArray, tu
     critical = [one for one in found.critical_speeds(top) if one.speed <= top]
     for one in sorted(critical, key=lambda each: -each.amplitude)[:TOLD_CRITICAL]:
         reasons[one.speed] = f"mode {one.mode + 1} by {one.order.name}"
-    reasons |= dict.fromkeys(_operation(found.drive, top), "speed of operation")
+    reasons |= dict.fromkeys(_operation(found.drive, top), OPERATION)
     places = sorted((int(np.argmin(np.abs(speed - each))), why) for each, why in reasons.items())
     return np.array([place for place, _ in places]), tuple(why for _, why in places)
 
