@@ -55,14 +55,17 @@ def _forces(case: str, ending: str, found: Vibration, answer: ForcedVibration | 
         "the largest amplitude of an order. Rest: what the orders leave of this part, root mean square; where it is large, more "
         "--turns tell more orders apart. dynamics.nc has every part and order."
     ]
-    tables = [_force_table(f"force_orders{ending}", "At rest", found.forces, None)]
+    tables = [_force_table(f"force_orders{ending}", "Orders at rest", found.forces, None)]
     curves = []
     if answer is not None:
-        notes.append("In motion: the force at rest and what the response adds to it, while contacts stay closed.")
+        notes.append(
+            "In motion: the force at rest and what the response adds to it, while contacts stay closed. Curves are those of the "
+            "largest part."
+        )
         told = [place for place, why in enumerate(answer.reasons) if why and place]
         # Speeds of operation first.
         for place in sorted(told, key=lambda each: answer.reasons[each] != OPERATION):
-            title = f"At {answer.told_speed[place]:.0f} rpm, {minus(answer.reasons[place])}"
+            title = f"orders at {answer.told_speed[place]:.0f} rpm, {minus(answer.reasons[place])}"
             there = tuple(one.at(place) for one in answer.forces)
             resting = tuple(one.at(0) for one in answer.forces)
             tables.append(
@@ -70,7 +73,7 @@ def _forces(case: str, ending: str, found: Vibration, answer: ForcedVibration | 
             )
         curves = [
             Curves(
-                title=f"{one.kind[0].upper()}{one.kind[1:]}: orders that motion changes most, largest of all parts",
+                title=f"{one.kind[0].upper()}{one.kind[1:]}, orders that motion changes most",
                 unit="N",
                 axis="speed of the input, rpm",
                 x=answer.told_speed,
@@ -132,7 +135,7 @@ def _modes(case: str, ending: str, found: Vibration) -> Section:
         ]
         for mode, words in enumerate(found.words)
     ]
-    columns = ["mode", "what moves, part of the kinetic energy", "least, Hz", "mean, Hz", "largest, Hz"]
+    columns = ["mode", "what moves", "least, Hz", "mean, Hz", "largest, Hz"]
     by_torque = Curves(
         title="Eigenfrequencies over torque, mean of a turn", unit="Hz", axis="torque at the output, N·m",
         x=found.torque / 1e3,
@@ -140,8 +143,8 @@ def _modes(case: str, ending: str, found: Vibration) -> Section:
     )  # fmt: skip
     ends = found.ends_words
     notes = [
-        f"At the load, over {found.crank_angle.size} crank angles of a turn; shapes at crank angle 0. Without friction; "
-        f"{ends}. The turning of the whole drive is no vibration and left out."
+        f"At the load, over {found.crank_angle.size} crank angles of a turn; shapes, with parts of the kinetic energy, "
+        f"at crank angle 0. Without friction; {ends}. The turning of the whole drive is no vibration and left out."
     ]
     table = Table(name=f"modes{ending}", caption="", columns=columns, rows=rows, words=1)
     return Section(heading=_heading(case, "Modes"), notes=notes, curves=[by_torque], tables=[table])
