@@ -44,7 +44,7 @@ def force_dataset(found: Vibration, answer: ForcedVibration | None) -> LabelledD
         Its response; None leaves the forces at rest.
     """
     spectra = found.forces if answer is None else answer.forces
-    data, coords = {}, dict[str, tuple[Any, ...]]()
+    data, coords = dict[str, tuple[Any, ...]](), dict[str, tuple[Any, ...]]()
     for one in spectra:
         name, orders = NAMES[one.kind]
         mean, amplitude, rest = one.mean, one.amplitude, one.rest

@@ -98,10 +98,10 @@ def solve_and_write(
     (first, *others) = contents.values()
     write_json(out / "dynamics.json", {"drive": file.name, "cases": contents} if others else first)
     files = []
-    for name, found in every.items():
+    for name, case in every.items():
         path = out / f"dynamics{f'_{name}' if others else ''}.nc"
         with whole_file(path) as part:
-            write_netcdf(force_dataset(found.vibration, found.response), part)
+            write_netcdf(force_dataset(case.vibration, case.response), part)
         files.append(path)
     files.append(out / "dynamics.json")
     if not arguments.no_page:
