@@ -73,7 +73,7 @@ def _forces(case: str, ending: str, found: Vibration, answer: ForcedVibration | 
             )
         curves = [
             Curves(
-                title=f"{one.kind[0].upper()}{one.kind[1:]}, orders that motion changes most",
+                title=f"Orders that motion changes most: {one.kind}",
                 unit="N",
                 axis="speed of the input, rpm",
                 x=answer.told_speed,
