@@ -52,6 +52,16 @@ DIMENSIONS = {
     "pin in time": ("time", "disc", "pin"),
     "roller in time": ("time", "disc", "crank", "roller"),
     "hole in time": ("time", "disc", "hole"),
+    "speed": ("speed",),
+    "pin at speeds": ("speed", "disc", "pin"),
+    "roller at speeds": ("speed", "disc", "crank", "roller"),
+    "hole at speeds": ("speed", "disc", "hole"),
+    "bearing at speeds": ("speed", "disc", "crank"),
+    "orders of a pin": ("speed", "disc", "pin", "pin_order"),
+    "orders of a roller": ("speed", "disc", "crank", "roller", "roller_order"),
+    "orders of a hole": ("speed", "disc", "hole", "hole_order"),
+    "orders of a bearing": ("speed", "disc", "crank", "bearing_order"),
+    "orders of a main bearing": ("speed", "main_bearing_order"),
 }
 """Dimensions by what a quantity belongs to."""
 
@@ -321,6 +331,24 @@ _ALONG_WIDTH = (
     _checked("axial_play_taken", "1", "part of the axial play of a disc that its tilt takes at the rim"),
 )
 """Of contacts in slices along their width."""
+
+
+def _spectrum(force: str, of: str, by: str, words: str) -> tuple[Quantity, ...]:
+    """Orders of the forces of one kind over speed, of ``dynamics.nc``."""
+    orders, where = f"orders of a {by}", "at rest where the speed is 0, else in motion"
+    return (
+        Quantity(f"{force}_over_speed", of, "N", f"mean over the walked turns of the {words}, {where}"),
+        Quantity(f"{force}_order_amplitude", orders, "N", f"amplitude by order of the {words}, {where}"),
+        Quantity(
+            f"{force}_order_phase",
+            orders,
+            "rad",
+            f"phase by order of the {words}: amplitude · cos(order · φ_C − phase)",
+        ),
+        Quantity(f"{force}_order_rest", of, "N", f"root mean square of what its orders leave of the {words}, {where}"),
+    )
+
+
 _TIP_RING = (
     "displacement of the ring that ties the tips of the shaft pins, or of the far flange of the carrier; not of [ring], the "
     "ring of the wheel (ring_displacement_radial)"
@@ -738,6 +766,14 @@ _DECLARED = (
             ("max_shear_depth", "{}", "mm", "depth below the surface of the largest shear stress"),
         )
     ),
+    # vibrations: orders of single forces
+    *_spectrum("pin_load", "pin at speeds", "pin", "load of each wheel pin"),
+    *_spectrum("roller_load", "roller at speeds", "roller", "load of each roller in the bore"),
+    *_spectrum("pin_shaft_load", "hole at speeds", "hole", "load of each pin of the pin shaft"),
+    *_spectrum("bearing_radial", "bearing at speeds", "bearing", "force of each crank bearing on its disc, radial"),
+    *_spectrum("bearing_tangential", "bearing at speeds", "bearing", "force of each crank bearing on its disc, tangential"),
+    *_spectrum("main_bearing_x", "speed", "main bearing", "force of the main bearing along x"),
+    *_spectrum("main_bearing_y", "speed", "main bearing", "force of the main bearing along y"),
     # full finite elements alone
     Quantity("disc_x", "disc", "mm", "disc from its nominal place, fixed axes, fitted to its bores"),
     Quantity("disc_y", "disc", "mm", "disc from its nominal place, fixed axes, fitted to its bores"),

@@ -19,6 +19,7 @@ from fem.options import SolutionOptions
 from fem.reducer.solution import solve_reducer
 from fem.reducer.solution_files import ARRAYS, build_dataset as build_fem_dataset, summarise as summarise_fem
 from ltca.analysis.engines import HalfSpace
+from ltca.analysis.force_dataset import force_dataset
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.pressure_fields import build_pressure_dataset
 from ltca.analysis.results import build_dataset
@@ -26,6 +27,7 @@ from ltca.analysis.summary import summarise
 from ltca.analysis.time_dataset import time_dataset
 from ltca.analysis.time_run import Course, prepare_run, run_in_time
 from ltca.analysis.verdict.values import find_values
+from ltca.analysis.vibration import vibration
 from ltca.quantities import IN_TIME, LIMITED, QUANTITIES, REFINED, SCALARS, SCHEMA_VERSION, Quantity, scalar_named
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import parse_drive, shipped_drive
@@ -50,7 +52,8 @@ contamination = 0.5
 [temperature]
 disc = 30.0
 """
-INDEXES = {"case", "disc", "crank", "position", "pin", "roller", "hole", "slice", "axis"}
+INDEXES = {"case", "disc", "crank", "position", "pin", "roller", "hole", "slice", "axis", "speed"}
+INDEXES |= {f"{part}_order" for part in ("pin", "roller", "hole", "bearing", "main_bearing")}
 INFORMATION = {
     "torque_share", "disc_displacement", "disc_displacement_area", "pose_iterations", "dof", "size", "plane_state", "held",
     "fingerprint", "seconds", "seconds_by_stage",
@@ -131,6 +134,9 @@ def test_runs_write_what_is_declared_and_nothing_else(drives):
         judged |= {value.quantity for value in find_values(analysis, summary)}
     analyses = {"CS-1": analyse(drives["paper"], np.array([0.0]))}
     arrays |= check_arrays(build_pressure_dataset("paper", analyses, cells=4), kept)
+    yielding = with_fields(drives["paper"], {"main_bearing.radial_stiffness": 1e6})
+    shaken = vibration(yielding, engine=HalfSpace(), positions=4, turns=4, torque_parts=())
+    arrays |= check_arrays(force_dataset(shaken, None), kept)
     solution = solve_reducer(drives["paper"], 0.5, SolutionOptions(size=6.0))
     stresses = [recover_disc_stress(disc) for disc in solution.discs]
     arrays |= check_arrays(build_fem_dataset(solution, "CS-1").assign(stress_variables(stresses)), kept)

@@ -31,9 +31,11 @@ torque_curve               Torque against wind-up over both directions, and what
 stiffness_by_part          Torsional stiffness with and without each part that a file describes
 transmission_error_orders  Orders of the transmission error by name, fitted together
 life                       Rating life and static safety of the crank bearings from the loads of their rollers
-force_orders               Spectra of single forces at rest, by the orders of their own passage
+force_orders               Spectra of single forces, by the orders of their own passage and of what passes elsewhere
 vibration                  Modes over a turn and over torque, orders that excite them, critical speeds
+forces_in_motion           Forces of single parts in motion: spectra, largest loads
 forced_vibration           Response to the orders of the transmission error over speed, dynamic factors of contacts
+force_dataset              What vibrations leave of single forces: the dataset ``dynamics.nc``
 time_run                   A drive in time on the laws of its contacts: start, ramp, torque step, reversal, swinging load
 time_dataset               What a run in time leaves: dataset and numbers
 drive_curves               Curves of one drive: torque curve, orders, lives and pressure over turns

@@ -23,27 +23,26 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
+from ltca.analysis.force_orders import ForceSpectrum, force_content
+from ltca.analysis.forces_in_motion import forces_in_motion
 from ltca.analysis.transmission_error_orders import OrderFit
 from ltca.analysis.vibration import Vibration, speed_range
 from ltca.arrays import BoolArray, ComplexArray, FloatArray, IntArray
-from ltca.compliance.response import Response, Start
+from ltca.drive.parts import Drive
 from ltca.dynamics.harmonic_balance import HillSystem, UnstableRange, unstable_ranges
 from ltca.dynamics.kinetics import moving_bodies
 from ltca.dynamics.masses import drive_masses
 from ltca.dynamics.modes import Modes, solve_modes
-from ltca.dynamics.stiffness import levers
-from ltca.equilibrium.balance import lever_arms
-from ltca.equilibrium.output_torque import solve_at_output
-from ltca.equilibrium.reducer import Reducer, bearing_forces
 from ltca.errors import ConvergenceError, DriveError
-from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.placement import position_angles
 
 SPEEDS = 300
 """Evenly spaced speeds of a response; critical ones come to them."""
-POSITIONS = 96
-"""Crank angles of a turn at which loads are told."""
+OPERATION = "speed of operation"
+TOLD_BETWEEN, TOLD_CRITICAL = 24, 8
+"""Speeds whose forces are told: evenly over all, and critical ones of the largest orders; those of operation come to them."""
 MOST_TRUNCATION = 0.05
 """Change of the transmission error by half of the orders, relative to it, beyond which more positions are asked for."""
 MOST_POSITIONS = 1000
@@ -52,10 +51,6 @@ GIVEN_UP = 3
 """Speeds in a row, faster than one that balances, whose failure ends the balance with the pulsation."""
 SAME_ORDER = 1e-9
 """Distance from a whole number below which an order is one."""
-STEP = 1e-6
-"""Displacement by which loads are differenced, mm: approaches are micrometres."""
-KINDS = ("wheel pins", "rollers", "shaft pins", "crank bearings")
-"""Contacts that dynamic factors are told of."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -79,7 +74,13 @@ class ForcedVibration:
     torque_ratio : array, shape (speeds,)
         Largest departure of the moment between wheel and discs by its mean over the turn: from 1 on contacts part.
     factors : dict of str to array, shape (speeds,)
-        Largest load in motion by the largest at rest, by `KINDS`.
+        Largest load in motion by the largest at rest over the walked turns, by what carries it.
+    told_speed : array, shape (told,)
+        Speeds of the input whose forces are told, turns a minute, ascending, the first 0: at rest.
+    reasons : tuple of str
+        Why each is told: what turns there, or resonates; empty of those between.
+    forces : tuple of ForceSpectrum
+        Spectra of all single forces at these speeds, by kind.
     """
 
     speed: FloatArray
@@ -90,6 +91,9 @@ class ForcedVibration:
     unstable: tuple[UnstableRange, ...]
     torque_ratio: FloatArray
     factors: dict[str, FloatArray]
+    told_speed: FloatArray
+    reasons: tuple[str, ...]
+    forces: tuple[ForceSpectrum, ...]
 
     @property
     def parts_from(self) -> float | None:
@@ -119,30 +123,34 @@ def forced_vibration(found: Vibration, *, fastest: float | None = None, speeds: 
     DriveError
         Without damping, with which resonances would have no end.
     """
-    drive, motion = found.drive, found.motion
+    drive = found.drive
     if drive.damping is None:
         raise DriveError(["damping.ratio: must be given (or damping.loss_factor) for a response over speed"])
-    top = speed_range(drive)[1] if fastest is None else fastest
+    # Matrices of some tens of rows: more threads of BLAS than one wait for each other ten times as long as they work.
+    with threadpool_limits(1):
+        return _respond(found, speed_range(drive)[1] if fastest is None else fastest, speeds)
+
+
+def _respond(found: Vibration, top: float, speeds: int) -> ForcedVibration:
+    """Response up to a speed of the input, turns a minute."""
+    drive = found.drive
     critical = [one.speed for one in found.critical_speeds(top) if one.speed <= top]
-    speed = np.unique(np.concatenate((top * np.arange(1, speeds + 1) / speeds, critical)))
+    speed = np.unique(np.concatenate((top * np.arange(1, speeds + 1) / speeds, critical, _operation(drive, top))))
     model = replace(found.engine.prepare(drive).model, friction=None)
     orders, resting = _orders(found), _quasi_static(found)
     crank = abs(drive.crank_turns_per_input) * speed * 2.0 * np.pi / 60.0
     system, nominal = _system(found), _nominal_forces(found)
     forces = np.array([_force(system, one, orders, resting, nominal) for one in crank])
     answers, balanced = _answers(system, crank, orders, forces)
-    departure, outward = answers[:, 1:].transpose(0, 2, 1), answers[:, 0].real
-    every = np.abs(np.einsum("n,snm->sm", _deviation(found), resting + departure))
+    every = np.abs(np.einsum("n,smn->sm", _deviation(found), resting.T + answers[:, 1:]))
     amplitude = np.sqrt(0.5 * np.sum(every**2, axis=1))
     worst = int(np.argmax(np.where(balanced, amplitude, 0.0)))
     fewer = system.respond(
         crank[worst], orders, forces[worst], pulsates=bool(balanced[worst]), highest=system.stiffness.orders // 2
     )
     changed = _deviation(found) @ (fewer - answers[worst])[1:].T
-    loads = _Loads.at_load(found, model)
-    waves = np.exp(1j * orders[:, None] * loads.angle)
-    seen = np.matmul(departure, waves).real + outward[:, :, None]
-    moved = np.einsum("pij,sjp->sip", motion.turned(loads.angle), seen)
+    told, reasons = _told(found, speed, top)
+    loads = forces_in_motion(found, model, orders, answers, told)
     return ForcedVibration(
         speed=speed,
         order_amplitude=every[:, _places(found, orders)],
@@ -150,9 +158,31 @@ def forced_vibration(found: Vibration, *, fastest: float | None = None, speeds: 
         mean_at=speed[~balanced],
         truncation=float(np.sqrt(0.5 * np.sum(np.abs(changed) ** 2)) / amplitude[worst]),
         unstable=_unstable(found, system, top),
-        torque_ratio=loads.torque_ratio(moved),
-        factors=loads.factors(moved),
+        torque_ratio=loads.torque_ratio,
+        factors=loads.factors,
+        told_speed=np.concatenate(([0.0], speed[told])),
+        reasons=("at rest", *reasons),
+        forces=loads.spectra,
     )
+
+
+def _operation(drive: Drive, top: float) -> list[float]:
+    """Speeds at which a drive runs, up to a largest one, turns a minute."""
+    given = [entry.speed for entry in drive.duty] or ([] if drive.load.speed is None else [drive.load.speed])
+    return [speed for speed in given if 0.0 < speed <= top]
+
+
+def _told(found: Vibration, speed: FloatArray, top: float) -> tuple[IntArray, tuple[str, ...]]:
+    """Places of the speeds whose forces are told, ascending, and why each is: those of operation, critical ones of the largest
+    orders, and some between.
+    """
+    reasons = dict.fromkeys(speed[np.unique(np.linspace(0, speed.size - 1, TOLD_BETWEEN).round().astype(int))], "")
+    critical = [one for one in found.critical_speeds(top) if one.speed <= top]
+    for one in sorted(critical, key=lambda each: -each.amplitude)[:TOLD_CRITICAL]:
+        reasons[one.speed] = f"mode {one.mode + 1} by {one.order.name}"
+    reasons |= dict.fromkeys(_operation(found.drive, top), OPERATION)
+    places = sorted((int(np.argmin(np.abs(speed - each))), why) for each, why in reasons.items())
+    return np.array([place for place, _ in places]), tuple(why for _, why in places)
 
 
 def _answers(
@@ -282,72 +312,6 @@ def _nominal_forces(found: Vibration) -> FloatArray:
     return np.asarray(total / angles.size)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Loads:
-    """Loads at rest over a turn, and their derivatives by the coordinates."""
-
-    angle: FloatArray
-    wheel: FloatArray
-    mean_wheel: float
-    kinds: dict[str, tuple[ComplexArray, ComplexArray]]
-
-    @classmethod
-    def at_load(cls, found: Vibration, model: Reducer) -> _Loads:
-        """Balance a turn at the load and difference it."""
-        drive, motion = found.drive, found.motion
-        angle = position_angles(POSITIONS)
-        still = solve_at_output(model, [drive], angle, drive.load.torque)
-        contacts = replace(model, stage=None, friction=None, external=None)
-        lever = levers(model, motion, np.atleast_2d(lever_arms(model))[0])
-        start = Start.after(still.response)
-        at_rest = _kinds(model, angle, still.response)
-        slopes: dict[str, list[Any]] = {kind: [] for kind in at_rest}
-        wheel = []
-        for place in range(motion.size):
-            ends = []
-            step = STEP / lever[place]
-            for sense in (-1.0, 1.0):
-                pose, turned = still.pose.copy(), angle.copy()
-                if place < motion.pose.size:
-                    pose[:, place] += sense * step
-                elif place == motion.crank:
-                    turned = angle + sense * step
-                ends.append((turned, contacts.respond(turned, pose, start)))
-            (low_angle, low), (high_angle, high) = ends
-            below, above = _kinds(model, low_angle, low), _kinds(model, high_angle, high)
-            for kind, values in slopes.items():
-                values.append((above[kind] - below[kind]) / (2.0 * step))
-            wheel.append((high.force[:, WHEEL_ANGLE] - low.force[:, WHEEL_ANGLE]) / (2.0 * step))
-        kinds = {kind: (at_rest[kind], np.stack(values, axis=-1)) for kind, values in slopes.items()}
-        moment = contacts.respond(angle, still.pose, start).force[:, WHEEL_ANGLE]
-        return cls(angle=angle, wheel=np.stack(wheel, axis=-1), mean_wheel=float(np.mean(moment)), kinds=kinds)
-
-    def torque_ratio(self, moved: FloatArray) -> FloatArray:
-        """Largest departure of the moment on the wheel by its mean, shape (speeds,), of motions of shape (speeds, coordinates,
-        positions).
-        """
-        changes = np.einsum("pn,snp->sp", self.wheel, moved)
-        return np.asarray(np.abs(changes).max(axis=1) / abs(self.mean_wheel))
-
-    def factors(self, moved: FloatArray) -> dict[str, FloatArray]:
-        """Largest load in motion by the largest at rest, by kind, shape (speeds,)."""
-        by_position = moved.transpose(2, 1, 0)
-        found = {}
-        for kind, (at_rest, slope) in self.kinds.items():
-            whole = at_rest[:, :, None] + np.matmul(slope, by_position)
-            # A contact that is open has no slope; one that the linear motion would pull has no load.
-            sizes = np.abs(whole) if np.iscomplexobj(whole) else np.maximum(whole, 0.0)
-            found[kind] = sizes.max(axis=(0, 1)) / np.abs(at_rest).max()
-        return found
-
-
-def _kinds(model: Reducer, angle: FloatArray, response: Response) -> dict[str, Any]:
-    """Loads by kind, shape (positions, parts)."""
-    bearing = bearing_forces(model, angle, response).reshape(angle.size, -1)
-    each = (response.pin_load, response.rollers.outer_load, response.hole_load, bearing)
-    return {kind: values for kind, values in zip(KINDS, each, strict=True) if values.size}
-
-
 RANGES_TOLD = 4
 """Ranges of parametric resonance that are told in words; files have all."""
 
@@ -428,5 +392,14 @@ def response_content(found: ForcedVibration, vibration: Vibration) -> dict[str, 
         ],
         "torque_ratio": found.torque_ratio.tolist(),
         "contacts_part_from_rpm": found.parts_from,
+        "forces": [
+            {
+                "speed_rpm": float(speed),
+                "why": why,
+                "forces": force_content(tuple(one.at(place) for one in found.forces)),
+            }
+            for place, (speed, why) in enumerate(zip(found.told_speed, found.reasons, strict=True))
+            if why and place
+        ],
         "dynamic_factor": {kind.replace(" ", "_"): values.tolist() for kind, values in found.factors.items()},
     }

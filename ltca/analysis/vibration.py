@@ -15,7 +15,7 @@ import numpy as np
 
 from ltca.analysis.drive_curves import known_orders_of, positions_per_turn
 from ltca.analysis.engines import Engine
-from ltca.analysis.force_orders import ForceOrders, force_content, force_orders, single_forces
+from ltca.analysis.force_orders import ForceFit, ForceSpectrum, force_content, single_forces
 from ltca.analysis.memory_need import positions_together
 from ltca.analysis.transmission_error_orders import Order, Spectrum, fit_orders
 from ltca.arrays import FloatArray
@@ -111,8 +111,8 @@ class Vibration:
         Balanced poses there.
     walked_lag : array, shape (walked,)
         Angle of the cranks less the one that the held input gives them, rad.
-    forces : tuple of ForceOrders
-        Spectra of single forces there.
+    forces : tuple of ForceSpectrum
+        Spectra of all single forces there, at rest.
     """
 
     drive: Drive
@@ -132,7 +132,7 @@ class Vibration:
     walked_angle: FloatArray
     walked_pose: FloatArray
     walked_lag: FloatArray
-    forces: tuple[ForceOrders, ...]
+    forces: tuple[ForceSpectrum, ...]
 
     @property
     def input_is_held(self) -> bool:
@@ -302,21 +302,21 @@ def vibration(
         walked_angle=walked.angle,
         walked_pose=walked.pose,
         walked_lag=walked.lag,
-        forces=force_orders(warm, walked.angle, walked.forces),
+        forces=walked.forces,
     )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Walked:
-    """Crank angles of some turns, and there, at the load, transmission error, poses, lags of the cranks, single forces, and the
-    stiffness of a mean turn with what departs from it.
+    """Crank angles of some turns, and there, at the load, transmission error, poses, lags of the cranks, spectra of single
+    forces, and the stiffness of a mean turn with what departs from it.
     """
 
     angle: FloatArray
     error: FloatArray
     pose: FloatArray
     lag: FloatArray
-    forces: dict[str, FloatArray]
+    forces: tuple[ForceSpectrum, ...]
     stiffness: PulsatingStiffness
     stiffness_rest: float
 
@@ -333,12 +333,8 @@ def _walk(
     """Balance some turns of so many positions at the load."""
     torque = drive.load.torque
     angle = 2.0 * np.pi * np.arange(turns * each) / each
-    parts, forces, over_turn, squares = (
-        [],
-        list[dict[str, FloatArray]](),
-        np.zeros((each, motion.size, motion.size)),
-        0.0,
-    )
+    parts, forces, squares = [], ForceFit(drive, angle), 0.0
+    over_turn = np.zeros((each, motion.size, motion.size))
     scale, first = np.outer(lever, lever), 0
     for rows in np.array_split(angle, -(-angle.size // positions_together(drive))):
         found = solve_at_output(model, [drive], rows, torque, gaps=False)
@@ -348,7 +344,7 @@ def _walk(
         squares += float(np.sum((stiffness / scale) ** 2)) / turns
         error = drive.output_deviation(wheel_angle_of_input(model, found), np.full(rows.size, torque))
         parts.append((error, found.pose, crank_lag(model, found)))
-        forces.append(single_forces(model, found))
+        forces.add(rows, single_forces(model, rows, found.pose, found.response))
         first += rows.size
         advance(rows.size)
     error, pose, lag = (np.concatenate(values) for values in zip(*parts, strict=True))
@@ -358,7 +354,7 @@ def _walk(
         error=error,
         pose=pose,
         lag=lag,
-        forces={name: np.concatenate([part[name] for part in forces]) for name in forces[0]},
+        forces=forces.solve(),
         stiffness=PulsatingStiffness(over_turn=over_turn),
         stiffness_rest=float(np.sqrt(max(squares - kept, 0.0) / kept)),
     )

@@ -23,7 +23,10 @@ from ltca.reading.arguments import (
 
 SUMMARY = "eigenfrequencies and modes under load, Campbell diagram, critical speeds, response over speed; run in time"
 EXAMPLES = (
-    ("cyclo dynamics my.toml", "modes over a turn and over torque, critical speeds; dynamics.json"),
+    (
+        "cyclo dynamics my.toml",
+        "modes over a turn and over torque, critical speeds, forces by orders; dynamics.json, dynamics.nc",
+    ),
     ("cyclo dynamics my.toml --speed '3000 rpm'", "up to that speed of the input"),
     (
         "cyclo dynamics my.toml --time '200 ms' --speed '1500 rpm' --motion start",
@@ -67,7 +70,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(arguments: argparse.Namespace) -> int:
-    """Solve every case; write dynamics.json, page and figures, print the results."""
+    """Solve every case; write dynamics.json, dynamics.nc, page and figures, print the results."""
     from ltca.output.run_folder import claimed_folder, figure_files
 
     check_time_arguments(arguments, POSITIONS)
@@ -85,7 +88,8 @@ def execute(arguments: argparse.Namespace) -> int:
     figures = figure_files(
         arguments.figures, *(name + ending for name in FIGURES for ending in opened.figure_endings())
     )
-    writes = ["dynamics.json", *([] if arguments.no_page else ["report.html"])]
+    data = [f"dynamics{ending}.nc" for ending in opened.figure_endings()]
+    writes = ["dynamics.json", *data, *([] if arguments.no_page else ["report.html"])]
     with claimed_folder(out, "dynamics", writes=[*writes, *figures]):
         find_coefficients_of(cases, engine, arguments)
         return solve_and_write(file, cases, engine, arguments, out)

@@ -5,7 +5,8 @@ In the frame that turns with the crank at the speed :math:`\dot\varphi`,
 .. math:: M D^2 Y + C \dot Y + K(\varphi) Y = f(\varphi), \quad D = \frac{d}{dt} + \dot\varphi J
 
 with a stiffness that comes again after a turn. Whole orders below half the positions of a turn are balanced together: inertia,
-spin and damping act on orders, the stiffness at positions (alternating by FFT). GMRES solves them. Its preconditioner lets
+spin and damping act on orders, the stiffness at positions (alternating by FFT). GMRES solves them, preconditioned from the
+right: what it makes small is what is left of the force, not what the preconditioner makes of that. The preconditioner lets
 motions b, whose inertia does not count, answer at every position at once,
 
 .. math:: b = K_{bb}^{-1} (f_b - K_{ba} a), \quad K_{eff} = K_{aa} - K_{ab} K_{bb}^{-1} K_{ba} ,
@@ -37,7 +38,7 @@ from ltca.arrays import ComplexArray, FloatArray
 from ltca.errors import ConvergenceError
 
 SOLVED = 1e-9
-"""Part of a force that a balance may leave, in displacements."""
+"""Part of a force that a balance may leave."""
 DIRECTIONS, CYCLES = 60, 2
 """Of GMRES at most: each strong resonance takes some. Beyond, many modes are coupled over many orders."""
 BEYOND = 2.0
@@ -221,13 +222,10 @@ class HillSystem:
 
         right = force * scale
         right[0] = held @ right[0]
-        operator, preconditioner = (
-            LinearOperator((2 * whole * size,) * 2, matvec=one, dtype=np.float64) for one in (balance, prepared)
-        )
-        found, missed = gmres(
-            operator,
+        # Preconditioned from the right: what GMRES makes small is what is left of the force itself.
+        pushed, missed = gmres(
+            LinearOperator((2 * whole * size,) * 2, matvec=lambda values: balance(prepared(values)), dtype=np.float64),
             right.ravel().view(np.float64),
-            M=preconditioner,
             rtol=SOLVED,
             atol=0.0,
             restart=DIRECTIONS,
@@ -235,7 +233,7 @@ class HillSystem:
         )
         if missed:
             raise ConvergenceError(f"no periodic motion found at {speed:.6g} rad/s of the crank", [])
-        return np.asarray(found.view(np.complex128).reshape(whole, size) / scale)
+        return np.asarray(prepared(pushed).view(np.complex128).reshape(whole, size) / scale)
 
 
 def _at_positions(values: FloatArray, samples: int) -> FloatArray:

@@ -45,6 +45,8 @@ class Curves:
         Least and most along the axis, least and most of the values: what is drawn; empty for everything.
     large : sequence of str
         Lines whose points are drawn larger.
+    beside : mapping of str to str
+        Lines that are drawn thin, dashed and all in the same quiet colour, with the text on each.
     """
 
     title: str
@@ -60,6 +62,7 @@ class Curves:
     marks: Sequence[Mark] = ()
     span: tuple[float, ...] = ()
     large: Sequence[str] = ()
+    beside: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -196,6 +199,8 @@ def curves_content(sections: Sequence[Section]) -> tuple[dict[str, FloatArray], 
             }
             told |= {"kind": curves.kind, "degrees": curves.degrees, "along": curves.along, "up": curves.up}
             told |= {"dashed": [name in curves.dashed for name in curves.lines], "large": list(curves.large)}
+            if curves.beside:
+                told["beside"] = [curves.beside.get(name) for name in curves.lines]
             if curves.marks:
                 told["marks"] = [asdict(mark) for mark in curves.marks]
             if curves.span:

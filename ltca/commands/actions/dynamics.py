@@ -1,4 +1,4 @@
-"""Solve the cases of ``cyclo dynamics``; write dynamics.json, page and figures, print the results."""
+"""Solve the cases of ``cyclo dynamics``; write dynamics.json, dynamics.nc, page and figures, print the results."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import numpy as np
 
 from ltca.analysis.drive_curves import fewest_turns
 from ltca.analysis.engines import Engine, describe_engine
+from ltca.analysis.force_dataset import force_dataset
 from ltca.analysis.forced_vibration import ForcedVibration, forced_vibration, response_content, response_notes
 from ltca.analysis.half_space_errors import half_space_words
 from ltca.analysis.vibration import (
@@ -26,7 +27,8 @@ from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import ARCSEC
 from ltca.dynamics.kinetics import require_masses
 from ltca.dynamics.masses import drive_masses
-from ltca.output.files import write_json
+from ltca.output.files import whole_file, write_json
+from ltca.output.netcdf import write_netcdf
 from ltca.output.progress import progress
 from ltca.page.studies.dynamics import dynamics_sections
 from ltca.page.study_page import StudyPage, write_study_page
@@ -63,7 +65,7 @@ def require_vibrations(drive: Drive) -> None:
 def solve_and_write(
     file: DriveFile, cases: dict[str, Drive], engine: Engine, arguments: argparse.Namespace, out: Path
 ) -> int:
-    """Solve every case, write dynamics.json, page and figures, print the results; return the exit status."""
+    """Solve every case, write dynamics.json, dynamics.nc, page and figures, print the results; return the exit status."""
     contents, every = {}, dict[str, Found]()
     turns = {
         name: arguments.turns or fewest_turns(drive, drive.pin_wheel.number_of_pins) for name, drive in cases.items()
@@ -95,7 +97,13 @@ def solve_and_write(
         print(f"figures: {out / 'figures'} ({len(figures)} as {arguments.figures.upper()})")
     (first, *others) = contents.values()
     write_json(out / "dynamics.json", {"drive": file.name, "cases": contents} if others else first)
-    files = [out / "dynamics.json"]
+    files = []
+    for name, case in every.items():
+        path = out / f"dynamics{f'_{name}' if others else ''}.nc"
+        with whole_file(path) as part:
+            write_netcdf(force_dataset(case.vibration, case.response), part)
+        files.append(path)
+    files.append(out / "dynamics.json")
     if not arguments.no_page:
         loads = dict.fromkeys(drive.load_words() for drive in cases.values())
         words = half_space_words(engine, next(iter(cases.values())))

@@ -75,7 +75,7 @@ class Plot {
     return best;
   }
 
-  // series: {name, values, x, colour, faint, dashed, thin}; of many lines drawn as one: {many, key}
+  // series: {name, values, x, colour, faint, dashed, thin, label}; of many lines drawn as one: {many, key}
   set(title, series) {
     this.title.textContent = title + (this.spec.unit ? `, ${this.spec.unit}` : "");
     this.button.setAttribute("aria-label", `Figure ${title} as SVG`);
@@ -155,6 +155,12 @@ class Plot {
       } else if (line.many) frame.replaceChild(this.together(line, [width, this.low, this.high, low, high].join()), group);
       else node("path", { class: `curve${line.faint || line.thin ? " thin" : ""}${line.dashed ? " dashed" : ""}`, d: this.path(line) }, group);
     }
+    // Texts on lines, each a little further in than the one before, since several may leave at the same place.
+    this.series.filter(line => line.label).forEach((line, i) => {
+      const inside = line.values.map((value, k) => (value >= low && value <= high ? k : 0)).reduce((a, b) => Math.max(a, b), 0);
+      const at = Math.round(inside * (0.96 - 0.085 * (i % 8)));
+      node("text", { class: "axis-text on-line", x: X(spec.x[at]), y: Y(line.values[at]) + 4, "text-anchor": "middle" }, frame, line.label);
+    });
     for (const mark of spec.marks || []) if (mark.shown) {
       const group = node("g", { class: mark.colour }, frame);
       node("line", { class: `curve${mark.dashed ? " dashed" : ""}`, x1: X(mark.value), x2: X(mark.value), y1: top, y2: height - bottom }, group);
