@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from math import gcd
 from typing import Any
 
-from ltca.analysis.derivatives import derivatives
+from ltca.analysis.derivatives import LostMotion, derivatives
 from ltca.analysis.engines import HalfSpace, describe_engine, engine_of, lending_between
 from ltca.analysis.extremes import RESOLVED, sampling_warning
 from ltca.analysis.life.bearing_lives import BearingLives, bearing_lives
@@ -19,6 +19,7 @@ from ltca.analysis.reactions import relieved_rows_warning
 from ltca.analysis.results import labelled_results
 from ltca.analysis.summary import FREE_PLAY, OF_FLANK, refined_value, summarise_cases
 from ltca.analysis.summary_rows import rows_of, with_residual_part
+from ltca.analysis.torque_curve import LOST_MOTION, curve_angles
 from ltca.analysis.verdict.proportions import odd_proportions
 from ltca.analysis.verdict.values import judge_analysis
 from ltca.arrays import FloatArray
@@ -47,7 +48,8 @@ WITH_THE_FINE = {*OF_FLANK, *FREE_PLAY, "preload"}
 OF_DERIVATIVES = (
     "max_pin_load", "max_pin_pressure_mid", "max_roller_load", "mean_bearing_load", "ptp_transmission_error",
 )  # fmt: skip
-"""Scalars whose derivatives are told, beside that of the output's mean deviation."""
+"""Scalars whose derivatives are told, beside that of the lost motion."""
+FRICTION = "friction"
 STEPS = {"mm": (1e-3, "1 µm"), "rad": (1.0 / ARCMIN, "1′"), "N*mm": (1e3, "1 N·m"), "degC": (1.0, "1 °C")}
 """Change of a field that a derivative is told for, by its unit: the number and the words; 1 % of others."""
 
@@ -86,6 +88,8 @@ class Memory:
     def __init__(self) -> None:
         self.near: LoadedAnalysis | None = None
         self.key: tuple[str, str] = ("", "")
+        self.lost: LostMotion | str | None = None
+        self.lost_key: tuple[str, str] = ("", "")
 
 
 def answer(question: Question, memory: Memory) -> dict[str, Any]:
@@ -232,15 +236,36 @@ def _derivative(question: Question, memory: Memory, file: DriveFile, name: str) 
     kind, value = field_kind(question.field), _number(memory.near.as_written, question.field)
     unit = "" if kind is None else kind.unit
     step, words = STEPS.get(unit, (0.01 * abs(value) or 0.01, "1 %" if value else "0.01"))
-    cells = []
-    output = float(slopes["transmission_error"].values[0].mean()) * step * ARCMIN
-    cells.append({"title": "output angle at the torque, mean", "value": output, "text": f"{minus(f'{output:+.3g}')}′"})
+    cells, lost = [], _lost_motion(question, memory, drive, name)
+    if isinstance(lost, LostMotion) and not question.field.startswith(f"{FRICTION}."):
+        change = float(lost.slope(question.field).mean()) * step * ARCMIN
+        cells.append({"title": "lost motion", "value": change, "text": f"{minus(f'{change:+.3g}')}′"})
     for scalar in (SCALARS[one] for one in OF_DERIVATIVES):
         if scalar.key not in slopes:
             continue
         change = float(slopes[scalar.key].values[0]) * step
         cells.append({"title": scalar.title, "value": change, "text": _with_unit(f"{change:+.3g}", scalar.unit)})
-    return {"field": question.field, "step": words, "cells": cells}
+    return {"field": question.field, "step": words, "cells": cells, "note": _note(lost, drive)}
+
+
+def _lost_motion(question: Question, memory: Memory, drive: Drive, name: str) -> LostMotion | str:
+    """What is balanced for lost motion, once for all fields, or why there is none."""
+    if memory.lost is None or memory.lost_key != (question.text, name):
+        try:
+            memory.lost = LostMotion(drive, curve_angles(drive))
+        except CycloError as error:
+            memory.lost = str(error)
+        memory.lost_key = (question.text, name)
+    return memory.lost
+
+
+def _note(lost: LostMotion | str, drive: Drive) -> str:
+    """What lost motion the derivatives are of."""
+    if isinstance(lost, str):
+        return f"No lost motion: {lost}"
+    where = f"at ±{100.0 * LOST_MOTION:g} % of the torque, mean of {lost.value.size} crank angles over one mesh"
+    without = ", without friction" if drive.friction is not None else ""
+    return f"Lost motion {where}{without}: {lost.value.mean() * ARCMIN:.3f}′."
 
 
 def _number(drive: Drive, path: str) -> float:

@@ -227,5 +227,6 @@ function showDerivatives() {
     `${path} by ${found.step}`, ...titles.map(title => { const cell = found.cells.find(each => each.title === title); return cell ? { text: cell.text, value: cell.value } : { text: "–" }; }),
   ]));
   else el("derivatives").replaceChildren();
+  if (good.length) html("p", { class: "note" }, el("derivatives"), good[good.length - 1][1].note);
   for (const [path, found] of rows) if (!found.cells) html("p", { class: "note" }, el("derivatives"), found.failure || (found.problems || []).map(each => each.text).join(" ") || path);
 }

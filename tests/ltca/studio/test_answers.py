@@ -123,6 +123,10 @@ def test_a_derivative_is_told_for_a_small_change():
         ends += [one["value"] for one in beside["summary"] if one["key"] == "mean_bearing_load_N"]
     # Of a difference over ±0.3 % of the torque, the third derivative makes less than 1e-3 while no contact opens.
     assert change == pytest.approx((ends[1] - ends[0]) / 2.0, rel=1e-3)
+    assert found["cells"][0]["title"] == "lost motion"
+    assert re.search(
+        r"Lost motion at ±3 % of the torque, mean of 4 crank angles over one mesh: \d+\.\d{3}′", found["note"]
+    )
 
 
 def test_mistakes_and_drives_without_an_answer_are_told():

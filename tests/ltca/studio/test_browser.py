@@ -11,7 +11,9 @@ import pytest
 
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.summary import summarise
+from ltca.analysis.torque_curve import curve_angles, torque_curve
 from ltca.analysis.verdict.values import judge_analysis
+from ltca.drive.units.quantities import ARCMIN
 from ltca.geometry.placement import position_angles
 from ltca.page.verdict_tables import verdict_of, verdict_tables
 from ltca.reading.drive_file import parse_drive
@@ -241,16 +243,17 @@ def test_two_variants_stand_beside_each_other_and_a_number_says_what_it_drives(o
     rows = {row[0]: row[1:] for row in table_of(page, "compared")[1:]}
     assert float(rows["bearing load, mean"][0]) != float(rows["bearing load, mean"][1])
     page.wait_for_function("() => derived.rows.has('clearance.bearing')")
-    row = page.evaluate("derived.rows.get('clearance.bearing').cells.find(cell => cell.title.includes('output angle'))")
-    # Against a difference of two solutions 2 µm apart, whose error is some 1e-4 of it: contacts open and close between.
+    row = page.evaluate("derived.rows.get('clearance.bearing').cells.find(cell => cell.title === 'lost motion')")
+    # Against a difference of two curves 2 µm apart, whose error is some 1e-4 of it: contacts open and close between.
     ends = []
     for value in ("0.029", "0.031"):
         text = page.evaluate("state.text").replace(
             "clearance = { bearing = 0.03, pin_hole = 0.0 }", f"clearance = {{ bearing = {value}, pin_hole = 0.0 }}", 1
         )
         drive = parse_drive(text, "paper").cases["CS-1"]
-        ends.append(analyse(drive, position_angles(36) + 1e-3).transmission_error.mean() * 180 * 60 / math.pi)
+        ends.append(torque_curve(drive, curve_angles(drive), points=0).lost_motion.mean() * ARCMIN)
     assert row["value"] == pytest.approx((ends[1] - ends[0]) / 2, rel=1e-2)
+    assert f"{sum(ends) / 2:.3f}′" in page.locator("#derivatives").inner_text()
 
 
 @pytest.mark.nightly
