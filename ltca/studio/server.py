@@ -39,6 +39,8 @@ LOOKING = 0.25
 COMPLIANCES = ("half-space", "hybrid", "fe", "file")
 PORTABLE = re.compile(r"[\w .-]+")
 """Names of saved files: signs that no file system refuses or reads in another way, letters of any script among them."""
+DEVICE = re.compile(r"(?:con|prn|aux|nul|(?:com|lpt)[0-9¹²³])(?: *\..*)?", re.IGNORECASE)
+"""Names that Windows takes for devices, whatever ending they have."""
 HEADERS = {
     "X-Content-Type-Options": "nosniff",
     "Referrer-Policy": "no-referrer",
@@ -243,12 +245,8 @@ class Studio:
             text, name = _text(asked), _word(asked, "name").removesuffix(".toml")
             if not names_a_file(name) or name.startswith("."):
                 raise DriveError([f"name = {shortened(name)}: {NAMING}"])
-            if not PORTABLE.fullmatch(name):
-                raise DriveError(
-                    [
-                        f"name = {shortened(name)}: must have only letters, digits, spaces and . _ -, which any system takes"
-                    ]
-                )
+            if told := _not_everywhere(name):
+                raise DriveError([f"name = {shortened(name)}: {told}"])
             path = self.folder / f"{name}.toml"
             if path.is_symlink() or (path.exists() and not path.is_file()):
                 raise FaultError(f"{path.name}: is no file of its own; take another name")
@@ -318,6 +316,17 @@ async def _answered(request: Request, action: Callable[[Mapping[str, Any]], dict
 def _mistakes(error: CycloError) -> dict[str, Any]:
     problems = error.problems if isinstance(error, DriveError) else (str(error),)
     return {"problems": [problem_of(one) for one in problems]}
+
+
+def _not_everywhere(name: str) -> str:
+    """Why a name cannot name a file on any system; empty where it can."""
+    if not PORTABLE.fullmatch(name):
+        return "must have only letters, digits, spaces and . _ -, which any system takes"
+    if name != name.strip() or name.endswith("."):
+        return "must not begin or end with a space, nor end with a dot: Windows leaves them out"
+    if DEVICE.fullmatch(name):
+        return "must not be the name of a device of Windows (con, prn, aux, nul, com1, lpt1, …)"
+    return ""
 
 
 def _word(asked: Mapping[str, Any], name: str) -> str:

@@ -2,7 +2,7 @@
 function download() { save(`${fileName(el("file-name").value || state.values.name || "drive")}.toml`, state.text, "application/toml"); }
 
 async function saveFile(overwrite) {
-  const name = el("file-name").value.trim();
+  const name = el("file-name").value;
   try {
     const found = await post("save", { text: state.text, name: name, overwrite: overwrite });
     el("overwrite").hidden = !found.exists;

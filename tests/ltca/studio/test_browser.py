@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import random
 import re
-import shutil
 
 import pytest
 
@@ -20,25 +19,9 @@ from ltca.reading.drive_file import parse_drive
 
 from .conftest import asker, studio
 
-playwright = pytest.importorskip("playwright.sync_api", reason="no playwright (pip install 'cyclo-ltca[browser]')")
-CHROMIUM = next(
-    (found for name in ("chromium", "chromium-browser", "google-chrome") if (found := shutil.which(name))), ""
-)
-pytestmark = [
-    pytest.mark.slow,
-    pytest.mark.referee,
-    pytest.mark.skipif(not CHROMIUM, reason="no chromium (apt install chromium)"),
-]
+pytestmark = [pytest.mark.slow, pytest.mark.referee]
 WAIT = 120_000
 """Milliseconds after which a page that computes has failed; it takes one or two seconds on an idle machine."""
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with playwright.sync_playwright() as driver:
-        found = driver.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
-        yield found
-        found.close()
 
 
 @pytest.fixture
