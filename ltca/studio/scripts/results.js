@@ -73,6 +73,17 @@ function verdict(kind, sentence) {
   el("verdict-line").textContent = (kind === "pass" ? "✓ " : kind === "fail" ? "✗ " : "") + sentence;
 }
 
+// In the place of an answer where there has been none: why.
+function showNoAnswer(reasons) {
+  const empty = !shown && reasons !== null;
+  el("no-answer").hidden = !empty;
+  el("results").classList.toggle("empty", empty);
+  if (!empty) return;
+  el("no-answer-reasons").replaceChildren(...reasons.map(text => html("li", {}, null, text)));
+  el("results").hidden = false;
+  el("results").setAttribute("aria-busy", "false");
+}
+
 // All of an answer, or nothing of it.
 function show(answer, sequence, older) {
   if (answer.superseded) return;
@@ -81,10 +92,12 @@ function show(answer, sequence, older) {
   if (answer.problems || answer.failure) {
     const count = (answer.problems || []).length;
     verdict("fail", answer.failure ? `No answer: ${answer.failure}` : count === 1 ? "A field is wrong" : `${count} mistakes`);
-    el("quality").textContent = shown ? "the numbers below are those of an earlier state" : "nothing was answered before in this page";
+    el("quality").textContent = shown ? "the numbers below are those of an earlier state" : "no answer yet";
     document.body.dataset.answer = older ? "older" : "refused";
+    showNoAnswer(answer.failure ? [answer.failure] : answer.problems.map(problem => problem.text));
     return;
   }
+  showNoAnswer(null);
   const fine = answer.positions >= 360 || answer.fine;
   const [, head, rest] = answer.sentence.match(/^(.*?[.])(?: (.*))?$/) || ["", answer.sentence, ""];
   verdict(answer.state, head);
