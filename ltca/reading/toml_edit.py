@@ -107,7 +107,7 @@ def tables_of(text: str) -> dict[str, Any]:
     return parse_toml(text, "the text")
 
 
-def with_values(text: str, changes: Mapping[str | Path, str | None]) -> str:
+def with_values(text: str, changes: Mapping[str, str | None] | Mapping[Path, str | None]) -> str:
     """Return the text of a TOML file with some values replaced.
 
     Parameters

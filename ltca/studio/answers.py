@@ -274,14 +274,18 @@ def _number(drive: Drive, path: str) -> float:
     return float(read_field(drive, path))
 
 
-_HEAD = re.compile(r"^cases? [^:]*: ")
+_HEAD = re.compile(r"^cases? ([^:]*): ")
 _PATH = re.compile(r"[a-z_]+(?:\.[A-Za-z0-9_]+)+|^[a-z_]+(?= = |: )")
 
 
 def problem_of(sentence: str) -> dict[str, Any]:
-    """Return a mistake as plain data: its text, and the fields that it names."""
-    body = _HEAD.sub("", sentence)
-    return {"text": minus(sentence), "fields": _fields_named(body)}
+    """Return a mistake as plain data: its text, the fields that it names, and the cases, of none for the common part."""
+    head, body = _HEAD.match(sentence), _HEAD.sub("", sentence)
+    return {
+        "text": minus(sentence),
+        "fields": _fields_named(body),
+        "cases": [] if head is None else head[1].split(", "),
+    }
 
 
 def _fields_named(sentence: str) -> Sequence[str]:

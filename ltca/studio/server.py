@@ -25,10 +25,16 @@ from ltca.errors import CycloError, DriveError, FaultError, shortened
 from ltca.output.files import whole_file
 from ltca.page.run_page import STAGE
 from ltca.page.writing import page_text, script_data
-from ltca.reading.toml_edit import with_entry
 from ltca.studio.answers import COARSE, DERIVATIVE, FINE, Question, problem_of
+from ltca.studio.entries import (
+    changed_entries,
+    declared_entries,
+    with_named_entry,
+    without_named_entry,
+    written_entries,
+)
 from ltca.studio.jobs import Jobs, exports
-from ltca.studio.sections import changed_text, declarations, files_elsewhere, written_values
+from ltca.studio.sections import declarations, files_elsewhere, written_values
 from ltca.studio.workers import Desks, Superseded, start_fork_server
 
 HOST = "127.0.0.1"
@@ -167,6 +173,7 @@ class Studio:
         if not self._page:
             first = {
                 "declared": declarations(),
+                "named": declared_entries(),
                 "text": self.text,
                 "case": self.case,
                 "source": self.source,
@@ -189,10 +196,13 @@ class Studio:
             text, case, changes = _text(asked), _word(asked, "case"), asked.get("changes", {})
             if not isinstance(changes, dict) or not all(isinstance(one, str) for one in changes.values()):
                 raise DriveError(["changes: must be texts by field"])
-            if entry := asked.get("entry"):
-                text = with_entry(text, _table(entry))
-            text = changed_text(text, case, changes)
-            return {"text": text, **written_values(text, case)}
+            if table := _word(asked, "entry"):
+                text = with_named_entry(text, table, _word(asked, "key"), _word(asked, "value"))
+            if path := _word(asked, "remove"):
+                text = without_named_entry(text, path)
+            text = changed_entries(text, case, changes)
+            found, entries = written_values(text, case), written_entries(text)
+            return {"text": text, **found, **entries, "values": found["values"] | entries["values"]}
 
         return await _answered(request, changed)
 
@@ -341,13 +351,6 @@ def _text(asked: Mapping[str, Any]) -> str:
     if not isinstance(value, str):
         raise DriveError(["text: must be that of a drive file"])
     return value
-
-
-def _table(entry: Any) -> str:
-    known = {path.removesuffix(".N") for path in declarations()["tables"] if path.endswith(".N")}
-    if entry not in known:
-        raise DriveError([f"entry = {shortened(entry)}: must be one of {', '.join(sorted(known))}"])
-    return str(entry)
 
 
 def serve(studio: Studio, port: int, *, browser: bool, told: Callable[[str], None]) -> None:

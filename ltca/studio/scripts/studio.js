@@ -32,6 +32,7 @@ function keepVariant() {
   listen();
   listenWork();
   buildFields();
+  buildNamed();
   el("opening").hidden = true;
   el("file-name").value = first.source.endsWith(".toml") ? first.source.replace(/^.*\//, "").replace(/\.toml$/, "") : `my-${first.source}`;
   el("undo").addEventListener("click", () => step(-1));
