@@ -5,9 +5,13 @@ from __future__ import annotations
 import math
 import random
 import re
+import struct
+import xml.etree.ElementTree as xml
+from contextlib import ExitStack, contextmanager
 
 import pytest
 
+from ltca.analysis.engines import engine_of
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.summary import summarise
 from ltca.analysis.torque_curve import curve_angles, torque_curve
@@ -15,7 +19,7 @@ from ltca.analysis.verdict.values import judge_analysis
 from ltca.drive.units.quantities import ARCMIN
 from ltca.geometry.placement import position_angles
 from ltca.page.verdict_tables import verdict_of, verdict_tables
-from ltca.reading.drive_file import parse_drive
+from ltca.reading.drive_file import parse_drive, shipped_drive
 
 from .conftest import asker, studio
 
@@ -24,9 +28,9 @@ WAIT = 120_000
 """Milliseconds after which a page that computes has failed; it takes one or two seconds on an idle machine."""
 
 
-@pytest.fixture
-def open_page(browser, running):
-    """Open the studio in a window of its own; its console must stay empty."""
+@contextmanager
+def pages_of(browser, address):
+    """Give a function that opens the studio in a window of its own; its console must stay empty."""
     contexts, console = [], []
 
     def opened(width=1400, height=900, **options):
@@ -38,9 +42,9 @@ def open_page(browser, running):
         page.on("pageerror", lambda error: console.append(str(error)))
         page.on(
             "request",
-            lambda request: request.url.startswith((running.address, "data:", "blob:")) or console.append(request.url),
+            lambda request: request.url.startswith((address, "data:", "blob:")) or console.append(request.url),
         )
-        page.goto(running.address)
+        page.goto(address)
         settled(page)
         return page
 
@@ -48,6 +52,25 @@ def open_page(browser, running):
     for context in contexts:
         context.close()
     assert console == []
+
+
+@pytest.fixture
+def open_page(browser, running):
+    """Open the studio of the paper's drive."""
+    with pages_of(browser, running.address) as opened:
+        yield opened
+
+
+@pytest.fixture
+def open_alone(browser, tmp_path):
+    """Open a studio of its own, without jobs, of a drive."""
+    with ExitStack() as stack:
+
+        def opened(drive):
+            found = stack.enter_context(studio(drive, tmp_path))
+            return stack.enter_context(pages_of(browser, found.address))()
+
+        yield opened
 
 
 def settled(page):
@@ -62,10 +85,10 @@ def table_of(page, name):
     return page.evaluate("name => tableRows(document.querySelector(`table[data-name=${name}]`))", name)
 
 
-def as_run_says(text, case):
-    """Sentence and rows of the verdict as ``cyclo run`` finds them on half-spaces."""
+def as_run_says(text, case, engine=None):
+    """Sentence and rows of the verdict as ``cyclo run`` finds them, on half-spaces unless an engine is given."""
     file = parse_drive(text, "paper")
-    analysis = analyse(file.cases[case], position_angles(360))
+    analysis = analyse(file.cases[case], position_angles(360), None, engine)
     checks = {case: judge_analysis(analysis, summarise(analysis), file.limits[case], lives=False)}
     (table, *_) = [one for one in verdict_tables(checks) if one.name == "verdict"]
     return verdict_of(checks)[0], [[cell.value for cell in row] for row in table.rows]
@@ -326,6 +349,89 @@ def test_a_killed_server_is_told_and_the_text_stays(browser, tmp_path):
             page.locator("#lost .download").click()
         assert "shifting_offset = 0.09" in saved.value.path().read_text(encoding="utf-8")
         page.close()
+
+
+@pytest.mark.nightly
+def test_the_fine_answer_on_other_bodies_is_that_of_a_run(open_alone):
+    """`robot-joint` says nothing of its bodies: what its file says is hybrid."""
+    text = shipped_drive("robot-joint")
+    engine = engine_of(parse_drive(text, "robot-joint").cases.values())
+    assert engine.options["compliance"] == "hybrid"
+    sentence, rows = as_run_says(text, "nominal", engine)
+    page = open_alone("robot-joint")
+    half_spaces = table_of(page, "verdict")[1:]
+    assert "half-space" in page.locator("#about").inner_text()
+    for compliance in ("hybrid", "file"):
+        page.select_option("#compliance", compliance)
+        settled(page)
+        assert page.evaluate("document.body.dataset.answer") == "fine"
+        assert "hybrid" in page.locator("#about").inner_text()
+        assert sentence.startswith(page.locator("#verdict-line").inner_text().lstrip("✓✗ "))
+        assert_same(table_of(page, "verdict")[1:], rows)
+        assert table_of(page, "verdict")[1:] != half_spaces
+
+
+def job_done(page, number):
+    """Wait until a job has ended; return its state and its files by name, each with where it is handed out."""
+    row = page.locator(f'#jobs [data-job="{number}"]')
+    page.wait_for_function(
+        "number => document.querySelector(`#jobs [data-job='${number}']`).dataset.state !== 'running'", arg=number
+    )
+    links = row.locator(".files a").all()
+    return row.get_attribute("data-state"), {
+        link.inner_text().rpartition("/")[2]: link.get_attribute("href") for link in links
+    }
+
+
+@pytest.mark.nightly
+def test_what_is_taken_along_is_a_file(open_alone):
+    page = open_alone("paper")
+
+    def made(number, button, form, name):
+        page.select_option("#export-format" if button == "export" else "#simulator", form)
+        page.locator(f"#{button}").click()
+        page.wait_for_selector(f'#jobs [data-job="{number}"]')
+        state, files = job_done(page, number)
+        assert state == "done", page.locator("#jobs").inner_text()
+        answer = page.context.request.get(page.url + files[name])
+        assert answer.ok
+        return answer.body()
+
+    assert made(1, "export", "dxf", "paper_CS-1_disc.dxf").startswith(b"  0\nSECTION")
+    assert made(2, "export", "step", "paper_CS-1_disc.step").startswith(b"ISO-10303-21;")
+    faces = made(3, "export", "stl", "paper_CS-1_disc.stl")
+    (count,) = struct.unpack("<I", faces[80:84])
+    assert len(faces) == 84 + 50 * count
+    assert xml.fromstring(made(4, "simulate", "mujoco", "paper_CS_1.xml")).tag == "mujoco"
+
+
+@pytest.mark.nightly
+def test_jobs_tell_how_far_they_are_and_are_cancelled(open_alone):
+    page = open_alone("paper")
+    page.fill("#samples", "100000")
+    page.locator("#tolerance").click()
+    page.locator("#derive").click()
+    page.wait_for_selector('#jobs [data-job="2"]')
+    page.locator("#fem").click()
+    page.wait_for_function("() => el('job-message').textContent.includes('2 jobs run already')")
+    page.wait_for_selector('#jobs [data-job="1"] progress[value]')
+    bar = page.locator('#jobs [data-job="1"] progress')
+    assert bar.get_attribute("max") == "100000"
+    assert 0 < int(bar.get_attribute("value")) < 100_000
+    page.locator('#jobs [data-job="1"] .cancel').click()
+    assert job_done(page, 1)[0] == "cancelled"
+    state, files = job_done(page, 2)
+    assert (state, "coefficients.nc" in files) == ("done", True)
+    page.locator("#fem").click()
+    page.wait_for_selector('#jobs [data-job="3"]')
+    page.fill("#samples", "30")
+    page.locator("#tolerance").click()
+    page.wait_for_selector('#jobs [data-job="4"]')
+    for number in (3, 4):
+        state, files = job_done(page, number)
+        assert state in ("done", "done, a check fails")
+        assert "report.html" in files
+        assert page.locator(f'#jobs [data-job="{number}"] progress').is_hidden()
 
 
 @pytest.mark.nightly
