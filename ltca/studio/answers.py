@@ -16,8 +16,8 @@ from ltca.analysis.life.bearing_lives import BearingLives, bearing_lives
 from ltca.analysis.light_torque import at_light_torque
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse_cases
 from ltca.analysis.reactions import relieved_rows_warning
-from ltca.analysis.results import labelled_results
-from ltca.analysis.summary import FREE_PLAY, OF_FLANK, refined_value, summarise_cases
+from ltca.analysis.results import case_arrays, labelled_results
+from ltca.analysis.summary import FREE_PLAY, OF_FLANK, refined_value, scalars_of_positions, summarise_cases
 from ltca.analysis.summary_rows import rows_of, with_residual_part
 from ltca.analysis.torque_curve import LOST_MOTION, curve_angles
 from ltca.analysis.verdict.proportions import odd_proportions
@@ -50,6 +50,10 @@ OF_DERIVATIVES = (
 )  # fmt: skip
 """Scalars whose derivatives are told, beside that of the lost motion."""
 FRICTION = "friction"
+SMALL = 1e-3
+RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+NOTHING = 1e-9
+"""Change relative to the value up to which it is told as none: what is left of sums."""
 STEPS = {"mm": (1e-3, "1 µm"), "rad": (1.0 / ARCMIN, "1′"), "N*mm": (1e3, "1 N·m"), "degC": (1.0, "1 °C")}
 """Change of a field that a derivative is told for, by its unit: the number and the words; 1 % of others."""
 
@@ -238,14 +242,25 @@ def _derivative(question: Question, memory: Memory, file: DriveFile, name: str) 
     step, words = STEPS.get(unit, (0.01 * abs(value) or 0.01, "1 %" if value else "0.01"))
     cells, lost = [], _lost_motion(question, memory, drive, name)
     if isinstance(lost, LostMotion) and not question.field.startswith(f"{FRICTION}."):
-        change = float(lost.slope(question.field).mean()) * step * ARCMIN
-        cells.append({"title": "lost motion", "value": change, "text": f"{minus(f'{change:+.3g}')}′"})
+        change, now = float(lost.slope(question.field).mean()) * step * ARCMIN, float(lost.value.mean()) * ARCMIN
+        cells.append({"title": "lost motion", "value": change, "text": f"{_signed(change, now)}′"})
+    values = scalars_of_positions(memory.near, case_arrays(memory.near))
     for scalar in (SCALARS[one] for one in OF_DERIVATIVES):
         if scalar.key not in slopes:
             continue
-        change = float(slopes[scalar.key].values[0]) * step
-        cells.append({"title": scalar.title, "value": change, "text": _with_unit(f"{change:+.3g}", scalar.unit)})
+        change, now = float(slopes[scalar.key].values[0]) * step, float(values[scalar.name])
+        cells.append({"title": scalar.title, "value": change, "text": _with_unit(_signed(change, now), scalar.unit)})
     return {"field": question.field, "step": words, "cells": cells, "note": _note(lost, drive)}
+
+
+def _signed(change: float, value: float) -> str:
+    """A change of a value with its sign and three digits, small ones by a power of ten."""
+    if abs(change) <= NOTHING * abs(value):
+        return "0"
+    if abs(change) >= SMALL:
+        return minus(f"{float(f'{change:.3g}'):+.10g}")
+    figures, _, power = f"{change:+.2e}".partition("e")
+    return f"{minus(figures)}·10{str(int(power)).translate(RAISED)}"
 
 
 def _lost_motion(question: Question, memory: Memory, drive: Drive, name: str) -> LostMotion | str:

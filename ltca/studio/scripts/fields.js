@@ -1,12 +1,15 @@
 // Fields of the drive file by its sections, from the declaration of the program, and those that people turn with a slider.
 const inputs = new Map(); // path -> every input of it
+const fieldsByPath = new Map(); // what is declared of it
+
+// A path may break behind its signs alone.
+function breakable(parent, path) { for (const part of path.split(/(?<=[_.])/)) parent.append(part, document.createElement("wbr")); }
 
 let rowsMade = 0; // of entries: names of theirs differ by signs that an id is without
 function fieldRow(declared, path, parent, slider) {
   const id = declared.row ? `row-${++rowsMade}` : (slider ? "turn-" : "field-") + path.replace(/[^a-z0-9]/gi, "-");
   const box = html("div", { class: "row", "data-path": path }, parent), head = html("div", { class: "line" }, box);
-  const label = html("label", { for: id }, head);
-  for (const part of (slider ? path : declared.name).split(/(?<=[_.])/)) label.append(part, document.createElement("wbr"));
+  breakable(html("label", { for: id }, head), slider ? path : declared.name);
   let input;
   if (declared.choices.length && !declared.array) {
     input = html("select", { id: id }, head);
@@ -53,9 +56,9 @@ function rangeOf(path, value) {
 function tableName(path) { return path ? `[${path}]` : "head of the file"; }
 
 function buildFields() {
-  const turned = el("turned"), all = el("sections"), byPath = new Map();
-  for (const table of Object.values(first.declared.tables)) for (const field of table.fields) byPath.set(field.path, field);
-  for (const path of Object.keys(first.declared.turned)) fieldRow(byPath.get(path), path, turned, true);
+  const turned = el("turned"), all = el("sections");
+  for (const table of Object.values(first.declared.tables)) for (const field of table.fields) fieldsByPath.set(field.path, field);
+  for (const path of Object.keys(first.declared.turned)) fieldRow(fieldsByPath.get(path), path, turned, true);
   for (const [path, table] of Object.entries(first.declared.tables)) {
     const box = html("details", { class: "section", "data-table": path }, all);
     const summary = html("summary", {}, box), title = html("span", { class: "table-name" }, summary, tableName(path));

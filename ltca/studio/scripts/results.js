@@ -190,7 +190,7 @@ function tableInto(where, name, head, rows) {
   head.forEach(text => html("th", { scope: "col" }, made, text));
   for (const cells of rows) {
     const line = html("tr", {}, body);
-    html("th", { scope: "row" }, line, cells[0]);
+    breakable(html("th", { scope: "row" }, line), cells[0]);
     for (const cell of cells.slice(1)) html("td", cell.value === undefined ? {} : { "data-value": cell.value }, line, cell.text);
   }
   const holder = html("div", {});
@@ -204,7 +204,7 @@ async function fillDerivatives(sequence, own, current) {
   if (!el("derivatives-box").open) return;
   for (const path of [...derived.extra, ...Object.keys(first.declared.turned)]) {
     if (derived.rows.has(path) || !current()) continue;
-    if (!derived.extra.includes(path) && state.values[path] === undefined) continue;
+    if (!derived.extra.includes(path) && state.values[path] === undefined && !Number.isFinite(Number(fieldsByPath.get(path).default || NaN))) continue;
     const found = await post("answer", question("derivative", state.text, { field: path }), own.signal);
     if (!current() || found.superseded) return;
     derived.rows.set(path, found);
@@ -237,7 +237,7 @@ function showDerivatives() {
   if (!rows.length) { el("derivatives").replaceChildren(html("p", { class: "note" }, null, "These follow the fine answer.")); return; }
   const titles = [...new Set(good.flatMap(([, found]) => found.cells.map(cell => cell.title)))];
   if (good.length) tableInto("derivatives", "derivatives", ["a change of", ...titles], good.map(([path, found]) => [
-    `${path} by ${found.step}`, ...titles.map(title => { const cell = found.cells.find(each => each.title === title); return cell ? { text: cell.text, value: cell.value } : { text: "–" }; }),
+    `${path} ${`by ${found.step}`.replace(/ /g, "\u00a0")}`, ...titles.map(title => { const cell = found.cells.find(each => each.title === title); return cell ? { text: cell.text, value: cell.value } : { text: "–" }; }),
   ]));
   else el("derivatives").replaceChildren();
   if (good.length) html("p", { class: "note" }, el("derivatives"), good[good.length - 1][1].note);
