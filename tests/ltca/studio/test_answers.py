@@ -144,7 +144,7 @@ def test_small_changes_are_told_by_powers_of_ten_and_round_off_as_none():
         "+0.123",
         "−7.16·10⁻⁷",
         "0",
-        "−1.23·10⁴",
+        "−12300",
     ]
 
 
