@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import fields
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any, get_args, get_type_hints
 
 from ltca.drive.declaration import OWN_BEARING, REQUIRED, Field, attribute_sentences, naming_fields, table_of
@@ -100,8 +100,9 @@ def _bearings(table: Mapping[str, Any]) -> Iterator[_Entry]:
         yield f"{BEARINGS}.{name}", name, rows
 
 
-def _of_bearings() -> list[Field]:
-    return [field for field in naming_fields().values() if field.table == OWN_BEARING]
+@lru_cache(maxsize=1024)
+def _of_bearings() -> tuple[Field, ...]:
+    return tuple(field for field in naming_fields().values() if field.table == OWN_BEARING)
 
 
 def _limits(table: Any, above: str) -> Iterator[_Entry]:
@@ -115,7 +116,8 @@ def _limits(table: Any, above: str) -> Iterator[_Entry]:
         yield path, key, rows
 
 
-def _of_limit(key: str) -> list[Field]:
+@lru_cache(maxsize=1024)
+def _of_limit(key: str) -> tuple[Field, ...]:
     """The value and the source of a limit."""
     quantity, told = limited_quantity(key), attribute_sentences(Limit)
     scalar = None if quantity is None else LIMITED[quantity]
@@ -123,10 +125,10 @@ def _of_limit(key: str) -> list[Field]:
     least, most = (None, None) if scalar is None or scalar.limit is None else scalar.limit
     bounds = [f"{word} {end:g}" for word, end in (("at least", least), ("at most", most)) if end is not None]
     meaning = "" if scalar is None else f"{scalar.judged or scalar.title}."
-    return [
+    return (
         _field(f"{LIMITS}.{VALUE}", "quantity", unit, " and ".join(bounds), meaning[:1].upper() + meaning[1:]),
         _field(f"{LIMITS}.{SOURCE}", "text", "", "", told[SOURCE], "left out"),
-    ]
+    )
 
 
 def _tolerances(table: Mapping[str, Any]) -> Iterator[_Entry]:
@@ -138,18 +140,19 @@ def _tolerances(table: Mapping[str, Any]) -> Iterator[_Entry]:
         yield f"{TOLERANCES}.{path}", path, rows
 
 
-def _of_tolerance(path: str) -> list[Field]:
+@lru_cache(maxsize=1024)
+def _of_tolerance(path: str) -> tuple[Field, ...]:
     """What a distribution has of a field."""
     kind, told = field_kind(path), attribute_sentences(Distribution)
     left_out = {item.name: f"{item.default:g}" for item in fields(Distribution) if isinstance(item.default, float)}
     unit = "" if kind is None else kind.unit
     choices = get_args(get_type_hints(Distribution)[DISTRIBUTION])
-    return [
+    return (
         _field(f"{TOLERANCES}.{DISTRIBUTION}", "choice", "", "", told[DISTRIBUTION], choices=choices),
         _field(f"{TOLERANCES}.tolerance", "quantity", unit, "greater than 0", told["tolerance"]),
         _field(f"{TOLERANCES}.cpk", "quantity", "dimensionless", "greater than 0", told["cpk"], left_out["cpk"]),
         _field(f"{TOLERANCES}.mean", "quantity", unit, "", told["mean"], left_out["mean"]),
-    ]
+    )
 
 
 def _cases(table: Mapping[str, Any]) -> Iterator[_Entry]:
@@ -158,7 +161,7 @@ def _cases(table: Mapping[str, Any]) -> Iterator[_Entry]:
         name = shown(entry[NAME]) if NAME in entry else None
         rows = [
             _row(
-                _field(f"{CASE}.{NAME}", "text", "", "", "Of the case, its own and such as can name a file."),
+                _of_case_name(),
                 f"{above}.{NAME}",
                 name,
             )
@@ -170,6 +173,11 @@ def _cases(table: Mapping[str, Any]) -> Iterator[_Entry]:
         for _, key, limit in _limits(entry.get(LIMITS), f"{above}.{LIMITS}"):
             rows += [(row | {NAME: f"{LIMITS}.{key}.{row[NAME]}"}, value) for row, value in limit if value is not None]
         yield above, f"{number}: {name or 'without a name'}", rows
+
+
+@cache
+def _of_case_name() -> Field:
+    return _field(f"{CASE}.{NAME}", "text", "", "", "Of the case, its own and such as can name a file.")
 
 
 def _pairs(table: Any) -> Iterator[tuple[str, Any]]:
@@ -195,7 +203,7 @@ def _field(
 
 def _row(field: Field, path: str, value: str | None, name: str = "", case: str = "") -> _Row:
     """A declared field as a row: at its path, under its name or another one, of a case or of none."""
-    row = declared(field) | {"path": path, "row": True, "case": case, "of": name}
+    row = {**declared(field), "path": path, "row": True, "case": case, "of": name}
     return row | ({"name": name} if name else {}), value
 
 
@@ -245,7 +253,7 @@ def _row_at(text: str, path: str) -> tuple[Field, Path] | None:
         raise DriveError([f"{shortened(path)[1:-1]}: is no case of the file"])
     own, place = cases[int(number)], (CASE, str(int(number)))
     if rest == NAME:
-        return _field(f"{CASE}.{NAME}", "text", "", "", ""), (*place, NAME)
+        return _of_case_name(), (*place, NAME)
     if rest.startswith(f"{LIMITS}."):
         return _limit_at(own, place, rest.removeprefix(f"{LIMITS}."))
     field = known_fields().get(declared_path(rest))
@@ -261,7 +269,7 @@ def _limit_at(table: Mapping[str, Any], above: Path, rest: str) -> tuple[Field, 
     return field, (*above, LIMITS, key) if whole else (*above, LIMITS, key, last)
 
 
-def _named(rows: list[Field], name: str, path: str) -> Field:
+def _named(rows: tuple[Field, ...], name: str, path: str) -> Field:
     for field in rows:
         if field.name == name:
             return field

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -63,7 +63,9 @@ def known_fields() -> dict[str, Field]:
     return found
 
 
-def declared(field: Field) -> dict[str, Any]:
+@lru_cache(maxsize=2048)  # every edit tells of rows
+def declared(field: Field) -> Mapping[str, Any]:
+    """Return what is declared of a field as plain data."""
     told = [f"refused by {', '.join(engines)}: {reason}" for reason, engines in refusals(field.path).items() if engines]
     choices = field.choices
     if field.kind == "choice" and not choices:
