@@ -353,7 +353,7 @@ class LostMotion(_Balanced):
 
     The input is held, the output is loaded by a part of the rated torque one way and the other, as
     `ltca.analysis.torque_curve.torque_curve` reads it of a drive without friction. The middle of a loop of friction lies
-    some 1e-4 of the lost motion beside it.
+    some 1e-4 of the lost motion beside it. `value` is the lost motion, rad, shape (angles,).
 
     Parameters
     ----------
@@ -365,11 +365,6 @@ class LostMotion(_Balanced):
         How bodies yield; half-spaces by default.
     part : float
         Part of the rated torque.
-
-    Attributes
-    ----------
-    value : array, shape (angles,)
-        Lost motion, rad.
 
     Raises
     ------
@@ -415,9 +410,11 @@ class LostMotion(_Balanced):
         return np.asarray(_Field(self, path).slopes()["angle_between"])
 
     def model(self, drive: Drive) -> Reducer:
+        """What balances a drive: without friction."""
         return replace(self.engine.prepare(drive).model, friction=None)
 
     def read(self, node: _Node, found: Sequence[Equilibrium]) -> dict[str, Any]:
+        """The angle of the output between both torques."""
         angles = [
             node.drive.output_deviation(wheel_angle_of_input(node.model, each), self._torque(node.drive, way))
             for each, way in zip(found, (1, -1), strict=True)

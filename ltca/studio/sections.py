@@ -86,6 +86,7 @@ def declared(field: Field) -> Mapping[str, Any]:
 
 
 def plain(text: str) -> str:
+    """Return a sentence without the marks of code."""
     return text.replace("``", "").replace("`", "")
 
 
@@ -120,6 +121,7 @@ def _count(table: Mapping[str, Any], above: str, entries: dict[str, int]) -> Non
 
 
 def leaves(table: Mapping[str, Any], above: str) -> Iterator[tuple[str, str]]:
+    """Yield the values of tables as they are shown, each with its path below another one."""
     for key, value in table.items():
         path = f"{above}{key}"
         if isinstance(value, dict):
@@ -158,12 +160,14 @@ def _inside(folder: Path, name: str) -> bool:
 
 
 def shown(value: Any) -> str:
+    """Return a value as it is shown."""
     if isinstance(value, bool):
         return "true" if value else "false"
     return str(value)
 
 
 def listed(value: Any) -> Sequence[dict[str, Any]]:
+    """Return the tables of an array of tables; none of anything else."""
     return [one for one in value if isinstance(one, dict)] if isinstance(value, list) else []
 
 
