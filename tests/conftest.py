@@ -254,6 +254,18 @@ window.leave = () => {
 """What a page under test does first: it writes down errors; `leave` hands over what its script has put into `seen`."""
 
 
+@pytest.fixture(scope="module")
+def browser():
+    """Chromium as playwright drives it: of real time, for pages whose frames are waited for."""
+    playwright = pytest.importorskip("playwright.sync_api", reason="no playwright (pip install 'cyclo-ltca[browser]')")
+    if CHROMIUM is None:
+        pytest.skip("no chromium (apt install chromium)")
+    with playwright.sync_playwright() as driver:
+        found = driver.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        yield found
+        found.close()
+
+
 def hash_of(text):
     return base64.b64encode(hashlib.sha256(text.encode()).digest()).decode("ascii")
 

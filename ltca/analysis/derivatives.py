@@ -16,10 +16,14 @@ opens or closes a contact, or changes its load by more than a tenth, are differe
 hundredth, at which round-off makes up to 1e-7 and 1e-6 more. Where the iteration does not settle, since contacts open or close on
 its way, the drives beside are balanced themselves: 1e-6, and 1e-5 under loads of some N. Where a contact is about to open all the
 same, the derivative is one-sided, and the differences return a value in between.
+
+Lost motion is the difference of two output angles, under a part of the torque one way and the other, and follows a field as the
+two balanced positions do (`LostMotion`).
 """
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -27,10 +31,11 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ltca.analysis.engines import Engine
+from ltca.analysis.engines import Engine, HalfSpace
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analysis_of
 from ltca.analysis.results import case_arrays
 from ltca.analysis.summary import scalar_key, scalars_of_positions
+from ltca.analysis.torque_curve import LOST_MOTION
 from ltca.arrays import FloatArray
 from ltca.compliance.response import Start
 from ltca.drive.fields import field_kind, is_element, read_field
@@ -39,6 +44,7 @@ from ltca.drive.parts import Bodies, Drive
 from ltca.drive.ring_shape import has_ring_of_elements, ring_fingerprint
 from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.balance import Equilibrium, lever_arms
+from ltca.equilibrium.output_angle import wheel_angle_of_input
 from ltca.equilibrium.output_torque import solve_at_output, unbalanced_moment
 from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError, DriveError
@@ -260,7 +266,7 @@ def derivatives(analysis: LoadedAnalysis, fields: Iterable[str]) -> xr.Dataset:
     if analysis.engine.options["contacts"] == "grids":
         raise DriveError(["method direct: has no derivatives, since cells of its grids open one by one; take tables"])
     engine = analysis.engine.with_coefficients(analysis.drive)
-    balanced = _Balanced(analysis, engine)
+    balanced = _BalancedAnalysis(analysis, engine)
     each = [_Field(balanced, path).slopes() for path in paths]
     variables: dict[str, Any] = {}
     for name in each[0]:
@@ -284,14 +290,43 @@ def _unit_of(path: str) -> str:
     return "" if kind is None else kind.unit
 
 
-class _Balanced:
-    """An analysis, its drive as a node, and what was balanced under each of its torques."""
+class _Balanced(ABC):
+    """A drive, and what was balanced of it under each of its torques."""
+
+    written: Drive
+    """As it was given."""
+    drive: Drive
+    """Warm."""
+    engine: Engine
+    base: _Node
+    own_torque: float | None
+    """The torque, where it is not that of the drive, N·mm."""
+    states: list[_Position]
+
+    @abstractmethod
+    def read(self, node: _Node, found: Sequence[Equilibrium]) -> dict[str, Any]:
+        """Values of a drive by what is balanced of it, by name."""
+
+    def model(self, drive: Drive) -> Reducer:
+        """What balances a drive."""
+        return self.engine.prepare(drive).model
+
+    def node(self, drive: Drive, step: float) -> _Node:
+        """A drive beside."""
+        return _Node(drive=drive, model=self.model(drive), step=step)
+
+    def sides(self, nodes: list[_Node]) -> Sequence[list[_Node]]:
+        """The drives beside, for each state as it is balanced."""
+        return [nodes for _ in self.states]
+
+
+class _BalancedAnalysis(_Balanced):
+    """An analysis: the torque of the run, the light one, and the motion turned back where something rubs."""
 
     def __init__(self, analysis: LoadedAnalysis, engine: Engine) -> None:
-        self.analysis, self.engine, self.drive = analysis, engine, analysis.drive
-        self.shapes = _shapes(analysis.drive, engine.bodies)
-        self.base = _Node(drive=analysis.drive, model=engine.prepare(analysis.drive).model, step=0.0)
-        self.own_torque = analysis.torque == analysis.drive.load.torque
+        self.written, self.drive, self.engine = analysis.as_written, analysis.drive, engine
+        self.own_torque = None if analysis.torque == analysis.drive.load.torque else analysis.torque
+        self.base = self.node(analysis.drive, 0.0)
         self.states = [
             _Position(analysis.full, self.base, self.torque),
             _Position(analysis.light, self.base, lambda drive: drive.load.light_torque),
@@ -301,7 +336,96 @@ class _Balanced:
 
     def torque(self, drive: Drive) -> float:
         """Torque of the run on a drive beside."""
-        return drive.load.torque if self.own_torque else self.analysis.torque
+        return drive.load.torque if self.own_torque is None else self.own_torque
+
+    def sides(self, nodes: list[_Node]) -> Sequence[list[_Node]]:
+        turned_back = [[_reversed(node) for node in nodes]] if len(self.states) > 2 else []
+        return [nodes, nodes, *turned_back]
+
+    def read(self, node: _Node, found: Sequence[Equilibrium]) -> dict[str, Any]:
+        analysis = analysis_of(node.drive, self.torque(node.drive), self.engine, node.model, *found)
+        arrays = case_arrays(analysis)
+        return arrays | {scalar_key(name): value for name, value in scalars_of_positions(analysis, arrays).items()}
+
+
+class LostMotion(_Balanced):
+    """Lost motion without friction, from two balanced torques, and how it follows fields of the drive.
+
+    The input is held, the output is loaded by a part of the rated torque one way and the other, as
+    `ltca.analysis.torque_curve.torque_curve` reads it of a drive without friction. The middle of a loop of friction lies
+    some 1e-4 of the lost motion beside it. `value` is the lost motion, rad, shape (angles,).
+
+    Parameters
+    ----------
+    drive : Drive
+        As it was given.
+    crank_angle : array, shape (angles,)
+        φ_C, rad.
+    engine : Engine, optional
+        How bodies yield; half-spaces by default.
+    part : float
+        Part of the rated torque.
+
+    Raises
+    ------
+    ConvergenceError
+        When a position does not balance.
+
+    Examples
+    --------
+    >>> from ltca.reading.drive_file import load_drive
+    >>> found = LostMotion(load_drive("paper").cases["CS-3"], np.array([0.1]))
+    >>> slope = found.slope("disc.shifting_offset")
+    >>> print(f"{found.value[0] * 1e3:.3f} mrad, {slope[0] * 1e3:.2f} µrad by 1 µm")
+    3.673 mrad, -30.17 µrad by 1 µm
+    """
+
+    def __init__(
+        self, drive: Drive, crank_angle: FloatArray, engine: Engine | None = None, part: float = LOST_MOTION
+    ) -> None:
+        self.written = drive
+        self.drive = warm_drive(drive.require_torque("lost motion, which is read at a part of it"))
+        self.engine = (HalfSpace() if engine is None else engine).with_coefficients(self.drive)
+        self.own_torque, self.part = None, part
+        self.base = self.node(self.drive, 0.0)
+        angles = np.atleast_1d(np.asarray(crank_angle, dtype=float))
+        both = [
+            solve_at_output(self.base.model, [self.drive], angles, self._torque(self.drive, way)) for way in (1, -1)
+        ]
+        self.states = [
+            _Position(found, self.base, self._towards(way)) for found, way in zip(both, (1, -1), strict=True)
+        ]
+        self.value: FloatArray = self.read(self.base, both)["angle_between"]
+
+    def slope(self, path: str) -> FloatArray:
+        """Return the derivative of the lost motion by a real field, rad by its unit, shape (angles,).
+
+        Raises
+        ------
+        DriveError
+            For what is no real field of this drive, and for one that reshapes a body whose influence coefficients are given.
+        ConvergenceError
+            When drives beside this one have no answer.
+        """
+        return np.asarray(_Field(self, path).slopes()["angle_between"])
+
+    def model(self, drive: Drive) -> Reducer:
+        """What balances a drive: without friction."""
+        return replace(self.engine.prepare(drive).model, friction=None)
+
+    def read(self, node: _Node, found: Sequence[Equilibrium]) -> dict[str, Any]:
+        """The angle of the output between both torques."""
+        angles = [
+            node.drive.output_deviation(wheel_angle_of_input(node.model, each), self._torque(node.drive, way))
+            for each, way in zip(found, (1, -1), strict=True)
+        ]
+        return {"angle_between": node.drive.load_sign * (angles[0] - angles[1])}
+
+    def _torque(self, drive: Drive, way: int) -> float:
+        return way * self.part * drive.load.torque
+
+    def _towards(self, way: int) -> Callable[[Drive], float]:
+        return lambda drive: self._torque(drive, way)
 
 
 class _Field:
@@ -309,12 +433,12 @@ class _Field:
 
     def __init__(self, balanced: _Balanced, path: str) -> None:
         self.balanced, self.path = balanced, path
-        value = read_field(balanced.analysis.as_written, path)
+        value = read_field(balanced.written, path)
         if isinstance(value, bool) or not isinstance(value, float | int) or _unit_of(path) == "":
             raise DriveError([f"{path}: must be a real number, or an element of an array ({path}.0)"])
         self.value = float(value)
-        if path == "load.torque" and not balanced.own_torque:
-            raise DriveError([f"{path}: the analysis has a torque of its own, {balanced.analysis.torque:g} N·mm"])
+        if path == "load.torque" and balanced.own_torque is not None:
+            raise DriveError([f"{path}: the analysis has a torque of its own, {balanced.own_torque:g} N·mm"])
         if balanced.engine.options["compliance"] != "half-space" and self._reshapes():
             raise DriveError([f"{path}: reshapes a body, whose influence coefficients are those of the body as it is"])
         if has_ring_of_elements(balanced.drive) and self._reshapes_ring():
@@ -327,7 +451,7 @@ class _Field:
 
         Scalars, which are of all positions, have those of the shortest.
         """
-        found, left = dict[str, Any](), np.ones(self.balanced.analysis.full.crank_angle.shape, dtype=bool)
+        found, left = dict[str, Any](), np.ones(self.balanced.states[0].found.crank_angle.shape, dtype=bool)
         for part in STEP_PARTS:
             fresh, change = self._slopes(part)
             for name, values in fresh.items():
@@ -346,22 +470,18 @@ class _Field:
         """Slopes by a part of the step, and the largest change of a contact's load over it, shape (positions,)."""
         states = self.balanced.states
         nodes, weights, step = self._nodes(part)
-        sides = [nodes, nodes, [_reversed(node) for node in nodes] if len(states) > 2 else nodes]
+        sides = self.balanced.sides(nodes)
         poses, found_beside = zip(
-            *(state.beside(side, weights, step) for state, side in zip(states, sides, strict=False)), strict=True
+            *(state.beside(side, weights, step) for state, side in zip(states, sides, strict=True)), strict=True
         )
         found: dict[str, Any] = {"pose": poses[0]}
         change = np.zeros(poses[0].shape[:1])
         for number, (node, weight) in enumerate(zip(nodes, (weights / step).tolist(), strict=True)):
             beside = [each[number] for each in found_beside]
             steps = max(abs(node.step) / step, 1.0)
-            for state, other in zip(states, beside, strict=False):
+            for state, other in zip(states, beside, strict=True):
                 change = np.maximum(change, state.load_change(other) / steps)
-            torque = self.balanced.torque(node.drive)
-            analysis = analysis_of(node.drive, torque, self.balanced.engine, node.model, *beside)
-            arrays = case_arrays(analysis)
-            scalars = {scalar_key(name): value for name, value in scalars_of_positions(analysis, arrays).items()}
-            for name, values in (arrays | scalars).items():
+            for name, values in self.balanced.read(node, beside).items():
                 if np.asarray(values).dtype.kind == "f":
                     found[name] = found.get(name, 0.0) + weight * np.asarray(values)
         return found, change
@@ -369,7 +489,8 @@ class _Field:
     def _reshapes(self) -> bool:
         """Whether the field is one of the shape of a body."""
         bodies = self.balanced.engine.bodies
-        return any(_shapes(drive, bodies) != self.balanced.shapes for drive in self._drives((self._first_step,)))
+        own = _shapes(self.balanced.drive, bodies)
+        return any(_shapes(drive, bodies) != own for drive in self._drives((self._first_step,)))
 
     def _reshapes_ring(self) -> bool:
         """Whether the field is one of the shape of the ring."""
@@ -388,16 +509,12 @@ class _Field:
             return [self._drive(-step) for step in steps]
 
     def _drive(self, step: float) -> Drive:
-        written = self.balanced.analysis.as_written
-        return warm_drive(with_fields(written, {self.path: self.value + step}, check=False))
-
-    def _node(self, drive: Drive, step: float) -> _Node:
-        return _Node(drive=drive, model=self.balanced.engine.prepare(drive).model, step=step)
+        return warm_drive(with_fields(self.balanced.written, {self.path: self.value + step}, check=False))
 
     def _nodes(self, part: float) -> tuple[list[_Node], FloatArray, float]:
         """The drives beside by a part of the step, the weights of their differences, and that part."""
         base, step = self.balanced.base, self._first_step
-        beside = self._node(self._drives((step,))[0], step)
+        beside = self.balanced.node(self._drives((step,))[0], step)
         changes = (state.change(base, beside) for state in self.balanced.states)
         change = next(
             (change for change in changes if change > 0.0), 0.0
@@ -410,7 +527,11 @@ class _Field:
             except DriveError as error:
                 failure = error
                 continue
-            return [self._node(drive, away) for drive, away in zip(drives, steps, strict=True)], sense * weights, step
+            return (
+                [self.balanced.node(drive, away) for drive, away in zip(drives, steps, strict=True)],
+                sense * weights,
+                step,
+            )
         raise failure
 
 

@@ -17,7 +17,7 @@ from ltca.analysis.life.life_text import life_content, life_lines
 from ltca.analysis.memory_need import positions_together
 from ltca.analysis.pressure_safety import PressureOfTurns, PressureSafety
 from ltca.analysis.stiffness_by_part import StiffnessByPart, stiffness_by_part
-from ltca.analysis.torque_curve import UNDER_FORCES, TorqueCurve, curve_content, torque_curve
+from ltca.analysis.torque_curve import UNDER_FORCES, TorqueCurve, curve_angles, curve_content, torque_curve
 from ltca.analysis.transmission_error_orders import Order, Spectrum, fit_orders, known_orders, least_turns
 from ltca.arrays import FloatArray
 from ltca.drive.members.judgement import Value, judge
@@ -28,7 +28,6 @@ from ltca.errors import DriveError
 
 POSITIONS_PER_TURN = 192
 """Least positions in a turn; more where the highest order asks for them (`positions_per_turn`)."""
-ANGLES = 4
 HARMONICS = 7
 """Multiples of each origin of an order; fewer, but two, where the teeth are many (`HIGHEST_ORDER`)."""
 HIGHEST_ORDER = 320
@@ -178,9 +177,8 @@ def solve_curves(
     """Solve a warm drive, a part of its positions at a time, to bound memory."""
     drive.require_torque("torque curves, which go up to it")
     asked, engine = settings, engine.with_coefficients(drive)
-    mesh = 2.0 * np.pi / drive.disc.number_of_teeth
     settings = settings._replace(speed=_crank_speed(drive, settings))
-    angles = mesh * np.arange(ANGLES) / ANGLES
+    angles = curve_angles(drive)
     curve = torque_curve(drive, angles, engine=engine, lost_motion=settings.lost_motion)
     parts = None
     if settings.parts:

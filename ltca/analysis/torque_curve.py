@@ -44,6 +44,21 @@ STIFF_FROM = 0.5
 """Torsional stiffness is the mean slope from this part of the rated torque to the whole."""
 
 
+CURVE_ANGLES = 4
+"""Crank angles of torque curves over one mesh."""
+
+
+def curve_angles(drive: Drive) -> FloatArray:
+    """Return the crank angles over one mesh at which torque curves are told, rad, shape (`CURVE_ANGLES`,).
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive.
+    """
+    return 2.0 * np.pi / drive.disc.number_of_teeth * np.arange(CURVE_ANGLES) / CURVE_ANGLES
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TorqueCurve:
     """Wind-up of the output at held crank angles.
@@ -139,9 +154,7 @@ def torque_curve(
     parts = np.unique(np.concatenate([along, least, [lost_motion, STIFF_FROM, 1.0]]))
     torque = rated * np.concatenate([-parts[::-1], parts])
     held = np.repeat(angles, torque.size)
-    # A torque that turns the output ccw opposes a crank driving ccw with the wheel as output; the pin shaft turns the
-    # other way, and so does what opposes it.
-    opposing = (1.0 if drive.wheel_is_held else -1.0) * drive.driving_sign
+    opposing = drive.load_sign
     loads = np.tile(opposing * torque, angles.size)
     model = tables = replace(HalfSpace().prepare(drive).model, friction=None)
     found = solve_at_output(tables, [drive], held, loads)
@@ -210,7 +223,7 @@ def torsional_stiffness(drive: Drive, crank_angle: FloatArray, *, engine: Engine
     Parameters are those of `torque_curve`; shape (angles, 2), N·mm/rad.
     """
     angles, rated = np.atleast_1d(np.asarray(crank_angle, dtype=float)), drive.load.torque
-    sense = (1.0 if drive.wheel_is_held else -1.0) * drive.driving_sign
+    sense = drive.load_sign
     parts = np.array([-1.0, -STIFF_FROM, STIFF_FROM, 1.0])
     model = replace((HalfSpace() if engine is None else engine).prepare(drive).model, friction=None)
     loads = sense * rated * np.tile(parts, angles.size)

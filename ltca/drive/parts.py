@@ -269,6 +269,13 @@ class Drive:
         return 1 if self.load.direction == "ccw" else -1
 
     @property
+    def load_sign(self) -> int:
+        """Sense in which a positive torque of the load turns the output, +1 for counter-clockwise: it opposes a crank that drives
+        ccw with the wheel as output; the pin shaft turns the other way, and so does what opposes it.
+        """
+        return self.driving_sign if self.wheel_is_held else -self.driving_sign
+
+    @property
     def motion_sign(self) -> int:
         """Sense in which the crank turns, +1 for counter-clockwise: against `driving_sign` where the output drives."""
         return self.driving_sign if self.load.driven_by == "input" else -self.driving_sign
@@ -352,9 +359,8 @@ class Drive:
 
         `wheel_angle` in rad and `torque`, on the output in N·mm, positive as the load, are numbers or arrays of one shape.
         """
-        against = (1.0 if self.wheel_is_held else -1.0) * self.driving_sign
         found = self.output_per_wheel_angle * wheel_angle
-        return found + against * self.carrier_compliance * torque if self.carrier_compliance else found
+        return found + self.load_sign * self.carrier_compliance * torque if self.carrier_compliance else found
 
     @property
     def posts(self) -> CarrierPosts | None:

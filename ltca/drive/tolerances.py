@@ -97,7 +97,7 @@ def parse_tolerances(table: Any, problems: list[str], drive: Drive | None = None
     drive, if given, helps to find the field that a misspelt path is close to.
     """
     found: Tolerances = {}
-    for path, entry in _entries(table, "", problems):
+    for path, entry in tolerance_entries(table, problems):
         kind = field_kind(path)
         if kind is None or not kind.unit:
             scattering = [name for name, known in field_kinds().items() if known.unit]
@@ -131,7 +131,8 @@ def parse_tolerances(table: Any, problems: list[str], drive: Drive | None = None
     return found
 
 
-def _entries(table: Any, prefix: str, problems: list[str]) -> list[tuple[str, Mapping[str, Any]]]:
+def tolerance_entries(table: Any, problems: list[str], prefix: str = "") -> list[tuple[str, Mapping[str, Any]]]:
+    """Return the entries of a ``[tolerances]`` table by dotted path; what is no table is added to `problems`."""
     if not isinstance(table, Mapping):
         where = printable(f"tolerances.{prefix}".rstrip("."))
         problems.append(f"{where} = {shortened(table)}: must be a table with a distribution")
@@ -141,7 +142,7 @@ def _entries(table: Any, prefix: str, problems: list[str]) -> list[tuple[str, Ma
         if isinstance(value, Mapping) and "distribution" in value:
             entries.append((f"{prefix}{name}", value))
         else:
-            entries += _entries(value, f"{prefix}{name}.", problems)
+            entries += tolerance_entries(value, problems, f"{prefix}{name}.")
     return entries
 
 

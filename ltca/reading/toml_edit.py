@@ -27,6 +27,9 @@ _STRING = re.compile(r'"""(?:[^\\]|\\.)*?"{3,5}|\'\'\'.*?\'{3,5}|"(?:[^"\\\n]|\\
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 _WHOLE = re.compile(r"[+-]?[0-9]{1,18}")
 
+DOTTED = ("tolerances",)
+"""Tables whose keys are paths, which stand in them with their dots."""
+
 Path = tuple[str, ...]
 """Keys and numbers of entries, counted from 0: ("disc", "of", "1", "runout", "amount")."""
 
@@ -104,16 +107,16 @@ def tables_of(text: str) -> dict[str, Any]:
     return parse_toml(text, "the text")
 
 
-def with_values(text: str, changes: Mapping[str, str | None]) -> str:
+def with_values(text: str, changes: Mapping[str, str | None] | Mapping[Path, str | None]) -> str:
     """Return the text of a TOML file with some values replaced.
 
     Parameters
     ----------
     text : str
         Valid TOML.
-    changes : mapping of str to str or None
-        New values as TOML by dotted path, entries of arrays of tables by their number, ``case.0.clearance.bearing``; None takes
-        a key away.
+    changes : mapping of str or tuple of str to str or None
+        New values as TOML by dotted path, entries of arrays of tables by their number, ``case.0.clearance.bearing``, or by its
+        parts where keys have dots; None takes a key away.
 
     Returns
     -------
@@ -132,8 +135,8 @@ def with_values(text: str, changes: Mapping[str, str | None]) -> str:
     thickness = 9.5  # measured
     gap = 1.0
     """
-    for dotted, value in changes.items():
-        path = tuple(dotted.split("."))
+    for place, value in changes.items():
+        path = tuple(place.split(".")) if isinstance(place, str) else place
         try:
             before = tables_of(text)
             wanted = _with_value(before, path, None if value is None else tomllib.loads(f"a = {value}")["a"])
@@ -145,7 +148,7 @@ def with_values(text: str, changes: Mapping[str, str | None]) -> str:
                 raise _UnreadableError
         except (ValueError, RecursionError, _UnreadableError, LookupError, TypeError, DriveError) as error:
             told = "cannot be changed by itself where it stands; change the text of the file"
-            raise DriveError([f"{shortened(dotted)[1:-1]}: {told}"]) from error
+            raise DriveError([f"{shortened('.'.join(path))[1:-1]}: {told}"]) from error
         text = changed
     return text
 
@@ -184,7 +187,7 @@ def _without_empty(table: Any) -> Any:
     if not isinstance(table, dict):
         return table
     kept = {key: _without_empty(value) for key, value in table.items()}
-    return {key: value for key, value in kept.items() if value != {}}
+    return {key: value for key, value in kept.items() if value not in ({}, [])}
 
 
 def _names_a_material(path: Path) -> bool:
@@ -213,10 +216,8 @@ def _written(text: str, path: Path, value: str | None) -> str:
 def _added(text: str, headers: Sequence[_Header], statements: Sequence[_Statement], path: Path, value: str) -> str:
     """The text with a new key: at the end of the table it belongs to, of the nearest one above, or in a table of its own."""
     above = [header for header in headers if header.path == path[: len(header.path)] and len(header.path) < len(path)]
-    numbered = any(part.isdigit() for part in path)
-    if above and (
-        len(path) - len(max(above, key=lambda one: len(one.path)).path) == 1 or numbered or above[-1].of_array
-    ):
+    dotted = path[0] in DOTTED or any(part.isdigit() for part in path)
+    if above and (len(path) - len(max(above, key=lambda one: len(one.path)).path) == 1 or dotted or above[-1].of_array):
         header = max(above, key=lambda one: len(one.path))
         later = [other.first for other in headers if other.first > header.first]
         last = max(
@@ -235,7 +236,8 @@ def _added(text: str, headers: Sequence[_Header], statements: Sequence[_Statemen
         last_one = beside[-1]
         key = text[last_one.first : last_one.start].partition("=")[0].strip().rpartition(".")[0]
         return _line_after(text, last_one.end, f"{key}.{_dotted(path[-1:])} = {value}")
-    return _with_table(text, headers, f"[{_dotted(path[:-1])}]\n{_dotted(path[-1:])} = {value}\n")
+    head = path[:1] if path[0] in DOTTED else path[:-1]
+    return _with_table(text, headers, f"[{_dotted(head)}]\n{_dotted(path[len(head) :])} = {value}\n")
 
 
 def _with_table(text: str, headers: Sequence[_Header], table: str) -> str:
@@ -286,6 +288,68 @@ def with_entry(text: str, table: str) -> str:
         told = "an entry cannot be added where they stand; change the text of the file"
         raise DriveError([f"{shortened(table)[1:-1]}: {told}"]) from error
     return found
+
+
+def without_entry(text: str, path: Path) -> str:
+    """Return the text of a TOML file without an entry: a key, a table, or one of an array of tables, with all that is in it.
+
+    Raises
+    ------
+    DriveError
+        When the text is no TOML, has no such entry, or more would have to be written anew.
+
+    Examples
+    --------
+    >>> print(without_entry("[[case]]\nname = 'a'\n[case.load]\ntorque = 1\n[[case]]\nname = 'b'\n", ("case", "0")), end="")
+    [[case]]
+    name = 'b'
+    """
+    try:
+        before = tables_of(text)
+        wanted = _without(before, path)
+        changed = _cut(text, path)
+        if _without_empty(tables_of(changed)) != _without_empty(wanted):
+            raise _UnreadableError
+    except (ValueError, RecursionError, _UnreadableError, LookupError, TypeError, DriveError) as error:
+        told = "cannot be taken away by itself where it stands; change the text of the file"
+        raise DriveError([f"{shortened('.'.join(path))[1:-1]}: {told}"]) from error
+    return changed
+
+
+def _without(table: Mapping[str, Any], path: Path) -> dict[str, Any]:
+    """The tables without what is at a path."""
+    found = deepcopy(dict(table))
+    branch: Any = found
+    for key in path[:-1]:
+        branch = branch[int(key)] if isinstance(branch, list) else branch[key]
+    if isinstance(branch, list):
+        del branch[int(path[-1])]
+    else:
+        del branch[path[-1]]
+    return found
+
+
+def _cut(text: str, path: Path) -> str:
+    """The text without the statements and headers at and below a path."""
+    headers, statements = _scanned(text)
+    spans = []
+    for each in statements:
+        if each.path[: len(path)] == path:
+            spans.append((each.first, each.end))
+        elif path[: len(each.path)] == each.path:
+            inner = _within(text[each.start : each.end], path[len(each.path) :], None)
+            return text[: each.start] + inner + text[each.end :]
+    for header in headers:
+        if header.path[: len(path)] == path:
+            later = min((one.first for one in headers if one.first > header.first), default=len(text))
+            ends = [one.end for one in statements if header.end <= one.first < later]
+            spans.append((header.first, max(ends, default=header.end)))
+    kept, place = "", 0
+    for first, end in sorted(spans):
+        start, after = text.rfind("\n", 0, first) + 1, text.find("\n", end)
+        kept += text[place : max(start, place)]
+        place = max(place, len(text) if after < 0 else after + 1)
+    return kept + text[place:]
 
 
 def _line_after(text: str, place: int, line: str) -> str:

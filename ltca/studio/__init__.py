@@ -4,6 +4,7 @@ Modules in the order data passes:
 
 ========  ==========================================================================
 sections  The fields of a drive file as a page shows them, and a text with one changed
+entries   Limits, tolerances, cases and bearings, whose entries have names, as rows of the page
 answers   What is answered of a text: the page of a run in parts, or derivatives
 warm      What every worker needs, imported and built once
 workers   Processes that answer, ended by the next question

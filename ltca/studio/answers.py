@@ -9,16 +9,17 @@ from dataclasses import dataclass
 from math import gcd
 from typing import Any
 
-from ltca.analysis.derivatives import derivatives
+from ltca.analysis.derivatives import LostMotion, derivatives
 from ltca.analysis.engines import HalfSpace, describe_engine, engine_of, lending_between
 from ltca.analysis.extremes import RESOLVED, sampling_warning
 from ltca.analysis.life.bearing_lives import BearingLives, bearing_lives
 from ltca.analysis.light_torque import at_light_torque
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse_cases
 from ltca.analysis.reactions import relieved_rows_warning
-from ltca.analysis.results import labelled_results
-from ltca.analysis.summary import FREE_PLAY, OF_FLANK, refined_value, summarise_cases
+from ltca.analysis.results import case_arrays, labelled_results
+from ltca.analysis.summary import FREE_PLAY, OF_FLANK, refined_value, scalars_of_positions, summarise_cases
 from ltca.analysis.summary_rows import rows_of, with_residual_part
+from ltca.analysis.torque_curve import LOST_MOTION, curve_angles
 from ltca.analysis.verdict.proportions import odd_proportions
 from ltca.analysis.verdict.values import judge_analysis
 from ltca.arrays import FloatArray
@@ -47,7 +48,12 @@ WITH_THE_FINE = {*OF_FLANK, *FREE_PLAY, "preload"}
 OF_DERIVATIVES = (
     "max_pin_load", "max_pin_pressure_mid", "max_roller_load", "mean_bearing_load", "ptp_transmission_error",
 )  # fmt: skip
-"""Scalars whose derivatives are told, beside that of the output's mean deviation."""
+"""Scalars whose derivatives are told, beside that of the lost motion."""
+FRICTION = "friction"
+SMALL = 1e-3
+RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+NOTHING = 1e-9
+"""Change relative to the value up to which it is told as none: what is left of sums."""
 STEPS = {"mm": (1e-3, "1 µm"), "rad": (1.0 / ARCMIN, "1′"), "N*mm": (1e3, "1 N·m"), "degC": (1.0, "1 °C")}
 """Change of a field that a derivative is told for, by its unit: the number and the words; 1 % of others."""
 
@@ -86,6 +92,8 @@ class Memory:
     def __init__(self) -> None:
         self.near: LoadedAnalysis | None = None
         self.key: tuple[str, str] = ("", "")
+        self.lost: LostMotion | str | None = None
+        self.lost_key: tuple[str, str] = ("", "")
 
 
 def answer(question: Question, memory: Memory) -> dict[str, Any]:
@@ -232,15 +240,47 @@ def _derivative(question: Question, memory: Memory, file: DriveFile, name: str) 
     kind, value = field_kind(question.field), _number(memory.near.as_written, question.field)
     unit = "" if kind is None else kind.unit
     step, words = STEPS.get(unit, (0.01 * abs(value) or 0.01, "1 %" if value else "0.01"))
-    cells = []
-    output = float(slopes["transmission_error"].values[0].mean()) * step * ARCMIN
-    cells.append({"title": "output angle at the torque, mean", "value": output, "text": f"{minus(f'{output:+.3g}')}′"})
+    cells, lost = [], _lost_motion(question, memory, drive, name)
+    if isinstance(lost, LostMotion) and not question.field.startswith(f"{FRICTION}."):
+        change, now = float(lost.slope(question.field).mean()) * step * ARCMIN, float(lost.value.mean()) * ARCMIN
+        cells.append({"title": "lost motion", "value": change, "text": f"{_signed(change, now)}′"})
+    values = scalars_of_positions(memory.near, case_arrays(memory.near))
     for scalar in (SCALARS[one] for one in OF_DERIVATIVES):
         if scalar.key not in slopes:
             continue
-        change = float(slopes[scalar.key].values[0]) * step
-        cells.append({"title": scalar.title, "value": change, "text": _with_unit(f"{change:+.3g}", scalar.unit)})
-    return {"field": question.field, "step": words, "cells": cells}
+        change, now = float(slopes[scalar.key].values[0]) * step, float(values[scalar.name])
+        cells.append({"title": scalar.title, "value": change, "text": _with_unit(_signed(change, now), scalar.unit)})
+    return {"field": question.field, "step": words, "cells": cells, "note": _note(lost, drive)}
+
+
+def _signed(change: float, value: float) -> str:
+    """A change of a value with its sign and three digits, small ones by a power of ten."""
+    if abs(change) <= NOTHING * abs(value):
+        return "0"
+    if abs(change) >= SMALL:
+        return minus(f"{float(f'{change:.3g}'):+.10g}")
+    figures, _, power = f"{change:+.2e}".partition("e")
+    return f"{minus(figures)}·10{str(int(power)).translate(RAISED)}"
+
+
+def _lost_motion(question: Question, memory: Memory, drive: Drive, name: str) -> LostMotion | str:
+    """What is balanced for lost motion, once for all fields, or why there is none."""
+    if memory.lost is None or memory.lost_key != (question.text, name):
+        try:
+            memory.lost = LostMotion(drive, curve_angles(drive))
+        except CycloError as error:
+            memory.lost = str(error)
+        memory.lost_key = (question.text, name)
+    return memory.lost
+
+
+def _note(lost: LostMotion | str, drive: Drive) -> str:
+    """What lost motion the derivatives are of."""
+    if isinstance(lost, str):
+        return f"No lost motion: {lost}"
+    where = f"at ±{100.0 * LOST_MOTION:g} % of the torque, mean of {lost.value.size} crank angles over one mesh"
+    without = ", without friction" if drive.friction is not None else ""
+    return f"Lost motion {where}{without}: {lost.value.mean() * ARCMIN:.3f}′."
 
 
 def _number(drive: Drive, path: str) -> float:
@@ -249,14 +289,18 @@ def _number(drive: Drive, path: str) -> float:
     return float(read_field(drive, path))
 
 
-_HEAD = re.compile(r"^cases? [^:]*: ")
+_HEAD = re.compile(r"^cases? ([^:]*): ")
 _PATH = re.compile(r"[a-z_]+(?:\.[A-Za-z0-9_]+)+|^[a-z_]+(?= = |: )")
 
 
 def problem_of(sentence: str) -> dict[str, Any]:
-    """Return a mistake as plain data: its text, and the fields that it names."""
-    body = _HEAD.sub("", sentence)
-    return {"text": minus(sentence), "fields": _fields_named(body)}
+    """Return a mistake as plain data: its text, the fields that it names, and the cases, of none for the common part."""
+    head, body = _HEAD.match(sentence), _HEAD.sub("", sentence)
+    return {
+        "text": minus(sentence),
+        "fields": _fields_named(body),
+        "cases": [] if head is None else head[1].split(", "),
+    }
 
 
 def _fields_named(sentence: str) -> Sequence[str]:

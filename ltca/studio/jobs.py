@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import re
 import subprocess
 import sys
 import threading
@@ -30,6 +31,8 @@ LAST_LINES = 12
 """Of the output, which a page shows."""
 MOST_FILES = 60
 LOG = "output.txt"
+DONE_OF = re.compile(r": ([0-9]+) of (?:at most )?([0-9]+)(?:, .*)? \([0-9]+ s\)$")
+"""What a command says every few seconds of how far it is (`ltca.output.progress`)."""
 
 
 @cache
@@ -218,12 +221,14 @@ class Jobs:
         )
         if state == "failed" and job.status == 1 and any(job.folder.rglob("report.html")):
             state = "done, a check fails"
+        lines = _last_lines(job.folder / LOG)
         return {
             "number": job.number,
             "command": f"cyclo {' '.join(job.words)}",
             "state": state,
             "seconds": round(time.monotonic() - job.began if job.took is None else job.took),
-            "lines": _last_lines(job.folder / LOG),
+            "lines": lines,
+            "done": _done(lines) if state == "running" else [],
             "files": [] if state == "running" else [*self._files(job)],
         }
 
@@ -251,6 +256,12 @@ def _from_elsewhere(text: str, table: Mapping[str, Any], source: Path) -> str:
     """The text for a file in another folder: measured flanks are named by their whole paths."""
     named = {path: json.dumps(str(source.parent / name), ensure_ascii=False) for path, name in measured_files(table)}
     return with_values(text, named)
+
+
+def _done(lines: Sequence[str]) -> list[int]:
+    """How many parts are done, of how many, by the last line that says so; nothing where none does."""
+    found = next((match for line in reversed(lines) if (match := DONE_OF.search(line))), None)
+    return [] if found is None else [int(found[1]), int(found[2])]
 
 
 def _last_lines(path: Path) -> list[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +25,7 @@ itself."""
 STEPS = 200
 """Of a slider from end to end."""
 NOT_HERE = ("tolerances", "limits", "case", "bearings")
-"""Tables of a file that only its text shows."""
+"""Tables whose entries have names of their own (`ltca.studio.entries`)."""
 
 
 @cache
@@ -33,11 +33,11 @@ def declarations() -> dict[str, Any]:
     """Return what is declared of every field and table, as plain data; entries of lists have ``N`` for their number."""
     tables: dict[str, dict[str, Any]] = {"": {"meaning": "", "optional": False, "fields": []}}
     tables |= {
-        path: {"meaning": _plain(table.meaning), "optional": table.optional, "fields": []}
+        path: {"meaning": plain(table.meaning), "optional": table.optional, "fields": []}
         for path, table in declared_tables().items()
     }
-    for field in _fields().values():
-        tables[field.table]["fields"].append(_declared(field))
+    for field in known_fields().values():
+        tables[field.table]["fields"].append(declared(field))
     return {
         "tables": {path: table for path, table in tables.items() if table["fields"]},
         "turned": {path: list(how) for path, how in TURNED.items()},
@@ -46,7 +46,7 @@ def declarations() -> dict[str, Any]:
 
 
 @cache
-def _fields() -> dict[str, Field]:
+def known_fields() -> dict[str, Field]:
     """Fields by path, with the names of materials and bearings before the properties that they stand for."""
     found: dict[str, Field] = {}
     named = {f"materials.{part}": part for part in PARTS} | {"ring.material": "ring"}
@@ -63,7 +63,9 @@ def _fields() -> dict[str, Field]:
     return found
 
 
-def _declared(field: Field) -> dict[str, Any]:
+@lru_cache(maxsize=2048)  # every edit tells of rows
+def declared(field: Field) -> Mapping[str, Any]:
+    """Return what is declared of a field as plain data."""
     told = [f"refused by {', '.join(engines)}: {reason}" for reason, engines in refusals(field.path).items() if engines]
     choices = field.choices
     if field.kind == "choice" and not choices:
@@ -78,12 +80,13 @@ def _declared(field: Field) -> dict[str, Any]:
         "bounds": "" if field.kind == "choice" else field.bounds,
         "default": "" if field.default == REQUIRED else field.default.strip('"'),
         "required": field.default == REQUIRED,
-        "meaning": _plain(field.meaning),
-        "refused": [_plain(one) for one in told],
+        "meaning": plain(field.meaning),
+        "refused": [plain(one) for one in told],
     }
 
 
-def _plain(text: str) -> str:
+def plain(text: str) -> str:
+    """Return a sentence without the marks of code."""
     return text.replace("``", "").replace("`", "")
 
 
@@ -96,13 +99,13 @@ def written_values(text: str, case: str) -> dict[str, Any]:
         When the text is no TOML.
     """
     table = tables_of(text)
-    cases = [one for one in _listed(table.get("case")) if isinstance(one.get("name"), str)]
+    cases = [one for one in listed(table.get("case")) if isinstance(one.get("name"), str)]
     names = [str(one["name"]) for one in cases]
-    common = dict(_leaves({key: value for key, value in table.items() if key not in NOT_HERE}, ""))
+    common = dict(leaves({key: value for key, value in table.items() if key not in NOT_HERE}, ""))
     own: dict[str, str] = {}
     if case in names:
         entry = cases[names.index(case)]
-        own = dict(_leaves({key: value for key, value in entry.items() if key not in ("name", *NOT_HERE)}, ""))
+        own = dict(leaves({key: value for key, value in entry.items() if key not in ("name", *NOT_HERE)}, ""))
     entries: dict[str, int] = {}
     _count(table, "", entries)
     return {"values": common | own, "own": list(own), "cases": names, "entries": entries}
@@ -117,25 +120,26 @@ def _count(table: Mapping[str, Any], above: str, entries: dict[str, int]) -> Non
             entries[f"{above}{key}"] = len(value)
 
 
-def _leaves(table: Mapping[str, Any], above: str) -> Iterator[tuple[str, str]]:
+def leaves(table: Mapping[str, Any], above: str) -> Iterator[tuple[str, str]]:
+    """Yield the values of tables as they are shown, each with its path below another one."""
     for key, value in table.items():
         path = f"{above}{key}"
         if isinstance(value, dict):
-            yield from _leaves(value, f"{path}.")
+            yield from leaves(value, f"{path}.")
         elif isinstance(value, list) and value and all(isinstance(one, dict) for one in value):
             for number, one in enumerate(value):
-                yield from _leaves(one, f"{path}.{number}.")
-        elif isinstance(value, str) and f"{path}.{LIKE}" in _fields():
+                yield from leaves(one, f"{path}.{number}.")
+        elif isinstance(value, str) and f"{path}.{LIKE}" in known_fields():
             yield f"{path}.{LIKE}", value
         elif isinstance(value, list):
-            yield path, ", ".join(_shown(one) for one in value)
+            yield path, ", ".join(shown(one) for one in value)
         else:
-            yield path, _shown(value)
+            yield path, shown(value)
 
 
 def measured_files(table: Mapping[str, Any]) -> list[tuple[str, str]]:
     """Return the paths of all measured flanks in the tables of a file, each with the name of its file."""
-    return [(path, name) for path, name in _leaves(table, "") if path.rpartition(".")[2] == MEASURED]
+    return [(path, name) for path, name in leaves(table, "") if path.rpartition(".")[2] == MEASURED]
 
 
 def files_elsewhere(text: str, source: Path) -> list[str]:
@@ -155,13 +159,15 @@ def _inside(folder: Path, name: str) -> bool:
         return False
 
 
-def _shown(value: Any) -> str:
+def shown(value: Any) -> str:
+    """Return a value as it is shown."""
     if isinstance(value, bool):
         return "true" if value else "false"
     return str(value)
 
 
-def _listed(value: Any) -> Sequence[dict[str, Any]]:
+def listed(value: Any) -> Sequence[dict[str, Any]]:
+    """Return the tables of an array of tables; none of anything else."""
     return [one for one in value if isinstance(one, dict)] if isinstance(value, list) else []
 
 
@@ -176,17 +182,17 @@ def changed_text(text: str, case: str, changes: Mapping[str, str]) -> str:
         For what is no field, and where the text has no place for it.
     """
     table = tables_of(text)
-    cases = _listed(table.get("case"))
+    cases = listed(table.get("case"))
     number = next((place for place, one in enumerate(cases) if one.get("name") == case), None)
-    known = _fields()
+    known = known_fields()
     found: dict[str, str | None] = {}
     for path, typed in changes.items():
-        field = known.get(_declared_path(path))
+        field = known.get(declared_path(path))
         if field is None:
             raise DriveError([f"{shortened(path)[1:-1]}: is no field of a drive file"])
-        place = _place(table, path)
-        if number is not None and _is_written(cases[number], place.split(".")):
-            place = f"case.{number}.{_place(cases[number], path)}"
+        place = place_of(table, path)
+        if number is not None and is_written(cases[number], place.split(".")):
+            place = f"case.{number}.{place_of(cases[number], path)}"
         written = cases[number] if place.startswith("case.") and number is not None else table
         if f"{field.table}.{LIKE}" not in known and _is_text(written, path):
             raise DriveError([f"{path}: its table is written as one value; change the text of the file"])
@@ -206,12 +212,12 @@ def _is_text(table: Mapping[str, Any], path: str) -> bool:
     return False
 
 
-def _declared_path(path: str) -> str:
+def declared_path(path: str) -> str:
     """The path with ``N`` in the place of numbers of entries."""
     return ".".join(ANY if part.isdigit() else part for part in path.split("."))
 
 
-def _place(table: Mapping[str, Any], path: str) -> str:
+def place_of(table: Mapping[str, Any], path: str) -> str:
     """Where the value of a field stands: a material that is a name alone is that name."""
     above, _, last = path.rpartition(".")
     if last != LIKE:
@@ -222,7 +228,7 @@ def _place(table: Mapping[str, Any], path: str) -> str:
     return path if isinstance(branch, dict) else above
 
 
-def _is_written(table: Mapping[str, Any], path: Sequence[str]) -> bool:
+def is_written(table: Mapping[str, Any], path: Sequence[str]) -> bool:
     """Whether a table has a value at a path, or one in its place."""
     branch: Any = table
     for part in path:

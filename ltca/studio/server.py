@@ -25,10 +25,16 @@ from ltca.errors import CycloError, DriveError, FaultError, shortened
 from ltca.output.files import whole_file
 from ltca.page.run_page import STAGE
 from ltca.page.writing import page_text, script_data
-from ltca.reading.toml_edit import with_entry
 from ltca.studio.answers import COARSE, DERIVATIVE, FINE, Question, problem_of
+from ltca.studio.entries import (
+    changed_entries,
+    declared_entries,
+    with_named_entry,
+    without_named_entry,
+    written_entries,
+)
 from ltca.studio.jobs import Jobs, exports
-from ltca.studio.sections import changed_text, declarations, files_elsewhere, written_values
+from ltca.studio.sections import declarations, files_elsewhere, written_values
 from ltca.studio.workers import Desks, Superseded, start_fork_server
 
 HOST = "127.0.0.1"
@@ -39,6 +45,8 @@ LOOKING = 0.25
 COMPLIANCES = ("half-space", "hybrid", "fe", "file")
 PORTABLE = re.compile(r"[\w .-]+")
 """Names of saved files: signs that no file system refuses or reads in another way, letters of any script among them."""
+DEVICE = re.compile(r"(?:con|prn|aux|nul|(?:com|lpt)[0-9¹²³])(?: *\..*)?", re.IGNORECASE)
+"""Names that Windows takes for devices, whatever ending they have."""
 HEADERS = {
     "X-Content-Type-Options": "nosniff",
     "Referrer-Policy": "no-referrer",
@@ -165,6 +173,7 @@ class Studio:
         if not self._page:
             first = {
                 "declared": declarations(),
+                "named": declared_entries(),
                 "text": self.text,
                 "case": self.case,
                 "source": self.source,
@@ -187,10 +196,13 @@ class Studio:
             text, case, changes = _text(asked), _word(asked, "case"), asked.get("changes", {})
             if not isinstance(changes, dict) or not all(isinstance(one, str) for one in changes.values()):
                 raise DriveError(["changes: must be texts by field"])
-            if entry := asked.get("entry"):
-                text = with_entry(text, _table(entry))
-            text = changed_text(text, case, changes)
-            return {"text": text, **written_values(text, case)}
+            if table := _word(asked, "entry"):
+                text = with_named_entry(text, table, _word(asked, "key"), _word(asked, "value"))
+            if path := _word(asked, "remove"):
+                text = without_named_entry(text, path)
+            text = changed_entries(text, case, changes)
+            found, entries = written_values(text, case), written_entries(text)
+            return {"text": text, **found, **entries, "values": found["values"] | entries["values"]}
 
         return await _answered(request, changed)
 
@@ -243,12 +255,8 @@ class Studio:
             text, name = _text(asked), _word(asked, "name").removesuffix(".toml")
             if not names_a_file(name) or name.startswith("."):
                 raise DriveError([f"name = {shortened(name)}: {NAMING}"])
-            if not PORTABLE.fullmatch(name):
-                raise DriveError(
-                    [
-                        f"name = {shortened(name)}: must have only letters, digits, spaces and . _ -, which any system takes"
-                    ]
-                )
+            if told := _not_everywhere(name):
+                raise DriveError([f"name = {shortened(name)}: {told}"])
             path = self.folder / f"{name}.toml"
             if path.is_symlink() or (path.exists() and not path.is_file()):
                 raise FaultError(f"{path.name}: is no file of its own; take another name")
@@ -320,6 +328,17 @@ def _mistakes(error: CycloError) -> dict[str, Any]:
     return {"problems": [problem_of(one) for one in problems]}
 
 
+def _not_everywhere(name: str) -> str:
+    """Why a name cannot name a file on any system; empty where it can."""
+    if not PORTABLE.fullmatch(name):
+        return "must have only letters, digits, spaces and . _ -, which any system takes"
+    if name != name.strip() or name.endswith("."):
+        return "must not begin or end with a space, nor end with a dot: Windows leaves them out"
+    if DEVICE.fullmatch(name):
+        return "must not be the name of a device of Windows (con, prn, aux, nul, com1, lpt1, …)"
+    return ""
+
+
 def _word(asked: Mapping[str, Any], name: str) -> str:
     value = asked.get(name, "")
     if not isinstance(value, str) or len(value) > 300:
@@ -332,13 +351,6 @@ def _text(asked: Mapping[str, Any]) -> str:
     if not isinstance(value, str):
         raise DriveError(["text: must be that of a drive file"])
     return value
-
-
-def _table(entry: Any) -> str:
-    known = {path.removesuffix(".N") for path in declarations()["tables"] if path.endswith(".N")}
-    if entry not in known:
-        raise DriveError([f"entry = {shortened(entry)}: must be one of {', '.join(sorted(known))}"])
-    return str(entry)
 
 
 def serve(studio: Studio, port: int, *, browser: bool, told: Callable[[str], None]) -> None:

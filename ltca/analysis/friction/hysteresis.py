@@ -141,8 +141,7 @@ def hysteresis_loop(
     up = np.unique(np.concatenate([np.linspace(LEAST_TORQUE_RATIO**0.5, 1.0, points) ** 2, [read]]))
     once = np.concatenate([-up[::-1], up])
     path = drive.load.torque * amplitude * np.concatenate([up, once[::-1][1:], once[1:]])
-    # A torque that turns the output ccw opposes a crank driving ccw with the wheel as output; the pin shaft turns back.
-    sense = (1.0 if drive.wheel_is_held else -1.0) * drive.driving_sign
+    sense = drive.load_sign
     found = locked_path(drive, crank_angle, path, engine=engine)
     first, second = found[:, up.size - 1 : up.size - 1 + once.size], found[:, -once.size :]
     torque = drive.load.torque * amplitude * once

@@ -68,9 +68,8 @@ def parse_limits(table: Any, problems: list[str], where: str = "limits") -> Limi
         return found
     for key, entry in table.items():
         path = f"{where}.{printable(str(key))}"
-        sense, _, name = str(key).partition("_")
-        name = _without_unit(name)
-        if sense not in SENSES or name not in LIMITED:
+        sense, name = str(key).partition("_")[0], limited_quantity(str(key))
+        if name is None:
             known = [f"{one}_{quantity}" for quantity in LIMITED for one in SENSES]
             problems.append(
                 f"{path}: is no limit; limits are max_… or min_… of a quantity{did_you_mean(str(key), known)}"
@@ -101,6 +100,19 @@ def parse_limits(table: Any, problems: list[str], where: str = "limits") -> Limi
                 f"{where}.{least.key} = {least.value:g}: must be at most {most.value:g}, {where}.{most.key}"
             )
     return found
+
+
+def limited_quantity(key: str) -> str | None:
+    """Return the quantity that a key of the table limits, one of `ltca.quantities.LIMITED`; None for no limit.
+
+    Examples
+    --------
+    >>> limited_quantity("max_pin_pressure_mid_MPa"), limited_quantity("most_pin_pressure_mid")
+    ('pin_pressure_mid', None)
+    """
+    sense, _, name = key.partition("_")
+    name = _without_unit(name)
+    return name if sense in SENSES and name in LIMITED else None
 
 
 def _without_unit(name: str) -> str:

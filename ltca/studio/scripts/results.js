@@ -73,6 +73,17 @@ function verdict(kind, sentence) {
   el("verdict-line").textContent = (kind === "pass" ? "✓ " : kind === "fail" ? "✗ " : "") + sentence;
 }
 
+// In the place of an answer where there has been none: why.
+function showNoAnswer(reasons) {
+  const empty = !shown && reasons !== null;
+  el("no-answer").hidden = !empty;
+  el("results").classList.toggle("empty", empty);
+  if (!empty) return;
+  el("no-answer-reasons").replaceChildren(...reasons.map(text => html("li", {}, null, text)));
+  el("results").hidden = false;
+  el("results").setAttribute("aria-busy", "false");
+}
+
 // All of an answer, or nothing of it.
 function show(answer, sequence, older) {
   if (answer.superseded) return;
@@ -81,10 +92,12 @@ function show(answer, sequence, older) {
   if (answer.problems || answer.failure) {
     const count = (answer.problems || []).length;
     verdict("fail", answer.failure ? `No answer: ${answer.failure}` : count === 1 ? "A field is wrong" : `${count} mistakes`);
-    el("quality").textContent = shown ? "the numbers below are those of an earlier state" : "nothing was answered before in this page";
+    el("quality").textContent = shown ? "the numbers below are those of an earlier state" : "no answer yet";
     document.body.dataset.answer = older ? "older" : "refused";
+    showNoAnswer(answer.failure ? [answer.failure] : answer.problems.map(problem => problem.text));
     return;
   }
+  showNoAnswer(null);
   const fine = answer.positions >= 360 || answer.fine;
   const [, head, rest] = answer.sentence.match(/^(.*?[.])(?: (.*))?$/) || ["", answer.sentence, ""];
   verdict(answer.state, head);
@@ -177,7 +190,7 @@ function tableInto(where, name, head, rows) {
   head.forEach(text => html("th", { scope: "col" }, made, text));
   for (const cells of rows) {
     const line = html("tr", {}, body);
-    html("th", { scope: "row" }, line, cells[0]);
+    breakable(html("th", { scope: "row" }, line), cells[0]);
     for (const cell of cells.slice(1)) html("td", cell.value === undefined ? {} : { "data-value": cell.value }, line, cell.text);
   }
   const holder = html("div", {});
@@ -191,7 +204,7 @@ async function fillDerivatives(sequence, own, current) {
   if (!el("derivatives-box").open) return;
   for (const path of [...derived.extra, ...Object.keys(first.declared.turned)]) {
     if (derived.rows.has(path) || !current()) continue;
-    if (!derived.extra.includes(path) && state.values[path] === undefined) continue;
+    if (!derived.extra.includes(path) && state.values[path] === undefined && !Number.isFinite(Number(fieldsByPath.get(path).default || NaN))) continue;
     const found = await post("answer", question("derivative", state.text, { field: path }), own.signal);
     if (!current() || found.superseded) return;
     derived.rows.set(path, found);
@@ -224,8 +237,9 @@ function showDerivatives() {
   if (!rows.length) { el("derivatives").replaceChildren(html("p", { class: "note" }, null, "These follow the fine answer.")); return; }
   const titles = [...new Set(good.flatMap(([, found]) => found.cells.map(cell => cell.title)))];
   if (good.length) tableInto("derivatives", "derivatives", ["a change of", ...titles], good.map(([path, found]) => [
-    `${path} by ${found.step}`, ...titles.map(title => { const cell = found.cells.find(each => each.title === title); return cell ? { text: cell.text, value: cell.value } : { text: "–" }; }),
+    `${path} ${`by ${found.step}`.replace(/ /g, "\u00a0")}`, ...titles.map(title => { const cell = found.cells.find(each => each.title === title); return cell ? { text: cell.text, value: cell.value } : { text: "–" }; }),
   ]));
   else el("derivatives").replaceChildren();
+  if (good.length) html("p", { class: "note" }, el("derivatives"), good[good.length - 1][1].note);
   for (const [path, found] of rows) if (!found.cells) html("p", { class: "note" }, el("derivatives"), found.failure || (found.problems || []).map(each => each.text).join(" ") || path);
 }

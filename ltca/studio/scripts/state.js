@@ -1,7 +1,7 @@
 // What the page has: the text of a drive file with its history and variants, and what it asks the server.
 const first = JSON.parse(el("data").textContent);
 const state = {
-  tab: crypto.randomUUID(), text: first.text, case: first.case, values: {}, own: new Set(), cases: [], entries: {},
+  tab: crypto.randomUUID(), text: first.text, case: first.case, values: {}, own: new Set(), cases: [], entries: {}, named: {},
   history: [{ text: first.text, what: "as opened" }], at: 0, variants: { "as opened": first.text }, beside: "", compliance: "half-space",
   sequence: 0, // of the last change; an answer of another one is older
 };
@@ -41,7 +41,7 @@ function change(path, typed) {
   pump();
 }
 function replaceText(text, what) { queue.push({ what: what, text: text }); busy(); pump(); }
-function addEntry(table) { queue.push({ what: "a further " + table, entry: table }); busy(); pump(); }
+function changeEntries(what, asked, then) { queue.push({ what: what, asked: asked, then: then }); busy(); pump(); }
 
 async function pump() {
   if (pumping) return;
@@ -49,8 +49,9 @@ async function pump() {
   try {
     while (queue.length) {
       const next = queue.shift(), text = next.text === undefined ? state.text : next.text;
-      const found = await post("edit", { text: text, case: state.case, changes: next.changes || {}, entry: next.entry || "" });
-      if (found.problems) { refuse(found.problems, next.what); continue; }
+      const found = await post("edit", { text: text, case: state.case, changes: next.changes || {}, ...next.asked });
+      if (next.then) next.then(found.problems || []);
+      if (found.problems) { if (next.then) compute(); else refuse(found.problems, next.what); continue; }
       take(found, next.what, Boolean(next.changes), next.at);
     }
   } catch (error) {
@@ -73,8 +74,9 @@ function take(found, what, merges, at) {
     }
   }
   changed = { what: what, when: now };
-  Object.assign(state, { text: found.text, values: found.values, own: new Set(found.own), cases: found.cases, entries: found.entries });
-  if (state.cases.length && !state.cases.includes(state.case)) state.case = state.cases[0];
+  const place = state.cases.indexOf(state.case), renamed = found.cases.length === state.cases.length; // a case stays chosen by another name
+  Object.assign(state, { text: found.text, values: found.values, own: new Set(found.own), cases: found.cases, entries: found.entries, named: found.named });
+  if (state.cases.length && !state.cases.includes(state.case)) state.case = state.cases[renamed && place >= 0 ? place : 0];
   keep();
   showFields();
   showTools();

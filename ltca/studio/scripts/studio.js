@@ -32,7 +32,9 @@ function keepVariant() {
   listen();
   listenWork();
   buildFields();
+  buildNamed();
   el("opening").hidden = true;
+  el("all-fields").open = !matchMedia("(max-width: 900px)").matches; // on a phone the answer stands below
   el("file-name").value = first.source.endsWith(".toml") ? first.source.replace(/^.*\//, "").replace(/\.toml$/, "") : `my-${first.source}`;
   el("undo").addEventListener("click", () => step(-1));
   el("redo").addEventListener("click", () => step(1));

@@ -2,7 +2,7 @@
 function download() { save(`${fileName(el("file-name").value || state.values.name || "drive")}.toml`, state.text, "application/toml"); }
 
 async function saveFile(overwrite) {
-  const name = el("file-name").value.trim();
+  const name = el("file-name").value;
   try {
     const found = await post("save", { text: state.text, name: name, overwrite: overwrite });
     el("overwrite").hidden = !found.exists;
@@ -38,6 +38,7 @@ function showJobs(jobs) {
       row = html("li", { "data-job": job.number });
       list.prepend(row);
       html("p", { class: "job-head" }, row);
+      html("progress", { "aria-label": `Job ${job.number}` }, row);
       html("pre", { class: "job-lines", tabindex: "0", "aria-label": `Output of job ${job.number}` }, row);
       html("button", { type: "button", class: "cancel" }, row, "Cancel").addEventListener("click", async () => { try { await post(`jobs/${job.number}/cancel`, {}); } catch { lost(true); } lookAtJobs(); });
       html("ul", { class: "files" }, row);
@@ -45,6 +46,9 @@ function showJobs(jobs) {
     row.querySelector(".job-head").textContent = `${job.number}: ${job.command} — ${job.state}, ${job.seconds} s`;
     row.querySelector(".job-lines").textContent = job.lines.join("\n") || "…";
     row.querySelector(".cancel").hidden = job.state !== "running";
+    const bar = row.querySelector("progress");
+    bar.hidden = job.state !== "running";
+    if (job.done.length) place(bar, { value: job.done[0], max: Math.max(job.done[1], 1) }); else bar.removeAttribute("value");
     const files = row.querySelector(".files");
     if (files.children.length !== job.files.length) files.replaceChildren(...job.files.map(path => {
       const item = html("li", {});

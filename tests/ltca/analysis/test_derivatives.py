@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from importlib.resources import files
 
 import numpy as np
 import pytest
 
 import ltca
+from ltca.analysis.derivatives import LostMotion
 from ltca.analysis.engines import HalfSpace, Hybrid, PlaneStrain
+from ltca.analysis.torque_curve import torque_curve
 from ltca.drive.fields import read_field
 from ltca.errors import DriveError
 from ltca.reading.changes import with_fields
@@ -261,3 +264,55 @@ def test_a_torque_of_its_own_has_no_field(paper_cases):
     result = ltca.analyse(paper_cases["CS-1"], crank_angle=ANGLES[:1], torque=2e5)
     with pytest.raises(DriveError, match=r"load\.torque: the analysis has a torque of its own"):
         ltca.derivatives(result, ["load.torque"])
+
+
+LOST_MOTION_DRIVES = {
+    "robot-joint": ("robot-joint", {}, {"disc.shifting_offset": 1e-6, "crank.eccentricity": 1e-6}),
+    "rv": ("rv", {}, {"clearance.bearing": 1e-6, "load.torque": 400.0}),
+    "sleeved": ("sleeved", {}, {"disc.equidistant_offset": 1e-6}),
+    "no offsets at all": (
+        "paper", {"disc.equidistant_offset": 0.0, "disc.shifting_offset": 0.0, "clearance.bearing": 0.02},
+        {"clearance.bearing": 1e-6, "materials.disc.youngs_modulus": 100.0},
+    ),
+    "two discs, the wheel held, friction": (
+        "paper", {"disc.number_of_discs": 2, "installation.held": "pin-wheel", "load.direction": "cw", "friction.pin": 0.05},
+        {"disc.shifting_offset": 1e-6},
+    ),
+}  # fmt: skip
+
+
+def of_lost_motion(drive, steps, angles):
+    """Slopes of the lost motion beside those of torque curves, which are balanced anew."""
+    found = LostMotion(drive, angles)
+
+    def read(one):
+        return torque_curve(replace(one, friction=None), angles, points=0).lost_motion
+
+    np.testing.assert_allclose(found.value, read(drive), rtol=1e-9)  # of poses from other starts, balanced to 1e-9
+    for path, step in steps.items():
+        value = float(read_field(drive, path))
+        ends = [read(with_fields(drive, {path: value + part * step})) for part in (-2.0, -1.0, 1.0, 2.0)]
+        expected = (ends[0] - 8.0 * ends[1] + 8.0 * ends[2] - ends[3]) / (12.0 * step)
+        # Balanced to 1e-9 of the load, which a step changes by some 1e-3 at 3 % of the torque.
+        size = np.max(np.abs(expected))
+        np.testing.assert_allclose(found.slope(path), expected, rtol=0.0, atol=RELATIVE * size, err_msg=path)
+
+
+def test_lost_motion_follows_a_field(paper_cases):
+    of_lost_motion(paper_cases["CS-3"], {"disc.shifting_offset": 1e-6, "load.torque": 300.0}, ONE)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(one, marks=[] if one[:2] in ("no", "tw") else pytest.mark.nightly) for one in LOST_MOTION_DRIVES],
+)
+def test_lost_motion_of_other_drives(name, paper_cases):
+    source, fields, steps = LOST_MOTION_DRIVES[name]
+    drive = paper_cases["CS-3"] if source == "paper" else shipped(source)
+    of_lost_motion(with_fields(drive, fields), steps, ONE)
+
+
+def test_lost_motion_by_what_is_no_field_is_refused(paper_cases):
+    with pytest.raises(DriveError, match=r"disc\.thicknes"):
+        LostMotion(paper_cases["CS-3"], ONE).slope("disc.thicknes")

@@ -10,7 +10,7 @@ import pytest
 
 import ltca.analysis.drive_curves as curves
 import ltca.figures.curve_figures as curve_figures
-from ltca.analysis import engines, loaded_analysis, transmission_error_orders as orders
+from ltca.analysis import engines, loaded_analysis, torque_curve, transmission_error_orders as orders
 from ltca.analysis.life.bearing_lives import bearing_lives
 from ltca.analysis.loaded_analysis import analyse
 from ltca.commands.program import main
@@ -236,7 +236,7 @@ def test_duty_of_a_file_is_told(monkeypatch, tmp_path, capsys):
 
 def make_coarse(monkeypatch):
     """One angle, 44 positions and the first orders only."""
-    monkeypatch.setattr(curves, "ANGLES", 1)
+    monkeypatch.setattr(torque_curve, "CURVE_ANGLES", 1)
     monkeypatch.setattr(curves, "POSITIONS_PER_TURN", 44)
     monkeypatch.setattr(
         curves, "known_orders", lambda drive, harmonics: (orders.Order(8.0, "a"), orders.Order(13.0, "b"))

@@ -7,7 +7,7 @@ import json
 import pytest
 
 import ltca
-from ltca.analysis import drive_curves
+from ltca.analysis import drive_curves, torque_curve
 from ltca.analysis.transmission_error_orders import Order
 from ltca.commands.program import main
 from ltca.errors import DriveError
@@ -18,7 +18,7 @@ FILE = load_drive("paper")
 
 @pytest.mark.slow  # lives by slices take seconds
 def test_they_are_the_curves_of_the_command(monkeypatch, tmp_path, capsys):
-    monkeypatch.setattr(drive_curves, "ANGLES", 1)
+    monkeypatch.setattr(torque_curve, "CURVE_ANGLES", 1)
     monkeypatch.setattr(drive_curves, "POSITIONS_PER_TURN", 44)
     monkeypatch.setattr(drive_curves, "known_orders", lambda drive, harmonics: (Order(8.0, "a"), Order(13.0, "b")))
     words = ["--turns", "1", "--speed", "1500 rpm", "--pressure-limit", "1.2 GPa", "--lost-motion", "5 %"]

@@ -9,7 +9,7 @@ from ltca.drive.declaration import declared_fields
 from ltca.errors import DriveError
 from ltca.reading.arguments import SHIPPED_DRIVES
 from ltca.reading.drive_file import shipped_drive
-from ltca.reading.toml_edit import literal, with_entry, with_values
+from ltca.reading.toml_edit import literal, with_entry, with_values, without_entry
 
 FIELDS = [path for path in declared_fields() if ".N." not in path]
 
@@ -94,3 +94,43 @@ def test_entries_are_added_after_those_that_are_there():
     assert tomllib.loads(with_entry(text, "disc.of"))["disc"] == {"of": [{}]}
     with pytest.raises(DriveError, match=r"^disc.of: an entry cannot be added"):
         with_entry("[disc]\nof = [{}]\n", "disc.of")
+
+
+@pytest.mark.parametrize(
+    ("text", "path", "expected"),
+    [
+        ("[limits]\n# of the maker\nmax_a = 1 # x\nmax_b = 2\n", "limits.max_a", "[limits]\n# of the maker\nmax_b = 2\n"),
+        ("[limits]\nmax_b = 2\n[limits.max_a]\nvalue = 1\n# y\nsource = 's'\n[x]\ny = 1\n", "limits.max_a",
+         "[limits]\nmax_b = 2\n[x]\ny = 1\n"),
+        ("[[c]]\na = 1\n[c.b]\nd = 3\n[c.e]\nf = 1\n# next\n[[c]]\na = 2\n", "c.0", "# next\n[[c]]\na = 2\n"),
+        ("[[c]]\na = 1\n[[c]]\na = 2\n[c.b]\nd = 3", "c.1", "[[c]]\na = 1\n"),
+        ("[[c]]\na = 1\n", "c.0", ""),
+        ("[t]\nx.y = { d = 'n' }\nx.z = 1\n", "t.x.y", "[t]\nx.z = 1\n"),
+        ("[t.x.y]\nd = 'n'\n", "t.x.y", ""),
+        ("t = { x = 1, y = 2 }\n", "t.x", "t = { y = 2 }\n"),
+    ],
+)  # fmt: skip
+def test_entries_are_taken_away_with_all_that_is_in_them(text, path, expected):
+    assert without_entry(text, tuple(path.split("."))) == expected
+
+
+@pytest.mark.parametrize(("text", "path"), [("l = [{ a = 1 }]\n", "l.0"), ("a = 1\n", "b"), ("a = 1\n", "a.0")])
+def test_what_cannot_be_taken_away_alone_is_refused_by_name(text, path):
+    with pytest.raises(DriveError, match=f"^{path}: cannot be taken away"):
+        without_entry(text, tuple(path.split(".")))
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("a = 1\n", "a = 1\n\n[tolerances]\ncrank.e = 2\n"),
+        ("[tolerances]\ndisc.x = 1 # y\n\n[z]\n", "[tolerances]\ndisc.x = 1 # y\ncrank.e = 2\n\n[z]\n"),
+    ],
+)
+def test_tolerances_stand_in_one_table_with_their_dots(text, expected):
+    assert with_values(text, {("tolerances", "crank", "e"): "2"}) == expected
+
+
+def test_a_key_with_dots_is_one_key():
+    changed = with_values('[bearings."K 1.5"]\nbore = 1\n', {("bearings", "K 1.5", "bore"): "2"})
+    assert changed == '[bearings."K 1.5"]\nbore = 2\n'

@@ -14,7 +14,17 @@ from ltca.commands.program import main
 from ltca.drive.declaration import declared_fields
 from ltca.reading.arguments import SHIPPED_DRIVES
 from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
-from ltca.studio.answers import COARSE, DERIVATIVE, FINE, Memory, Question, answer, coarse_angles, problem_of
+from ltca.studio.answers import (
+    COARSE,
+    DERIVATIVE,
+    FINE,
+    Memory,
+    Question,
+    _signed,
+    answer,
+    coarse_angles,
+    problem_of,
+)
 from ltca.studio.sections import changed_text, declarations, files_elsewhere, written_values
 
 PAPER = shipped_drive("paper")
@@ -123,6 +133,19 @@ def test_a_derivative_is_told_for_a_small_change():
         ends += [one["value"] for one in beside["summary"] if one["key"] == "mean_bearing_load_N"]
     # Of a difference over ±0.3 % of the torque, the third derivative makes less than 1e-3 while no contact opens.
     assert change == pytest.approx((ends[1] - ends[0]) / 2.0, rel=1e-3)
+    assert found["cells"][0]["title"] == "lost motion"
+    assert re.search(
+        r"Lost motion at ±3 % of the torque, mean of 4 crank angles over one mesh: \d+\.\d{3}′", found["note"]
+    )
+
+
+def test_small_changes_are_told_by_powers_of_ten_and_round_off_as_none():
+    assert [_signed(change, 10.0) for change in (0.12345, -7.163e-7, 1e-9, -12345.0)] == [
+        "+0.123",
+        "−7.16·10⁻⁷",
+        "0",
+        "−12300",
+    ]
 
 
 def test_mistakes_and_drives_without_an_answer_are_told():

@@ -7,8 +7,9 @@ import time
 import pytest
 
 from ltca.errors import DriveError
+from ltca.output import progress
 from ltca.reading.drive_file import load_drive, shipped_drive
-from ltca.studio.jobs import Jobs, exports, job_words
+from ltca.studio.jobs import Jobs, _done, exports, job_words
 
 PAPER = shipped_drive("paper")
 
@@ -79,3 +80,15 @@ def test_a_job_is_cancelled_and_a_wrong_drive_is_told(tmp_path):
     assert "disc.number_of_teeth = -1" in " ".join(wrong["lines"])
     assert not jobs.cancel(first)
     jobs.close()
+
+
+def test_how_far_a_job_is_stands_in_its_last_line_that_says_so(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(progress, "FIRST", 0.01)
+    with progress.progress("samples", 250) as advance:
+        advance("disc, pin (3 s)", 12)
+        while " (0 s)" not in (told := capsys.readouterr().err):
+            time.sleep(0.01)
+    lines = told.splitlines()
+    assert _done([*lines, "warning: 3 of 4 pins"]) == [12, 250]
+    assert _done(["coefficients: 0 of at most 4 (10 s)"]) == [0, 4]
+    assert _done(["disc: 3 of 4 holes", "…"]) == []

@@ -76,8 +76,25 @@ def test_names_that_are_not_portable_are_refused(running, name):
     assert sorted(running.folder.iterdir()) == before
 
 
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        *(
+            (name, "device of Windows")
+            for name in ("CON", "nul", "Aux.drive", "com1", "LPT9", "com²", "prn .x", "nul.toml")
+        ),
+        *((name, "nor end with a dot") for name in ("mine.", "mine ", " mine", "mine..toml")),
+    ],
+)
+def test_names_that_windows_reads_in_another_way_are_refused(running, name, told):
+    before = sorted(running.folder.iterdir())
+    assert told in running.ask("save", {"text": PAPER, "name": name}).body["problems"][0]["text"]
+    assert sorted(running.folder.iterdir()) == before
+
+
 def test_letters_of_any_script_name_a_saved_file(running):
     assert running.ask("save", {"text": PAPER, "name": "Getriebe ü_2.1-б"}).body == {"saved": "Getriebe ü_2.1-б.toml"}
+    assert running.ask("save", {"text": PAPER, "name": "con-rod"}).body == {"saved": "con-rod.toml"}
 
 
 def test_a_saved_file_is_replaced_on_demand_and_never_through_a_link(running, tmp_path):
