@@ -342,21 +342,21 @@ def _odd_torques(drive: Drive, torque: float | None) -> Iterator[str]:
     if drive.duty:
         largest = max(range(len(drive.duty)), key=lambda entry: drive.duty[entry].torque)
         used.append((f"duty.{largest}.torque", drive.duty[largest].torque))
-    of_it = f"what this drive carries (some {_rounded(carried / 1000.0)} N·m by the pressure of its flank)"
+    of_it = f"what this drive carries (some {rounded(carried / 1000.0)} N·m by the pressure of its flank)"
     beyond = False
     for path, value in used:
         if 0.0 < value < UNLOADED * carried:
-            share = _fraction(value / carried)
+            share = fraction(value / carried)
             yield f'{_newton_metres(path, value)}, {share} of {of_it}; did you mean "{value:g} N m"?'
         elif value > OVERLOADED * carried:
             beyond = True
             yield (
-                f"{_newton_metres(path, value)}, {_rounded(value / carried)} times {of_it}; a plain number is N·mm, did you "
+                f"{_newton_metres(path, value)}, {rounded(value / carried)} times {of_it}; a plain number is N·mm, did you "
                 f'mean "{value / 1e6:g} N m"?'
             )
     if not beyond and load.light_torque < LIGHTEST * load.torque:
         yield (
-            f"{_newton_metres('load.light_torque', load.light_torque)}, {_fraction(load.light_torque / load.torque)} of "
+            f"{_newton_metres('load.light_torque', load.light_torque)}, {fraction(load.light_torque / load.torque)} of "
             f'load.torque; did you mean "{load.light_torque:g} N m"?'
         )
 
@@ -377,12 +377,12 @@ def _odd_strength(path: str, value: float, softest: float, stiffest: float) -> s
     """What to say of a strength or a limit, MPa, between bodies of these moduli; empty where there is nothing to say."""
     if value < WEAKEST * softest:
         return (
-            f"{path} = {value:g} MPa is {_fraction(value / softest)} of Young's modulus ({softest:g} MPa), less than any "
+            f"{path} = {value:g} MPa is {fraction(value / softest)} of Young's modulus ({softest:g} MPa), less than any "
             f'material bears; a plain number is MPa, did you mean "{value:g} GPa" ({1000.0 * value:g} MPa)?'
         )
     if value > STRONGER * stiffest:
         return (
-            f"{path} = {value:g} MPa is {_rounded(value / stiffest)} times Young's modulus ({stiffest:g} MPa); a plain number is "
+            f"{path} = {value:g} MPa is {rounded(value / stiffest)} times Young's modulus ({stiffest:g} MPa); a plain number is "
             f'MPa, did you mean "{value:g} Pa" ({1e-6 * value:g} MPa)?'
         )
     return ""
@@ -412,7 +412,7 @@ def _odd_stiffnesses(drive: Drive) -> Iterator[str]:
     for path, value in given.items():
         if value is not None and value < SPRINGY * body:
             yield (
-                f"{path} = {value:g} N/mm is {_fraction(value / body)} of Young's modulus times thickness of the disc "
+                f"{path} = {value:g} N/mm is {fraction(value / body)} of Young's modulus times thickness of the disc "
                 f'({body:.3g} N/mm): softer than any part of it; a plain number is N/mm, did you mean "{value:g} N/µm" '
                 f"({1000.0 * value:g} N/mm)?"
             )
@@ -432,8 +432,8 @@ def _odd_forces(drive: Drive) -> Iterator[str]:
     for path, value in given.items():
         if 0.0 < abs(value) < FAINT * carried:
             yield (
-                f"{path} = {value:g} N is {_fraction(abs(value) / carried)} of the load of a crank that this drive carries (some "
-                f'{_rounded(1e-3 * carried)} kN); a plain number is N, did you mean "{value:g} kN"?'
+                f"{path} = {value:g} N is {fraction(abs(value) / carried)} of the load of a crank that this drive carries (some "
+                f'{rounded(1e-3 * carried)} kN); a plain number is N, did you mean "{value:g} kN"?'
             )
     bearing, support = drive.main_bearing, drive.crank.support
     rows = [
@@ -472,8 +472,8 @@ def _odd_ratings(drive: Drive) -> Iterator[str]:
     for name, estimate in about.items():
         if (value := getattr(part, name)) is not None and value < POOREST * estimate:
             yield (
-                f"crank_bearing.{name} = {value:g} N is {_fraction(value / estimate)} of what its rollers bear (some "
-                f'{_rounded(1e-3 * estimate)} kN); a plain number is N, did you mean "{value:g} kN"?'
+                f"crank_bearing.{name} = {value:g} N is {fraction(value / estimate)} of what its rollers bear (some "
+                f'{rounded(1e-3 * estimate)} kN); a plain number is N, did you mean "{value:g} kN"?'
             )
 
 
@@ -481,13 +481,13 @@ def _newton_metres(path: str, value: float) -> str:
     return f"{path} = {value:g} N·mm is {value / 1000.0:g} N·m"
 
 
-def _fraction(ratio: float) -> str:
-    """A small ratio in words: "a thousandth", or "1/4200"."""
-    return "a thousandth" if 0.8e-3 < ratio < 1.25e-3 else f"1/{_rounded(1.0 / ratio)}"
+def fraction(ratio: float) -> str:
+    """Return a small ratio in words: "a thousandth", or "1/4200"."""
+    return "a thousandth" if 0.8e-3 < ratio < 1.25e-3 else f"1/{rounded(1.0 / ratio)}"
 
 
-def _rounded(value: float) -> str:
-    """A number to two figures, without an exponent up to a million."""
+def rounded(value: float) -> str:
+    """Return a number to two figures, without an exponent up to a million."""
     return f"{float(f'{value:.2g}'):g}"
 
 
@@ -496,12 +496,12 @@ def _odd_lengths(drive: Drive) -> Iterator[str]:
     for path, value, beside, what in _lengths_beside(drive):
         if abs(value) < SHORT * beside:
             yield (
-                f"{path} = {value:g} mm is {_fraction(abs(value) / beside)} of {what} ({beside:.3g} mm); did you mean "
+                f"{path} = {value:g} mm is {fraction(abs(value) / beside)} of {what} ({beside:.3g} mm); did you mean "
                 f'"{value:g} m", {1000.0 * value:g} mm?'
             )
         elif abs(value) > LONG * beside:
             yield (
-                f"{path} = {value:g} mm is {_rounded(abs(value) / beside)} times {what} ({beside:.3g} mm); did you mean "
+                f"{path} = {value:g} mm is {rounded(abs(value) / beside)} times {what} ({beside:.3g} mm); did you mean "
                 f'"{value:g} µm", {value / 1000.0:g} mm?'
             )
     fine = {
@@ -658,7 +658,7 @@ def _soft_carrier(drive: Drive, torque: float | None) -> Iterator[str]:
         return
     value = carrier.stiffness_torsion
     yield (
-        f"carrier.stiffness_torsion = {value:g} N·mm/rad would let the output turn by {_rounded(twist * 180.0 / pi)}° under its "
+        f"carrier.stiffness_torsion = {value:g} N·mm/rad would let the output turn by {rounded(twist * 180.0 / pi)}° under its "
         f'torque; did you mean "{value:g} N·m/rad" or "{value:g} N·m/arcmin"?'
     )
 

@@ -209,7 +209,8 @@ def drive_table(row: dict[str, float], requirements: Requirements, name: str) ->
     for key in ("friction", "temperature", "lubricant", "main_bearing"):
         if getattr(asked, key) is not None:
             table[key] = getattr(asked, key)
-    return as_meant(table)
+    meant: dict[str, Any] = as_meant(table)
+    return meant
 
 
 def as_meant(value: Any) -> Any:
