@@ -1,6 +1,9 @@
 """``cyclo design``: what it writes passes `cyclo check`; where nothing fits, what would do does."""
 
 import json
+import re
+import shlex
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -11,6 +14,9 @@ from ltca.output.run_folder import claimed_folder
 from ltca.reading.drive_file import load_drive
 from ltca.studies.design_search import refinement, search
 from ltca.studies.design_search.refinement import Refined
+from ltca.studies.design_search.requirement_file import parse_requirements
+from ltca.studies.design_search.requirement_words import requirement_warnings
+from ltca.studies.design_search.requirements import REQUIRED
 from ltca.studies.design_search.solution import Solution
 
 EXAMPLES = Path(__file__).parents[3] / "examples" / "requirements"
@@ -103,6 +109,38 @@ def test_an_interrupted_search_keeps_what_it_has_found(tmp_path, monkeypatch, ca
     assert "100Cr6 for disc" in text
     assert load_drive(out / "candidate-1.toml").cases["nominal"].reduction_ratio == 20.0
     assert json.loads((out / "design.json").read_text())["verdict"] == "search not finished"
+
+
+DESIGN, ROBOT_JOINT = (Path(__file__).parents[3] / "docs" / "how-to" / name for name in ("design.md", "robot_joint.md"))
+
+
+def starting_file():
+    """The requirement file that the page begins with."""
+    return re.findall(r"```toml\n(.*?)```", DESIGN.read_text(encoding="utf-8"), flags=re.DOTALL)[0]
+
+
+def test_the_file_to_start_from_is_complete():
+    """There was none on the page, and what is left out of one had no strength."""
+    requirements = parse_requirements(starting_file())
+    assert requirements.assumed_materials == {}
+    assert requirement_warnings(requirements) == []
+    assert set(REQUIRED) <= set(tomllib.loads(starting_file()))
+
+
+@pytest.mark.slow
+@pytest.mark.nightly
+def test_from_a_ratio_to_an_arm_as_it_is_printed(tmp_path, monkeypatch):
+    """A newcomer's design had no density, so that no simulator took it."""
+    mujoco = pytest.importorskip("mujoco", reason="mujoco (pip install cyclo-ltca[robotics]) is not installed")
+    monkeypatch.chdir(tmp_path)
+    Path("requirements.toml").write_text(starting_file(), encoding="utf-8")
+    page = ROBOT_JOINT.read_text(encoding="utf-8").partition("## From a ratio")[2]
+    (commands,), (script,) = (re.findall(rf"```{kind}\n(.*?)```", page, flags=re.DOTALL) for kind in ("sh", "python"))
+    for command in commands.splitlines():
+        assert main(shlex.split(command)[1:]) == 0
+    names: dict[str, mujoco.MjModel] = {}
+    exec(compile(script, str(ROBOT_JOINT), "exec"), names)
+    assert (names["model"].nv, names["alone"].nv) == (2, 1)
 
 
 def test_bad_input_ends_with_two(tmp_path, capsys):
