@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from ltca.commands.design import _write
 from ltca.commands.program import main
 from ltca.output.files import whole_file
 from ltca.output.run_folder import claimed_folder
@@ -109,6 +110,22 @@ def test_an_interrupted_search_keeps_what_it_has_found(tmp_path, monkeypatch, ca
     assert "100Cr6 for disc" in text
     assert load_drive(out / "candidate-1.toml").cases["nominal"].reduction_ratio == 20.0
     assert json.loads((out / "design.json").read_text())["verdict"] == "search not finished"
+
+
+def test_an_infeasible_answer_asks_for_the_speed_of_the_motor(tmp_path, capsys):
+    """2000 rpm of a motor as the speed of the output stood in the way of all, and no line named it."""
+    requirements = parse_requirements(starting_file().replace("34 rpm", "2000 rpm"))
+    found = search.Found(
+        requirements=requirements, demands=(), designs=(), tried=(), relaxations=(), combinations=7, solved=2,
+    )  # fmt: skip
+    _write(found, 1, tmp_path)
+    printed = capsys.readouterr().out
+    assert printed.startswith("joint, 1:59, 200 N·m and 2000 rpm at the output: 7 combinations")
+    asked = "speed = 2000 rpm at the output: the input would turn at 118,000 rpm. Is speed that of the output?"
+    assert f"look first at: {asked}" in printed
+    assert asked in (tmp_path / "report.html").read_text(encoding="utf-8")
+    (warning,) = json.loads((tmp_path / "design.json").read_text(encoding="utf-8"))["warnings"]
+    assert warning.startswith(asked)
 
 
 DESIGN, ROBOT_JOINT = (Path(__file__).parents[3] / "docs" / "how-to" / name for name in ("design.md", "robot_joint.md"))
