@@ -50,6 +50,8 @@ GONE = {
     "disc.torque_share": "is no longer a field: the load of each disc is computed (disc.number_of_discs); leave it out"
 }
 """Fields of earlier versions, and their replacement."""
+HINTS = {"held": "; a housing with the wheel pins in it is 'pin-wheel', a flange with the shaft pins 'pin-shaft'"}
+"""What values of a field mean, by its name, where another word was given."""
 PIN_SHAFT = ("number_of_pins", "pin_circle_radius", "pin_radius", "hole_radius")
 """Fields that every pin shaft needs: where none of them is given, the drive has none."""
 UNKNOWN = ("unexpected_keyword_argument", "extra_forbidden")
@@ -94,7 +96,7 @@ def _sentence(place: tuple[str, ...], path: str, detail: Any, known: Sequence[st
             expected = detail["ctx"]["expected"]
             choices = [name.strip("' ") for name in expected.replace(" or ", ",").split(",")]
             meant = did_you_mean(detail["input"], choices) if isinstance(detail["input"], str) else ""
-            return f"{path} = {shortened(detail['input'])}: must be {expected}{meant}"
+            return f"{path} = {shortened(detail['input'])}: must be {expected}{meant}{HINTS.get(place[-1], '')}"
         case "bool_type":
             return f"{path} = {shortened(detail['input'])}: must be true or false"
         case "int_type" | "int_parsing" | "int_from_float" | "int_parsing_size":

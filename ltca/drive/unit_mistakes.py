@@ -13,7 +13,7 @@ import functools
 import inspect
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import fields
-from math import pi, sin, sqrt
+from math import cos, pi, sin, sqrt
 from typing import ParamSpec, TypeVar
 
 from ltca.drive.declaration import declared_fields
@@ -42,11 +42,13 @@ BORNE = 10_000.0
 """Pressure beyond the strength of any gear: bearing steel yields below 6000 MPa, MPa."""
 UNLOADED = 1.0 / 500.0
 """Fraction of the torque that a drive carries (`carried_torque`) below which its torque is likely in newton metres: rated
-torques are a fifth of it and more, a hundredth of them is above; newton metres read as N·mm are at most a thousandth."""
-OVERLOADED = 100.0
-"""Multiple of it above which a torque is likely a thousandfold."""
+torques are a quarter of it and more, a hundredth of them is above; newton metres read as N·mm are about a thousandth."""
+OVERLOADED = 250.0
+"""Multiple of it above which a torque is likely a thousandfold: of a rated torque that is a quarter of it."""
 LIGHTEST = 1.0 / 5000.0
 """Fraction of the torque below which the light torque is likely in newton metres: usual ones are 1/100 to 1/10."""
+PHASES = 4
+"""Places of the wheel pins between two teeth at which the torque of `carried_torque` is taken, the least of them."""
 STRENGTH = 0.0075, 0.03
 """Allowable flank pressure by Young's modulus of metals and of plastics without a given one: 1500 of 206000 MPa for bearing
 steel, 75 of 3000 MPa for PLA."""
@@ -88,11 +90,12 @@ def _parts(drive: Drive) -> list[str]:
     """Parts whose material is under contact pressure: without cranks, carrier, and slots and sleeves where there are none."""
     seats = {drive.pin_wheel.seat.kind} | (set() if drive.pin_shaft is None else {drive.pin_shaft.seat.kind})
     counts = {"crankshaft": False, "carrier": False, "wheel_seat": "slot" in seats, "sleeve": "sleeve" in seats}
+    counts["shaft_pin"] = drive.pin_shaft is not None
     return [item.name for item in fields(Materials) if counts.get(item.name, True)]
 
 
-def _bodies(drive: Drive) -> dict[str, Material]:
-    """Materials of all parts that yield, by path: those under contact pressure, and cranks, carrier and ring that bend."""
+def materials_of_bodies(drive: Drive) -> dict[str, Material]:
+    """Return the materials of all parts that yield, by path: under contact pressure, and cranks, carrier and ring that bend."""
     found = {f"materials.{part}": getattr(drive.materials, part) for part in _parts(drive)}
     if drive.crank.support is not None:
         found["materials.crankshaft"] = drive.materials.crankshaft
@@ -177,7 +180,7 @@ def _too_long(path: str, span: float, diameter: float, bent: float) -> str:
 
 def _modulus(drive: Drive) -> list[str]:
     values: dict[float, list[str]] = {}
-    for path, material in _bodies(drive).items():
+    for path, material in materials_of_bodies(drive).items():
         values.setdefault(material.youngs_modulus, []).append(path)
     return [
         f"{_together(paths)}: youngs_modulus = {value:g} MPa is softer than any rigid plastic (some {SOFT:g} MPa) "
@@ -242,7 +245,7 @@ def stiffness_warning(drive: Drive) -> str | None:
     Beyond that of any material pascals are likely; a value that would be a metal in GPa, beside a part a hundred times
     stiffer, is likely in GPa: a soft shaft pin alone lets every solution succeed.
     """
-    moduli = {path: material.youngs_modulus for path, material in _bodies(drive).items()}
+    moduli = {path: material.youngs_modulus for path, material in materials_of_bodies(drive).items()}
     for path, modulus in moduli.items():
         if modulus > STIFF:
             return (
@@ -291,14 +294,45 @@ def limit_warnings(drive: Drive, limits: Iterable[Limit]) -> list[str]:
 
 
 def carried_torque(drive: Drive) -> float:
-    """Return the output torque at which a third of the wheel pins has the allowable pressure, N·mm: an estimate, good to a
-    factor of a few.
+    """Return the output torque at which the most pressed wheel pin reaches the allowable pressure, N·mm.
+
+    An estimate, good to a factor of two: the pressure goes with the root of the torque. Lines of contact of stiffness π E* t/10
+    (Palmgren) share the load by levers and gaps of the flank, and the pressure is Hertz's with the curvature of the flank
+    (docs/how-to/design.md, closed forms); bodies, bearings and holes are rigid, and discs share evenly.
     """
     pair = (drive.materials.disc, drive.flank_pin)
     known = [part.allowable_pressure for part in pair if part.allowable_pressure is not None]
     softest = min(part.youngs_modulus for part in pair)
     allowed = min(*known, STRONGEST * softest) if known else STRENGTH[softest < METALS[0]] * softest
-    return drive.disc.number_of_discs * (allowed / _pressure(drive, 1.0)) ** 2
+    modulus = contact_modulus(*pair)
+    of_wheel = min(_torque_at_pressure(drive, allowed, modulus, phase / PHASES) for phase in range(PHASES))
+    return drive.disc.number_of_discs * of_wheel
+
+
+def _torque_at_pressure(drive: Drive, allowed: float, modulus: float, phase: float) -> float:
+    """Torque of one disc on the wheel at which the first of the pins has the allowed pressure, N·mm; the first pin stands `phase`
+    steps of pins from the eccentricity.
+    """
+    z, R, r = drive.pin_wheel.number_of_pins, drive.pin_wheel.pin_circle_radius, drive.pin_wheel.pin_radius
+    u, t = abs(drive.reduction_ratio), drive.disc.thickness
+    reach = drive.crank.eccentricity * u
+    c = pi * modulus * t / 10.0
+    pins: list[tuple[float, float, float]] = []
+    for pin in range(z):
+        angle = 2.0 * pi * (pin + phase) / z
+        sine, cosine = sin(angle), cos(angle)
+        if sine < 1e-9:
+            continue
+        d = sqrt(R**2 + reach**2 - 2.0 * R * reach * cosine)
+        lever = reach * R * sine / d
+        gap = drive.disc.equidistant_offset - drive.disc.shifting_offset * (R - reach * cosine) / d
+        # Curvature of the path of the pin centres, and of the flank beside it.
+        path = (R**2 + reach**2 * u - reach * R * (1.0 + u) * cosine) / d**3
+        offset = 1.0 - path * (r + drive.disc.equidistant_offset)
+        curvature = max(1.0 / r + path / (offset or 1e-12), 1e-12)
+        pins.append((lever, gap, pi * t * allowed**2 / (modulus * curvature)))
+    turned = min((load / c + gap) / lever for lever, gap, load in pins)
+    return sum(c * max(turned * lever - gap, 0.0) * lever for lever, gap, _ in pins)
 
 
 def _odd_torques(drive: Drive, torque: float | None) -> Iterator[str]:
@@ -308,21 +342,21 @@ def _odd_torques(drive: Drive, torque: float | None) -> Iterator[str]:
     if drive.duty:
         largest = max(range(len(drive.duty)), key=lambda entry: drive.duty[entry].torque)
         used.append((f"duty.{largest}.torque", drive.duty[largest].torque))
-    of_it = f"what this drive carries (some {_rounded(carried / 1000.0)} N·m by the pressure of its flank)"
+    of_it = f"what this drive carries (some {rounded(carried / 1000.0)} N·m by the pressure of its flank)"
     beyond = False
     for path, value in used:
         if 0.0 < value < UNLOADED * carried:
-            share = _fraction(value / carried)
+            share = fraction(value / carried)
             yield f'{_newton_metres(path, value)}, {share} of {of_it}; did you mean "{value:g} N m"?'
         elif value > OVERLOADED * carried:
             beyond = True
             yield (
-                f"{_newton_metres(path, value)}, {_rounded(value / carried)} times {of_it}; a plain number is N·mm, did you "
+                f"{_newton_metres(path, value)}, {rounded(value / carried)} times {of_it}; a plain number is N·mm, did you "
                 f'mean "{value / 1e6:g} N m"?'
             )
     if not beyond and load.light_torque < LIGHTEST * load.torque:
         yield (
-            f"{_newton_metres('load.light_torque', load.light_torque)}, {_fraction(load.light_torque / load.torque)} of "
+            f"{_newton_metres('load.light_torque', load.light_torque)}, {fraction(load.light_torque / load.torque)} of "
             f'load.torque; did you mean "{load.light_torque:g} N m"?'
         )
 
@@ -330,7 +364,7 @@ def _odd_torques(drive: Drive, torque: float | None) -> Iterator[str]:
 def _odd_strengths(drive: Drive) -> Iterator[str]:
     """Strengths in GPa or Pa that were read as MPa, by the modulus of their own material: each value once, with its parts."""
     found: dict[tuple[str, float, float], list[str]] = {}
-    for path, own in _bodies(drive).items():
+    for path, own in materials_of_bodies(drive).items():
         for name in STRENGTHS:
             if (value := getattr(own, name)) is not None:
                 found.setdefault((name, value, own.youngs_modulus), []).append(path)
@@ -343,12 +377,12 @@ def _odd_strength(path: str, value: float, softest: float, stiffest: float) -> s
     """What to say of a strength or a limit, MPa, between bodies of these moduli; empty where there is nothing to say."""
     if value < WEAKEST * softest:
         return (
-            f"{path} = {value:g} MPa is {_fraction(value / softest)} of Young's modulus ({softest:g} MPa), less than any "
+            f"{path} = {value:g} MPa is {fraction(value / softest)} of Young's modulus ({softest:g} MPa), less than any "
             f'material bears; a plain number is MPa, did you mean "{value:g} GPa" ({1000.0 * value:g} MPa)?'
         )
     if value > STRONGER * stiffest:
         return (
-            f"{path} = {value:g} MPa is {_rounded(value / stiffest)} times Young's modulus ({stiffest:g} MPa); a plain number is "
+            f"{path} = {value:g} MPa is {rounded(value / stiffest)} times Young's modulus ({stiffest:g} MPa); a plain number is "
             f'MPa, did you mean "{value:g} Pa" ({1e-6 * value:g} MPa)?'
         )
     return ""
@@ -378,7 +412,7 @@ def _odd_stiffnesses(drive: Drive) -> Iterator[str]:
     for path, value in given.items():
         if value is not None and value < SPRINGY * body:
             yield (
-                f"{path} = {value:g} N/mm is {_fraction(value / body)} of Young's modulus times thickness of the disc "
+                f"{path} = {value:g} N/mm is {fraction(value / body)} of Young's modulus times thickness of the disc "
                 f'({body:.3g} N/mm): softer than any part of it; a plain number is N/mm, did you mean "{value:g} N/µm" '
                 f"({1000.0 * value:g} N/mm)?"
             )
@@ -398,8 +432,8 @@ def _odd_forces(drive: Drive) -> Iterator[str]:
     for path, value in given.items():
         if 0.0 < abs(value) < FAINT * carried:
             yield (
-                f"{path} = {value:g} N is {_fraction(abs(value) / carried)} of the load of a crank that this drive carries (some "
-                f'{_rounded(1e-3 * carried)} kN); a plain number is N, did you mean "{value:g} kN"?'
+                f"{path} = {value:g} N is {fraction(abs(value) / carried)} of the load of a crank that this drive carries (some "
+                f'{rounded(1e-3 * carried)} kN); a plain number is N, did you mean "{value:g} kN"?'
             )
     bearing, support = drive.main_bearing, drive.crank.support
     rows = [
@@ -438,8 +472,8 @@ def _odd_ratings(drive: Drive) -> Iterator[str]:
     for name, estimate in about.items():
         if (value := getattr(part, name)) is not None and value < POOREST * estimate:
             yield (
-                f"crank_bearing.{name} = {value:g} N is {_fraction(value / estimate)} of what its rollers bear (some "
-                f'{_rounded(1e-3 * estimate)} kN); a plain number is N, did you mean "{value:g} kN"?'
+                f"crank_bearing.{name} = {value:g} N is {fraction(value / estimate)} of what its rollers bear (some "
+                f'{rounded(1e-3 * estimate)} kN); a plain number is N, did you mean "{value:g} kN"?'
             )
 
 
@@ -447,13 +481,13 @@ def _newton_metres(path: str, value: float) -> str:
     return f"{path} = {value:g} N·mm is {value / 1000.0:g} N·m"
 
 
-def _fraction(ratio: float) -> str:
-    """A small ratio in words: "a thousandth", or "1/4200"."""
-    return "a thousandth" if 0.8e-3 < ratio < 1.25e-3 else f"1/{_rounded(1.0 / ratio)}"
+def fraction(ratio: float) -> str:
+    """Return a small ratio in words: "a thousandth", or "1/4200"."""
+    return "a thousandth" if 0.8e-3 < ratio < 1.25e-3 else f"1/{rounded(1.0 / ratio)}"
 
 
-def _rounded(value: float) -> str:
-    """A number to two figures, without an exponent up to a million."""
+def rounded(value: float) -> str:
+    """Return a number to two figures, without an exponent up to a million."""
     return f"{float(f'{value:.2g}'):g}"
 
 
@@ -462,12 +496,12 @@ def _odd_lengths(drive: Drive) -> Iterator[str]:
     for path, value, beside, what in _lengths_beside(drive):
         if abs(value) < SHORT * beside:
             yield (
-                f"{path} = {value:g} mm is {_fraction(abs(value) / beside)} of {what} ({beside:.3g} mm); did you mean "
+                f"{path} = {value:g} mm is {fraction(abs(value) / beside)} of {what} ({beside:.3g} mm); did you mean "
                 f'"{value:g} m", {1000.0 * value:g} mm?'
             )
         elif abs(value) > LONG * beside:
             yield (
-                f"{path} = {value:g} mm is {_rounded(abs(value) / beside)} times {what} ({beside:.3g} mm); did you mean "
+                f"{path} = {value:g} mm is {rounded(abs(value) / beside)} times {what} ({beside:.3g} mm); did you mean "
                 f'"{value:g} µm", {value / 1000.0:g} mm?'
             )
     fine = {
@@ -624,7 +658,7 @@ def _soft_carrier(drive: Drive, torque: float | None) -> Iterator[str]:
         return
     value = carrier.stiffness_torsion
     yield (
-        f"carrier.stiffness_torsion = {value:g} N·mm/rad would let the output turn by {_rounded(twist * 180.0 / pi)}° under its "
+        f"carrier.stiffness_torsion = {value:g} N·mm/rad would let the output turn by {rounded(twist * 180.0 / pi)}° under its "
         f'torque; did you mean "{value:g} N·m/rad" or "{value:g} N·m/arcmin"?'
     )
 

@@ -19,6 +19,15 @@ WIDTH = 118
 """Letters of a line on a terminal."""
 
 
+_SILENT = threading.Event()
+"""Set in workers, whose progress the process that has started them tells."""
+
+
+def be_silent() -> None:
+    """Tell no progress of this process any more."""
+    _SILENT.set()
+
+
 class Advance(Protocol):
     """Told of every finished part."""
 
@@ -34,7 +43,7 @@ def progress(title: str, total: int, *, at_most: bool = False) -> Iterator[Advan
     Gives a function to be called with the name of each finished part of `total`, and its size when that is not 1; `at_most`
     tells that there may be fewer.
     """
-    if not sys.stderr.isatty():
+    if _SILENT.is_set() or not sys.stderr.isatty():
         done, last = 0, ""
 
         def describe() -> str:
@@ -68,7 +77,7 @@ def steps(title: str = "") -> Iterator[Callable[[str], None]]:
     Gives a function to be called with the name of each step before it starts.
     """
     head, now = f"{title}: " if title else "", ""
-    if not sys.stderr.isatty():
+    if _SILENT.is_set() or not sys.stderr.isatty():
 
         def note(step: str) -> None:
             nonlocal now
@@ -87,15 +96,29 @@ def steps(title: str = "") -> Iterator[Callable[[str], None]]:
         print("\r\x1b[K", end="", file=sys.stderr, flush=True)
 
 
+_TOLD: list[Callable[[], str]] = []
+"""Descriptions of blocks that run one within the other in this process, the outermost first."""
+
+
 @contextmanager
 def _said_regularly(describe: Callable[[], str]) -> Iterator[None]:
-    """Print a description with the time so far every few seconds while the block runs, whatever it is busy with."""
+    """Print a description with the time so far every few seconds while the block runs, whatever it is busy with.
+
+    A block within another one adds its words to the lines of that one.
+    """
+    _TOLD.append(describe)
+    if len(_TOLD) > 1 or _SILENT.is_set():
+        try:
+            yield
+        finally:
+            _TOLD.remove(describe)
+        return
     ended, began = threading.Event(), time.monotonic()
 
     def say() -> None:
         seconds = FIRST
         while not ended.wait(seconds):
-            seconds, text = SECONDS, describe()
+            seconds, text = SECONDS, "; ".join(filter(None, (told() for told in [*_TOLD])))
             if text:
                 print(f"{text} ({time.monotonic() - began:.0f} s)", file=sys.stderr, flush=True)
 
@@ -104,5 +127,6 @@ def _said_regularly(describe: Callable[[], str]) -> Iterator[None]:
     try:
         yield
     finally:
+        _TOLD.remove(describe)
         ended.set()
         thread.join()

@@ -95,6 +95,13 @@ class RunFolder:
         self._files[name] = _checksum(part)
         self._write(complete=False, replaced=replaced)
 
+    def discard(self, *paths: Path) -> None:
+        """Remove files that this run wrote on its way, in the place of which its results stand."""
+        names = {name for name in map(self._name, paths) if name in self._files}
+        self._remove(names)
+        self._files = {name: checksum for name, checksum in self._files.items() if name not in names}
+        self._write(complete=False)
+
     def finish(self) -> None:
         """Say in the manifest that the run is complete."""
         if self._files:

@@ -114,3 +114,9 @@ def test_without_a_terminal_a_line_says_where_it_is(monkeypatch, capsys):
         show("disc")
         *_, last = two_lines()
     assert last == "deriving: disc (… s)"
+    capsys.readouterr()
+    # Two streams of lines ran into each other where coefficients were derived within a search.
+    with steps("design") as show, progress("coefficients", 1):
+        show("candidate 1")
+        lines = two_lines()
+    assert {"design: candidate 1; coefficients: 0 of 1 (… s)"} >= set(lines[1:])

@@ -297,7 +297,7 @@ def _of_bodies(
     found = _strictest([limit for limits in given.values() for limit in limits])
     lacking = [f"materials.{name}" for name in names if name not in given]
     kept = value.value is None or not found or value.value <= found[0].value
-    told = f"{' and '.join(lacking)} has no {lacked}" if lacking else ""
+    told = f"{' and '.join(lacking)} {'has' if len(lacking) == 1 else 'have'} no {lacked}" if lacking else ""
     return ([] if lacking and kept else found), told
 
 

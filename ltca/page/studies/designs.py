@@ -16,6 +16,7 @@ from ltca.page.tables import Table, minus, word
 from ltca.page.writing import page_text, write_page
 from ltca.studies.design_search.designs import named_design, refused_words
 from ltca.studies.design_search.refinement import Refined
+from ltca.studies.design_search.requirement_words import assumed_words, requirement_warnings
 from ltca.studies.design_search.search import Found
 from ltca.studies.design_search.sizes import LEAST_DISTANCE
 
@@ -41,6 +42,8 @@ def write_design_page(found: Found, shown: Sequence[tuple[str, Refined]], rows: 
         "combinations": found.combinations,
         "solved": found.solved,
         "refused": refused_words(found),
+        "assumed": assumed_words(requirements),
+        "warnings": requirement_warnings(requirements),
         "least_distance": f"{LEAST_DISTANCE:g}",
     }
     return write_page(path, page_text("design.html", content, styles=("design",)))

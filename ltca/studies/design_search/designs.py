@@ -14,6 +14,7 @@ from ltca.drive.parts import Analysis, Drive
 from ltca.reading.writing import drive_text
 from ltca.studies.design_search.demands import LEAST_DISC_SHARE, Demand, shown, written_limits
 from ltca.studies.design_search.refinement import Refined, Task, relaxed_limits
+from ltca.studies.design_search.requirement_words import assumed_words
 from ltca.studies.design_search.requirements import Requirements
 from ltca.studies.design_search.search import Found, Relaxation, factor_words
 from ltca.studies.design_search.sizes import LEAST_DISTANCE, distance, drive_of
@@ -57,11 +58,14 @@ def named_design(refined: Refined, requirements: Requirements, name: str) -> Dri
 
 
 def design_text(refined: Refined, found: Found, name: str) -> str:
-    """Return a design as the text of a drive file with its limits; `cyclo check` passes it."""
+    """Return a design as the text of a drive file with its limits; `cyclo check` passes it, but for a candidate as told in it."""
     values, positions = refined.solution.values, refined.solution.positions
     at = "" if positions == CHECK_POSITIONS else f" --positions {positions}"
     engine = describe_engine(engine_named(refined.solution.compliance))
-    lines = [f"# Written by cyclo design; `cyclo check{at}` passes it. Reached, by a fine solution, {engine}:"]
+    passes = f"`cyclo check{at}` passes it. Reached, by a fine solution"
+    if not refined.solution.checks:
+        passes = f"a candidate that no `cyclo check` has judged yet. Reached at {positions} positions"
+    lines = [f"# Written by cyclo design; {passes}, {engine}:"]
     for demand in found.demands:
         if demand.kind in ("requirement", "limit") and demand.quantity in values:
             given = ", which gives way" if demand.name in refined.relaxed else ""
@@ -70,6 +74,8 @@ def design_text(refined: Refined, found: Found, name: str) -> str:
     if refined.row["sun"]:
         lines.append(f"#   first stage: {refined.row['sun']:.0f} teeth on {refined.row['planet']:.0f}")
     requirements = found.requirements
+    if assumed := assumed_words(requirements):
+        lines.append(f"# {assumed[0].upper()}{assumed[1:]}")
     task = Task(requirements=requirements, demands=found.demands, row=refined.row, relaxed=refined.relaxed)
     limits = relaxed_limits(written_limits(requirements), task)
     return "\n".join(lines) + "\n\n" + drive_text(named_design(refined, requirements, name)) + limits_text(limits)

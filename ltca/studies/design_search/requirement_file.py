@@ -21,6 +21,7 @@ from ltca.studies.design_search.requirements import (
     CLEARANCES,
     FINEST_CLEARANCE,
     NO_FILE,
+    REQUIRED,
     STOCK,
     Asked,
     Requirements,
@@ -53,7 +54,13 @@ def parse_requirements(
     keys = tuple(shop) if isinstance(shop, Mapping) else ()
     limits = parse_limits(table.pop("limits", {}), problems)
     material_table = table.pop("materials", {})
-    materials = _materials(material_table, problems)
+    assumed = assumed_materials(table, material_table)
+    named = {path.removeprefix("materials."): name for path, name in assumed.items() if path != RING_MATERIAL}
+    materials = _materials(
+        {**material_table, **named} if isinstance(material_table, Mapping) else material_table, problems
+    )
+    if RING_MATERIAL in assumed:
+        table["ring"] = {**table["ring"], "material": assumed[RING_MATERIAL]}
     table = without_following(with_named_materials(table, problems), problems)
     stock = _stock(table, folder or Path(), problems)
     asked: Asked | None = None
@@ -63,13 +70,13 @@ def parse_requirements(
         for place, known in FIELDS.items():
             # A missing field and its misspelling are told as one where they are of one table.
             own = [detail for detail in first_mistakes(error) if _table_of(detail["loc"]) == place]
-            problems += describe_mistakes(own, (), known)
+            problems += map(_with_meaning, describe_mistakes(own, (), known))
     if asked is not None and materials is not None:
         problems += _contradictions(asked, materials, limits, keys)
     if problems or asked is None or stock is None or materials is None:
         raise DriveError(problems, source)
     found = Requirements(
-        asked=asked, stock=stock, materials=materials, material_table=dict(material_table), limits=limits, text=text
+        asked=asked, stock=stock, materials=materials, assumed_materials=assumed, limits=limits, text=text
     )
     if problems := problems_of_any_size(found):
         raise DriveError(problems, source)
@@ -88,9 +95,41 @@ FIELDS: dict[str, tuple[str, ...]] = {
 """Names of fields, by table."""
 
 
+def _with_meaning(told: str) -> str:
+    """A sentence about a missing key with what it means, its unit and an example."""
+    key, _, rest = told.partition(": ")
+    return f"{told}; {REQUIRED[key]}" if rest == "is missing" and key in REQUIRED else told
+
+
 def _table_of(place: tuple[int | str, ...]) -> str:
     above = [str(part) for part in place[:-1] if not isinstance(part, int)]
     return next((name for end in range(len(above), 0, -1) if (name := ".".join(above[:end])) in FIELDS), "")
+
+
+SURFACES, BODIES = "100Cr6", "42CrMo4"
+"""Named materials of parts that requirements give none: hardened bearing steel under contact pressure, quenched and tempered
+steel of parts that bend."""
+RING_MATERIAL = "ring.material"
+
+
+def assumed_materials(table: Mapping[str, Any], given: Any) -> dict[str, str]:
+    """Return the names of the materials that requirements leave out, by path, of the parts that their drives have.
+
+    `table` are the requirements, `given` is their ``[materials]``.
+    """
+    shop, carrier, ring = (table.get(name) for name in ("shop", "carrier", "ring"))
+    needed = dict.fromkeys(("disc", "wheel_pin", "roller", "inner_race"), SURFACES)
+    if table.get("kind") != "rv":
+        needed["shaft_pin"] = SURFACES
+    if isinstance(shop, Mapping) and "crank_support_stiffness" in shop:
+        needed["crankshaft"] = BODIES
+    if isinstance(carrier, Mapping) and "posts" in carrier:
+        needed["carrier"] = BODIES
+    named = given if isinstance(given, Mapping) else {}
+    found = {f"materials.{part}": name for part, name in needed.items() if part not in named}
+    if isinstance(ring, Mapping) and "material" not in ring:
+        found[RING_MATERIAL] = BODIES
+    return found
 
 
 def _materials(table: Any, problems: list[str]) -> Materials | None:

@@ -46,6 +46,18 @@ Counts = Annotated[
 ]
 
 
+def _ratio(value: Any) -> Any:
+    """A ratio written "1:59" or "59:1" as its number; anything else as it is."""
+    sides = [side.strip() for side in value.split(":")] if isinstance(value, str) else []
+    if len(sides) != 2 or "1" not in sides:
+        return value
+    other = sides[1] if sides[0] == "1" else sides[0]
+    try:
+        return float(other)
+    except ValueError:
+        return value
+
+
 def _range_of(check: QuantityCheck) -> BeforeValidator:
     """Validator of a length that is one number, held, or a range of two."""
 
@@ -159,7 +171,7 @@ class Asked:
     held : {"pin-shaft", "pin-wheel"}
         Member that stands still.
     ratio : float
-        Turns of the input for one of the output, its size.
+        Turns of the input for one of the output, its size; a text "1:59" is read as 59.
     ratio_tolerance : float
         By which part the ratio may differ.
     torque : float
@@ -195,7 +207,7 @@ class Asked:
     discs: Counts | None = None
     cranks: Annotated[int, Field(ge=2, le=6), COUNT] | None = None
     held: Literal["pin-shaft", "pin-wheel"] = "pin-wheel"
-    ratio: Annotated[float, quantity("dimensionless", ge=3.0, le=1000.0)]
+    ratio: Annotated[float, quantity("dimensionless", ge=3.0, le=1000.0), BeforeValidator(_ratio)]
     ratio_tolerance: Annotated[float, quantity("dimensionless", ge=0.0, le=0.5)] = 0.0
     torque: Annotated[float, quantity("N*mm", gt=0.0)]
     speed: Annotated[float, quantity("rpm", gt=0.0)]
@@ -242,6 +254,16 @@ class Asked:
         return 3 if self.cranks is None else self.cranks
 
 
+REQUIRED = {
+    "ratio": "turns of the input for one of the output, without unit: ratio = 59",
+    "torque": 'torque at the output, in N·mm or as a text with its unit: torque = "200 N m"',
+    "speed": 'speed of the output (not of the motor), in rpm or as a text with its unit: speed = "30 rpm"',
+    "outer_diameter": 'diameter of the room for the drive, over pins and housing wall, in mm: outer_diameter = "130 mm"',
+    "length": 'axial room for discs, gaps and flanges, in mm: length = "40 mm"',
+}
+"""Keys that every requirement file gives: meaning, unit and an example."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Requirements:
     """A requirement file, read.
@@ -254,8 +276,8 @@ class Requirements:
         Sizes to choose from.
     materials : Materials
         Of the parts, as in a drive file.
-    material_table : dict
-        The same as it was given, names and all.
+    assumed_materials : dict of str to str
+        Names of the materials of parts that were given none, by path (``"materials.disc"``, ``"ring.material"``).
     limits : dict of str to Limit
         ``[limits]``, as in a drive file.
     text : str
@@ -265,6 +287,6 @@ class Requirements:
     asked: Asked
     stock: Stock
     materials: Materials
-    material_table: dict[str, Any]
+    assumed_materials: dict[str, str]
     limits: Limits
     text: str

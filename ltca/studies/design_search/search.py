@@ -6,11 +6,12 @@ say which value would do. Where no single one is enough, pairs are relaxed by th
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from concurrent.futures import Executor, as_completed
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, Future, as_completed
 from dataclasses import dataclass, replace
 from itertools import combinations as pairs_of
 from math import ceil, exp, floor, log10
+from time import monotonic
 
 import numpy as np
 
@@ -23,6 +24,7 @@ from ltca.studies.design_search.enumeration import MAX_ROOM_FACTOR, Enumeration,
 from ltca.studies.design_search.refinement import Refined, Task, finish, refine
 from ltca.studies.design_search.requirements import Requirements
 from ltca.studies.design_search.sizes import LEAST_DISTANCE, distance, drive_of
+from ltca.studies.design_search.solution import HOURS
 from ltca.studies.shapes import shapes_of
 
 CANDIDATES = 6
@@ -62,6 +64,8 @@ class Relaxation:
         Least sum of violations of the others by closed forms (ln); None without candidates.
     solved : int
         Loaded drives that were solved.
+    speed : float
+        That was asked of the output, rpm.
     """
 
     demands: tuple[Demand, ...]
@@ -69,6 +73,7 @@ class Relaxation:
     combinations: int
     broken: float | None
     solved: int = 0
+    speed: float = 0.0
 
     @property
     def name(self) -> str:
@@ -99,7 +104,16 @@ class Relaxation:
             room = any(one.name in ("outer_diameter", "length") for one in self.demands)
             return f"{asked}: not enough {alone}{f' (tried to × {MAX_ROOM_FACTOR:g})' if room else ''}"
         found = " with ".join(one.words(self.would_do(one)) for one in self.demands)
-        return f"{asked}: {found} would do"
+        return f"{asked}: {found} would do{self._slower}"
+
+    @property
+    def _slower(self) -> str:
+        """The speed at which hours that are asked for would be reached: they are turns by speed."""
+        (demand, *others) = self.demands
+        hours = None if others or demand.quantity != HOURS else self.would_do(demand)
+        if hours is None or self.speed == 0.0:
+            return ""
+        return f", as would {rounded_safely(self.speed * hours / demand.value, 'min'):g} rpm at the output"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -176,7 +190,10 @@ def relax(requirements: Requirements, demands: tuple[Demand, ...], names: tuple[
         if best is not None or not shifts or coarse >= MAX_RELAXED_SOLUTIONS:
             break
     broken = float(found.broken.min()) if found.broken.size else None
-    return Relaxation(demands=giving, refined=best, combinations=combinations, broken=broken, solved=coarse + solved)
+    return Relaxation(
+        demands=giving, refined=best, combinations=combinations, broken=broken, solved=coarse + solved,
+        speed=requirements.asked.speed,
+    )  # fmt: skip
 
 
 def least_broken(requirements: Requirements, demands: tuple[Demand, ...], names: tuple[str, ...]) -> float:
@@ -206,38 +223,54 @@ def find_designs(
     best: int = 3,
     *,
     compliance: Compliance = "hybrid",
+    kept: Callable[[Refined], None] = lambda refined: None,
 ) -> Found:
     """Return up to `best` designs that fit, or the relaxations that would make one fit.
 
-    The executor refines candidates; `told` is called with a line for each step of the search. Candidates and relaxations are
-    solved on half-spaces, designs in the end with the `compliance` asked for.
+    The executor refines candidates; `told` is called with a line for each step of the search, `kept` with each candidate that
+    fits as soon as it is refined, and with each design as soon as its fine solution passes. Candidates and relaxations are solved
+    on half-spaces, designs in the end with the `compliance` asked for.
     """
     demands = find_demands(requirements)
     told("combinations")
     most = max(CANDIDATES, 2 * best)
     found = enumerate_candidates(requirements, demands, (), most)
-    refined = _refine_all(requirements, demands, _rows(found), executor, told)
+    refined = _refine_all(requirements, demands, _rows(found), executor, told, kept)
     looked = found.combinations
     if not any(one.fits for one in refined) and (shifts := mean_shifts(refined)):
         # Closed forms that err on one side choose the wrong candidates: once more, shifted by the solved drives.
         found = enumerate_candidates(requirements, demands, (), most, shifts=shifts)
-        refined += _refine_all(requirements, demands, _rows(found), executor, told)
+        refined += _refine_all(requirements, demands, _rows(found), executor, told, kept)
         looked += found.combinations
     solved = sum(one.solved for one in refined)
     smallest = requirements.asked.smallest
     coarse = _once(sorted((one for one in refined if one.fits), key=lambda one: _size(one, smallest)))
     designs: list[Refined] = []
     missed = [one for one in refined if not one.fits]
-    fits_on_half_spaces, spent = bool(coarse), 0.0
+    fits_on_half_spaces, spent, last = bool(coarse), 0.0, ""
     while coarse and len(designs) < best and (designs or spent < FUTILE_DERIVATION):
         each = 0.0 if compliance == "half-space" else _derivation(requirements, coarse[0])
-        bodies = f" on {compliance}, whose coefficients take {told_seconds(each)} for each drive" if each else ""
-        told(f"designs solved finely{bodies}: {len(designs)} of {min(best, len(designs) + len(coarse))}")
+        bodies = (
+            f" on {compliance}, whose coefficients take {told_seconds(each)} on a free core for each drive that is tried{last}"
+            if each
+            else ""
+        )
         # Coefficients are dear: one alone first, which tells whether half-spaces flattered.
         count = 1 if each and not designs else best - len(designs)
         now, coarse = coarse[:count], coarse[count:]
         tasks = [Task(requirements=requirements, demands=demands, row=one.row, compliance=compliance) for one in now]
-        done = [future.result() for future in [executor.submit(finish, task) for task in tasks]]
+        began, finely, so_far = monotonic(), dict[int, Refined](), len(designs)
+        in_all = min(best, so_far + len(now) + len(coarse))
+
+        def begun(number: int, words: str = bodies, before: int = so_far, of: int = in_all) -> None:
+            told(f"designs solved finely{words}: {before + number} of {of}")
+
+        for number, one in _as_done(executor, finish, tasks, begun):
+            finely[number] = one
+            if one.fits:
+                kept(one)
+        last = f", the last took {told_seconds((monotonic() - began) / len(tasks))} with its solutions"
+        done = [finely[number] for number in sorted(finely)]
         solved += sum(one.solved for one in done)
         spent += each * sum(one.solved for one in done)
         designs += [one for one in done if one.fits]
@@ -245,7 +278,10 @@ def find_designs(
     relaxations: list[Relaxation] = []
     if not designs:
         # Nothing stands in the way of half-spaces where they have a drive that fits: what finer bodies break does.
-        relaxations = _broken_by_bodies(demands, missed) if fits_on_half_spaces and compliance != "half-space" else []
+        speed = requirements.asked.speed
+        relaxations = (
+            _broken_by_bodies(demands, missed, speed) if fits_on_half_spaces and compliance != "half-space" else []
+        )
         relaxations = relaxations or _stand_in_the_way(requirements, demands, missed, executor, told)
         looked += sum(one.combinations for one in relaxations)
         solved += sum(one.solved for one in relaxations)
@@ -275,7 +311,7 @@ def _derivation(requirements: Requirements, refined: Refined) -> float:
     return sum(expected_seconds([body for body in bodies if not has_coefficients(body)])) + ring
 
 
-def _broken_by_bodies(demands: tuple[Demand, ...], missed: list[Refined]) -> list[Relaxation]:
+def _broken_by_bodies(demands: tuple[Demand, ...], missed: list[Refined], speed: float) -> list[Relaxation]:
     """Return what drives that fit on half-spaces break on finer bodies, the least change first: its values would do."""
     found: dict[tuple[str, ...], Relaxation] = {}
     for one in missed:
@@ -284,7 +320,7 @@ def _broken_by_bodies(demands: tuple[Demand, ...], missed: list[Refined]) -> lis
             continue
         names = tuple(demand.name for demand in giving)
         refined = replace(one, given=max(one.broken.values()), relaxed=names, fits=True)
-        relaxation = Relaxation(demands=giving, refined=refined, combinations=0, broken=0.0)
+        relaxation = Relaxation(demands=giving, refined=refined, combinations=0, broken=0.0, speed=speed)
         if names not in found or relaxation.change < found[names].change:
             found[names] = relaxation
     return sorted(found.values(), key=lambda one: one.change)
@@ -311,17 +347,36 @@ def _refine_all(
     rows: list[dict[str, float]],
     executor: Executor,
     told: Callable[[str], None],
+    kept: Callable[[Refined], None],
 ) -> list[Refined]:
-    """Refine candidates by the executor; results are in the order of the rows."""
-    futures = {}
-    for number, row in enumerate(rows):
-        told(f"candidate {number + 1} of {len(rows)}")
-        futures[executor.submit(refine, Task(requirements=requirements, demands=demands, row=row))] = number
+    """Refine candidates by the executor; results are in the order of the rows, `kept` is called with each that fits."""
+    tasks = [Task(requirements=requirements, demands=demands, row=row) for row in rows]
     done: dict[int, Refined] = {}
-    for future in as_completed(futures):
-        done[futures[future]] = future.result()
+    for number, one in _as_done(executor, refine, tasks, lambda number: told(f"candidate {number + 1} of {len(rows)}")):
+        done[number] = one
+        if one.fits:
+            kept(one)
         told(f"candidates refined: {len(done)} of {len(rows)}")
     return [done[number] for number in sorted(done)]
+
+
+def _as_done(
+    executor: Executor, solve: Callable[[Task], Refined], tasks: list[Task], begun: Callable[[int], None]
+) -> Iterator[tuple[int, Refined]]:
+    """Hand in tasks and give what they found, with their numbers, as they are done.
+
+    `begun` is called before each is handed in; an executor that works at once gives one before the next begins.
+    """
+    waiting: dict[Future[Refined], int] = {}
+    for number, task in enumerate(tasks):
+        begun(number)
+        future = executor.submit(solve, task)
+        if future.done():
+            yield number, future.result()
+        else:
+            waiting[future] = number
+    for future in as_completed(waiting):
+        yield waiting[future], future.result()
 
 
 def _stand_in_the_way(

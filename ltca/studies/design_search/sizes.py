@@ -130,7 +130,7 @@ def drive_table(row: dict[str, float], requirements: Requirements, name: str) ->
     """Return the drive of one candidate (a row of `Sizes.row`) as plain tables, as in a drive file."""
     asked, shop = requirements.asked, requirements.asked.shop
     discs, several = int(row["discs"]), asked.kind == "rv"
-    pitch, stack = row["thickness"] + shop.disc_gap, discs * row["thickness"] + (discs - 1) * shop.disc_gap
+    stack = discs * row["thickness"] + (discs - 1) * shop.disc_gap
     inner = row["bore"] - 2.0 * row["roller_radius"]
     held = asked.held == "pin-wheel"
     turned = row["pins"] - (1.0 if held else 0.0)
@@ -173,7 +173,7 @@ def drive_table(row: dict[str, float], requirements: Requirements, name: str) ->
         "materials": materials,
     }
     if discs > 1:
-        table["disc"]["planes"] = tuple(pitch * (disc - 0.5 * (discs - 1)) for disc in range(discs))
+        table["disc"]["gap"] = shop.disc_gap
     if several:
         if asked.first_stage is None:
             table["installation"]["first_stage_ratio"] = row["stage"]
@@ -209,7 +209,23 @@ def drive_table(row: dict[str, float], requirements: Requirements, name: str) ->
     for key in ("friction", "temperature", "lubricant", "main_bearing"):
         if getattr(asked, key) is not None:
             table[key] = getattr(asked, key)
-    return table
+    meant: dict[str, Any] = as_meant(table)
+    return meant
+
+
+def as_meant(value: Any) -> Any:
+    """Return plain tables with numbers to twelve digits: sums and differences of lengths without the dust of binary fractions.
+
+    Examples
+    --------
+    >>> as_meant({"inner_race_radius": 17.841 - 5.0, "planes": (-6.5, 6.5)})
+    {'inner_race_radius': 12.841, 'planes': (-6.5, 6.5)}
+    """
+    if isinstance(value, float):
+        return float(f"{value:.12g}")
+    if isinstance(value, dict):
+        return {name: as_meant(own) for name, own in value.items()}
+    return tuple(map(as_meant, value)) if isinstance(value, tuple) else value
 
 
 def drive_of(row: dict[str, float], requirements: Requirements, name: str | None = None) -> Drive:

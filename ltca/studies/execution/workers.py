@@ -17,6 +17,7 @@ from typing import Any, cast
 
 from ltca.errors import CycloError, FaultError
 from ltca.output.process_pools import become_worker, process_pool
+from ltca.output.progress import be_silent
 from ltca.studies.study import BatchResult, Study, run_batch
 
 SCHEDULER_TIMEOUT = 10.0
@@ -78,6 +79,7 @@ def _calm_threads() -> None:
 
     os.environ["OMP_NUM_THREADS"] = "1"
     threadpool_limits(1)
+    be_silent()
     become_worker()
 
 

@@ -26,7 +26,7 @@ def blocks(language):
 def test_the_page_runs_as_it_is_printed(tmp_path, monkeypatch, capsys):
     pytest.importorskip("mujoco", reason="mujoco (pip install cyclo-ltca[robotics]) is not installed")
     monkeypatch.chdir(tmp_path)
-    (added,), (first, rest) = blocks("toml"), blocks("sh")
+    (added,), (first, rest, _) = blocks("toml"), blocks("sh")
     assert main(shlex.split(first)[1:]) == 0
     with Path("joint.toml").open("a", encoding="utf-8") as file:
         file.write(f"\n{added}")
