@@ -117,6 +117,7 @@ def test_half_a_turn_with_the_mirror_takes_one_disc_to_the_other():
     np.testing.assert_allclose(leans[0], leans[1], atol=1e-9 * np.max(np.abs(leans[0])))
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize(
     ("discs", "shaft", "wheel"),
     [(1, {"tip": "free"}, None), (1, {"tip": "tied-clamped"}, None), (2, {"tip": "free"}, {"ends": "supported"})],

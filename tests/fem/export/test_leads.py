@@ -99,6 +99,7 @@ def test_volumes_with_a_lead_are_those_between_parallel_curves():
     assert body.volume == pytest.approx(body.section * 11.8 + cut, rel=1e-8)
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize("changes", [CROWN, pytest.param(ALL, marks=pytest.mark.slow)])
 def test_facets_follow_their_lead(tmp_path, changes):
     drive, chord = drive_with(changes), 0.02

@@ -22,6 +22,7 @@ def coefficients(drive, tilt_depth=260.0):
     return _coefficients_of_dataset(data, drive, shared=False)
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize("slices", [1, 3])
 def test_results_say_that_bodies_are_solid(slices):
     """Attributes of results and the sentence beside them; plane ones keep theirs."""

@@ -112,6 +112,7 @@ def test_a_loss_factor_is_twice_the_ratio_at_resonance(heavy):
     assert peaks[1] == pytest.approx(peaks[0], rel=1e-2)  # apart by ζ² away from the resonance
 
 
+@pytest.mark.slow
 def test_parting_contacts_are_told(heavy):
     """With a ten-thousandth of the critical damping a resonance is 5000 times the transmission error: contacts part before its
     speed is reached.

@@ -39,6 +39,7 @@ def test_a_file_within_its_bounds_is_not_spoken_of():
     assert quality_warning(coefficients(convergence_estimate=0.012, mesh_size="1: edges"), "some.nc") == ""
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize(("depth", "bodies"), [(None, "plane"), (260.0, "solid")])
 def test_commands_warn_of_coarse_files(tmp_path, capsys, depth, bodies, positions_alone):
     """`run` among its warnings, `curves` before the work, each once; the file is read all the same."""

@@ -96,6 +96,7 @@ def test_slow_motion_is_the_quasi_static_one(name):
     assert taken.roller_load == pytest.approx(loads, abs=1e-3 * loads.max())
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize(
     ("name", "mode"),
     [("paper, damped", 0), *(pytest.param("two discs held pin-wheel", n, marks=pytest.mark.slow) for n in (0, 2))],
@@ -149,6 +150,7 @@ LONG = ((), (pytest.mark.slow, pytest.mark.nightly), pytest.mark.slow)
 """Marks of the first, the second, and all others."""
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize(
     ("name", "course"),
     [pytest.param(*one, marks=LONG[min(number, len(LONG) - 1)]) for number, one in enumerate(COURSES)],
@@ -171,6 +173,7 @@ def in_closed_form(drive, folder):
     return load_coefficients(path, single)
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize(
     ("name", "kind"),
     [("paper", Hybrid), ("paper", PlaneStrain), ("plastic", Hybrid), ("bent pins", HalfSpace), ("bent pins", Hybrid)],
