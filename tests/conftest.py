@@ -23,8 +23,8 @@ from typing import Any
 for _variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     # Before numpy comes: threads of several libraries on two cores wait for each other.
     os.environ.setdefault(_variable, "1")
-# Bytecode is kept even where the environment forbids it: without it every worker spends seconds, every program half of its start on
-# the same compilation again.
+# Bytecode is kept even where the environment forbids it: without it every worker spends seconds, every program half of its
+# start, on the same compilation again.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 sys.dont_write_bytecode = False
 
