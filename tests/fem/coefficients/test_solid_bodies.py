@@ -92,6 +92,7 @@ def test_thin_ring_under_linear_loads_bends_like_a_clamped_plate(layers):
 
 
 @pytest.mark.slow
+@pytest.mark.family(full=1)
 @pytest.mark.parametrize("material", [STEEL, replace(STEEL, poisson_ratio=0.45)])
 def test_long_bodies_are_in_plane_strain_but_for_their_ends(material):
     body, support, loads = held_ring(coarse=1.5)

@@ -232,6 +232,7 @@ def test_the_same_input_gives_the_same_mesh_in_another_process(
 
 
 @pytest.mark.slow
+@pytest.mark.family(full=1)
 @pytest.mark.parametrize("angle", [0.0, 2.0])
 def test_drive_meshes_are_good_and_of_the_estimated_size(drive: Drive, shapes: DriveShapes, angle: float) -> None:
     contacts = expect_contacts(drive, angle)

@@ -146,14 +146,19 @@ COURSES = [
     ("plastic", Course.of_values("reverse", 6e-3, 1500.0)),
     ("rv", Course.of_values("steady", 2e-3, 1500.0)),
 ]
-LONG = ((), (pytest.mark.slow, pytest.mark.nightly), pytest.mark.slow)
-"""Marks of the first, the second, and all others."""
+IN_FULL = ("paper, rubs", "two discs held pin-wheel", "rv")
+"""Beside the first, which is quick: friction, two discs on a held wheel, several cranks; the others are of the night."""
 
 
-@pytest.mark.family(quick=1)
 @pytest.mark.parametrize(
     ("name", "course"),
-    [pytest.param(*one, marks=LONG[min(number, len(LONG) - 1)]) for number, one in enumerate(COURSES)],
+    [
+        COURSES[0],
+        *(
+            pytest.param(*one, marks=pytest.mark.slow if one[0] in IN_FULL else pytest.mark.nightly)
+            for one in COURSES[1:]
+        ),
+    ],
 )
 def test_energy_closes(name, course):
     """Input and work of curvature less output, losses and change of what is stored: 1e-5 of the throughput was asked for."""
