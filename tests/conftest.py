@@ -66,8 +66,11 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         _longest_first(items)
 
 
-DEAR_EXAMPLES = ("fem/reducer/solution.py::fem.reducer.solution.solve_reducer", "fem/coefficients/dataset.py::")
-"""Examples of docstrings that mesh and solve a drive: slow, as a docstring has no mark of its own."""
+DEAR_EXAMPLES = (
+    "fem/reducer/solution.py::fem.reducer.solution.solve_reducer", "fem/coefficients/dataset.py::",
+    "ltca/analysis/stiffness_by_part.py::",
+)  # fmt: skip
+"""Examples of docstrings that solve a drive at length: slow, as a docstring has no mark of its own."""
 
 
 def _mark_families(items: list[pytest.Item]) -> None:

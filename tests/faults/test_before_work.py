@@ -42,6 +42,7 @@ def test_memory_that_is_not_there(words, free, option, tmp_path, capsys, monkeyp
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.slow
 def test_memory_of_slices_is_told_before():
     """Slices take six times the memory of the plane and more; the estimate is at most three times what it takes."""
     drive = with_fields(load_drive("paper").cases["CS-1"], {"contact.slices": 9})

@@ -239,6 +239,7 @@ def test_the_bearing_of_the_wheel_rubs_under_an_arm_as_well(paper):
     np.testing.assert_allclose(lost, 0.01 * 30.0 * np.abs(pressed) / 14.0 + at_crank, rtol=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.family(quick=1)
 @pytest.mark.parametrize("held", ["pin-shaft", pytest.param("pin-wheel", marks=pytest.mark.slow)])
 def test_an_arm_takes_its_part_of_the_play(paper, held):

@@ -92,6 +92,7 @@ def test_a_disc_in_the_middle_of_symmetric_pins_does_not_tilt():
     assert np.max(np.abs(found.response.parts[0].leans)) < 1e-13
 
 
+@pytest.mark.slow
 def test_half_a_turn_with_the_mirror_takes_one_disc_to_the_other():
     """Two equal discs, even numbers of pins and rollers, wheel pins between two walls: what one disc has at z the other has half
     a turn further at −z; tilts are equal in the fixed frame. 1e-9 of the largest load: what the balance leaves over.

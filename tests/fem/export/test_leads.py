@@ -52,6 +52,7 @@ def departures(drive, places, inward=0.0):
 SHALLOW = {"disc.lead_slope": -2e-4, "disc.lead_relief_length": 3.0, "disc.lead_relief_depth": 0.004}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("changes", "inward"),
     [

@@ -93,6 +93,7 @@ def test_solid_shapes_have_the_length_of_rollers():
     assert replace(coefficients(longer)).lent_to(near).shared
 
 
+@pytest.mark.slow
 def test_what_reshapes_solid_bodies_alone_has_no_derivative_on_them():
     """The length of rollers shapes solid rollers; plane ones yield like one over it."""
     results = [

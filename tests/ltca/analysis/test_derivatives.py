@@ -68,7 +68,10 @@ def test_paper(paper_cases):
         ("robot-joint", "nominal", {"crank.eccentricity": 1e-5, "pin_shaft.hole_radius": 1e-5}, ONE),
         ("rv", "nominal", {"disc.equidistant_offset": 2e-6, "crank.support.diameter": 0.003}, ONE + 0.37),
         pytest.param(
-            "sleeved", "nominal", {"pin_wheel.beam.span": 2e-3, "pin_shaft.beam.diameter": 1e-3}, ONE,
+            "sleeved",
+            "nominal",
+            {"pin_wheel.beam.span": 2e-3, "pin_shaft.beam.diameter": 1e-3},
+            ONE,
             marks=pytest.mark.nightly,
         ),
     ],

@@ -131,6 +131,7 @@ def test_without_damping_there_is_no_response(usual):
         forced_vibration(replace(usual, drive=with_fields(PAPER, {"inertia.output": 0.5})))
 
 
+@pytest.mark.slow
 def test_pulsation_of_the_stiffness_moves_the_answer(usual):
     """With it the balance closes: twice the orders change the transmission error by some thousandths (0.003 was measured)."""
     both = [forced_vibration(one, fastest=3000.0, speeds=8) for one in (usual, with_mean_stiffness(usual))]

@@ -154,6 +154,7 @@ def test_even_parts_of_plane_bodies_give_plane_answers():
     np.testing.assert_allclose(found.pose, expected.pose, rtol=0.0, atol=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", NEAR_FIELDS)
 def test_the_plane_model_takes_the_even_part_alone(kind):
     """One slice: loads with solid coefficients are the same whatever C' is."""
@@ -417,6 +418,7 @@ DRIVES = {
 }
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize(
     "kind", [pytest.param(name, marks=() if name == "plastic" else pytest.mark.slow) for name in DRIVES]
 )

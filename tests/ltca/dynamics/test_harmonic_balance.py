@@ -71,6 +71,7 @@ def test_a_steady_force_on_mathieus_spring_is_a_continued_fraction(speed):
     assert found[1] == pytest.approx(-2.0 * fraction * mean, rel=1e-7)
 
 
+@pytest.mark.slow
 def test_two_coupled_masses_follow_direct_integration():
     """Both directions pulse, coupled, with an inertia that couples them, under a force of two orders."""
 

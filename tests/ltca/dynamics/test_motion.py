@@ -293,6 +293,7 @@ def test_a_flight_through_the_play_keeps_momentum_and_an_impact_energy():
     assert kept == pytest.approx(0.5 * inertia * speed**2, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_a_driven_drive_that_rubs_is_driven_by_its_mean_input_torque():
     """Quasi-static losses have slips of their own, and friction whole at any slip: v₀ is 1 % of the eccentrics' speed, where
     slips are some tenths of it; 1e-3 of the torque was asked for beforehand, where friction takes 5 % and more.
@@ -371,6 +372,7 @@ class OneContact:
         return SimpleNamespace(force=force, friction=self.damping * rate, stiffness=np.array([[slope]]), discs=())
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize(
     ("amplitude", "side"),
     [(0.29, 1.0), pytest.param(0.2, 1.0, marks=pytest.mark.slow), pytest.param(0.22, -1.0, marks=pytest.mark.slow)],

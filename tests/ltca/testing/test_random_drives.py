@@ -117,6 +117,7 @@ def paper_solution():
     return drive, model, solve_equilibrium(model, np.array([0.7]), drive.wheel_moment())
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize("coordinate", range(4))
 def test_the_check_sees_a_wrong_pose(coordinate):
     """1 % of the largest approach off, in any coordinate, is found: the check can fail."""
