@@ -146,8 +146,8 @@ COURSES = [
     ("plastic", Course.of_values("reverse", 6e-3, 1500.0)),
     ("rv", Course.of_values("steady", 2e-3, 1500.0)),
 ]
-IN_FULL = ("paper, rubs", "two discs held pin-wheel", "rv")
-"""Beside the first, which is quick: friction, two discs on a held wheel, several cranks; the others are of the night."""
+IN_FULL = ("paper, rubs", "rv")
+"""Beside the first, which is quick: friction, several cranks; the others are of the night."""
 
 
 @pytest.mark.parametrize(
