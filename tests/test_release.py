@@ -39,7 +39,7 @@ def archive(repository, folder):
     folder.mkdir()
     packed = folder.with_suffix(".tar")
     run("git", "archive", "--output", str(packed), "HEAD", cwd=repository)
-    shutil.unpack_archive(packed, folder)
+    shutil.unpack_archive(packed, folder, filter="data")
     return folder
 
 
