@@ -12,6 +12,7 @@ import os
 import re
 import shutil
 import subprocess
+import sys
 import tomllib
 from collections import Counter
 from collections.abc import Callable
@@ -22,6 +23,10 @@ from typing import Any
 for _variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     # Before numpy comes: threads of several libraries on two cores wait for each other.
     os.environ.setdefault(_variable, "1")
+# Bytecode is kept even where the environment forbids it: without it every worker spends seconds, every program half of its
+# start, on the same compilation again.
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+sys.dont_write_bytecode = False
 
 import numpy as np
 import pytest
@@ -51,6 +56,7 @@ def pytest_collection_finish() -> None:
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Skip what is nightly, unless the expression of `-m` names it; what is nightly is slow, too."""
     named = "nightly" in config.option.markexpr
+    _mark_families(items)
     for item in items:
         if item.get_closest_marker("nightly"):
             item.add_marker("slow")
@@ -58,6 +64,35 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
                 item.add_marker(pytest.mark.skip(reason="nightly: python -m pytest -m nightly"))
     if hasattr(config, "workerinput"):
         _longest_first(items)
+
+
+DEAR_EXAMPLES = (
+    "fem/reducer/solution.py::fem.reducer.solution.solve_reducer", "fem/coefficients/dataset.py::",
+    "ltca/analysis/stiffness_by_part.py::",
+)  # fmt: skip
+"""Examples of docstrings that solve a drive at length: slow, as a docstring has no mark of its own."""
+
+
+def _mark_families(items: list[pytest.Item]) -> None:
+    """Mark what is beyond the first of a family: tests of one function that go the same way through the code."""
+    quick: Counter[str] = Counter()
+    full: Counter[str] = Counter()
+    for item in items:
+        if item.nodeid.startswith(DEAR_EXAMPLES):
+            item.add_marker("slow")
+        family = item.get_closest_marker("family")
+        if family is None or item.get_closest_marker("nightly"):
+            continue
+        name = item.nodeid.partition("[")[0]
+        if full[name] >= family.kwargs.get("full", sys.maxsize):
+            item.add_marker("nightly")
+            continue
+        full[name] += 1
+        if item.get_closest_marker("slow"):
+            continue
+        if quick[name] >= family.kwargs.get("quick", sys.maxsize):
+            item.add_marker("slow")
+        quick[name] += 1
 
 
 def _longest_first(items: list[pytest.Item]) -> None:

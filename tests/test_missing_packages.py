@@ -118,6 +118,7 @@ def test_mutants_without_coverage():
     assert "pip install 'cyclo-ltca[mutants]'" in done.stderr
 
 
+@pytest.mark.slow
 def test_other_codes_without_the_referee(tmp_path):
     """The program that stores answers of other codes asks for tamaas; validation itself takes what is stored."""
     out = tmp_path / "answers.json"

@@ -259,7 +259,8 @@ def trouble_of(words: list[str], whole: bool) -> str:
 def parse_in_forks() -> None:
     """Read commands from the standard input, parse each in a fork and write what is wrong."""
     sys.path[0] = str(ROOT)  # tests/ltca is no package
-    for name in ("ltca.facade", "ltca.analysis.engines", "ltca.studies.study", "fem.reducer.solution", "xarray"):
+    ours = ("ltca.facade", "ltca.analysis.engines", "ltca.studies.study", "fem.reducer.solution")
+    for name in (*ours, "xarray", "scipy.optimize", "scipy.interpolate"):
         import_module(name)  # for all forks at once
     answers = []
     for words, whole in json.load(sys.stdin):

@@ -42,6 +42,7 @@ def test_memory_that_is_not_there(words, free, option, tmp_path, capsys, monkeyp
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.slow
 def test_memory_of_slices_is_told_before():
     """Slices take six times the memory of the plane and more; the estimate is at most three times what it takes."""
     drive = with_fields(load_drive("paper").cases["CS-1"], {"contact.slices": 9})
@@ -56,6 +57,7 @@ def test_memory_of_slices_is_told_before():
     assert 0.3 < peak / (memory_per_position(drive) * positions.size) < 1.0
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize("ring", [None, {"inner_radius": 60.0, "outer_radius": 90.0, "width": 50.0}])
 def test_memory_is_told_before(ring):
     """A ring couples all pins: displacements, slopes and their blocks were not counted, nor several discs.

@@ -138,6 +138,7 @@ def declare(path):
         file.create_dataset("huge", (10**12,), chunks=(1000,), dtype="f8")
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize("damage", [cut, spoil_bytes, link, shape, declare])
 def test_a_damaged_second_run_is_refused_in_a_line(damage, run, tmp_path, capsys):
     """Damaged results in --compare ended in an "unforeseen RuntimeError"; external links in them were followed."""
@@ -156,6 +157,7 @@ def test_a_sound_summary_of_a_second_run_is_read(run):
     assert read_compared(run).summaries["CS-1"]
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize(
     "text", ["{", "[]", '{"cases": 3}', '{"cases": {"CS-1": 4}}', '{"cases": {"CS-1": {"a": "b"}}}']
 )

@@ -90,6 +90,7 @@ def test_the_independent_check_confirms_rigid_cranks_on_posts(rv):
     assert find_imbalance(drive, model, found, torque=drive.load.torque) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("bearing", "plane"), [(0, -31.0), pytest.param(1, 31.0, marks=pytest.mark.slow)])
 def test_the_independent_check_misses_no_bearing(rv, bearing, plane, monkeypatch):
     """What the bearing next to the planets carries of their teeth left out of the check: more than the thousandth that passes."""

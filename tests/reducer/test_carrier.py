@@ -134,6 +134,7 @@ def test_half_of_the_torque_of_even_discs_goes_over_the_posts():
     np.testing.assert_allclose(-turned * post_forces(drive)[2, 2], share * on_carrier, rtol=1e-4)
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize("name", ["cranks", pytest.param("rigid cranks", marks=pytest.mark.slow), "tips"])
 def test_stiff_posts_are_a_carrier_in_one_piece(name):
     """Towards stiff posts: cranks as without a carrier; tied tips as pins clamped in two still walls, which are springs."""

@@ -53,6 +53,7 @@ def test_an_arm_moves_the_wheel_by_its_spring(paper):
     np.testing.assert_allclose(wheel(pushed) - wheel(plain), complex(800.0, -300.0) / STIFF, rtol=2e-3)
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize("held", ["pin-shaft", "pin-wheel"])
 @pytest.mark.parametrize("frame", ["housing", "output"])
 def test_frames_turn_by_hand(paper, held, frame):
@@ -130,6 +131,7 @@ def test_the_main_bearing_holds_all_of_it(joint, held):
     assert summary["max_main_bearing_radial_N"] == pytest.approx(np.hypot(force[:, 0], force[:, 1]).max(), rel=1e-9)
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize("held", ["pin-shaft", "pin-wheel"])
 @pytest.mark.parametrize("given", ["main_bearing.radial_stiffness", "pin_wheel.support_stiffness"])
 def test_a_main_bearing_tells_what_it_carries_of_the_drive_alone(paper, held, given):
@@ -146,6 +148,7 @@ def test_a_main_bearing_tells_what_it_carries_of_the_drive_alone(paper, held, gi
     assert "main_bearing_x" not in reaction_values(analyse(paper, ANGLES[:1]))
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize("held", ["pin-shaft", "pin-wheel"])
 def test_the_output_moves_along_the_axis(paper, held):
     """−500 N by 2e5 N/mm are −2.5 µm; by two rows of 45° of 1e5 N/mm each the same, whatever preload; of rows with clearance it
@@ -236,6 +239,8 @@ def test_the_bearing_of_the_wheel_rubs_under_an_arm_as_well(paper):
     np.testing.assert_allclose(lost, 0.01 * 30.0 * np.abs(pressed) / 14.0 + at_crank, rtol=1e-9)
 
 
+@pytest.mark.slow
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize("held", ["pin-shaft", pytest.param("pin-wheel", marks=pytest.mark.slow)])
 def test_an_arm_takes_its_part_of_the_play(paper, held):
     """Lost motion stood below the backlash: the curve was of a wheel that an arm holds aside, its backlash of one that floats.

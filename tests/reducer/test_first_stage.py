@@ -250,6 +250,7 @@ def test_virtual_work_with_bending_cranks(geared, stored):
     np.testing.assert_allclose((4.0 * left(1e-4) - left(2e-4)) / 3.0 / geared.load.torque, 0.0, atol=1e-7)
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize(("angle", "wheel"), [(0.31, None), (1.7, 5e5)])
 def test_tangent_is_the_slope_of_the_force(geared, angle, wheel, tangent_and_slope):
     drive = with_fields(geared, {"pin_wheel.support_stiffness": wheel})

@@ -150,6 +150,7 @@ def test_a_slope_of_the_flank_is_one_of_every_pin_along_its_normal():
     assert np.max(np.abs(kinds(straight)["pins"] - kinds(first)["pins"])) > 1e-2 * np.max(kinds(first)["pins"])
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize("held", ["pin-shaft", "pin-wheel"])
 def test_work_of_a_small_turn_of_the_wheel_is_that_of_its_moment(held):
     """Energies of all contacts at neighbouring wheel angles, all else held: their slope is the moment, as they are in balance.

@@ -46,6 +46,7 @@ def balanced(drive, angles=ANGLES):
     return model, solve_at_output(model, [drive], angles, drive.load.torque)
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize("words", [LOOSE, TIGHT], ids=["loose", "tight"])
 @pytest.mark.parametrize(
     "name",
@@ -63,6 +64,7 @@ def test_the_potential_is_least(name, words):
         assert find_imbalance(warm_drive(drive), model, found, position, torque=drive.load.torque) == []
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize(
     "words", [LOOSE, TIGHT | {"crank.support.preload": 3e4, "main_bearing.preload": 3e3}], ids=["loose", "tight"]
 )

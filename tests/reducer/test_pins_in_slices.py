@@ -92,6 +92,7 @@ def test_a_disc_in_the_middle_of_symmetric_pins_does_not_tilt():
     assert np.max(np.abs(found.response.parts[0].leans)) < 1e-13
 
 
+@pytest.mark.slow
 def test_half_a_turn_with_the_mirror_takes_one_disc_to_the_other():
     """Two equal discs, even numbers of pins and rollers, wheel pins between two walls: what one disc has at z the other has half
     a turn further at −z; tilts are equal in the fixed frame. 1e-9 of the largest load: what the balance leaves over.
@@ -117,6 +118,7 @@ def test_half_a_turn_with_the_mirror_takes_one_disc_to_the_other():
     np.testing.assert_allclose(leans[0], leans[1], atol=1e-9 * np.max(np.abs(leans[0])))
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize(
     ("discs", "shaft", "wheel"),
     [(1, {"tip": "free"}, None), (1, {"tip": "tied-clamped"}, None), (2, {"tip": "free"}, {"ends": "supported"})],

@@ -91,6 +91,7 @@ KINDS = [
 ]
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize("name", KINDS)
 def test_tangent_is_the_slope_of_the_force(name, tangent_and_slope):
     scaled, slope = tangent_and_slope(kind(name), ANGLES[:1])
@@ -98,6 +99,7 @@ def test_tangent_is_the_slope_of_the_force(name, tangent_and_slope):
     np.testing.assert_allclose(slope, scaled, rtol=0.0, atol=2e-6 * np.abs(scaled).max())
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize("name", KINDS)
 def test_virtual_work_at_every_position(name, unbalanced_work):
     """With the energy ½ fᵀSf of the ring."""
@@ -119,6 +121,7 @@ def test_the_check_sees_a_ring_left_out():
     assert any("place of a wheel pin" in problem for problem in find_imbalance(drive, model, rigid))
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize("name", ["free", "built-in", pytest.param("rv", marks=pytest.mark.slow)])
 def test_a_rigid_ring_is_a_ring_left_out(name):
     drive = kind(name)
@@ -162,6 +165,7 @@ def made_outside(drive, angle, engine=None):
     raise AssertionError("the iteration outside does not converge")
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize(
     "name",
     [
@@ -240,6 +244,7 @@ def test_tables_are_compared_with_grids_at_the_displaced_pins():
     assert float(warning.split(" differs by ")[1].split(" %")[0]) < 5.0
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize("coefficients", [{"friction.pin": 0.05, "friction.hole": 0.04}, {"friction.pin": 0.1}])
 def test_friction_moves_the_pins_along_the_ring(coefficients):
     """Displacements did not settle beside friction: what it adds to the forces on the pins was missing in their slopes."""

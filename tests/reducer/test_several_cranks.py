@@ -124,11 +124,13 @@ def test_linear_bearings_share_resultant_and_moment(rv, cranks, monkeypatch):
         assert np.min(np.abs(moment)) > 1e3 * radius  # there is something to share
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize("name", KINDS)
 def test_virtual_work_at_every_position(rv, name, unbalanced_work):
     np.testing.assert_allclose(unbalanced_work(kind(rv, name), ANGLES + 0.05), 0.0, atol=1e-7)
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize("name", KINDS)
 def test_tangent_is_the_slope_of_the_force(rv, name, tangent_and_slope):
     scaled, slope = tangent_and_slope(kind(rv, name), ANGLES[:1])
@@ -279,6 +281,7 @@ def test_bores_stand_clear_of_every_hole(rv, hole):
     assert f"cut into each other by {reach - distance:.6g} mm" in str(caught.value)
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize("name", ["cranks", "wheel", "central crank yields"])
 def test_shares_of_the_compliance(rv, name):
     """∂c/∂ ln k of a support is −share · c: the compliance of the wheel's angle from the tangent, its supports stiffened."""

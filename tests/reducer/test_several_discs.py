@@ -130,6 +130,7 @@ class HeldRadius:
         return self.law.load_and_stiffness(approach, self.radius)
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize("discs", [1, 2, 3])
 def test_tangent_is_the_slope_of_the_force(joint, discs):
     drive = with_fields(joint, {"disc.number_of_discs": discs, "disc.phases": (), "disc.planes": ()})

@@ -96,6 +96,7 @@ def test_the_potential_is_least(rv, words):
     assert find_imbalance(drive, model, found, 1, torque=drive.load.torque) == []
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize("words", [{}, {"installation.held": "pin-shaft"}], ids=["housing held", "carrier held"])
 def test_virtual_work_at_every_position(rv, words, unbalanced_work):
     np.testing.assert_allclose(unbalanced_work(twisting(rv, **words), ANGLES + 0.05), 0.0, atol=1e-7)

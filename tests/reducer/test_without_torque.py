@@ -51,6 +51,7 @@ def drives(paper):
     }
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize(
     "name",
     ["paper", "held", "plastic", *(pytest.param(name, marks=pytest.mark.slow) for name in ("two discs", "cranks"))],
@@ -130,6 +131,7 @@ def test_drag_is_what_friction_takes(paper):
     assert summary["preloaded_part_of_turn"] == 1.0
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize("torque", [20e3, pytest.param(400e3, marks=pytest.mark.slow)])
 def test_from_loose_to_tight_nothing_jumps(paper, torque):
     """Pins from 10 µm too thin to 10 µm too thick, 2 µm a step: loads and angle follow, their second differences are small."""

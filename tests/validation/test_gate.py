@@ -21,7 +21,7 @@ from validation.levels.disc_stresses import disc_stress_rows
 from validation.levels.positions import compare_position_rows
 from validation.rows import failed_rows
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.nightly]
 
 DRIVE = Path(__file__).parent / "drives" / "aluminium.toml"
 CRANK_ANGLE = 0.7

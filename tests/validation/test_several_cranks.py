@@ -272,6 +272,7 @@ def test_the_page_draws_every_bore_and_race(compared, drive):
     assert line["models"]["half-space"] == pytest.approx(answer.bearing_tangential[2], rel=1e-4)
 
 
+@pytest.mark.slow
 def test_what_a_disc_without_shaft_pins_changes_leaves_them_out(crank_study, tmp_path):
     effect, compared = crank_study.flexibility["nominal"], crank_study.compared["nominal"]
     assert np.isnan(effect.turn["fe"].max_pin_shaft_load)

@@ -367,7 +367,10 @@ class _System:
 def _factor(blocks: list[FloatArray], coupling: FloatArray, springs: FloatArray) -> SuperLU:
     """LU of the matrix of Eq. 30; RuntimeError when it is singular."""
     matrix = sparse.bmat(
-        [[sparse.block_diag(blocks), sparse.csr_array(-coupling)], [sparse.csr_array(-coupling.T), -springs]],
+        [
+            [sparse.block_diag(map(sparse.coo_array, blocks)), sparse.csr_array(-coupling)],
+            [sparse.csr_array(-coupling.T), -springs],
+        ],
         format="csc",
     )
     return splu(matrix)

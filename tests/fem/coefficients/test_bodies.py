@@ -201,6 +201,7 @@ def test_body_forces_balance_as_well(direct, disc):
     np.testing.assert_allclose(there, here, atol=3e-3 * np.max(np.abs(here)))
 
 
+@pytest.mark.nightly
 @pytest.mark.slow
 def test_smooth_part_does_not_depend_on_the_patch(disc_shape, stations, disc):
     """Half the width: the half-plane's own approach grows by ln 2, the rest stays."""
@@ -214,6 +215,7 @@ def test_smooth_part_does_not_depend_on_the_patch(disc_shape, stations, disc):
     np.testing.assert_allclose(found.approach[apart] / UNIT, disc.approach[apart] / UNIT, atol=0.01)
 
 
+@pytest.mark.nightly
 @pytest.mark.slow
 def test_plane_stress_is_softer(disc_shape, stations, disc):
     """By up to 1/(1 − ν²) = 1.099, which a body without holes would show in full."""

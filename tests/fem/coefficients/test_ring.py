@@ -329,6 +329,7 @@ def test_rings_that_cannot_be_meshed_are_refused_by_name(joint, change, told):
         seat_flexibility(beam)
 
 
+@pytest.mark.slow
 def test_nothing_installed_that_derives_is_said(joint, derived, monkeypatch):
     from ltca.compliance import coefficient_files
 

@@ -50,6 +50,7 @@ def free_cylinder(coarse=1.5, radius=5.0):
     return body, support, patch_loads(body, shape.curves[0], np.array([np.pi, 0.0]), 0.25)
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize("make", [held_ring, free_cylinder])
 def test_without_lateral_strain_even_loads_know_no_ends(make):
     # ν = 0: nothing strains along the axis, so plane strain, plane stress and the solid are one, on any mesh.
@@ -70,6 +71,7 @@ def test_without_lateral_strain_even_loads_know_no_ends(make):
     assert np.max(np.abs(found.flat)) < 1e-12 * np.max(np.abs(strain))
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize("layers", [1, 2])
 def test_thin_ring_under_linear_loads_bends_like_a_clamped_plate(layers):
     """Kirchhoff's annular plate, clamped inside: u_r = zφ, φ = C(r − a²/r), M_r = D(φ' + νφ/r) (Timoshenko, Plates, § 17)."""
@@ -90,6 +92,7 @@ def test_thin_ring_under_linear_loads_bends_like_a_clamped_plate(layers):
 
 
 @pytest.mark.slow
+@pytest.mark.family(full=1)
 @pytest.mark.parametrize("material", [STEEL, replace(STEEL, poisson_ratio=0.45)])
 def test_long_bodies_are_in_plane_strain_but_for_their_ends(material):
     body, support, loads = held_ring(coarse=1.5)
@@ -117,6 +120,7 @@ def test_long_bodies_are_in_plane_strain_but_for_their_ends(material):
     assert linear[120.0] == pytest.approx(0.5 * linear[60.0], rel=0.25)
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize("thickness", [1.0, 6.0, 40.0])
 def test_solid_lies_between_plane_strain_and_plane_stress(thickness):
     body, support, loads = held_ring(coarse=0.8)
@@ -176,6 +180,7 @@ def test_differences_on_a_coarse_section_are_those_of_a_mesh_that_is_fine_at_the
         assert np.max(np.abs(scale * strain - direct)) > 2e-2 * np.max(direct)
 
 
+@pytest.mark.slow
 def test_more_layers_change_less_and_less():
     body, support, loads = held_ring()
     answers = [

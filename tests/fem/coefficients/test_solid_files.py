@@ -82,9 +82,19 @@ def drive(drive_file):
 
 
 @pytest.fixture(scope="module")
-def derived(drive, tmp_path_factory):
+def solutions():
+    """What the derivation found of every body, class and mesh, in its order."""
+    return []
+
+
+@pytest.fixture(scope="module")
+def derived(drive, tmp_path_factory, solutions):
+    solve = solid_bodies.solve_solid
     patch = pytest.MonkeyPatch()
     patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
+    patch.setattr(
+        solid_bodies, "solve_solid", lambda *args, **options: solutions.append(solve(*args, **options)) or solutions[-1]
+    )
     dataset = derive_coefficients(drive, bodies="solid", **COARSE)
     patch.undo()
     return dataset
@@ -205,14 +215,15 @@ def test_roller_length_belongs_to_the_shape_of_solid_bodies_alone(drive):
     assert drive.shape_fingerprint("solid") != drive.shape_fingerprint()
 
 
-def test_what_was_interrupted_goes_on(drive, monkeypatch, derived):
-    solved, solve = [], solid_bodies.solve_solid
+def test_what_was_interrupted_goes_on(drive, monkeypatch, derived, solutions):
+    """What is solved is taken from the derivation before: which pieces are asked for, kept and put together is looked at."""
+    solved, answers = [], iter(solutions)
 
     def interrupted(*args, **options):
         if len(solved) == 3:
             raise KeyboardInterrupt
         solved.append(options["parity"])
-        return solve(*args, **options)
+        return next(answers)
 
     monkeypatch.setattr("fem.coefficients.solid_bodies.solve_solid", interrupted)
     with pytest.raises(KeyboardInterrupt):
@@ -228,7 +239,7 @@ def test_what_was_interrupted_goes_on(drive, monkeypatch, derived):
 
     monkeypatch.setattr(
         "fem.coefficients.solid_bodies.solve_solid",
-        lambda *args, **options: again.append(options["parity"]) or solve(*args, **options),
+        lambda *args, **options: again.append(options["parity"]) or next(answers),
     )
     with pytest.raises(FaultError, match="No space left"):
         derive_coefficients(drive, bodies="solid", **COARSE, store=store)

@@ -59,6 +59,7 @@ def test_writes_all_files_and_a_picture(
     assert min(image_detail(tmp_path / "out" / "mesh.png")) > 0.03
 
 
+@pytest.mark.nightly
 @pytest.mark.slow
 def test_falls_back_to_matplotlib_with_a_message(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch

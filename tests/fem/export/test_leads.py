@@ -52,6 +52,7 @@ def departures(drive, places, inward=0.0):
 SHALLOW = {"disc.lead_slope": -2e-4, "disc.lead_relief_length": 3.0, "disc.lead_relief_depth": 0.004}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("changes", "inward"),
     [
@@ -99,6 +100,7 @@ def test_volumes_with_a_lead_are_those_between_parallel_curves():
     assert body.volume == pytest.approx(body.section * 11.8 + cut, rel=1e-8)
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize("changes", [CROWN, pytest.param(ALL, marks=pytest.mark.slow)])
 def test_facets_follow_their_lead(tmp_path, changes):
     drive, chord = drive_with(changes), 0.02

@@ -72,6 +72,7 @@ def boundary_points(body: BodyMesh, name: str) -> np.ndarray:
     return body.mesh.doflocs[0, nodes] + 1j * body.mesh.doflocs[1, nodes]
 
 
+@pytest.mark.slow
 def test_flank_nodes_lie_on_the_exact_flank(drive: Drive, shapes: DriveShapes, disc: BodyMesh) -> None:
     """All nodes, mid-sides too, stand r_P + Δr_P away from the trochoid, found by search on a dense table."""
     theta = np.linspace(0.0, 2.0 * np.pi, 1_000_000, endpoint=False)
@@ -232,6 +233,7 @@ def test_the_same_input_gives_the_same_mesh_in_another_process(
 
 
 @pytest.mark.slow
+@pytest.mark.family(full=1)
 @pytest.mark.parametrize("angle", [0.0, 2.0])
 def test_drive_meshes_are_good_and_of_the_estimated_size(drive: Drive, shapes: DriveShapes, angle: float) -> None:
     contacts = expect_contacts(drive, angle)

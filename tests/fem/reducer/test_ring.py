@@ -60,6 +60,7 @@ def own_cache(tmp_path, monkeypatch):
 
 
 @pytest.mark.slow
+@pytest.mark.nightly
 def test_one_disc_on_an_elastic_ring():
     """1 % of load and 0.5″; on two elements for a half-width 0.5 % and 0.1″, where without a ring 0.2 % and 0.1″ are left."""
     drive = joint(1)

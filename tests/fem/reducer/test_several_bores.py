@@ -176,6 +176,7 @@ def test_numbering_of_the_cranks_is_a_matter_of_names(solved, small):
     np.testing.assert_allclose(np.roll(one.crank_moments, -1), other.crank_moments, rtol=0.0, atol=0.02 * largest)
 
 
+@pytest.mark.nightly
 @pytest.mark.slow
 def test_rigid_body_limit_comes_near_the_half_space_drive(solved, small):
     """Disc and race 1000 times as stiff, pins and rollers half: every E* unchanged, only local yielding left.

@@ -23,6 +23,7 @@ def values_after(lines, keyword):
     return [after for line, after in pairwise(lines) if line.startswith(keyword)]
 
 
+@pytest.mark.nightly
 @pytest.mark.slow
 def test_the_penalty_gives_way_alike_on_every_mesh(tmp_path):
     """By the edge it was four times as stiff at the default size as at size 4, and ccx ended with contacts that pull there."""

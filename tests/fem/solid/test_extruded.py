@@ -96,6 +96,7 @@ def test_linear_displacements_have_the_energy_of_their_strain_and_load_the_surfa
     assert np.abs(force[middle]).max() <= ROUND_OFF * np.abs(force).max()
 
 
+@pytest.mark.slow
 def test_classes_of_half_a_body_are_the_solutions_of_the_whole_one():
     # A load even along z and one linear in z at the same place: nodes of both meshes are the same, so answers are.
     plane = None
@@ -126,6 +127,7 @@ def test_classes_of_half_a_body_are_the_solutions_of_the_whole_one():
         assert found["whole", name] == pytest.approx(found[name, name], rel=1e-10)
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize("solver", ["default", "SuperLU"])
 def test_a_hanging_bar_stretches_as_by_hand(solver, monkeypatch):
     # Under its own weight along the axis a bar has σ_z = ρ g z': with ν = 0 quadratic elements hold w exactly.

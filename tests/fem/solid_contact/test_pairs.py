@@ -99,7 +99,7 @@ def roller():
     return solve_pair(pair, PairLoad(load=1000.0), PairMeshes(size=2.5, block=5.0))
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_the_middle_of_a_long_line_is_that_of_hertz(roller):
     # 25 half-widths from either end the line is one in plane strain under its own line load: b = √(4qρ/πE*), p0 = 2q/(πb).
     middle = roller.height.size // 2
@@ -113,7 +113,7 @@ def test_the_middle_of_a_long_line_is_that_of_hertz(roller):
     assert np.trapezoid(roller.line_load, roller.height) == pytest.approx(1000.0, rel=5e-3)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_energy_gaps_and_files_of_a_pair(roller):
     # Two ways to one energy: round-off of factors with a condition of 1e6.
     assert roller.energy_error < 1e-9

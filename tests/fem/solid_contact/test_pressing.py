@@ -62,6 +62,7 @@ def blocks():
     return Blocks(0.1866 / 4, 1.25 * 0.1866, 8 * 0.1866, even=False)
 
 
+@pytest.mark.slow
 def test_point_contact_is_that_of_hertz(blocks):
     # Half the load acts on the half that is meshed. Johnson (1985), Eqs. 4.22 to 4.24.
     load = 100.0
@@ -82,6 +83,7 @@ def test_point_contact_is_that_of_hertz(blocks):
     assert second[1] / second[0] == pytest.approx(radius**2 / 5.0, rel=0.02)
 
 
+@pytest.mark.slow
 def test_tilting_a_crown_moves_the_contact(blocks):
     # A crown of radius R that tilts by θ rolls: the same contact, R θ further up, deeper by R θ²/2.
     straight, tilted = blocks.press(approach=3.0e-3), blocks.press(approach=3.0e-3, tilt=2e-3)
@@ -96,6 +98,7 @@ def test_tilting_a_crown_moves_the_contact(blocks):
     assert abs(straight.moment) <= 1e-12 * straight.load
 
 
+@pytest.mark.slow
 def test_a_mirrored_tilt_has_the_mirrored_pressure(blocks):
     up, down = blocks.press(load=40.0, tilt=3e-3), blocks.press(load=40.0, tilt=-3e-3)
     # Round-off of the condensation by the condition of the compliance, some 1e4.
@@ -107,6 +110,7 @@ def test_a_mirrored_tilt_has_the_mirrored_pressure(blocks):
     assert again.tilt == pytest.approx(3e-3, rel=1e-8)
 
 
+@pytest.mark.slow
 def test_even_pressures_of_half_a_body_are_those_of_both_halves(blocks):
     half = Blocks(0.1866 / 4, 1.25 * 0.1866, 8 * 0.1866, even=True)
     one, both = half.press(approach=3e-3), blocks.press(approach=3e-3)
@@ -114,6 +118,7 @@ def test_even_pressures_of_half_a_body_are_those_of_both_halves(blocks):
     assert one.load == pytest.approx(both.load, rel=1e-10)
 
 
+@pytest.mark.slow
 def test_energies_agree_and_their_slopes_are_the_loads(blocks):
     found = blocks.press(approach=3e-3, tilt=2e-3)
     # Where pressures act gaps are closed: an identity. The strain energy of the displacements is another way to the same.
@@ -128,6 +133,7 @@ def test_energies_agree_and_their_slopes_are_the_loads(blocks):
     assert rise / (2.0 * turn) == pytest.approx(found.moment, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_surfaces_apart_press_nothing(blocks):
     found = blocks.press(approach=-1e-3)
     assert found.load == found.energy == 0.0
@@ -168,6 +174,7 @@ def test_a_flat_patch_is_pressed_evenly():
     assert found.load == pytest.approx(expected * 2.0 * half * thickness, rel=1e-6)
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize("parities", [("symmetric", "antisymmetric"), ("whole",)])
 def test_a_floating_slab_between_two_flats_is_pressed_evenly(parities):
     # Two faces on one body that nothing holds, pressed by the upper flat against the lower one: the same state twice.

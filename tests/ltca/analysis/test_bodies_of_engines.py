@@ -22,6 +22,7 @@ def coefficients(drive, tilt_depth=260.0):
     return _coefficients_of_dataset(data, drive, shared=False)
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize("slices", [1, 3])
 def test_results_say_that_bodies_are_solid(slices):
     """Attributes of results and the sentence beside them; plane ones keep theirs."""
@@ -92,6 +93,7 @@ def test_solid_shapes_have_the_length_of_rollers():
     assert replace(coefficients(longer)).lent_to(near).shared
 
 
+@pytest.mark.slow
 def test_what_reshapes_solid_bodies_alone_has_no_derivative_on_them():
     """The length of rollers shapes solid rollers; plane ones yield like one over it."""
     results = [

@@ -70,7 +70,13 @@ def test_paper(paper_cases):
         ("paper", "CS-6", {"clearance.bearing": 2e-5}, ONE),
         ("robot-joint", "nominal", {"crank.eccentricity": 1e-5, "pin_shaft.hole_radius": 1e-5}, ONE),
         ("rv", "nominal", {"disc.equidistant_offset": 2e-6, "crank.support.diameter": 0.003}, ONE + 0.37),
-        ("sleeved", "nominal", {"pin_wheel.beam.span": 2e-3, "pin_shaft.beam.diameter": 1e-3}, ONE),
+        pytest.param(
+            "sleeved",
+            "nominal",
+            {"pin_wheel.beam.span": 2e-3, "pin_shaft.beam.diameter": 1e-3},
+            ONE,
+            marks=pytest.mark.nightly,
+        ),
     ],
 )
 def test_shipped_drives(name, case, steps, angles):

@@ -115,6 +115,7 @@ def test_a_loss_factor_is_twice_the_ratio_at_resonance(heavy):
     assert peaks[1] == pytest.approx(peaks[0], rel=1e-2)  # apart by ζ² away from the resonance
 
 
+@pytest.mark.slow
 def test_parting_contacts_are_told(heavy):
     """With a ten-thousandth of the critical damping a resonance is 5000 times the transmission error: contacts part before its
     speed is reached.
@@ -133,6 +134,7 @@ def test_without_damping_there_is_no_response(usual):
         forced_vibration(replace(usual, drive=with_fields(PAPER, {"inertia.output": 0.5})))
 
 
+@pytest.mark.slow
 def test_pulsation_of_the_stiffness_moves_the_answer(usual):
     """With it the balance closes: twice the orders change the transmission error by some thousandths (0.003 was measured)."""
     both = [forced_vibration(one, fastest=3000.0, speeds=8) for one in (usual, with_mean_stiffness(usual))]

@@ -25,6 +25,7 @@ def fields():
     return build_pressure_dataset("paper", {name: analyse(CASES[name], ANGLE) for name in ("CS-1", "CS-3")}, cells=12)
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize("kind", ["pin", "roller"])
 def test_pressure_sums_to_the_load(fields, kind):
     """Also where nothing touches; and the field carries what the contact carries, to which it is solved."""

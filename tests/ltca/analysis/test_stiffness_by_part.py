@@ -60,6 +60,7 @@ SOFTER = {
 POSTS = {"carrier.posts.number": 6, "carrier.posts.radius": 44.0, "carrier.posts.size": 16.0}
 
 
+@pytest.mark.nightly
 @pytest.mark.slow
 def test_any_softer_part_makes_the_reducer_softer(whole):
     stiff, turned = read(whole)

@@ -585,6 +585,7 @@ def driver_of(name, elasticity, factor):
     return Driver(input=name, elasticity=elasticity, change="" if factor is None else f"× {factor}", factor=factor)
 
 
+@pytest.mark.slow
 def test_what_holds_the_contacts_goes_with_the_sizes(monkeypatch):
     """A larger pin circle left the ring where it was, all sizes left ring, posts, module and supports, and each trial derived a
     ring of finite elements anew."""

@@ -79,6 +79,7 @@ def test_files_of_other_bodies_and_idle_options_are_refused(derived, tmp_path, c
     assert derived == []
 
 
+@pytest.mark.nightly
 @pytest.mark.slow
 def test_samples_of_a_study_stand_on_solid_bodies(derived, tmp_path, capsys):
     """Samples of one shape share what is derived; how to run one again is told with the option."""

@@ -18,16 +18,16 @@ def coefficients(tilt_depth=None, **stated):
 
 
 @pytest.mark.parametrize(
-    ("data", "figure", "command"),
+    ("depth", "stated", "figure", "command"),
     [
-        (coefficients(convergence_estimate=0.0121, mesh_size="1: edges"), "0.0121: must be at most 0.012", "--size 0.5"),
-        (coefficients(260.0, convergence_estimate=0.0121, mesh_size="1.5: edges"), "0.0121", "--bodies solid --size 0.75"),
-        (coefficients(260.0, interpolation_error_tilt=0.02), "0.02: must be at most 0.012", "--bodies solid --stations 2"),
-        (coefficients(convergence_stress=0.31), "0.31: must be at most 0.3", "cyclo derive DRIVE)"),
+        (None, {"convergence_estimate": 0.0121, "mesh_size": "1: edges"}, "0.0121: must be at most 0.012", "--size 0.5"),
+        (260.0, {"convergence_estimate": 0.0121, "mesh_size": "1.5: edges"}, "0.0121", "--bodies solid --size 0.75"),
+        (260.0, {"interpolation_error_tilt": 0.02}, "0.02: must be at most 0.012", "--bodies solid --stations 2"),
+        (None, {"convergence_stress": 0.31}, "0.31: must be at most 0.3", "cyclo derive DRIVE)"),
     ],
 )  # fmt: skip
-def test_a_coarse_file_is_told_by_figure_bound_and_command(data, figure, command):
-    told = quality_warning(data, "some.nc")
+def test_a_coarse_file_is_told_by_figure_bound_and_command(depth, stated, figure, command):
+    told = quality_warning(coefficients(depth, **stated), "some.nc")
     assert told.startswith("some.nc: ")
     assert figure in told
     assert command in told
@@ -39,6 +39,7 @@ def test_a_file_within_its_bounds_is_not_spoken_of():
     assert quality_warning(coefficients(convergence_estimate=0.012, mesh_size="1: edges"), "some.nc") == ""
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize(("depth", "bodies"), [(None, "plane"), (260.0, "solid")])
 def test_commands_warn_of_coarse_files(tmp_path, capsys, depth, bodies, positions_alone):
     """`run` among its warnings, `curves` before the work, each once; the file is read all the same."""

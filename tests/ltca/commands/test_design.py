@@ -59,6 +59,7 @@ def test_the_paper_drive_is_matched_at_its_own_figures(tmp_path):
     assert "http" not in page
 
 
+@pytest.mark.nightly
 @pytest.mark.slow
 @pytest.mark.usefixtures("few", "coarse_derivations")
 def test_what_stands_in_the_way_is_told_and_would_do(tmp_path, capsys):

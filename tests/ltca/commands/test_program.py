@@ -353,6 +353,7 @@ def test_arguments_and_drive_are_read_before_what_takes_seconds_to_import(tmp_pa
     assert done.stderr.count("\n") == len(REFUSED)
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
 @pytest.mark.parametrize("unbuffered", ["", "1"])
 @pytest.mark.parametrize("words", [["--help"], ["--version"], pytest.param(["show", "paper"], marks=pytest.mark.slow)])

@@ -100,6 +100,7 @@ def test_files_are_given_to_the_cases_they_belong_to(paper_cases, derived, tmp_p
         find_case_coefficients(cases, [*files, other])
 
 
+@pytest.mark.slow
 def test_files_of_other_bodies_are_refused_by_what_differs(paper_cases, tmp_path):
     drive = paper_cases["CS-1"]
     other = with_fields(drive, {"crank.eccentricity": 3.9, **ALUMINIUM})

@@ -48,6 +48,7 @@ def balanced(drive, closed_form, near_field, angles=ANGLES):
     return model, solve_at_output(model, [drive], angles, drive.load.torque)
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize("seats", SEATS)
 def test_aligned_slices_of_plane_strain_on_seats_are_the_plane(seats, closed_form):
     """`fe` in slices of a drive that nothing tilts: loads of every contact as with one slice.
@@ -65,6 +66,7 @@ def test_aligned_slices_of_plane_strain_on_seats_are_the_plane(seats, closed_for
     assert found.pose[0, -1] == pytest.approx(plane.pose[0, -1], rel=1e-9)
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize("seats", ["loose pins, sleeves on shaft pins", "sleeves"])
 def test_loads_on_seats_balance_in_six_directions(seats, closed_form, monkeypatch):
     """Forces and couples of crowned flanks on inclined pins by the lines of `ltca.testing.width_check`, which know no bodies.
@@ -79,6 +81,7 @@ def test_loads_on_seats_balance_in_six_directions(seats, closed_form, monkeypatc
     assert np.max(np.abs(pins.moment)) > 0.01 * np.max(pins.load) * drive.disc.thickness
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize("near_field", ["plane-strain", "half-space"])
 @pytest.mark.parametrize("seats", [None, "loose pins"])
 def test_the_tangent_is_that_of_the_force_of_coupled_slices(near_field, seats, closed_form, monkeypatch):

@@ -75,6 +75,7 @@ def drive_for(kind):
     return paper() if kind == "half-space" else paper(**{"crank_bearing.roller_length": 11.8})
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize("ratio", [0.004, 0.05, 0.3])
 def test_what_a_half_space_yields_under_even_and_linear_loads(ratio):
     """Closed forms against the double integral of Boussinesq's kernel over width and patch, 1e-7 (adaptive quadrature)."""
@@ -153,6 +154,7 @@ def test_even_parts_of_plane_bodies_give_plane_answers():
     np.testing.assert_allclose(found.pose, expected.pose, rtol=0.0, atol=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", NEAR_FIELDS)
 def test_the_plane_model_takes_the_even_part_alone(kind):
     """One slice: loads with solid coefficients are the same whatever C' is."""
@@ -254,6 +256,7 @@ def test_loads_and_moments_are_slopes_of_one_energy():
     np.testing.assert_allclose(slopes.by_tilt[0][np.ix_(loaded, loaded)], loads.T, atol=1e-6 * np.max(np.abs(loads)))
 
 
+@pytest.mark.slow
 def test_twice_the_tilts_by_an_iteration_of_its_own():
     """With C' doubled, loads and moments at a pose are those of a damped fixed point outside: no tangent, no Newton.
 
@@ -415,6 +418,7 @@ DRIVES = {
 }
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize(
     "kind", [pytest.param(name, marks=() if name == "plastic" else pytest.mark.slow) for name in DRIVES]
 )

@@ -141,6 +141,7 @@ def test_loads_are_continuous_where_grids_change(profile):
     assert growth.max() < 2.0
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize("profile", PROFILES)
 def test_loads_do_not_depend_on_what_was_solved_before(profile):
     """Approaches and places in any order, each started from the last: as from nothing, to round-off."""

@@ -71,6 +71,7 @@ def test_a_steady_force_on_mathieus_spring_is_a_continued_fraction(speed):
     assert found[1] == pytest.approx(-2.0 * fraction * mean, rel=1e-7)
 
 
+@pytest.mark.slow
 def test_two_coupled_masses_follow_direct_integration():
     """Both directions pulse, coupled, with an inertia that couples them, under a force of two orders."""
 
@@ -97,6 +98,7 @@ def test_two_coupled_masses_follow_direct_integration():
     assert np.max(np.abs(mean - expected)) > 0.1 * np.max(np.abs(expected))
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize(("depth", "speed", "order"), [(0.6, 0.02, 20), (0.6, 0.02, 50)])
 def test_a_spring_that_pulses_slowly_follows_direct_integration(depth, speed, order):
     """The mass swings 50 times while its spring pulses once, by 60 %: an iteration about the mean spring stalls there."""
@@ -148,6 +150,7 @@ def multiplier(stiffness, mass, damping, speed):
     return float(np.max(np.abs(np.linalg.eigvals(found.y[:, -1].reshape(2 * size, -1)))))
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize("pair", [(0, 0), (0, 1), (1, 1)])
 def test_unstable_ranges_end_where_floquets_multipliers_pass_one(pair):
     """To first order: the ends are off by the square of the pulsation, 1 % of it here."""

@@ -84,6 +84,7 @@ def stiffness_of_the_run(drive, angle=0.3):
     return 0.002 * torque / abs(float(ends[1][0] - ends[0][0]))
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize(
     ("name", "same"),
     [

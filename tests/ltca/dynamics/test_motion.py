@@ -210,6 +210,7 @@ def test_an_arm_turned_with_a_displaced_output_has_a_moment():
     assert abs(outside @ motion.frame_turns) > 1.0
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize(
     ("name", "mode"),
     [
@@ -273,12 +274,12 @@ COURSES = [
     ("sleeved", Course.of_values("steady", 3e-5, 1500.0)),
     ("elastic ring", Course.of_values("steady", 3e-5, 1500.0)),
 ]
-QUICK, LONG = ("paper, damped",), ("paper, light", "plastic, tied, jams nearly", "pushed, held pin-wheel", *DEAR)
-"""Kinds that every run tries, and those that only nights do."""
+QUICK, FULL = ("paper, damped",), ("paper, rubs", "rv", "paper, tied, rubs")
+"""Kinds that every run tries, and those that the full set does: friction, several cranks, parts without mass; the others are of the night."""
 
 
 def marked(name):
-    return () if name in QUICK else NIGHTLY if name in LONG else pytest.mark.slow
+    return () if name in QUICK else pytest.mark.slow if name in FULL else NIGHTLY
 
 
 @pytest.mark.parametrize(("name", "course"), [pytest.param(*one, marks=marked(one[0])) for one in COURSES])
@@ -304,6 +305,7 @@ def in_closed_form(drive, folder):
     return load_coefficients(path, single)
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize(
     ("name", "kind"),
     [("paper", Hybrid), ("paper", PlaneStrain), ("plastic", Hybrid), ("bent pins", HalfSpace), ("bent pins", Hybrid)],
@@ -415,6 +417,7 @@ def test_a_flight_through_the_play_keeps_momentum_and_an_impact_energy():
     assert kept == pytest.approx(0.5 * inertia * speed**2, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_a_driven_drive_that_rubs_is_driven_by_its_mean_input_torque():
     """Quasi-static losses have slips of their own, and friction whole at any slip: v₀ is 1 % of the eccentrics' speed, where
     slips are some tenths of it; 1e-3 of the torque was asked for beforehand, where friction takes 5 % and more.
@@ -495,6 +498,7 @@ class OneContact:
         )
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize(
     ("amplitude", "side"),
     [(0.29, 1.0), pytest.param(0.2, 1.0, marks=pytest.mark.slow), pytest.param(0.22, -1.0, marks=pytest.mark.slow)],

@@ -80,6 +80,7 @@ def poses(drive, size=0.01, seed=0, count=12):
     return random.normal(size=shape) * size * 10.0 ** random.uniform(-2.0, 0.3, (count, 1))
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize(
     "name", [name if name in ("linear", "loose") else pytest.param(name, marks=pytest.mark.slow) for name in KINDS]
 )

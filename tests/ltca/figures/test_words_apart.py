@@ -184,6 +184,7 @@ def test_words_of_every_figure_of_a_run_stand_apart(kind):
         assert_words_stand_apart(drive_figure(one.drive, one, 3, next(iter(analyses))))
 
 
+@pytest.mark.nightly
 @pytest.mark.slow
 def test_words_of_pressures_stand_apart():
     kind = "sixty pins"

@@ -169,6 +169,7 @@ def test_the_largest_of_a_turn_is_found_between_positions(paper_cases):
     assert found.least == pytest.approx(dense.min(), rel=2e-3)
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize("seed", [10, 13, 33, 1, 271])
 def test_loads_that_vanish_end_at_the_free_play(seed):
     """Equal offsets of seeds 10, 13, 33: pins without lever touch first, and 1e-6 of the torque turns them on by 0.02–0.04′.

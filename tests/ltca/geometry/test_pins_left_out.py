@@ -39,6 +39,7 @@ def poses(drive, random, count, size):
     return random.uniform(-size, size, (count, 4)) * np.array([radius, radius, 1.0, 1.0])
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize("size", [1e-5, 3e-4, 3e-3])
 def test_no_pin_that_touches_is_left_out(drives, size):
     random, left_out = np.random.default_rng(7), []

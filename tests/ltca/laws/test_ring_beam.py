@@ -105,6 +105,7 @@ def test_pins_that_turn_the_ring_against_its_bolts():
     np.testing.assert_allclose(moved, expected, rtol=1e-3)
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize("bolts", [0, 6])
 def test_frame_of_straight_beams(bolts):
     """A polygon of 480 straight Timoshenko beams of a thin ring, welded at its corners, by the direct stiffness method."""

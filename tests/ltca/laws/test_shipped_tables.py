@@ -43,6 +43,7 @@ def test_end_pressure_remade():
 
 
 @pytest.mark.slow
+@pytest.mark.family(full=1)
 @pytest.mark.parametrize("slices", [9, 33])
 def test_softer_ends_remade(slices):
     stored = json.loads(sliced_line.TABLE.read_text(encoding="utf-8"))["softer"][str(slices)]

@@ -37,6 +37,7 @@ def wild(slices, seed, count=120):
     return SlicedLine(length=LENGTH, contact_modulus=MODULUS, slices=slices, relief=relief), approach, tilt, radius
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize("slices", SLICES)
 def test_wild_contacts_settle_to_round_off(slices):
     law = PlaneContactLaw(thickness=1.0, contact_modulus=MODULUS, datum=DATUM * LENGTH)
@@ -60,6 +61,7 @@ def test_wild_contacts_settle_to_round_off(slices):
         assert np.max(every / own.max(axis=(1, 2))[:, None]) < 1e-9
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize("slices", SLICES)
 def test_derivatives_energy_and_maxwell(slices):
     compared = 0

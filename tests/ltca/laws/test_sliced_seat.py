@@ -63,6 +63,7 @@ def test_aligned_slices_carry_what_the_plane_law_of_loose_pins_does(seat):
     assert np.max(np.abs(found.moment)) < 1e-9 * load.max()
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize("seat", [{}, SLEEVE])
 def test_loads_and_moments_of_loose_pins_are_the_slopes_of_their_energy(seat):
     """From full lines to corners that carry alone: differences of the energy against load and moment, and of load and moment

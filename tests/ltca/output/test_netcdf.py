@@ -78,6 +78,7 @@ AS_WRITTEN_TODAY = pytest.mark.skipif(
 )
 
 
+@pytest.mark.family(quick=1)
 @AS_WRITTEN_TODAY
 @pytest.mark.parametrize("packed", [(), ("more", "single")])
 def test_every_kind_of_variable(packed, tmp_path):

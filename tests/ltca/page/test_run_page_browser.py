@@ -91,7 +91,7 @@ def drive_of(kind):
 
 @pytest.mark.parametrize(
     "kind",
-    ["paper", "rv", *(pytest.param(kind, marks=pytest.mark.nightly) for kind in ("robot-joint", "sleeved", "plastic"))],
+    ["rv", *(pytest.param(kind, marks=pytest.mark.nightly) for kind in ("paper", "robot-joint", "sleeved", "plastic"))],
 )
 @pytest.mark.usefixtures("positions_alone")
 def test_arrows_are_the_values_of_the_dataset(kind, run_of, chromium, tmp_path):

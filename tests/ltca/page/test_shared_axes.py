@@ -37,6 +37,7 @@ def test_values_all_alike_have_an_axis(values):
     assert all(axis.low <= value <= axis.high for value in values if np.isfinite(value))
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize(
     ("figure", "panel", "name"),
     [

@@ -27,6 +27,7 @@ WRONG = [
 ]
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize(
     ("part", "field", "value", "side", "bound"),
     [*WRONG[::3], *(pytest.param(*row, marks=pytest.mark.slow) for row in WRONG if row not in WRONG[::3])],
@@ -67,6 +68,7 @@ ONE_LINE = {
 }
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize(
     ("old", "new"), [*list(ONE_LINE)[:2], *(pytest.param(*row, marks=pytest.mark.slow) for row in list(ONE_LINE)[2:])]
 )

@@ -112,6 +112,7 @@ def test_half_widths_are_bounded_by_the_radii_of_each_sample(vary):
         assert f"load.torque = {thin.load.torque:g} N·mm cannot be carried: contact half-width" in found.messages[wide]
 
 
+@pytest.mark.slow
 def test_one_disc_of_several_scatters():
     """A disc with rows and one without were joined near a nominal solution: the study ended in a traceback."""
     waves = {

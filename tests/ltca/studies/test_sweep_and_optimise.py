@@ -247,6 +247,7 @@ def test_models_of_one_drive_serve_the_optimiser(drive):
     np.testing.assert_allclose(alone(drives), batch_analysis(problem, 5)(drives), rtol=1e-9)
 
 
+@pytest.mark.nightly
 @pytest.mark.slow
 def test_optimum_of_the_drive_beats_it_within_the_limit(drive):
     """By the batch solver: less transmission error, the backlash kept, and the re-run drive says the same."""

@@ -98,6 +98,7 @@ def values_of(found):
     return [float(full or shown) for full, shown in cells]
 
 
+@pytest.mark.slow
 def test_a_fine_answer_is_that_of_the_command(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     text = changed_text(PAPER, "CS-3", {"disc.shifting_offset": "0.12"})

@@ -143,6 +143,7 @@ def answered():
     return found
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize("name", ["slot", "sleeve"])
 def test_the_answers_looked_at_below_balance(answered, name):
     drive, model, found = answered[name]

@@ -46,6 +46,7 @@ def test_a_failed_row_makes_the_exit_status_one(status, small_study, tmp_path, m
     assert ("fail their limit" in (tmp_path / "report.html").read_text(encoding="utf-8")) == bool(status)
 
 
+@pytest.mark.slow
 def test_the_small_study_fails_where_it_should(small_study):
     """Full loads 1 % larger than the half-space's: fe without coefficients is far from that, and rows say so."""
     failed = failed_rows(small_study.rows)

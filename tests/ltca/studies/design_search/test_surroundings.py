@@ -102,6 +102,7 @@ def solved(text):
     return solution.values
 
 
+@pytest.mark.slow
 def test_candidates_are_solved_with_all_of_it():
     """Every part that yields makes the output softer; play/r_w of the planets adds to the backlash by their ratio."""
     stage = RV + "[first_stage]\nbacklash = 0.03\nplane = 25.0\n"
@@ -115,6 +116,7 @@ def test_candidates_are_solved_with_all_of_it():
     assert more == pytest.approx(play, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_candidates_have_a_beam_where_finite_elements_are_asked_for():
     """A ring of finite elements is derived for each shape; those of a search are many."""
     text = RV + SURROUNDED.replace("[ring]", '[ring]\nmodel = "fe"')

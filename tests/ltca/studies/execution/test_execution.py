@@ -232,6 +232,7 @@ def bad_sweep(paper):
     )
 
 
+@pytest.mark.slow
 def test_failed_samples_are_listed_with_their_drive_and_stop_nobody(paper, tmp_path):
     folder = StudyFolder(path=tmp_path)
     found = run_study(bad_sweep(paper), folder, Workers())

@@ -87,6 +87,7 @@ except KeyboardInterrupt:
 
 
 @pytest.mark.slow
+@pytest.mark.family(full=1)
 @pytest.mark.parametrize("half", ["nothing", "batch", "result"])
 def test_a_pool_is_left_with_half_of_something_in_its_pipes(half):
     """It waited for ever for the other half; closing the pipes beforehand was a race for who closes them."""
