@@ -6,6 +6,7 @@ so the output comes back another way. Makers read lost motion in the middle of t
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -54,7 +55,12 @@ class HysteresisLoop:
 
 
 def locked_path(
-    drive: Drive, crank_angle: FloatArray, torque: ArrayLike, *, engine: Engine | None = None
+    drive: Drive,
+    crank_angle: FloatArray,
+    torque: ArrayLike,
+    *,
+    engine: Engine | None = None,
+    advance: Callable[[int], None] = lambda _: None,
 ) -> FloatArray:
     """Return the deviation of the output along a path of torques, input locked, rad, shape (angles, torques).
 
@@ -69,6 +75,8 @@ def locked_path(
         reached without friction.
     engine : Engine, optional
         How bodies yield; half-spaces by default.
+    advance : callable
+        Told of solved positions.
 
     Raises
     ------
@@ -86,6 +94,7 @@ def locked_path(
     found = solve_at_output(smooth, [drive], angles, float(path[0]))
     state = StickingFriction.at_rest(friction, smooth, found)
     wound = [wheel_angle_of_input(model, found)]
+    advance(angles.size)
     for before, value in pairwise(path):
         try:
             found = solve_at_output(replace(model, friction=state), [drive], angles, float(value), found.pose)
@@ -94,6 +103,7 @@ def locked_path(
             raise
         state = state.after(model, found)
         wound.append(wheel_angle_of_input(model, found))
+        advance(angles.size)
     return np.asarray(drive.output_deviation(np.stack(wound, axis=1), path))
 
 

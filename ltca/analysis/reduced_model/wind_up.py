@@ -25,7 +25,7 @@ TORQUE_PARTS = (1e-4, 0.003, 0.01, 0.03, 0.06, 0.1, 0.17, 0.25, 0.37, 0.5, 0.62,
 """Torques of the table by the largest one, either way; at the first bodies yield 1e-4 of what they do at the last."""
 HARMONICS = 3
 """Multiples of each origin of an order; what higher ones do is told with the residual."""
-POSITIONS_PER_UNKNOWN = 5
+POSITIONS_PER_UNKNOWN = 3
 """Positions for each cosine, sine and mean that is fitted."""
 GOLDEN = 0.5 * (5.0**0.5 - 1.0)
 """Step by which positions go on, modulo one, over all turns: no order looks like another at them."""
@@ -95,7 +95,7 @@ def wind_up(drive: Drive, model: Reducer, largest: float, advance: Callable[[int
     advance : callable
         Told of solved positions.
     """
-    orders = known_orders(drive, harmonics=HARMONICS)
+    orders = wind_up_orders(drive)
     angle = scattered_angles(drive, len(orders))
     opposing = _opposing(drive)
     torque, spectra = [], list[Spectrum]()
@@ -126,6 +126,28 @@ def wind_up(drive: Drive, model: Reducer, largest: float, advance: Callable[[int
         turns=drive.pin_wheel.number_of_pins,
         positions=angle.size,
     )
+
+
+def wind_up_orders(drive: Drive) -> tuple[Order, ...]:
+    """Return the orders that are fitted: `known_orders`, and with rollers that pass flank and holes, ascending.
+
+    Rollers bend the same contacts as the flank and the holes, so that sums and differences of their orders show as well; those
+    less than an order apart from others over all turns are left out, since positions could not tell them apart.
+    """
+    found, turns = list(known_orders(drive, harmonics=HARMONICS)), drive.pin_wheel.number_of_pins
+    passage = next((order.value for order in found if order.name.startswith("roller passage, 1 ")), 0.0)
+    orders: list[Order] = []
+    beside = [(multiple * drive.disc.number_of_teeth, f"{multiple} z_C") for multiple in (1, 2)]
+    if holes := drive.number_of_holes:
+        beside.append((holes, "z_PS"))
+        orders.append(Order(float((HARMONICS + 1) * holes), f"pin holes, {HARMONICS + 1} z_PS"))
+    for value, name in beside:
+        orders.append(Order(abs(value - passage), f"rollers past {name}, difference"))
+        orders.append(Order(value + passage, f"rollers past {name}, sum"))
+    for order in orders:
+        if all(abs(order.value - other) * turns > 0.99 for other in (0.0, *(one.value for one in found))):
+            found.append(order)
+    return tuple(sorted(found))
 
 
 def scattered_angles(drive: Drive, orders: int, by_unknown: int = POSITIONS_PER_UNKNOWN) -> FloatArray:
