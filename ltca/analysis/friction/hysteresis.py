@@ -25,6 +25,10 @@ LEAST_TORQUE_RATIO = 1e-4
 """Smallest torque relative to the largest: at zero the discs would float."""
 
 
+LONGEST_EXTRAPOLATION = 3.0
+"""Step of the torque by the one before, up to which poses are extrapolated to start from."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HysteresisLoop:
     """Closed loop of the output between the same torque either way, input locked.
@@ -95,12 +99,22 @@ def locked_path(
     state = StickingFriction.at_rest(friction, smooth, found)
     wound = [wheel_angle_of_input(model, found)]
     advance(angles.size)
-    for before, value in pairwise(path):
+    gone = np.zeros_like(found.pose)
+    for place, (before, value) in enumerate(pairwise(path), start=1):
+        # While the torque goes on the same way under the same contacts so do the bodies.
+        part = (value - before) / (before - path[place - 2]) if place > 1 and before != path[place - 2] else 0.0
+        goes_on = 0.0 < part < LONGEST_EXTRAPOLATION and before * value > 0.0 and path[place - 2] * before > 0.0
+        rubbed, pose = replace(model, friction=state), found.pose
+        moment = found.wheel_moment * (value / before) if before * value > 0.0 else None
+        ahead = pose + (part * gone if goes_on else 0.0)
         try:
-            found = solve_at_output(replace(model, friction=state), [drive], angles, float(value), found.pose)
+            found = solve_at_output(rubbed, [drive], angles, float(value), ahead, wheel_moment=moment)
         except ConvergenceError as error:
-            error.add(f"torque path from {before:g} to {value:g} N·mm")
-            raise
+            if not goes_on:
+                error.add(f"torque path from {before:g} to {value:g} N·mm")
+                raise
+            found = solve_at_output(rubbed, [drive], angles, float(value), pose)
+        gone = found.pose - pose
         state = state.after(model, found)
         wound.append(wheel_angle_of_input(model, found))
         advance(angles.size)

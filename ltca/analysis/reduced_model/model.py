@@ -72,11 +72,14 @@ WEIGHT_HARMONICS = 4
 OTHER_ANGLES = 12
 """Crank angles besides, of loops and of the path that they are not fitted to."""
 OTHER_PATH = (
-    0.01, 0.05, 0.15, 0.3, 0.45, 0.62, 0.8, 0.7, 0.6, 0.47, 0.35, 0.55, 0.68, 0.8, 0.65, 0.5, 0.3, 0.12, 0.05, 0.02, 0.01,
-    -0.01, -0.02, -0.05, -0.12, -0.25, -0.4, -0.55, -0.7, -0.6, -0.5, -0.35, -0.2, -0.09, -0.04, -0.01,
-    0.01, 0.03, 0.08, 0.2, 0.35, 0.5,
+    0.01, 0.03, 0.08, 0.15, 0.22, 0.3, 0.38, 0.46, 0.54, 0.62, 0.71, 0.8, 0.75, 0.7, 0.65, 0.6, 0.53, 0.47, 0.41, 0.35,
+    0.42, 0.49, 0.55, 0.62, 0.68, 0.74, 0.8, 0.76, 0.72, 0.68, 0.63, 0.57, 0.5, 0.4, 0.3, 0.2, 0.12, 0.05, 0.01,
+    -0.01, -0.03, -0.08, -0.15, -0.22, -0.3, -0.4, -0.5, -0.6, -0.7, -0.65, -0.6, -0.5, -0.4, -0.3, -0.2, -0.1, -0.03, -0.01,
+    0.01, 0.03, 0.08, 0.15, 0.22, 0.3, 0.4, 0.5,
 )  # fmt: skip
-"""That path, by the largest torque: reversals within the loop; its zero is passed at 1e-4."""
+"""That path, by the largest torque: reversals within the loop. Its steps are small: contacts that open or slip within a step are
+taken as at its end, and with steps twice as long the wind-up of the analysis itself differs by 0.01′ (of robot-joint with friction
+0.05 after a reversal), as much as the law does."""
 CHECKED_PARTS = (2e-3, 0.02, 0.08, 0.21, 0.43, 0.68, 0.94)
 """Torques without friction between those of the table, by the largest one, either way."""
 LEAST_TOLD = 1e-3
@@ -338,7 +341,7 @@ def _with_elements(
     up = np.array(LOOP_PARTS)
     once = np.concatenate([-up[::-1], up])
     loop = np.concatenate([[LEAST_TORQUE_RATIO], up, once[::-1][1:], once[1:]])
-    other = np.array([part or LEAST_TORQUE_RATIO for part in (LEAST_TORQUE_RATIO, *OTHER_PATH)])
+    other = np.array([LEAST_TORQUE_RATIO, *OTHER_PATH])
     angles = scattered_by(drive, LOOP_ANGLES + OTHER_ANGLES)
     fitted_to, beside = angles[:LOOP_ANGLES], angles[LOOP_ANGLES:]
     of_loops = locked_path(drive, angles, found.largest * loop, engine=found.engine, advance=advance)

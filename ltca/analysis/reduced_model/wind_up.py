@@ -102,11 +102,12 @@ def wind_up(drive: Drive, model: Reducer, largest: float, advance: Callable[[int
     for way in (1.0, -1.0):
         errors = np.empty((len(TORQUE_PARTS), angle.size))
         for rows in np.array_split(np.arange(angle.size), -(-angle.size // positions_together(drive))):
-            start = None
+            start, moment = None, None
             for place in range(len(TORQUE_PARTS) - 1, -1, -1):
                 load = way * largest * TORQUE_PARTS[place]
-                found = solve_at_output(model, [drive], angle[rows], load, start)
+                found = solve_at_output(model, [drive], angle[rows], load, start, wheel_moment=moment)
                 start = found.pose
+                moment = found.wheel_moment * (TORQUE_PARTS[place - 1] / TORQUE_PARTS[place])
                 errors[place, rows] = drive.output_deviation(wheel_angle_of_input(model, found), load)
                 advance(rows.size)
         torque += [opposing * way * largest * part for part in TORQUE_PARTS]

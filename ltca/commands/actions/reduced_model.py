@@ -30,8 +30,10 @@ def reduce_and_write(kind: str, drive: Drive, engine: Engine, name: str, out: Pa
         found = reduce_drive(drive, engine, lambda size: advance(drive.case, size))
     remarks = write_simulator(kind, {"name": name, **found.content}, out)
     print("\n".join(_lines(found)))
-    if (part := _part_of_range(found)) > WIDE_FIT:
-        told = f"error of the fit beyond {WIDE_FIT:g} %: {part:.3g} % of the torque range"
+    single, mean = (_part_of_range(found, torque) for torque in (found.worst.torque, found.worst.mean_torque))
+    if single > WIDE_FIT:
+        told = f"error of the fit beyond {WIDE_FIT:g} %: {single:.3g} % of the torque range at single crank angles"
+        told += f", {mean:.2g} % of their mean"
         print(f"warning: {told}; simulate with the model only what may be off by that much", file=sys.stderr)
     for remark in remarks:
         print(f"  {remark}")
@@ -63,12 +65,14 @@ def _lines(found: ReducedModel) -> list[str]:
     else:
         lines.append("  neither hysteresis nor friction: the drive file has no [friction]")
     lines.append(
-        f"  error of the fit at {worst.points} points: {_part_of_range(found):.3g} % of the torque range, "
-        f"{worst.angle * ARCMIN:.2g}′"
+        f"  error of the fit at {worst.points} points: {_part_of_range(found, worst.torque):.3g} % of the torque range, "
+        f"{worst.angle * ARCMIN:.2g}′; of the mean over crank angles {_part_of_range(found, worst.mean_torque):.2g} %, "
+        f"{worst.mean_angle * ARCMIN:.2g}′, scatter over them {_part_of_range(found, worst.scatter_torque):.2g} %, "
+        f"{worst.scatter_angle * ARCMIN:.2g}′"
     )
     return lines
 
 
-def _part_of_range(found: ReducedModel) -> float:
-    """Largest error of the fit in torque, % of the range from one end of the tables to the other."""
-    return 50.0 * found.worst.torque / found.largest
+def _part_of_range(found: ReducedModel, torque: float) -> float:
+    """Error of the fit, N·mm, in % of the range from one end of the tables to the other."""
+    return 50.0 * torque / found.largest
