@@ -254,6 +254,7 @@ def largest_speed(drive: Drive) -> float | None:
 
 def positions_of(drive: Drive) -> int:
     """Return how many positions are solved for a reduced model, those of the strength factor counted in."""
+    drive = warm_drive(drive)
     found = 2 * len(WIND_UP_PARTS) * scattered_angles(drive, len(wind_up_orders(drive))).size
     if drive.friction is None:
         return found
