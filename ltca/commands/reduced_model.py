@@ -67,7 +67,9 @@ def export_model(arguments: argparse.Namespace) -> int:
     own, drive = model_name(file.name, name), file.cases[name]
     if arguments.speed is not None:
         if drive.duty:
-            raise DriveError([f"--speed {arguments.speed:g} rpm: has no effect beside [[duty]], whose largest speed counts"])
+            raise DriveError(
+                [f"--speed {arguments.speed:g} rpm: has no effect beside [[duty]], whose largest speed counts"]
+            )
         drive = drive.with_fields({"load.speed": arguments.speed})
     check_drive(arguments.simulator, drive)
     engine = lending_between(file.cases.values(), compliance_of(arguments, cases.values()))

@@ -334,9 +334,7 @@ def _error_without_friction(found: ReducedModel) -> FitError:
     return _along(law_of(found), CHECKED_ANGLES, wound.reshape(shape), _way(drive) * load, found.largest)
 
 
-def _with_elements(
-    found: ReducedModel, advance: Callable[[int], None]
-) -> tuple[ReducedModel, dict[str, FitError]]:
+def _with_elements(found: ReducedModel, advance: Callable[[int], None]) -> tuple[ReducedModel, dict[str, FitError]]:
     """Fit the elements to loops with the input locked; compare with these and with another path."""
     drive, way = found.drive, _way(found.drive)
     up = np.array(LOOP_PARTS)
@@ -375,9 +373,7 @@ def _with_elements(
     }
 
 
-def _strength_factor(
-    found: ReducedModel, orders: tuple[Order, ...], advance: Callable[[int], None]
-) -> StrengthFactor:
+def _strength_factor(found: ReducedModel, orders: tuple[Order, ...], advance: Callable[[int], None]) -> StrengthFactor:
     """Factor of the crank angle by what friction holds after the largest torque has come slowly, either way."""
     drive, law, way = found.drive, law_of(found), _way(found.drive)
     around = scattered_angles(drive, len(orders), FACTOR_POSITIONS)

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ltca.analysis.memory_need import positions_together
-from ltca.analysis.transmission_error_orders import Order, Spectrum, fit_orders, known_orders
+from ltca.analysis.transmission_error_orders import Order, Spectrum, fit_several, known_orders
 from ltca.arrays import FloatArray
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import ARCMIN
@@ -25,7 +25,7 @@ TORQUE_PARTS = (1e-4, 0.003, 0.01, 0.03, 0.06, 0.1, 0.17, 0.25, 0.37, 0.5, 0.62,
 """Torques of the table by the largest one, either way; at the first bodies yield 1e-4 of what they do at the last."""
 HARMONICS = 3
 """Multiples of each origin of an order; what higher ones do is told with the residual."""
-POSITIONS_PER_UNKNOWN = 3
+POSITIONS_PER_UNKNOWN = 4
 """Positions for each cosine, sine and mean that is fitted."""
 GOLDEN = 0.5 * (5.0**0.5 - 1.0)
 """Step by which positions go on, modulo one, over all turns: no order looks like another at them."""
@@ -111,7 +111,7 @@ def wind_up(drive: Drive, model: Reducer, largest: float, advance: Callable[[int
                 errors[place, rows] = drive.output_deviation(wheel_angle_of_input(model, found), load)
                 advance(rows.size)
         torque += [opposing * way * largest * part for part in TORQUE_PARTS]
-        spectra += [fit_orders(angle, row, orders) for row in errors]
+        spectra += fit_several(angle, errors, orders)
     along = np.argsort(torque)
     amplitude = np.array([spectra[place].amplitude for place in along]).T
     phase = np.array([spectra[place].phase for place in along]).T

@@ -56,7 +56,9 @@ def reduce_and_write(kind: str, drive: Drive, engine: Engine, name: str, out: Pa
         def solved(size: int) -> None:
             advance(drive.case, size)
             if seconds := expected.after(size):
-                print(f"the model takes {told_seconds(seconds)} in all ({total} positions)", file=sys.stderr, flush=True)
+                print(
+                    f"the model takes {told_seconds(seconds)} in all ({total} positions)", file=sys.stderr, flush=True
+                )
 
         found = reduce_drive(drive, engine, solved)
     remarks = write_simulator(kind, {"name": name, **found.content}, out)

@@ -52,7 +52,9 @@ def test_the_order_at_which_release_goes_with_the_crank_angle_is_found():
 
 def test_each_flank_has_elements_of_its_own():
     """Friction that holds twice as much on one flank, and lets go later there, is found on that flank alone."""
-    path = RATED * np.concatenate([np.linspace(0.0, 1.0, 21), np.linspace(1.0, -1.0, 41)[1:], np.linspace(-1.0, 1.0, 41)[1:]])
+    path = RATED * np.concatenate(
+        [np.linspace(0.0, 1.0, 21), np.linspace(1.0, -1.0, 41)[1:], np.linspace(-1.0, 1.0, 41)[1:]]
+    )
     early, late = (wedge(path, STRENGTH * (1.0 + back) / (1.0 - back)) for back in (0.92, 0.7))
     beside = np.where(path > 0.0, 2.0 * early, late)
     found = fit_elements([path], [path + beside], RATED, [(1.0, 1.0)])

@@ -157,7 +157,9 @@ def test_play_lies_where_the_analysis_has_it_and_torques_push_back(folder, table
         for name, (on_input, on_output) in held_by_every_format(folder, tables, crank_angle, wound).items():
             # A tenth of the mean spring: contacts at their first touch are softer. Within, the light torque alone is there.
             least = 0.1 * stiffness * BESIDE
-            assert back * on_output > least if back else abs(on_output) < 1e-3 * tables["limits"]["rated_torque_N_m"], name
+            assert back * on_output > least if back else abs(on_output) < 1e-3 * tables["limits"]["rated_torque_N_m"], (
+                name
+            )
             # Turned together by dφ and dφ/i nothing is wound up: T_in dφ + T_out dφ/i = 0.
             assert on_input == pytest.approx(-on_output / tables["transmission_ratio"], abs=1e-9), name
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import shutil
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -358,6 +359,31 @@ def test_spring_of_the_mjcf_alone(folder, tables):
     # Both ways have one stiffness, the mean of two that differ by less than 1e-3 of a drive without errors.
     assert -data.qfrc_passive[1] == pytest.approx(rated, rel=1e-3)
     assert data.qfrc_passive[0] == pytest.approx(rated / tables["transmission_ratio"], rel=1e-3)
+
+
+def test_fmu_of_a_printed_drive_follows_the_loop_of_a_mean_crank_angle(tmp_path):
+    """With five pins and friction 0.1 single contacts show at each crank angle, which the law holds to its scatter alone.
+
+    Over the crank angles the difference must vanish within the 2 % that are asked of the fit. 24 angles that the elements were
+    not fitted at; at a scatter of 2.6 % their mean is known to 0.5 %.
+    """
+    file = load_drive(Path(__file__).parents[4] / "examples" / "drives" / "plastic.toml")
+    printed = file.cases["aligned"].with_fields({"friction": {"pin": 0.1, "hole": 0.1}})
+    tables = {"name": "joint", **reduce_drive(printed, HalfSpace()).content}
+    write_simulator("fmu", tables, tmp_path)
+    angles = 2.0 * np.pi * 5.0 * (np.arange(24) + 0.37) / 24.0
+    torque = printed.load.torque * np.array([LIGHT, *loaded_path()])
+    wound = locked_path(printed, angles, torque, engine=HalfSpace())
+    unit, held = Unit(tmp_path, tables["crank_turns_per_input_turn"]), []
+    for crank_angle, path in zip(angles, wound, strict=True):
+        unit.begin(crank_angle)
+        held.append([unit.torque_at(one) for one in path])
+    expected = torque / (1e3 if printed.wheel_is_held else -1e3)
+    off = (np.array(held) - expected) / (2.0 * printed.load.torque / 1e3)
+    assert np.max(np.abs(off.mean(axis=0))) < 0.02
+    told = tables["fit_error"]["worst"]
+    # Scatter is told: that of other angles is one sample of it.
+    assert np.max(off.std(axis=0)) < 1.5 * told["scatter_over_crank_angle_part_of_torque_range"]
 
 
 def test_the_drive_without_friction_has_no_loop(drive):
