@@ -79,12 +79,12 @@ class Row:
     @property
     def passed(self) -> bool:
         """Whether the difference is within the limit; NaN is not."""
-        return self.limit is None or abs(self.difference) <= self.limit
+        return self.limit is None or bool(abs(self.difference) <= self.limit)
 
     @property
     def below_error_bar(self) -> bool | None:
         """Whether the difference is smaller than the error bar of the reference, so that it says nothing of the model."""
-        return None if self.error_bar is None else abs(self.difference) < self.error_bar
+        return None if self.error_bar is None else bool(abs(self.difference) < self.error_bar)
 
     def content(self) -> dict[str, Any]:
         """Return the row as `validation.json` holds it."""

@@ -657,7 +657,7 @@ def require_preload(
     """
     found = free_play(discs, crank_angle)
     stage = StageMesh.of_drive(drive)
-    play = found.play if stage is None else found.play + stage.play
+    play = found.play if stage is None else found.play + stage.play(crank_angle)
     loose = np.flatnonzero(~(found.preloaded & (play * drive.reduction_ratio < HELD_PLAY)))
     if not loose.size:
         return

@@ -16,7 +16,7 @@ from ltca.analysis.results import case_arrays
 from ltca.arrays import FloatArray, batch_layout, stack_drives, take_rows
 from ltca.drive.units.quantities import ARCMIN, ARCSEC
 from ltca.dynamics.mass_values import NAMES as OF_MASSES, mass_values
-from ltca.equilibrium.output_angle import play_of_input
+from ltca.equilibrium.output_angle import play_before_cranks
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.first_contact import backlash, interference
@@ -228,7 +228,8 @@ def _unloaded(analyses: Sequence[LoadedAnalysis]) -> list[dict[str, float]]:
 def _plays(analyses: Sequence[LoadedAnalysis], near: TurnPlay | None = None) -> list[dict[str, float]]:
     """Free play of the output with every clearance over a turn: the largest, which is what is judged, and the least."""
     try:
-        found = plays_over_a_turn([analysis.model.geometries for analysis in analyses], near)
+        before = [partial(play_before_cranks, analysis.model) for analysis in analyses]
+        found = plays_over_a_turn([analysis.model.geometries for analysis in analyses], near, before)
     except ConvergenceError:
         if len(analyses) > 1:
             raise
@@ -236,10 +237,7 @@ def _plays(analyses: Sequence[LoadedAnalysis], near: TurnPlay | None = None) -> 
             dict.fromkeys(FREE_PLAY, np.nan)
         ]  # nothing stops the wheel, or no pose was found: there is no play to tell
     scales = [abs(analysis.drive.output_per_wheel_angle) * ARCMIN for analysis in analyses]
-    plays = [
-        scale * play_of_input(analysis.model, np.array([play.largest, play.least]))
-        for analysis, scale, play in zip(analyses, scales, found, strict=True)
-    ]
+    plays = [scale * np.array([play.largest, play.least]) for scale, play in zip(scales, found, strict=True)]
     return [
         dict(zip(FREE_PLAY, (*play.tolist(), turn.preloaded), strict=True))
         for play, turn in zip(plays, found, strict=True)

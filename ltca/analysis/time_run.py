@@ -446,7 +446,7 @@ def prepare_run(drive: Drive, engine: Engine, course: Course) -> PreparedRun:
     ------
     DriveError
         For what a run in time leaves out, by name: contacts in slices, teeth or outside forces that press on parts that yield,
-        drag of seals and oil, parts without mass, an input of no inertia that a torque drives, a torque of zero.
+        eccentric teeth, drag of seals and oil, parts without mass, an input of no inertia that a torque drives, a torque of zero.
     ConvergenceError
         Where no balanced state is found to start from.
     """
@@ -531,6 +531,11 @@ def _require_supported(drive: Drive, model: Reducer, course: Course) -> None:
     if model._teeth_press:
         problems.append(
             "first_stage: its teeth press on cranks or main bearing that yield, which a run in time leaves out"
+        )
+    if model.stage is not None and model.stage.runs_out:
+        problems.append(
+            "first_stage.sun_runout, first_stage.planet_runout: a run in time leaves out teeth that stand off their axes, "
+            "by which cranks turn apart; must be 0"
         )
     if model.external is not None:
         problems.append("external_force: a run in time leaves out forces from outside on the output")

@@ -23,7 +23,7 @@ from ltca.arrays import FloatArray
 from ltca.drive.parts import Drive
 from ltca.drive.unit_mistakes import names_unit_mistakes
 from ltca.drive.yielding_parts import YieldingParts, yielding_parts
-from ltca.equilibrium.output_angle import play_of_input, wheel_angle_of_input
+from ltca.equilibrium.output_angle import play_before_cranks, wheel_angle_of_input
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError, DriveError
@@ -169,7 +169,8 @@ def torque_curve(
         torque=torque,
         wheel_angle=wheel,
         output_angle=output,
-        backlash=abs(drive.output_per_wheel_angle) * play_of_input(tables, _play(tables, drive, angles)),
+        backlash=abs(drive.output_per_wheel_angle)
+        * (_play(tables, drive, angles) + play_before_cranks(tables, angles)),
         lost_motion=at(lost_motion) - at(-lost_motion) if loop is None else loop.lost_motion,
         stiffness=stiffness(of_stage),
         reducer_stiffness=stiffness(output),

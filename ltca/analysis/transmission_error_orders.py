@@ -2,7 +2,8 @@ r"""Orders of the transmission error by name, fitted together.
 
 Orders are counted per turn of the crank. Everything in a cycloid drive comes from a few motions: the crank (1), the
 loaded zone past the teeth of the flank (z_C), past the holes (z_PS), past single pins of the wheel, which turns on by
-1/z_P a turn (z_C/z_P), and past the rollers of the cage (1 − c with the cage speed c; n_BR (1 − c) for equal rollers).
+1/z_P a turn (z_C/z_P), and past the rollers of the cage (1 − c with the cage speed c; n_BR (1 − c) for equal rollers). The sun
+of a first stage turns z₂/z₁ times against the carrier; its order is known where its teeth or those of the planets run out.
 The true period of all of them is long (98 turns for the rollers of the paper's drive), so the known orders are fitted
 by least squares in place of a Fourier transform over a period.
 """
@@ -99,6 +100,11 @@ def known_orders(drive: Drive, *, harmonics: int = 4) -> tuple[Order, ...]:
         names.append(Order(float(flank + side), f"flank {side:+d}, z_C {side:+d}"))
         names.append(Order(flank + side * cage, f"flank {side:+d} cage"))
         names.append(Order(flank + side * flank / pins, f"flank {side:+d} wheel pins"))
+    stage = drive.first_stage
+    if stage is not None and stage.runs_out:
+        # The sun turns so often against the carrier; shares of the cranks, which weight it, turn with them.
+        names += [Order(stage.ratio, "sun, z₂/z₁")]
+        names += [Order(abs(stage.ratio + side), f"sun {side:+d} crank") for side in (-2, -1, 1, 2)]
     found: list[Order] = []
     for order in names:
         if order.value > 0.0 and all(abs(order.value - other.value) > 1e-9 for other in found):

@@ -179,6 +179,7 @@ def element_count(drive: Drive, path: str) -> int | None:
         "disc.hole_errors": drive.number_of_holes,
         "pin_shaft.pin_errors": drive.number_of_holes,
         "disc.of.0.bore_errors": drive.crank.number,
+        "first_stage.planet_runout": drive.crank.number,
         "crank.support": 2,
         "carrier": 2,
         "crank_bearing.roller_errors": drive.crank_bearing.number_of_rollers,

@@ -17,6 +17,12 @@ them (`ltca.equilibrium.supports`). By virtual work the same matrices give displ
 The teeth of the sun stand still while the input is held. Cranks turn together, so the crank lags behind its ideal angle by the
 mean over all cranks of what the mesh yields, :math:`T/c r_b^2`, of what the crank gives way at the planet, and of half the
 backlash, on the side to which the moments turn. The wheel follows by 1/u of that.
+
+Teeth that stand off their axes, those of a planet by :math:`d_c`, which turns with the crank, and those of the sun by
+:math:`d_s`, which turns with the input, mesh along a line of action that they displace: involutes turn the planet by the part
+of :math:`d_c - d_s` along it, over r_b, and by nothing else of first order. Every planet sees the sun from another side. What
+cranks that turn apart by such angles turn the wheel by is their mean weighted by what each takes of a little more torque
+(`ltca.equilibrium.output_angle.shares_of_cranks`).
 """
 
 from __future__ import annotations
@@ -30,6 +36,7 @@ from ltca.drive.parts import Drive
 from ltca.equilibrium.supports import crank_springs, journals
 from ltca.geometry.coordinates import Coordinates
 from ltca.geometry.placement import BatchScalar
+from ltca.geometry.rotation import unit
 from ltca.laws.beam import shaft_flexibility, support_parts
 
 
@@ -96,6 +103,12 @@ class StageMesh:
         Whether cranks yield, or the far flange in which they stand.
     carried : bool
         Whether the carrier is the output, which the main bearing holds against what the sun presses on its planets.
+    sun_turns : float
+        Turns of the sun against the carrier by one of the cranks, −z₂/z₁.
+    sun_runout : array of complex, shape (1,)
+        d_s at crank angle zero, mm.
+    planet_runout : array of complex, shape (cranks,)
+        d_c there, mm.
     """
 
     pitch_radius: BatchScalar = by_drive(0)
@@ -113,6 +126,9 @@ class StageMesh:
     on_supports: FloatArray = by_drive(2)
     yields: bool
     carried: bool
+    sun_turns: float
+    sun_runout: ComplexArray = by_drive(1)
+    planet_runout: ComplexArray = by_drive(1)
 
     @classmethod
     def of_drive(cls, drive: Drive) -> StageMesh | None:
@@ -166,12 +182,40 @@ class StageMesh:
             on_supports=on_supports,
             yields=support is not None or on_posts,
             carried=drive.wheel_is_held,
+            sun_turns=-stage.ratio,
+            sun_runout=stage.sun_runout.amount * unit(np.array([stage.sun_runout.angle])),
+            planet_runout=np.array(stage.planet_runout.places(drive.crank.number)),
         )
 
     @property
-    def play(self) -> BatchScalar:
-        """Free play of the wheel by the backlash of the teeth, both ways, rad."""
-        return 2.0 * self.half_free / abs(self.reduction_ratio)
+    def runs_out(self) -> bool:
+        """Whether teeth stand off their axes, in any drive of a batch."""
+        return bool(np.any(self.sun_runout) or np.any(self.planet_runout))
+
+    def play(self, crank_angle: FloatArray) -> FloatArray:
+        """Return the free play of the wheel by the backlash of the teeth, both ways, rad, shape (positions,).
+
+        Eccentricities open and close the meshes; the wheel has the mean of them, as where its cranks share the torque evenly.
+        """
+        free = np.asarray(2.0 * self.half_free / abs(self.reduction_ratio))
+        if not self.runs_out:
+            return np.broadcast_to(free.reshape(-1) if free.ndim else free, crank_angle.shape)
+        apart = (self.outward.conjugate() * self._stands_off(crank_angle)).real.mean(axis=-1)
+        opened = 2.0 * np.squeeze(self.separating / self.pitch_radius) * apart / abs(self.reduction_ratio)
+        return np.asarray(np.squeeze(free) + opened)
+
+    def _stands_off(self, crank_angle: FloatArray) -> ComplexArray:
+        """Displacement of the teeth of every planet against those of the sun by their runout, mm, shape (positions, cranks)."""
+        planets = self.planet_runout * unit(crank_angle)[:, None]
+        return np.asarray(planets - self.sun_runout * unit(self.sun_turns * crank_angle)[:, None])
+
+    def lag_by_runout(self, crank_angle: FloatArray, sense: FloatArray) -> FloatArray:
+        """Return the angle by which every crank lags behind the held sun by eccentricities, rad, shape (positions, cranks).
+
+        `sense` is that of the moments that hold the cranks, shape (positions,), by which one flank or the other touches.
+        """
+        pushed = self._slope(np.broadcast_to(sense[:, None], (sense.size, self.outward.shape[-1])))[0]
+        return np.asarray((pushed.conjugate() * self._stands_off(crank_angle)).real)
 
     def forces(self, moments: FloatArray) -> MeshForces:
         """Return the forces at moments that hold the cranks, ccw positive, N·mm, shape (positions, cranks)."""
@@ -241,14 +285,18 @@ class StageMesh:
             moved = moved + np.matmul(given, self.by_bearings)
         return np.asarray(moved + np.matmul(self.on_planets(moments)[0], np.swapaxes(self.own, -1, -2)))
 
-    def crank_lag(self, moments: FloatArray, displaced: ComplexArray | None = None) -> FloatArray:
+    def crank_lag(
+        self, moments: FloatArray, displaced: ComplexArray | None = None, runout: FloatArray | None = None
+    ) -> FloatArray:
         """Return the angle of the cranks less the one that the held sun gives rigid teeth without play, rad, shape (positions,).
 
-        `displaced` is that of the cranks at their planets; None where nothing there yields.
+        `displaced` is that of the cranks at their planets, `runout` what eccentricities add, rad, shape (positions,); None where
+        there is none.
         """
         each = self.twist * moments
         if displaced is not None:
             each = each + (self.on_planets(moments)[1].conjugate() * displaced).real.sum(axis=-1)
         total = moments.sum(axis=1)
         free = np.sign(total)[:, None] * self.half_free
-        return np.asarray(-(each.mean(axis=1) + np.broadcast_to(free, (total.size, 1))[:, 0]))
+        lag = each.mean(axis=1) + np.broadcast_to(free, (total.size, 1))[:, 0]
+        return np.asarray(-(lag if runout is None else lag + runout))

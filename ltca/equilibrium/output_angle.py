@@ -1,18 +1,29 @@
-"""The angle of the wheel with the input held, and its free play: what stands before the cranks added to the cycloid stage.
+r"""The angle of the wheel with the input held, and its free play: what stands before the cranks added to the cycloid stage.
 
 The cranks are where the analysis holds them. Between them and the input lies the first stage; by what its teeth yield and are
 free to turn, the cranks turn while the input is held, and the wheel by 1/u of it. Whatever else lies between input and output
 and yields or has play joins here, and every transmission error, wind-up, lost motion and backlash has it.
+
+Eccentric teeth turn each crank by an angle of its own. What the wheel turns by that follows from the energy E of everything that
+yields, as a function of the torque at the wheel and of the angles φ_c of the cranks: :math:`w = \partial E/\partial T`,
+:math:`T_c = \partial E/\partial \varphi_c`, so :math:`\partial w/\partial\varphi_c = \partial T_c/\partial T` (Maxwell's
+reciprocity). A crank counts by what it takes of a little more torque, not by the torque that it carries.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from ltca.arrays import FloatArray
-from ltca.equilibrium.balance import Equilibrium
+from ltca.arrays import FloatArray, take_positions
+from ltca.compliance.response import Start
+from ltca.equilibrium.balance import Equilibrium, lever_arms
 from ltca.equilibrium.reducer import Reducer
 from ltca.geometry.coordinates import WHEEL_ANGLE
+
+LITTLE_MORE = 1e-3
+"""More torque, by that of all pins, at which shares of cranks are taken: over it they change by some 1e-4 of a part."""
+FLOATS = 1e-9
+"""Stiffness by the largest one, as forces at the pitch circles, below which nothing holds a motion."""
 
 
 def crank_lag(model: Reducer, found: Equilibrium) -> FloatArray:
@@ -20,13 +31,50 @@ def crank_lag(model: Reducer, found: Equilibrium) -> FloatArray:
     if model.stage is None:
         return np.zeros(found.crank_angle.shape)
     moments = model.crank_moments(found.crank_angle, found.pose, found.response.parts)
-    displaced = None
+    displaced, runout = None, None
     if model.stage.yields:
         carried, given = model.stage.beside_discs(model.stage.on_planets(moments)[0]), None
         if model.supports is not None:
             given = model.supports.given(found.pose, carried)
         displaced = model.stage.displaced(moments, found.pose, given)
-    return model.stage.crank_lag(moments, displaced)
+    if model.stage.runs_out:
+        each = model.stage.lag_by_runout(found.crank_angle, np.sign(moments.sum(axis=1)))
+        runout = (shares_of_cranks(model, found, moments) * each).sum(axis=1)
+    return model.stage.crank_lag(moments, displaced, runout)
+
+
+def shares_of_cranks(model: Reducer, found: Equilibrium, moments: FloatArray) -> FloatArray:
+    """Return what each crank takes of a little more torque at the wheel, parts of one, shape (positions, cranks).
+
+    By a difference of the moments along the motion that the torque makes; not a number where a position has no answer.
+
+    Parameters
+    ----------
+    model : Reducer
+        That balanced the positions.
+    found : Equilibrium
+        Balanced positions.
+    moments : array, shape (positions, cranks)
+        Moments that hold the cranks there, N·mm.
+    """
+    response, shares = found.response, np.full(moments.shape, np.nan)
+    rows = np.nonzero(np.isfinite(response.tangent).all(axis=(1, 2)) & np.isfinite(moments).all(axis=1))[0]
+    if not rows.size:
+        return shares
+    arms = np.broadcast_to(lever_arms(model), found.pose.shape)[rows]
+    own, angle, pose = model.take(rows), found.crank_angle[rows], found.pose[rows]
+    response = take_positions(response, rows)
+    scaled = response.tangent / (arms[:, :, None] * arms[:, None, :])
+    # What floats without load moves no crank: the least motion of all.
+    motion = np.linalg.pinv(scaled, rcond=FLOATS)[:, :, WHEEL_ANGLE] / arms / arms[:, WHEEL_ANGLE, None]
+    pressed = np.abs(response.flank.gradient[:, :, WHEEL_ANGLE] * response.pin_load)
+    sense = np.where(found.wheel_moment[rows] < 0.0, -1.0, 1.0)  # more of what is there, in both directions
+    step = (LITTLE_MORE * sense * pressed.sum(axis=1))[:, None]
+    moved = pose + step * motion
+    after = own.respond(angle, moved, Start.after(response))
+    more = own.crank_moments(angle, moved, after.parts) - moments[rows]
+    shares[rows] = more / more.sum(axis=1, keepdims=True)
+    return shares
 
 
 def wheel_angle_of_input(model: Reducer, found: Equilibrium) -> FloatArray:
@@ -35,9 +83,6 @@ def wheel_angle_of_input(model: Reducer, found: Equilibrium) -> FloatArray:
     return wheel if model.stage is None else wheel + crank_lag(model, found) / model.stage.reduction_ratio
 
 
-def play_of_input(model: Reducer, play: FloatArray) -> FloatArray:
-    """Return the free play of the wheel with the input held from that with the cranks held, rad, any shape for one drive.
-
-    Of a batch of drives the positions are the first axis.
-    """
-    return play if model.stage is None else play + np.squeeze(model.stage.play)
+def play_before_cranks(model: Reducer, crank_angle: FloatArray) -> FloatArray:
+    """Return the free play of the wheel by what lies between input and cranks, rad, shape (positions,)."""
+    return np.zeros(crank_angle.shape) if model.stage is None else model.stage.play(crank_angle)

@@ -24,7 +24,7 @@ parts leave, none where the overlapping ones hold the wheel. Displacements beyon
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -90,6 +90,10 @@ REFINED_PLACES = np.array([-0.75, -0.5, -0.25, 0.25, 0.5, 0.75])
 """Places of the further positions, by the mean distance of positions in the first round."""
 
 
+PlayBefore = Callable[[FloatArray], FloatArray]
+"""Play of the wheel that something adds at crank angles, both in rad."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Play:
     """Free play of the wheel at held crank angles.
@@ -146,17 +150,23 @@ def preload_words(part: float) -> str:
     return f"preloaded over {100.0 * part:.0f} % of the turn" if part else ""
 
 
-def play_over_a_turn(discs: Sequence[ContactGeometry]) -> TurnPlay:
+def play_over_a_turn(discs: Sequence[ContactGeometry], before: PlayBefore | None = None) -> TurnPlay:
     """Return the largest and the least free play of the wheel over one turn of the crank; `discs` are all those of one drive.
+
+    `before` is the play that what stands before the cranks adds at crank angles, rad.
 
     Flank, holes and rollers have different periods: equally spaced positions would see few phases of some of them. So they lie
     at multiples of the golden section, with more of them about the largest and the least until these are within some 0.2 %.
     """
-    (found,) = plays_over_a_turn([discs])
+    (found,) = plays_over_a_turn([discs], before=None if before is None else [before])
     return found
 
 
-def plays_over_a_turn(drives: Sequence[Sequence[ContactGeometry]], near: TurnPlay | None = None) -> list[TurnPlay]:
+def plays_over_a_turn(
+    drives: Sequence[Sequence[ContactGeometry]],
+    near: TurnPlay | None = None,
+    before: Sequence[PlayBefore] | None = None,
+) -> list[TurnPlay]:
     """Return the same of several drives, each with its discs, of one `ltca.arrays.batch_layout`: as one batch.
 
     Drives that are nearly one of which the play is known (`near`) have their extremes where that one has, but for a part of the
@@ -168,7 +178,10 @@ def plays_over_a_turn(drives: Sequence[Sequence[ContactGeometry]], near: TurnPla
         """Play and preload at angles of each drive, shape (drives, angles)."""
         rows = np.repeat(np.arange(len(drives)), angle.shape[1])
         found = free_play([take_rows(disc, rows) for disc in stacked], angle.ravel())
-        return found.play.reshape(angle.shape), found.preloaded.reshape(angle.shape)
+        play = found.play.reshape(angle.shape)
+        if before is not None:
+            play = play + np.stack([own(at) for own, at in zip(before, angle, strict=True)])
+        return play, found.preloaded.reshape(angle.shape)
 
     if near is not None:
         places = np.array([near.crank_angle, near.crank_angle_of_least])

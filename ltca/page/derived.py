@@ -10,7 +10,7 @@ from ltca.analysis.verdict.geometry import roller_gap, walls
 from ltca.drive.members.bearings import designation_of
 from ltca.drive.members.named_materials import named_parts
 from ltca.drive.members.temperatures import temperature_words
-from ltca.drive.parts import Drive, PinShaft, PinWheel
+from ltca.drive.parts import Drive, FirstStage, PinShaft, PinWheel
 from ltca.drive.single_discs import equal_parts, single_discs
 from ltca.drive.units.quantities import ARCMIN
 from ltca.dynamics.mass_values import mass_rows
@@ -68,8 +68,8 @@ def _properties(drive: Drive, plays: bool) -> Rows:
 
 def _plays(drive: Drive, geometries: list[ContactGeometry], leverage: float) -> Rows:
     gap = np.stack([-each.flank(position_angles(90), np.zeros((90, 4))).approach for each in geometries])
-    turn, stage = play_over_a_turn(geometries), StageMesh.of_drive(drive)
-    before = 0.0 if stage is None else float(stage.play)
+    stage = StageMesh.of_drive(drive)
+    turn = play_over_a_turn(geometries, None if stage is None else stage.play)
     disc = backlash(geometries[0], position_angles(360), DISC_ROTATION) * ARCMIN
     wheel = backlash(geometries, position_angles(360), WHEEL_ANGLE) * ARCMIN
     at, held = ("the disc", "disc") if len(geometries) == 1 else ("disc 0", "discs")
@@ -81,7 +81,7 @@ def _plays(drive: Drive, geometries: list[ContactGeometry], leverage: float) -> 
                 filter(
                     None,
                     (
-                        f"{leverage * (turn.least + before):z.2f}′ … {leverage * (turn.largest + before):z.2f}′",
+                        f"{leverage * turn.least:z.2f}′ … {leverage * turn.largest:z.2f}′",
                         preload_words(turn.preloaded),
                     ),
                 )
@@ -191,6 +191,21 @@ def _teeth(drive: Drive) -> Rows:
             f"{abs(mesh.axial):.4f} of the tangential force",
         ),
         ("backlash and stiffness of the first stage", f"{stage.backlash:g} mm at the pitch circle, {yields}"),
+        *_runout_of_teeth(stage, distance),
+    ]
+
+
+def _runout_of_teeth(stage: FirstStage, distance: float) -> Rows:
+    """Eccentricities of sun and planets, where there are any."""
+    if not stage.runs_out:
+        return []
+    planets = ", ".join(f"{amount:g}" for amount in stage.planet_runout.amount) or "0"
+    closed = stage.closed_by_runout(distance)
+    return [
+        (
+            "eccentricity of sun; planets",
+            f"{stage.sun_runout.amount:g} mm; {planets} mm, which take up to {closed:.3g} mm of the backlash",
+        )
     ]
 
 

@@ -189,6 +189,24 @@ def _first_stage(drive: Drive) -> Iterator[str]:
         yield (
             f"first_stage.backlash = {stage.backlash:g} mm: must be less than {most:.4g} mm, a quarter of the pitch of the teeth"
         )
+    yield from _runout_of_teeth(stage, crank.number, distance)
+
+
+def _runout_of_teeth(stage: FirstStage, cranks: int, distance: float) -> Iterator[str]:
+    """Problems of the eccentricities of sun and planets, which must not jam the mesh."""
+    runout, path = stage.planet_runout, "first_stage.planet_runout"
+    for name, values in (("amount", runout.amount), ("angle", runout.angle)):
+        if values and len(values) != cranks:
+            yield f"{path}.{name} has {counted(len(values), 'values')}: must have {cranks}, one for each of the planets"
+    closed = stage.closed_by_runout(distance)
+    if closed > stage.backlash:
+        given = {"first_stage.sun_runout.amount": stage.sun_runout.amount}
+        given[f"{path}.amount"] = max(runout.amount, key=abs, default=0.0)
+        named = ", ".join(f"{name} = {value:g} mm" for name, value in given.items() if value)
+        yield (
+            f"first_stage.backlash = {stage.backlash:g} mm: must be at least {closed:.4g} mm beside {named}: teeth that stand "
+            "off their axes close the backlash by 2 tan α_wt of both eccentricities, or they jam"
+        )
 
 
 def _planets_plane(drive: Drive, stage: FirstStage) -> Iterator[str]:

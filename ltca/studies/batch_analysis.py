@@ -17,6 +17,7 @@ from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import explain_failure
 from ltca.equilibrium.balance import Equilibrium
+from ltca.equilibrium.output_angle import play_before_cranks
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.reducer import Reducer, reach_beyond
 from ltca.errors import CycloError, DriveError
@@ -250,7 +251,10 @@ def solve_batch(
         light = solved.balance([drive.load.light_torque for drive in drives], near, known)
     if "backlash" in stages:
         play = backlash(solved.model.geometries, solved.angle, WHEEL_ANGLE)
-    free = free_play(solved.model.geometries, solved.angle).play if "play" in stages else None
+    free = None
+    if "play" in stages:
+        before = play_before_cranks(solved.model, solved.angle)
+        free = free_play(solved.model.geometries, solved.angle).play + before
     return SampleBatch(
         drives=tuple(drives),
         model=solved.model,

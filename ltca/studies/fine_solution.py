@@ -7,6 +7,7 @@ single drive in the end, of the optimum found for instance, is solved again here
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from ltca.analysis.engines import Engine
 from ltca.analysis.extremes import refine_extremes
 from ltca.analysis.loaded_analysis import analyse
 from ltca.drive.parts import Drive
+from ltca.equilibrium.output_angle import play_before_cranks
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.first_contact import backlash
 from ltca.geometry.placement import position_angles
@@ -62,7 +64,7 @@ def solve_finely(
         play = backlash(analysis.model.geometries, position_angles(BACKLASH_POSITIONS), WHEEL_ANGLE)
     free = None
     if any(STAGES[name] == "play" for name in quantities):
-        turn = play_over_a_turn(analysis.model.geometries)
+        turn = play_over_a_turn(analysis.model.geometries, partial(play_before_cranks, analysis.model))
         free = np.array([turn.least, turn.largest])
     batch = SampleBatch(
         drives=(drive,),

@@ -16,7 +16,7 @@ from ltca.compliance.response import ContactPressures, KindPressures
 from ltca.drive.parts import Drive, Friction
 from ltca.drive.units.quantities import ARCMIN, ARCSEC
 from ltca.equilibrium.balance import Equilibrium
-from ltca.equilibrium.output_angle import play_of_input, wheel_angle_of_input
+from ltca.equilibrium.output_angle import wheel_angle_of_input
 from ltca.equilibrium.reducer import Reducer, bearing_forces
 from ltca.errors import DriveError, did_you_mean, shortened, told_twice
 from ltca.quantities import NEED_SLICES, SCALARS
@@ -43,7 +43,7 @@ class SampleBatch:
     backlash : array, shape (samples · positions,), or None
         Of the flank at the wheel, rad, when a quantity needs it.
     play : array, shape (samples · positions,), or None
-        Free play of the wheel with every clearance, rad, when a quantity needs it.
+        Free play of the wheel with every clearance, the input held, rad, when a quantity needs it.
     """
 
     drives: tuple[Drive, ...]
@@ -115,7 +115,7 @@ class SampleBatch:
         if self.play is None:
             raise ValueError("the free play was not asked for")
         output = np.array([abs(drive.output_per_wheel_angle) for drive in self.drives])
-        return np.asarray(output[:, None] * self.by_sample(play_of_input(self.model, self.play)) * ARCMIN)
+        return np.asarray(output[:, None] * self.by_sample(self.play) * ARCMIN)
 
     @property
     def cranks(self) -> int:

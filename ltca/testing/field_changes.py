@@ -67,7 +67,7 @@ GOES_WITH = {
     "ring": "ring",
     "ring.material": "ring",
     "ring.bolts": "ring",
-    "first_stage": "first_stage",
+    **dict.fromkeys(("first_stage", "first_stage.sun_runout", "first_stage.planet_runout"), "first_stage"),
     "load.external.0": "load.external",
     "inertia.output_mass": "pin_wheel.support_stiffness",
     "load.external.0.force": "load.external",
@@ -136,6 +136,14 @@ _FIRST_STAGE = {
     "first_stage.plane": 40.0,
     "installation.first_stage_ratio": None,
 }
+_RUNOUT = {
+    "first_stage.backlash": 0.05,
+    "first_stage.sun_runout.amount": 0.01,
+    "first_stage.sun_runout.angle": 0.1,
+    "first_stage.planet_runout.amount": (0.01, -0.004, 0.006),
+    "first_stage.planet_runout.angle": (0.1, 0.2, 0.3),
+}
+"""Eccentricities of teeth, with the backlash that they need."""
 _EXTERNAL = {f"load.external.0.{name}": 300.0 for name in ("force.x", "force.y", "force.z", "at.z")}
 _FROM_ZERO = {"mm": 1e-3, "rad": 0.3, "dimensionless": 0.5}
 _RELIEF = {"end_relief_length": 0.8, "end_relief_depth": 0.002}
@@ -417,7 +425,7 @@ def _beside(drive: Drive, path: str) -> dict[str, Any]:
     if path == "inertia.output_mass" and not drive.wheel_yields:
         return {"pin_wheel.support_stiffness": 5e5}
     if path.startswith("first_stage.") and drive.first_stage is None:
-        return _FIRST_STAGE
+        return _FIRST_STAGE | (_RUNOUT if "_runout." in path else {})
     if path.startswith("load.external.") and not drive.load.external:
         return _EXTERNAL | {"pin_wheel.support_stiffness": drive.pin_wheel.support_stiffness or 5e5}
     if path.startswith("duty.") and not drive.duty:
@@ -484,7 +492,7 @@ def change_of(drive: Drive, path: str) -> tuple[Drive, dict[str, Any]]:
         drive = with_fields(drive, dict.fromkeys(DIAMETERS, ()))
     if needed := _beside(drive, path):
         if path.startswith("first_stage.") and drive.crank.number == 1:  # refused as a whole
-            return drive, needed | {path: _LEFT_OUT.get(path) or _FIRST_STAGE.get(path, 0.1)}
+            return drive, needed | {path: _LEFT_OUT.get(path) or _FIRST_STAGE.get(path, needed.get(path, 0.1))}
         drive = with_fields(drive, needed)
     if path == "crank.support.torsion":
         return drive, {path: True, "crank.support.spline_plane": 40.0}

@@ -22,7 +22,7 @@ from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Clearance, Drive, Installation, Ring, RingBolts
 from ltca.drive.units.quantities import ARCMIN
 from ltca.equilibrium.balance import Equilibrium
-from ltca.equilibrium.output_angle import play_of_input, wheel_angle_of_input
+from ltca.equilibrium.output_angle import play_before_cranks, wheel_angle_of_input
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError, DriveError
@@ -413,16 +413,16 @@ def compare(drive: Drive, crank_angle: FloatArray) -> list[Comparison]:
     drive = replace(drive, load=replace(drive.load, external=()))  # an arm takes the play on its side (`torque_curve`)
     model = replace(HalfSpace().prepare(drive).model, friction=None)
     discs, scale = model.geometries, abs(drive.output_per_wheel_angle) * ARCMIN
-    found, before = free_play(discs, crank_angle), scale * float(play_of_input(model, np.zeros(())))
+    found, before = free_play(discs, crank_angle), (scale * play_before_cranks(model, crank_angle)).tolist()
     answers, own, loose = [], model.coordinates.own, any(disc.has_loose_supports for disc in discs)
     known = not loose and not any(disc.stands_askew for disc in discs)
     for row, angle in enumerate(crank_angle):
-        free = float(found.play[row]) * scale + before
+        free = float(found.play[row]) * scale + before[row]
         if found.preloaded[row]:
             answers.append(Comparison(outcome="preloaded", free=free))
             continue
         # The bound knows rigid members in the plane alone.
-        limit = _limit(discs, np.array([angle])) * scale + before if known else free
+        limit = _limit(discs, np.array([angle])) * scale + before[row] if known else free
         for part in (*PARTS, 1e-3) if loose else PARTS:  # what floats in clearances is balanced under more alone
             torque = part * drive.load.torque * np.array([1.0, -1.0])
             try:
@@ -442,7 +442,7 @@ def compare(drive: Drive, crank_angle: FloatArray) -> list[Comparison]:
                     ]
                 )
             )
-            yielding = float(free_play(discs, np.array([angle]), overlap=float(overlap)).play[0]) * scale + before
+            yielding = float(free_play(discs, np.array([angle]), overlap=float(overlap)).play[0]) * scale + before[row]
             outcome = "wrong"
             if abs(turned - free) <= max(0.005, 0.01 * turned):
                 outcome = "alike"

@@ -7,6 +7,7 @@ import json
 import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from validation.report.headline import COLUMNS, validation_content, write_files
@@ -36,6 +37,13 @@ ROW = Row(
 )
 def test_pass_and_fail(difference, limit, passed):
     assert replace(ROW, difference=difference, limit=limit).passed is passed
+
+
+def test_figures_of_numpy_are_written():
+    """A difference that came from an array ended ``cyclo validate --level quick`` in its last step, with an unforeseen error."""
+    row = replace(ROW, difference=np.float64(0.01), error_bar=np.float64(0.02))
+    assert json.loads(json.dumps(row.content()))["pass"] is True
+    assert json.loads(json.dumps(row.content()))["below_error_bar"] is True
 
 
 def test_a_row_needs_its_level_and_a_reason():

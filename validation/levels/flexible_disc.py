@@ -226,15 +226,15 @@ def judge_half_space(effects: Mapping[str, FlexibilityEffect]) -> list[str]:
             f"too high, so on the safe side, in {', '.join(over)}" if over else "",
         ]
         sentences.append(
-            f"{SCALARS[name].title.capitalize()} over a turn: the disc's flexibility changes it by {_percent(low)} to "
-            f"{_percent(high)}; half-spaces give it {'; '.join(part for part in verdict if part)}."
+            f"{SCALARS[name].title.capitalize()} over a turn: the disc's flexibility changes it by {_range(low, high)}; "
+            f"half-spaces give it {'; '.join(part for part in verdict if part)}."
         )
     wind = [
         item.turn["half-space"].elastic_wind_up / item.turn["fe"].elastic_wind_up - 1.0 for item in effects.values()
     ]
     sentences.append(
-        f"Mean wind-up from the light torque on: half-spaces differ from fe by {_percent(min(wind))} to "
-        f"{_percent(max(wind))}; what they miss is flexibility of the bodies, so stiffness should not be taken from them."
+        f"Mean wind-up from the light torque on: half-spaces differ from fe by {_range(min(wind), max(wind))}; "
+        f"what they miss is flexibility of the bodies, so stiffness should not be taken from them."
     )
     torques = sorted({multiple for item in effects.values() for multiple in item.by_torque})
     for multiple in torques:
@@ -252,6 +252,11 @@ def judge_half_space(effects: Mapping[str, FlexibilityEffect]) -> list[str]:
 
 def _percent(value: float) -> str:
     return f"{100.0 * value:+.1f} %".replace("-", "−")
+
+
+def _range(low: float, high: float) -> str:
+    """Return a range of changes in per cent, one figure where both ends print alike."""
+    return _percent(low) if _percent(low) == _percent(high) else f"{_percent(low)} to {_percent(high)}"
 
 
 def turn_content(effect: FlexibilityEffect) -> dict[str, dict[str, float | None]]:

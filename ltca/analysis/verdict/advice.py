@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import partial
 from math import ceil, exp, floor, isfinite, log
 from typing import Any
 
@@ -26,6 +27,7 @@ from ltca.drive.members.judgement import Check, Value, judged_by
 from ltca.drive.parts import Drive
 from ltca.drive.ring_shape import has_ring_of_elements
 from ltca.drive.units.table import label
+from ltca.equilibrium.output_angle import play_before_cranks
 from ltca.errors import ConvergenceError, CycloError
 from ltca.geometry.play import TurnPlay, play_over_a_turn
 from ltca.reading.changes import with_fields
@@ -220,7 +222,7 @@ class _Trials:
         self.play: TurnPlay | None = None
         if self.without_load:
             with suppress(ConvergenceError):  # nothing stops the wheel
-                self.play = play_over_a_turn(self.near.model.geometries)
+                self.play = play_over_a_turn(self.near.model.geometries, partial(play_before_cranks, self.near.model))
         self.base = self._values({"": self.near}, self.play)[""]
 
     def values(self, drives: Mapping[str, Drive], *, alike: bool = True) -> dict[str, dict[str, Value]]:

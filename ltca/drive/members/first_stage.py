@@ -2,16 +2,56 @@
 
 from __future__ import annotations
 
+from cmath import rect
+from dataclasses import field
 from math import atan2, cos, hypot, pi, sqrt, tan
 from typing import Annotated
 
 from pydantic import Field
 from pydantic.dataclasses import dataclass
 
-from ltca.drive.deviations import STRICT, NonNegativeLength, PositiveLength, SignedLength
+from ltca.drive.deviations import STRICT, Angle, Errors, NonNegativeLength, PositiveLength, SignedLength
 from ltca.drive.units.quantities import COUNT, grows, quantity
 
 Teeth = Annotated[int, Field(ge=5, le=1000), COUNT]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
+class SunRunout:
+    """Centre of the teeth of the sun against the axis of the input (the runout F_r of ISO 1328-2 is twice the amount).
+
+    Attributes
+    ----------
+    amount : float
+        Distance of the two, mm; a negative one points the other way.
+    angle : float
+        Direction from the axis to the centre of the teeth at crank angle zero, rad.
+    """
+
+    amount: SignedLength = 0.0
+    angle: Angle = 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
+class PlanetRunout:
+    """Centres of the teeth of the planets against the axes of their cranks, by crank; an empty tuple means zero for all.
+
+    Attributes
+    ----------
+    amount : tuple of float
+        Distance of the two, mm; a negative one points the other way.
+    angle : tuple of float
+        Direction from the axis to the centre of the teeth at crank angle zero, in the frame of the crank, rad: planets with equal
+        angles stand alike on their cranks.
+    """
+
+    amount: Errors = ()
+    angle: tuple[Angle, ...] = ()
+
+    def places(self, cranks: int) -> tuple[complex, ...]:
+        """Return the centres of the teeth from the axes of the cranks at crank angle zero, mm."""
+        amounts, angles = self.amount or (0.0,) * cranks, self.angle or (0.0,) * cranks
+        return tuple(rect(1.0, angle) * amount for amount, angle in zip(amounts, angles, strict=True))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
@@ -39,6 +79,10 @@ class FirstStage:
         Axial place of the middle of the planets on the axis of ``disc.planes``, mm; needed where their forces have an arm: with
         bearings of the cranks, or with a main bearing that carries them. Equal to ``crank.support.spline_plane`` of cranks that
         twist from there.
+    sun_runout : SunRunout
+        Eccentricity of the teeth of the sun.
+    planet_runout : PlanetRunout
+        Eccentricities of the teeth of the planets; the backlash must leave room for them and for that of the sun.
     """
 
     sun_teeth: Teeth
@@ -49,6 +93,8 @@ class FirstStage:
     backlash: Annotated[NonNegativeLength, grows("eccentric")] = 0.0
     mesh_stiffness: Annotated[float, quantity("N/mm", gt=0.0)] | None = None
     plane: Annotated[SignedLength | None, grows("planes")] = None
+    sun_runout: Annotated[SunRunout, grows("eccentric")] = field(default_factory=SunRunout)
+    planet_runout: Annotated[PlanetRunout, grows("eccentric")] = field(default_factory=PlanetRunout)
 
     @property
     def ratio(self) -> float:
@@ -64,6 +110,19 @@ class FirstStage:
         """Return the distance of the axes at which pitch circles are reference circles, mm; None without a module."""
         teeth = self.sun_teeth + self.planet_teeth
         return None if self.module is None else 0.5 * self.module * teeth / cos(self.helix_angle)
+
+    @property
+    def runs_out(self) -> bool:
+        """Whether teeth stand off their axes."""
+        return bool(self.sun_runout.amount) or any(self.planet_runout.amount)
+
+    def closed_by_runout(self, distance: float) -> float:
+        """Return the most that eccentricities of sun and planets take of the circumferential backlash, mm, axes at a distance.
+
+        Two eccentricities that point at each other close the mesh by their sum, and the backlash by 2 tan α_wt of it.
+        """
+        most = abs(self.sun_runout.amount) + max(map(abs, self.planet_runout.amount), default=0.0)
+        return 2.0 * self.mesh(distance).separating * most
 
     def mesh(self, distance: float) -> Mesh:
         """Return the mesh of sun and planet at the distance of their axes, mm.

@@ -244,7 +244,16 @@ def _with_backlash_of_teeth(warm: Drive, cold: Drive, growth: Growth) -> Drive:
             ]
         )
     assert warm.first_stage is not None
-    return replace(warm, first_stage=replace(warm.first_stage, backlash=left))
+    teeth = replace(warm.first_stage, backlash=left)
+    if teeth.closed_by_runout(distance * growth.carrier) > left:
+        needed = (teeth.closed_by_runout(distance * growth.carrier) - opened) / growth.eccentric
+        raise DriveError(
+            [
+                f"first_stage.backlash = {stage.backlash:g} mm: must be at least {needed:.4g} mm beside first_stage.sun_runout "
+                "and first_stage.planet_runout at these temperatures, or teeth jam"
+            ]
+        )
+    return replace(warm, first_stage=teeth)
 
 
 def _with_roller_length(warm: Drive, cold: Drive, growth: Growth) -> Drive:

@@ -18,7 +18,7 @@ from ltca.analysis.friction.hysteresis import locked_path
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.reduced_model.model import reduce_drive
 from ltca.drive.units.quantities import ARCMIN
-from ltca.equilibrium.output_angle import play_of_input
+from ltca.equilibrium.output_angle import play_before_cranks
 from ltca.export.simulators.files import write_simulator
 from ltca.geometry.placement import position_angles
 from ltca.geometry.play import free_play
@@ -94,8 +94,9 @@ def expected(drive):
 @pytest.fixture(scope="module")
 def play(drive):
     model = HalfSpace().prepare(drive).model
-    play = play_of_input(model, free_play(model.geometries, np.array([ANGLE])).play)[0]
-    return abs(drive.output_per_wheel_angle) * float(play)
+    angle = np.array([ANGLE])
+    play = free_play(model.geometries, angle).play + play_before_cranks(model, angle)
+    return abs(drive.output_per_wheel_angle) * float(play[0])
 
 
 @pytest.fixture(scope="module")
