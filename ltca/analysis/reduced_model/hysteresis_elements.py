@@ -1,16 +1,17 @@
 r"""Hysteresis of the wind-up as Maxwell-slip elements whose strength goes with the load.
 
-Friction in a drive is Coulomb's, so what contacts hold grows with what they carry: the loop of a drive is narrow at light torques
-and gone within the play. Elements of constant strength have the same width everywhere; those here act on the elastic torque f,
-the torque of the drive without friction at the same wind-up. Each flank has its own, with the load q = f or −f where that is
-positive, since other contacts carry there and let go elsewhere: an element moves by :math:`\kappa\,\Delta q` and slips at
-:math:`c\,T_r (q/T_r)^p` with the rated torque :math:`T_r` and p = 1 (Coulomb) or 2 (more contacts carry). Its stiffness by its
-strength says at which part of the torque of the reversal it slips back. Torque along a path is linear in the strengths, which are
-found by non-negative least squares, flank by flank. What contacts hold goes with the crank angle as well: the strength of all
-elements has a factor for it, of one in the mean, by orders, found from the drive loaded slowly at many crank angles. So does where
-they slip back: some elements have a weight :math:`1 + \cos(o\varphi_C - \psi)` besides, with an order o and ψ of 0, π/2, π or
-3π/2, which is never negative; a sum of them is a distribution of elements that goes with the crank angle. Factor and weight act
-on strength and stiffness alike. Orders are taken one by one, the one that explains most of what is left along the paths first.
+Friction in a drive is Coulomb's, so what contacts hold grows with what they carry: the loop of a drive is narrow at light
+torques and gone within the play. Elements of constant strength have the same width everywhere; those here act on the elastic
+torque f, the torque of the drive without friction at the same wind-up. Each flank has its own, with the load q = f or −f
+where that is positive, since other contacts carry there and let go elsewhere: an element moves by :math:`\kappa\,\Delta q`
+and slips at :math:`c\,T_r (q/T_r)^p` with the rated torque :math:`T_r` and p = 1 (Coulomb) or 2 (more contacts carry). Its
+stiffness by its strength says at which part of the torque of the reversal it slips back. Torque along a path is linear in
+the strengths, which are found by non-negative least squares, flank by flank. What contacts hold goes with the crank angle as
+well: the strength of all elements has a factor for it, of one in the mean, by orders, found from the drive loaded slowly at
+many crank angles. So does where they slip back: some elements have a weight :math:`1 + \cos(o\varphi_C - \psi)` besides,
+with an order o and ψ of 0, π/2, π or 3π/2, which is never negative; a sum of them is a distribution of elements that goes
+with the crank angle. Factor and weight act on strength and stiffness alike. Orders are taken one by one, the one that
+explains most of what is left along the paths first.
 """
 
 from __future__ import annotations

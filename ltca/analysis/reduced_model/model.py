@@ -78,8 +78,8 @@ OTHER_PATH = (
     0.01, 0.03, 0.08, 0.15, 0.22, 0.3, 0.4, 0.5,
 )  # fmt: skip
 """That path, by the largest torque: reversals within the loop. Its steps are small: contacts that open or slip within a step are
-taken as at its end, and with steps twice as long the wind-up of the analysis itself differs by 0.01′ (of robot-joint with friction
-0.05 after a reversal), as much as the law does."""
+taken as at its end, and with steps twice as long the wind-up of the analysis itself differs by 0.01′ (of robot-joint with
+friction 0.05 after a reversal), as much as the law does."""
 CHECKED_PARTS = (2e-3, 0.02, 0.08, 0.21, 0.43, 0.68, 0.94)
 """Torques without friction between those of the table, by the largest one, either way."""
 LEAST_TOLD = 1e-3
