@@ -89,7 +89,7 @@ def main() -> None:
             error, slip = ratio * angle - data.qpos[0], ratio * speed - data.qvel[0]
             data.ctrl[0] = STIFF * error + DAMPED * slip
             mujoco.mj_step(model, data)
-            held = drive.law.elastic + drive.law.elements.sum()
+            held = drive.law.held
             if step % every == 0:
                 rows.append((data.time, data.qpos[1], data.qpos[1] - data.qpos[0] / ratio, held))
             if step in shots and renderer is not None:

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ltca.commands.reduced_model import add_simulator_arguments, export_model, refuse_compliance
+from ltca.commands.reduced_model import add_simulator_arguments, export_model, refuse_simulator_options
 from ltca.errors import DriveError
 from ltca.reading.arguments import (
     add_case_argument,
@@ -80,7 +80,7 @@ def execute(arguments: argparse.Namespace) -> int:
             if getattr(arguments, option) is not None:
                 raise DriveError([f"--{option}: has no effect with --for {arguments.simulator}; leave one of them out"])
         return export_model(arguments)
-    refuse_compliance(arguments)
+    refuse_simulator_options(arguments)
     return _export_part(arguments)
 
 

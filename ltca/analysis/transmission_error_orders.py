@@ -166,28 +166,57 @@ def fit_orders(crank_angle: FloatArray, error: FloatArray, orders: tuple[Order, 
     ValueError
         When the positions cannot tell the orders apart (too few, or over too few turns).
     """
+    return fit_several(crank_angle, np.asarray(error)[None], orders)[0]
+
+
+def fit_several(crank_angle: FloatArray, errors: FloatArray, orders: tuple[Order, ...]) -> list[Spectrum]:
+    """Fit orders to several transmission errors at the same crank angles, each as `fit_orders` does.
+
+    Parameters
+    ----------
+    crank_angle : array, shape (positions,)
+        φ_C, rad.
+    errors : array, shape (errors, positions)
+        rad.
+    orders : tuple of Order
+        What to fit.
+
+    Returns
+    -------
+    list of Spectrum
+
+    Raises
+    ------
+    ValueError
+        When the positions cannot tell the orders apart (too few, or over too few turns).
+    """
     values = np.array([order.value for order in orders])
-    angle, error = np.asarray(crank_angle), np.asarray(error)
-    # The triangle of columns and error side by side, block by block: its solution and its last corner are theirs.
-    triangle: Any = np.zeros((0, 2 * len(orders) + 2))
+    angle, rows = np.asarray(crank_angle), np.asarray(errors)
+    # The triangle of columns and errors side by side, block by block: its solution and its last corner are theirs.
+    triangle: Any = np.zeros((0, 2 * len(orders) + 1 + len(rows)))
     for first in range(0, angle.size, POSITIONS_PER_CHUNK):
         few = slice(first, first + POSITIONS_PER_CHUNK)
-        block = np.column_stack([_columns(angle[few], values), error[few]])
+        block = np.column_stack([_columns(angle[few], values), rows[:, few].T])
         triangle = np.linalg.qr(np.vstack([triangle, block]), mode="r")
     count = 2 * len(orders) + 1
-    solution, _, rank, singular = np.linalg.lstsq(triangle[:, :count], triangle[:, count], rcond=None)
+    solved, _, rank, singular = np.linalg.lstsq(triangle[:, :count], triangle[:, count:], rcond=None)
     if rank < count or singular[-1] < LEAST_SINGULAR_RATIO * singular[0]:
         raise ValueError(
             f"{angle.size} positions cannot tell {len(orders)} orders apart; give more of them over more turns"
         )
-    cosine, sine = solution[1 : len(orders) + 1], solution[len(orders) + 1 :]
-    return Spectrum(
-        orders=orders,
-        amplitude=np.hypot(cosine, sine),
-        phase=np.arctan2(sine, cosine),
-        mean=float(solution[0]),
-        residual=float(np.linalg.norm(triangle[:, :count] @ solution - triangle[:, count]) / np.sqrt(angle.size)),
-    )
+    left = np.linalg.norm(triangle[:, :count] @ solved - triangle[:, count:], axis=0) / np.sqrt(angle.size)
+    return [
+        Spectrum(
+            orders=orders,
+            amplitude=np.hypot(cosine, sine),
+            phase=np.arctan2(sine, cosine),
+            mean=float(mean),
+            residual=float(residual),
+        )
+        for mean, cosine, sine, residual in zip(
+            solved[0], solved[1 : len(orders) + 1].T, solved[len(orders) + 1 :].T, left, strict=True
+        )
+    ]
 
 
 class OrderFit:

@@ -12,11 +12,11 @@ from ltca.commands.compliance_arguments import (
     settle_compliance,
 )
 from ltca.errors import DriveError
-from ltca.reading.arguments import default_folder, tell_unit_mistakes
+from ltca.reading.arguments import default_folder, quantity_argument, tell_unit_mistakes
 
 SIMULATORS = ("json", "mujoco", "urdf", "modelica", "fmu")
-COMPLIANCE = ("compliance", "quick", "coefficients", "bodies", "no_hole_near_field")
-"""Arguments of `add_compliance_arguments`, none of which is given by default."""
+ONLY_SIMULATORS = ("compliance", "quick", "coefficients", "bodies", "no_hole_near_field", "speed")
+"""Arguments of `add_simulator_arguments`, none of which is given by default."""
 
 
 def add_simulator_arguments(parser: argparse.ArgumentParser, which: argparse._MutuallyExclusiveGroup) -> None:
@@ -28,12 +28,19 @@ def add_simulator_arguments(parser: argparse.ArgumentParser, which: argparse._Mu
         help="in place of --format: a reduced model of the drive (wind-up with play and hysteresis, friction, transmission "
         "error, inertias, limits) as lookup tables, MJCF, URDF, Modelica package or functional mock-up unit",
     )
+    parser.add_argument(
+        "--speed",
+        metavar="N",
+        type=quantity_argument("--speed", "rpm", gt=0.0),
+        help="with --for: largest speed of the input in turns a minute (or a text such as '3000 rpm'), as if it were load.speed "
+        "of the drive file: the limit of the joint, which URDF must have; not with [[duty]], whose largest speed counts",
+    )
     add_compliance_arguments(parser)
 
 
-def refuse_compliance(arguments: argparse.Namespace) -> None:
-    """Refuse what is said of yielding bodies where parts are written as they are made."""
-    for name in COMPLIANCE:
+def refuse_simulator_options(arguments: argparse.Namespace) -> None:
+    """Refuse what is said of a simulator's model where parts are written as they are made."""
+    for name in ONLY_SIMULATORS:
         if getattr(arguments, name):
             raise DriveError([f"--{name.replace('_', '-')}: has no effect with --format, only with --for"])
 
@@ -57,10 +64,16 @@ def export_model(arguments: argparse.Namespace) -> int:
     from ltca.commands.actions.reduced_model import check_drive, reduce_and_write
     from ltca.export.simulators.files import file_names, model_name
 
-    own = model_name(file.name, name)
-    check_drive(arguments.simulator, file.cases[name])
+    own, drive = model_name(file.name, name), file.cases[name]
+    if arguments.speed is not None:
+        if drive.duty:
+            raise DriveError(
+                [f"--speed {arguments.speed:g} rpm: has no effect beside [[duty]], whose largest speed counts"]
+            )
+        drive = drive.with_fields({"load.speed": arguments.speed})
+    check_drive(arguments.simulator, drive)
     engine = lending_between(file.cases.values(), compliance_of(arguments, cases.values()))
     writes = [escape(one) for one in file_names(arguments.simulator, own)]
     with claimed_folder(out, "export", writes=writes, adding=True):
         find_coefficients_of(cases, engine, arguments)
-        return reduce_and_write(arguments.simulator, file.cases[name], engine, own, out)
+        return reduce_and_write(arguments.simulator, drive, engine, own, out)

@@ -72,6 +72,7 @@ def solve_at_output(
     start: FloatArray | None = None,
     inner: Start | None = None,
     gaps: bool = True,
+    wheel_moment: FloatArray | None = None,
 ) -> Equilibrium:
     """Balance positions at output torques.
 
@@ -94,6 +95,8 @@ def solve_at_output(
         Inner unknowns near those poses.
     gaps : bool
         As for `ltca.equilibrium.balance.solve_equilibrium`.
+    wheel_moment : array, shape (positions,), optional
+        Moments on the wheel to start from, N·mm; those of the mean of a turn by default.
 
     Returns
     -------
@@ -113,7 +116,7 @@ def solve_at_output(
         start, inner = near.pose, Start.after(near.response)
     friction = model.friction
     if friction is None or not friction.turns:
-        return _solve(model, drives, crank_angle, torque, start, inner, gaps)
+        return _solve(model, drives, crank_angle, torque, start, inner, gaps, wheel_moment)
     smooth = _solve(replace(model, friction=None), drives, crank_angle, torque, start, inner, gaps=False)
     try:
         return _solve(model, drives, crank_angle, torque, smooth.pose, Start.after(smooth.response), gaps)
@@ -186,6 +189,7 @@ def _solve(
     start: FloatArray | None,
     inner: Start | None,
     gaps: bool,
+    wheel_moment: FloatArray | None = None,
 ) -> Equilibrium:
     """Balance positions at output torques, the way `solve_at_output` says."""
     angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
@@ -204,7 +208,8 @@ def _solve(
 
     input_per_crank_moment = np.repeat([drive.input_per_crank_moment for drive in drives], repeats)
     by_wheel = np.repeat([1.0 / abs(drive.output_per_wheel_angle) for drive in drives], repeats)
-    found = solve_equilibrium(model, angle, mean, start, inner, gaps, len(drives), light)
+    first = mean if wheel_moment is None else np.where(held, wheel_moment, mean)
+    found = solve_equilibrium(model, angle, first, start, inner, gaps, len(drives), light)
     return _at_output(model, follow, found, signed, held, input_per_crank_moment, by_wheel, light)
 
 

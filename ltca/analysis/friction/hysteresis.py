@@ -6,6 +6,7 @@ so the output comes back another way. Makers read lost motion in the middle of t
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -22,6 +23,10 @@ from ltca.errors import ConvergenceError, DriveError
 
 LEAST_TORQUE_RATIO = 1e-4
 """Smallest torque relative to the largest: at zero the discs would float."""
+
+
+LONGEST_EXTRAPOLATION = 3.0
+"""Step of the torque by the one before, up to which poses are extrapolated to start from."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -54,7 +59,12 @@ class HysteresisLoop:
 
 
 def locked_path(
-    drive: Drive, crank_angle: FloatArray, torque: ArrayLike, *, engine: Engine | None = None
+    drive: Drive,
+    crank_angle: FloatArray,
+    torque: ArrayLike,
+    *,
+    engine: Engine | None = None,
+    advance: Callable[[int], None] = lambda _: None,
 ) -> FloatArray:
     """Return the deviation of the output along a path of torques, input locked, rad, shape (angles, torques).
 
@@ -69,6 +79,8 @@ def locked_path(
         reached without friction.
     engine : Engine, optional
         How bodies yield; half-spaces by default.
+    advance : callable
+        Told of solved positions.
 
     Raises
     ------
@@ -86,14 +98,26 @@ def locked_path(
     found = solve_at_output(smooth, [drive], angles, float(path[0]))
     state = StickingFriction.at_rest(friction, smooth, found)
     wound = [wheel_angle_of_input(model, found)]
-    for before, value in pairwise(path):
+    advance(angles.size)
+    gone = np.zeros_like(found.pose)
+    for place, (before, value) in enumerate(pairwise(path), start=1):
+        # While the torque goes on the same way under the same contacts so do the bodies.
+        part = (value - before) / (before - path[place - 2]) if place > 1 and before != path[place - 2] else 0.0
+        goes_on = 0.0 < part < LONGEST_EXTRAPOLATION and before * value > 0.0 and path[place - 2] * before > 0.0
+        rubbed, pose = replace(model, friction=state), found.pose
+        moment = found.wheel_moment * (value / before) if before * value > 0.0 else None
+        ahead = pose + (part * gone if goes_on else 0.0)
         try:
-            found = solve_at_output(replace(model, friction=state), [drive], angles, float(value), found.pose)
+            found = solve_at_output(rubbed, [drive], angles, float(value), ahead, wheel_moment=moment)
         except ConvergenceError as error:
-            error.add(f"torque path from {before:g} to {value:g} N·mm")
-            raise
+            if not goes_on:
+                error.add(f"torque path from {before:g} to {value:g} N·mm")
+                raise
+            found = solve_at_output(rubbed, [drive], angles, float(value), pose)
+        gone = found.pose - pose
         state = state.after(model, found)
         wound.append(wheel_angle_of_input(model, found))
+        advance(angles.size)
     return np.asarray(drive.output_deviation(np.stack(wound, axis=1), path))
 
 

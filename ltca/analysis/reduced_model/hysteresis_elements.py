@@ -1,15 +1,17 @@
 r"""Hysteresis of the wind-up as Maxwell-slip elements whose strength goes with the load.
 
-Friction in a drive is Coulomb's, so what contacts hold grows with what they carry: the loop of a drive is narrow at light torques
-and gone within the play. Elements of constant strength have the same width everywhere; those here act on the elastic torque f,
-the torque of the drive without friction at the same wind-up: an element moves by :math:`\kappa\,\Delta f` and slips at
-:math:`c\,T_r (|f|/T_r)^p` with the rated torque :math:`T_r` and p = 1 (Coulomb) or 2 (more contacts carry). Its stiffness by its
-strength says at which part of the torque of the reversal it slips back. Torque along a path is linear in the strengths, which are
-found by non-negative least squares. What contacts hold goes with the crank angle as well: the strength of all elements has a
-factor for it, of one in the mean, by orders, found from the drive loaded slowly at many crank angles. So does where they slip
-back: some elements have a weight :math:`1 + \cos(o\varphi_C - \psi)` besides, with an order o and ψ of 0, π/2, π or 3π/2,
-which is never negative; a sum of them is a distribution of elements that goes with the crank angle. Factor and weight act on
-strength and stiffness alike.
+Friction in a drive is Coulomb's, so what contacts hold grows with what they carry: the loop of a drive is narrow at light
+torques and gone within the play. Elements of constant strength have the same width everywhere; those here act on the elastic
+torque f, the torque of the drive without friction at the same wind-up. Each flank has its own, with the load q = f or −f
+where that is positive, since other contacts carry there and let go elsewhere: an element moves by :math:`\kappa\,\Delta q`
+and slips at :math:`c\,T_r (q/T_r)^p` with the rated torque :math:`T_r` and p = 1 (Coulomb) or 2 (more contacts carry). Its
+stiffness by its strength says at which part of the torque of the reversal it slips back. Torque along a path is linear in
+the strengths, which are found by non-negative least squares, flank by flank. What contacts hold goes with the crank angle as
+well: the strength of all elements has a factor for it, of one in the mean, by orders, found from the drive loaded slowly at
+many crank angles. So does where they slip back: some elements have a weight :math:`1 + \cos(o\varphi_C - \psi)` besides,
+with an order o and ψ of 0, π/2, π or 3π/2, which is never negative; a sum of them is a distribution of elements that goes
+with the crank angle. Factor and weight act on strength and stiffness alike. Orders are taken one by one, the one that
+explains most of what is left along the paths first.
 """
 
 from __future__ import annotations
@@ -22,7 +24,7 @@ from scipy.optimize import nnls
 from ltca.analysis.transmission_error_orders import Order, fit_orders
 from ltca.arrays import FloatArray
 
-SLIPS_BACK_AT = (0.95, 0.92, 0.89, 0.86, 0.83, 0.8, 0.76, 0.7, 0.6, 0.45, 0.3)
+SLIPS_BACK_AT = (0.98, 0.965, 0.95, 0.92, 0.89, 0.86, 0.83, 0.8, 0.76, 0.7, 0.6, 0.45, 0.3)
 """Elastic torque by that of the reversal at which an element has slipped back."""
 EXPONENTS = (1.0, 2.0)
 LEAST_FACTOR = 0.005
@@ -33,7 +35,7 @@ PHASES = (0.0, 0.5 * np.pi, np.pi, 1.5 * np.pi)
 """Of weights, rad: sums of them have any phase."""
 MOST_ORDERS = 3
 """Of weights; each has four times as many strengths as there are elements without one."""
-LEAST_GAIN = 0.8
+LEAST_GAIN = 0.9
 """Squares that are left on paths not fitted to, by those without one more order, above which it is not taken."""
 
 
@@ -43,12 +45,15 @@ class HysteresisElements:
 
     Attributes
     ----------
+    flank : array, shape (elements,)
+        Sign of the elastic torque under which an element carries: contacts of the other flank are open then.
     exponent, strength, stiffness : array, shape (elements,)
         p, c and κ.
     order, amplitude, phase : array, shape (elements,)
         Of the weight 1 + amplitude·cos(order·φ_C − phase) on strength and stiffness; phase in rad.
     """
 
+    flank: FloatArray
     exponent: FloatArray
     strength: FloatArray
     stiffness: FloatArray
@@ -101,6 +106,7 @@ class StrengthFactor:
 
 NO_FACTOR = StrengthFactor(orders=(), cosine=np.zeros((2, 0)), sine=np.zeros((2, 0)))
 NO_ELEMENTS = HysteresisElements(
+    flank=np.zeros(0),
     exponent=np.zeros(0),
     strength=np.zeros(0),
     stiffness=np.zeros(0),
@@ -114,18 +120,18 @@ def _responses(
     elastic: FloatArray,
     rated: float,
     exponent: FloatArray,
-    strength: FloatArray,
     stiffness: FloatArray,
     factors: tuple[float, float],
 ) -> FloatArray:
-    """Torque of each element along a path, shape (points, elements); factors are those of negative and positive torque."""
-    state, found = np.zeros(strength.size), np.zeros((elastic.size, strength.size))
-    before = 0.0
+    """Torque along a path of elements of strength one on both flanks, shape (points, elements); factors as in `fit_elements`."""
+    state, found = np.zeros((2, exponent.size)), np.zeros((elastic.size, exponent.size))
+    factor, before = np.array(factors)[:, None], np.zeros((2, 1))
     for place, value in enumerate(elastic.tolist()):
-        factor = factors[int(value > 0.0)]
-        most = factor * strength * rated * (abs(value) / rated) ** exponent
-        state = np.clip(state + factor * stiffness * (value - before), -most, most)
-        before, found[place] = value, state
+        load = np.array([[max(-value, 0.0)], [max(value, 0.0)]])
+        most = factor * rated * (load / rated) ** exponent
+        state = np.clip(state + factor * stiffness * (load - before), -most, most)
+        before = load
+        found[place] = state[1] - state[0]
     return found
 
 
@@ -161,46 +167,78 @@ def fit_elements(
     back = np.tile(SLIPS_BACK_AT, len(EXPONENTS))
     # What slips back at the part ρ has gone from c to −c ρ^p over 1 − ρ; an element follows its own strength while it grows.
     slope = np.maximum((1.0 + back**exponent) / (1.0 - back), exponent)
-    one = np.ones(exponent.size)
     alone = [
-        _responses(path, rated, exponent, one, slope, factor) / rated
-        for path, factor in zip(elastic, factors, strict=True)
+        _responses(path, rated, exponent, slope, factor) / rated for path, factor in zip(elastic, factors, strict=True)
     ]
     beside = [(value - path) / rated for path, value in zip(elastic, torque, strict=True)]
     angle = np.zeros(len(elastic)) if crank_angle is None else crank_angle
+    flank = [path > 0.0 for path in elastic]
 
-    def fitted(chosen: tuple[float, ...], last: int) -> FloatArray:
-        columns = [np.kron(_weights(chosen, angle[place]), alone[place]) for place in range(last)]
-        return np.asarray(nnls(np.vstack(columns), np.concatenate(beside[:last]), maxiter=20 * columns[0].shape[1])[0])
+    def fitted(chosen: tuple[float, ...], last: int) -> list[FloatArray]:
+        """Strengths on the flank of negative and of positive torque: points of one say nothing of the other."""
+        found = []
+        for way in (False, True):
+            rows = [(_weights(chosen, angle[at]), at, flank[at] == way) for at in range(last)]
+            columns = np.vstack([np.kron(weight, alone[at][here]) for weight, at, here in rows])
+            right = np.concatenate([beside[at][here] for _, at, here in rows])
+            found.append(np.asarray(nnls(columns, right, maxiter=20 * columns.shape[1])[0]))
+        return found
 
-    def left(chosen: tuple[float, ...]) -> float:
-        """Return the squares that elements leave of the paths they are not fitted to."""
-        first = len(elastic) - judged
-        strength = fitted(chosen, first)
-        every = range(first, len(elastic))
-        rest = [np.kron(_weights(chosen, angle[at]), alone[at]) @ strength - beside[at] for at in every]
-        return float(np.sum(np.square(rest)))
+    def rest(chosen: tuple[float, ...], strength: list[FloatArray], places: range) -> list[FloatArray]:
+        """Return what elements leave of some paths."""
+        found = []
+        for at in places:
+            columns = np.kron(_weights(chosen, angle[at]), alone[at])
+            found.append(beside[at] - np.where(flank[at], columns @ strength[1], columns @ strength[0]))
+        return found
+
+    first = len(elastic) - judged
+    own, others = range(first), range(first, len(elastic))
 
     taken: tuple[float, ...] = ()
-    least = left(taken) if orders else 0.0
+    strength = fitted(taken, first) if orders else []
+    least = np.sum(np.square(rest(taken, strength, others))) if orders else 0.0
     while len(taken) < min(MOST_ORDERS, len(orders)):
-        tried = {order: left((*taken, order)) for order in orders if order not in taken}
-        best = min(tried, key=lambda order: tried[order])
-        if tried[best] > LEAST_GAIN * least:
+        most = _strongest(
+            np.array(rest(taken, strength, own)), angle[:first], [one for one in orders if one not in taken]
+        )
+        tried = fitted((*taken, most), first)
+        left = np.sum(np.square(rest((*taken, most), tried, others)))
+        if left > LEAST_GAIN * least:
             break
-        taken, least = (*taken, best), tried[best]
-    strength = fitted(taken, len(elastic))
-    kept = strength > LEAST_STRENGTH
+        taken, strength, least = (*taken, most), tried, left
+    flanks = fitted(taken, len(elastic))
     weights = 1 + len(PHASES) * len(taken)
-    order = np.concatenate([[0.0], np.repeat(taken, len(PHASES))])
+    order = np.repeat(np.concatenate([[0.0], np.repeat(taken, len(PHASES))]), exponent.size)
+    phase = np.repeat(np.concatenate([[0.0], np.tile(PHASES, len(taken))]), exponent.size)
+
+    def both(column: FloatArray) -> FloatArray:
+        return np.concatenate([column[one > LEAST_STRENGTH] for one in flanks])
+
+    kept = np.concatenate([one[one > LEAST_STRENGTH] for one in flanks])
     return HysteresisElements(
-        exponent=np.tile(exponent, weights)[kept],
-        strength=strength[kept],
-        stiffness=(np.tile(slope, weights) * strength)[kept],
-        order=np.repeat(order, exponent.size)[kept],
-        amplitude=np.repeat(np.where(order > 0.0, 1.0, 0.0), exponent.size)[kept],
-        phase=np.repeat(np.concatenate([[0.0], np.tile(PHASES, len(taken))]), exponent.size)[kept],
+        flank=np.concatenate(
+            [np.full(np.sum(one > LEAST_STRENGTH), way) for one, way in zip(flanks, (-1.0, 1.0), strict=True)]
+        ),
+        exponent=both(np.tile(exponent, weights)),
+        strength=kept,
+        stiffness=both(np.tile(slope, weights)) * kept,
+        order=both(order),
+        amplitude=both(np.where(order > 0.0, 1.0, 0.0)),
+        phase=both(phase),
     )
+
+
+def _strongest(rest: FloatArray, crank_angle: FloatArray, orders: list[float]) -> float:
+    """Return the order that explains most of what is left along paths, shape (paths, points)."""
+    centred = rest - rest.mean(axis=0)
+
+    def explained(order: float) -> float:
+        columns = np.column_stack([np.cos(order * crank_angle), np.sin(order * crank_angle)])
+        basis = np.linalg.qr(columns - columns.mean(axis=0))[0]
+        return float(np.sum(np.square(basis.T @ centred)))
+
+    return max(orders, key=explained)
 
 
 def _weights(orders: tuple[float, ...], crank_angle: float) -> FloatArray:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from scipy.optimize import brentq
 
 from ltca.analysis.engines import Engine, describe_engine, lent_words
 from ltca.analysis.friction.hysteresis import LEAST_TORQUE_RATIO, locked_path
@@ -26,15 +27,15 @@ from ltca.analysis.reduced_model.input_friction import (
 )
 from ltca.analysis.reduced_model.reduced_drive import ReducedDrive
 from ltca.analysis.reduced_model.wind_up import (
-    HARMONICS,
     TORQUE_PARTS as WIND_UP_PARTS,
     WindUp,
     frictionless,
     scattered_angles,
     scattered_by,
     wind_up,
+    wind_up_orders,
 )
-from ltca.analysis.transmission_error_orders import known_orders
+from ltca.analysis.transmission_error_orders import Order, known_orders
 from ltca.arrays import FloatArray
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Drive
@@ -45,11 +46,9 @@ from ltca.equilibrium.output_angle import wheel_angle_of_input
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.output.provenance import code_version
 
-Paths = list[list[tuple[float, float, float]]]
-"""Paths of crank angle (rad), wind-up (rad) and torque (N·mm)."""
 NEWTON_METRE = 1e3
 """N·mm of 1 N·m."""
-FORMAT = 2
+FORMAT = 3
 """Of the JSON file; a later one says so."""
 BRISTLE_ANGLE = 1e-3
 """Angle of the input over which its friction builds up in the reduced law, rad; at the output it is less by the ratio."""
@@ -59,16 +58,28 @@ LOOP_ANGLES = 24
 """Crank angles over all turns whose loops the elements are fitted to."""
 JUDGED_ANGLES = 6
 """Of them, that choose the orders of their weights."""
-FACTOR_POSITIONS = 5
-"""Positions for each unknown of that strength."""
+FACTOR_POSITIONS = 3
+"""Positions for each unknown of the factor of that strength."""
+LEAST_VARIATION = 0.002
+"""Range over the crank angle of the part of the largest torque that friction holds, up to which there is no factor: 0.1 % of the
+torque range."""
 RISING_PARTS = (0.06, 0.2, 0.45, 0.7, 1.0)
 """Torques by which the largest one is reached there: with ten of them the wind-up at the last differs by less than 0.01′."""
 FACTOR_HARMONICS = 1
 """Multiples of each origin of an order of the strength of the elements."""
-OTHER_ANGLES = 6
+WEIGHT_HARMONICS = 4
+"""The same of their weights: with few holes the contacts that carry, and so the release, change by leaps."""
+OTHER_ANGLES = 12
 """Crank angles besides, of loops and of the path that they are not fitted to."""
-OTHER_PATH = (0.01, 0.15, 0.45, 0.8, 0.6, 0.35, 0.55, 0.8, 0.3, 0.05, -0.1, -0.4, -0.7, -0.5, -0.2, 0.0, 0.2, 0.5)
-"""That path, by the largest torque: reversals within the loop; its zero is passed at 1e-4."""
+OTHER_PATH = (
+    0.01, 0.03, 0.08, 0.15, 0.22, 0.3, 0.38, 0.46, 0.54, 0.62, 0.71, 0.8, 0.75, 0.7, 0.65, 0.6, 0.53, 0.47, 0.41, 0.35,
+    0.42, 0.49, 0.55, 0.62, 0.68, 0.74, 0.8, 0.76, 0.72, 0.68, 0.63, 0.57, 0.5, 0.4, 0.3, 0.2, 0.12, 0.05, 0.01,
+    -0.01, -0.03, -0.08, -0.15, -0.22, -0.3, -0.4, -0.5, -0.6, -0.7, -0.65, -0.6, -0.5, -0.4, -0.3, -0.2, -0.1, -0.03, -0.01,
+    0.01, 0.03, 0.08, 0.15, 0.22, 0.3, 0.4, 0.5,
+)  # fmt: skip
+"""That path, by the largest torque: reversals within the loop. Its steps are small: contacts that open or slip within a step are
+taken as at its end, and with steps twice as long the wind-up of the analysis itself differs by 0.01′ (of robot-joint with
+friction 0.05 after a reversal), as much as the law does."""
 CHECKED_PARTS = (2e-3, 0.02, 0.08, 0.21, 0.43, 0.68, 0.94)
 """Torques without friction between those of the table, by the largest one, either way."""
 LEAST_TOLD = 1e-3
@@ -88,13 +99,45 @@ class FitError:
         Largest difference at the wind-up of the analysis, N·mm.
     angle : float
         Largest difference at the torque of the analysis, rad.
+    mean_torque, mean_angle : float
+        The largest along the path of their means over the crank angles: what is off of the loop of a mean crank angle.
+    scatter_torque, scatter_angle : float
+        The largest along the path of their standard deviations over the crank angles.
+    angles : int
+        Crank angles at which paths were compared.
     points : int
-        Points that were compared.
+        Points that were compared, of all of them.
     """
 
     torque: float
     angle: float
+    mean_torque: float
+    mean_angle: float
+    scatter_torque: float
+    scatter_angle: float
+    angles: int
     points: int
+
+    @classmethod
+    def of_differences(cls, torque: FloatArray, angle: FloatArray) -> FitError:
+        """Return the error by differences at crank angles and points of a path.
+
+        Parameters
+        ----------
+        torque, angle : array, shape (angles, points)
+            N·mm, and rad, nan where angles are not compared.
+        """
+        compared = angle[:, ~np.isnan(angle).any(axis=0)]
+        return cls(
+            torque=float(np.max(np.abs(torque))),
+            angle=float(np.max(np.abs(compared))),
+            mean_torque=float(np.max(np.abs(np.mean(torque, axis=0)))),
+            mean_angle=float(np.max(np.abs(np.mean(compared, axis=0)))),
+            scatter_torque=float(np.max(np.std(torque, axis=0))),
+            scatter_angle=float(np.max(np.std(compared, axis=0))),
+            angles=torque.shape[0],
+            points=torque.size,
+        )
 
     def content(self, largest: float) -> dict[str, float]:
         """Return it as files hold it; parts are those of the torque range from −`largest` to `largest`, N·mm."""
@@ -102,6 +145,11 @@ class FitError:
             "torque_N_m": self.torque / NEWTON_METRE,
             "part_of_torque_range": 0.5 * self.torque / largest,
             "angle_rad": self.angle,
+            "mean_over_crank_angle_part_of_torque_range": 0.5 * self.mean_torque / largest,
+            "mean_over_crank_angle_rad": self.mean_angle,
+            "scatter_over_crank_angle_part_of_torque_range": 0.5 * self.scatter_torque / largest,
+            "scatter_over_crank_angle_rad": self.scatter_angle,
+            "crank_angles": self.angles,
             "points": self.points,
         }
 
@@ -176,6 +224,11 @@ class ReducedModel:
         return FitError(
             torque=max(one.torque for one in every),
             angle=max(one.angle for one in every),
+            mean_torque=max(one.mean_torque for one in every),
+            mean_angle=max(one.mean_angle for one in every),
+            scatter_torque=max(one.scatter_torque for one in every),
+            scatter_angle=max(one.scatter_angle for one in every),
+            angles=max(one.angles for one in every),
             points=sum(one.points for one in every),
         )
 
@@ -200,10 +253,15 @@ def largest_speed(drive: Drive) -> float | None:
 
 
 def positions_of(drive: Drive) -> int:
-    """Return how many positions are solved for a reduced model, those of the loops left out."""
-    orders = len(known_orders(drive, harmonics=HARMONICS))
-    found = 2 * len(WIND_UP_PARTS) * scattered_angles(drive, orders).size
-    return found + (0 if drive.friction is None else 4 * len(FRICTION_PARTS) * POSITIONS)
+    """Return how many positions are solved for a reduced model, those of the strength factor counted in."""
+    drive = warm_drive(drive)
+    found = 2 * len(WIND_UP_PARTS) * scattered_angles(drive, len(wind_up_orders(drive))).size
+    if drive.friction is None:
+        return found
+    around = scattered_angles(drive, len(known_orders(drive, harmonics=FACTOR_HARMONICS)), FACTOR_POSITIONS).size
+    loops = (LOOP_ANGLES + OTHER_ANGLES) * (1 + len(LOOP_PARTS) + 2 * (2 * len(LOOP_PARTS) - 1))
+    paths = loops + OTHER_ANGLES * (1 + len(OTHER_PATH)) + 2 * around * (1 + len(RISING_PARTS))
+    return found + 4 * len(FRICTION_PARTS) * POSITIONS + paths
 
 
 @names_unit_mistakes
@@ -250,7 +308,7 @@ def reduce_drive(drive: Drive, engine: Engine, advance: Callable[[int], None] = 
     )
     errors = {"without_friction": _error_without_friction(found)}
     if warm.friction is not None:
-        found, of_paths = _with_elements(found)
+        found, of_paths = _with_elements(found, advance)
         errors |= of_paths
     return replace(found, errors=errors)
 
@@ -272,64 +330,60 @@ def _error_without_friction(found: ReducedModel) -> FitError:
     angle, torque = np.repeat(CHECKED_ANGLES, load.size), np.tile(load, CHECKED_ANGLES.size)
     balanced = solve_at_output(model, [drive], angle, torque)
     wound = drive.output_deviation(wheel_angle_of_input(model, balanced), torque)
-    law, rows = law_of(found), zip(angle, wound, _way(drive) * torque, strict=True)
-    return _largest(law, [[row] for row in rows], found.largest)
+    shape = (CHECKED_ANGLES.size, load.size)
+    return _along(law_of(found), CHECKED_ANGLES, wound.reshape(shape), _way(drive) * load, found.largest)
 
 
-def _with_elements(found: ReducedModel) -> tuple[ReducedModel, dict[str, FitError]]:
+def _with_elements(found: ReducedModel, advance: Callable[[int], None]) -> tuple[ReducedModel, dict[str, FitError]]:
     """Fit the elements to loops with the input locked; compare with these and with another path."""
-    drive, law = found.drive, law_of(found)
+    drive, way = found.drive, _way(found.drive)
     up = np.array(LOOP_PARTS)
     once = np.concatenate([-up[::-1], up])
     loop = np.concatenate([[LEAST_TORQUE_RATIO], up, once[::-1][1:], once[1:]])
-    other = np.array([part or LEAST_TORQUE_RATIO for part in (LEAST_TORQUE_RATIO, *OTHER_PATH)])
-    orders = known_orders(drive, harmonics=FACTOR_HARMONICS)
-    around = scattered_angles(drive, len(orders), FACTOR_POSITIONS)
-    held = []
-    for way_of_load in (_way(drive), -_way(drive)):  # torque on the output negative, then positive
-        rising = np.concatenate([[LEAST_TORQUE_RATIO], RISING_PARTS]) * -way_of_load * found.largest
-        wound = locked_path(drive, around, rising, engine=found.engine)[:, -1]
-        sprung_at = np.array([_elastic(law, angle, one) for angle, one in zip(around, wound, strict=True)])
-        held.append(_way(drive) * rising[-1] / sprung_at - 1.0)
-    found = replace(found, strength_factor=StrengthFactor.fitted(around, held, orders))
-    law = law_of(found)
+    other = np.array([LEAST_TORQUE_RATIO, *OTHER_PATH])
     angles = scattered_by(drive, LOOP_ANGLES + OTHER_ANGLES)
-    of_loops = locked_path(drive, angles, found.largest * loop, engine=found.engine)
-    of_other = locked_path(drive, angles[LOOP_ANGLES:], found.largest * other, engine=found.engine)
-    way, fitted_to = _way(drive), angles[:LOOP_ANGLES]
-
+    fitted_to, beside = angles[:LOOP_ANGLES], angles[LOOP_ANGLES:]
+    of_loops = locked_path(drive, angles, found.largest * loop, engine=found.engine, advance=advance)
+    of_other = locked_path(drive, beside, found.largest * other, engine=found.engine, advance=advance)
     torque = way * found.largest * loop
-    sprung = [
-        np.array([_elastic(law, angle, one) for one in path]) for angle, path in zip(fitted_to, of_loops, strict=False)
-    ]
-    factors = [
-        (law.strength_factor(angle / law.cranks, -1.0), law.strength_factor(angle / law.cranks, 1.0))
-        for angle in fitted_to
-    ]
+
+    law = law_of(found)
+    sprung = np.array([[_elastic(law, at, one) for one in path] for at, path in zip(angles, of_loops, strict=True)])
+    ends = [int(np.argmax(sign * torque)) for sign in (-1.0, 1.0)]
+    held = [torque[end] / sprung[:, end] - 1.0 for end in ends]
+    orders = known_orders(drive, harmonics=FACTOR_HARMONICS)
+    if max(float(np.ptp(part)) for part in held) > LEAST_VARIATION:
+        found = replace(found, strength_factor=_strength_factor(found, orders, advance))
+        law = law_of(found)
     elements = fit_elements(
-        sprung,
-        [torque] * len(sprung),
+        list(sprung[:LOOP_ANGLES]),
+        [torque] * LOOP_ANGLES,
         drive.load.torque,
-        factors,
+        [law.strength_factors(at / law.cranks)[::-1] for at in fitted_to.tolist()],
         fitted_to,
-        tuple(order.value for order in orders),
+        tuple(order.value for order in known_orders(drive, harmonics=WEIGHT_HARMONICS)),
         JUDGED_ANGLES,
     )
     fitted = replace(found, elements=elements)
-    own = law_of(fitted)
-
-    def paths(at: FloatArray, wound: FloatArray, parts: FloatArray) -> Paths:
-        along = way * found.largest * parts
-        return [
-            list(zip(np.full(parts.size, one), path, along, strict=True)) for one, path in zip(at, wound, strict=True)
-        ]
-
-    beside = angles[LOOP_ANGLES:]
+    own, along = law_of(fitted), way * found.largest * other
     return fitted, {
-        "loop": _largest(own, paths(fitted_to, of_loops[:LOOP_ANGLES], loop), found.largest),
-        "other_loops": _largest(own, paths(beside, of_loops[LOOP_ANGLES:], loop), found.largest),
-        "other_path": _largest(own, paths(beside, of_other, other), found.largest),
+        "loop": _along(own, fitted_to, of_loops[:LOOP_ANGLES], torque, found.largest),
+        "other_loops": _along(own, beside, of_loops[LOOP_ANGLES:], torque, found.largest),
+        "other_path": _along(own, beside, of_other, along, found.largest),
     }
+
+
+def _strength_factor(found: ReducedModel, orders: tuple[Order, ...], advance: Callable[[int], None]) -> StrengthFactor:
+    """Factor of the crank angle by what friction holds after the largest torque has come slowly, either way."""
+    drive, law, way = found.drive, law_of(found), _way(found.drive)
+    around = scattered_angles(drive, len(orders), FACTOR_POSITIONS)
+    held = []
+    for of_load in (-way, way):  # torque on the output negative, then positive
+        rising = np.concatenate([[LEAST_TORQUE_RATIO], RISING_PARTS]) * of_load * found.largest
+        wound = locked_path(drive, around, rising, engine=found.engine, advance=advance)[:, -1]
+        sprung = np.array([_elastic(law, angle, one) for angle, one in zip(around, wound, strict=True)])
+        held.append(way * rising[-1] / sprung - 1.0)
+    return StrengthFactor.fitted(around, held, orders)
 
 
 def _elastic(law: ReducedDrive, crank_angle: float, wound: float) -> float:
@@ -338,17 +392,19 @@ def _elastic(law: ReducedDrive, crank_angle: float, wound: float) -> float:
     return NEWTON_METRE * law.elastic_torque(at, at / law.ratio + wound)
 
 
-def _largest(law: ReducedDrive, paths: Paths, largest: float) -> FitError:
-    """Largest errors of the law along paths of crank angle, wind-up and torque (rad, N·mm)."""
-    in_torque, in_angle = 0.0, 0.0
-    for path in paths:
+def _along(
+    law: ReducedDrive, crank_angle: FloatArray, wound: FloatArray, torque: FloatArray, largest: float
+) -> FitError:
+    """Errors of the law along a path of torques, N·mm, whose wind-up is given at each crank angle, shape (angles, points)."""
+    in_torque, in_angle = np.empty(wound.shape), np.full(wound.shape, np.nan)
+    told = np.abs(torque) > LEAST_TOLD * largest
+    for row, (one, path) in enumerate(zip((crank_angle / law.cranks).tolist(), wound.tolist(), strict=True)):
         law.reset()
-        for crank_angle, wound, torque in path:
-            at = float(crank_angle) / law.cranks
-            if abs(torque) > LEAST_TOLD * largest:
-                in_angle = max(in_angle, abs(wind_up_at(law, at, torque / NEWTON_METRE) - wound))
-            in_torque = max(in_torque, abs(NEWTON_METRE * law.move(at, at / law.ratio + float(wound)) - torque))
-    return FitError(torque=float(in_torque), angle=float(in_angle), points=sum(map(len, paths)))
+        for place, (at, value) in enumerate(zip(path, torque.tolist(), strict=True)):
+            if told[place]:
+                in_angle[row, place] = wind_up_at(law, one, value / NEWTON_METRE) - at
+            in_torque[row, place] = NEWTON_METRE * law.move(one, one / law.ratio + at) - value
+    return FitError.of_differences(in_torque, in_angle)
 
 
 def wind_up_at(law: ReducedDrive, input_angle: float, torque: float) -> float:
@@ -365,14 +421,8 @@ def wind_up_at(law: ReducedDrive, input_angle: float, torque: float) -> float:
     """
     nodes, at = law.wind_up_nodes(input_angle), input_angle / law.ratio
     span = nodes[-1] - nodes[0]
-    low, high = nodes[0] - span, nodes[-1] + span
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        if law.torque_of(input_angle, at + middle) < torque:
-            low = middle
-        else:
-            high = middle
-    return float(0.5 * (low + high))
+    ends = float(nodes[0] - span), float(nodes[-1] + span)
+    return float(brentq(lambda wound: law.torque_of(input_angle, at + wound) - torque, *ends, xtol=1e-12))
 
 
 def _content(found: ReducedModel) -> dict[str, Any]:
@@ -433,6 +483,7 @@ def _content(found: ReducedModel) -> dict[str, Any]:
             "part_of_torque_range": 0.5 * found.spring_error / found.largest,
         },
         "hysteresis": {
+            "flank": found.elements.flank.tolist(),
             "exponent": found.elements.exponent.tolist(),
             "strength": found.elements.strength.tolist(),
             "stiffness": found.elements.stiffness.tolist(),

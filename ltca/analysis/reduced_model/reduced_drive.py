@@ -10,10 +10,10 @@ turns of the input by those of the output:
 
 - wind-up x = output angle − input angle/i; at the nodes T_j of the table x_j(φ) = mean + Σ cos·cos(order φ) + sin·sin(order φ)
   with the crank angle φ; the elastic torque f is linear between the nodes, and beyond them;
-- Maxwell-slip elements on f: z moves by g·w·stiffness·Δf and stays within ± g·w·strength·T_r·(\\|f\\|/T_r)^exponent with the
-  rated torque T_r, the factor g of the crank angle, 1 + Σ cos·cos(order φ) + sin·sin(order φ), one for either sign of f, and the
-  weight w of each element, 1 + amplitude·cos(order φ − phase);
-- the drive holds the output with T = f + Σz and turns the input with T/i;
+- Maxwell-slip elements, each on one flank s = ±1 with the load q = max(s·f, 0): z moves by g·w·stiffness·Δq and stays within
+  ± g·w·strength·T_r·(q/T_r)^exponent with the rated torque T_r, the factor g of the crank angle, 1 + Σ cos·cos(order φ) +
+  sin·sin(order φ), one for either flank, and the weight w of each element, 1 + amplitude·cos(order φ − phase);
+- the drive holds the output with T = f + Σs·z and turns the input with T/i;
 - friction at the input is a bristle: it moves by Δ(input angle) and stays within the friction of the table at f and the sense.
 """
 
@@ -52,6 +52,7 @@ class ReducedDrive:
         shape = (self.order.size, self.torque.size)
         self.cosine = np.array([entry["cos_rad"] for entry in wind_up["orders"]], dtype=np.float64).reshape(shape)
         self.sine = np.array([entry["sin_rad"] for entry in wind_up["orders"]], dtype=np.float64).reshape(shape)
+        self.flank = column("hysteresis", "flank")
         self.exponent = column("hysteresis", "exponent")
         self.strength = column("hysteresis", "strength")
         self.stiffness = column("hysteresis", "stiffness")
@@ -60,10 +61,8 @@ class ReducedDrive:
         self.weight_phase = column("hysteresis", "weight_phase_rad")
         around = tables["hysteresis"]["factor_orders"]
         self.factor_order = np.array([entry["order"] for entry in around], dtype=np.float64)
-        self.factor = {
-            sign: np.array([[entry[f"cos_{name}"], entry[f"sin_{name}"]] for entry in around]).reshape(-1, 2)
-            for sign, name in ((1, "ccw"), (-1, "cw"))
-        }
+        self.factor = np.array([[[one[f"cos_{way}"], one[f"sin_{way}"]] for one in around] for way in ("ccw", "cw")])
+        self.factor = self.factor.reshape(2, -1, 2)
         self.friction_torque = column("friction", "torque_N_m")
         self.friction = {
             1: column("friction", "at_input_turning_ccw_N_m"),
@@ -82,6 +81,11 @@ class ReducedDrive:
             Of the file.
         """
         return cls(json.loads(Path(path).read_text(encoding="utf-8")))
+
+    @property
+    def held(self) -> float:
+        """Torque with which the output is held in the state, N·m."""
+        return self.elastic + float(self.flank @ self.elements)
 
     def reset(self) -> None:
         """Forget the past: no element carries anything."""
@@ -119,18 +123,17 @@ class ReducedDrive:
         part = (wound - nodes[first]) / width
         return float(torque[first] + part * (torque[first + 1] - torque[first]))
 
-    def strength_factor(self, input_angle: float, elastic: float) -> float:
-        """Return the factor of the strength of the elements, 1 in the mean over the crank angle, not negative.
+    def strength_factors(self, input_angle: float) -> tuple[float, float]:
+        """Return the factor of strengths on the flanks of positive and negative torque, 1 in the mean, not negative.
 
         Parameters
         ----------
         input_angle : float
             rad.
-        elastic : float
-            Torque on the output, of which the sign counts, N·m.
         """
-        phase, table = self.factor_order * (self.cranks * input_angle), self.factor[1 if elastic > 0.0 else -1]
-        return max(0.0, 1.0 + float(np.cos(phase) @ table[:, 0] + np.sin(phase) @ table[:, 1]))
+        phase = self.factor_order * (self.cranks * input_angle)
+        ccw, cw = (self.factor[:, :, 0] @ np.cos(phase) + self.factor[:, :, 1] @ np.sin(phase)).tolist()
+        return max(0.0, 1.0 + ccw), max(0.0, 1.0 + cw)
 
     def slipped(self, input_angle: float, elastic: float) -> Array:
         """Return the elements after the elastic torque has come to a value, N·m; the state stays.
@@ -143,9 +146,11 @@ class ReducedDrive:
             N·m.
         """
         rated, phase = self.rated_torque, self.weight_order * (self.cranks * input_angle) - self.weight_phase
-        factor = self.strength_factor(input_angle, elastic) * (1.0 + self.weight_amplitude * np.cos(phase))
-        most = factor * self.strength * rated * (abs(elastic) / rated) ** self.exponent
-        return np.asarray(np.clip(self.elements + factor * self.stiffness * (elastic - self.elastic), -most, most))
+        ccw, cw = self.strength_factors(input_angle)
+        factor = np.where(self.flank > 0.0, ccw, cw) * (1.0 + self.weight_amplitude * np.cos(phase))
+        load, before = (np.maximum(self.flank * torque, 0.0) for torque in (elastic, self.elastic))
+        most = factor * self.strength * rated * (load / rated) ** self.exponent
+        return np.asarray(np.clip(self.elements + factor * self.stiffness * (load - before), -most, most))
 
     def torque_of(self, input_angle: float, output_angle: float) -> float:
         """Return the torque with which the output is held, N·m; the state stays.
@@ -156,7 +161,7 @@ class ReducedDrive:
             rad.
         """
         elastic = self.elastic_torque(input_angle, output_angle)
-        return elastic + float(self.slipped(input_angle, elastic).sum())
+        return elastic + float(self.flank @ self.slipped(input_angle, elastic))
 
     def friction_at(self, elastic: float, sense: float) -> float:
         """Return the friction at the input, N·m, not negative.
@@ -181,7 +186,7 @@ class ReducedDrive:
         """
         elastic = self.elastic_torque(input_angle, output_angle)
         self.elements, self.elastic = self.slipped(input_angle, elastic), elastic
-        return elastic + float(self.elements.sum())
+        return self.held
 
     def step(self, input_angle: float, output_angle: float) -> tuple[float, float]:
         """Take angles that follow those before; return the torques of the drive on input and output, N·m.

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ltca.analysis.memory_need import positions_together
-from ltca.analysis.transmission_error_orders import Order, Spectrum, fit_orders, known_orders
+from ltca.analysis.transmission_error_orders import Order, Spectrum, fit_several, known_orders
 from ltca.arrays import FloatArray
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import ARCMIN
@@ -25,7 +25,7 @@ TORQUE_PARTS = (1e-4, 0.003, 0.01, 0.03, 0.06, 0.1, 0.17, 0.25, 0.37, 0.5, 0.62,
 """Torques of the table by the largest one, either way; at the first bodies yield 1e-4 of what they do at the last."""
 HARMONICS = 3
 """Multiples of each origin of an order; what higher ones do is told with the residual."""
-POSITIONS_PER_UNKNOWN = 5
+POSITIONS_PER_UNKNOWN = 4
 """Positions for each cosine, sine and mean that is fitted."""
 GOLDEN = 0.5 * (5.0**0.5 - 1.0)
 """Step by which positions go on, modulo one, over all turns: no order looks like another at them."""
@@ -95,22 +95,23 @@ def wind_up(drive: Drive, model: Reducer, largest: float, advance: Callable[[int
     advance : callable
         Told of solved positions.
     """
-    orders = known_orders(drive, harmonics=HARMONICS)
+    orders = wind_up_orders(drive)
     angle = scattered_angles(drive, len(orders))
     opposing = _opposing(drive)
     torque, spectra = [], list[Spectrum]()
     for way in (1.0, -1.0):
         errors = np.empty((len(TORQUE_PARTS), angle.size))
         for rows in np.array_split(np.arange(angle.size), -(-angle.size // positions_together(drive))):
-            start = None
+            start, moment = None, None
             for place in range(len(TORQUE_PARTS) - 1, -1, -1):
                 load = way * largest * TORQUE_PARTS[place]
-                found = solve_at_output(model, [drive], angle[rows], load, start)
+                found = solve_at_output(model, [drive], angle[rows], load, start, wheel_moment=moment)
                 start = found.pose
+                moment = found.wheel_moment * (TORQUE_PARTS[place - 1] / TORQUE_PARTS[place])
                 errors[place, rows] = drive.output_deviation(wheel_angle_of_input(model, found), load)
                 advance(rows.size)
         torque += [opposing * way * largest * part for part in TORQUE_PARTS]
-        spectra += [fit_orders(angle, row, orders) for row in errors]
+        spectra += fit_several(angle, errors, orders)
     along = np.argsort(torque)
     amplitude = np.array([spectra[place].amplitude for place in along]).T
     phase = np.array([spectra[place].phase for place in along]).T
@@ -126,6 +127,28 @@ def wind_up(drive: Drive, model: Reducer, largest: float, advance: Callable[[int
         turns=drive.pin_wheel.number_of_pins,
         positions=angle.size,
     )
+
+
+def wind_up_orders(drive: Drive) -> tuple[Order, ...]:
+    """Return the orders that are fitted: `known_orders`, and with rollers that pass flank and holes, ascending.
+
+    Rollers bend the same contacts as the flank and the holes, so that sums and differences of their orders show as well; those
+    less than an order apart from others over all turns are left out, since positions could not tell them apart.
+    """
+    found, turns = list(known_orders(drive, harmonics=HARMONICS)), drive.pin_wheel.number_of_pins
+    passage = next((order.value for order in found if order.name.startswith("roller passage, 1 ")), 0.0)
+    orders: list[Order] = []
+    beside = [(multiple * drive.disc.number_of_teeth, f"{multiple} z_C") for multiple in (1, 2)]
+    if holes := drive.number_of_holes:
+        beside.append((holes, "z_PS"))
+        orders.append(Order(float((HARMONICS + 1) * holes), f"pin holes, {HARMONICS + 1} z_PS"))
+    for value, name in beside:
+        orders.append(Order(abs(value - passage), f"rollers past {name}, difference"))
+        orders.append(Order(value + passage, f"rollers past {name}, sum"))
+    for order in orders:
+        if all(abs(order.value - other) * turns > 0.99 for other in (0.0, *(one.value for one in found))):
+            found.append(order)
+    return tuple(sorted(found))
 
 
 def scattered_angles(drive: Drive, orders: int, by_unknown: int = POSITIONS_PER_UNKNOWN) -> FloatArray:

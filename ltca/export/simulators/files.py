@@ -72,7 +72,8 @@ def require_exportable(kind: str, speed: float | None, without_density: tuple[st
     problems = []
     if kind == "urdf" and speed is None:
         problems.append(
-            "load.speed: must be given for --for urdf, whose <limit> has a velocity, rpm (or the speeds of [[duty]])"
+            "load.speed: must be given for --for urdf, whose <limit> has a velocity: by --speed N (of the input, rpm), in the "
+            "drive file, or by [[duty]]"
         )
     if kind in ("mujoco", "urdf"):
         problems += [

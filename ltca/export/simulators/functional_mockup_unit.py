@@ -74,6 +74,7 @@ def tables_header(tables: dict[str, Any]) -> str:
         vector("ORDER", [one["order"] for one in orders]),
         matrix("COSINE", "cos_rad"),
         matrix("SINE", "sin_rad"),
+        vector("FLANK", loop["flank"]),
         vector("EXPONENT", loop["exponent"]),
         vector("STRENGTH", loop["strength"]),
         vector("STIFFNESS", loop["stiffness"]),

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from ltca.drive.units.quantities import ARCMIN
+
 
 def csv_texts(tables: dict[str, Any]) -> dict[str, str]:
     """Return the tables as CSV, by the ends of their names.
@@ -53,8 +55,10 @@ def readme_text(tables: dict[str, Any]) -> str:
     output = "pin shaft" if tables["held"] == "pin-wheel" else "pin wheel"
     limits, spring = tables["limits"], tables["linear_spring"]
     errors = "\n".join(
-        f"| {kind.replace('_', ' ')} | {one['torque_N_m']:.4g} N·m | {100.0 * one['part_of_torque_range']:.3g} % | "
-        f"{10800.0 / 3.141592653589793 * one['angle_rad']:.2g}′ | {one['points']} |"
+        f"| {kind.replace('_', ' ')} | {100.0 * one['part_of_torque_range']:.3g} %, {ARCMIN * one['angle_rad']:.2g}′ | "
+        f"{100.0 * one['mean_over_crank_angle_part_of_torque_range']:.2g} %, {ARCMIN * one['mean_over_crank_angle_rad']:.2g}′ | "
+        f"{100.0 * one['scatter_over_crank_angle_part_of_torque_range']:.2g} %, "
+        f"{ARCMIN * one['scatter_over_crank_angle_rad']:.2g}′ | {one['crank_angles']} | {one['points']} |"
         for kind, one in tables["fit_error"].items()
     )
     speed, damping = limits["input_speed_rpm"], tables["damping"]["at_output_N_m_s_per_rad"]
@@ -79,16 +83,18 @@ output, with sign. The crank angle is {tables["crank_turns_per_input_turn"]:.9g}
 ## Law
 - Wind-up x = output angle − input angle/i. At the torque T_j of row j of the table x_j = mean + Σ cos_order·cos(order·φ) + sin_order·sin(order·φ) with the crank angle φ. The elastic torque f is linear between
   these nodes, and beyond them. The play lies between the two least torques.
-- Element: z moves by stiffness·Δf and stays within ± g·strength·T_r·(|f|/T_r)^exponent with the rated torque T_r = {limits["rated_torque_N_m"]:g} N·m. g = 1 + Σ cos·cos(order·φ) + sin·sin(order·φ), by the sign of f. The output is held with f + Σz.
-- The torque on the input is (f + Σz)/i and friction against its motion.
+- Element on the flank s = ±1, with the load q = max(s·f, 0): z moves by g·w·stiffness·Δq and stays within ± g·w·strength·T_r·(q/T_r)^exponent with the rated torque T_r = {limits["rated_torque_N_m"]:g} N·m. g = 1 + Σ cos·cos(order·φ) +
+  sin·sin(order·φ), by the flank; w = 1 + amplitude·cos(order·φ − phase). The output is held with f + Σs·z.
+- The torque on the input is (f + Σs·z)/i and friction against its motion.
 - Efficiency and friction are means over a turn. {tables["friction"]["speed_words"][0].upper() + tables["friction"]["speed_words"][1:]}.
 
 ## How good it is
 Valid from −{limits["peak_torque_N_m"]:g} to {limits["peak_torque_N_m"]:g} N·m ({limits["peak_torque_from"]}){"" if speed is None else f" and to {speed:g} turns a minute of the input"}; {tables["valid_range"]["speed_words"]}.
-Largest differences from the analysis, torques at its wind-up by the range of {2.0 * limits["peak_torque_N_m"]:g} N·m, angles at its torque:
+Differences from the analysis, torques at its wind-up by the range of {2.0 * limits["peak_torque_N_m"]:g} N·m, angles at its torque: the largest at single crank angles; the largest along the
+path of their means over the crank angles, which is what a loop at a mean crank angle is off by; the largest of their standard deviations about it:
 
-| compared | torque | part of the range | angle | points |
-|---|---|---|---|---|
+| compared | at single crank angles | mean over crank angles | scatter over crank angles | crank angles | points |
+|---|---|---|---|---|---|
 {errors}
 
 A linear spring of {spring["stiffness_N_m_per_rad"]:.6g} N·m/rad behind the mean play of {spring["play_rad"]:.4g} rad is within {100.0 * spring["part_of_torque_range"]:.3g} % of the range of the mean curve.

@@ -101,7 +101,8 @@ package {name} "{told}"
     constant Real order[{len(orders)}] = {_vector([one["order"] for one in orders])};
     constant Real cosine[{len(orders)}, {nodes}] = {_matrix([one["cos_rad"] for one in orders], nodes)};
     constant Real sine[{len(orders)}, {nodes}] = {_matrix([one["sin_rad"] for one in orders], nodes)};
-    constant Real exponent[{len(loop["exponent"])}] = {_vector(loop["exponent"])};
+    constant Real flank[{len(loop["flank"])}] = {_vector(loop["flank"])};
+    constant Real exponent[size(flank, 1)] = {_vector(loop["exponent"])};
     constant Real strength[{len(loop["strength"])}] = {_vector(loop["strength"])};
     constant Real stiffness[{len(loop["stiffness"])}] = {_vector(loop["stiffness"])};
     constant Real weightOrder[size(strength, 1)] = {_vector(loop["weight_order"])};
@@ -118,7 +119,8 @@ package {name} "{told}"
     Modelica.Units.SI.Torque followed(start = 0, fixed = true) "The same, filtered";
     Modelica.Units.SI.Torque element[size(strength, 1)](each start = 0, each fixed = true) "Maxwell-slip elements";
     Modelica.Units.SI.Torque most[size(strength, 1)] "At which they slip";
-    Real factor "Of all their strengths and stiffnesses";
+    Modelica.Units.SI.Torque load[size(strength, 1)] "On the flank of each, not negative";
+    Real factor[2] "Of all their strengths and stiffnesses, by the flank";
     Real weight[size(strength, 1)] "Factor with what each has of its own";
     Modelica.Units.SI.Torque torque "With which the output is held";
     Modelica.Units.SI.Torque friction "At the input";
@@ -128,14 +130,17 @@ package {name} "{told}"
     w = der(flange_a.phi);
     elastic = interpolate(windUp, windUpNodes(cranks*flange_a.phi, mean, order, cosine, sine), torqueAt);
     settling*der(followed) = elastic - followed;
-    factor = max(0, 1 + strengthFactor(cranks*flange_a.phi, factorOrder, if followed > 0 then factorCcw else factorCw));
+    factor[1] = max(0, 1 + strengthFactor(cranks*flange_a.phi, factorOrder, factorCcw));
+    factor[2] = max(0, 1 + strengthFactor(cranks*flange_a.phi, factorOrder, factorCw));
     for e in 1:size(strength, 1) loop
-      weight[e] = factor*(1 + weightAmplitude[e]*cos(weightOrder[e]*cranks*flange_a.phi - weightPhase[e]));
-      most[e] = weight[e]*strength[e]*rated*(abs(followed)/rated)^exponent[e];
-      der(element[e]) = weight[e]*stiffness[e]*(elastic - followed)/settling - max(0, element[e] - most[e])/settling
-        + max(0, -most[e] - element[e])/settling;
+      weight[e] = (if flank[e] > 0 then factor[1] else factor[2])
+        *(1 + weightAmplitude[e]*cos(weightOrder[e]*cranks*flange_a.phi - weightPhase[e]));
+      load[e] = max(0, flank[e]*followed);
+      most[e] = weight[e]*strength[e]*rated*(load[e]/rated)^exponent[e];
+      der(element[e]) = (if load[e] > 0 then weight[e]*stiffness[e]*flank[e]*(elastic - followed)/settling else 0)
+        - max(0, element[e] - most[e])/settling + max(0, -most[e] - element[e])/settling;
     end for;
-    torque = elastic + sum(element) + d*der(windUp);
+    torque = elastic + flank*element + d*der(windUp);
     friction = tanh(w/creep)*(if w > 0 then interpolate(followed, frictionAt, frictionCcw)
       else interpolate(followed, frictionAt, frictionCw));
     flange_b.tau = torque;

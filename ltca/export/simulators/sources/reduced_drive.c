@@ -85,23 +85,25 @@ static double friction(const double *table, double torque) {
 }
 
 static void answer(const State *state, Answer *found) {
-    double torque, forward, backward, most, factor = 1.0;
+    double torque, forward, backward, most, ccw = 1.0, cw = 1.0;
     int e;
     found->after = *state;
     torque = found->elastic = found->after.elastic = elastic_torque(state);
     for (e = 0; e < FACTORS; e++) {
         double phase = FACTOR_ORDER[e] * CRANKS * state->input_angle;
-        const double *ends = found->elastic > 0.0 ? FACTOR_CCW[e] : FACTOR_CW[e];
-        factor += ends[0] * cos(phase) + ends[1] * sin(phase);
+        double c = cos(phase), s = sin(phase);
+        ccw += FACTOR_CCW[e][0] * c + FACTOR_CCW[e][1] * s;
+        cw += FACTOR_CW[e][0] * c + FACTOR_CW[e][1] * s;
     }
-    if (factor < 0.0) factor = 0.0;
+    if (ccw < 0.0) ccw = 0.0;
+    if (cw < 0.0) cw = 0.0;
     for (e = 0; e < ELEMENTS; e++) {
-        double weight =
-            factor * (1.0 + WEIGHT_AMPLITUDE[e] * cos(WEIGHT_ORDER[e] * CRANKS * state->input_angle - WEIGHT_PHASE[e]));
-        most = weight * STRENGTH[e] * RATED * pow(fabs(found->elastic) / RATED, EXPONENT[e]);
-        found->after.elements[e] =
-            within(state->elements[e] + weight * STIFFNESS[e] * (found->elastic - state->elastic), -most, most);
-        torque += found->after.elements[e];
+        double weight = 1.0 + WEIGHT_AMPLITUDE[e] * cos(WEIGHT_ORDER[e] * CRANKS * state->input_angle - WEIGHT_PHASE[e]);
+        double load = fmax(FLANK[e] * found->elastic, 0.0), before = fmax(FLANK[e] * state->elastic, 0.0);
+        weight *= FLANK[e] > 0.0 ? ccw : cw;
+        most = weight * STRENGTH[e] * RATED * pow(load / RATED, EXPONENT[e]);
+        found->after.elements[e] = within(state->elements[e] + weight * STIFFNESS[e] * (load - before), -most, most);
+        torque += FLANK[e] * found->after.elements[e];
     }
     forward = friction(FRICTION_CCW, found->elastic);
     backward = friction(FRICTION_CW, found->elastic);

@@ -45,8 +45,23 @@ def test_the_order_at_which_release_goes_with_the_crank_angle_is_found():
     found = fit_elements([path] * 16, torque, RATED, [(1.0, 1.0)] * 16, angle, (3.0, 8.0, 39.0), judged=4)
     assert set(found.order) == {8.0}
     # Strengths up to LEAST_STRENGTH are left out; the two are found to the round-off of normal equations.
-    assert np.sort(found.strength) == pytest.approx([STRENGTH, STRENGTH], rel=1e-6)
-    assert np.sort(found.phase) == pytest.approx([0.0, np.pi])
+    for flank in (-1.0, 1.0):
+        assert np.sort(found.strength[found.flank == flank]) == pytest.approx([STRENGTH, STRENGTH], rel=1e-6)
+        assert np.sort(found.phase[found.flank == flank]) == pytest.approx([0.0, np.pi])
+
+
+def test_each_flank_has_elements_of_its_own():
+    """Friction that holds twice as much on one flank, and lets go later there, is found on that flank alone."""
+    path = RATED * np.concatenate(
+        [np.linspace(0.0, 1.0, 21), np.linspace(1.0, -1.0, 41)[1:], np.linspace(-1.0, 1.0, 41)[1:]]
+    )
+    early, late = (wedge(path, STRENGTH * (1.0 + back) / (1.0 - back)) for back in (0.92, 0.7))
+    beside = np.where(path > 0.0, 2.0 * early, late)
+    found = fit_elements([path], [path + beside], RATED, [(1.0, 1.0)])
+    assert found.flank.tolist() == [-1.0, 1.0]
+    # Least squares on exact values: round-off of the normal equations.
+    assert found.strength == pytest.approx([STRENGTH, 2.0 * STRENGTH], rel=1e-8)
+    assert found.stiffness / found.strength == pytest.approx([1.7 / 0.3, 1.92 / 0.08], rel=1e-8)
 
 
 def test_a_factor_of_the_strength_is_not_taken_for_strength():

@@ -96,6 +96,74 @@ def test_wind_up_is_that_of_the_analysis(tables):
         assert np.interp(-torque / 1e3, law.torque, nodes) == pytest.approx(expected, abs=MOST_ANGLE)
 
 
+@pytest.fixture(scope="module")
+def stops():
+    """Crank angle, and the output's angle against the input where it begins to hold cw and ccw, rad, by the analysis."""
+    from dataclasses import replace
+
+    from ltca.equilibrium.output_angle import wheel_angle_of_input
+    from ltca.equilibrium.output_torque import solve_at_output
+
+    drive, crank_angle = load_drive("paper").cases["CS-4"], np.array([3.0, 3.0])
+    model = replace(HalfSpace().prepare(drive).model, friction=None)
+    # The pin shaft is held and the crank drives ccw: the wheel goes cw, and a positive torque turns it ccw against the crank's
+    # sense of driving it, to the lower stop in the convention of the deviation (cw in its own sense).
+    load = np.array([1e-4, -1e-4]) * drive.load.torque
+    found = solve_at_output(model, [drive], crank_angle, load)
+    low, high = drive.output_deviation(wheel_angle_of_input(model, found), load)
+    assert low < 0.0 < high
+    return 3.0, float(low), float(high)
+
+
+BESIDE = 0.1 / ARCMIN
+"""Five times the bound of angles: beyond a stop by so much the drive holds, within it does not."""
+
+
+def held_by_every_format(folder, tables, crank_angle, wound):
+    """Torques of the drive on input and output at a wind-up, by the law, the callback and the unit."""
+    law = ReducedDrive(tables)
+    at = crank_angle / law.cranks
+    found = {"law": law.step(at, at / law.ratio + wound)}
+    mujoco = pytest.importorskip("mujoco", reason="mujoco (pip install cyclo-ltca[robotics]) is not installed")
+    sys.path.insert(0, str(folder / "mujoco"))
+    try:
+        from mujoco_callback import DriveCallback
+
+        joint = mujoco.MjModel.from_xml_path(str(folder / "mujoco" / "paper_CS_4.xml"))
+        data = mujoco.MjData(joint)
+        mujoco.set_mjcb_passive(DriveCallback(joint, folder / "mujoco" / "paper_CS_4.json"))
+        data.qpos[:] = at, at / law.ratio + wound
+        mujoco.mj_forward(joint, data)
+        found["callback"] = tuple(data.qfrc_passive)
+    finally:
+        mujoco.set_mjcb_passive(None)
+        sys.path.remove(str(folder / "mujoco"))
+        for name in ("mujoco_callback", "reduced_drive"):
+            sys.modules.pop(name, None)
+    if find_compiler() is not None:
+        fmpy = pytest.importorskip("fmpy", reason="FMPy (pip install cyclo-ltca[robotics]) is not installed")
+        values = {"input_angle": at, "output_angle": at / law.ratio + wound}
+        path = str(folder / "fmu" / "paper_CS_4.fmu")
+        answer = fmpy.simulate_fmu(path, stop_time=0.1, output_interval=0.1, start_values=values)
+        found["unit"] = (answer["input_torque"][-1], answer["output_torque"][-1])
+    return found
+
+
+def test_play_lies_where_the_analysis_has_it_and_torques_push_back(folder, tables, stops):
+    """Beyond either stop the drive pushes the output back, within neither; the input takes part 1/i of it the other way."""
+    crank_angle, low, high = stops
+    stiffness = tables["linear_spring"]["stiffness_N_m_per_rad"]
+    for wound, back in ((low - BESIDE, 1.0), (low + BESIDE, 0.0), (high - BESIDE, 0.0), (high + BESIDE, -1.0)):
+        for name, (on_input, on_output) in held_by_every_format(folder, tables, crank_angle, wound).items():
+            # A tenth of the mean spring: contacts at their first touch are softer. Within, the light torque alone is there.
+            least = 0.1 * stiffness * BESIDE
+            assert back * on_output > least if back else abs(on_output) < 1e-3 * tables["limits"]["rated_torque_N_m"], (
+                name
+            )
+            # Turned together by dφ and dφ/i nothing is wound up: T_in dφ + T_out dφ/i = 0.
+            assert on_input == pytest.approx(-on_output / tables["transmission_ratio"], abs=1e-9), name
+
+
 def test_mujoco_loads_both_models_without_a_warning(folder, tables):
     mujoco = pytest.importorskip("mujoco", reason="mujoco (pip install cyclo-ltca[robotics]) is not installed")
     heard = []
@@ -184,7 +252,9 @@ def test_without_a_compiler_the_sources_are_there(tables, tmp_path, monkeypatch)
     [
         (["--for", "json", "--part", "disc"], "--part: has no effect with --for json"),
         (["--for", "fmu", "--compensate", "0.1"], "--compensate: has no effect with --for fmu"),
-        (["--for", "urdf"], "load.speed: must be given for --for urdf, whose <limit> has a velocity, rpm"),
+        (["--for", "urdf"], "load.speed: must be given for --for urdf, whose <limit> has a velocity: by --speed N"),
+        (["--for", "urdf", "--speed", "0"], "--speed = 0: must be greater than 0"),
+        (["--format", "csv", "--speed", "1500"], "--speed: has no effect with --format, only with --for"),
         (["--format", "csv", "--quick"], "--quick: has no effect with --format, only with --for"),
         (["--for", "json", "--quick", "--compliance", "fe"], "--quick: is half-spaces, not --compliance fe"),
     ],

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import shutil
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -27,8 +28,9 @@ pytestmark = [pytest.mark.slow, pytest.mark.nightly]
 mujoco = pytest.importorskip("mujoco", reason="mujoco (pip install cyclo-ltca[robotics]) is not installed")
 fmpy = pytest.importorskip("fmpy", reason="FMPy (pip install cyclo-ltca[robotics]) is not installed")
 
-ANGLE = 1.234
-"""Crank angle of the replays, rad; none of those that the elements are fitted at."""
+ANGLES = (1.234, 17.71, 42.9)
+"""Crank angles of the replays, rad; none of those that the elements are fitted at. Drives settle at the first alone."""
+ANGLE = ANGLES[0]
 TURNS = (1.0, 0.3, 0.9, -1.0, 0.5)
 """Torques by the rated one between which the path goes: the whole loop, with a reversal within it."""
 STEP = 0.1
@@ -55,12 +57,13 @@ def loaded_path():
     return np.array(found)
 
 
-@pytest.fixture(scope="module", params=["rv", "robot-joint"])
+@pytest.fixture(scope="module", params=["rv", "robot-joint", "sleeved", "paper"])
 def drive(request):
     """A shipped drive with friction: the joint that of docs/how-to/robot_joint.md."""
-    return load_drive(request.param).cases["nominal"].with_fields({
-        "friction": {"pin": 0.05, "roller": 0.002, "no_load_torque": 100.0}
-        | ({"hole": 0.05} if request.param == "robot-joint" else {}),
+    file = load_drive(request.param)
+    rubs = {"robot-joint": {"hole": 0.05}, "sleeved": {"hole": 0.05, "seat": 0.03}, "paper": {"pin": 0.06}}
+    return file.cases["CS-4" if request.param == "paper" else next(iter(file.cases))].with_fields({
+        "friction": {"pin": 0.05, "roller": 0.002, "no_load_torque": 100.0} | rubs.get(request.param, {}),
         "load.speed": 1500.0, "inertia": {"input": 1e-4, "output": 0.05}, "damping": {"ratio": 0.1},
     })  # fmt: skip
 
@@ -82,9 +85,10 @@ def folder(tables, tmp_path_factory):
 def expected(drive):
     """Torque on the output and its angle against the input, N·m and rad, by the analysis."""
     torque = drive.load.torque * np.array([LIGHT, *loaded_path()])
-    wound = locked_path(drive, np.array([ANGLE]), torque, engine=HalfSpace())[0]
-    # With the pin wheel held and a crank that drives ccw a positive load turns the pin shaft ccw.
-    return torque[1:] / 1e3, wound[1:]
+    wound = locked_path(drive, np.array(ANGLES), torque, engine=HalfSpace())
+    # With the pin wheel held and a crank that drives ccw a positive load turns the pin shaft ccw, the pin wheel cw.
+    assert drive.load.direction == "ccw"
+    return torque[1:] / (1e3 if drive.wheel_is_held else -1e3), wound[:, 1:]
 
 
 @pytest.fixture(scope="module")
@@ -129,22 +133,27 @@ class Replay:
         mujoco.set_mjcb_passive(self.drive)
         self.input, self.output = (self.model.joint(f"joint_{side}").qposadr[0] for side in ("input", "output"))
 
-    def torque_at(self, wound):
+    def torque_at(self, wound, crank_angle=ANGLE):
         """Torque with which the output is held at an angle; the state of the drive goes on."""
-        self.data.qpos[[self.input, self.output]] = ANGLE, ANGLE / self.drive.law.ratio + wound
+        at = crank_angle / self.drive.law.cranks
+        self.data.qpos[[self.input, self.output]] = at, at / self.drive.law.ratio + wound
         self.data.qvel[:] = 0.0
         self.data.time += 1.0
         mujoco.mj_forward(self.model, self.data)
         return -self.data.qfrc_passive[self.output]
 
-    def settle(self, torque, longest=60_000):
-        """Angle of the output against the input once a torque is balanced."""
+    def settle(self, torque, longest=120_000):
+        """Angle of the output against the input once a torque is balanced.
+
+        The lightest torque crosses the play slowly: of the paper's drive 4 mrad at 5.5 mrad/s in steps of 10 µs.
+        """
+        at = ANGLE / self.drive.law.cranks
         self.data.qfrc_applied[self.output] = torque
         for step in range(longest):
-            self.data.qpos[self.input], self.data.qvel[self.input] = ANGLE, 0.0
+            self.data.qpos[self.input], self.data.qvel[self.input] = at, 0.0
             mujoco.mj_step(self.model, self.data)
             if step > 100 and abs(self.data.qacc[self.output]) < 1e-3 and abs(self.data.qvel[self.output]) < 1e-6:
-                return self.data.qpos[self.output] - ANGLE / self.drive.law.ratio
+                return self.data.qpos[self.output] - at / self.drive.law.ratio
         raise AssertionError(f"{torque} N·m is not balanced")
 
 
@@ -157,7 +166,10 @@ def replay(folder):
 
 
 def test_mujoco_torque_along_the_loop(replay, expected, tables):
-    held = [replay.torque_at(wound) for wound in expected[1]]
+    held = []
+    for crank_angle, path in zip(ANGLES, expected[1], strict=True):
+        replay.drive.law.reset()
+        held.append([replay.torque_at(wound, crank_angle) for wound in path])
     assert np.max(np.abs(held - expected[0])) < MOST_TORQUE * 2.0 * tables["limits"]["rated_torque_N_m"]
 
 
@@ -167,7 +179,7 @@ def test_mujoco_wind_up_along_the_loop(replay, expected, tables):
     stiffness = 4.0 * tables["linear_spring"]["stiffness_N_m_per_rad"]
     replay.model.dof_damping[1] = 2.0 * np.sqrt(stiffness * 0.05)
     wound = [replay.settle(torque) for torque in expected[0]]
-    assert np.max(np.abs(wound - expected[1])) < MOST_ANGLE
+    assert np.max(np.abs(wound - expected[1][0])) < MOST_ANGLE
 
 
 def edges(torque_at, least):
@@ -213,7 +225,7 @@ def test_mujoco_is_driven_back(replay, driving_back):
 class Unit:
     """The unit as a co-simulation master sees it."""
 
-    def __init__(self, folder):
+    def __init__(self, folder, cranks):
         from fmpy.fmi2 import FMU2Slave
 
         path = folder / "joint.fmu"
@@ -230,6 +242,7 @@ class Unit:
         self.slave.enterInitializationMode()
         self.slave.exitInitializationMode()
         self.ratio, self.time = self.get("transmission_ratio"), 0.0
+        self.cranks, self.unloaded = cranks, self.slave.getFMUState()
 
     def get(self, name):
         return self.slave.getReal([self.place[name]])[0]
@@ -238,7 +251,13 @@ class Unit:
         names = [self.place["input_angle"], self.place["output_angle"]]
         self.slave.setReal(names, [input_angle, input_angle / self.ratio + wound])
 
-    def torque_at(self, wound, input_angle=ANGLE, goes_on=True):
+    def begin(self, crank_angle):
+        """Forget the past; the input stands at a crank angle."""
+        self.slave.setFMUState(self.unloaded)
+        self.at = crank_angle / self.cranks
+
+    def torque_at(self, wound, input_angle=None, goes_on=True):
+        input_angle = self.at if input_angle is None else input_angle
         self.set(input_angle, wound)
         torque = -self.get("output_torque")
         if goes_on:
@@ -257,23 +276,30 @@ class Unit:
 
 
 @pytest.fixture
-def unit(folder):
+def unit(folder, tables):
     if not any(map(shutil.which, ("cc", "gcc", "clang"))):
         pytest.skip("no C compiler is there: the unit has sources alone")
-    found = Unit(folder)
+    found = Unit(folder, tables["crank_turns_per_input_turn"])
+    found.begin(ANGLE)
     yield found
     found.slave.terminate()
     found.slave.freeInstance()
 
 
 def test_fmu_torque_along_the_loop(unit, expected, tables):
-    held = [unit.torque_at(wound) for wound in expected[1]]
+    held = []
+    for crank_angle, path in zip(ANGLES, expected[1], strict=True):
+        unit.begin(crank_angle)
+        held.append([unit.torque_at(wound) for wound in path])
     assert np.max(np.abs(held - expected[0])) < MOST_TORQUE * 2.0 * tables["limits"]["rated_torque_N_m"]
 
 
 def test_fmu_wind_up_along_the_loop(unit, expected):
-    wound = [unit.wound_by(torque) for torque in expected[0]]
-    assert np.max(np.abs(wound - expected[1])) < MOST_ANGLE
+    found = []
+    for crank_angle in ANGLES:
+        unit.begin(crank_angle)
+        found.append([unit.wound_by(torque) for torque in expected[0]])
+    assert np.max(np.abs(found - expected[1])) < MOST_ANGLE
 
 
 def test_fmu_play(unit, play, tables):
@@ -337,6 +363,31 @@ def test_spring_of_the_mjcf_alone(folder, tables):
     # Both ways have one stiffness, the mean of two that differ by less than 1e-3 of a drive without errors.
     assert -data.qfrc_passive[1] == pytest.approx(rated, rel=1e-3)
     assert data.qfrc_passive[0] == pytest.approx(rated / tables["transmission_ratio"], rel=1e-3)
+
+
+def test_fmu_of_a_printed_drive_follows_the_loop_of_a_mean_crank_angle(tmp_path):
+    """With five pins and friction 0.1 single contacts show at each crank angle, which the law holds to its scatter alone.
+
+    Over the crank angles the difference must vanish within the 2 % that are asked of the fit. 24 angles that the elements were
+    not fitted at; at a scatter of 2.6 % their mean is known to 0.5 %.
+    """
+    file = load_drive(Path(__file__).parents[4] / "examples" / "drives" / "plastic.toml")
+    printed = file.cases["aligned"].with_fields({"friction": {"pin": 0.1, "hole": 0.1}})
+    tables = {"name": "joint", **reduce_drive(printed, HalfSpace()).content}
+    write_simulator("fmu", tables, tmp_path)
+    angles = 2.0 * np.pi * 5.0 * (np.arange(24) + 0.37) / 24.0
+    torque = printed.load.torque * np.array([LIGHT, *loaded_path()])
+    wound = locked_path(printed, angles, torque, engine=HalfSpace())
+    unit, held = Unit(tmp_path, tables["crank_turns_per_input_turn"]), []
+    for crank_angle, path in zip(angles, wound, strict=True):
+        unit.begin(crank_angle)
+        held.append([unit.torque_at(one) for one in path])
+    expected = torque / (1e3 if printed.wheel_is_held else -1e3)
+    off = (np.array(held) - expected) / (2.0 * printed.load.torque / 1e3)
+    assert np.max(np.abs(off.mean(axis=0))) < 0.02
+    told = tables["fit_error"]["worst"]
+    # Scatter is told: that of other angles is one sample of it.
+    assert np.max(off.std(axis=0)) < 1.5 * told["scatter_over_crank_angle_part_of_torque_range"]
 
 
 def test_the_drive_without_friction_has_no_loop(drive):
