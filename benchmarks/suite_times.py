@@ -36,6 +36,12 @@ def processor_seconds() -> float:
     return time.process_time() + times.children_user + times.children_system
 
 
+def pytest_configure() -> None:
+    """Take the folder of this plugin from what programs inherit: its `fem.py` would hide the package from those that tests start."""
+    paths = os.environ.get("PYTHONPATH", "").split(os.pathsep)
+    os.environ["PYTHONPATH"] = os.pathsep.join(path for path in paths if path and Path(path) != Path(__file__).parent)
+
+
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, Any, Any]:
     """Time a test with its set-up and write the time immediately, so that it survives a killed worker."""
