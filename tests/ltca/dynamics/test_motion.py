@@ -275,7 +275,7 @@ COURSES = [
     ("elastic ring", Course.of_values("steady", 3e-5, 1500.0)),
 ]
 QUICK, FULL = ("paper, damped",), ("paper, rubs", "rv", "paper, tied, rubs")
-"""Kinds that every run tries, and those that the full set does: friction, several cranks, parts without mass; the others are of the night."""
+"""Kinds of every run, and of the full set: friction, several cranks, parts without mass; the others are of the night."""
 
 
 def marked(name):
