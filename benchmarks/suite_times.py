@@ -37,7 +37,7 @@ def processor_seconds() -> float:
 
 
 def pytest_configure() -> None:
-    """Take the folder of this plugin from what programs inherit: its `fem.py` would hide the package from those that tests start."""
+    """Take this folder from what programs inherit: its `fem.py` would hide the package from those that tests start."""
     paths = os.environ.get("PYTHONPATH", "").split(os.pathsep)
     os.environ["PYTHONPATH"] = os.pathsep.join(path for path in paths if path and Path(path) != Path(__file__).parent)
 

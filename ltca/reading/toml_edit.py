@@ -291,7 +291,7 @@ def with_entry(text: str, table: str) -> str:
 
 
 def without_entry(text: str, path: Path) -> str:
-    """Return the text of a TOML file without an entry: a key, a table, or one of an array of tables, with all that is in it.
+    r"""Return the text of a TOML file without an entry: a key, a table, or one of an array of tables, with all that is in it.
 
     Raises
     ------

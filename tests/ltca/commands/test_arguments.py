@@ -14,7 +14,10 @@ from ltca.reading.drive_file import shipped_drive
 
 PARSER = build_parser()
 (COMMANDS,) = (action.choices for action in PARSER._actions if isinstance(action, argparse._SubParsersAction))
-POSITIONALS = {"sweep": ["x.toml"], "init": ["x.toml"], "optimise": ["paper", "--vary", "x", "--minimise", "y"]}
+POSITIONALS = {
+    "sweep": ["x.toml"], "init": ["x.toml"], "optimise": ["paper", "--vary", "x", "--minimise", "y"],
+    "export": ["paper", "--for", "mujoco"],
+}  # fmt: skip
 
 
 def options(name):

@@ -135,7 +135,7 @@ def test_the_table_names_fields_and_engines():
     for row in REFUSALS:
         assert row.path in declared, row.path
         assert row.equals == "" or row.equals in declared, row.path
-    assert set(ENGINES) == set(EXCEPTIONS) - {"curves", "studies", "dynamics"}
+    assert set(ENGINES) == set(EXCEPTIONS) - {"curves", "studies", "dynamics", "time"}
     assert refusals("friction.pin") == {"the model is frictionless": ["direct", "paper", "full FE"]}
 
 
