@@ -548,11 +548,11 @@ def _passing(angle: float, speed: float) -> Profile:
 def _mean_input_torque(
     equation: Equation, motion: Motion, balanced: Callable[[FloatArray], FloatArray], speed: float
 ) -> float:
-    """Torque that balances the load with friction in the mean of a turn of the crank, ccw positive, N·mm.
+    """Torque that balances load, forces from outside and friction in the mean of a turn of the crank, ccw positive, N·mm.
 
     `balanced` gives states without friction at crank angles, from which those with friction are found.
     """
-    if not equation.contacts.rubs:
+    if not equation.contacts.rubs and not motion.drive.load.external:
         return -float(equation.output_torque(0.0) * (equation.output_turns @ equation.lead))  # by the ratio
     torques, by_crank = [], float(equation.lead[motion.crank])
     angles = np.arange(BALANCED_PER_TURN) * 2.0 * np.pi / BALANCED_PER_TURN

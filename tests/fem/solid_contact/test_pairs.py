@@ -99,7 +99,7 @@ def roller():
     return solve_pair(pair, PairLoad(load=1000.0), PairMeshes(size=2.5, block=5.0))
 
 
-@pytest.mark.nightly
+@pytest.mark.slow
 def test_the_middle_of_a_long_line_is_that_of_hertz(roller):
     # 25 half-widths from either end the line is one in plane strain under its own line load: b = √(4qρ/πE*), p0 = 2q/(πb).
     middle = roller.height.size // 2

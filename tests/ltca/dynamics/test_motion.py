@@ -274,7 +274,7 @@ COURSES = [
     ("sleeved", Course.of_values("steady", 3e-5, 1500.0)),
     ("elastic ring", Course.of_values("steady", 3e-5, 1500.0)),
 ]
-QUICK, FULL = ("paper, damped",), ("paper, rubs", "rv", "paper, tied, rubs")
+QUICK, FULL = ("paper, damped",), ("paper, rubs", "rv", "paper, tied, rubs", "rv, posts, twist")
 """Kinds of every run, and of the full set: friction, several cranks, parts without mass; the others are of the night."""
 
 
@@ -353,7 +353,7 @@ def test_forces_are_slopes_of_what_is_stored(name, kind, tmp_path):
         pytest.param("paper, light", Hybrid(), Course.of_values("reverse", 8e-4, 1500.0), marks=NIGHTLY),
         pytest.param("paper", PlaneStrain(), Course.of_values("steady", 3e-4, 1500.0), marks=NIGHTLY),
         pytest.param("plastic", Hybrid(), Course.of_values("steady", 5e-4, 1500.0), marks=NIGHTLY),
-        pytest.param("bent pins", HalfSpace(), Course.of_values("steady", 1e-4, 1500.0), marks=NIGHTLY),
+        pytest.param("bent pins", HalfSpace(), Course.of_values("steady", 1e-4, 1500.0), marks=pytest.mark.slow),
         pytest.param("bent pins", Hybrid(), Course.of_values("steady", 5e-5, 1500.0), marks=NIGHTLY),
     ],
 )

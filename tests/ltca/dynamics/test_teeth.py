@@ -111,7 +111,7 @@ def test_slow_motion_is_the_quasi_static_one(name):
         pytest.param("rubs", Course.of_values("steady", 1e-4, 1500.0), marks=SLOW),
         pytest.param("posts", Course.of_values("steady", 1e-4, 1500.0), marks=SLOW),
         pytest.param("whole reducer", Course.of_values("steady", 1e-4, 1500.0), marks=NIGHTLY),
-        pytest.param("light", Course.of_values("reverse", 1e-3, 1500.0, at=1e-4, within=6e-4), marks=NIGHTLY),
+        pytest.param("light", Course.of_values("reverse", 1e-3, 1500.0, at=1e-4, within=6e-4), marks=SLOW),
     ],
 )
 def test_energy_closes(name, course):
