@@ -6,8 +6,8 @@ In the frame that turns with the crank at the speed :math:`\dot\varphi`,
 
 with a stiffness that comes again after a turn. Whole orders below half the positions of a turn are balanced together: inertia,
 spin and damping act on orders, the stiffness at positions (alternating by FFT). GMRES solves them, preconditioned from the
-right: what it makes small is what is left of the force, not what the preconditioner makes of that. The preconditioner lets
-motions b, whose inertia does not count, answer at every position at once,
+left or, where that does not end, from the right. The preconditioner lets motions b, whose inertia does not count, answer at
+every position at once,
 
 .. math:: b = K_{bb}^{-1} (f_b - K_{ba} a), \quad K_{eff} = K_{aa} - K_{ab} K_{bb}^{-1} K_{ba} ,
 
@@ -38,7 +38,7 @@ from ltca.arrays import ComplexArray, FloatArray
 from ltca.errors import ConvergenceError
 
 SOLVED = 1e-9
-"""Part of a force that a balance may leave."""
+"""Part of a force that a balance may leave, in displacements or as a force."""
 DIRECTIONS, CYCLES = 60, 2
 """Of GMRES at most: each strong resonance takes some. Beyond, many modes are coupled over many orders."""
 BEYOND = 2.0
@@ -213,27 +213,38 @@ class HillSystem:
         def pushed_between(pushed: FloatArray) -> FloatArray:
             return _at_positions(over_turn.answer(_at_positions(pushed, FINER * samples)), samples)
 
-        def prepared(values: FloatArray) -> FloatArray:
+        def by_positions(values: FloatArray) -> FloatArray:
             found = by_orders(split.answer(in_time(values.view(np.complex128).reshape(whole, size)), by_mean))
-            if slow.shape[1]:
-                left = (values - balance(found.ravel().view(np.float64))).view(np.complex128).reshape(whole, size)
-                found += by_orders(resolved.answer(in_time(left), pushed_between))
             return np.asarray(found.ravel().view(np.float64), dtype=np.float64)
+
+        def prepared(values: FloatArray) -> FloatArray:
+            found = by_positions(values)
+            if slow.shape[1]:
+                left = (values - balance(found)).view(np.complex128).reshape(whole, size)
+                pushed = by_orders(resolved.answer(in_time(left), pushed_between))
+                found = found + pushed.ravel().view(np.float64)
+            return found
 
         right = force * scale
         right[0] = held @ right[0]
-        # Preconditioned from the right: what GMRES makes small is what is left of the force itself.
-        pushed, missed = gmres(
-            LinearOperator((2 * whole * size,) * 2, matvec=lambda values: balance(prepared(values)), dtype=np.float64),
-            right.ravel().view(np.float64),
-            rtol=SOLVED,
-            atol=0.0,
-            restart=DIRECTIONS,
-            maxiter=CYCLES,
+        # From the left what is left is measured in displacements, from the right as a force: where a preconditioner is nearly
+        # singular the one does not end and the other does. Slow turns, between whose positions fast motions swing many times,
+        # are answered at the positions alone.
+        of_force, of_displacement, alone = (
+            LinearOperator((2 * whole * size,) * 2, matvec=one, dtype=np.float64)
+            for one in (balance, prepared, by_positions)
         )
+        options = {"rtol": SOLVED, "atol": 0.0, "restart": DIRECTIONS, "maxiter": CYCLES}
+        given = right.ravel().view(np.float64)
+        found, missed = gmres(of_force, given, M=of_displacement, **options)
+        if missed:
+            found, missed = gmres(of_force, given, M=alone, **options)
+        if missed:
+            pushed, missed = gmres(of_force @ of_displacement, given, **options)
+            found = prepared(pushed)
         if missed:
             raise ConvergenceError(f"no periodic motion found at {speed:.6g} rad/s of the crank", [])
-        return np.asarray(prepared(pushed).view(np.complex128).reshape(whole, size) / scale)
+        return np.asarray(found.view(np.complex128).reshape(whole, size) / scale)
 
 
 def _at_positions(values: FloatArray, samples: int) -> FloatArray:
