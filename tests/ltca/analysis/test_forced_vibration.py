@@ -291,6 +291,12 @@ def test_the_frame_of_the_crank_spins(usual):
 def test_two_discs_without_offsets_answer_with_the_pulsation_at_every_speed():
     """The preconditioner of motions between positions swung up at slow turns, and nearly all speeds fell back to the mean."""
     drive = next(iter(load_drive("robot-joint").cases.values()))
-    change = {"disc.equidistant_offset": 0.0, "disc.shifting_offset": 0.0, "inertia.output": 0.5, "damping.ratio": 0.05}
+    change = {
+        "disc.equidistant_offset": 0.0,
+        "disc.shifting_offset": 0.0,
+        "inertia.input": 2e-4,
+        "inertia.output": 0.5,
+        "damping.ratio": 0.05,
+    }
     found = vibration(with_fields(drive, change), engine=HalfSpace(), positions=4, turns=4, torque_parts=())
     assert forced_vibration(found, fastest=3000.0, speeds=12).mean_at.size == 0
