@@ -126,7 +126,7 @@ def force_slopes(found: Vibration, model: Reducer) -> Iterator[ForceSlopes]:
         )
 
 
-def departures(found: Vibration, orders: FloatArray, answers: ComplexArray) -> _Departures:
+def departures(found: Vibration, orders: FloatArray, answers: ComplexArray) -> Departures:
     """Return what a drive departs by from its quasi-static motion, as a function of walked positions.
 
     Parameters
@@ -143,11 +143,11 @@ def departures(found: Vibration, orders: FloatArray, answers: ComplexArray) -> _
     waves[:, 0] = answers[:, 0].real
     waves[:, 1 : whole + 1] = 0.5 * answers[:, 1 : whole + 1]
     over_turn = np.fft.irfft(waves, each, axis=1, norm="forward")
-    return _Departures(found=found, over_turn=over_turn, between=orders[whole:], beside=answers[:, whole + 1 :])
+    return Departures(found=found, over_turn=over_turn, between=orders[whole:], beside=answers[:, whole + 1 :])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Departures:
+class Departures:
     """Whole orders over a turn, shape (speeds, positions, coordinates), and those between."""
 
     found: Vibration

@@ -472,7 +472,7 @@ def prepare_run(drive: Drive, engine: Engine, course: Course) -> PreparedRun:
     turns = motion.input_turns
     lead = motion.rigid / float(turns @ motion.rigid)
     lever = levers(replace(model, friction=None), motion, np.atleast_2d(lever_arms(replace(model, friction=None)))[0])
-    against = (1.0 if warm.wheel_is_held else -1.0) * warm.driving_sign * warm.load.torque
+    against = warm.load_sign * warm.load.torque
     told = course.input_motion(sense)
     crank_speed = course.speed * 2.0 * np.pi / 60.0 * abs(warm.crank_turns_per_input)
     kinetic = KineticEnergy.of_drive(motion, masses)

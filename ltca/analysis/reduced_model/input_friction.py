@@ -119,7 +119,7 @@ def input_friction(
     if drive.friction is not None:
         for direction in ("ccw", "cw"):
             one = replace(drive, load=replace(drive.load, direction=direction, driven_by="input"))
-            way = (1.0 if drive.wheel_is_held else -1.0) * one.driving_sign
+            way = one.load_sign
             here = np.flatnonzero(nodes * way > 0.0)
             here = here[np.argsort(np.abs(nodes[here]))]
             forward = _lost(one, engine, size, False, advance)

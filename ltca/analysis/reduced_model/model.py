@@ -313,11 +313,6 @@ def reduce_drive(drive: Drive, engine: Engine, advance: Callable[[int], None] = 
     return replace(found, errors=errors)
 
 
-def _way(drive: Drive) -> float:
-    """Sense in which a positive load turns the output, ccw positive."""
-    return (1.0 if drive.wheel_is_held else -1.0) * drive.driving_sign
-
-
 def law_of(found: ReducedModel) -> ReducedDrive:
     """Return the law with the tables of a reduced model, in N·m and rad."""
     return ReducedDrive(found.content)
@@ -331,12 +326,12 @@ def _error_without_friction(found: ReducedModel) -> FitError:
     balanced = solve_at_output(model, [drive], angle, torque)
     wound = drive.output_deviation(wheel_angle_of_input(model, balanced), torque)
     shape = (CHECKED_ANGLES.size, load.size)
-    return _along(law_of(found), CHECKED_ANGLES, wound.reshape(shape), _way(drive) * load, found.largest)
+    return _along(law_of(found), CHECKED_ANGLES, wound.reshape(shape), drive.load_sign * load, found.largest)
 
 
 def _with_elements(found: ReducedModel, advance: Callable[[int], None]) -> tuple[ReducedModel, dict[str, FitError]]:
     """Fit the elements to loops with the input locked; compare with these and with another path."""
-    drive, way = found.drive, _way(found.drive)
+    drive, way = found.drive, found.drive.load_sign
     up = np.array(LOOP_PARTS)
     once = np.concatenate([-up[::-1], up])
     loop = np.concatenate([[LEAST_TORQUE_RATIO], up, once[::-1][1:], once[1:]])
@@ -375,7 +370,7 @@ def _with_elements(found: ReducedModel, advance: Callable[[int], None]) -> tuple
 
 def _strength_factor(found: ReducedModel, orders: tuple[Order, ...], advance: Callable[[int], None]) -> StrengthFactor:
     """Factor of the crank angle by what friction holds after the largest torque has come slowly, either way."""
-    drive, law, way = found.drive, law_of(found), _way(found.drive)
+    drive, law, way = found.drive, law_of(found), found.drive.load_sign
     around = scattered_angles(drive, len(orders), FACTOR_POSITIONS)
     held = []
     for of_load in (-way, way):  # torque on the output negative, then positive

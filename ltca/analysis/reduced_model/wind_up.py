@@ -97,7 +97,7 @@ def wind_up(drive: Drive, model: Reducer, largest: float, advance: Callable[[int
     """
     orders = wind_up_orders(drive)
     angle = scattered_angles(drive, len(orders))
-    opposing = _opposing(drive)
+    opposing = drive.load_sign
     torque, spectra = [], list[Spectrum]()
     for way in (1.0, -1.0):
         errors = np.empty((len(TORQUE_PARTS), angle.size))
@@ -159,11 +159,6 @@ def scattered_angles(drive: Drive, orders: int, by_unknown: int = POSITIONS_PER_
 def scattered_by(drive: Drive, count: int) -> FloatArray:
     """Return so many crank angles over as many turns as there are wheel pins, rad."""
     return np.asarray(2.0 * np.pi * drive.pin_wheel.number_of_pins * np.mod(GOLDEN * np.arange(count), 1.0))
-
-
-def _opposing(drive: Drive) -> float:
-    """Sense in which a positive load turns the output, ccw positive."""
-    return (1.0 if drive.wheel_is_held else -1.0) * drive.driving_sign
 
 
 def frictionless(model: Reducer) -> Reducer:
