@@ -1,10 +1,13 @@
 """Processor time of every test: totals of the quick, the full and the nightly set, and the fifty slowest.
 
     python benchmarks/suite_times.py [--only "not slow"] [--processes 2] [--write]
+    python benchmarks/suite_times.py --write-nightly
 
 The processor time of a test includes the programs that it starts; fixtures count for the first test that uses them.
 ``--write`` writes the totals and the fifty slowest tests to ``tests/budget.toml``, for reviews; they are not asserted. Arguments
-after ``--`` are passed to pytest (files, ``-k``).
+after ``--`` are passed to pytest (files, ``-k``). ``--write-nightly`` runs nothing: it writes there, under ``[nightly]``, the
+seconds of each file of the nightly set as the shards kept them under ``build/nightly`` (``pytest -m nightly --shard 1/4``), by
+which they are dealt.
 """
 
 from __future__ import annotations
@@ -116,14 +119,42 @@ def text_of(run: Measured) -> str:
     return "\n".join(lines) + "\n"
 
 
+NIGHTLY = "\n[nightly]\n"
+
+
+def nightly_text(folder: Path) -> str:
+    """Return the seconds of each file of the nightly set, as its shards kept them, as TOML; the last outcome of a test counts."""
+    last = {}
+    for path in sorted(folder.glob("shard-*.jsonl"), key=lambda path: path.stat().st_mtime):
+        for line in path.read_text(encoding="utf-8").splitlines():
+            kept = json.loads(line)
+            if kept.get("outcome") in ("passed", "failed"):
+                last[kept["test"]] = kept["seconds"]
+    seconds: Counter[str] = Counter()
+    for name, spent in last.items():
+        seconds[name.partition("::")[0]] += spent
+    lines = [
+        "# Seconds of whole files of the nightly set on one worker: pytest --shard deals by them. Made by --write-nightly.",
+        *(f"{json.dumps(name)} = {max(spent, 1):.0f}" for name, spent in seconds.most_common()),
+    ]
+    return NIGHTLY + "\n".join(lines) + "\n"
+
+
 def main() -> int:
     """Run, print, write."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", default="", help="expression of pytest's -m; default: all but nightly")
     parser.add_argument("--processes", type=int, default=2, help="workers of pytest-xdist; default 2")
     parser.add_argument("--write", action="store_true", help="write tests/budget.toml")
+    parser.add_argument(
+        "--write-nightly", action="store_true", help="write [nightly] of tests/budget.toml from build/nightly"
+    )
     parser.add_argument("words", nargs="*", help="further arguments of pytest, after --")
     arguments = parser.parse_args()
+    slowest, _, nightly = BUDGET.read_text(encoding="utf-8").partition(NIGHTLY)
+    if arguments.write_nightly:
+        BUDGET.write_text(slowest + nightly_text(ROOT / "build" / "nightly"), encoding="utf-8")
+        return 0
     run = measure(arguments.only, arguments.processes, arguments.words)
     text = text_of(run)
     print(text)
@@ -131,7 +162,7 @@ def main() -> int:
         print(f"pytest ended with status {run.status}: the times are incomplete", file=sys.stderr)
         return 2
     if arguments.write:
-        BUDGET.write_text(text, encoding="utf-8")
+        BUDGET.write_text(text + NIGHTLY + nightly, encoding="utf-8")
     return run.status
 
 

@@ -1,0 +1,108 @@
+"""Shards of the nightly set (``tests/plugins/shards.py``): dealing, kept outcomes, resumed runs."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import shards
+
+ROOT = Path(__file__).parents[1]
+
+
+def test_files_are_dealt_longest_first_to_the_shard_with_the_least():
+    seconds = {"a": 10.0, "b": 7.0, "c": 5.0, "d": 4.0, "e": 1.0}
+    # a | b | b+c = 12 > a, so d to the first: 10+4, 7+5, and e to the second
+    assert shards.deal(seconds, 2) == {"a": 1, "b": 2, "c": 2, "d": 1, "e": 2}
+    assert set(shards.deal(seconds, 5).values()) == {1, 2, 3, 4, 5}
+    assert shards.deal(dict(reversed(seconds.items())), 3) == shards.deal(seconds, 3)
+    assert shards.deal({}, 3) == {}
+
+
+def test_a_file_of_unknown_time_counts_by_its_tests():
+    counts = shards.Counter({"known": 100, "new": 3})
+    assert shards.seconds_of(counts, {"known": 2.0, "gone": 9.0}) == {"known": 2.0, "new": 3 * shards.SECONDS_PER_TEST}
+
+
+def test_every_known_file_is_there():
+    gone = [name for name in shards.known_seconds(ROOT) if not (ROOT / name).is_file()]
+    assert gone == []
+
+
+@pytest.mark.parametrize("text", ["0/4", "5/4", "1", "1/0", "a/b", "1/4/2", "-1/4"])
+def test_a_shard_that_is_none_is_refused(text):
+    with pytest.raises(ValueError, match="1 <= K <= N"):
+        shards.shard_of(text)
+    assert shards.shard_of("4/4") == (4, 4)
+
+
+@pytest.fixture
+def suite(tmp_path):
+    """Four files in a folder of their own, and a function that runs a shard: exit status, files run, output."""
+    (tmp_path / "pytest.ini").write_text("[pytest]\nmarkers =\n    nightly: long\n", encoding="utf-8")
+    (tmp_path / "tests").mkdir()
+    table = '[nightly]\n"test_a.py" = 100\n"test_b.py" = 60\n"test_c.py" = 50\n'
+    (tmp_path / "tests" / "budget.toml").write_text(table, encoding="utf-8")
+    for letter in "abcd":
+        body = "" if letter != "c" else "    assert Path('mended').exists()\n"
+        text = (
+            "import pytest\nfrom pathlib import Path\n\n@pytest.mark.nightly\n@pytest.mark.parametrize('case', [1, 2])\n"
+            f"def test_{letter}(case):\n    with open('ran', 'a') as log: log.write('{letter}')\n{body}"
+        )
+        (tmp_path / f"test_{letter}.py").write_text(text, encoding="utf-8")
+    path = os.pathsep.join([str(ROOT / "tests" / "plugins"), str(ROOT)])
+    environment = {key: text for key, text in os.environ.items() if not key.startswith("PYTEST_")}
+    environment |= {"PYTHONPATH": path, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
+
+    def run(*words, workers=0):
+        log = tmp_path / "ran"
+        log.unlink(missing_ok=True)
+        command = [sys.executable, "-m", "pytest", "-p", "xdist", "-p", "shards", "-n", str(workers), "--dist=loadfile"]
+        done = subprocess.run(
+            [*command, *words, "-m", "nightly", "-q", "-p", "no:cacheprovider"], cwd=tmp_path, env=environment,
+            capture_output=True, text=True, check=False, timeout=300,
+        )  # fmt: skip
+        ran = "".join(sorted(log.read_text(encoding="utf-8"))) if log.exists() else ""
+        return done.returncode, ran, done.stdout + done.stderr
+
+    run.folder = tmp_path
+    return run
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("workers", [0, 2])
+def test_shards_run_each_test_once_and_go_on_with_what_has_not_passed(suite, workers):
+    status, ran, text = suite("--shard", "1/2", workers=workers)
+    assert (status, ran) == (0, "aadd"), text  # 100 and 16 s of 8 s a test; 60 + 50
+    status, ran, text = suite("--shard", "2/2", workers=workers)
+    assert (status, ran) == (1, "bbcc"), text
+    lines = [json.loads(line) for line in (suite.folder / "build/nightly/shard-2-of-2.jsonl").read_text().splitlines()]
+    told = {line["test"]: line["outcome"] for line in lines if "test" in line}
+    assert told == {
+        "test_b.py::test_b[1]": "passed", "test_b.py::test_b[2]": "passed", "test_c.py::test_c[1]": "failed",
+        "test_c.py::test_c[2]": "failed",
+    }  # fmt: skip
+    (suite.folder / "mended").touch()
+    status, ran, text = suite("--shard", "2/2", workers=workers)
+    assert (status, ran) == (0, "cc"), text
+    status, ran, text = suite("--shard", "2/2", workers=workers)
+    assert (status, ran) == (0, ""), text
+    assert "shard 2/2: nothing left to run; 8 passed in earlier runs of any shard" in text
+
+
+@pytest.mark.slow
+def test_outcomes_of_other_code_count_only_where_asked_for(suite):
+    assert suite("--shard", "1/2")[1] == "aadd"
+    changed = suite.folder / "test_a.py"
+    changed.write_text(changed.read_text(encoding="utf-8") + "\n# changed\n", encoding="utf-8")
+    assert suite("--shard", "1/2", "--kept", "any-code")[1] == ""
+    assert suite("--shard", "1/2")[1] == "aa"
+    assert suite("--shard", "1/2", "--kept", "none")[1] == "aadd"
+    # a run that was killed in the middle of a line
+    kept = suite.folder / "build/nightly/shard-1-of-2.jsonl"
+    kept.write_text('{"test": "test_a.py::test_a[1]", "outc', encoding="utf-8")
+    assert suite("--shard", "1/2")[1] == "aadd"
