@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from _pytest.doctest import DoctestModule
 
-pytest_plugins = ("shards",)  # tests/plugins, by `pythonpath` of pyproject.toml
+pytest_plugins = ("needs", "shards")  # tests/plugins, by `pythonpath` of pyproject.toml
 
 # Modules and tests stay until the end: walking them again and again while they are made is a tenth of the collection.
 gc.disable()

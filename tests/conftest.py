@@ -10,7 +10,6 @@ import html
 import json
 import os
 import re
-import shutil
 import subprocess
 import sys
 import tomllib
@@ -28,6 +27,7 @@ for _variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 sys.dont_write_bytecode = False
 
+import needs
 import numpy as np
 import pytest
 
@@ -265,9 +265,7 @@ def coarse_derivations(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(coefficient_files, "MAX_DERIVATIONS", 1)
 
 
-CHROMIUM = next(
-    (found for name in ("chromium", "chromium-browser", "google-chrome") if (found := shutil.which(name))), None
-)
+CHROMIUM = needs.program("chromium")
 CHROMIUM_FLAGS = (
     "--headless=new", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--hide-scrollbars",
     "--disable-background-networking", "--disable-component-update", "--disable-sync", "--disable-default-apps",
@@ -292,10 +290,9 @@ window.leave = () => {
 @pytest.fixture(scope="module")
 def browser():
     """Chromium as playwright drives it: of real time, for pages whose frames are waited for."""
-    playwright = pytest.importorskip("playwright.sync_api", reason="no playwright (pip install 'cyclo-ltca[browser]')")
-    if CHROMIUM is None:
-        pytest.skip("no chromium (apt install chromium)")
-    with playwright.sync_playwright() as driver:
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as driver:
         found = driver.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
         yield found
         found.close()
@@ -308,8 +305,6 @@ def hash_of(text):
 @pytest.fixture(scope="session")
 def chromium():
     """Open a page in chromium with a script added; return what it saw, console lines and addresses asked for."""
-    if CHROMIUM is None:
-        pytest.skip("no chromium (apt install chromium)")
 
     def visit(text, script, folder, size="1280,900"):
         copy, log = folder / "copy.html", folder / "net.json"

@@ -8,7 +8,6 @@ from __future__ import annotations
 import ast
 import re
 import tomllib
-from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -77,7 +76,7 @@ def test_examples_pin_a_number_that_readers_do_not_see(path):
     assert len(line) >= len(title)
 
 
-@pytest.mark.skipif(find_spec("sphinx_gallery") is None, reason="sphinx-gallery (extra docs) is not installed")
+@pytest.mark.needs("docs")
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 def test_the_notebook_of_an_example_has_its_code(path, monkeypatch, tmp_path):
     """Made as the pages make it; the check that readers do not see is not in it."""

@@ -10,7 +10,6 @@ import subprocess
 import sys
 import textwrap
 import tomllib
-from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -131,7 +130,7 @@ def test_other_codes_without_the_referee(tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(find_spec("sphinx") is None, reason="sphinx (extra docs) is not installed")
+@pytest.mark.needs("docs")
 @pytest.mark.parametrize("module", ["myst_parser", "sphinx_gallery"])
 def test_documentation_without_its_extra(tmp_path, module):
     code = f"from sphinx.cmd.build import main; sys.exit(main(['-b', 'html', 'docs', {str(tmp_path)!r}]))"

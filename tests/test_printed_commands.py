@@ -29,6 +29,7 @@ from importlib import import_module
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 
+import needs
 import pytest
 
 pytestmark = pytest.mark.slow
@@ -109,9 +110,11 @@ LEFT_OUT = {
 """Commands that no test runs, and why; each is parsed all the same. So are mentions: `cyclo run`, without what it needs."""
 
 NEEDED = {
-    r"--ccx|--refereed|--referee calculix": (lambda: shutil.which("ccx"), "CalculiX is not installed"),
+    r"--ccx|--refereed|--referee calculix": "calculix",
+    r"benchmarks/studio\.py": "studio",
+    r"benchmarks/faults\.py clusters": "cluster",
 }
-"""Commands that need another program, and are left out where it is missing."""
+"""Commands that need an extra or another program (`needs`), and are left out where it is missing."""
 
 LONGEST = 1800.0
 """Time, s, after which a command is not small."""
@@ -341,16 +344,33 @@ def troubles_of_scripts(asked: list[tuple[list[str], bool]]) -> list[str]:
     """Return what is wrong with each of these commands of Python scripts; they are parsed by this file as a program."""
     command = [sys.executable, str(Path(__file__).resolve())]
     run = subprocess.run(
-        command, input=json.dumps(asked), capture_output=True, text=True, cwd=ROOT, check=False, timeout=600
-    )
+        command, input=json.dumps(asked), capture_output=True, text=True, cwd=ROOT, check=False, timeout=600,
+        env=os.environ | {"PYTHONPATH": str(Path(needs.__file__).parent)},
+    )  # fmt: skip
     assert run.returncode == 0, run.stderr
     return json.loads(run.stdout)
 
 
+def extra_of(words: list[str]) -> str:
+    """Return the extra that a script imports from before it parses its words; empty for most."""
+    path = ROOT / words[1]
+    if not path.is_file():
+        return ""
+    nodes = ast.parse(path.read_text(encoding="utf-8")).body
+    modules = {name.name for node in nodes if isinstance(node, ast.Import) for name in node.names}
+    modules |= {node.module for node in nodes if isinstance(node, ast.ImportFrom) and node.module}
+    tops = {module.partition(".")[0].replace("_", "-") for module in modules}
+    return next((extra for extra, names in needs.extras().items() if extra != "test" and tops & set(names)), "")
+
+
 @pytest.mark.slow
-def test_every_printed_script_is_taken_by_its_program():
+@pytest.mark.parametrize("extra", ["", pytest.param("robotics", marks=pytest.mark.needs("robotics"))])
+def test_every_printed_script_is_taken_by_its_program(extra):
+    """Where its modules are installed: a script that imports mujoco failed in a fresh environment of `.[test]`."""
     asked = {command: entry for command, entry in all_words().items() if entry[0][0] != "cyclo"}
     asked |= {f"python {path}": (["python", path, "--help"], True) for path in benchmarks()}
+    assert {extra_of(words) for words, _ in asked.values()} == {"", "robotics"}
+    asked = {command: entry for command, entry in asked.items() if extra_of(entry[0]) == extra}
     answers = zip(asked, troubles_of_scripts(list(asked.values())), strict=True)
     wrong = [f"{place_of(command)}: {command}: {answer}" for command, answer in answers if answer]
     assert not wrong, "\n".join(wrong)
@@ -470,8 +490,8 @@ def made_small(words: list[str]) -> list[str]:
 
 def why_left_out(command: str) -> str:
     """Return why a command is not run; nothing where it is."""
-    for pattern, (there, reason) in NEEDED.items():
-        if re.search(pattern, command) and not there():
+    for pattern, need in NEEDED.items():
+        if re.search(pattern, command) and (reason := needs.missing(need)):
             return reason
     return next((reason for pattern, reason in LEFT_OUT.items() if re.search(pattern, command)), "")
 

@@ -8,6 +8,7 @@ import tracemalloc
 
 import pytest
 
+from fem.mesh import memory_need
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.memory_need import memory_per_position
 from ltca.commands.program import main
@@ -32,7 +33,7 @@ from ltca.reading.drive_file import load_drive
 )
 def test_memory_that_is_not_there(words, free, option, tmp_path, capsys, monkeypatch):
     """A million positions ended in a MemoryError, and validate --size 1e-6 ran on."""
-    for module in (resources, pytest.importorskip("fem.mesh.memory_need")):
+    for module in (resources, memory_need):
         monkeypatch.setattr(module, "available_memory", lambda: free)
     assert main([*words, "--out", str(tmp_path / "out")]) == 2
     said = capsys.readouterr().err

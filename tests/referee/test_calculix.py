@@ -1,7 +1,5 @@
 """The same problem by CalculiX (CPE6, surface-to-surface penalty): loads, pressures, wheel angle."""
 
-import shutil
-
 import numpy as np
 import pytest
 
@@ -14,9 +12,8 @@ from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
 
 pytestmark = [
-    pytest.mark.referee,
+    pytest.mark.needs("calculix"),
     pytest.mark.slow,
-    pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX is not installed (apt install calculix-ccx)"),
 ]
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from dataclasses import replace
 
 import pytest
@@ -17,10 +16,9 @@ from ltca.errors import CycloError
 STEEL = Material(youngs_modulus=210e3, poisson_ratio=0.3)
 
 pytestmark = [
-    pytest.mark.referee,
+    pytest.mark.needs("calculix"),
     pytest.mark.slow,
     pytest.mark.nightly,
-    pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX is not installed (apt install calculix-ccx)"),
 ]
 
 

@@ -7,6 +7,7 @@ are compared there.
 
 from __future__ import annotations
 
+import needs
 import numpy as np
 import pytest
 
@@ -16,9 +17,8 @@ from ltca.geometry.length_profile import LogarithmicRelief
 from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.profiled_line_contact import ProfiledLineContactLaw, solve_profiled_patch
 
-tamaas = pytest.importorskip("tamaas", reason="tamaas (pip install cyclo-ltca[referee]) is not installed")
-
-pytestmark = pytest.mark.referee
+tamaas = needs.optional("tamaas")
+pytestmark = pytest.mark.needs("referee")
 
 STEEL = Material(youngs_modulus=210e3, poisson_ratio=0.3)
 MODULUS = contact_modulus(STEEL, STEEL)

@@ -6,6 +6,7 @@ shares with them: nothing).
 
 from __future__ import annotations
 
+import needs
 import numpy as np
 import pytest
 
@@ -16,9 +17,8 @@ from ltca.laws.sliced_contact import slice_heights
 from ltca.laws.sliced_line import SlicedLine
 from ltca.laws.width_pressure import estimate_along_width, solve_along_width
 
-tamaas = pytest.importorskip("tamaas", reason="tamaas (pip install cyclo-ltca[referee]) is not installed")
-
-pytestmark = [pytest.mark.referee]
+tamaas = needs.optional("tamaas")
+pytestmark = [pytest.mark.needs("referee")]
 
 LENGTH, MODULUS, RADIUS = 12.0, 115e3, 20.0
 

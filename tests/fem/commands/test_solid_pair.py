@@ -3,7 +3,6 @@
 import argparse
 import json
 import re
-import shutil
 
 import numpy as np
 import pytest
@@ -88,7 +87,7 @@ def test_files_of_a_pair(tmp_path, capsys):
     assert "approach 3 µm" in printed
 
 
-@pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX is not installed (apt install calculix-ccx)")
+@pytest.mark.needs("calculix")
 def test_a_rigid_shaft_pin_has_no_referee(tmp_path):
     """It was refused after the solution only, and left a folder behind."""
     words = ("examples/drives/plastic.toml", "--bodies", "solid", "--pair", "hole", "--load", "200")
@@ -99,7 +98,7 @@ def test_a_rigid_shaft_pin_has_no_referee(tmp_path):
 
 @pytest.mark.slow
 @pytest.mark.nightly
-@pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX is not installed (apt install calculix-ccx)")
+@pytest.mark.needs("calculix")
 def test_calculix_solves_the_pair_of_a_drive(tmp_path, capsys):
     """One element for the half-width is too few: the row is FAILED, and the command says so by its status."""
     words = ("paper", "--case", "CS-1", "--angle", "0.5", "--bodies", "solid", "--pair", "bore", "--size", "8")

@@ -11,7 +11,7 @@ from fem.errors import MeshError
 from fem.mesh.triangulation import mesh_circle, mesh_ring
 from fem.shapes import CircleShape, RingShape
 from fem.solid.extruded import ExtrudedBody
-from fem.solid.factor import SymmetricFactor, _superlu, cholmod_is_there
+from fem.solid.factor import SymmetricFactor, _superlu
 from fem.solid.layers import Layers, graded_layers
 from fem.solid.section import Section
 from ltca.drive.parts import Material
@@ -128,13 +128,11 @@ def test_classes_of_half_a_body_are_the_solutions_of_the_whole_one():
 
 
 @pytest.mark.family(quick=1)
-@pytest.mark.parametrize("solver", ["default", "SuperLU"])
+@pytest.mark.parametrize("solver", ["SuperLU", pytest.param("CHOLMOD", marks=pytest.mark.needs("fast"))])
 def test_a_hanging_bar_stretches_as_by_hand(solver, monkeypatch):
     # Under its own weight along the axis a bar has σ_z = ρ g z': with ν = 0 quadratic elements hold w exactly.
     if solver == "SuperLU":
         monkeypatch.setattr("fem.solid.factor.cholmod_is_there", lambda: False)
-    elif not cholmod_is_there():
-        pytest.skip("cvxopt is not installed")
     soft = Material(youngs_modulus=1000.0, poisson_ratio=0.0)
     mesh, body = cylinder("whole")
     weight = 2.5  # N/mm³
@@ -152,9 +150,8 @@ def test_a_hanging_bar_stretches_as_by_hand(solver, monkeypatch):
     np.testing.assert_allclose(lowest, -weight * 8.0**2 / (2.0 * 1000.0), rtol=1e-9)
 
 
+@pytest.mark.needs("fast")
 def test_factor_by_superlu_and_by_cholmod_agree():
-    if not cholmod_is_there():
-        pytest.skip("cvxopt is not installed")
     mesh, body = cylinder("symmetric")
     order = order_nodes(mesh)
     unknowns = (order[:, None] * body.per_node + np.arange(body.per_node)).ravel()

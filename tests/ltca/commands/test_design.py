@@ -147,9 +147,11 @@ def test_the_file_to_start_from_is_complete():
 
 @pytest.mark.slow
 @pytest.mark.nightly
+@pytest.mark.needs("robotics")
 def test_from_a_ratio_to_an_arm_as_it_is_printed(tmp_path, monkeypatch):
     """A newcomer's design had no density, so that no simulator took it."""
-    mujoco = pytest.importorskip("mujoco", reason="mujoco (pip install cyclo-ltca[robotics]) is not installed")
+    import mujoco
+
     monkeypatch.chdir(tmp_path)
     Path("requirements.toml").write_text(starting_file(), encoding="utf-8")
     page = ROBOT_JOINT.read_text(encoding="utf-8").partition("## From a ratio")[2]

@@ -23,8 +23,8 @@ def blocks(language):
 
 @pytest.mark.slow
 @pytest.mark.nightly
+@pytest.mark.needs("robotics")
 def test_the_page_runs_as_it_is_printed(tmp_path, monkeypatch, capsys):
-    pytest.importorskip("mujoco", reason="mujoco (pip install cyclo-ltca[robotics]) is not installed")
     monkeypatch.chdir(tmp_path)
     (added,), (first, rest, _) = blocks("toml"), blocks("sh")
     assert main(shlex.split(first)[1:]) == 0

@@ -52,9 +52,8 @@ def test_a_drive_elsewhere_is_refused(tmp_path, monkeypatch, capsys):
     assert "must lie in the folder in which the studio is started" in told(capsys)
 
 
+@pytest.mark.needs("studio")
 def test_a_port_that_is_taken_is_told(tmp_path, monkeypatch, capsys):
-    pytest.importorskip("starlette", reason="no starlette (pip install 'cyclo-ltca[studio]')")
-    pytest.importorskip("uvicorn", reason="no uvicorn (pip install 'cyclo-ltca[studio]')")
     monkeypatch.chdir(tmp_path)
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))

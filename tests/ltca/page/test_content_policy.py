@@ -34,7 +34,7 @@ def test_a_page_names_the_hashes_of_its_script_and_style():
     assert not re.search(r"<[^>]* (style|on[a-z]+)=", re.sub(r"<script.*?</script>", "", text, flags=re.S))
 
 
-@pytest.mark.referee
+@pytest.mark.needs("chromium")
 @pytest.mark.slow
 @pytest.mark.parametrize("injected", ["", INJECTED])
 def test_a_script_in_a_page_that_is_not_its_own_does_not_run(injected, chromium, tmp_path):

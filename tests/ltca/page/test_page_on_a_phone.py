@@ -10,7 +10,7 @@ from ltca.reading.drive_file import DriveFile, parse_drive, shipped_drive
 
 WAIT = 120_000
 """Milliseconds after which a page has failed; it takes half a second on an idle machine."""
-pytestmark = [pytest.mark.referee, pytest.mark.slow]
+pytestmark = [pytest.mark.needs("chromium"), pytest.mark.slow]
 
 WIDTH, HEIGHT = 390, 844
 SIGNS = """() => [...document.querySelectorAll(".tablebox")].filter(box => box.offsetWidth).every(box => {

@@ -12,7 +12,7 @@ from ltca.page.compared import read_compared
 from ltca.page.run_page import run_page
 from ltca.reading.drive_file import DriveFile, parse_drive, shipped_drive
 
-pytestmark = [pytest.mark.referee, pytest.mark.slow]
+pytestmark = [pytest.mark.needs("chromium"), pytest.mark.slow]
 
 # Every case, disc, torque and position: the loads drawn, and what the drawn forces leave of the disc's balance.
 TURN = """<script>

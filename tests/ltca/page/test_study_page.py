@@ -190,7 +190,7 @@ addEventListener("load", () => {
 </script>"""
 
 
-@pytest.mark.referee
+@pytest.mark.needs("chromium")
 @pytest.mark.slow
 def test_the_sample_under_the_pointer_is_told_and_marked(swept, chromium, tmp_path):
     seen, console, asked = chromium(swept[1], POINTED, tmp_path, "500,900")

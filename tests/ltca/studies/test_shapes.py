@@ -239,7 +239,6 @@ def derive_slowly(directory, shape, queue):
 
 
 def test_two_processes_do_not_derive_the_same_at_once(tmp_path):
-    pytest.importorskip("fcntl", reason="no file locks on this system")
     context = get_context("fork")
     queue = context.Queue()
     shape = tmp_path.name

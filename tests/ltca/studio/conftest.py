@@ -38,8 +38,6 @@ def asker(address):
 @contextmanager
 def studio(drive, folder, *words):
     """Run ``cyclo studio`` in a folder; give its process and address."""
-    for name in ("starlette", "uvicorn"):
-        pytest.importorskip(name, reason=f"no {name} (pip install 'cyclo-ltca[studio]')")
     command = [sys.executable, "-m", "ltca.commands.program", "studio", str(drive), "--no-browser", *words]
     process = subprocess.Popen(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     try:

@@ -23,7 +23,7 @@ from ltca.reading.drive_file import parse_drive, shipped_drive
 
 from .conftest import asker, studio
 
-pytestmark = [pytest.mark.slow, pytest.mark.referee]
+pytestmark = [pytest.mark.slow, pytest.mark.needs("studio", "browser", "chromium")]
 WAIT = 120_000
 """Milliseconds after which a page that computes has failed; it takes one or two seconds on an idle machine."""
 
@@ -293,9 +293,8 @@ def test_by_the_keyboard_alone(open_page):
     ],
 )
 def test_no_serious_finding_of_axe_and_nothing_sticks_out(open_page, width, scheme):
-    axe = pytest.importorskip(
-        "axe_playwright_python.sync_playwright", reason="no axe (pip install 'cyclo-ltca[browser]')"
-    )
+    from axe_playwright_python import sync_playwright as axe
+
     page = open_page(width, color_scheme=scheme)
     if width == 390:  # folded, so that the answer is near
         page.locator("#all-fields > summary").click()

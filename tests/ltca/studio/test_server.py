@@ -13,7 +13,7 @@ import pytest
 
 from ltca.reading.drive_file import shipped_drive
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.needs("studio")]
 PAPER = shipped_drive("paper")
 HEAVY = shipped_drive("rv")
 """A drive whose fine answer takes a second or more."""

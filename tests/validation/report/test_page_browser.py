@@ -11,7 +11,7 @@ import pytest
 
 from validation.report.page import write_report
 
-pytestmark = [pytest.mark.referee, pytest.mark.slow]
+pytestmark = [pytest.mark.needs("chromium"), pytest.mark.slow]
 
 DRIVE = """<script>
 addEventListener("load", () => {

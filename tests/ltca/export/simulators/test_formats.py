@@ -6,6 +6,7 @@ import json
 import sys
 import zipfile
 
+import needs
 import numpy as np
 import pytest
 
@@ -16,12 +17,12 @@ from ltca.drive.units.quantities import ARCMIN
 from ltca.dynamics.kinetics import reflected_inertia
 from ltca.dynamics.masses import INERTIA
 from ltca.export.simulators.files import write_simulator
-from ltca.export.simulators.functional_mockup_unit import find_compiler
 from ltca.export.simulators.lookup_tables import readme_text
 from ltca.output.run_folder import MANIFEST
 from ltca.reading.drive_file import load_drive, shipped_drive
 
 pytestmark = pytest.mark.slow
+mujoco, fmpy = needs.optional("mujoco"), needs.optional("fmpy")
 MOST_ANGLE = 0.02 / ARCMIN
 """Bound of the task; errors are half of it."""
 
@@ -124,7 +125,6 @@ def held_by_every_format(folder, tables, crank_angle, wound):
     law = ReducedDrive(tables)
     at = crank_angle / law.cranks
     found = {"law": law.step(at, at / law.ratio + wound)}
-    mujoco = pytest.importorskip("mujoco", reason="mujoco (pip install cyclo-ltca[robotics]) is not installed")
     sys.path.insert(0, str(folder / "mujoco"))
     try:
         from mujoco_callback import DriveCallback
@@ -140,15 +140,14 @@ def held_by_every_format(folder, tables, crank_angle, wound):
         sys.path.remove(str(folder / "mujoco"))
         for name in ("mujoco_callback", "reduced_drive"):
             sys.modules.pop(name, None)
-    if find_compiler() is not None:
-        fmpy = pytest.importorskip("fmpy", reason="FMPy (pip install cyclo-ltca[robotics]) is not installed")
-        values = {"input_angle": at, "output_angle": at / law.ratio + wound}
-        path = str(folder / "fmu" / "paper_CS_4.fmu")
-        answer = fmpy.simulate_fmu(path, stop_time=0.1, output_interval=0.1, start_values=values)
-        found["unit"] = (answer["input_torque"][-1], answer["output_torque"][-1])
+    values = {"input_angle": at, "output_angle": at / law.ratio + wound}
+    path = str(folder / "fmu" / "paper_CS_4.fmu")
+    answer = fmpy.simulate_fmu(path, stop_time=0.1, output_interval=0.1, start_values=values)
+    found["unit"] = (answer["input_torque"][-1], answer["output_torque"][-1])
     return found
 
 
+@pytest.mark.needs("robotics", "compiler")
 def test_play_lies_where_the_analysis_has_it_and_torques_push_back(folder, tables, stops):
     """Beyond either stop the drive pushes the output back, within neither; the input takes part 1/i of it the other way."""
     crank_angle, low, high = stops
@@ -164,8 +163,8 @@ def test_play_lies_where_the_analysis_has_it_and_torques_push_back(folder, table
             assert on_input == pytest.approx(-on_output / tables["transmission_ratio"], abs=1e-9), name
 
 
+@pytest.mark.needs("robotics")
 def test_mujoco_loads_both_models_without_a_warning(folder, tables):
-    mujoco = pytest.importorskip("mujoco", reason="mujoco (pip install cyclo-ltca[robotics]) is not installed")
     heard = []
     mujoco.set_mju_user_warning(heard.append)
     try:
@@ -185,8 +184,8 @@ def test_mujoco_loads_both_models_without_a_warning(folder, tables):
     assert data.qfrc_passive == pytest.approx([0.0, 0.0])
 
 
+@pytest.mark.needs("robotics")
 def test_callback_puts_the_law_in_place_of_the_spring(folder, tables):
-    mujoco = pytest.importorskip("mujoco", reason="mujoco (pip install cyclo-ltca[robotics]) is not installed")
     sys.path.insert(0, str(folder / "mujoco"))
     try:
         from mujoco_callback import DriveCallback
@@ -207,14 +206,12 @@ def test_callback_puts_the_law_in_place_of_the_spring(folder, tables):
             sys.modules.pop(name, None)
 
 
+@pytest.mark.needs("robotics", "compiler")
 def test_unit_is_valid_and_answers(folder, tables):
-    fmpy = pytest.importorskip("fmpy", reason="FMPy (pip install cyclo-ltca[robotics]) is not installed")
     from fmpy.validation import validate_fmu
 
     path = str(folder / "fmu" / "paper_CS_4.fmu")
     assert validate_fmu(path) == []
-    if find_compiler() is None:
-        pytest.skip("no C compiler is there: the unit has sources alone")
     law = ReducedDrive(tables)
     values = {"input_angle": 3.0, "output_angle": 3.0 / law.ratio - 0.0021}
     answer = fmpy.simulate_fmu(path, stop_time=0.1, output_interval=0.1, start_values=values)
@@ -225,8 +222,10 @@ def test_unit_is_valid_and_answers(folder, tables):
     assert answer["input_torque"][-1] == pytest.approx(torque / law.ratio, rel=1e-9)
 
 
+@pytest.mark.needs("referee")
 def test_modelica_parses(folder):
-    parser = pytest.importorskip("pymoca.parser", reason="pymoca is not installed")
+    from pymoca import parser
+
     text = (folder / "modelica" / "paper_CS_4.mo").read_text()
     tree = parser.parse(text)
     assert list(tree.classes["paper_CS_4"].classes) == ["interpolate", "windUpNodes", "strengthFactor", "Drive"]

@@ -6,10 +6,10 @@ Bounds are those of the task: 1 % of the torque range, here twice the rated torq
 
 from __future__ import annotations
 
-import shutil
 from dataclasses import replace
 from pathlib import Path
 
+import needs
 import numpy as np
 import pytest
 
@@ -24,9 +24,8 @@ from ltca.geometry.placement import position_angles
 from ltca.geometry.play import free_play
 from ltca.reading.drive_file import load_drive
 
-pytestmark = [pytest.mark.slow, pytest.mark.nightly]
-mujoco = pytest.importorskip("mujoco", reason="mujoco (pip install cyclo-ltca[robotics]) is not installed")
-fmpy = pytest.importorskip("fmpy", reason="FMPy (pip install cyclo-ltca[robotics]) is not installed")
+pytestmark = [pytest.mark.slow, pytest.mark.nightly, pytest.mark.needs("robotics", "compiler")]
+mujoco, fmpy = needs.optional("mujoco"), needs.optional("fmpy")
 
 ANGLES = (1.234, 17.71, 42.9)
 """Crank angles of the replays, rad; none of those that the elements are fitted at. Drives settle at the first alone."""
@@ -277,8 +276,6 @@ class Unit:
 
 @pytest.fixture
 def unit(folder, tables):
-    if not any(map(shutil.which, ("cc", "gcc", "clang"))):
-        pytest.skip("no C compiler is there: the unit has sources alone")
     found = Unit(folder, tables["crank_turns_per_input_turn"])
     found.begin(ANGLE)
     yield found

@@ -152,9 +152,9 @@ def test_killed_study_resumes_to_the_same_dataset(tmp_path):
 
 @pytest.mark.nightly
 @pytest.mark.slow
+@pytest.mark.needs("cluster")
 def test_dask_cluster_of_processes_survives_a_killed_worker(study, straight, tmp_path):
     """A scheduler and two workers as separate processes; one of them is killed in the middle."""
-    pytest.importorskip("distributed", reason="dask.distributed (extra 'cluster') is not installed")
     quiet = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
     address_file = tmp_path / "scheduler.json"
     base = [sys.executable, "-m"]
@@ -207,8 +207,8 @@ def test_dask_cluster_of_processes_survives_a_killed_worker(study, straight, tmp
 
 
 @pytest.mark.slow
+@pytest.mark.needs("cluster")
 def test_scheduler_that_does_not_answer_is_told(study, tmp_path, monkeypatch):
     monkeypatch.setattr(workers_module, "SCHEDULER_TIMEOUT", 1.0)
-    pytest.importorskip("distributed", reason="dask.distributed (extra 'cluster') is not installed")
     with pytest.raises(CycloError, match="no scheduler answers there"):
         run_study(study, StudyFolder(path=tmp_path), Workers(scheduler="tcp://127.0.0.1:9"))
