@@ -472,12 +472,12 @@ _DECLARED = (
     _scalar(
         "1",
         Scalar(
-            "mean_loaded_pins", "loaded wheel pins, mean", digits=".2f", limit=AT_LEAST_0,
-            judged="contact ratio: loaded wheel pins, mean", by_load=False,
+            "mean_loaded_pins", "loaded wheel pins per disc, mean", digits=".2f", limit=AT_LEAST_0,
+            judged="contact ratio: loaded wheel pins per disc", by_load=False,
         ),
     ),
-    _scalar("1", Scalar("mean_loaded_rollers", "loaded rollers, mean", digits=".2f")),
-    _scalar("1", Scalar("mean_loaded_pin_shaft_pins", "loaded shaft pins, mean", digits=".2f")),
+    _scalar("1", Scalar("mean_loaded_rollers", "loaded rollers per crank bearing, mean", digits=".2f")),
+    _scalar("1", Scalar("mean_loaded_pin_shaft_pins", "loaded shaft pins per disc, mean", digits=".2f")),
     *_ALONG_WIDTH,
     # crank bearings
     Quantity(

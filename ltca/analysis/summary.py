@@ -20,6 +20,7 @@ from ltca.equilibrium.output_angle import play_before_cranks
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.first_contact import backlash, interference
+from ltca.geometry.interference import overlap_at_rest
 from ltca.geometry.play import TurnPlay, plays_over_a_turn
 from ltca.quantities import NEED_SLICES, REFINED, SCALARS, scalar_named
 
@@ -50,11 +51,11 @@ OF_RANGES = (
 )
 """What needs more than one position."""
 OF_LOADS = ("pin_shaft_loaded_range", "mean_loaded_pins", "mean_loaded_rollers", "mean_loaded_pin_shaft_pins")
-"""Counts of loaded contacts."""
+"""Counts of loaded contacts: those of a disc, or of a crank bearing in a disc, are means over discs and bearings as well."""
 Values = Mapping[str, float]
 """Scalars by name."""
 OF_FLANK = ("backlash_wheel", "backlash_disc", "interference")
-"""What flank and pins alone leave in the nominal places of the discs."""
+"""What is known of the discs in their nominal places."""
 FREE_PLAY = ("backlash_output", "min_backlash_output", "preloaded_part_of_turn")
 """Free play of the output: largest and least over a turn, and the part of it where parts overlap in every pose."""
 
@@ -144,7 +145,7 @@ def _summary(
         load > LOADED_FRACTION * np.max(load, initial=0.0)
         for load in (contacts.pin_load, contacts.rollers.outer_load, contacts.hole_load)
     )
-    pressures = analysis.pressures
+    pressures, discs = analysis.pressures, analysis.drive.disc.number_of_discs
     values = {
         "backlash_disc": unloaded["backlash_disc"],
         "backlash_wheel": unloaded["backlash_wheel"],
@@ -154,9 +155,9 @@ def _summary(
         "roller_end_cell": pressures.outer.end_cell,
         "pin_shaft_end_cell": pressures.holes.end_cell,
         "pin_shaft_loaded_range": 360.0 * np.mean(holes) if holes.size else np.nan,
-        "mean_loaded_pins": np.mean(pins.sum(axis=1)),
-        "mean_loaded_rollers": np.mean(rollers.sum(axis=1)),
-        "mean_loaded_pin_shaft_pins": np.mean(holes.sum(axis=1)) if holes.size else np.nan,
+        "mean_loaded_pins": np.mean(pins.sum(axis=1)) / discs,
+        "mean_loaded_rollers": np.mean(rollers.sum(axis=1)) / (discs * analysis.drive.crank.number),
+        "mean_loaded_pin_shaft_pins": np.mean(holes.sum(axis=1)) / discs if holes.size else np.nan,
         "max_equilibrium_residual": max(np.max(full.residual), np.max(analysis.light.residual)),
         **scalars_of_positions(analysis, arrays),
         "cycloid_stage_stiffness": analysis.stiffness_from_light(analysis.stage_wind_up),
@@ -210,7 +211,7 @@ def scalar_key(name: str) -> str:
 
 
 def _unloaded(analyses: Sequence[LoadedAnalysis]) -> list[dict[str, float]]:
-    """Backlash and interference of flank and pins alone, the discs in their nominal places."""
+    """Backlash of flank and pins alone, the discs in their nominal places, and the largest overlap of any parts there."""
     angle = analyses[0].full.crank_angle
     rows, angles = np.repeat(np.arange(len(analyses)), angle.size), np.tile(angle, len(analyses))
     geometries = zip(*(analysis.model.geometries for analysis in analyses), strict=True)
@@ -222,7 +223,8 @@ def _unloaded(analyses: Sequence[LoadedAnalysis]) -> list[dict[str, float]]:
     wheel = of_cases(backlash(discs, angles, WHEEL_ANGLE)).mean(axis=1) * ARCMIN
     own = np.min([of_cases(backlash([disc], angles, DISC_ROTATION)).mean(axis=1) for disc in discs], axis=0) * ARCMIN
     overlap = np.max([of_cases(interference(disc, angles)).max(axis=1) for disc in discs], axis=0)
-    return [dict(zip(OF_FLANK, each, strict=True)) for each in np.stack([wheel, own, overlap], axis=1).tolist()]
+    largest = [overlap_at_rest(one.drive, flank)[0] for one, flank in zip(analyses, overlap.tolist(), strict=True)]
+    return [dict(zip(OF_FLANK, each, strict=True)) for each in np.stack([wheel, own, largest], axis=1).tolist()]
 
 
 def _plays(analyses: Sequence[LoadedAnalysis], near: TurnPlay | None = None) -> list[dict[str, float]]:

@@ -49,7 +49,7 @@ def execute(arguments: argparse.Namespace) -> int:
     file = load_drive(arguments.drive)
     cases = file.select(arguments.case or [next(iter(file.cases))])
     out = arguments.out or default_folder(file.name, "show")
-    print(f"{file.name} ({file.source}): cases {', '.join(file.cases)}; all checks passed")
+    print(f"{file.name} ({file.source}): cases {', '.join(file.cases)}; a valid drive file")
     with claimed_folder(out, "show", writes=[f"drive_{escape(name)}.png" for name in cases], adding=True):
         _show(cases, np.array([angle]), out)
     return 0

@@ -11,6 +11,8 @@ from ltca.drive.single_discs import single_discs
 # A fit that is exact in the definition (r_i + 2 r_BR = r_o) must not overlap by the rounding of the sum.
 ROUNDING = 1e-9
 """Overlap within the rounding of a sum, mm."""
+FLANK = "wheel pins and flank"
+"""Name of the pair whose overlap depends on the errors of single pins as well (`ltca.geometry.first_contact.interference`)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -79,7 +81,7 @@ def drawn_plays(drive: Drive) -> dict[str, float]:
     It is negative where parts overlap as drawn by more than the rounding of sums. The distance between the circles of holes and
     shaft pins, and between those of bores and several cranks, is the mean one.
     """
-    found = {"wheel pins and flank": -inf, "rollers and races": -inf, "shaft pins and holes": -inf}
+    found = {FLANK: -inf, "rollers and races": -inf, "shaft pins and holes": -inf}
     for single in single_discs(drive):
         drawn, shaft = drawn_interference(single), single.pin_shaft
         error = single.crank.eccentricity_error
@@ -94,6 +96,25 @@ def drawn_plays(drive: Drive) -> dict[str, float]:
         for what, overlap in zip(found, (pins, rollers, holes), strict=True):
             found[what] = max(found[what], overlap)
     return {what: _zero(-overlap) for what, overlap in found.items() if overlap > -inf}
+
+
+def overlap_at_rest(drive: Drive, flank: float) -> tuple[float, str]:
+    """Return the largest overlap of any pair of parts without load, mm, and the names of the two parts, empty where none overlap.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive, at its temperatures.
+    flank : float
+        Overlap of wheel pins and flank with the errors of single parts, mm.
+
+    Notes
+    -----
+    Pins in slots and sleeves on pins are no pairs of their own: a drive whose pins have no play there is refused, cold or warm.
+    """
+    overlaps = {what: -play for what, play in drawn_plays(drive).items() if what != FLANK} | {FLANK: flank}
+    what = max(overlaps, key=lambda one: overlaps[one])
+    return (overlaps[what], what) if overlaps[what] > 0.0 else (0.0, "")
 
 
 def preload_warning(drive: Drive) -> str | None:

@@ -17,7 +17,8 @@ from ltca.dynamics.mass_values import mass_rows
 from ltca.equilibrium.first_stage import StageMesh
 from ltca.equilibrium.supports import crank_bearing_stiffness, crank_laws, wheel_law, wheel_rows
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
-from ltca.geometry.first_contact import backlash
+from ltca.geometry.first_contact import backlash, interference
+from ltca.geometry.interference import overlap_at_rest
 from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.placement import position_angles
 from ltca.geometry.play import play_over_a_turn, preload_words
@@ -72,9 +73,13 @@ def _plays(drive: Drive, geometries: list[ContactGeometry], leverage: float) -> 
     turn = play_over_a_turn(geometries, None if stage is None else stage.play)
     disc = backlash(geometries[0], position_angles(360), DISC_ROTATION) * ARCMIN
     wheel = backlash(geometries, position_angles(360), WHEEL_ANGLE) * ARCMIN
+    overlap, parts = overlap_at_rest(
+        drive, max(float(interference(one, position_angles(90)).max()) for one in geometries)
+    )
     at, held = ("the disc", "disc") if len(geometries) == 1 else ("disc 0", "discs")
     return [
         ("gap between pins and flank, nominal position", f"{gap.min():.4f} … {gap.max():.4f} mm"),
+        *([(SCALARS["interference"].verdict_title, f"{overlap:.4f} mm, {parts}")] if parts else []),
         (
             SCALARS["backlash_output"].verdict_title,
             ", ".join(

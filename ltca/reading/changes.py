@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import is_dataclass, replace
 from functools import cache
@@ -98,10 +99,25 @@ def with_fields(drive: Drive, values: Mapping[str, Any], *, check: bool = True) 
     if own and not problems:
         changed = _with_own(changed, own, problems)
     if not problems and check:
-        problems += find_contradictions(changed)
+        problems += [_named_by_change(changed, problem, values) for problem in find_contradictions(changed)]
     if problems:
         raise DriveError(problems)
     return changed
+
+
+ALTERNATIVE = re.compile(
+    r"(?P<field>\S+) = \S+ mm: must be (?P<bound>.+) or (?P<other>[\w.]+) (?P<limit>at (?:most|least) \S+ mm)(?P<why>, or .+)"
+)
+"""A contradiction that either of two fields resolves."""
+
+
+def _named_by_change(drive: Drive, problem: str, values: Mapping[str, Any]) -> str:
+    """A contradiction by the field that was changed, where it names two that resolve it and the first is as it was."""
+    told = ALTERNATIVE.fullmatch(problem)
+    if told is None or told["field"] in values or told["other"] not in values:
+        return problem
+    field, bound, other, limit, why = told.groups()
+    return f"{other} = {read_field(drive, other):g} mm: must be {limit} or {field} {bound}{why}"
 
 
 INSTEAD = {"stiffness": "beam", "beam": "stiffness", "planes": "gap", "gap": "planes"}

@@ -12,6 +12,8 @@ from typing import Any
 from ltca.drive.fields import read_field
 from ltca.drive.parts import Drive
 from ltca.errors import DriveError
+from ltca.geometry.interference import ROUNDING, drawn_interference
+from ltca.reading.disc_checks import LOOPS, hole_that_fits, largest_eccentricity, rounded_down
 from ltca.reading.physical_checks import is_sound
 
 CAUSES = (
@@ -113,6 +115,8 @@ def find_cause(drive: Drive, problems: list[str]) -> tuple[list[str], Mend]:
             values = [f"{name} = {getattr(getattr(drive, part), name):g} mm" for name in (smaller, larger)]
             told = f"{part}.{values[0]}: must be less than {values[1]}; the two seem to be swapped"
             return [told], partial(_sound_swapped, part=part)
+    if len(problems) == 1 and problems[0].endswith(LOOPS) and _sound_without_loops(drive):
+        return problems, _sound_without_loops
     causes = sorted(_causes(drive), key=lambda cause: cause.distance)
     if not causes:
         return problems, lambda other: False
@@ -154,11 +158,13 @@ def _causes(drive: Drive) -> Iterator[Cause]:
             continue
         fitting = _fitting(drive, path)
         if fitting > 0.0 and fitting != value and _sound_with(drive, path, fitting):
-            yield Cause(path=path, value=value, bound=_nearest(drive, path, value, log(fitting / value)))
+            bound = _nearest(drive, path, value, log(fitting / value))
+            yield Cause(path=path, value=value, bound=_without_overlap(drive, path, bound))
             continue
         for size in (sign * size for size in SIZES for sign in (1.0, -1.0)):
             if _sound_with(drive, path, value * exp(size)):
-                yield Cause(path=path, value=value, bound=_nearest(drive, path, value, size))
+                bound = _nearest(drive, path, value, size)
+                yield Cause(path=path, value=value, bound=_without_overlap(drive, path, bound))
                 break
     for path in COUNTS:
         if not _has(drive, path):
@@ -187,6 +193,32 @@ def _fitting(drive: Drive, path: str) -> float:
         "crank_bearing.outer_race_radius": bearing.inner_race_radius + 2.0 * bearing.roller_radius,
         "crank_bearing.roller_radius": 0.5 * (bearing.outer_race_radius - bearing.inner_race_radius),
     }.get(path, 0.0)
+
+
+def _without_overlap(drive: Drive, path: str, bound: float) -> float:
+    """The nearest sound value of a field, or the exact fit where rollers or shaft pins would overlap at it as far as they may."""
+    drawn, shaft = drawn_interference(_with(drive, path.split("."), bound)), drive.pin_shaft
+    overlap, fit = drawn.rollers, _fitting(drive, path)
+    if shaft is not None and (path == "crank.eccentricity" or path.startswith("pin_shaft.")):
+        play = shaft.hole_radius - shaft.pin_radius + shaft.seat_play
+        overlap, fit = (
+            drawn.holes,
+            {
+                "crank.eccentricity": play,
+                "pin_shaft.hole_radius": hole_that_fits(drive, drive.crank.eccentricity),
+                "pin_shaft.pin_radius": shaft.pin_radius + play - drive.crank.eccentricity,
+            }.get(path, 0.0),
+        )
+    return fit if overlap > ROUNDING and fit > 0.0 and _sound_with(drive, path, fit) else bound
+
+
+def _sound_without_loops(drive: Drive) -> bool:
+    """Tell whether a drive is sound with the largest eccentricity that leaves its flank no loops, and holes that fit."""
+    most = rounded_down(largest_eccentricity(drive))
+    changed = _with(drive, ["crank", "eccentricity"], most) if most > 0.0 else drive
+    if drive.pin_shaft is not None and not _sound_with(drive, "crank.eccentricity", most):
+        return _sound_with(changed, "pin_shaft.hole_radius", hole_that_fits(drive, most))
+    return most > 0.0 and is_sound(changed)
 
 
 def _nearest(drive: Drive, path: str, value: float, size: float) -> float:

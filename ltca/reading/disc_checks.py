@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import lru_cache
-from math import pi, sin
+from math import floor, isfinite, log10, pi, sin
 
 import numpy as np
 
@@ -21,6 +21,10 @@ from ltca.reading.width_checks import find_lead_problems, slope_bound
 
 ELASTIC = "a tenth of the smallest pin or roller radius, beyond what bodies yield elastically"
 """Bound of overlaps in words: bodies strained by a tenth are no longer linear-elastic; sharper limits need a load."""
+LOOPS = "or the flank has loops"
+"""End of the sentence on a flank with loops."""
+MOST_HOLE_PLAY = 1.5
+"""Largest difference of hole and pin radius, by the eccentricity, at which the pins still lead the disc."""
 POINTS_PER_WAVE = 24
 """Points at which the flank is checked, per wave of the highest order."""
 
@@ -50,10 +54,7 @@ def _flank(drive: Drive) -> Iterator[str]:
     pitch_radius = e * drive.reduction_ratio
     smallest = min(wheel.pin_circle_radius, wheel.pin_circle_radius + disc.shifting_offset)
     if pitch_radius >= smallest:
-        yield (
-            f"crank.eccentricity = {e:g} mm: must be less than {smallest / drive.reduction_ratio:.6g} mm "
-            "(pin circle radius by number of pins, shifting offset included), or the flank has loops"
-        )
+        yield _loops(drive)
         return
     profile = FlankProfile.of_drive(drive)
     if profile.offset <= 0.0:
@@ -67,7 +68,8 @@ def _flank(drive: Drive) -> Iterator[str]:
         yield (
             f"pin_wheel.pin_radius = {wheel.pin_radius:g} mm: must be less than "
             f"{smallest_radius - disc.equidistant_offset:.6g} mm (smallest radius of the pin-centre path on its "
-            "convex side less the equidistant offset), or the flank is undercut"
+            f"convex side less the equidistant offset){_or_eccentricity(drive, largest_eccentricity(drive))}, or the flank is "
+            "undercut"
         )
     if profile.root_radius <= 0.0:
         yield (
@@ -79,16 +81,102 @@ def _flank(drive: Drive) -> Iterator[str]:
     if overlap > bound + ROUNDING:
         yield (
             f"disc.equidistant_offset = {disc.equidistant_offset:g} mm: must be at least "
-            f"{disc.equidistant_offset + overlap - bound:.6g} mm with this shifting offset, or disc and pins overlap by "
-            f"more than {bound:g} mm, {ELASTIC}"
+            f"{disc.equidistant_offset + overlap:.6g} mm with this shifting offset, or disc and pins overlap by "
+            f"{overlap:.4g} mm, more than {bound:g} mm, {ELASTIC}"
         )
 
 
-@lru_cache(maxsize=64)
+def largest_eccentricity(drive: Drive) -> float:
+    """Return the largest eccentricity at which the flank of a drive has neither loops nor an undercut, mm; 0 without any.
+
+    The pin circle and the pins are those of the drive: the path of the pin centres over the disc may bend on its convex side
+    no more than the equidistant to it (pin radius and equidistant offset) allows. It bends the more the larger the eccentricity.
+    """
+    return _last_sound(
+        lambda e: _has_plain_flank(drive, drive.pin_wheel.pin_circle_radius, e), drive.crank.eccentricity
+    )
+
+
+def _smallest_pin_circle(drive: Drive) -> float:
+    """Smallest radius of the pin circle at which the flank has neither loops nor an undercut, mm; infinite without any."""
+    most = _last_sound(
+        lambda part: _has_plain_flank(drive, drive.pin_wheel.pin_circle_radius / part, drive.crank.eccentricity)
+    )
+    return drive.pin_wheel.pin_circle_radius / most if most > 0.0 else float("inf")
+
+
+def _last_sound(is_sound: Callable[[float], bool], wrong: float = 1.0) -> float:
+    """Largest sound value below a wrong one, by bisection: of zero and all values up to the largest, sound ones; else 0."""
+    sound = 0.0
+    for _ in range(30):
+        middle = 0.5 * (sound + wrong)
+        sound, wrong = (middle, wrong) if is_sound(middle) else (sound, middle)
+    return sound
+
+
+def _has_plain_flank(drive: Drive, pin_circle_radius: float, eccentricity: float) -> bool:
+    """Tell whether the flank on another pin circle, with another eccentricity, has neither loops nor an undercut."""
+    radius, shifted = pin_circle_radius, pin_circle_radius + drive.disc.shifting_offset
+    if eccentricity * drive.reduction_ratio >= min(radius, shifted):
+        return False
+    offset = drive.pin_wheel.pin_radius + drive.disc.equidistant_offset
+    return _smallest_path_radius(shifted, eccentricity, drive.reduction_ratio) > offset
+
+
+def _loops(drive: Drive) -> str:
+    """What to say of a flank with loops: the bounds of eccentricity and pin circle, beside which holes may have to change."""
+    most, circle, shaft = rounded_down(largest_eccentricity(drive)), _smallest_pin_circle(drive), drive.pin_shaft
+    bound = f"at most {most:g} mm"
+    if shaft is not None and not _leads(drive, most):
+        bound += f" (with pin_shaft.hole_radius = {hole_that_fits(drive, most):.6g} mm)"
+    if isfinite(circle):
+        bound += f" or pin_wheel.pin_circle_radius at least {-rounded_down(-circle):g} mm"
+    return f"crank.eccentricity = {drive.crank.eccentricity:g} mm: must be {bound}, {LOOPS}"
+
+
+def hole_that_fits(drive: Drive, eccentricity: float) -> float:
+    """Return the hole radius that holds pins, or sleeves on them, without play or overlap at an eccentricity, mm; 0 without."""
+    shaft = drive.pin_shaft
+    return 0.0 if shaft is None else shaft.pin_radius - shaft.seat_play + eccentricity
+
+
+def _leads(drive: Drive, eccentricity: float) -> bool:
+    """Tell whether the holes of a drive neither overlap their pins at another eccentricity nor are too large for it."""
+    shaft = drive.pin_shaft
+    if shaft is None:
+        return True
+    fits = hole_that_fits(drive, eccentricity) <= drive.hole_radius + ROUNDING
+    return fits and shaft.hole_radius - shaft.pin_radius <= MOST_HOLE_PLAY * eccentricity
+
+
+def _or_eccentricity(drive: Drive, largest: float) -> str:
+    """The eccentricity that mends a problem as well, in words; empty where there is none, or holes would have to change."""
+    bound = rounded_down(largest)
+    return f" or crank.eccentricity at most {bound:g} mm" if bound > 0.0 and _leads(drive, bound) else ""
+
+
+def rounded_down(value: float) -> float:
+    """Return a number with its digits behind the fourth cut off, so that a bound from above stays one; minus it, from below."""
+    if value == 0.0:
+        return 0.0
+    step = 10.0 ** (floor(log10(abs(value))) - 3)
+    return floor(value / step + 1e-6) * step
+
+
 def _smallest_path_radius(radius: float, eccentricity: float, ratio: float) -> float:
-    """Smallest convex radius of the pin-centre path, mm; cached, since studies check one design thousands of times."""
-    path = FlankProfile(generating_radius=radius, eccentricity=eccentricity, reduction_ratio=ratio, offset=0.0)
-    largest = float(np.max(path.locus_curvature(np.linspace(0.0, 2.0 * pi / ratio, 4001))))
+    """Smallest convex radius of the pin-centre path, mm.
+
+    Its curvature (1 + z K² − K (1 + z) c)/(R (1 + K² − 2 K c)^(3/2)), K = e z/R, with c = cos ψ, is stationary at the ends of
+    c and where 3 (1 + z K² − K (1 + z) c) = (1 + z) (1 + K² − 2 K c).
+    """
+    shortening = eccentricity * ratio / radius
+    ends = (-1.0, 1.0)
+    inside = (2.0 - ratio + (2.0 * ratio - 1.0) * shortening**2) / (shortening * (1.0 + ratio))
+    largest = max(
+        (1.0 + ratio * shortening**2 - shortening * (1.0 + ratio) * cosine)
+        / (radius * (1.0 + shortening**2 - 2.0 * shortening * cosine) ** 1.5)
+        for cosine in ((*ends, inside) if abs(inside) < 1.0 else ends)
+    )
     return 1.0 / largest if largest > 0.0 else float("inf")
 
 
@@ -123,9 +211,8 @@ def _bearing(drive: Drive) -> Iterator[str]:
         )
     elif (overlap := drawn_interference(drive).rollers) > (elastic := deviation_bound(drive)) + ROUNDING:
         yield (
-            f"crank_bearing.roller_radius = {bearing.roller_radius:g} mm: must be at most "
-            f"{bearing.roller_radius - 0.5 * (overlap - elastic):.6g} mm, or it overlaps the races by more than {elastic:g} mm, "
-            f"{ELASTIC}"
+            f"crank_bearing.roller_radius = {bearing.roller_radius:g} mm: must be at most {0.5 * space:.6g} mm, or it overlaps "
+            f"the races by {overlap:.4g} mm, more than {elastic:g} mm, {ELASTIC}"
         )
     elif 2.0 * bearing.roller_radius < 0.9 * space:
         yield (
@@ -158,15 +245,19 @@ def _holes(drive: Drive) -> Iterator[str]:
     # Seen from the hole, a sleeve with play is a smaller fixed pin. Pins in tight holes push the disc along the
     # eccentricity: by half of it they would lead it no more.
     most = min(deviation_bound(drive), 0.5 * e)
-    smallest = shaft.pin_radius - shaft.seat_play + e - drive.clearance.pin_hole - most
-    if shaft.hole_radius < smallest - ROUNDING:
+    fitting = hole_that_fits(drive, e)
+    overlap = fitting - drive.hole_radius
+    if overlap > most + ROUNDING:
+        play_of_sleeve = " - the play of its sleeve" if shaft.seat_play else ""
         yield (
-            f"pin_shaft.hole_radius = {shaft.hole_radius:g} mm: must be at least {smallest:g} mm, or it overlaps its pin by more "
-            f"than {most:g} mm, {ELASTIC} (and half the eccentricity at most)"
+            f"pin_shaft.hole_radius = {shaft.hole_radius:g} mm: must be at least {fitting:.6g} mm (pin_shaft.pin_radius + "
+            f"crank.eccentricity{play_of_sleeve}, and half the clearance unless clearance.pin_hole has it)"
+            f"{_or_eccentricity(drive, shaft.hole_radius + shaft.seat_play - shaft.pin_radius)}, or it overlaps its pin by "
+            f"{overlap:.4g} mm, more than {most:g} mm, {ELASTIC} (and half the eccentricity at most)"
         )
-    elif play > 1.5 * e:
+    elif play > MOST_HOLE_PLAY * e:
         yield (
-            f"pin_shaft.hole_radius = {shaft.hole_radius:g} mm: must be at most {shaft.pin_radius + 1.5 * e:g} mm, "
+            f"pin_shaft.hole_radius = {shaft.hole_radius:g} mm: must be at most {shaft.pin_radius + MOST_HOLE_PLAY * e:g} mm, "
             "pin radius plus 1.5 eccentricities, or the pins cannot lead the disc"
         )
     if drive.clearance.pin_hole > 0.5 * e:
@@ -176,7 +267,6 @@ def _holes(drive: Drive) -> Iterator[str]:
         )
     radius, circle = drive.hole_radius, shaft.pin_circle_radius
     # A hole has to clear its pin by the eccentricity: where it cannot shrink enough, the circle it stands on is wrong.
-    fitting = shaft.pin_radius - shaft.seat_play + e
 
     def hole_or_circle(excess: float, trouble: str, circle_bound: str) -> str:
         bound = shaft.hole_radius - excess

@@ -126,7 +126,7 @@ class SampleBatch:
         """Largest face load factor of each sample, of which every disc has some groups; not a number without slices."""
         if kind.along is None:
             return np.full(self.samples, np.nan)
-        found = face_load_factor(kind.along, groups * len(self.model.discs), self.samples)
+        found = face_load_factor(kind.along, groups * self.discs, self.samples)
         return np.asarray(np.nanmax(self.by_sample(found), axis=1))
 
     def tilts(self) -> FloatArray:
@@ -137,11 +137,16 @@ class SampleBatch:
         leans = [pose[:, coordinates.columns(disc)[coordinates.lean_place]] for disc in range(coordinates.discs)]
         return self.by_sample(np.stack([np.hypot(*lean.T) for lean in leans], axis=1))
 
-    def loaded(self, load: FloatArray) -> FloatArray:
-        """Mean number of loaded pairs over the positions."""
+    @property
+    def discs(self) -> int:
+        """Number of discs of every drive."""
+        return len(self.model.discs)
+
+    def loaded(self, load: FloatArray, parts: int) -> FloatArray:
+        """Mean number of loaded pairs of one of as many equal parts, discs or bearings, over the parts and positions."""
         largest = self.by_sample(load).max(axis=1)
         rows = load.reshape(self.samples, -1, load.shape[1]) > LOADED_FRACTION * largest[:, None, None]
-        return np.asarray(rows.sum(axis=2).mean(axis=1))
+        return np.asarray(rows.sum(axis=2).mean(axis=1) / parts)
 
 
 Evaluate: TypeAlias = Callable[[SampleBatch], FloatArray]
@@ -177,9 +182,9 @@ EVALUATORS: dict[Stage, dict[str, Evaluate]] = {
         "mean_radial_bearing_load": lambda b: b.bearing[0].mean(axis=(1, 2)),
         "mean_tangential_bearing_load": lambda b: b.bearing[1].mean(axis=(1, 2)),
         "ptp_tangential_bearing_load": lambda b: np.ptp(b.bearing[1], axis=1).max(axis=1),
-        "mean_loaded_pins": lambda b: b.loaded(b.full.response.pin_load),
-        "mean_loaded_rollers": lambda b: b.loaded(b.full.response.rollers.outer_load),
-        "mean_loaded_pin_shaft_pins": lambda b: b.loaded(b.full.response.hole_load),
+        "mean_loaded_pins": lambda b: b.loaded(b.full.response.pin_load, b.discs),
+        "mean_loaded_rollers": lambda b: b.loaded(b.full.response.rollers.outer_load, b.discs * b.cranks),
+        "mean_loaded_pin_shaft_pins": lambda b: b.loaded(b.full.response.hole_load, b.discs),
         "mean_efficiency": lambda b: b.efficiency(),
         "mean_input_torque": lambda b: b.by_sample(b.losses().input_torque).mean(axis=1),
         "power_loss": lambda b: b.power_loss(),

@@ -60,12 +60,13 @@ def _odd(drive: Drive) -> Iterator[str]:
         pin_radius=wheel.pin_radius,
         eccentricity=drive.crank.eccentricity,
     )
-    shortening = [_shortening(one) for one in _published()]
-    if told := _beside(_shortening(own), shortening):
+    shortening, each = _shortening(own), [_shortening(one) for one in _published()]
+    # Low proportions alone are no mistake, drives of low ratio have them: but half of a true radius has no room for the rest.
+    if 2.0 * shortening <= max(each) and _has_room(drive, 0.5 * wheel.pin_circle_radius):
         yield (
-            f"pin_wheel.pin_circle_radius = {wheel.pin_circle_radius:g} mm looks odd: eccentricity by rolling circle, "
-            f"e z_P/R_C, is {told[0]}, in published drives {told[1]}; with {0.5 * wheel.pin_circle_radius:g} mm it were "
-            f"{told[2]}: is it a diameter?"
+            f"pin_wheel.pin_circle_radius = {wheel.pin_circle_radius:g} mm looks odd: bores, holes and pins have room in half of "
+            f"it, and eccentricity by rolling circle, e z_P/R_C, is {shortening:.3g}, with {0.5 * wheel.pin_circle_radius:g} mm "
+            f"{2.0 * shortening:.3g} (published drives: {min(each):.3g} … {max(each):.3g}): is it a diameter?"
         )
     alike = [
         one
@@ -79,6 +80,16 @@ def _odd(drive: Drive) -> Iterator[str]:
             f"of it, in published drives with about as many pins {told[1]}; with {0.5 * wheel.pin_radius:g} mm it were "
             f"{told[2]}: is it a diameter?"
         )
+
+
+def _has_room(drive: Drive, pin_circle_radius: float) -> bool:
+    """Tell whether pins stand apart on this circle and the holes and bores of the discs are within the roots of their flanks."""
+    wheel, shaft, cranks = drive.pin_wheel, drive.pin_shaft, drive.crank
+    reach = drive.bore_radius + (0.0 if cranks.circle_radius is None else cranks.circle_radius)
+    if shaft is not None:
+        reach = max(reach, shaft.pin_circle_radius + drive.hole_radius)
+    apart = pin_circle_radius * sin(pi / wheel.number_of_pins) > wheel.pin_radius
+    return apart and pin_circle_radius - wheel.pin_radius - cranks.eccentricity > reach
 
 
 def _beside(value: float, published: list[float]) -> tuple[str, str, str] | None:

@@ -30,6 +30,7 @@ from ltca.drive.members.limits import Limit
 from ltca.drive.single_discs import single_discs
 from ltca.drive.yielding_parts import yielding_parts
 from ltca.errors import DriveError
+from ltca.geometry.interference import overlap_at_rest
 from ltca.geometry.play import preload_words
 from ltca.quantities import LIMITED, QUANTITIES
 
@@ -189,8 +190,14 @@ def _least(quantity: str, discs: Sequence[Mapping[str, float]]) -> Value:
 
 def _of_loads(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) -> Iterator[Value]:
     angle = analysis.full.crank_angle
-    for quantity in ("backlash_disc", "backlash_wheel", "interference"):
+    for quantity in ("backlash_disc", "backlash_wheel"):
         yield Value(quantity=quantity, value=summary[LIMITED[quantity].key])
+    overlap = summary[LIMITED["interference"].key]
+    yield Value(
+        quantity="interference",
+        value=overlap,
+        part="" if overlap is None else overlap_at_rest(analysis.drive, overlap)[1],
+    )
     play = summary["backlash_output_arcmin"]
     yield Value(
         quantity="backlash_output",

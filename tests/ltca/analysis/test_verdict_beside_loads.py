@@ -167,11 +167,13 @@ def test_shear_at_a_depth_by_quadrature():
 
 
 def test_diameters_entered_as_radii_look_odd():
-    """Everything doubled but the eccentricity passed in silence."""
+    """Everything doubled but the eccentricity passed in silence: its holes no longer fit pins and eccentricity."""
     assert odd_proportions(PAPER) == []
     values = {path: 2.0 * getattr(getattr(PAPER, path.split(".")[0]), path.split(".")[1]) for path in RADII}
-    doubled = with_fields(PAPER, values, check=False)
-    assert "pin_wheel.pin_circle_radius = 176 mm" in odd_proportions(doubled)[0]
+    circle = with_fields(PAPER, {"pin_wheel.pin_circle_radius": 176.0})
+    (told,) = odd_proportions(circle)
+    assert "pin_wheel.pin_circle_radius = 176 mm looks odd" in told
+    assert "0.318, with 88 mm 0.636" in told  # 4 · 14/176
     with pytest.raises(DriveError, match=r"pin_shaft\.hole_radius = 28\.15 mm"):
         with_fields(PAPER, values)
     one = with_fields(PAPER, {"pin_wheel.pin_radius": 13.0}, check=False)
