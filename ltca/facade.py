@@ -101,7 +101,8 @@ class AnalysisResult:
     @property
     def warnings(self) -> list[str]:
         """What to know of drive, positions and answer before they are used, one sentence each, as `cyclo run` prints it."""
-        found = (sampling_warning(self.drive, self.loaded.full.crank_angle), relieved_rows_warning(self.loaded))
+        few = sampling_warning(self.drive, self.loaded.full.crank_angle, typed="positions={}")
+        found = (few, relieved_rows_warning(self.loaded))
         return [*self.loaded.warnings, *(warning for warning in found if warning is not None)]
 
     def pressure(

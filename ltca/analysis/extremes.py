@@ -108,7 +108,9 @@ def sampling(drive: Drive, crank_angle: FloatArray) -> Sampling:
     )
 
 
-def sampling_warning(drive: Drive, crank_angle: FloatArray, *, refined: bool = True) -> str | None:
+def sampling_warning(
+    drive: Drive, crank_angle: FloatArray, *, refined: bool = True, typed: str = "--positions {}"
+) -> str | None:
     """Return what to say of crank angles that see too few phases of the mesh; None where they see enough.
 
     Parameters
@@ -120,6 +122,8 @@ def sampling_warning(drive: Drive, crank_angle: FloatArray, *, refined: bool = T
     refined : bool
         Whether extremes are refined between them. Where they are not, the angles have to see twice as many phases, of
         the holes, too.
+    typed : str
+        How the user gives a number of positions over the turn.
     """
     found = sampling(drive, crank_angle)
     teeth, holes = drive.disc.number_of_teeth, drive.number_of_holes or 1
@@ -134,7 +138,7 @@ def sampling_warning(drive: Drive, crank_angle: FloatArray, *, refined: bool = T
     )
     return (
         f"{found.positions} positions see {seen} phase{'s' if seen > 1 else ''} of the {what}: values over them alone say "
-        f"little of the turn; take at least {enough} over it, a number that shares no factor with {teeth} and {holes}"
+        f"little of the turn; take {typed.format(enough)}"
     )
 
 

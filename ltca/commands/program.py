@@ -190,6 +190,9 @@ def _run(words: list[str], wanted: str) -> int:
     """Run a command, or print the help that was asked for, and return the exit status."""
     from ltca.output.processes import ended_by_signals
 
+    if not set(words) - {DEBUG}:
+        build_parser().print_help(sys.stderr)
+        return USAGE_ERROR
     try:
         arguments = build_parser(wanted).parse_args(words)
     except SystemExit:

@@ -18,7 +18,7 @@ from ltca.figures.house_style import COLOURS, DASHED, INK, OTHERS, STYLE, save_f
 from ltca.quantities import SCALARS
 from ltca.studies.designs import SweepDesign
 from ltca.studies.execution.storage import StudyFolder
-from ltca.studies.sensitivity import is_chance
+from ltca.studies.sensitivity import CHANCE_WORDS, is_chance, together_words
 from ltca.studies.study import Study
 from ltca.studies.study_results import read_quantity
 
@@ -192,7 +192,7 @@ def _ranking(study: Study, ranking: Mapping[str, Any]) -> Figure:
         axis.xaxis.set_major_locator(mpl.ticker.MaxNLocator(5))
         axis.set_xlabel("share of the variance [%]", fontsize=7.5)
         axis.tick_params(axis="x", labelsize=7.5)
-        words = f"{SCALARS[name].title}\nfirst order together {max(0.0, 100.0 * entry['explained']):.0f} %"
+        words = f"{SCALARS[name].title}\n{together_words(entry)}"
         axis.set_title(
             "\n".join(fill(line, 2 * TITLE_LETTERS // 3 + 8) for line in words.split("\n")), fontsize=8.0, loc="left"
         )
@@ -200,7 +200,7 @@ def _ranking(study: Study, ranking: Mapping[str, Any]) -> Figure:
     letters = int(12.5 * figure.get_figwidth())
     told += f"\n{study.design.samples} samples; "
     if by_regression:
-        told += "grey: chance alone gives as much, 19 times of 20 less: such ranks say nothing"
+        told += f"grey: {CHANCE_WORDS}: such ranks say nothing"
     else:
         noise = _relative_noise(ranking["method"])
         told += f"an index is known to some {noise:.0f} % of itself: closer ranks say nothing"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from ltca.drive.members.judgement import Check
@@ -11,6 +11,8 @@ from ltca.page.tables import NOTHING, Cell, Table, minus, number, word
 
 Checks = Mapping[str, Sequence[Check]]
 """By case."""
+_Rows = dict[tuple[str, str, str], dict[str, Check]]
+"""Checks by title, limit and source, then by case: a row of a table each."""
 
 MARKS = {"pass": "✓ pass", "fail": "✗ FAIL"}
 """Verdicts with a sign, so that none hangs on its colour alone."""
@@ -18,37 +20,41 @@ MARKS = {"pass": "✓ pass", "fail": "✗ FAIL"}
 
 def verdict_of(checks: Checks) -> tuple[str, str]:
     """Return the verdict in one sentence, and its state: ``pass``, ``fail`` or nothing."""
-    every = [check for case in checks.values() for check in case]
-    failed = [check for check in every if check.fails]
-    kept = [check for check in every if check.verdict == "pass"]
-    unknown = [check for check in every if check.limit is not None and check.verdict == "not known"]
-    others = sum(check.limit is None and check.value.value is not None for check in every)
+    judged, unknown, others = _judged_unknown_others(checks)
+    failed = [check for each in judged.values() for check in each.values() if check.fails]
+    failing = sum(any(check.fails for check in each.values()) for each in judged.values())
+    several = len(checks) > 1
     if not checks:
         return "No verdict: some positions have no answer.", "fail"
     if failed:
         if all(is_of_sampling(check) for check in failed):
             return (
-                f"All {len(kept)} checks of the drive pass at these positions, which are too few for the peaks.",
+                f"All {len(judged) - failing} checks of the drive pass at these positions, which are too few for the peaks.",
                 "fail",
             )
         cases = sum(any(check.fails for check in case) for case in checks.values())
-        of = f", in {cases} of {len(checks)} cases" if len(checks) > 1 else ""
-        return f"{len(failed)} of {len(failed) + len(kept)} checks fail{of}.", "fail"
-    if not kept:
+        of = f", in {cases} of {len(checks)} cases" if several else ""
+        return f"{failing} of {len(judged)} checks fail{'s' if failing == 1 else ''}{of}.", "fail"
+    if not judged:
         return "Nothing is judged: neither drive file nor materials have limits.", ""
-    told = [f"All {len(kept)} values that can be judged keep their limits."]
-    told += [f"{len(unknown)} limits meet no value that this run knows."] if unknown else []
-    told += [f"{others} values have no limit and only inform."] if others else []
+    told = [f"All {len(judged)} values that can be judged keep their limits{' in every case' if several else ''}."]
+    if unknown:
+        limited = sum(bound != NOTHING for _, bound, _ in unknown)
+        told.append(f"{_values(len(unknown))} not known, {limited} of them with a limit: the reasons are listed below.")
+    told += (
+        [f"{_values(len(others))} without a limit and only inform{'s' if len(others) == 1 else ''}."] if others else []
+    )
     return " ".join(told), "pass"
 
 
+def _values(count: int) -> str:
+    """A number of values and the verb."""
+    return f"{count} value{' is' if count == 1 else 's are'}"
+
+
 def verdict_tables(checks: Checks) -> list[Table]:
-    """Return tables of judged values (worst first), limits without a value and values without a limit; cases side by side."""
-    judged = _by_check(checks, lambda check: check.fails or check.verdict in ("pass", "fail"))
-    unknown = _by_check(
-        checks, lambda check: check.limit is not None and check.verdict == "not known" and not check.fails
-    )
-    others = _by_check(checks, lambda check: check.limit is None and not check.fails and check.value.value is not None)
+    """Return tables of judged values (worst first), values that are not known and values without a limit; cases side by side."""
+    judged, unknown, others = _judged_unknown_others(checks)
     several, found = len(checks) > 1, []
     if judged:
         rows = []
@@ -61,14 +67,12 @@ def verdict_tables(checks: Checks) -> list[Table]:
         found.append(Table(name="verdict", caption="", columns=columns, rows=rows, last_words=1 if several else 2))
     if unknown:
         rows = [
-            [word(title), word(minus(bound)), word(next(iter(each.values())).value.reason), word(source)]
+            [word(title), word(minus(bound)), word(_reasons(each, len(checks))), word(source)]
             for (title, bound, source), each in unknown.items()
         ]
         columns = ["check", "limit", "why there is no value", "where the limit comes from"]
         found.append(
-            Table(
-                name="not_known", caption="limits that meet no value of this run", columns=columns, rows=rows, words=3
-            )
+            Table(name="not_known", caption="values that are not known, and why", columns=columns, rows=rows, words=3)
         )
     if others:
         rows = [[word(title), *(_told(each.get(case)) for case in checks)] for (title, _, _), each in others.items()]
@@ -77,15 +81,32 @@ def verdict_tables(checks: Checks) -> list[Table]:
     return found
 
 
+def _reasons(each: Mapping[str, Check], cases: int) -> str:
+    """Why a value is not known, with the cases unless it is the same in all."""
+    owners: dict[str, list[str]] = {}
+    for case, check in each.items():
+        owners.setdefault(check.value.reason, []).append(case)
+    return "; ".join(reason if len(own) == cases else f"{', '.join(own)}: {reason}" for reason, own in owners.items())
+
+
 def _urgency(line: tuple[Any, dict[str, Check]]) -> tuple[bool, bool, float]:
     """What fails in any case comes first, then the least safety of all."""
     failed, sampling, safety = zip(*(urgency(check) for check in line[1].values()), strict=True)
     return min(failed), min(sampling), min(safety)
 
 
-def _by_check(checks: Checks, wanted: Any) -> dict[tuple[str, str, str], dict[str, Check]]:
+def _judged_unknown_others(checks: Checks) -> tuple[_Rows, _Rows, _Rows]:
+    """Rows of the tables: judged values, values that are not known, values without a limit; the verdict counts the same."""
+    return (
+        _by_check(checks, lambda check: check.fails or check.verdict == "pass"),
+        _by_check(checks, lambda check: check.verdict == "not known" and not check.fails),
+        _by_check(checks, lambda check: check.verdict == "no limit"),
+    )
+
+
+def _by_check(checks: Checks, wanted: Callable[[Check], bool]) -> _Rows:
     """Checks by title, limit and source, then by case."""
-    found: dict[tuple[str, str, str], dict[str, Check]] = {}
+    found: _Rows = {}
     for case, each in checks.items():
         for check in filter(wanted, each):
             limit = check.limit

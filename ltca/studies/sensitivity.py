@@ -20,9 +20,9 @@ from ltca.studies.designs import FEWEST_BLOCKS, ToleranceDesign
 from ltca.studies.study import Study
 from ltca.studies.study_results import read_chunks, read_quantity
 
-CHANCE_MEAN, CHANCE_SPREAD = 0.484, 1.170
-"""Mean and deviation of max(z² − 1, 0) of a normal z: what an element without influence adds to its share of a regression,
-by the variance of its coefficient."""
+CHANCE_LEVEL = 0.05
+"""Part of studies without any influence in which one of all fields has a share beyond its chance."""
+CHANCE_WORDS = "no more than the largest share that chance alone gives in 19 of 20 studies"
 
 Chunks = Callable[[], Iterator[tuple[FloatArray, FloatArray]]]
 
@@ -36,7 +36,9 @@ class Regression:
     coefficients : array, shape (factors, quantities)
         Standardised regression coefficients.
     shares : array, shape (factors, quantities)
-        SRC² less what chance alone gives on so many samples, not below zero.
+        SRC² less what chance alone gives on so many samples: in the mean 0 of a factor without influence, so negative of some.
+    inflation : array, shape (factors,)
+        Factor by which correlations among the drawn numbers raise the variance of a coefficient.
     explained : array, shape (quantities,)
         R², adjusted for the number of factors.
     samples : int
@@ -45,6 +47,7 @@ class Regression:
 
     coefficients: FloatArray
     shares: FloatArray
+    inflation: FloatArray
     explained: FloatArray
     samples: int
 
@@ -73,21 +76,25 @@ def regress(chunks: Chunks) -> Regression | None:
     spread_y = np.where(spread_y > 0.0, spread_y, np.inf)
     correlation = xx / (spread_x[:, None] * spread_x)
     np.fill_diagonal(correlation, 1.0)
-    coefficients = np.linalg.solve(correlation, xy / (spread_x[:, None] * spread_y))
+    inverse = np.linalg.inv(correlation)
+    coefficients = inverse @ (xy / (spread_x[:, None] * spread_y))
+    inflation = np.diag(inverse).copy()
     explained = np.einsum("fq,fq->q", coefficients, xy / (spread_x[:, None] * spread_y))
     freedom = count - mean_x.size - 1
     chance = (1.0 - explained) / freedom
     return Regression(
         coefficients=coefficients,
-        shares=np.maximum(coefficients**2 - chance, 0.0),
+        inflation=inflation,
+        shares=coefficients**2 - inflation[:, None] * chance,
         explained=1.0 - (1.0 - explained) * (count - 1) / freedom,
         samples=count,
     )
 
 
 def grouped(shares: FloatArray, groups: Sequence[tuple[str, slice]]) -> FloatArray:
-    """Return the shares of fields: the elements of an array added up, shape (groups, quantities)."""
-    return np.stack([shares[columns].sum(axis=0) for _, columns in groups])
+    """Return the shares of fields: the elements of an array added up, not below zero, shape (groups, quantities)."""
+    # Cut after the sum: elements cut one by one would let a field of many elements grow with their noise.
+    return np.stack([np.maximum(shares[columns].sum(axis=0), 0.0) for _, columns in groups])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -98,12 +105,15 @@ class SobolIndices:
     ----------
     first, total : array, shape (groups, quantities)
         S and S_T.
+    together_error : array, shape (quantities,)
+        Standard error of the sum of S over all groups.
     blocks : int
         Complete blocks behind them.
     """
 
     first: FloatArray
     total: FloatArray
+    together_error: FloatArray
     blocks: int
 
 
@@ -121,9 +131,11 @@ def sobol_indices(blocks: FloatArray) -> SobolIndices:
     variance = np.where(variance > 0.0, variance, np.inf)
     # Centred first: the estimator of S multiplies values and would drown in their mean.
     mean = np.concatenate([a, b]).mean(axis=0)
-    first = ((b - mean)[:, None] * (mixed - a[:, None])).mean(axis=0) / variance
+    products = (b - mean)[:, None] * (mixed - a[:, None]) / variance
     total = 0.5 * ((a[:, None] - mixed) ** 2).mean(axis=0) / variance
-    return SobolIndices(first=first, total=total, blocks=len(blocks))
+    count = len(blocks)
+    error = products.sum(axis=1).std(axis=0, ddof=1) / np.sqrt(count) if count > 1 else np.full(a.shape[1], np.inf)
+    return SobolIndices(first=products.mean(axis=0), total=total, together_error=error, blocks=count)
 
 
 def regression_of(path: Path, study: Study) -> Regression | None:
@@ -151,15 +163,36 @@ def factor_groups(study: Study) -> tuple[tuple[str, slice], ...]:
     return tuple((name, slice(column, column + 1)) for column, name in enumerate(study.design.names))
 
 
-def chance_of(study: Study, explained: float, samples: int) -> dict[str, float]:
+def chance_of(study: Study, explained: float, samples: int, inflation: FloatArray) -> dict[str, float]:
     """Return the share up to which a field of a regression may have no influence at all, by its path.
 
-    A coefficient without influence has the variance (1 − R²)/freedom; a field adds up as many as it has elements. The share is
-    mean and two deviations of what chance alone gives, from R² adjusted for its freedom and the number of answered samples.
+    Parameters
+    ----------
+    study : Study
+        For its fields and their elements.
+    explained : float
+        R² adjusted for its freedom.
+    samples : int
+        Answered samples.
+    inflation : array, shape (factors,)
+        `Regression.inflation`.
+
+    Notes
+    -----
+    A coefficient without influence has the variance (1 − R²)/freedom = (1 − adjusted R²)/(samples − 1) times its inflation.
+    The squares of the k coefficients of a field, by their variances and by k, follow the F distribution of k and the remaining
+    degrees of freedom. Its quantile is that of the largest of all fields (Bonferroni): a ranking shows the largest of many.
     """
+    from scipy.special import fdtri
+
+    groups = factor_groups(study)
     one = (1.0 - min(explained, 1.0)) / max(samples - 1, 1)
-    sizes = {name: len(range(*columns.indices(columns.stop))) for name, columns in factor_groups(study)}
-    return {name: one * (CHANCE_MEAN * size + 2.0 * CHANCE_SPREAD * np.sqrt(size)) for name, size in sizes.items()}
+    freedom = max(samples - inflation.size - 1, 1)
+    level = 1.0 - CHANCE_LEVEL / len(groups)
+    return {
+        name: float(one * inflation[columns].sum() * (fdtri(inflation[columns].size, freedom, level) - 1.0))
+        for name, columns in groups
+    }
 
 
 def is_chance(entry: Mapping[str, Any], path: str) -> bool:
@@ -170,8 +203,9 @@ def is_chance(entry: Mapping[str, Any], path: str) -> bool:
 def rank(path: Path, study: Study) -> dict[str, Any]:
     """Return the sensitivity ranking of a study from its ``results.nc``.
 
-    That is the ``method`` and, for each quantity, ``explained`` and the ``shares`` of the fields, largest first; of a regression
-    also ``chance``, the share up to which a field may have no influence at all.
+    That is the ``method`` and, for each quantity, ``explained`` and the ``shares`` of the fields, largest first. Of a regression
+    ``explained`` is the part of the variance that all fields explain linearly, and ``chance`` the share up to which a field may
+    have no influence at all. Of Sobol indices it is the sum of the first orders, with its standard error ``explained_error``.
     """
     names = [name for name, _ in factor_groups(study)]
     sobol = sobol_of(path, study)
@@ -179,6 +213,7 @@ def rank(path: Path, study: Study) -> dict[str, Any]:
         tables = {
             quantity: {
                 "explained": float(sobol.first[:, column].sum()),
+                "explained_error": float(sobol.together_error[column]),
                 "shares": _sorted(names, sobol.total[:, column]),
                 "first_order": dict(zip(names, map(float, sobol.first[:, column]), strict=True)),
             }
@@ -189,17 +224,38 @@ def rank(path: Path, study: Study) -> dict[str, Any]:
     if regression is None:
         return {"method": "none: fewer than two samples for each factor and the mean", "quantities": {}}
     shares = grouped(regression.shares, factor_groups(study))
-    return {
-        "method": "standardised regression, SRC² added up over the elements of a field",
-        "quantities": {
-            quantity: {
-                "explained": float(regression.explained[column]),
-                "shares": _sorted(names, shares[:, column]),
-                "chance": chance_of(study, float(regression.explained[column]), regression.samples),
-            }
-            for column, quantity in enumerate(study.quantities)
-        },
-    }
+    found = {}
+    for column, quantity in enumerate(study.quantities):
+        adjusted = float(regression.explained[column])
+        own, chance = (
+            _sorted(names, shares[:, column]),
+            chance_of(study, adjusted, regression.samples, regression.inflation),
+        )
+        # The noise of fields without influence lowers adjusted R² below the parts that it is made of, and below zero.
+        beyond = sum(share for name, share in own.items() if share > chance[name])
+        explained = max(adjusted, min(beyond, 1.0))
+        found[quantity] = {"explained": explained, "shares": own, "chance": chance}
+    return {"method": "standardised regression, SRC² added up over the elements of a field", "quantities": found}
+
+
+def together_words(entry: Mapping[str, Any]) -> str:
+    """Return which part of the variance all fields of an entry of `rank` explain together, each acting alone.
+
+    Examples
+    --------
+    >>> together_words({"explained": 0.3, "shares": {}})
+    'all fields together, linearly: 30 %'
+    >>> together_words({"explained": 0.9, "explained_error": 0.1, "shares": {}})
+    'all fields together, without interactions: 70 … 100 %'
+    """
+    if "explained_error" not in entry:
+        return f"all fields together, linearly: {100.0 * entry['explained']:.0f} %"
+    low, high = (entry["explained"] + side * 2.0 * entry["explained_error"] for side in (-1.0, 1.0))
+    if high <= 0.0 or (low <= 0.0 and high >= 1.0):
+        told = "not known from so few blocks"
+    else:
+        told = f"{100.0 * min(max(low, 0.0), 1.0):.0f} … {100.0 * min(high, 1.0):.0f} %"
+    return f"all fields together, without interactions: {told}"
 
 
 def _sorted(names: Sequence[str], shares: FloatArray) -> dict[str, float]:

@@ -85,13 +85,17 @@ class DriveCheck:
             raise KeyError(quantity)
         return next((check for check in found if check.fails), found[0])
 
+    @property
+    def heading(self) -> str:
+        """Drive, load, engine and positions in one line."""
+        return (
+            f"{self.drive.name} {self.drive.case}, {self.drive.load_words(self.torque)}: judged by "
+            f"{describe_engine(self.engine)}, {self.positions} positions"
+        )
+
     def __repr__(self) -> str:
         """Print the checks as a table, the notes and the advice."""
-        head = (
-            f"{self.drive.name} {self.drive.case}, {self.drive.load_words(self.torque)}, {describe_engine(self.engine)}, "
-            f"{self.positions} positions"
-        )
-        rows = [head, verdict_table(self.checks), *(f"  note: {note}" for note in self.notes), self.advice]
+        rows = [self.heading, verdict_table(self.checks), *(f"  note: {note}" for note in self.notes), self.advice]
         return "\n".join(rows).rstrip()
 
     @property

@@ -43,7 +43,7 @@ def judge_and_write(
                 for check in found.checks
             ]
             failed += len(found.failed)
-            print(f"{file.name} {name}, {drive.load_words(arguments.torque)}")
+            print(found.heading)
             print(verdict_table(found.checks))
             print("".join(f"  note: {note}\n" for note in found.notes), end="")
             notes[name], judged[name], driving[name] = [*found.notes], [*found.checks], found.drivers

@@ -4,26 +4,30 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Sequence
+import textwrap
+from collections.abc import Mapping, Sequence
+from math import isfinite
 from pathlib import Path
 
 from ltca.analysis.engines import describe_engine
 from ltca.analysis.extremes import sampling_warning
 from ltca.analysis.half_space_errors import half_space_words
+from ltca.arrays import FloatArray
 from ltca.errors import DriveError
 from ltca.geometry.placement import position_angles
 from ltca.output.processes import Terminated
 from ltca.output.progress import progress
 from ltca.output.resources import require_room
 from ltca.output.run_folder import BATCHES, claimed_folder, figure_files
-from ltca.page.studies.samples import samples_page, yield_words
+from ltca.page.studies.samples import samples_page, values_of_one_factor, yield_words
 from ltca.page.study_page import write_study_page
-from ltca.quantities import SCALARS
+from ltca.quantities import SCALARS, printed
 from ltca.reading.arguments import tell_unit_mistakes
+from ltca.studies.designs import SweepDesign
 from ltca.studies.execution.storage import StudyFolder
 from ltca.studies.execution.workers import Workers
 from ltca.studies.run_study import StudySummary, run_study, sample_file, write_sample
-from ltca.studies.sensitivity import is_chance
+from ltca.studies.sensitivity import is_chance, together_words
 from ltca.studies.study import Study
 from ltca.studies.study_results import read_quantity
 from ltca.studies.yields import CONFIDENCE, METHOD, Yield, left_out
@@ -32,6 +36,8 @@ COPIES = 3
 """Of all numbers of a study there are for a while batches, dataset and table."""
 MOST_REASONS = 5
 """Reasons of failing samples that are printed."""
+COLUMN, SCREEN = 14, 100
+"""Letters of a heading beside others, and of a line."""
 
 
 def execute_study(study: Study, folder: StudyFolder, arguments: argparse.Namespace) -> int:
@@ -67,7 +73,8 @@ def execute_study(study: Study, folder: StudyFolder, arguments: argparse.Namespa
 
 
 def _solve_and_write(study: Study, folder: StudyFolder, workers: Workers, arguments: argparse.Namespace) -> int:
-    warning = sampling_warning(study.cases[0][1], position_angles(study.positions), refined=False)
+    typed = "`positions = {}` in the study file" if isinstance(study.design, SweepDesign) else "--positions {}"
+    warning = sampling_warning(study.cases[0][1], position_angles(study.positions), refined=False, typed=typed)
     if warning is not None:
         tell(f"warning: {warning}")
     tell_unit_mistakes((drive for _, drive in study.cases), limits=[study.limits])
@@ -79,9 +86,9 @@ def _solve_and_write(study: Study, folder: StudyFolder, workers: Workers, argume
         found = run_study(
             study, folder, workers, resume=arguments.resume, replace=arguments.force, advance=advance, told=tell
         )
-    _print(study, folder, found, _compliance_words(study, arguments.coefficients))
+    values = {name: read_quantity(folder.results, name) for name in study.quantities}
+    _print(study, folder, found, values, _compliance_words(study, arguments.coefficients))
     if not arguments.no_page:
-        values = {name: read_quantity(folder.results, name) for name in study.quantities}
         print(f"page: {write_study_page(samples_page(study, found, values), folder.path)}")
     if found.quantities and arguments.figures:
         from ltca.figures.study_figures import write_study_figures
@@ -104,7 +111,9 @@ def name_width(names: Sequence[str], least: int) -> int:
     return max(least, 2 + max(map(len, names), default=0))
 
 
-def _print(study: Study, folder: StudyFolder, found: StudySummary, compliance: str) -> None:
+def _print(
+    study: Study, folder: StudyFolder, found: StudySummary, values: Mapping[str, FloatArray], compliance: str
+) -> None:
     samples = f"{study.design.samples} samples × {study.positions} positions"
     print(f"{study.name}, {study.load_words()}: {samples}, {describe_engine(study.engine)}")
     if words := half_space_words(study.engine, study.cases[0][1]):
@@ -112,6 +121,53 @@ def _print(study: Study, folder: StudyFolder, found: StudySummary, compliance: s
     if found.solved_positions:
         rate = found.solved_positions / found.seconds
         print(f"solved in {found.seconds:.1f} s, {rate:.0f} positions/s")
+    if (one := values_of_one_factor(study)) is not None:
+        print(_value_table(*one, values))
+    else:
+        _print_statistics(study, found)
+    _print_failures(study, folder, found)
+    leading = next(iter(found.quantities), None)
+    if leading is not None:
+        summary = found.quantities[leading]
+        worst = summary.smallest_sample if SCALARS[leading].more_is_better else summary.largest_sample
+        words = f"{write_sample(study, folder, worst)}{compliance}"
+        print(f"worst by {SCALARS[leading].title}: cyclo run {words}")
+    if found.judged is not None:
+        _print_yield(found.judged)
+    for key, reason in left_out(study.judged, study.quantities, study.not_judged).items():
+        print(f"  limit {key} is not judged: {reason}")
+    print(f"results: {folder.results}, {folder.table}, {folder.path / 'summary.json'}")
+
+
+def _value_table(title: str, values: Sequence[str], quantities: Mapping[str, FloatArray]) -> str:
+    """Quantities of a sweep with one row for every value of its factor, as many columns side by side as the screen takes."""
+    cells = [
+        [printed(number, "{:.5g}", SCALARS[name].unit) if isfinite(number) else "–" for number in each]
+        for name, each in quantities.items()
+    ]
+    heads = [textwrap.wrap(SCALARS[name].heading, COLUMN, break_long_words=False) for name in quantities]
+    heads, cells = [textwrap.wrap(title, 2 * COLUMN, break_long_words=False), *heads], [[*values], *cells]
+    wide = [max(map(len, [*head, *column])) for head, column in zip(heads, cells, strict=True)]
+    lines: list[str] = []
+    first = 1
+    while first < len(heads):
+        last = first + 1
+        while last < len(heads) and wide[0] + sum(2 + width for width in wide[first : last + 1]) <= SCREEN:
+            last += 1
+        shown = [0, *range(first, last)]
+        deep = max(len(heads[column]) for column in shown)
+        rows = [[""] * (deep - len(heads[column])) + heads[column] + cells[column] for column in shown]
+        lines += [""] if lines else []
+        lines += [
+            "  ".join(f"{text:>{wide[column]}}" for column, text in zip(shown, row, strict=True)).rstrip()
+            for row in zip(*rows, strict=True)
+        ]
+        first = last
+    return "\n".join(lines)
+
+
+def _print_statistics(study: Study, found: StudySummary) -> None:
+    """Print mean, percentiles and largest of every quantity, and what matters."""
     wide = name_width([SCALARS[name].heading for name in found.quantities], 48)
     print(f"{'':<{wide}}{'nominal':>10}{'mean':>10}{'1 %':>10}{'50 %':>10}{'99 %':>10}{'largest':>10}  sample")
     for name, summary in found.quantities.items():
@@ -126,22 +182,10 @@ def _print(study: Study, folder: StudyFolder, found: StudySummary, compliance: s
             if not is_chance(entry, path)
         ]
         told = ", ".join(first) or "nothing beyond chance"
-        print(f"  {SCALARS[name].title}: {told} (first order together: {100.0 * entry['explained']:z.0f} %)")
+        print(f"  {SCALARS[name].title}: {told} ({together_words(entry)})")
     linear = [entry["explained"] for entry in found.ranking["quantities"].values()]
     if "regression" in found.ranking["method"] and linear and min(linear) < 0.5:
         print("  regression misses what is curved or mutual; 'cyclo tolerance --design saltelli' ranks that too")
-    _print_failures(study, folder, found)
-    leading = next(iter(found.quantities), None)
-    if leading is not None:
-        summary = found.quantities[leading]
-        worst = summary.smallest_sample if SCALARS[leading].more_is_better else summary.largest_sample
-        words = f"{write_sample(study, folder, worst)}{compliance}"
-        print(f"worst by {SCALARS[leading].title}: cyclo run {words}")
-    if found.judged is not None:
-        _print_yield(found.judged)
-    for key, reason in left_out(study.judged, study.quantities, study.not_judged).items():
-        print(f"  limit {key} is not judged: {reason}")
-    print(f"results: {folder.results}, {folder.table}, {folder.path / 'summary.json'}")
 
 
 def _print_yield(found: Yield) -> None:

@@ -29,34 +29,40 @@ def part_words(drive: Drive, name: str, pair: int, pairs: int, disc: int | None 
     return ", ".join([*told, *([words] if words else [])])
 
 
-def verdict_table(checks: Sequence[Check], *, limited: bool = False) -> str:
+def verdict_table(checks: Sequence[Check]) -> str:
     """Return the checks of one case as a table: what fails, what passes by its safety, what only informs; then what is not
     known, and why.
 
-    With `limited`, checks without a limit are counted only.
+    A value that the drive file limits and that is not known fails.
     """
-    known = [check for check in checks if check.value.value is not None and (check.limit is not None or not limited)]
+    known = [check for check in checks if check.fails or check.value.value is not None]
     rows = [("check", "value", "limit", "safety", "verdict", "where")]
     for check in sorted(known, key=lambda check: (check.limit is None, urgency(check))):
         value, limit = check.value, check.limit
         bound = "" if limit is None else f"{'≤' if limit.sense == 'max' else '≥'} {with_unit(limit.value, value, 5)}"
         safety = "" if check.safety is None else f"{check.safety:.3f}"
-        told = with_unit(value.value or 0.0, value, 5)
-        rows.append((check.title, told, bound, safety, WORDS[check.verdict], place_words(check)))
+        told = WORDS["not known"] if value.value is None else with_unit(value.value, value, 5)
+        verdict = WORDS["fail" if check.fails else check.verdict]
+        rows.append((check.title, told, bound, safety, verdict, place_words(check)))
     widths = [max(len(row[column]) for row in rows) for column in range(5)]
     lines = [
         f"  {row[0]:<{widths[0]}}  {row[1]:>{widths[1]}}  {row[2]:>{widths[2]}}  {row[3]:>{widths[3]}}  "
         f"{row[4]:<{widths[4]}}  {row[5]}".rstrip()
         for row in rows
     ]
-    unknown: dict[str, list[str]] = {}
-    for check in checks:
-        if check.value.value is None and (check.limit is not None or not limited):
-            unknown.setdefault(check.value.reason, []).append(check.title)
-    lines += [f"  not known ({reason}): {'; '.join(dict.fromkeys(titles))}" for reason, titles in unknown.items()]
-    counts = {verdict: sum(check.verdict == verdict for check in checks) for verdict in WORDS}
-    words = {"pass": "passed", "fail": "failed", "no limit": "without a limit", "not known": "not known"}
-    lines.append("  " + ", ".join(f"{counts[verdict]} {word}" for verdict, word in words.items()))
+    unknown = [check for check in checks if check.verdict == "not known" and not check.fails]
+    reasons: dict[str, list[str]] = {}
+    for check in unknown:
+        reasons.setdefault(check.value.reason, []).append(check.title)
+    lines += [f"  not known ({reason}): {'; '.join(dict.fromkeys(titles))}" for reason, titles in reasons.items()]
+    counts = {
+        "passed": sum(check.verdict == "pass" for check in checks),
+        "failed": sum(check.fails for check in checks),
+        "without a limit": sum(check.verdict == "no limit" for check in checks),
+        "not known": len(unknown),
+    }
+    of_them = f" ({sum(check.limit is not None for check in unknown)} of them with a limit)" if unknown else ""
+    lines.append("  " + ", ".join(f"{count} {word}" for word, count in counts.items()) + of_them)
     return "\n".join(lines)
 
 

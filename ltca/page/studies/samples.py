@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -12,9 +12,9 @@ from ltca.drive.units.quantities import label
 from ltca.page.study_page import Curves, Factor, Mark, Responses, Section, StudyPage
 from ltca.page.tables import Cell, Table, number, word
 from ltca.quantities import SCALARS
-from ltca.studies.designs import SweepDesign
+from ltca.studies.designs import SweepDesign, SweepFactor
 from ltca.studies.run_study import StudySummary
-from ltca.studies.sensitivity import is_chance
+from ltca.studies.sensitivity import CHANCE_WORDS, is_chance
 from ltca.studies.study import Study
 from ltca.studies.study_results import PERCENTILES, field_column
 from ltca.studies.yields import CONFIDENCE, METHOD, Kept, Yield
@@ -27,8 +27,21 @@ MOST_POINTS = 50_000
 MOST_JOINED = 2000
 """Samples of a grid up to which those alike in all other factors are joined by lines."""
 MOST_BINS = 60
+MOST_ROWS = 12
+"""Values of the one factor of a sweep up to which each has a row, in the place of percentiles."""
 SEEN_BEYOND = 1.0
 """Distance of a limit from the samples, by their span, up to which a histogram goes as far as the limit."""
+
+
+def values_of_one_factor(study: Study) -> tuple[str, list[str]] | None:
+    """Heading and values of the one factor of a sweep, by sample; None for other studies, or above `MOST_ROWS`."""
+    design = study.design
+    if not isinstance(design, SweepDesign) or len(design.factors) > 1 or design.samples > MOST_ROWS:
+        return None
+    (factor,) = design.factors
+    numbers = design.rows(0, design.samples)[:, 0]
+    values = [factor.value(number) for number in numbers]
+    return _factor_title(study, factor), [value if isinstance(value, str) else f"{value:.6g}" for value in values]
 
 
 def samples_page(study: Study, found: StudySummary, values: Mapping[str, FloatArray]) -> StudyPage:
@@ -38,7 +51,10 @@ def samples_page(study: Study, found: StudySummary, values: Mapping[str, FloatAr
         sections.append(_responses(study, study.design, values))
     else:
         sections.append(_distributions(study, found, values))
-    sections += [_statistics(found), *_ranking(study, found)]
+    if (one := values_of_one_factor(study)) is not None:
+        sections.append(_one_row_a_value(*one, values))
+    else:
+        sections += [_statistics(found), *_ranking(study, found)]
     failures = [[word(str(sample)), word(" ".join(message.split())[:300])] for sample, message in found.failures]
     if failures:
         table = Table(name="failures", caption="", columns=["sample", "reason"], rows=failures[:MOST_FAILURES], words=1)
@@ -110,6 +126,15 @@ def _statistics(found: StudySummary) -> Section:
     return Section(heading="Over all samples", tables=[Table(name="quantities", caption="", columns=heads, rows=rows)])
 
 
+def _one_row_a_value(title: str, values: Sequence[str], quantities: Mapping[str, FloatArray]) -> Section:
+    rows = [
+        [word(value), *(number(float(each[row]), "{:.4g}") for each in quantities.values())]
+        for row, value in enumerate(values)
+    ]
+    columns = [title, *(SCALARS[name].heading for name in quantities)]
+    return Section(heading="Values", tables=[Table(name="values", caption="", columns=columns, rows=rows)])
+
+
 def _distributions(study: Study, found: StudySummary, values: Mapping[str, FloatArray]) -> Section:
     curves = []
     for name in found.quantities:
@@ -146,11 +171,9 @@ def _responses(study: Study, design: SweepDesign, values: Mapping[str, FloatArra
     joins = design.kind == "grid" and shown.size <= MOST_JOINED
     factors = []
     for column, factor in enumerate(design.factors):
-        unit = "" if factor.is_text else label(field_column(factor.path)["units"])
-        words = study.field_words(factor.path)
         factors.append(
             Factor(
-                title=f"{words} [{unit}]" if unit not in ("", "1") else words,
+                title=_factor_title(study, factor),
                 values=numbers[:, column],
                 levels=[str(level) for level in factor.levels] if factor.is_text else (),
                 path=_joined(numbers, column) if joins else np.zeros(0),
@@ -164,6 +187,13 @@ def _responses(study: Study, design: SweepDesign, values: Mapping[str, FloatArra
     quantities = {SCALARS[name].heading: values[name][shown] for name in study.quantities}
     responses = Responses(samples=shown.astype(float), factors=factors, quantities=quantities)
     return Section(heading="Responses", notes=notes, responses=responses)
+
+
+def _factor_title(study: Study, factor: SweepFactor) -> str:
+    """A field of a sweep with its unit."""
+    unit = "" if factor.is_text else label(field_column(factor.path)["units"])
+    words = study.field_words(factor.path)
+    return f"{words} [{unit}]" if unit not in ("", "1") else words
 
 
 def _joined(numbers: FloatArray, column: int) -> FloatArray:
@@ -188,5 +218,5 @@ def _ranking(study: Study, found: StudySummary) -> list[Section]:
     table = Table(name="sensitivity", caption="", columns=["quantity", "field", "part"], rows=rows, words=1)
     note = f"Ranked by {found.ranking['method']}; small parts are noise of the samples."
     if doubted:
-        note = f"Ranked by {found.ranking['method']}. Grey: chance alone gives as much, 19 times of 20 less."
+        note = f"Ranked by {found.ranking['method']}. Grey: {CHANCE_WORDS}."
     return [Section(heading="What matters", notes=[note], tables=[table])]

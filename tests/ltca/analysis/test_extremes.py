@@ -202,7 +202,7 @@ def test_phases_of_the_mesh(paper_cases, positions):
     assert (warning is None) == (len(places) >= 8)
     if warning is not None:
         assert f"{positions} positions see {len(places)} phase" in warning
-        enough = int(warning.split("take at least ")[1].split()[0])
+        enough = int(warning.split("take --positions ")[1])
         assert sampling_warning(drive, position_angles(enough)) is None
 
 
@@ -213,8 +213,16 @@ def test_studies_are_warned_of_holes_too(paper_cases):
     for positions, told in ((9, "9 phases of the mesh of 13 teeth"), (28, "7 phases of the 8 holes")):
         warning = sampling_warning(drive, position_angles(positions), refined=False)
         assert told in warning
-        enough = int(warning.split("take at least ")[1].split()[0])
+        enough = int(warning.split("take --positions ")[1])
         assert sampling_warning(drive, position_angles(enough), refined=False) is None
+
+
+def test_the_warning_asked_for_a_number_that_shares_no_factor_with_29_and_8(paper_cases):
+    """It says what to type: the least number from 16 that has no factor in common with 13 teeth and 8 holes."""
+    told = "12 positions see 12 phases of the mesh of 13 teeth: values over them alone say little of the turn; take "
+    for typed, end in (("--positions {}", "--positions 17"), ("positions={}", "positions=17")):
+        warning = sampling_warning(paper_cases["CS-1"], position_angles(12), refined=False, typed=typed)
+        assert warning == told + end
 
 
 def test_one_angle_warns_of_nothing(paper_cases):

@@ -111,6 +111,23 @@ def test_first_screen_is_verdict_table_files(tmp_path, capsys):
     assert not (tmp_path / "figures").exists()
 
 
+@pytest.mark.parametrize("words", [[], ["--debug"]])
+def test_bare_cyclo_ended_in_command_required(words, capsys):
+    assert main(words) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith("usage: cyclo ")
+    assert "judge a design" in err
+    assert "cyclo: error" not in err
+
+
+def test_check_did_not_say_which_engine_it_judged_by(tmp_path, capsys):
+    words = ["check", "paper", "--case", "CS-1", "--positions", "2", "--quick", "--no-advice", "--no-page"]
+    main([*words, "--out", str(tmp_path)])
+    first = capsys.readouterr().out.splitlines()[0]
+    assert first == "paper CS-1, 377.3 N·m ccw: judged by half-space (tables), 2 positions"
+
+
 def test_figures_and_none_contradict_each_other(tmp_path, capsys):
     with pytest.raises(SystemExit) as ended:
         main([*RUN, "--figures", "--no-figures", "--out", str(tmp_path / "out")])
@@ -168,7 +185,7 @@ def test_wrong_input_is_exit_status_2_one_message_and_no_file(arguments, message
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("arguments", [[], ["run"], ["fly"], ["run", "paper", "--positions", "3", "--angles", "1"]])
+@pytest.mark.parametrize("arguments", [["run"], ["fly"], ["run", "paper", "--positions", "3", "--angles", "1"]])
 def test_wrong_usage_is_exit_status_2(arguments, capsys):
     with pytest.raises(SystemExit) as stopped:
         main(arguments)

@@ -57,7 +57,7 @@ def test_it_is_the_verdict_of_the_command(mine, tmp_path):
 def test_it_prints_itself():
     found = ltca.check(FILE, 8, case="CS-3", torque="200 N·m", advice=False)
     lines = repr(found).splitlines()
-    assert lines[0] == "paper CS-3, 200 N·m ccw, half-space (tables), 8 positions"
+    assert lines[0] == "paper CS-3, 200 N·m ccw: judged by half-space (tables), 8 positions"
     assert sum(line.startswith("  flank pressure ") for line in lines) == 1
     assert found.torque == 200_000.0
     with pytest.raises(KeyError):

@@ -12,11 +12,12 @@ import pytest
 
 from ltca.analysis.torque_curve import torque_curve
 from ltca.analysis.verdict.advice import Driver
+from ltca.commands.actions.study import _value_table
 from ltca.page.packing import unpack
 from ltca.page.studies.check import check_page
 from ltca.page.studies.curves import torque_section
 from ltca.page.studies.optimum import optimum_page
-from ltca.page.studies.samples import samples_page
+from ltca.page.studies.samples import samples_page, values_of_one_factor
 from ltca.page.study_page import StudyPage, study_page
 from ltca.page.tables import number, word
 from ltca.reading.drive_file import parse_drive, shipped_drive
@@ -166,6 +167,28 @@ def test_a_sweep_has_every_sample_over_every_factor(swept):
     assert np.allclose(numbers["responses/factor/0"], [0.0, 0.0, 0.01, 0.01, 0.02, 0.02])
     # Lines join samples alike in the other factor: 0, 2, 4 and 1, 3, 5.
     assert np.array_equal(numbers["responses/path/0"], [0.0, 2.0, 4.0, np.nan, 1.0, 3.0, 5.0], equal_nan=True)
+
+
+def test_a_sweep_of_three_values_had_mean_and_percentiles_for_them():
+    """Up to 12 values of one factor have a row each, on the page as on the screen; 13 values have percentiles."""
+    few = SWEEP.replace('"load.direction" = ["ccw", "cw"]', "")
+    study = parse_sweep(tomllib.loads(few), "paper")
+    values = {"max_pin_load": np.array([3000.0, 3500.0, np.nan])}
+    section = next(
+        one for one in samples_page(study, summary_of(study, values), values).sections if one.heading == "Values"
+    )
+    (table,) = section.tables
+    assert table.columns == ["clearance.bearing [mm]", "largest load of a wheel pin [N]"]
+    assert [[cell.text for cell in row] for row in table.rows] == [["0", "3000"], ["0.01", "3500"], ["0.02", "–"]]
+    lines = _value_table(*values_of_one_factor(study), values).splitlines()
+    assert [line.split()[-1] for line in lines[-4:]] == ["[N]", "3000", "3500", "–"]
+    assert [line.split()[0] for line in lines[-4:]] == ["clearance.bearing", "0", "0.01", "0.02"]
+    many = parse_sweep(tomllib.loads(few.replace("[0.0, 0.01, 0.02]", str([0.001 * k for k in range(13)]))), "paper")
+    assert values_of_one_factor(many) is None
+    assert values_of_one_factor(parse_sweep(tomllib.loads(SWEEP), "paper")) is None
+    values = {"max_pin_load": np.arange(13.0)}
+    headings = [one.heading for one in samples_page(many, summary_of(many, values), values).sections]
+    assert headings == ["Responses", "Over all samples"]
 
 
 POINTED = """<script>

@@ -116,12 +116,16 @@ def test_regression_with_few_samples_is_adjusted():
     np.testing.assert_allclose(found.explained, 1.0 - per_freedom / y.var(axis=0, ddof=1), atol=1e-10)
     # standard error √(2 f/(n − f − 1)/(n + 1)/2000)·… about 0.004; the plain R² would be 0.345
     assert abs(found.explained.mean()) < 0.02
-    # a share of noise is what chance gives: nothing in the mean of SRC² less chance, before it is cut at zero
+    # a share of noise is what chance gives: nothing in the mean of SRC² less chance
     spread = x.std(axis=0)[:, None] / y.std(axis=0)
     slopes = np.linalg.lstsq(columns, y, rcond=None)[0][1:]
     np.testing.assert_allclose(found.coefficients, slopes * spread, rtol=1e-9, atol=1e-12)
-    chance = (left**2).sum(axis=0) / (count * y.var(axis=0)) / (count - factors - 1)
-    np.testing.assert_allclose(found.shares, np.maximum(found.coefficients**2 - chance, 0.0), atol=1e-10)
+    # the covariance of least squares, σ² (XᵀX)⁻¹; it was taken for that of factors without any correlation, a third too small
+    inverse = np.diag(np.linalg.inv(columns.T @ columns))[1:, None]
+    chance = inverse * (left**2).sum(axis=0) / (count - factors - 1) * spread**2
+    np.testing.assert_allclose(found.shares, found.coefficients**2 - chance, atol=1e-10)
+    # 20000 shares of deviation √2/20
+    assert abs(found.shares.mean()) < 0.002
 
 
 @pytest.mark.slow
