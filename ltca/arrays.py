@@ -9,7 +9,7 @@ whose arrays are read-only.
 from __future__ import annotations
 
 import copy
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import field, fields, is_dataclass, replace
 from typing import Any, TypeVar
 
@@ -326,3 +326,61 @@ def _read_only(array: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
     fresh = array.copy(order="K")
     fresh.flags.writeable = False
     return fresh
+
+
+def named_arrays(tree: Any, name: str) -> dict[str, NDArray[Any]]:
+    """Return every array and number of a tree by a name of its own, which begins with `name`; None has none.
+
+    `with_named_arrays` is the inverse.
+
+    Examples
+    --------
+    >>> named_arrays((np.ones(1), None, 2.0), "start")
+    {'start.0': array([1.]), 'start.2': array(2.)}
+    """
+    if tree is None:
+        return {}
+    parts = _parts(tree)
+    if parts is None:
+        return {name: np.asarray(tree)}
+    found: dict[str, NDArray[Any]] = {}
+    for key, part in parts.items():
+        found |= named_arrays(part, f"{name}.{key}")
+    return found
+
+
+def with_named_arrays(like: Any, arrays: Mapping[str, NDArray[Any]], name: str) -> Any:
+    """Return a tree like another one with the arrays of `named_arrays`.
+
+    Raises
+    ------
+    ValueError
+        Where one is missing, or has another shape or kind.
+    """
+    if like is None:
+        return None
+    parts = _parts(like)
+    if parts is None:
+        old, found = np.asarray(like), arrays.get(name)
+        if found is None or found.shape != old.shape or found.dtype.kind != old.dtype.kind:
+            raise ValueError(f"{name}: there is none of shape {old.shape}")
+        return found if isinstance(like, np.ndarray) else found.item()
+    made = {key: with_named_arrays(part, arrays, f"{name}.{key}") for key, part in parts.items()}
+    if isinstance(like, np.ndarray):
+        objects = np.empty(like.size, dtype=object)
+        objects[:] = list(made.values())
+        return objects.reshape(like.shape)
+    if isinstance(like, tuple):
+        return tuple(made.values()) if type(like) is tuple else type(like)(*made.values())
+    return replace(like, **made)
+
+
+def _parts(tree: Any) -> dict[str, Any] | None:
+    """Parts of a dataclass, a tuple or an array of objects by name; None for an array and a number."""
+    if isinstance(tree, np.ndarray):
+        return None if tree.dtype != object else {str(place): part for place, part in enumerate(tree.ravel())}
+    if isinstance(tree, tuple):
+        return {str(place): part for place, part in enumerate(tree)}
+    if isinstance(tree, float | int):
+        return None
+    return {name: getattr(tree, name) for name in _field_names(type(tree))}

@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 
 from ltca.arrays import FloatArray
-from ltca.errors import FaultError
-from ltca.output.files import whole_file
+from ltca.errors import DamagedFileError, FaultError
+from ltca.output.checked_arrays import read_arrays, write_arrays
 from ltca.output.provenance import cache_home
 
 
@@ -42,13 +42,13 @@ class Pieces:
         """Return the array of a name: the one that is kept, else computed and, where the cache can be written, kept."""
         if self.folder is None:
             return compute()
-        path = self.folder / f"{name}.npy"
-        # What cannot be read, cut short or of somebody else, is computed again and replaced.
-        with suppress(OSError, ValueError, EOFError), path.open("rb") as file:
-            return np.asarray(np.load(file, allow_pickle=False))
+        path = self.folder / f"{name}.npz"
+        # What is damaged, cut short or of somebody else, is computed again and replaced.
+        with suppress(DamagedFileError, KeyError):
+            return np.asarray(read_arrays(path, "a piece of a derivation")["values"])
         found = compute()
-        with suppress(FaultError), whole_file(path) as part, part.open("wb") as file:
-            np.save(file, found)
+        with suppress(FaultError):
+            write_arrays(path, {"values": found})
         return found
 
     def forget(self) -> None:

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from scipy.integrate import DOP853
 
 from ltca.analysis.engines import Engine
-from ltca.arrays import FloatArray
+from ltca.arrays import FloatArray, named_arrays, with_named_arrays
 from ltca.compliance.stored_energy import StoredEnergy
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Drive
@@ -37,7 +37,7 @@ from ltca.dynamics.teeth import TeethForces
 from ltca.equilibrium.balance import lever_arms
 from ltca.equilibrium.output_angle import crank_lag
 from ltca.equilibrium.output_torque import solve_at_output
-from ltca.errors import ConvergenceError, DriveError
+from ltca.errors import ConvergenceError, DamagedFileError, DriveError
 
 MOTIONS = {
     "steady": "the input turns evenly under the load",
@@ -295,25 +295,34 @@ class EnergyBalance:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Checkpoint:
-    """Where a run stands.
+    """Where a run stands: all that it goes on with, so that a resumed run is the uninterrupted one.
 
     Attributes
     ----------
     time, step : float
         s; the next step of the solver.
-    state : array
-        Of `Equation`.
+    state, rate, tolerances : array, shape (2m + 4,)
+        Of `Equation`, its rate as the solver has it, and the absolute tolerances that it was started with.
+    evaluations : int
+        Calls of the equation of motion by the solver.
     rows : int
         Samples taken.
     samples : dict of str to array
         The arrays of `Samples` so far.
+    followed : dict of str to array
+        Inner unknowns of contacts and parts without mass, from which their next solution starts, and what the works of contacts
+        are summed from, by name.
     """
 
     time: float
     step: float
     state: FloatArray
+    rate: FloatArray
+    tolerances: FloatArray
+    evaluations: int
     rows: int
     samples: dict[str, FloatArray]
+    followed: dict[str, NDArray[Any]]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -671,27 +680,72 @@ class Recorder:
             self.arrays[name][row] = values
         self.rows += 1
 
-    def checkpoint(self, time: float, step: float, state: FloatArray) -> Checkpoint:
-        """Return where the run stands after a step to a time."""
+    def checkpoint(self, solver: DOP853) -> Checkpoint:
+        """Return where the run stands after a step of the solver."""
+        followed = named_arrays(self._run.equation.followed(), "inner") | named_arrays(self._summed(), "summed")
         return Checkpoint(
-            time=time,
-            step=step,
-            state=state.copy(),
+            time=float(solver.t),
+            step=float(solver.h_abs),
+            state=solver.y.copy(),
+            rate=solver.f.copy(),
+            tolerances=solver.atol.copy(),
+            evaluations=int(solver.nfev),
             rows=self.rows,
             samples={name: values[: self.rows] for name, values in self.arrays.items()},
+            followed={name: values.copy() for name, values in followed.items()},
         )
 
-    def go_on(self, found: Checkpoint) -> None:
-        """Take over the samples of an interrupted run."""
+    def go_on(self, found: Checkpoint) -> DOP853:
+        """Take over an interrupted run and return its solver as it stood; DamagedFileError where it does not fit."""
+        run, size = self._run, self._run.start.shape
+        fits = all(
+            values.shape == size and np.all(np.isfinite(values))
+            for values in (found.state, found.rate, found.tolerances)
+        )
+        rows = {len(values) for values in found.samples.values()}
+        fits = fits and 0.0 < found.time < run.course.time and found.step > 0.0
+        if not fits or rows != {found.rows} or not 0 < found.rows <= self.times.size:
+            raise DamagedFileError("does not fit the run in time that it says it is of")
+        solver = self.solver(found.time, found.state, found.step, found.tolerances)
+        equation = run.equation
+        # What one call at the state leaves has the structure of what is kept.
+        moment = equation.solved(found.time, found.state)
+        if equation.contacts.has_energy:
+            self._before = equation.contacts.stored(moment.place)[1]
+        self._teeth = moment.forces.teeth
+        try:
+            inner = with_named_arrays(equation.followed(), found.followed, "inner")
+            self._before, self._teeth = with_named_arrays(self._summed(), found.followed, "summed")
+            fields_of = {item.name for item in fields(Samples)}
+            if set(found.samples) != fields_of:
+                raise ValueError(f"samples: must be {', '.join(sorted(fields_of))}")
+        except ValueError as error:
+            raise DamagedFileError(f"does not fit the run in time that it says it is of: {error}") from error
+        equation.follow(inner)
+        solver.f, solver.h_abs, solver.nfev = found.rate, found.step, found.evaluations
         self.rows = found.rows
         for name, values in found.samples.items():
             self.arrays[name] = np.zeros((self.times.size, *values.shape[1:]))
             self.arrays[name][: self.rows] = values
-        contacts, last = self._run.equation.contacts, found.rows - 1
-        x = self.arrays["place"][last]
-        self._teeth = contacts.at(x, self.arrays["rate"][last]).teeth
-        if contacts.has_energy:
-            self._before = contacts.stored(x)[1]
+        return solver
+
+    def solver(self, time: float, state: FloatArray, step: float, tolerances: FloatArray) -> DOP853:
+        """Return the solver at a state, with its next step."""
+        end = self._run.course.time
+        return DOP853(
+            self._run.equation.rates,
+            time,
+            state,
+            end,
+            max_step=longest_step(self._run),
+            rtol=RELATIVE_TOLERANCE,
+            atol=tolerances,
+            first_step=min(step, end - time),
+        )
+
+    def _summed(self) -> tuple[tuple[StoredEnergy, ...], TeethForces | None]:
+        """Energies and teeth at the last sample, from which works are summed to the next."""
+        return self._before, self._teeth
 
     def samples(self) -> Samples:
         """Return what was taken."""
@@ -742,48 +796,35 @@ def run_in_time(
     ConvergenceError
         Where the solver's step vanishes.
     """
-    equation, end = run.equation, run.course.time
+    equation = run.equation
     recorder = Recorder(run, samples or samples_of(run.course, run.drive))
-    time, state, step = 0.0, run.start, FIRST_STEP / run.fastest
     if resumed is None:
-        recorder.take(state)
-        advance(1)
+        step = FIRST_STEP / run.fastest
+        recorder.take(run.start)
+        solver = recorder.solver(0.0, run.start, step, run.tolerances())
     else:
-        recorder.go_on(resumed)
-        time, state, step = resumed.time, resumed.state, resumed.step
-        advance(resumed.rows)
-    evaluations = 0
-    if time < end:
-        solver = DOP853(
-            equation.rates,
-            time,
-            state,
-            end,
-            max_step=longest_step(run),
-            rtol=RELATIVE_TOLERANCE,
-            atol=run.tolerances(),
-            first_step=min(step, end - time),
-        )
-        taken = 0
-        while solver.status == "running":
-            problem = solver.step()
-            if solver.status == "failed":
-                raise ConvergenceError(f"the run stops at {solver.t:.6g} s: {problem}", [])
-            taken += 1
-            between = None
-            while recorder.rows < recorder.times.size and recorder.times[recorder.rows] <= solver.t:
-                between = solver.dense_output() if between is None else between
-                at = float(recorder.times[recorder.rows])
-                recorder.take(solver.y if at == solver.t else between(at))
-                advance(1)
-            if taken % STEPS_BETWEEN == 0:
-                save(lambda: recorder.checkpoint(float(solver.t), float(solver.h_abs), solver.y))
-        evaluations = int(solver.nfev)
+        solver = recorder.go_on(resumed)
+    advance(recorder.rows)
+    taken = 0
+    while solver.status == "running":
+        problem = solver.step()
+        if solver.status == "failed":
+            raise ConvergenceError(f"the run stops at {solver.t:.6g} s: {problem}", [])
+        taken += 1
+        between = None
+        while recorder.rows < recorder.times.size and recorder.times[recorder.rows] <= solver.t:
+            between = solver.dense_output() if between is None else between
+            at = float(recorder.times[recorder.rows])
+            recorder.take(solver.y if at == solver.t else between(at))
+            advance(1)
+        if taken % STEPS_BETWEEN == 0 and solver.status == "running":
+            equation.contacts.forget_grids()
+            save(lambda: recorder.checkpoint(solver))
     return TimeRun(
         drive=run.drive,
         engine=run.engine,
         course=run.course,
         motion=run.motion,
         samples=recorder.samples(),
-        evaluations=evaluations,
+        evaluations=int(solver.nfev),
     )

@@ -209,6 +209,11 @@ class GridCompliance(UncoupledContacts[_KindGrids]):
             slices=slices,
         )
 
+    def forget(self) -> None:
+        """Forget the grids of tilted contacts that were solved."""
+        for kept in self._kept:
+            kept.clear()
+
     def laws(self, flank: FlankMotion, warm_start: NDArray[np.object_] | None) -> PairLaws[Any]:
         """Return the grids of the pins and of the rollers on the inner race and in the bore."""
         if self.slices > 1:

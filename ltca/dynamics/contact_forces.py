@@ -17,11 +17,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from ltca.arrays import FloatArray
 from ltca.compliance.coupled import CoupledCompliance
+from ltca.compliance.grids import GridCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.response import DiscResponse, Response, Start, bearing_pushes
 from ltca.compliance.stored_energy import StoredEnergy
@@ -112,6 +114,25 @@ class ContactForces:
     def has_energy(self) -> bool:
         """Whether the stored energy is known: of all but contact grids."""
         return len(self._telling) == len(self._model.discs)
+
+    @property
+    def followed(self) -> tuple[Any, ...]:
+        """Inner unknowns from which the next call starts, as nested tuples; None for contact grids, see `forget_grids`."""
+        return tuple(each.followed for each in self._each), self._start if self.has_energy else None
+
+    @followed.setter
+    def followed(self, kept: tuple[Any, ...]) -> None:
+        for each, own in zip(self._each, kept[0], strict=True):
+            each.followed = own
+        self._start = kept[1]
+
+    def forget_grids(self) -> None:
+        """Let contact grids begin anew: they have as many cells as they need, which no checkpoint keeps."""
+        if not self.has_energy:
+            self._start = None
+            for disc in self._model.discs:
+                if isinstance(disc, GridCompliance):
+                    disc.forget()
 
     def at(self, x: FloatArray, rate: FloatArray) -> Instant:
         """Return the forces at coordinates and their rates, each of shape (n,)."""

@@ -8,6 +8,7 @@ so is left to the functions that solve equilibria. Answers do not depend on the 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -108,6 +109,16 @@ class DiscContacts:
         self._turning = self._point
         self._share = np.full(place.roller_radii.size, 0.5)
         self.state: dict[str, FloatArray] = {}
+
+    @property
+    def followed(self) -> tuple[FloatArray | ComplexArray | None, ...]:
+        """Contact parameters, what moves them on to first order, and shares of rollers: where the next call starts."""
+        return self._parameter, self._point, self._turning, self._share
+
+    @followed.setter
+    def followed(self, kept: tuple[Any, ...]) -> None:
+        # Shares are changed in place.
+        self._parameter, self._point, self._turning, self._share = *kept[:3], kept[3].copy()
 
     def at(self, angle: float, q: FloatArray) -> DiscForces:
         """Return the forces at a crank angle, rad, and a pose of the disc, shape (k,)."""

@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -54,6 +55,15 @@ class MasslessParts:
         self._place, self._slope = place.copy(), np.zeros((columns.shape[1], columns.shape[0]))
         self._others: FloatArray | None = None
         self._following = np.zeros(columns.shape[1])
+
+    @property
+    def followed(self) -> tuple[FloatArray | None, ...]:
+        """Places, slopes, coordinates of the others and rates of the last call, from which the next one starts."""
+        return self._place, self._slope, self._others, self._following
+
+    @followed.setter
+    def followed(self, kept: tuple[Any, ...]) -> None:
+        self._place, self._slope, self._others, self._following = kept
 
     def settle(
         self, others: FloatArray, rate: FloatArray, respond: Respond

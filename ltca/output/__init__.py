@@ -14,6 +14,7 @@ supervisor     Run a program that ends with whoever asked for it, together with 
 progress       Progress: a bar on a terminal, a line every few seconds without one
 provenance     Which code made a result: version and a hash of its sources, the same on every machine that has the same code
 files          Files that are either whole or not there: written beside their place, then moved into it
+checked_arrays Arrays with a checksum, with which interrupted work goes on
 labelled       Labelled arrays without xarray, whose import with pandas takes half a second
 netcdf         netCDF files: read without trust, written so that they survive a full disc
 =============  ============================================================

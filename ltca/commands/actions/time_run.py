@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import argparse
 import hashlib
+import os
 import re
 import time
 from collections.abc import Callable, Mapping
+from dataclasses import fields
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -20,6 +22,7 @@ from ltca.analysis.time_run import Checkpoint, Course, PreparedRun, TimeRun, pre
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import ARCSEC
 from ltca.errors import CycloError, DamagedFileError, DriveError, PlaceError
+from ltca.output.checked_arrays import read_arrays, write_arrays
 from ltca.output.files import whole_file, write_json
 from ltca.output.netcdf import write_netcdf
 from ltca.output.progress import progress
@@ -29,10 +32,9 @@ from ltca.reading.drive_file import DriveFile
 
 CHECKPOINTS = "checkpoint"
 """Folder of interrupted runs, a file for each case."""
-KEPT = ("time", "step", "state", "rows")
-"""What of a checkpoint stands beside its samples."""
 SAVED_EVERY = 20.0
 """Seconds of work between two checkpoints."""
+REMOVED = "remove it to begin anew"
 WHAT_DIFFERS = "another drive file, engine, motion or version"
 
 
@@ -70,22 +72,22 @@ def run_and_write(
 ) -> int:
     """Run every case, write time.nc, time.json, page and figures, print the results; return the exit status."""
     prepared: dict[str, PreparedRun] = {}
-    for name, drive in cases.items():
+    resumed: dict[str, Checkpoint] = {}
+    for number, (name, drive) in enumerate(cases.items()):
         prepared[name] = prepare_run(drive, engine.with_coefficients(drive), course_of(drive, arguments))
+        path = _checkpoint(out, number)
+        if arguments.resume and os.path.lexists(path):
+            resumed[name] = _read(path, _mark(file, prepared[name]))
     total = sum(samples_of(run.course, run.drive) for run in prepared.values())
     every: dict[str, TimeRun] = {}
     with progress("samples", total) as advance:
         for number, (name, run) in enumerate(prepared.items()):
-            path = out / CHECKPOINTS / f"{number}.npz"
-            mark = _mark(file, run)
-            resumed = _read(path, mark) if arguments.resume and path.exists() else None
-            save = _saving(path, mark)
-            every[name] = run_in_time(
-                run,
-                advance=partial(advance, name),
-                save=save,
-                resumed=resumed,
-            )
+            path = _checkpoint(out, number)
+            save = _saving(path, _mark(file, run))
+            try:
+                every[name] = run_in_time(run, advance=partial(advance, name), save=save, resumed=resumed.get(name))
+            except DamagedFileError as error:
+                raise DamagedFileError(f"{path}: {error}; {REMOVED}") from error
             print("\n".join(_lines(every[name], f"{file.name} {name}")))
     files, contents = [], {}
     for name, found in every.items():
@@ -123,6 +125,10 @@ def run_and_write(
     return 0
 
 
+def _checkpoint(out: Path, number: int) -> Path:
+    return out / CHECKPOINTS / f"{number}.npz"
+
+
 def _mark(file: DriveFile, run: PreparedRun) -> str:
     """What a run is of, for its checkpoint."""
     from importlib.metadata import version
@@ -139,32 +145,38 @@ def _saving(path: Path, mark: str) -> Callable[[Callable[[], Checkpoint]], None]
         if time.monotonic() - last < SAVED_EVERY:
             return
         last, found = time.monotonic(), state()
-        with whole_file(path) as part, part.open("wb") as stream:
-            kept: dict[str, Any] = {name: getattr(found, name) for name in KEPT}
-            kept |= {f"samples_{name}": values for name, values in found.samples.items()}
-            np.savez(stream, mark=np.array(mark), **kept)
+        kept: dict[str, Any] = {"mark": mark}
+        for item in fields(Checkpoint):
+            value = getattr(found, item.name)
+            kept |= (
+                {f"{item.name}/{name}": values for name, values in value.items()}
+                if isinstance(value, dict)
+                else {item.name: value}
+            )
+        write_arrays(path, kept)
 
     return save
 
 
 def _read(path: Path, mark: str) -> Checkpoint:
-    """Return where a run stood; refused where it is of something else, or damaged."""
+    """Read the checkpoint of a run; CycloError where it belongs to another run, DamagedFileError where it is damaged."""
     try:
-        with np.load(path, allow_pickle=False) as content:
-            held: dict[str, Any] = {name: content[name] for name in content.files}
-        if str(held["mark"]) != mark:
-            raise CycloError(f"{path}: holds another run ({WHAT_DIFFERS}); resume with the options it was started with")
-        return Checkpoint(
-            time=float(held["time"]),
-            step=float(held["step"]),
-            state=held["state"],
-            rows=int(held["rows"]),
-            samples={
-                name.removeprefix("samples_"): values for name, values in held.items() if name.startswith("samples_")
-            },
-        )
-    except (OSError, ValueError, KeyError) as error:
-        raise DamagedFileError(f"{path}: is no checkpoint of a run in time; remove it to begin anew") from error
+        held = read_arrays(path, "a checkpoint of a run in time")
+    except DamagedFileError as error:
+        raise DamagedFileError(f"{error}; {REMOVED}") from error
+    if str(held.pop("mark", "")) != mark:
+        raise CycloError(f"{path}: holds another run ({WHAT_DIFFERS}); resume with the options it was started with")
+    parts: dict[str, Any] = {"samples": {}, "followed": {}}
+    for name, values in held.items():
+        of, _, inside = name.partition("/")
+        if inside:
+            parts.setdefault(of, {})[inside] = values
+        else:
+            parts[of] = values if values.ndim else values.item()
+    try:
+        return Checkpoint(**parts)
+    except TypeError as error:
+        raise DamagedFileError(f"{path}: is no checkpoint of a run in time of this version; {REMOVED}") from error
 
 
 def _lines(found: TimeRun, title: str) -> list[str]:

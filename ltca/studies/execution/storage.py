@@ -5,11 +5,8 @@ Each file is whole or not there. A batch says whose it is and carries a checksum
 
 from __future__ import annotations
 
-import hashlib
 import json
 import re
-import zipfile
-import zlib
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
@@ -18,9 +15,10 @@ from pathlib import Path
 import numpy as np
 
 from ltca.errors import CycloError, DamagedFileError, one_line
+from ltca.output.checked_arrays import DAMAGE, read_arrays, write_arrays
 from ltca.output.files import whole_file, write_json
 from ltca.output.provenance import code_version
-from ltca.output.regular_files import read_regular, regular_file
+from ltca.output.regular_files import read_regular
 from ltca.output.run_folder import BATCHES, PLAN
 from ltca.studies.study import BatchResult, Study
 from ltca.studies.study_results import CHUNK, Failures, write_results
@@ -29,14 +27,7 @@ WHAT_DIFFERS = "drive, tolerances, samples, positions, seed, quantities, complia
 LARGEST_PLAN = 1_000_000
 """Bytes of a plan, which has five short entries."""
 BATCH_NAME = re.compile(r"[0-9]{8}\.npz")
-PARTS = ("number", "factors", "values", "messages", "fingerprint", "checksum")
-# What numpy and zip raise on files that are cut off, foreign, encrypted or declare what no memory holds.
-DAMAGE = (
-    OSError, ValueError, KeyError, TypeError, EOFError, OverflowError, MemoryError, NotImplementedError, RuntimeError,
-    zipfile.BadZipFile, zlib.error,
-)  # fmt: skip
-LARGEST_BATCH = 1 << 31
-"""Bytes that no batch has."""
+PARTS = ("number", "factors", "values", "messages", "fingerprint")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -196,53 +187,35 @@ def batch_files(folder: Path) -> Iterator[Path]:
 
 def write_batch(path: Path, study: Study, result: BatchResult) -> None:
     """Write one batch, whole or not at all."""
-    messages = np.array(result.messages, dtype=str)
-    with whole_file(path) as part, part.open("wb") as stream:
-        np.savez(
-            stream,
-            number=np.array(result.number),
-            factors=result.factors,
-            values=result.values,
-            messages=messages,
-            fingerprint=np.array(study.fingerprint),
-            checksum=np.array(_checksum(result, study.fingerprint)),
-        )
+    content = {
+        "number": np.array(result.number),
+        "factors": result.factors,
+        "values": result.values,
+        "messages": np.array(result.messages, dtype=str),
+        "fingerprint": np.array(study.fingerprint),
+    }
+    write_arrays(path, content)
 
 
 def read_batch(path: Path, study: Study) -> BatchResult:
     """Read one batch; `DamagedFileError` when it is damaged, or belongs to another study or to another number."""
+    kind = "a batch of a study"
+    found = read_arrays(path, kind)
     try:
-        # Opened here: of a file that is no archive numpy leaves its own stream open.
-        with regular_file(path, LARGEST_BATCH) as stream, zipfile.ZipFile(stream) as archive:
-            declared = sum(entry.file_size for entry in archive.infolist())
-        if declared > LARGEST_BATCH:
-            raise DamagedFileError(f"{path}: declares {declared:,} bytes, which no batch has")
-        with regular_file(path, LARGEST_BATCH) as stream, np.load(stream, allow_pickle=False) as stored:
-            found = {name: stored[name] for name in PARTS}
+        number, factors, values, messages, fingerprint = (found[name] for name in PARTS)
         result = BatchResult(
-            number=int(found["number"]),
-            factors=found["factors"],
-            values=found["values"],
-            messages=tuple(str(text) for text in found["messages"].tolist()),
+            number=int(number),
+            factors=factors,
+            values=values,
+            messages=tuple(str(text) for text in messages.tolist()),
         )
     except DAMAGE as error:
-        raise DamagedFileError(f"{path}: cannot be read as a batch of a study: {one_line(error)}") from error
-    if str(found["fingerprint"]) != study.fingerprint:
+        raise DamagedFileError(f"{path}: cannot be read as {kind}: {one_line(error)}") from error
+    if str(fingerprint) != study.fingerprint:
         raise DamagedFileError(f"{path}: belongs to another study")
-    if str(found["checksum"]) != _checksum(result, study.fingerprint):
-        raise DamagedFileError(f"{path}: is damaged (checksum)")
     if f"{result.number:08d}" != path.stem or not 0 <= result.number < study.batches:
         raise DamagedFileError(f"{path}: is batch {result.number} of the study")
     first, last = study.samples_of(result.number)
     if not len(result.factors) == len(result.values) == len(result.messages) == last - first:
         raise DamagedFileError(f"{path}: has not the {last - first} samples of its number")
     return result
-
-
-def _checksum(result: BatchResult, fingerprint: str) -> str:
-    digest = hashlib.sha256(f"{fingerprint} {result.number}".encode())
-    for values in (result.factors, result.values):
-        digest.update(f"{values.shape} {values.dtype.str}".encode())
-        digest.update(np.ascontiguousarray(values).tobytes())
-    digest.update("\0".join(result.messages).encode())
-    return digest.hexdigest()

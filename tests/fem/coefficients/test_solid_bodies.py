@@ -223,7 +223,7 @@ def test_pieces_that_are_there_are_not_computed_again(tmp_path):
     values = np.arange(6.0).reshape(2, 3)
     np.testing.assert_array_equal(pieces.get("disc-even", lambda: values), values)
     np.testing.assert_array_equal(pieces.get("disc-even", lambda: pytest.fail("computed")), values)
-    path = tmp_path / "kept" / "disc-even.npy"
+    path = tmp_path / "kept" / "disc-even.npz"
     path.write_bytes(path.read_bytes()[:40])
     np.testing.assert_array_equal(pieces.get("disc-even", lambda: 2.0 * values), 2.0 * values)
     pieces.forget()

@@ -229,7 +229,7 @@ def test_what_was_interrupted_goes_on(drive, monkeypatch, derived, solutions):
     with pytest.raises(KeyboardInterrupt):
         derive_coefficients(drive, bodies="solid", **COARSE)
     (kept,) = cache_home().glob("pieces-*")
-    assert len(list(kept.glob("*.npy"))) == 3
+    assert len(list(kept.glob("*.npz"))) == 3
     again, full = [], []
 
     def store(dataset):
