@@ -92,6 +92,13 @@ def test_names_that_windows_reads_in_another_way_are_refused(running, name, told
     assert sorted(running.folder.iterdir()) == before
 
 
+@pytest.mark.parametrize("name", ["-rf", "--debug", "-"])
+def test_names_that_are_options_of_commands_are_refused(running, name):
+    before = sorted(running.folder.iterdir())
+    assert "must not begin with -" in running.ask("save", {"text": PAPER, "name": name}).body["problems"][0]["text"]
+    assert sorted(running.folder.iterdir()) == before
+
+
 def test_letters_of_any_script_name_a_saved_file(running):
     assert running.ask("save", {"text": PAPER, "name": "Getriebe ü_2.1-б"}).body == {"saved": "Getriebe ü_2.1-б.toml"}
     assert running.ask("save", {"text": PAPER, "name": "con-rod"}).body == {"saved": "con-rod.toml"}
@@ -151,6 +158,17 @@ def test_no_question_is_unforeseen(running, content):
     assert found.status == 200
     assert found.body["problems"]
     assert "unforeseen" not in str(found.body)
+
+
+@pytest.mark.parametrize("path", ["edit", "answer", "save", "jobs", "leave"])
+def test_half_a_surrogate_pair_is_refused(running, path):
+    """It was answered with status 500: no answer could be encoded."""
+    found = running.ask(
+        path, b'{"text": "a = 1 # \\\\ud800", "tab": "one", "case": "\\\\udfff"}'.replace(b"\\\\", b"\\")
+    )
+    assert found.status == 400
+    assert b"half of a surrogate pair" in found.body
+    assert running.ask(path, b'{"text": "# \\ud83d\\ude00"}').status == 200  # a whole pair is a character
 
 
 def test_an_answer_that_is_no_longer_wanted_is_dropped_at_once(running):
