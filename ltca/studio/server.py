@@ -210,8 +210,13 @@ class Studio:
         try:
             yield
         finally:
-            self.desks.close()
+            self.end_answers()
             await asyncio.to_thread(self.jobs.close)
+
+    def end_answers(self) -> None:
+        """End what computes answers; who waits for one is told that it is superseded."""
+        if self.desks is not None:
+            self.desks.close()
 
     def app(self, token: str) -> ASGIApp:
         """Return the application behind its guard."""
@@ -286,8 +291,9 @@ class Studio:
                     raise Superseded
             return JSONResponse(task.result())
         except Superseded:
-            task.cancel()
             return JSONResponse({"superseded": True})
+        finally:
+            task.cancel()
 
     def _question(self, asked: Mapping[str, Any]) -> Question:
         quality, compliance = _word(asked, "quality"), _word(asked, "compliance") or "half-space"
@@ -460,20 +466,24 @@ def serve(studio: Studio, port: int, *, browser: bool, told: Callable[[str], Non
                 if page is not None:
                     webbrowser.open(page.as_uri())
 
-            asyncio.run(_Server(config, started).serve(sockets=[listening]))
+            asyncio.run(_Server(config, started, studio.end_answers).serve(sockets=[listening]))
 
 
 class _Server(uvicorn.Server):
-    """Calls a function once requests are accepted."""
+    """Calls a function once requests are accepted, and another one before it ends."""
 
-    def __init__(self, config: uvicorn.Config, started: Callable[[], None]) -> None:
+    def __init__(self, config: uvicorn.Config, started: Callable[[], None], ending: Callable[[], None]) -> None:
         super().__init__(config)
-        self._on_start = started
+        self._on_start, self._on_end = started, ending
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         asyncio.get_running_loop().set_exception_handler(report_in_a_line)
         await super().startup(sockets)
         self._on_start()
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        self._on_end()
+        await super().shutdown(sockets)
 
 
 @contextmanager
