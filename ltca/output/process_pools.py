@@ -37,6 +37,8 @@ SHORT_PLACE, LONGEST_PLACE = "/tmp", 69
 """Where sockets go when the path of the folder for temporary files is longer: theirs may have 107 bytes, names in it take 38."""
 FRESH = 10.0
 """Age, s, up to which a folder may be one that is about to be locked."""
+LETTING_GO = 0.3
+"""Time, s, after which an ended process has let go of its lock; its pipes may be closed a moment earlier."""
 NOTICING = 5.0
 """Time, s, in which a pool has to notice that its workers were ended; it takes milliseconds."""
 
@@ -125,8 +127,10 @@ def become_worker() -> None:
 
     def watch() -> None:
         wait([parent.sentinel])
-        if folder is not None:
-            shutil.rmtree(folder, ignore_errors=True)
+        # It may live on and have lost this worker alone, with the fork server: then it holds the lock and needs the folder.
+        until = time.monotonic() + LETTING_GO
+        while folder is not None and not _remove_unlocked(folder) and time.monotonic() < until:
+            time.sleep(0.02)
         os._exit(1)
 
     threading.Thread(target=watch, daemon=True, name="ends with its parent").start()
@@ -169,12 +173,22 @@ def remove_stale_folders(place: Path, fresh: float = FRESH) -> None:
                     continue
                 if time.time() - found.st_mtime < fresh:
                     continue
-                descriptor = os.open(folder / LOCK, os.O_RDWR | os.O_NOFOLLOW)
-                try:
-                    if _lock(descriptor):
-                        shutil.rmtree(folder, ignore_errors=True)
-                finally:
-                    os.close(descriptor)
+                _remove_unlocked(folder)
+
+
+def _remove_unlocked(folder: Path) -> bool:
+    """Remove a folder whose process has ended; False while that holds its lock."""
+    try:
+        descriptor = os.open(folder / LOCK, os.O_RDWR | os.O_NOFOLLOW)
+    except OSError:
+        return True  # it has gone, or is none of ours
+    try:
+        if not _lock(descriptor):
+            return False
+        shutil.rmtree(folder, ignore_errors=True)
+        return True
+    finally:
+        os.close(descriptor)
 
 
 def _lock(descriptor: int) -> bool:

@@ -22,7 +22,7 @@ from ltca.errors import CycloError, DriveError, FaultError, printable, shortened
 from ltca.output.files import whole_file
 from ltca.output.processes import Supervised
 from ltca.reading.toml_edit import tables_of, with_values
-from ltca.studio.sections import measured_files
+from ltca.studio.sections import listed, measured_files
 
 MOST_RUNNING = 2
 """Jobs at a time: each of them takes a processor."""
@@ -152,8 +152,8 @@ class Jobs:
             with whole_file(drive) as part:
                 part.write_text(_from_elsewhere(text, table, self.folder / source), encoding="utf-8")
             words += _drive_words(words[0], drive.relative_to(self.folder).as_posix(), folder.relative_to(self.folder))
-            names = [one.get("name") for one in table.get("case", []) if isinstance(one, dict)]
-            words += ["--case", case] if case in names else []
+            names = [one.get("name") for one in listed(table.get("case"))]
+            words += [f"--case={case}"] if case in names else []  # in one word: a case may be called --debug
             job = Job(number=len(self._jobs) + 1, words=words, folder=folder)
             self._jobs.append(job)
         threading.Thread(target=self._run, args=(job,), daemon=True, name=f"job {job.number}").start()
@@ -162,13 +162,14 @@ class Jobs:
     def _new_folder(self, name: str) -> Path:
         above = self.folder / "out" / f"{name}_studio"
         try:
-            above.mkdir(parents=True, exist_ok=True)
+            # Before anything is made: "out" may be a link to elsewhere.
             if not above.resolve().is_relative_to(self.folder):
                 raise DriveError([f"{above}: leads out of the folder of the studio"])
-            number = 1 + max((int(one.name) for one in above.iterdir() if one.name.isdigit()), default=0)
+            above.mkdir(parents=True, exist_ok=True)
+            number = 1 + max((int(one.name) for one in above.iterdir() if one.name.isdecimal()), default=0)
             (above / str(number)).mkdir()
-        except OSError as error:
-            raise FaultError(f"{above}: cannot be made: {error.strerror or error}") from error
+        except (OSError, RuntimeError) as error:  # RuntimeError: links in a circle, before Python 3.13
+            raise FaultError(f"{above}: cannot be made: {getattr(error, 'strerror', None) or error}") from error
         return above / str(number)
 
     def _run(self, job: Job) -> None:
@@ -243,7 +244,7 @@ class Jobs:
             found = (self.folder / path).resolve()
             inside = any(found.is_relative_to(job.folder.resolve()) for job in self._jobs)
             return found if inside and found.is_relative_to(self.folder) and found.is_file() else None
-        except (OSError, ValueError):
+        except (OSError, RuntimeError, ValueError):  # RuntimeError: links in a circle, before Python 3.13
             return None
 
 

@@ -4,17 +4,22 @@ from __future__ import annotations
 
 import asyncio
 import hmac
+import html
 import json
+import os
 import re
 import secrets
 import socket
 import webbrowser
-from collections.abc import AsyncIterator, Callable, Mapping
-from contextlib import asynccontextmanager, suppress
+from collections.abc import AsyncIterator, Callable, Iterator, Mapping
+from contextlib import asynccontextmanager, contextmanager, nullcontext, suppress
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
+import uvicorn
 from starlette.applications import Starlette
+from starlette.exceptions import HTTPException
 from starlette.requests import Request
 from starlette.responses import FileResponse, HTMLResponse, JSONResponse, PlainTextResponse, Response
 from starlette.routing import Route
@@ -26,6 +31,7 @@ from ltca.output.files import whole_file
 from ltca.page.run_page import STAGE
 from ltca.page.writing import page_text, script_data
 from ltca.studio.answers import COARSE, DERIVATIVE, FINE, Question, problem_of
+from ltca.studio.connections import AT_ONCE, BoundedConnection, print_fault, report_in_a_line
 from ltca.studio.entries import (
     changed_entries,
     declared_entries,
@@ -40,6 +46,12 @@ from ltca.studio.workers import Desks, Superseded, start_fork_server
 HOST = "127.0.0.1"
 MOST_BYTES = 4_000_000
 """Of a question; a drive file of many cases has some hundred thousand."""
+MOST_HEADER_BYTES, MOST_TARGET_BYTES = 16_384, 2_048
+"""Of the header of a question, and of its address; those of a browser have some hundred."""
+BODY_SECONDS = 20.0
+"""Time, s, in which a question has to be there behind its header."""
+QUEUED = 64
+"""Connections that the system keeps until the server accepts them."""
 LOOKING = 0.25
 """Time, s, between two looks whether who asked is still there."""
 COMPLIANCES = ("half-space", "hybrid", "fe", "file")
@@ -82,12 +94,10 @@ class Guard:
         self.app, self.token = app, token
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answer a request, or refuse it."""
+        """Answer a request, or refuse it; what goes wrong is one line."""
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return
-        refusal = self._refusal(scope)
-        app = self.app if refusal is None else refusal
         started = False
 
         async def sent(message: Message) -> None:
@@ -100,28 +110,80 @@ class Guard:
                 message["headers"] = [*message["headers"], *(one for one in added if one[0] not in given)]
             await send(message)
 
-        await app(scope, receive, sent)
+        app = self._refusal(scope) or await _with_body(self.app, receive)
+        if app is None:  # who asked has gone
+            return
+        try:
+            await app(scope, receive, sent)
+        except asyncio.CancelledError:
+            if not started:
+                await _refused("the studio ends", 503)(scope, receive, sent)
+        except Exception as error:  # noqa: BLE001  # the server goes on
+            line = print_fault(error)
+            if not started:
+                await _refused(line, 500)(scope, receive, sent)
 
     def _refusal(self, scope: Scope) -> Response | None:
         headers = {name: value.decode("latin-1") for name, value in scope["headers"]}
+        if sum(len(name) + len(value) for name, value in scope["headers"]) > MOST_HEADER_BYTES:
+            return _refused(f"at most {MOST_HEADER_BYTES} bytes of header", 431)
+        if len(scope.get("raw_path") or b"") + len(scope["query_string"]) > MOST_TARGET_BYTES:
+            return _refused(f"at most {MOST_TARGET_BYTES} bytes of address", 414)
         _, port = scope["server"]
         hosts = {f"{name}:{port}" for name in (HOST, "localhost")}
         if headers.get(b"host", "") not in hosts:
-            return PlainTextResponse("not this host", 421)
+            return _refused("not this host", 421)
         origin = headers.get(b"origin")
         if origin is not None and origin.removeprefix("http://") not in hosts:
-            return PlainTextResponse("not from elsewhere", 403)
+            return _refused("not from elsewhere", 403)
+        if not scope["path"].startswith("/"):  # "OPTIONS *", "CONNECT host:port"
+            return _refused("an address begins with /", 400)
         given = scope["path"].split("/")[1]
         if not hmac.compare_digest(given.encode("utf-8", "replace"), self.token.encode()):
-            return PlainTextResponse(
-                "the address has no token that is known: take the one that cyclo studio printed", 403
-            )
+            return _refused("the address has no token that is known: take the one that cyclo studio printed", 403)
         length = headers.get(b"content-length", "0")
-        if not length.isdigit() or int(length) > MOST_BYTES:
-            return PlainTextResponse(f"at most {MOST_BYTES} bytes", 413)
+        if not length.isdecimal() or int(length) > MOST_BYTES:
+            return _refused(f"at most {MOST_BYTES} bytes", 413)
         if scope["method"] == "POST" and not headers.get(b"content-type", "").startswith("application/json"):
-            return PlainTextResponse("application/json alone", 415)
+            return _refused("application/json alone", 415)
         return None
+
+
+def _refused(reason: str, status: int) -> Response:
+    """A refusal that closes the connection: the rest of the request is not read."""
+    return PlainTextResponse(reason, status, headers={"Connection": "close"})
+
+
+async def _with_body(app: ASGIApp, receive: Receive) -> ASGIApp | None:
+    """The application with the whole body of the request, or a refusal; None where who asks has gone.
+
+    Nothing says beforehand how long a body in chunks is, nor when it ends.
+    """
+    body = bytearray()
+    try:
+        async with asyncio.timeout(BODY_SECONDS):
+            more = True
+            while more:
+                message = await receive()
+                if message["type"] != "http.request":
+                    return None
+                body += message.get("body", b"")
+                if len(body) > MOST_BYTES:
+                    return _refused(f"at most {MOST_BYTES} bytes", 413)
+                more = message.get("more_body", False)
+    except TimeoutError:
+        return _refused(f"the question was not there within {BODY_SECONDS:g} s", 408)
+    whole: Message | None = {"type": "http.request", "body": bytes(body), "more_body": False}
+
+    async def received() -> Message:
+        nonlocal whole
+        message, whole = whole, None
+        return await receive() if message is None else message
+
+    async def answered(scope: Scope, _: Receive, send: Send) -> None:
+        await app(scope, received, send)
+
+    return answered
 
 
 class Studio:
@@ -139,19 +201,22 @@ class Studio:
         self.text, self.source, self.case, self.folder = text, source, case, folder.resolve()
         self.jobs = Jobs(self.folder)
         self.desks: Desks | None = None
-        self.on_start: Callable[[], None] = lambda: None
         self._page = ""
 
     @asynccontextmanager
     async def living(self, app: Starlette) -> AsyncIterator[None]:
         """Start what computes, and end it with all jobs."""
         self.desks = Desks(await asyncio.to_thread(start_fork_server))
-        self.on_start()
         try:
             yield
         finally:
-            self.desks.close()
+            self.end_answers()
             await asyncio.to_thread(self.jobs.close)
+
+    def end_answers(self) -> None:
+        """End what computes answers; who waits for one is told that it is superseded."""
+        if self.desks is not None:
+            self.desks.close()
 
     def app(self, token: str) -> ASGIApp:
         """Return the application behind its guard."""
@@ -226,8 +291,9 @@ class Studio:
                     raise Superseded
             return JSONResponse(task.result())
         except Superseded:
-            task.cancel()
             return JSONResponse({"superseded": True})
+        finally:
+            task.cancel()
 
     def _question(self, asked: Mapping[str, Any]) -> Question:
         quality, compliance = _word(asked, "quality"), _word(asked, "compliance") or "half-space"
@@ -308,6 +374,9 @@ class Studio:
 async def _asked(request: Request) -> dict[str, Any]:
     try:
         found = json.loads(await request.body())
+        json.dumps(found, ensure_ascii=False).encode()
+    except UnicodeEncodeError as error:  # "\\ud800" alone, which no answer could repeat
+        raise HTTPException(400, "the question has half of a surrogate pair, which is no character") from error
     except (ValueError, RecursionError) as error:
         raise DriveError(["the question is no JSON"]) from error
     if not isinstance(found, dict):
@@ -334,6 +403,8 @@ def _not_everywhere(name: str) -> str:
         return "must have only letters, digits, spaces and . _ -, which any system takes"
     if name != name.strip() or name.endswith("."):
         return "must not begin or end with a space, nor end with a dot: Windows leaves them out"
+    if name.startswith("-"):
+        return "must not begin with -: commands would take it for an option"
     if DEVICE.fullmatch(name):
         return "must not be the name of a device of Windows (con, prn, aux, nul, com1, lpt1, …)"
     return ""
@@ -372,27 +443,62 @@ def serve(studio: Studio, port: int, *, browser: bool, told: Callable[[str], Non
     FaultError
         When the port is taken.
     """
-    import uvicorn
-
     token = secrets.token_urlsafe(24)
     # Named as TCP: asyncio sends small packets of no other socket at once, and each answer would wait for 40 ms.
     with socket.socket(socket.AF_INET, socket.SOCK_STREAM, socket.IPPROTO_TCP) as listening:
         listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             listening.bind((HOST, port))
-            listening.listen(64)  # who has the address may ask before the server looks
+            listening.listen(QUEUED)  # who has the address may ask before the server looks
         except OSError as error:
             raise FaultError(f"--port {port}: cannot be had: {error.strerror or error}; 0 takes a free one") from error
         address = f"http://{HOST}:{listening.getsockname()[1]}/{token}/"
         config = uvicorn.Config(
             studio.app(token), log_level="error", access_log=False, lifespan="on", ws="none", server_header=False,
-            timeout_graceful_shutdown=1,
+            timeout_graceful_shutdown=1, http=BoundedConnection, h11_max_incomplete_event_size=MOST_HEADER_BYTES,
+            backlog=AT_ONCE,
         )  # fmt: skip
-        studio.on_start = lambda: _started(address, browser, told)
-        asyncio.run(uvicorn.Server(config).serve(sockets=[listening]))
+        with forwarding_file(address) if browser else nullcontext() as page:
+
+            def started() -> None:
+                listening.listen(QUEUED)
+                told(address)
+                if page is not None:
+                    webbrowser.open(page.as_uri())
+
+            asyncio.run(_Server(config, started, studio.end_answers).serve(sockets=[listening]))
 
 
-def _started(address: str, browser: bool, told: Callable[[str], None]) -> None:
-    told(address)
-    if browser:
-        webbrowser.open(address)
+class _Server(uvicorn.Server):
+    """Calls a function once requests are accepted, and another one before it ends."""
+
+    def __init__(self, config: uvicorn.Config, started: Callable[[], None], ending: Callable[[], None]) -> None:
+        super().__init__(config)
+        self._on_start, self._on_end = started, ending
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        asyncio.get_running_loop().set_exception_handler(report_in_a_line)
+        await super().startup(sockets)
+        self._on_start()
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        self._on_end()
+        await super().shutdown(sockets)
+
+
+@contextmanager
+def forwarding_file(address: str) -> Iterator[Path]:
+    """Give a page that forwards to an address, which only this user can read; it is removed at the end of the block.
+
+    Command lines can be read by every user of a machine: one that opens the address itself shows the token.
+    """
+    with TemporaryDirectory(prefix="cyclo-studio-", ignore_cleanup_errors=True) as folder:  # of mode 0700
+        page = Path(folder) / "studio.html"
+        descriptor = os.open(page, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o600)
+        told = html.escape(address)
+        with open(descriptor, "w", encoding="utf-8") as file:
+            file.write(
+                '<!doctype html><meta charset="utf-8"><meta name="referrer" content="no-referrer"><title>cyclo studio</title>'
+                f'<meta http-equiv="refresh" content="0; url={told}"><a href="{told}">cyclo studio</a>\n'
+            )
+        yield page

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import threading
+import time
 from concurrent.futures import ThreadPoolExecutor
 from multiprocessing import forkserver, get_all_start_methods, get_context, resource_tracker
 from multiprocessing.connection import Connection
@@ -16,6 +17,8 @@ from ltca.studio.answers import COARSE, Question
 
 PATIENCE = 0.3
 """Time, s, that a coarse answer is waited for when the next question is there: most are done, and keep their process."""
+STARTS, BETWEEN_STARTS = 3, 0.2
+"""Trials to start a process, and the time, s, between them: the system takes a moment to tell that a fork server was killed."""
 MOST_DESKS = 8
 """Tabs with processes of their own; that of the longest silence gives its up."""
 WARM = "ltca.studio.warm"
@@ -55,7 +58,10 @@ def _answer_all(connection: Connection) -> None:
             memory = Memory()
             told = f"unforeseen {type(error).__name__}: {error}"
             found = {"failure": f"{told[:300]}. This is a fault of cyclo, please report it with the drive file"}
-        connection.send(found)
+        try:
+            connection.send(found)
+        except OSError:  # nobody waits any more
+            return
 
 
 class Worker:
@@ -118,15 +124,30 @@ class Worker:
     def _asked(self, question: Question) -> dict[str, Any]:
         connection = self._connection
         if connection is None or self._process is None or not self._process.is_alive():
-            connection, other = self._context.Pipe()
-            process = self._context.Process(target=_answer_all, args=(other,), daemon=False)
-            process.start()
-            other.close()
-            self._process, self._connection = process, connection
+            self.end()  # it may be without its fork server alone
+            self._process, self._connection = self._started()
+            connection = self._connection
         assert connection is not None
         connection.send(question)
         found: dict[str, Any] = connection.recv()
         return found
+
+    def _started(self, trials: int = STARTS) -> tuple[Any, Connection]:
+        """Start a process, from a new fork server where the last one was killed just now."""
+        connection, other = self._context.Pipe()
+        process = self._context.Process(target=_answer_all, args=(other,), daemon=False)
+        try:
+            process.start()
+        except (EOFError, OSError):
+            if trials == 1:
+                raise
+            time.sleep(BETWEEN_STARTS)
+            if self._context.get_start_method() == "forkserver":
+                make_pool_folder()  # of its socket, if somebody has removed it
+            return self._started(trials - 1)
+        finally:
+            other.close()
+        return process, connection
 
     def end(self) -> None:
         """End the process with what it does."""

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import http.client
 import json
+import os
+import socket
 import subprocess
 import sys
+import tempfile
 from contextlib import contextmanager, suppress
 from types import SimpleNamespace
 from urllib.parse import urlsplit
@@ -35,23 +38,50 @@ def asker(address):
     return ask
 
 
+def exchanged(address, sent):
+    """Send bytes to the server of an address as they are; give all that it answers until it closes or has no more to say."""
+    parts = urlsplit(address)
+    with socket.create_connection((parts.hostname, parts.port), timeout=30) as connection:
+        found = b""
+        with suppress(ConnectionError, TimeoutError):  # it may close before all is sent
+            connection.sendall(sent)
+            connection.shutdown(socket.SHUT_WR)
+            while more := connection.recv(65536):
+                found += more
+        return found
+
+
 @contextmanager
-def studio(drive, folder, *words):
-    """Run ``cyclo studio`` in a folder; give its process and address."""
-    command = [sys.executable, "-m", "ltca.commands.program", "studio", str(drive), "--no-browser", *words]
-    process = subprocess.Popen(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    try:
-        line = process.stdout.readline()
-        assert "http://" in line, process.stderr.read()
-        yield SimpleNamespace(process=process, address=line.split(": ", 1)[1].strip())
-    finally:
-        process.terminate()
-        process.communicate(timeout=60)
+def studio(drive, folder, *words, before=(), browser=None):
+    """Run ``cyclo studio`` in a folder, behind words of another command, or with a command as browser.
+
+    Give its process, address and a function that reads what it has written to the standard error output.
+    """
+    command = [*before, sys.executable, "-m", "ltca.commands.program", "studio", str(drive), *words]
+    command += [] if browser else ["--no-browser"]
+    environment = os.environ | ({"BROWSER": str(browser)} if browser else {})
+    with tempfile.TemporaryFile("w+") as complaints:
+
+        def errors():
+            complaints.seek(0)
+            return complaints.read()
+
+        process = subprocess.Popen(
+            command, cwd=folder, stdout=subprocess.PIPE, stderr=complaints, text=True, env=environment
+        )
+        try:
+            line = process.stdout.readline()
+            assert "http://" in line, errors()
+            yield SimpleNamespace(process=process, address=line.split(": ", 1)[1].strip(), errors=errors)
+        finally:
+            process.terminate()
+            process.communicate(timeout=60)
 
 
 @pytest.fixture(scope="module")
 def running(tmp_path_factory):
-    """The studio of the paper's drive in an empty folder."""
+    """The studio of the paper's drive in an empty folder; no request leaves a traceback."""
     folder = tmp_path_factory.mktemp("studio")
     with studio("paper", folder) as found:
         yield SimpleNamespace(folder=folder, ask=asker(found.address), **vars(found))
+        assert "Traceback" not in found.errors()

@@ -7,7 +7,7 @@ import time
 
 import pytest
 
-from ltca.errors import DriveError
+from ltca.errors import CycloError, DriveError
 from ltca.output import progress
 from ltca.reading.drive_file import load_drive, shipped_drive
 from ltca.studio.jobs import Jobs, _done, exports, job_words
@@ -51,6 +51,41 @@ def finished(jobs, number):
             return job
         time.sleep(0.05)
     raise AssertionError(job)
+
+
+@pytest.mark.parametrize("target", ["elsewhere", "not there"])
+def test_a_link_that_leads_out_is_refused_before_a_folder_is_made(target, tmp_path):
+    """``out`` as a link to a folder elsewhere: `out/paper_studio` was made there, then refused."""
+    folder, outside = tmp_path / "folder", tmp_path / "outside"
+    folder.mkdir()
+    outside.mkdir()
+    place = outside if target == "elsewhere" else outside / "new"
+    (folder / "out").symlink_to(place)
+    with pytest.raises(DriveError, match="leads out of the folder of the studio"):
+        Jobs(folder).start({"kind": "fem"}, PAPER, "paper", "CS-1")
+    assert [*outside.iterdir()] == []
+
+
+def test_folders_of_links_in_a_circle_and_odd_digits_are_told_in_a_line(tmp_path):
+    circle = tmp_path / "circle"
+    circle.mkdir()
+    (circle / "out").symlink_to("out")
+    with pytest.raises(CycloError):
+        Jobs(circle).start({"kind": "fem"}, PAPER, "paper", "CS-1")
+    assert Jobs(circle).file("out/x") is None
+    (tmp_path / "out" / "paper_studio" / "²").mkdir(parents=True)  # a digit, but no number
+    assert Jobs(tmp_path)._new_folder("paper").name == "1"
+
+
+@pytest.mark.slow
+def test_a_case_called_as_an_option_is_a_case(tmp_path):
+    jobs = Jobs(tmp_path)
+    text = PAPER.replace('name = "CS-3"', 'name = "--debug"')
+    number = jobs.start({"kind": "export", "format": "dxf", "part": "disc"}, text, "paper", "--debug")
+    job = finished(jobs, number)
+    assert job["state"] == "done", job
+    assert job["command"].endswith("--case=--debug")
+    assert any(path.endswith(".dxf") for path in job["files"])
 
 
 @pytest.mark.slow

@@ -3,15 +3,23 @@
 from __future__ import annotations
 
 import concurrent.futures
+import json
 import os
+import random
+import re
 import signal
+import socket
 import time
 import tomllib
+from contextlib import ExitStack, suppress
 from pathlib import Path
+from urllib.parse import urlsplit
 
 import pytest
 
 from ltca.reading.drive_file import shipped_drive
+
+from .conftest import asker, exchanged, studio
 
 pytestmark = [pytest.mark.slow, pytest.mark.needs("studio")]
 PAPER = shipped_drive("paper")
@@ -92,6 +100,13 @@ def test_names_that_windows_reads_in_another_way_are_refused(running, name, told
     assert sorted(running.folder.iterdir()) == before
 
 
+@pytest.mark.parametrize("name", ["-rf", "--debug", "-"])
+def test_names_that_are_options_of_commands_are_refused(running, name):
+    before = sorted(running.folder.iterdir())
+    assert "must not begin with -" in running.ask("save", {"text": PAPER, "name": name}).body["problems"][0]["text"]
+    assert sorted(running.folder.iterdir()) == before
+
+
 def test_letters_of_any_script_name_a_saved_file(running):
     assert running.ask("save", {"text": PAPER, "name": "Getriebe ü_2.1-б"}).body == {"saved": "Getriebe ü_2.1-б.toml"}
     assert running.ask("save", {"text": PAPER, "name": "con-rod"}).body == {"saved": "con-rod.toml"}
@@ -153,6 +168,17 @@ def test_no_question_is_unforeseen(running, content):
     assert "unforeseen" not in str(found.body)
 
 
+@pytest.mark.parametrize("path", ["edit", "answer", "save", "jobs", "leave"])
+def test_half_a_surrogate_pair_is_refused(running, path):
+    """It was answered with status 500: no answer could be encoded."""
+    found = running.ask(
+        path, b'{"text": "a = 1 # \\\\ud800", "tab": "one", "case": "\\\\udfff"}'.replace(b"\\\\", b"\\")
+    )
+    assert found.status == 400
+    assert b"half of a surrogate pair" in found.body
+    assert running.ask(path, b'{"text": "# \\ud83d\\ude00"}').status == 200  # a whole pair is a character
+
+
 def test_an_answer_that_is_no_longer_wanted_is_dropped_at_once(running):
     running.ask("answer", question(HEAVY, tab="two"))  # its processes are there
     with concurrent.futures.ThreadPoolExecutor() as pool:
@@ -184,17 +210,6 @@ def test_a_drive_without_an_answer_says_why(running):
 
 
 def test_a_killed_worker_is_told_and_replaced(running):
-    def children(number):
-        found = []
-        for entry in os.listdir("/proc"):
-            if entry.isdigit():
-                try:
-                    fields = Path(f"/proc/{entry}/stat").read_text().rpartition(")")[2].split()
-                except OSError:  # it has gone
-                    continue
-                found += [int(entry)] * (int(fields[1]) == number)
-        return found
-
     running.ask("answer", question(HEAVY, tab="killed"))
     with concurrent.futures.ThreadPoolExecutor() as pool:
         asked = pool.submit(running.ask, "answer", question(HEAVY, "fine", tab="killed"))
@@ -205,3 +220,190 @@ def test_a_killed_worker_is_told_and_replaced(running):
         assert workers
         assert "has ended" in asked.result().body["failure"] or "sentence" in asked.result().body
     assert running.ask("answer", question(PAPER, tab="killed")).body["drive"] == "paper"
+
+
+def children(number):
+    """Processes that a process has started, with what their command lines say."""
+    found = {}
+    for entry in os.listdir("/proc"):
+        if entry.isdigit():
+            with suppress(OSError):  # it has gone
+                fields = Path(f"/proc/{entry}/stat").read_text().rpartition(")")[2].split()
+                if int(fields[1]) == number:
+                    found[int(entry)] = Path(f"/proc/{entry}/cmdline").read_text().replace("\0", " ")
+    return found
+
+
+def kill_fork_server(process):
+    (server,) = (number for number, words in children(process.pid).items() if "forkserver" in words)
+    workers = list(children(server))
+    os.kill(server, signal.SIGKILL)
+    return workers
+
+
+def gone(number):
+    try:
+        return Path(f"/proc/{number}/stat").read_text().rpartition(")")[2].split()[0] == "Z"
+    except OSError:
+        return True
+
+
+def test_a_killed_fork_server_is_replaced(running):
+    """Its workers removed the folder of sockets, in which no other server could be started: no answer until the next start."""
+    running.ask("answer", question(tab="server"))
+    with concurrent.futures.ThreadPoolExecutor() as pool:
+        for _ in range(2):
+            fine = pool.submit(running.ask, "answer", question(HEAVY, "fine", tab="server"))
+            until = time.monotonic() + 30.0
+            while not fine.running() and time.monotonic() < until:
+                time.sleep(0.01)
+            time.sleep(0.3)
+            workers = kill_fork_server(running.process)
+            assert workers
+            for tab in ("server", "other"):
+                assert running.ask("answer", question(tab=tab)).body["drive"] == "paper"
+            fine.result()
+        # What the dead server started ends with its last question, and not with the studio.
+        for tab in ("server", "other"):
+            running.ask("leave", {"tab": tab})
+        until = time.monotonic() + 30.0
+        while not all(map(gone, workers)) and time.monotonic() < until:
+            time.sleep(0.02)
+        assert all(map(gone, workers))
+    assert running.ask("answer", question(tab="server")).body["drive"] == "paper"
+
+
+def test_120_half_open_connections_do_not_stop_it(tmp_path):
+    """With 100 open files: nobody was answered, and tracebacks of 50 MB were written."""
+    with (
+        studio("paper", tmp_path, before=("bash", "-c", 'ulimit -n 100; exec "$@"', "bash")) as found,
+        ExitStack() as stack,
+    ):
+        ask, parts = asker(found.address), urlsplit(found.address)
+        for number in range(120):
+            one = stack.enter_context(socket.create_connection((parts.hostname, parts.port), timeout=30))
+            with suppress(ConnectionError):
+                one.sendall(b"" if number % 2 else b"GET / HTTP/1.1\r\nHost: ")
+        assert ask().status == 200
+        assert ask("answer", question()).body["drive"] == "paper"
+        assert found.errors() == ""
+
+
+def test_the_command_line_of_the_browser_has_no_token(tmp_path):
+    """Any user of the machine can read it."""
+    browser, seen = tmp_path / "browser", tmp_path / "seen"
+    browser.write_text(
+        f'#!/bin/sh\necho "$@" > {seen}.part\ncat "${{1#file://}}" >> {seen}.part\nmv {seen}.part {seen}\n'
+    )
+    browser.chmod(0o700)
+    with studio("paper", tmp_path, browser=f"{browser} %s") as found:
+        until = time.monotonic() + 30.0
+        while not seen.exists() and time.monotonic() < until:
+            time.sleep(0.01)
+        words, page = seen.read_text().split("\n", 1)
+        token = urlsplit(found.address).path.strip("/")
+        assert words.startswith("file://")
+        assert token not in words
+        assert found.address in page
+        assert asker(found.address)().status == 200
+    assert not Path(words.removeprefix("file://")).exists()
+
+
+def test_an_end_amid_an_answer_is_quiet(tmp_path):
+    """The server told of a task that it had cancelled."""
+    with studio("paper", tmp_path) as found, concurrent.futures.ThreadPoolExecutor() as pool:
+        ask = asker(found.address)
+        ask("answer", question(HEAVY))
+        fine = pool.submit(ask, "answer", question(HEAVY, "fine"))
+        time.sleep(0.3)
+        found.process.send_signal(signal.SIGINT)
+        assert found.process.wait(60) == 0
+        assert found.errors() == ""
+        assert fine.result().body.keys() & {"superseded", "sentence"}
+
+
+def requests_of(rng, host, token, bodies):
+    """A request, one part in five of it damaged."""
+    junk = lambda most: bytes(rng.randrange(256) for _ in range(rng.randrange(most)))  # noqa: E731
+    word = lambda sound, *damaged: rng.choice(damaged) if rng.random() < 0.2 else rng.choice(sound)  # noqa: E731
+    of_post = [b"edit", b"answer", b"save", b"jobs", b"leave", b"jobs/0/cancel"]
+    of_get = [b"", b"jobs", b"files/", b"files/out/x"]
+    posted = rng.random() < 0.7
+    method = word(
+        [b"POST" if posted else b"GET"],
+        b"OPTIONS",
+        b"HEAD",
+        b"CONNECT",
+        b"TRACE",
+        b"PUT",
+        b"get",
+        b"",
+        b"G\x00T",
+        junk(9),
+    )
+    damaged = [b"jobs/-1/cancel", b"jobs/" + 1500 * b"9" + b"/cancel", b"files/%00", b"files/" + 900 * b"a/", b"files/%ff%fe",
+               b"%2e%2e", "²".encode(), b"?" + junk(40)]  # fmt: skip
+    damaged = [b"/" + token + b"/" + path for path in damaged]
+    damaged += [b"*", b"abc", b"//", b"/", b"host:1", b"http://" + host, junk(20)]
+    target = word([b"/" + token + b"/" + path for path in (of_post if posted else of_get)], *damaged)
+    lines = [method + b" " + target + b" " + word([b"HTTP/1.1"], b"HTTP/1.0", b"HTTP/9", b"", junk(9))]
+    lines += [b"Host: " + host] * word([1], 0, 2)
+    lines += [b"Content-Type: application/json"] * word([1], 0)
+    lines += word(
+        [[], [b"Connection: close"], [b"Expect: 100-continue"]],
+        [b"Range: bytes=" + 30 * b"9" + b"-"],
+        [b"Upgrade: websocket", b"Connection: upgrade"],
+        [b"Origin: null"],
+        [b"X: " + junk(30)],
+        [b"A" * 70_000],
+    )
+    body = word(bodies, junk(200)) if posted else b""
+    chunks = b"%x\r\n%s\r\n0\r\n\r\n" % (len(body), body) if body else b"0\r\n\r\n"
+    length = [b"Content-Length: %d" % len(body)]
+    framed = word(
+        [(length, body), ([b"Transfer-Encoding: chunked"], chunks)],
+        ([b"Content-Length: %d" % (len(body) + 7)], body),
+        ([b"Content-Length: -1"], body),
+        ([b"Content-Length: 99999999999"], body),
+        (["Content-Length: ²".encode("latin-1")], body),
+        ([b"Transfer-Encoding: gzip"], body),
+        ([b"Transfer-Encoding: chunked", *length], chunks),
+        ([b"Transfer-Encoding: chunked"], chunks[:-9]),
+        ([b"Transfer-Encoding: chunked"], b"zz\r\n" + chunks),
+        ([], body),
+    )
+    lines, body = lines + framed[0], framed[1]
+    sent = word([b"\r\n"], b"\n").join([*lines, b"", b""]) + body
+    return word([sent], sent[: rng.randrange(len(sent) + 1)], 2 * sent, sent + junk(50))
+
+
+@pytest.mark.family(quick=1, full=2)
+@pytest.mark.parametrize("seed", range(4))
+def test_no_request_is_unforeseen(running, seed):
+    rng, parts = random.Random(seed), urlsplit(running.address)
+    asked = {"text": PAPER, "tab": "z", "case": "CS-1", "name": "fuzz", "quality": "coarse", "job": {"kind": "none"}}
+    values = [None, True, -1, 1e308, [], {}, "\0", "\ud800", 400 * "a", {"kind": {}}, [[]], "case = 3\nname = []", "a.b = 1",
+              "[[case]]", "name = 'x'\ncase = [1, {name = 3}]\n[limits]\na = nan", "disc = 1", "[disc]\nof = 3"]  # fmt: skip
+    bodies = [
+        json.dumps(asked).encode(),
+        b"",
+        b"{",
+        b"[]",
+        b"NaN",
+        b"\xff\xfe{",
+        3000 * b"[",
+        b'{"text": 1e999}',
+        b"9" * 5000,
+    ]
+    for _ in range(30):
+        changed = dict(asked)
+        for name in rng.sample([*asked, "changes", "entry", "key", "value", "remove", "field", "compliance"], 2):
+            changed[name] = rng.choice(values)
+        bodies.append(json.dumps(changed).encode())
+    before = running.errors()
+    for number in range(150):
+        sent = requests_of(rng, parts.netloc.encode(), parts.path.strip("/").encode(), bodies)
+        found = exchanged(running.address, sent)
+        assert not re.search(rb"HTTP/1\.1 5", found), (number, sent[:400], found[:400])
+        assert running.errors() == before, (number, sent[:400])
+    assert running.ask().status == 200
