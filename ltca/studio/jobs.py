@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import re
 import subprocess
 import sys
@@ -150,7 +151,7 @@ class Jobs:
             folder = self._new_folder(name)
             drive = folder / f"{name}.toml"
             with whole_file(drive) as part:
-                part.write_text(_from_elsewhere(text, table, self.folder / source), encoding="utf-8")
+                part.write_text(_from_elsewhere(text, table, self.folder / source), encoding="utf-8", newline="\n")
             words += _drive_words(words[0], drive.relative_to(self.folder).as_posix(), folder.relative_to(self.folder))
             names = [one.get("name") for one in table.get("case", []) if isinstance(one, dict)]
             words += ["--case", case] if case in names else []
@@ -176,14 +177,16 @@ class Jobs:
         with TemporaryDirectory(prefix="cyclo-job-", ignore_cleanup_errors=True) as place:
             try:
                 with (job.folder / LOG).open("wb") as log:
-                    options = {"cwd": self.folder, "stdout": log, "stderr": subprocess.STDOUT}
+                    # A page is UTF-8, whatever the locale.
+                    environment = {**os.environ, "PYTHONIOENCODING": "utf-8"}
+                    options = {"cwd": self.folder, "stdout": log, "stderr": subprocess.STDOUT, "env": environment}
                     job.program = Supervised(words, Path(place), options)
                     if job.cancelled:
                         job.program.end()
                     status = job.program.wait()
                     job.program.end()  # of its pipe
             except OSError as error:
-                (job.folder / LOG).write_text(f"cyclo: error: {error}\n", encoding="utf-8")
+                (job.folder / LOG).write_text(f"cyclo: error: {error}\n", encoding="utf-8", newline="\n")
                 status = CycloError.exit_status
         job.took = time.monotonic() - job.began
         job.status = status

@@ -263,7 +263,7 @@ class Studio:
             if path.exists() and asked.get("overwrite") is not True:
                 return {"exists": path.name}
             with whole_file(path) as part:
-                part.write_text(text, encoding="utf-8")
+                part.write_text(text, encoding="utf-8", newline="\n")
             return {"saved": path.name}
 
         return await _answered(request, saved)
@@ -377,7 +377,9 @@ def serve(studio: Studio, port: int, *, browser: bool, told: Callable[[str], Non
     token = secrets.token_urlsafe(24)
     # Named as TCP: asyncio sends small packets of no other socket at once, and each answer would wait for 40 ms.
     with socket.socket(socket.AF_INET, socket.SOCK_STREAM, socket.IPPROTO_TCP) as listening:
-        listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        # On Windows SO_REUSEADDR would share a port with whoever has it.
+        own = getattr(socket, "SO_EXCLUSIVEADDRUSE", socket.SO_REUSEADDR)
+        listening.setsockopt(socket.SOL_SOCKET, own, 1)
         try:
             listening.bind((HOST, port))
             listening.listen(64)  # who has the address may ask before the server looks
