@@ -20,6 +20,7 @@ from typing import Any
 
 from ltca.drive.names import NAMING, names_a_file
 from ltca.errors import CycloError, DriveError, FaultError, printable, shortened
+from ltca.output.file_names import file_word
 from ltca.output.files import whole_file
 from ltca.output.processes import Supervised
 from ltca.reading.toml_edit import tables_of, with_values
@@ -149,7 +150,7 @@ class Jobs:
             if sum(job.status is None for job in self._jobs) >= MOST_RUNNING:
                 raise DriveError([f"{MOST_RUNNING} jobs run already: cancel one, or wait until it is done"])
             folder = self._new_folder(name)
-            drive = folder / f"{name}.toml"
+            drive = folder / f"{file_word(name)}.toml"
             with whole_file(drive) as part:
                 part.write_text(_from_elsewhere(text, table, self.folder / source), encoding="utf-8", newline="\n")
             words += _drive_words(words[0], drive.relative_to(self.folder).as_posix(), folder.relative_to(self.folder))
@@ -161,7 +162,7 @@ class Jobs:
         return job.number
 
     def _new_folder(self, name: str) -> Path:
-        above = self.folder / "out" / f"{name}_studio"
+        above = self.folder / "out" / f"{file_word(name)}_studio"
         try:
             above.mkdir(parents=True, exist_ok=True)
             if not above.resolve().is_relative_to(self.folder):

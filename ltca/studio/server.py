@@ -22,6 +22,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from ltca.drive.names import NAMING, names_a_file
 from ltca.errors import CycloError, DriveError, FaultError, shortened
+from ltca.output.file_names import DEVICE
 from ltca.output.files import whole_file
 from ltca.page.run_page import STAGE
 from ltca.page.writing import page_text, script_data
@@ -45,8 +46,6 @@ LOOKING = 0.25
 COMPLIANCES = ("half-space", "hybrid", "fe", "file")
 PORTABLE = re.compile(r"[\w .-]+")
 """Names of saved files: signs that no file system refuses or reads in another way, letters of any script among them."""
-DEVICE = re.compile(r"(?:con|prn|aux|nul|(?:com|lpt)[0-9¹²³])(?: *\..*)?", re.IGNORECASE)
-"""Names that Windows takes for devices, whatever ending they have."""
 HEADERS = {
     "X-Content-Type-Options": "nosniff",
     "Referrer-Policy": "no-referrer",
