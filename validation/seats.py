@@ -203,8 +203,8 @@ def draw(path: Path) -> None:
         for axes in (left, middle, right):
             axes.legend(frameon=False)
             axes.grid(visible=True, lw=0.3)
-        with whole_file(path) as part:
-            figure.savefig(part, format="svg", metadata={"Date": None})
+        with whole_file(path) as part, part.open("wb") as stream:
+            figure.savefig(stream, format="svg", metadata={"Date": None})
 
 
 def main() -> None:

@@ -19,6 +19,7 @@ from ltca.reading.arguments import (
     default_folder,
     path_argument,
     quantity_argument,
+    shown_folder,
 )
 
 if TYPE_CHECKING:
@@ -98,7 +99,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--out",
         metavar="FILE",
         type=path_argument("--out"),
-        help=f"file for the coefficients; default {default_folder('<drive>', 'derive') / COEFFICIENTS}, of a ring "
+        help=f"file for the coefficients; default {shown_folder('<drive>', 'derive') / COEFFICIENTS}, of a ring "
         f"{RING} there; discs cut otherwise "
         "get one each, its name ending in _disc_ and the number of the first of them",
     )

@@ -112,7 +112,7 @@ def write_vtu(body: BodyMesh, path: str | Path, point_data: Mapping[str, FloatAr
         "PointData": fields,
     }
     path = Path(path)
-    with whole_file(path) as part, part.open("w", encoding="ascii") as stream:
+    with whole_file(path) as part, part.open("w", encoding="ascii", newline="\n") as stream:
         stream.write(
             '<?xml version="1.0"?>\n<VTKFile type="UnstructuredGrid" version="1.0" '
             f'byte_order="{"LittleEndian" if sys.byteorder == "little" else "BigEndian"}" header_type="UInt64" '

@@ -230,7 +230,7 @@ def write_multi_block(bodies: list[Path], path: Path) -> Path:
         lines.append(f'    <DataSet index="{number}" name={quoteattr(body.stem)} file={place}/>')
     lines += ["  </vtkMultiBlockDataSet>", "</VTKFile>"]
     with whole_file(path) as part:
-        part.write_text("\n".join(lines) + "\n", encoding="utf-8")
+        part.write_text("\n".join(lines) + "\n", encoding="utf-8", newline="\n")
     return path
 
 

@@ -9,6 +9,7 @@ to 9,440 MPa, and its wheel angle is 0.27″ off that of the last one. With the 
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
 import tempfile
 import time
@@ -61,7 +62,10 @@ def run_calculix(deck: Path, program: str, *, limit: float = TIME_LIMIT) -> tupl
     """
     with tempfile.TemporaryDirectory(prefix="cyclo-ccx-", ignore_cleanup_errors=True) as name:
         folder = Path(name)
-        (folder / "job.inp").symlink_to(deck.resolve())
+        try:
+            (folder / "job.inp").symlink_to(deck.resolve())
+        except OSError:  # Windows leaves links to administrators
+            shutil.copyfile(deck, folder / "job.inp")
         environment = {**os.environ, "OMP_NUM_THREADS": os.environ.get("OMP_NUM_THREADS", "1")}
         said = folder / "said.txt"
         start = time.perf_counter()
@@ -149,7 +153,7 @@ def ask_calculix(solution: FullSolution, deck: Path, program: str) -> RefereeAns
     """Let CalculiX solve the deck of a solution and read its answer."""
     text, seconds = run_calculix(deck, program)
     with whole_file(deck.with_suffix(".dat")) as part:
-        part.write_text(text, encoding="utf-8")
+        part.write_text(text, encoding="utf-8", newline="\n")
     last = last_output(text)
     forces, pressures = read_forces(last), read_pressures(last)
     # ccx counts the faces of the expanded wedge: 1 and 2 are front and back, the sides of the triangle follow.

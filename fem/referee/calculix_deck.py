@@ -184,7 +184,7 @@ def write_deck(solution: FullSolution, path: Path, *, penalty: float = PENALTY_F
             _carry_shaft_pin(deck, solution, pair)
     _add_step(deck, pairs, wheel, solution.state.wheel_moment)
     with whole_file(path) as part:
-        part.write_text("\n".join(deck.lines) + "\n", encoding="ascii")
+        part.write_text("\n".join(deck.lines) + "\n", encoding="ascii", newline="\n")
     return path
 
 

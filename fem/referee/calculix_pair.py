@@ -143,7 +143,7 @@ def write_pair_deck(solved: SolvedPair, path: Path) -> Path:
         "*END STEP",
     ]
     with whole_file(path) as part_file:
-        part_file.write_text("\n".join(lines) + "\n", encoding="ascii")
+        part_file.write_text("\n".join(lines) + "\n", encoding="ascii", newline="\n")
     return path
 
 
@@ -151,7 +151,7 @@ def ask_about_pair(solved: SolvedPair, deck: Path, program: str) -> PairReferee:
     """Let CalculiX solve the deck of a pair and compare the answers; what it prints is written beside the deck as ``.dat``."""
     text, seconds = run_calculix(write_pair_deck(solved, deck), program)
     with whole_file(deck.with_suffix(".dat")) as part:
-        part.write_text(text, encoding="utf-8")
+        part.write_text(text, encoding="utf-8", newline="\n")
     last = last_output(text)
     (force,) = read_forces(last).values()
     points = {element: values for (element, _), values in read_pressures(last).items()}

@@ -156,7 +156,7 @@ def write_fixtures(folder: Path) -> list[Path]:
     hashes = {path.stem: hashlib.sha256(path.read_bytes()).hexdigest() for path in paths}
     readme = folder / "README.md"
     with whole_file(readme) as part:
-        part.write_text(describe_fixtures(fixtures, hashes), encoding="utf-8")
+        part.write_text(describe_fixtures(fixtures, hashes), encoding="utf-8", newline="\n")
     return [*paths, readme]
 
 

@@ -120,7 +120,7 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=Path("tests/regression/fem_fields.json"))
     arguments = parser.parse_args()
     with whole_file(arguments.out) as part:
-        part.write_text(json.dumps(collect(arguments.meshes), indent=1) + "\n", encoding="utf-8")
+        part.write_text(json.dumps(collect(arguments.meshes), indent=1) + "\n", encoding="utf-8", newline="\n")
 
 
 if __name__ == "__main__":

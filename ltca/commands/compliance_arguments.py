@@ -121,7 +121,9 @@ class OpenedDrives:
         """Endings of the names of figures, as patterns: of several cases their names."""
         from glob import escape
 
-        return [f"_{escape(name)}" for name in self.cases] if len(self.cases) > 1 else [""]
+        from ltca.output.file_names import file_words
+
+        return [f"_{escape(word)}" for word in file_words(self.cases).values()] if len(self.cases) > 1 else [""]
 
 
 def open_drives(arguments: argparse.Namespace, command: str) -> OpenedDrives:

@@ -129,7 +129,7 @@ class _FoundSoFar:
         path = self._out / f"{stem}.toml"
         with whole_file(path) as part:
             name = f"{self._found.requirements.asked.name}-{stem}"
-            part.write_text(design_text(refined, self._found, name), encoding="utf-8")
+            part.write_text(design_text(refined, self._found, name), encoding="utf-8", newline="\n")
         self.files.append(path)
 
 
@@ -165,7 +165,7 @@ def _write(found: Found, best: int, out: Path) -> None:
 
     def written(stem: str, refined: Refined) -> str:
         with whole_file(out / f"{stem}.toml") as part:
-            part.write_text(design_text(refined, found, f"{asked.name}-{stem}"), encoding="utf-8")
+            part.write_text(design_text(refined, found, f"{asked.name}-{stem}"), encoding="utf-8", newline="\n")
         shown.append((stem, refined))
         contents.append(design_content(refined, found, f"{stem}.toml"))
         return f"{stem}.toml"
@@ -179,7 +179,7 @@ def _write(found: Found, best: int, out: Path) -> None:
         relaxations.append(relaxation_content(one, file))
     rows = comparison(found, shown)
     with whole_file(out / "designs.csv") as part:
-        part.write_text(csv_text(rows), encoding="utf-8")
+        part.write_text(csv_text(rows), encoding="utf-8", newline="\n")
     tried = [{"broken": one.broken, "message": one.solution.message} for one in found.tried]
     _write_json(
         found,

@@ -57,7 +57,7 @@ def execute(arguments: argparse.Namespace) -> int:
     for shipped, following in FOLLOWING:
         text = text.replace(shipped, following)
     with whole_file(path) as part:
-        part.write_text(text, encoding="utf-8")
+        part.write_text(text, encoding="utf-8", newline="\n")
     word = shlex.quote(str(path))
     print(f"{path}: written; 'cyclo show {word}' checks it, 'cyclo run {word}' analyses it")
     return 0

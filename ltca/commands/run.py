@@ -158,6 +158,7 @@ def _files(arguments: argparse.Namespace, cases: Mapping[str, Drive]) -> Iterato
     if arguments.figures:
         from ltca.figures.pressure_figures import PRESSURE_FIGURES
         from ltca.figures.run_figures import figure_names
+        from ltca.output.file_names import file_words
         from ltca.output.run_folder import figure_files
 
         drive = next(iter(cases.values()))  # all cases of a run have as many discs, holes, cranks and slices
@@ -165,4 +166,4 @@ def _files(arguments: argparse.Namespace, cases: Mapping[str, Drive]) -> Iterato
         yield from figure_files(arguments.figures, *figure_names(*numbers))
         if arguments.pressure is not None:
             yield from figure_files(arguments.figures, *PRESSURE_FIGURES)
-            yield from (f"figures/fig31_roller_pressure_{escape(name)}.png" for name in cases)
+            yield from (f"figures/fig31_roller_pressure_{escape(word)}.png" for word in file_words(cases).values())

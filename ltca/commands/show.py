@@ -42,6 +42,7 @@ def execute(arguments: argparse.Namespace) -> int:
 
     import numpy as np
 
+    from ltca.output.file_names import file_words
     from ltca.output.run_folder import claimed_folder
     from ltca.reading.drive_file import load_drive
 
@@ -50,7 +51,8 @@ def execute(arguments: argparse.Namespace) -> int:
     cases = file.select(arguments.case or [next(iter(file.cases))])
     out = arguments.out or default_folder(file.name, "show")
     print(f"{file.name} ({file.source}): cases {', '.join(file.cases)}; a valid drive file")
-    with claimed_folder(out, "show", writes=[f"drive_{escape(name)}.png" for name in cases], adding=True):
+    pictures = [f"drive_{escape(word)}.png" for word in file_words(cases).values()]
+    with claimed_folder(out, "show", writes=pictures, adding=True):
         _show(cases, np.array([angle]), out)
     return 0
 
@@ -59,8 +61,10 @@ def _show(cases: dict[str, Drive], angle: FloatArray, out: Path) -> None:
     from ltca.analysis.engines import describe_engine
     from ltca.analysis.loaded_analysis import analyse
     from ltca.figures.drive_picture import draw_drive
+    from ltca.output.file_names import file_words
     from ltca.page.derived import derived_rows
 
+    words = file_words(cases)
     for name, drive in cases.items():
         print(f"\ncase {name}")
         analysis = analyse(drive, angle)
@@ -72,7 +76,7 @@ def _show(cases: dict[str, Drive], angle: FloatArray, out: Path) -> None:
         print(f"  at φ_C = {angle[0]:g} rad, {drive.load_words()}, {describe_engine(analysis.engine)}")
         for title, value in _loads(analysis):
             print(f"    {title:<45} {value}")
-        path = out / f"drive_{name}.png"
+        path = out / f"drive_{words[name]}.png"
         draw_drive(drive, analysis, 0, path, name if len(cases) > 1 or name != "nominal" else "")
         print(f"  picture: {path}")
 

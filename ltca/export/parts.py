@@ -25,6 +25,7 @@ from ltca.export.flank_outline import FlankSpline, MadeFlank, follow_flank
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.length_profile import lead_relief
 from ltca.geometry.placement import Placement
+from ltca.output.file_names import file_word
 
 PARTS = ("disc", "pin-wheel", "pin-shaft", "carrier", "assembly")
 """What can be exported."""
@@ -200,7 +201,7 @@ class Part:
         moved = f"_compensated_{self.compensation:g}mm" if self.compensation else ""
         head = f"{self.drive}_{self.case}"
         # Names of drives and cases have up to 120 bytes each, those of files 255.
-        return f"{head if len(head.encode()) < 180 else self.case}_{self.name}{moved}"
+        return file_word(f"{head if len(head.encode()) < 180 else self.case}_{self.name}{moved}")
 
     @property
     def remarks(self) -> tuple[str, ...]:

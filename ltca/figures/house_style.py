@@ -70,6 +70,7 @@ def save_figure(figure: Figure, path: Path) -> Path:
         if layout is not None:
             layout.execute(figure)
         figure.set_layout_engine("none")
-        with whole_file(path) as part:
-            figure.savefig(part, dpi=DOTS_PER_INCH, metadata=clock.get(path.suffix))
+        # To a stream of bytes: Windows would end the lines of a picture in its own way.
+        with whole_file(path) as part, part.open("wb") as stream:
+            figure.savefig(stream, format=path.suffix[1:], dpi=DOTS_PER_INCH, metadata=clock.get(path.suffix))
     return path

@@ -20,6 +20,7 @@ from ltca.figures.curve_panels import MOST_CURVES, TWO_COLUMNS_FROM, draw_panels
 from ltca.figures.house_style import COLOUR_MAP, COLOURS, OTHERS, STYLE, save_figure, shortened_name
 from ltca.figures.run_figures import with_paper_number
 from ltca.geometry.flank import FlankProfile
+from ltca.output.file_names import file_words
 
 SIDES = ("outer", "inner")
 PRESSURE_FIGURES = ("fig27_contact_zone", "fig32_roller_pressure_along", "fig33_roller_pressure_across")
@@ -273,7 +274,7 @@ def write_pressure_figures(
         drawn = zone, draw_sections(fields, major=True), draw_sections(fields, major=False)
     for name, figure in zip(PRESSURE_FIGURES, drawn, strict=True):
         yield save_figure(figure, folder / f"{name}.{kind}")
-    for case in (str(name) for name in fields["case"].values):
+    for case, word in file_words(str(name) for name in fields["case"].values).items():
         with mpl.rc_context(STYLE):
             surface = draw_roller_pressure(fields, case)
-        yield save_figure(surface, folder / f"fig31_roller_pressure_{case}.png")
+        yield save_figure(surface, folder / f"fig31_roller_pressure_{word}.png")

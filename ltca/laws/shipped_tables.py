@@ -131,7 +131,7 @@ def write_tables() -> None:
         sliced_line.TABLE: {"softer": {str(slices): tabulate_softer_ends(slices).tolist() for slices in NUMBERS}},
     }
     for path, content in contents.items():
-        path.write_text(json.dumps(content, indent=0) + "\n", encoding="utf-8")
+        path.write_text(json.dumps(content, indent=0) + "\n", encoding="utf-8", newline="\n")
 
 
 if __name__ == "__main__":

@@ -13,6 +13,7 @@ process_pools  Pools of worker processes that end with the process that started 
 supervisor     Run a program that ends with whoever asked for it, together with its folder of temporary files
 progress       Progress: a bar on a terminal, a line every few seconds without one
 provenance     Which code made a result: version and a hash of its sources, the same on every machine that has the same code
+file_names     Names of drives and cases as they stand in names of files
 files          Files that are either whole or not there: written beside their place, then moved into it
 checked_arrays Arrays with a checksum, with which interrupted work goes on
 labelled       Labelled arrays without xarray, whose import with pandas takes half a second

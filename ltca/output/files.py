@@ -21,6 +21,9 @@ PART = re.compile(r"\..*\.[0-9a-f]{16}\.part(\.[^.]*)?")
 STALE = 86400.0
 """Age, s, beyond which nobody writes a part any more."""
 
+PAUSES = (0.05, 0.1, 0.2, 0.4)
+"""Times, s, between trials to replace a file on Windows."""
+
 Placed = Callable[[Path, Path], None]
 _HELD: ContextVar[tuple[Path, Placed] | None] = ContextVar("held", default=None)
 
@@ -51,12 +54,24 @@ def whole_file(path: Path) -> Iterator[Path]:
         yield part
         if held is not None:
             held[1](path, part)
-        part.replace(path)
+        _move(part, path)
     except OSError as error:
         raise FaultError(f"{path}: cannot be written: {error.strerror or error}") from error
     finally:
         with suppress(OSError):  # without a folder there is nothing to take away either
             part.unlink(missing_ok=True)
+
+
+def _move(part: Path, path: Path) -> None:
+    """Let a part take its place; on Windows others keep a file for a moment, such as scanners for viruses."""
+    for pause in PAUSES if os.name == "nt" else ():
+        try:
+            part.replace(path)
+        except PermissionError:
+            time.sleep(pause)
+        else:
+            return
+    part.replace(path)
 
 
 def remove_parts_of(path: Path, age: float) -> None:
@@ -73,4 +88,6 @@ def remove_parts_of(path: Path, age: float) -> None:
 def write_json(path: Path, content: Mapping[str, Any]) -> None:
     """Write a JSON file, whole or not at all; numbers must be finite."""
     with whole_file(path) as part:
-        part.write_text(json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n", encoding="utf-8")
+        part.write_text(
+            json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n", encoding="utf-8", newline="\n"
+        )

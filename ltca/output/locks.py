@@ -1,8 +1,14 @@
-"""Locks on the folder or file that a run writes: one process at a time, until it ends, however that is."""
+"""Locks on the folder or file that a run writes: one process at a time, until it ends, however that is.
+
+They are those of the system, by `flock` or on Windows `msvcrt`, which end with their process. The package filelock takes the
+same ones but empties the file before it holds it, so the name of the holder would be lost, and gives up on file systems
+without locks.
+"""
 
 from __future__ import annotations
 
 import errno
+import importlib
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -16,6 +22,8 @@ LOCKLESS = (errno.ENOLCK, errno.ENOTSUP, errno.ENOSYS)
 """What a file system answers that knows no locks: two runs are not kept apart there."""
 FAULTS = (errno.ENOSPC, errno.EDQUOT, errno.EIO)
 """What is no fault of whoever chose the folder."""
+LOCKED_BYTE = 1 << 30
+"""Place of the byte that is locked on Windows, where nobody else can read it: far behind the name of the holder."""
 
 
 @contextmanager
@@ -62,12 +70,16 @@ def _held(lock: Path, what: str, command: str, wait: bool) -> Iterator[None]:
     try:
         with suppress(OSError):  # a full disc keeps no name, the lock holds all the same
             os.ftruncate(descriptor, 0)
-            os.pwrite(descriptor, f"cyclo {command} (process {os.getpid()})".encode(), 0)
+            os.lseek(descriptor, 0, os.SEEK_SET)
+            os.write(descriptor, f"cyclo {command} (process {os.getpid()})".encode())
         yield
     finally:
+        if os.name == "nt":  # no open file is removed there, so it stays where somebody has opened it since
+            os.close(descriptor)
         with suppress(OSError):
             lock.unlink(missing_ok=True)
-        os.close(descriptor)
+        if os.name != "nt":
+            os.close(descriptor)
 
 
 def _take(lock: Path, wait: bool) -> int:
@@ -75,7 +87,7 @@ def _take(lock: Path, wait: bool) -> int:
     while True:
         descriptor = os.open(lock, os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0), 0o666)
         try:
-            _lock(descriptor, wait)
+            lock_descriptor(descriptor, wait=wait)
             if os.path.samestat(os.fstat(descriptor), os.stat(lock, follow_symlinks=False)):
                 return descriptor
         except FileNotFoundError:
@@ -86,16 +98,40 @@ def _take(lock: Path, wait: bool) -> int:
         os.close(descriptor)
 
 
-def _lock(descriptor: int, wait: bool) -> None:
+def lock_descriptor(descriptor: int, *, wait: bool) -> bool:
+    """Lock an open file until it is closed; False where its file system has no locks.
+
+    `BlockingIOError` when another process holds it and is not to be waited for.
+    """
     try:
         import fcntl
-    except ImportError:  # no such locks on this system: two runs are not kept apart
-        return
+    except ImportError:
+        _lock_byte(descriptor, wait)
+        return True
     try:
         fcntl.flock(descriptor, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
     except OSError as error:
         if error.errno not in LOCKLESS:
             raise
+        return False
+    return True
+
+
+def _lock_byte(descriptor: int, wait: bool) -> None:
+    """Lock one byte of a file as Windows does; it need not be there."""
+    msvcrt = importlib.import_module("msvcrt")
+    while True:
+        os.lseek(descriptor, LOCKED_BYTE, os.SEEK_SET)
+        try:
+            # LK_LOCK itself tries for ten seconds, then raises.
+            msvcrt.locking(descriptor, msvcrt.LK_LOCK if wait else msvcrt.LK_NBLCK, 1)
+        except OSError as error:
+            if error.errno not in (errno.EACCES, errno.EDEADLK):
+                raise
+            if not wait:
+                raise BlockingIOError(errno.EAGAIN, os.strerror(errno.EAGAIN)) from error
+        else:
+            return
 
 
 def _holder(lock: Path) -> str:

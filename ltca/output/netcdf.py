@@ -241,7 +241,8 @@ class DiscStream(io.RawIOBase):
             try:
                 done = 0
                 while done < len(content):
-                    done += os.pwrite(self._descriptor, content[done:], self._place + done)
+                    os.lseek(self._descriptor, self._place + done, os.SEEK_SET)
+                    done += os.write(self._descriptor, content[done:])
             except OSError as error:
                 self.failure = error
         if self.failure is not None:
@@ -253,7 +254,8 @@ class DiscStream(io.RawIOBase):
     def readinto(self, buffer: Any) -> int:
         """Read what was written, wherever it is, and return the number of bytes."""
         count = max(0, min(len(buffer), self._size - self._place))
-        found = bytearray(os.pread(self._descriptor, count, self._place).ljust(count, b"\0"))
+        os.lseek(self._descriptor, self._place, os.SEEK_SET)
+        found = bytearray(os.read(self._descriptor, count).ljust(count, b"\0"))
         for place, content in self._kept:
             first, last = max(place, self._place), min(place + len(content), self._place + count)
             if first < last:
@@ -274,7 +276,7 @@ def netcdf_stream(path: Path) -> Iterator[DiscStream]:
 
     Its ``check`` is called between the parts of a large file; `OSError` is raised when the block ends and the disc was full.
     """
-    descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_TRUNC, 0o666)
+    descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_TRUNC | getattr(os, "O_BINARY", 0), 0o666)
     try:
         stream = DiscStream(descriptor)
         yield stream

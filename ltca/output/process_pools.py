@@ -11,6 +11,7 @@ import os
 import shutil
 import signal
 import stat
+import sys
 import tempfile
 import threading
 import time
@@ -21,14 +22,14 @@ from contextlib import contextmanager, suppress
 from multiprocessing import (
     active_children,
     current_process,
-    forkserver,
     get_all_start_methods,
     get_context,
-    resource_tracker,
 )
+from multiprocessing.context import BaseContext
 from pathlib import Path
 
 from ltca.errors import FaultError
+from ltca.output.locks import lock_descriptor
 from ltca.output.processes import interrupts_held
 
 PREFIX = "cyclo-pool-"
@@ -39,6 +40,11 @@ FRESH = 10.0
 """Age, s, up to which a folder may be one that is about to be locked."""
 LETTING_GO = 0.3
 """Time, s, after which an ended process has let go of its lock; its pipes may be closed a moment earlier."""
+NEEDED = (
+    "the folder for temporary files must be writable"
+    if sys.platform in ("win32", "darwin")
+    else "/dev/shm and TMPDIR must be writable"
+)
 NOTICING = 5.0
 """Time, s, in which a pool has to notice that its workers were ended; it takes milliseconds."""
 
@@ -57,7 +63,7 @@ def process_pool(
         pool = _started_pool(processes, preload, initializer)
     except OSError as error:
         told = f"{processes} worker processes cannot be started: {error.strerror or error}"
-        raise FaultError(f"{told}: /dev/shm and TMPDIR must be writable; or take --workers 1") from error
+        raise FaultError(f"{told}: {NEEDED}; or take --workers 1") from error
     try:
         yield pool
     except BaseException as error:
@@ -72,20 +78,36 @@ def process_pool(
 
 
 def _started_pool(processes: int, preload: str, initializer: Callable[[], None] | None) -> ProcessPoolExecutor:
-    method = "forkserver" if preload and "forkserver" in get_all_start_methods() else "spawn"
-    context = get_context(method)
-    if method == "forkserver":
-        make_pool_folder()
-        context.set_forkserver_preload([preload])
-        resource_tracker.ensure_running()  # first: when it starts, held signals come through again
-        with interrupts_held():
-            # While the server loads, Ctrl-C would end it with a traceback of its own.
-            forkserver.ensure_running()
+    context = start_context(preload)
     return ProcessPoolExecutor(processes, mp_context=context, initializer=initializer or become_worker)
+
+
+def start_context(preload: str) -> BaseContext:
+    """Return what starts processes: as copies of a server that has imported `preload`, which runs then, or each by itself.
+
+    By itself without `preload`, on Windows, which copies no processes, and on macOS, whose own libraries (Accelerate,
+    Objective-C) do not work in copies.
+    """
+    if not preload or sys.platform == "darwin" or "forkserver" not in get_all_start_methods():
+        return get_context("spawn")
+    from multiprocessing import forkserver, resource_tracker
+
+    context = get_context("forkserver")
+    make_pool_folder()
+    context.set_forkserver_preload([preload])
+    resource_tracker.ensure_running()  # first: when it starts, held signals come through again
+    with interrupts_held():
+        # While the server loads, Ctrl-C would end it with a traceback of its own.
+        forkserver.ensure_running()
+    return context
 
 
 def _end_fork_server() -> None:
     """End the fork server at once: still loading, it would start a worker for a process that is gone, which complains."""
+    if "forkserver" not in get_all_start_methods():
+        return
+    from multiprocessing import forkserver
+
     server = getattr(forkserver, "_forkserver", None)
     number, forget = getattr(server, "_forkserver_pid", None), getattr(server, "_stop", None)
     if number is not None and forget is not None:
@@ -165,6 +187,8 @@ def pool_folder() -> Path | None:
 
 def remove_stale_folders(place: Path, fresh: float = FRESH) -> None:
     """Remove temporary folders of this program whose processes are dead, if older than `fresh` seconds."""
+    if not hasattr(os, "getuid"):  # Windows has no fork server, and no folders of sockets
+        return
     with suppress(OSError):
         for folder in place.glob(f"{PREFIX}*"):
             with suppress(OSError):
@@ -194,9 +218,6 @@ def _remove_unlocked(folder: Path) -> bool:
 def _lock(descriptor: int) -> bool:
     """Lock a file, and tell whether that could be done: another process holds it, or there are no locks here."""
     try:
-        import fcntl
-
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except (ImportError, OSError):
+        return lock_descriptor(descriptor, wait=False)
+    except OSError:
         return False
-    return True

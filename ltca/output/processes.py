@@ -15,6 +15,9 @@ from typing import Any
 AGAIN = 0.05
 """Time, s, after which a signal that nobody heard is sent again."""
 
+ENDS = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGBREAK") if hasattr(signal, name))
+"""Signals that end a program; by SIGBREAK `ltca.output.supervisor` asks for it on Windows."""
+
 ENDING = 10.0
 """Time, s, in which a supervised program has to be gone."""
 
@@ -49,17 +52,26 @@ def ended_by_signals() -> Iterator[None]:
         else:
             told(unraisable)
             return
-        timer = threading.Timer(AGAIN, os.kill, (os.getpid(), number))
+        timer = threading.Timer(AGAIN, _send, (number,))
         timer.daemon = True
         timer.start()
 
-    before = signal.signal(signal.SIGTERM, end)
+    before = {number: signal.signal(number, end) for number in ENDS}
     sys.unraisablehook = again
     try:
         yield
     finally:
-        signal.signal(signal.SIGTERM, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)
         sys.unraisablehook = told
+
+
+def _send(number: int) -> None:
+    """Send a signal to this process."""
+    if os.name == "nt":  # where os.kill ends a process, whatever the signal
+        signal.raise_signal(number)
+    else:  # which ends the waiting of the main thread as well
+        os.kill(os.getpid(), number)
 
 
 @contextmanager
@@ -90,11 +102,14 @@ class Supervised:
 
     def __init__(self, words: Sequence[str], folder: Path, options: Mapping[str, Any]) -> None:
         supervisor = Path(__file__).with_name("supervisor.py")
+        # Without groups of processes it needs psutil, and so the packages of this environment.
+        alone = ["-S", "-E"] if hasattr(os, "killpg") else ["-P"]
         with interrupts_held():
             self._process = subprocess.Popen(
-                [sys.executable, "-S", "-E", str(supervisor), str(folder), *words],
+                [sys.executable, *alone, str(supervisor), str(folder), *words],
                 stdin=subprocess.PIPE,
                 start_new_session=True,
+                creationflags=getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0),
                 **options,
             )
 

@@ -66,7 +66,7 @@ def _package_hash(root: Path) -> str:
             return kept
     answer = _hash_of({name: _meaning(name, content) for name, content in sources.items()})
     with suppress(FaultError, RuntimeError), whole_file(cache_home() / "code" / raw) as part:
-        part.write_text(answer, encoding="ascii")
+        part.write_text(answer, encoding="ascii", newline="\n")
     return answer
 
 

@@ -35,7 +35,12 @@ def regular_file(path: Path, largest: int | None = None) -> Iterator[BufferedRea
     it has more than `largest` bytes.
     """
     # Not blocking: to open a pipe for reading waits for somebody who writes. On regular files it has no effect.
-    descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
+    try:
+        descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
+    except PermissionError:
+        if path.is_dir():  # which Windows does not open
+            raise NotReadableError(errno.EINVAL, f"not a regular file but {KINDS[stat.S_IFDIR]}", str(path)) from None
+        raise
     try:
         found = os.fstat(descriptor)
         if not stat.S_ISREG(found.st_mode):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import shutil
 from pathlib import Path
 
@@ -11,11 +10,9 @@ from ltca.errors import PlaceError
 
 def available_memory() -> float:
     """Return the bytes the process may still take: free memory of the machine, or less under a cgroup limit."""
-    limits: list[float] = []
-    meminfo = Path("/proc/meminfo")
-    if meminfo.exists():
-        lines = meminfo.read_text(encoding="ascii").splitlines()
-        limits += [float(line.split()[1]) * 1024.0 for line in lines if line.startswith("MemAvailable:")]
+    import psutil  # here, because most commands do not ask
+
+    limits = [float(psutil.virtual_memory().available)]
     for limit, used in (
         ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory.current"),
         ("/sys/fs/cgroup/memory/memory.limit_in_bytes", "/sys/fs/cgroup/memory/memory.usage_in_bytes"),
@@ -24,8 +21,6 @@ def available_memory() -> float:
             text = Path(limit).read_text(encoding="ascii").strip()
             if text.isdigit():
                 limits.append(float(text) - float(Path(used).read_text(encoding="ascii")))
-    if not limits:
-        limits.append(float(os.sysconf("SC_PAGE_SIZE")) * float(os.sysconf("SC_PHYS_PAGES")))
     return max(min(limits), 0.0)
 
 

@@ -198,7 +198,7 @@ class RunFolder:
         if replaced:
             content["replaced"] = dict(replaced)
         with whole_file(self.path / MANIFEST) as part:
-            part.write_text(json.dumps(content, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
+            part.write_text(json.dumps(content, indent=2, ensure_ascii=False) + "\n", encoding="utf-8", newline="\n")
 
 
 def figure_files(kind: str | None, *names: str) -> list[str]:

@@ -103,7 +103,7 @@ def _with_breaks(text: str) -> Any:
 def write_page(path: Path, text: str) -> Path:
     """Write a page; return where it is."""
     with whole_file(path) as part:
-        part.write_text(text, encoding="utf-8")
+        part.write_text(text, encoding="utf-8", newline="\n")
     return path
 
 

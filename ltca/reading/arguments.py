@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ltca.errors import DriveError, shortened
+from ltca.output.file_names import file_word
 
 if TYPE_CHECKING:
     from ltca.drive.members.limits import Limits
@@ -123,7 +124,7 @@ def add_case_argument(parser: argparse.ArgumentParser, what: str, *, several: bo
 
 def add_out_argument(parser: argparse.ArgumentParser, command: str, what: str = "folder for the results") -> None:
     """Add the output folder of a command."""
-    shown = default_folder("<drive>" if command != "sweep" else "<study>", command)
+    shown = shown_folder("<drive>" if command != "sweep" else "<study>", command)
     parser.add_argument("--out", metavar="DIR", type=path_argument("--out"), help=f"{what}; default {shown}")
 
 
@@ -159,6 +160,11 @@ def default_folder(name: str, command: str) -> Path:
     >>> default_folder("paper", "curves").as_posix()
     'out/paper_curves'
     """
+    return Path("out") / file_word(shown_folder(name, command).name)
+
+
+def shown_folder(name: str, command: str) -> Path:
+    """Return the default output folder of a command as a help shows it, for a name that no file need have."""
     return Path("out") / (name if command == "run" else f"{name}_{command}")
 
 

@@ -172,5 +172,5 @@ def write_sample(study: Study, folder: StudyFolder, sample: int) -> str:
         lines = [f"# {name} = {value}" for name, value in told.items()]
         text = f"# Sample {sample} of {study.name} is no sound drive:\n{reason}\n" + "\n".join(lines) + "\n"
     with whole_file(path) as part:
-        part.write_text(text, encoding="utf-8")
+        part.write_text(text, encoding="utf-8", newline="\n")
     return str(path)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import re
 import subprocess
 import sys
@@ -19,6 +20,7 @@ from typing import Any
 
 from ltca.drive.names import NAMING, names_a_file
 from ltca.errors import CycloError, DriveError, FaultError, printable, shortened
+from ltca.output.file_names import file_word
 from ltca.output.files import whole_file
 from ltca.output.processes import Supervised
 from ltca.reading.toml_edit import tables_of, with_values
@@ -148,9 +150,9 @@ class Jobs:
             if sum(job.status is None for job in self._jobs) >= MOST_RUNNING:
                 raise DriveError([f"{MOST_RUNNING} jobs run already: cancel one, or wait until it is done"])
             folder = self._new_folder(name)
-            drive = folder / f"{name}.toml"
+            drive = folder / f"{file_word(name)}.toml"
             with whole_file(drive) as part:
-                part.write_text(_from_elsewhere(text, table, self.folder / source), encoding="utf-8")
+                part.write_text(_from_elsewhere(text, table, self.folder / source), encoding="utf-8", newline="\n")
             words += _drive_words(words[0], drive.relative_to(self.folder).as_posix(), folder.relative_to(self.folder))
             names = [one.get("name") for one in listed(table.get("case"))]
             words += [f"--case={case}"] if case in names else []  # in one word: a case may be called --debug
@@ -160,7 +162,7 @@ class Jobs:
         return job.number
 
     def _new_folder(self, name: str) -> Path:
-        above = self.folder / "out" / f"{name}_studio"
+        above = self.folder / "out" / f"{file_word(name)}_studio"
         try:
             # Before anything is made: "out" may be a link to elsewhere.
             if not above.resolve().is_relative_to(self.folder):
@@ -177,14 +179,16 @@ class Jobs:
         with TemporaryDirectory(prefix="cyclo-job-", ignore_cleanup_errors=True) as place:
             try:
                 with (job.folder / LOG).open("wb") as log:
-                    options = {"cwd": self.folder, "stdout": log, "stderr": subprocess.STDOUT}
+                    # A page is UTF-8, whatever the locale.
+                    environment = {**os.environ, "PYTHONIOENCODING": "utf-8"}
+                    options = {"cwd": self.folder, "stdout": log, "stderr": subprocess.STDOUT, "env": environment}
                     job.program = Supervised(words, Path(place), options)
                     if job.cancelled:
                         job.program.end()
                     status = job.program.wait()
                     job.program.end()  # of its pipe
             except OSError as error:
-                (job.folder / LOG).write_text(f"cyclo: error: {error}\n", encoding="utf-8")
+                (job.folder / LOG).write_text(f"cyclo: error: {error}\n", encoding="utf-8", newline="\n")
                 status = CycloError.exit_status
         job.took = time.monotonic() - job.began
         job.status = status

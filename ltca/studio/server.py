@@ -27,6 +27,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from ltca.drive.names import NAMING, names_a_file
 from ltca.errors import CycloError, DriveError, FaultError, shortened
+from ltca.output.file_names import DEVICE
 from ltca.output.files import whole_file
 from ltca.page.run_page import STAGE
 from ltca.page.writing import page_text, script_data
@@ -57,8 +58,6 @@ LOOKING = 0.25
 COMPLIANCES = ("half-space", "hybrid", "fe", "file")
 PORTABLE = re.compile(r"[\w .-]+")
 """Names of saved files: signs that no file system refuses or reads in another way, letters of any script among them."""
-DEVICE = re.compile(r"(?:con|prn|aux|nul|(?:com|lpt)[0-9¹²³])(?: *\..*)?", re.IGNORECASE)
-"""Names that Windows takes for devices, whatever ending they have."""
 HEADERS = {
     "X-Content-Type-Options": "nosniff",
     "Referrer-Policy": "no-referrer",
@@ -329,7 +328,7 @@ class Studio:
             if path.exists() and asked.get("overwrite") is not True:
                 return {"exists": path.name}
             with whole_file(path) as part:
-                part.write_text(text, encoding="utf-8")
+                part.write_text(text, encoding="utf-8", newline="\n")
             return {"saved": path.name}
 
         return await _answered(request, saved)
@@ -446,7 +445,9 @@ def serve(studio: Studio, port: int, *, browser: bool, told: Callable[[str], Non
     token = secrets.token_urlsafe(24)
     # Named as TCP: asyncio sends small packets of no other socket at once, and each answer would wait for 40 ms.
     with socket.socket(socket.AF_INET, socket.SOCK_STREAM, socket.IPPROTO_TCP) as listening:
-        listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        # On Windows SO_REUSEADDR would share a port with whoever has it.
+        own = getattr(socket, "SO_EXCLUSIVEADDRUSE", socket.SO_REUSEADDR)
+        listening.setsockopt(socket.SOL_SOCKET, own, 1)
         try:
             listening.bind((HOST, port))
             listening.listen(QUEUED)  # who has the address may ask before the server looks

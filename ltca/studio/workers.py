@@ -7,12 +7,10 @@ import contextlib
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
-from multiprocessing import forkserver, get_all_start_methods, get_context, resource_tracker
 from multiprocessing.connection import Connection
 from typing import Any
 
-from ltca.output.process_pools import become_worker, make_pool_folder
-from ltca.output.processes import interrupts_held
+from ltca.output.process_pools import become_worker, start_context
 from ltca.studio.answers import COARSE, Question
 
 PATIENCE = 0.3
@@ -30,15 +28,7 @@ class Superseded(Exception):  # noqa: N818  # no error: the next question has co
 
 def start_fork_server() -> Any:
     """Start the process from which workers are forked, and return the context that does so; without one they are spawned."""
-    if "forkserver" not in get_all_start_methods():
-        return get_context("spawn")
-    context = get_context("forkserver")
-    make_pool_folder()
-    context.set_forkserver_preload([WARM])
-    resource_tracker.ensure_running()
-    with interrupts_held():
-        forkserver.ensure_running()
-    return context
+    return start_context(WARM)
 
 
 def _answer_all(connection: Connection) -> None:

@@ -38,7 +38,9 @@ class KeptOutcomes:
         outcome = solve_case(case)
         with whole_file(path) as part:
             # Not `write_json`: a figure may be no number, which fails its bound.
-            part.write_text(json.dumps([asdict(one) for one in outcome.figures], indent=1) + "\n", encoding="utf-8")
+            part.write_text(
+                json.dumps([asdict(one) for one in outcome.figures], indent=1) + "\n", encoding="utf-8", newline="\n"
+            )
         return outcome, False
 
     def forget(self, cases: tuple[Case, ...]) -> None:

@@ -32,7 +32,7 @@ def write_index(outcomes: Sequence[Outcome], folder: Path, *, left: int = 0) -> 
 
 def _write(path: Path, text: str) -> Path:
     with whole_file(path) as part:
-        part.write_text(text, encoding="utf-8")
+        part.write_text(text, encoding="utf-8", newline="\n")
     return path
 
 

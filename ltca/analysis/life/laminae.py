@@ -289,7 +289,7 @@ def write_straight_rollers() -> None:
     """Write the contacts of straight rollers into the package anew; tests/ltca/analysis/life/test_laminae.py compares."""
     solved = {number: solve_laminae(None, 1.0, 1.0, APPROACH_RATIO**number) for number in RUNGS}
     content = {str(number): (load, row.tolist()) for number, (load, row) in solved.items()}
-    STRAIGHT.write_text(json.dumps(content, indent=0) + "\n", encoding="utf-8")
+    STRAIGHT.write_text(json.dumps(content, indent=0) + "\n", encoding="utf-8", newline="\n")
 
 
 @lru_cache(maxsize=512)

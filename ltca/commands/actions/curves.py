@@ -21,6 +21,7 @@ from ltca.analysis.engines import Engine, describe_engine
 from ltca.analysis.half_space_errors import half_space_words
 from ltca.analysis.life.life_text import life_lines
 from ltca.drive.parts import Drive
+from ltca.output.file_names import file_words
 from ltca.output.files import write_json
 from ltca.output.progress import progress
 from ltca.page.studies.curves import (
@@ -111,9 +112,9 @@ def _draw(every: Mapping[str, DriveCurves], name: str, folder: Path, kind: str) 
     torques = torque_axes(found.curve for found in every.values())
     orders = order_axes(found.spectrum for found in every.values())
     pressures = pressure_axis(found.safety for found in every.values())
-    files = []
+    files, words = [], file_words(every)
     for case, found in every.items():
-        title, ending = f"{name} {case}", f"_{case}.{kind}" if len(every) > 1 else f".{kind}"
+        title, ending = f"{name} {case}", f"_{words[case]}.{kind}" if len(every) > 1 else f".{kind}"
         discs = found.drive.disc.number_of_discs
         files += [
             figures.draw_torque_curve(found.curve, title, folder / f"torque_curve{ending}", torques),

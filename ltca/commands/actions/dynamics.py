@@ -27,6 +27,7 @@ from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import ARCSEC
 from ltca.dynamics.kinetics import require_masses
 from ltca.dynamics.masses import drive_masses
+from ltca.output.file_names import file_words
 from ltca.output.files import whole_file, write_json
 from ltca.output.netcdf import write_netcdf
 from ltca.output.progress import progress
@@ -97,9 +98,9 @@ def solve_and_write(
         print(f"figures: {out / 'figures'} ({len(figures)} as {arguments.figures.upper()})")
     (first, *others) = contents.values()
     write_json(out / "dynamics.json", {"drive": file.name, "cases": contents} if others else first)
-    files = []
+    files, in_files = [], file_words(every)
     for name, case in every.items():
-        path = out / f"dynamics{f'_{name}' if others else ''}.nc"
+        path = out / f"dynamics{f'_{in_files[name]}' if others else ''}.nc"
         with whole_file(path) as part:
             write_netcdf(force_dataset(case.vibration, case.response), part)
         files.append(path)
@@ -193,9 +194,9 @@ def _range(values: FloatArray) -> str:
 def _draw(every: Mapping[str, Found], name: str, folder: Path, kind: str) -> list[Path]:
     from ltca.figures.vibration_figures import draw_campbell, draw_response
 
-    files = []
+    files, words = [], file_words(every)
     for case, found in every.items():
-        title, ending = f"{name} {case}", f"_{case}.{kind}" if len(every) > 1 else f".{kind}"
+        title, ending = f"{name} {case}", f"_{words[case]}.{kind}" if len(every) > 1 else f".{kind}"
         files.append(draw_campbell(found.vibration, found.fastest, title, folder / f"campbell_diagram{ending}"))
         if found.response is not None:
             files.append(draw_response(found.response, found.vibration, title, folder / f"response{ending}"))

@@ -75,7 +75,7 @@ def search_and_write(
     best = optimum.drive(optimum.best)
     fine = [solve_finely(drive, problem.quantities, engine) for drive in (problem.drive, best)]
     with whole_file(out / "optimum.toml") as part:
-        part.write_text(drive_text(best), encoding="utf-8")
+        part.write_text(drive_text(best), encoding="utf-8", newline="\n")
     _write_candidates(optimum, search, arguments.positions, out / "candidates.parquet")
     front = _write_front(optimum, out)
     outcome = _outcome(optimum, fine, engine, arguments.positions) | {"candidates_compliance": search.compliance}
@@ -170,7 +170,7 @@ def _write_front(optimum: Optimum, out: Path) -> dict[str, int]:
     written = {f"{FRONT}-{number}.toml": candidate for number, candidate in enumerate(designs_of_front(optimum), 1)}
     for file, candidate in written.items():
         with whole_file(out / file) as part:
-            part.write_text(drive_text(optimum.drive(candidate)), encoding="utf-8")
+            part.write_text(drive_text(optimum.drive(candidate)), encoding="utf-8", newline="\n")
     return written
 
 

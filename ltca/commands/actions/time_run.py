@@ -23,6 +23,7 @@ from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import ARCSEC
 from ltca.errors import CycloError, DamagedFileError, DriveError, PlaceError
 from ltca.output.checked_arrays import read_arrays, write_arrays
+from ltca.output.file_names import file_words
 from ltca.output.files import whole_file, write_json
 from ltca.output.netcdf import write_netcdf
 from ltca.output.progress import progress
@@ -89,9 +90,9 @@ def run_and_write(
             except DamagedFileError as error:
                 raise DamagedFileError(f"{path}: {error}; {REMOVED}") from error
             print("\n".join(_lines(every[name], f"{file.name} {name}")))
-    files, contents = [], {}
+    files, contents, in_files = [], {}, file_words(every)
     for name, found in every.items():
-        ending = f"_{name}" if len(every) > 1 else ""
+        ending = f"_{in_files[name]}" if len(every) > 1 else ""
         with whole_file(out / f"time{ending}.nc") as part:
             write_netcdf(time_dataset(found), part)
         files.append(out / f"time{ending}.nc")
@@ -225,8 +226,8 @@ def _metres(values: Mapping[str, float]) -> str:
 def _draw(every: Mapping[str, TimeRun], name: str, folder: Path, kind: str) -> list[Path]:
     from ltca.figures.time_figures import draw_time_run
 
-    files = []
+    files, words = [], file_words(every)
     for case, found in every.items():
-        ending = f"_{case}.{kind}" if len(every) > 1 else f".{kind}"
+        ending = f"_{words[case]}.{kind}" if len(every) > 1 else f".{kind}"
         files.append(draw_time_run(found, f"{name} {case}", folder / f"time_run{ending}"))
     return files

@@ -120,4 +120,4 @@ def write_simulator(kind: str, tables: dict[str, Any], out: Path) -> list[str]:
 
 def _write(path: Path, text: str) -> None:
     with whole_file(path) as part:
-        part.write_text(text, encoding="utf-8")
+        part.write_text(text, encoding="utf-8", newline="\n")

@@ -185,11 +185,13 @@ def compile_binary(sources: dict[str, str], name: str, compiler: str) -> bytes:
     suffix = platform()[1]
     with tempfile.TemporaryDirectory() as folder:
         for file, text in sources.items():
-            (Path(folder) / file).write_text(text, encoding="utf-8")
+            (Path(folder) / file).write_text(text, encoding="utf-8", newline="\n")
         command = [compiler, "-std=c99", "-O2", "-fPIC", "-shared", "-fvisibility=hidden"]
         command += ["-o", name + suffix, SOURCE, "-lm"]
         try:
-            run = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=LONGEST, check=False)
+            run = subprocess.run(
+                command, cwd=folder, capture_output=True, text=True, errors="replace", timeout=LONGEST, check=False
+            )
         except (OSError, subprocess.TimeoutExpired) as error:
             raise FaultError(f"{compiler}: did not compile the unit: {error}") from error
         if run.returncode:

@@ -9,13 +9,13 @@ from types import SimpleNamespace
 
 import pytest
 
-pytest.importorskip("starlette", reason="no starlette (pip install 'cyclo-ltca[studio]')")
-pytest.importorskip("uvicorn", reason="no uvicorn (pip install 'cyclo-ltca[studio]')")
+with suppress(ImportError):  # the marker skips every test where the extra is missing
+    import uvicorn
+    from starlette.responses import PlainTextResponse
 
-import uvicorn
-from starlette.responses import PlainTextResponse
+    from ltca.studio import connections, server
 
-from ltca.studio import connections, server
+pytestmark = pytest.mark.needs("studio")
 
 
 async def hello(scope, receive, send):
