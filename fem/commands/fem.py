@@ -199,7 +199,7 @@ def _solve_and_write(
 
         print(*error_lines(nested), sep="\n")
     print("verdict by full finite elements at this position")
-    print(verdict_table(checks, limited=True))
+    print(verdict_table([check for check in checks if check.limit is not None]))
     if problem:
         print(f"drawn with matplotlib, because pyvista cannot render here: {problem}")
     for number, disc in enumerate(solution.discs):

@@ -10,7 +10,7 @@ from concurrent.futures import ThreadPoolExecutor
 from multiprocessing.connection import Connection
 from typing import Any
 
-from ltca.output.process_pools import become_worker, start_context
+from ltca.output.process_pools import become_worker, make_pool_folder, start_context
 from ltca.studio.answers import COARSE, Question
 
 PATIENCE = 0.3
