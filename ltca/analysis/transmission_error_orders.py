@@ -219,6 +219,31 @@ def fit_several(crank_angle: FloatArray, errors: FloatArray, orders: tuple[Order
     ]
 
 
+def named_orders(orders: tuple[Order, ...], amplitude: FloatArray, residual: FloatArray) -> tuple[Order, ...]:
+    """Return orders with an empty name where no fit has them above its residual.
+
+    What no order explains is spread over all of them: an order below the residual may be a part of it, and no motion of the
+    drive.
+
+    Parameters
+    ----------
+    orders : tuple of Order
+        Those that were fitted.
+    amplitude : array, shape (orders, fits)
+        Their amplitudes.
+    residual : array, shape (fits,)
+        Root mean square of what the orders leave, in the same unit.
+
+    Examples
+    --------
+    >>> orders = Order(13.0, "flank, 1 z_C"), Order(12.07, "flank -1 wheel pins")
+    >>> named_orders(orders, np.array([[1.3, 0.4], [0.01, 0.02]]), np.array([0.04, 0.05]))[1]
+    Order(value=12.07, name='')
+    """
+    above = np.any(amplitude > residual, axis=1)
+    return tuple(order if stays else order._replace(name="") for order, stays in zip(orders, above, strict=True))
+
+
 class OrderFit:
     """Least squares of a mean and orders, a·cos(order·φ_C − phase), on values that come a part of the positions at a time.
 

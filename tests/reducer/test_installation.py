@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -101,3 +104,39 @@ def test_virtual_work_at_every_position(joint, discs, held, stored):
     # differences of second order, taken to fourth by two of them (Richardson)
     closed = (4.0 * left(1e-4) - left(2e-4)) / 3.0
     np.testing.assert_allclose(closed / drive.load.torque, 0.0, atol=1e-7)
+
+
+PAGE = Path(__file__).parents[2] / "docs" / "theory" / "conventions.md"
+DRIVES = {
+    "one, central": ("robot-joint", {}),
+    "several, turned in the carrier": ("rv", {"installation.first_stage_ratio": None}),
+    "several, behind a first stage": ("rv", {}),
+}
+
+
+@pytest.mark.parametrize("cranks", DRIVES)
+def test_conventions_had_the_formulas_of_a_central_crank_alone(cranks):
+    """Its factor f by case: the output deviates by −f `wheel_angle`, the mean moment on the held wheel is −f T_out; its ratio."""
+    table = re.findall(r"^  \| (one.*|several.*) \| (.*) \| (.*) \|$", PAGE.read_text(encoding="utf-8"), flags=re.M)
+    assert [row[0] for row in table] == [*DRIVES]
+    ((_, factor, ratio),) = [row for row in table if row[0] == cranks]
+    name, changed = DRIVES[cranks]
+    drive = with_fields(next(iter(load_drive(name).cases.values())), changed)
+    pins, teeth = drive.pin_wheel.number_of_pins, drive.disc.number_of_teeth
+    known = {"z_P": pins, "z_C": teeth, "Δz": pins - teeth, "u": pins / (pins - teeth)}
+    if cranks.endswith("stage"):
+        known |= {"i₁": 2.0, "i": 1.0 + 2.0 * known["u"]}
+
+    def value(text):
+        text = text.partition(",")[0].rpartition("= ")[2].replace("−", "-").replace("i₁ u", "i₁*u")
+        text = re.sub(r"i₁|z_P|z_C|Δz|[ui]", lambda one: repr(float(known[one[0]])), text)
+        return eval(text, {"__builtins__": {}})
+
+    f = value(factor)
+    assert drive.transmission_ratio == pytest.approx(value(ratio), rel=1e-12)
+    angles = position_angles(drive.pin_wheel.number_of_pins + 1)
+    found = analyse(drive, angles, None, HalfSpace())
+    wheel = found.full.pose[:, WHEEL_ANGLE]
+    np.testing.assert_allclose(found.transmission_error, -f * wheel, rtol=1e-12)
+    # By the work of a turn; what is stored in the contacts at its ends differs, where rollers have come to other places.
+    assert np.mean(found.full.wheel_moment) == pytest.approx(-f * drive.load.torque, rel=2e-4)

@@ -21,7 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import nnls
 
-from ltca.analysis.transmission_error_orders import Order, fit_orders
+from ltca.analysis.transmission_error_orders import Order, fit_orders, named_orders
 from ltca.arrays import FloatArray
 
 SLIPS_BACK_AT = (0.98, 0.965, 0.95, 0.92, 0.89, 0.86, 0.83, 0.8, 0.76, 0.7, 0.6, 0.45, 0.3)
@@ -89,16 +89,18 @@ class StrengthFactor:
         parts : list of array, shape (angles,)
             Of the torque, at negative and at positive torque.
         orders : tuple of Order
-            What is fitted; those weaker than `LEAST_FACTOR` are left out.
+            What is fitted; those weaker than `LEAST_FACTOR` are left out, and those below the residual have no name.
         """
-        amplitudes = []
+        amplitudes, residuals = [], []
         for part in parts:
             fit = fit_orders(crank_angle, part / part.mean(), orders)
             amplitudes.append(fit.amplitude * np.exp(1j * fit.phase) / fit.mean)
+            residuals.append(fit.residual / abs(fit.mean))
         found = np.array(amplitudes)
+        named = named_orders(orders, np.abs(found.T), np.array(residuals))
         kept = np.max(np.abs(found), axis=0) > LEAST_FACTOR
         return cls(
-            orders=tuple(order for order, stays in zip(orders, kept, strict=True) if stays),
+            orders=tuple(order for order, stays in zip(named, kept, strict=True) if stays),
             cosine=found.real[:, kept],
             sine=found.imag[:, kept],
         )

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ltca.analysis.memory_need import positions_together
-from ltca.analysis.transmission_error_orders import Order, Spectrum, fit_several, known_orders
+from ltca.analysis.transmission_error_orders import Order, Spectrum, fit_several, known_orders, named_orders
 from ltca.arrays import FloatArray
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import ARCMIN
@@ -31,6 +31,10 @@ GOLDEN = 0.5 * (5.0**0.5 - 1.0)
 """Step by which positions go on, modulo one, over all turns: no order looks like another at them."""
 LEAST_AMPLITUDE = 5e-4 / ARCMIN
 """Amplitude, rad, up to which an order is left out: 0.0005′ at every torque."""
+DEVIATIONS = 3.0
+"""Standard errors of an amplitude, by the residual of its fit, up to which an order is left out at every torque: at other
+positions the fit is better without it.
+"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,7 +48,8 @@ class WindUp:
     mean : array, shape (nodes,)
         Over the crank angle, rad.
     orders : tuple of Order
-        Those that are kept, by turn of the crank against the pin shaft.
+        Those that are kept, by turn of the crank against the pin shaft; without a name where they are below the residual at
+        every torque.
     cosine, sine : array, shape (orders, nodes)
         Amplitudes, rad.
     residual : array, shape (nodes,)
@@ -115,15 +120,18 @@ def wind_up(drive: Drive, model: Reducer, largest: float, advance: Callable[[int
     along = np.argsort(torque)
     amplitude = np.array([spectra[place].amplitude for place in along]).T
     phase = np.array([spectra[place].phase for place in along]).T
-    kept = np.max(amplitude, axis=1) > LEAST_AMPLITUDE
+    residual = np.array([spectra[place].residual for place in along])
+    noise = DEVIATIONS * residual * np.sqrt(2.0 / angle.size)
+    kept = (np.max(amplitude, axis=1) > LEAST_AMPLITUDE) & np.any(amplitude > noise, axis=1)
+    named = named_orders(orders, amplitude, residual)
     left = 0.5 * np.sum(amplitude[~kept] ** 2, axis=0)
     return WindUp(
         torque=np.array(torque)[along],
         mean=np.array([spectra[place].mean for place in along]),
-        orders=tuple(order for order, stays in zip(orders, kept, strict=True) if stays),
+        orders=tuple(order for order, stays in zip(named, kept, strict=True) if stays),
         cosine=(amplitude * np.cos(phase))[kept],
         sine=(amplitude * np.sin(phase))[kept],
-        residual=np.sqrt(np.array([spectra[place].residual for place in along]) ** 2 + left),
+        residual=np.sqrt(residual**2 + left),
         turns=drive.pin_wheel.number_of_pins,
         positions=angle.size,
     )

@@ -69,7 +69,7 @@ Written by cyclo {tables["cyclo_version"]} from the drive {tables["drive"]}, cas
 | file | contents |
 |---|---|
 | `{name}.json` | everything |
-| `{name}_wind_up.csv` | by the torque on the output: mean wind-up over the crank angle, and cosine and sine of each order of the transmission error |
+| `{name}_wind_up.csv` | by the torque on the output: mean wind-up over the crank angle, and cosine and sine of each order of the transmission error; the JSON file names those above the residual of the fit, the others belong to no motion of the drive alone |
 | `{name}_friction.csv` | by the torque on the output: friction torque at the input that turns ccw and cw, efficiency with input and output driving |
 | `{name}_hysteresis.csv` | Maxwell-slip elements, a row each, with the weight 1 + amplitude·cos(order·φ − phase) on strength and stiffness; none without friction |
 | `{name}_hysteresis_factor.csv` | orders over the crank angle of the factor of their strength, for a torque on the output that turns it ccw and cw |
