@@ -312,7 +312,7 @@ def test_shares_of_the_compliance(rv, name):
         (
             "inner_race_radius = 13.0",
             "inner_race_radius = 14.0",
-            r"crank_bearing\.roller_radius = 2\.5 mm: must be at most 2\.127",
+            r"crank_bearing\.roller_radius = 2\.5 mm: must be at most 2 mm",  # (18 − 14) / 2
         ),
         pytest.param(
             "\npin_radius = 3.0",
