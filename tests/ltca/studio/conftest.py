@@ -18,7 +18,7 @@ def asker(address):
     parts = urlsplit(address)
 
     def ask(path="", content=None, *, method=None, headers=None, root=parts.path):
-        connection = http.client.HTTPConnection(parts.hostname, parts.port, timeout=120)
+        connection = http.client.HTTPConnection(parts.hostname, parts.port, timeout=600)
         try:
             body = None if content is None else content if isinstance(content, bytes) else json.dumps(content)
             given = {} if body is None else {"Content-Type": "application/json"}
@@ -46,7 +46,7 @@ def studio(drive, folder, *words):
         yield SimpleNamespace(process=process, address=line.split(": ", 1)[1].strip())
     finally:
         process.terminate()
-        process.communicate(timeout=60)
+        process.communicate(timeout=300)
 
 
 @pytest.fixture(scope="module")
