@@ -28,9 +28,9 @@ from ltca.reading.drive_file import load_drive
 POSITIONS, CURVE_POSITIONS, CURVE_POINTS = 360, 6, 12
 
 
-def decisive(drive: Drive, engine: Engine) -> dict[str, float]:
+def decisive(drive: Drive, engine: Engine, positions: int) -> dict[str, float]:
     """Solve a drive and return what decides about it."""
-    analysis = analyse(drive, position_angles(POSITIONS), engine=engine)
+    analysis = analyse(drive, position_angles(positions), engine=engine)
     summary = summarise(analysis)
     curve = torque_curve(drive, position_angles(CURVE_POSITIONS), points=CURVE_POINTS, engine=engine)
 
@@ -50,12 +50,14 @@ def main() -> None:
     """Measure, print and write."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--write", action="store_true", help="replace the ratios that are told")
+    parser.add_argument("--positions", type=int, default=POSITIONS, help=f"of the crank; default {POSITIONS}")
     arguments = parser.parse_args()
     lines = ["# Half-space by hybrid, first case of each shipped drive: python benchmarks/half_space_errors.py --write"]
     known = measured() if MEASURED.exists() else {}
     for name in SHIPPED_DRIVES:
         drive = next(iter(load_drive(name).cases.values()))
-        first, second = decisive(drive, HalfSpace()), decisive(drive, Hybrid().with_coefficients(drive))
+        engines: tuple[Engine, ...] = (HalfSpace(), Hybrid().with_coefficients(drive))
+        first, second = (decisive(drive, engine, arguments.positions) for engine in engines)
         found = {key: value / second[key] for key, value in first.items() if second[key]}
         for key, value in found.items():
             told = known.get(name, {}).get("ratio", {}).get(key, float("nan"))

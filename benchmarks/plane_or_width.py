@@ -43,27 +43,27 @@ def drives() -> dict[str, Drive]:
     }
 
 
-def least_life(drive: Drive) -> float:
+def least_life(drive: Drive, turns: int) -> float:
     """Return the least life of a crank bearing at the positions of `ltca.curves`, million turns."""
     loaded = drive.with_fields({"load.light_torque": drive.load.torque})  # nothing of the light torque is told
     each = positions_per_turn(drive)
     lives = []
-    for turn in range(TURNS):
+    for turn in range(turns):
         angle = 2.0 * pi * (turn + np.arange(each) / each)
         lives.append(passages_of_duty(analyse(loaded, angle, engine=HalfSpace())))
     return min(one.life for one in lives_over(lives).bearings)
 
 
-def numbers(drive: Drive) -> list[float]:
+def numbers(drive: Drive, positions: int, turns: int) -> list[float]:
     """Return the numbers of one row."""
-    found: dict[str, Any] = dict(ltca.analyse(drive, POSITIONS, compliance="half-space").summary)
+    found: dict[str, Any] = dict(ltca.analyse(drive, positions, compliance="half-space").summary)
     shares = [value for key, value in found.items() if key.startswith("max_torque_share_disc")]
     return [
         found["max_pin_pressure_mid_MPa"],
         found["max_pin_pressure_max_MPa"],
         found["max_roller_pressure_mid_MPa"],
         found["max_roller_pressure_max_MPa"],
-        least_life(drive),
+        least_life(drive, turns),
         found["cycloid_stage_stiffness_Nmm_per_rad"] * ARCMIN / 1e3,
         100.0 * max(shares),
         1e3 * found.get("max_disc_tilt_rad", 0.0),
@@ -72,10 +72,16 @@ def numbers(drive: Drive) -> list[float]:
 
 def main() -> None:
     """Print the table."""
-    argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter).parse_args()
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--drive", choices=drives(), help="one of the drives of the table; default all")
+    parser.add_argument("--positions", type=int, default=POSITIONS, help=f"of pressures and tilts; default {POSITIONS}")
+    parser.add_argument("--turns", type=int, default=TURNS, help=f"of the lives; default {TURNS}")
+    arguments = parser.parse_args()
     for name, drive in drives().items():
+        if arguments.drive not in (None, name):
+            continue
         for slices in (1, SLICES):
-            values = numbers(drive.with_fields({"contact.slices": slices}))
+            values = numbers(drive.with_fields({"contact.slices": slices}), arguments.positions, arguments.turns)
             print(f"{name:50} {slices}  " + "  ".join(f"{value:8.4g}" for value in values), flush=True)
 
 

@@ -30,8 +30,10 @@ sys.dont_write_bytecode = False
 import needs
 import numpy as np
 import pytest
+from coarse_derivations import coarse_derivation
 
 from ltca.analysis import summary
+from ltca.compliance import coefficient_files
 from ltca.drive.parts import Drive
 from ltca.errors import DriveError
 from ltca.laws import profiled_line_contact
@@ -253,15 +255,9 @@ def positions_alone(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.fixture
 def coarse_derivations(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """Coefficients in seconds, on the coarsest meshes that pass their checks, in a cache that nobody else reads."""
-    from fem.coefficients.dataset import derive_coefficients
-    from ltca.compliance import coefficient_files
-
-    def derive(drive: Drive, *, state: str, processes: int) -> Any:
-        return derive_coefficients(drive, stations=0.25, size=1.5, state=state, processes=processes)
-
     code_hash("ltca", "fem")  # by the usual cache, where it is kept
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    monkeypatch.setattr(coefficient_files, "derivation", lambda: derive)
+    monkeypatch.setattr(coefficient_files, "derivation", coarse_derivation)
     monkeypatch.setattr(coefficient_files, "MAX_DERIVATIONS", 1)
 
 
@@ -319,7 +315,7 @@ def chromium():
             CHROMIUM, *CHROMIUM_FLAGS, f"--user-data-dir={folder / 'profile'}", f"--window-size={size}",
             f"--log-net-log={log}", copy.as_uri(),
         ]  # fmt: skip
-        run = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True)
+        run = subprocess.run(command, capture_output=True, text=True, timeout=600, check=True)
         found = re.search(r'<pre id="seen">(.*?)</pre>', run.stdout, re.S)
         assert found, run.stderr[-2000:]
         console = [line for line in run.stderr.splitlines() if "CONSOLE" in line]

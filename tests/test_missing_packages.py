@@ -104,7 +104,7 @@ def run_without(module, code, *words):
         {code}
     """)
     return subprocess.run(
-        [sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True, check=False, timeout=120
+        [sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True, check=False, timeout=600
     )
 
 

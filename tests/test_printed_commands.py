@@ -1,7 +1,9 @@
 """Every command that documents, docstrings and helps print is taken by its program and run; files they name are there.
 
 Commands are found, not listed: in fenced blocks and in code of the pages, in docstrings, in the examples of ``--help``. Each is
-given to the parser of its own program; short ones are run as well, the others nightly, in the smallest size (`SMALLER`).
+given to the parser of its own program; short ones are run as well, the others nightly, in the smallest size (`SMALLER`), one case
+of a drive, and once where several differ only in what does not change the way through the program (`way_of`). Those of ``cyclo``
+run in forks with coarse derivations (``tests/plugins/forked_commands.py``); all share one cache of coefficients.
 CHANGELOG, and lines of apt, pip, git and pytest, are no part of it.
 
 Run as a program (``python tests/test_printed_commands.py``, commands as JSON on the standard input) this file parses commands
@@ -22,7 +24,6 @@ import signal
 import subprocess
 import sys
 import tempfile
-import time
 from contextlib import redirect_stdout, suppress
 from functools import cache
 from importlib import import_module
@@ -55,13 +56,14 @@ SMALLER = {
     "tolerance": "--samples 8 --positions 17 --no-figures --force",
     "sweep": "--no-figures",
     "optimise": "--generations 1 --positions 4 --no-figures",
-    "curves": "--no-figures",
+    "curves": "--turns 1 --no-figures",
     "dynamics": "--positions 4",
     "design": "--best 1",
     "derive": "--stations 0.25 --size 2",
-    "fem": "--size 3",
+    "fem": "--size 4",
     "mesh": "--size 4",
     "validate": "--level quick --angles 0.5",
+    "benchmarks/aligned_slices.py": "--count 1 --slices 5 9",
     "benchmarks/before_and_after.py": "--count 5",
     "benchmarks/contract.py": "full-fe --fields 1",
     "benchmarks/equilibria.py": "--positions 4 --rounds 1",
@@ -70,26 +72,31 @@ SMALLER = {
     "benchmarks/faults.py clusters": "--kills 1",
     "benchmarks/fem.py": "--sizes 6 --series-size 6 ?--ccx 6 ?--series 2 ?--refereed 1",
     "benchmarks/free_play.py": "--count 1",
+    "benchmarks/half_space_errors.py": "--positions 4",
     "benchmarks/imports.py": "--rounds 1",
     "benchmarks/methods.py": "--positions 4",
     "benchmarks/modelling_choices.py": "--positions 1 --stations 0.25",
     "benchmarks/paper_method.py": "--positions 4",
+    "benchmarks/plane_or_width.py": "--drive rv --positions 4 --turns 1",
     "benchmarks/practical_models.py": "--direct 1 --hybrid 0 --fe 0 --full 0",
     "benchmarks/random_drives.py": "--count 4",
     "benchmarks/run_paper.py": "--rounds 1",
-    "benchmarks/solid_cylinder.py": "--size 4 --layers 1",
+    "benchmarks/shipped_coefficients.py": "--only sleeved",
+    "benchmarks/solid_cylinder.py": "--size 4 --layers 2",
     "benchmarks/solid_free_ends.py": "--size 8 --cells 6",
-    "benchmarks/solid_moves.py": "examples/drives/plastic.toml --positions 1",
+    "benchmarks/solid_moves.py": "paper --case CS-1 --positions 1 --plane mine.nc --solid solid.nc",
     "benchmarks/solid_ltca.py": "examples/drives/plastic.toml --size 8 --layers 2",
     "benchmarks/solid_or_plane.py": "--widths 8 --size 8 --layers 2",
     "benchmarks/startup.py": "--runs 1",
     "benchmarks/studio.py": "--edits 2",
-    "benchmarks/suite_times.py": "--processes 1 -- tests/analytic",
+    "benchmarks/study_costs.py": "--quick --joint 1:99",
+    "benchmarks/suite_times.py": "--processes 1 -- tests/test_import_directions.py",
     "benchmarks/summary_numbers.py": "--positions 4",
     "benchmarks/tolerance.py": "--samples 40",
     "benchmarks/torque_share.py": "--positions 3 --samples 2",
     "benchmarks/wide_contacts.py": "--widths 0.1",
     "fem.testing.reference_fields": "--out fields.json",
+    "validation.seats": "--out pictures",
 }
 """Options that make a command small: of two of one name the last one counts; behind ? only where the command has it."""
 
@@ -100,6 +107,8 @@ LEFT_OUT = {
     r"\[-h\]": "the usage that argparse writes itself",
     r"--load-rating \"5 kN\"$": "an option behind the name of its command",
     r" --write\b": "would replace tests/budget.toml; the same without it is run",
+    r"ltca\.laws\.shipped_tables": "would replace tables of the package; tests/ltca/laws/test_shipped_tables.py makes them",
+    r"tests\.test_quantities": "would replace the schema of the package, which the same file compares",
     r"validation\.levels\.other_codes": "asks codes that are not everywhere, and would replace their stored answers",
     r"moving_arm\.py out/": "needs what the command before it wrote; tests/ltca/commands/test_robot_joint.py runs the page",
     r"validate --manual": "tests/validation/manual computes every case, tests/validation/commands runs the command",
@@ -116,7 +125,7 @@ NEEDED = {
 }
 """Commands that need an extra or another program (`needs`), and are left out where it is missing."""
 
-LONGEST = 1800.0
+LONGEST = 900
 """Time, s, after which a command is not small."""
 
 SHORT = ("fields", "quantities", "init", "show")
@@ -448,20 +457,92 @@ def is_written(name: str) -> bool:
     )
 
 
-def run_here(words: list[str], folder: Path) -> str:
-    """Run a command in a process of its own and return what went wrong; a failed check is an answer."""
-    head = [sys.executable, "-m", "ltca.commands.program"] if words[0] == "cyclo" else [sys.executable]
-    rest = [str(ROOT / word) if word.startswith(("benchmarks/", "examples/")) else word for word in words[1:]]
-    environment = os.environ | {"MPLBACKEND": "Agg", "PYTHONPATH": str(ROOT)}
-    try:
-        done = subprocess.run(
-            [*head, *rest], cwd=folder, env=environment, capture_output=True, text=True, check=False, timeout=LONGEST
-        )
-    except subprocess.TimeoutExpired:
-        return f"not done after {LONGEST} s"
-    # Checks may fail: of a drive, or of the coarse mesh of coefficients.
-    allowed = (0, 1) if words[1:2] in (["check"], ["validate"], ["derive"]) else (0,)
-    return "" if done.returncode in allowed else f"exit status {done.returncode}: {done.stderr.strip()[-300:]}"
+class Runner:
+    """Run commands in one folder, those of ``cyclo`` in forks of one process, and keep what each took."""
+
+    def __init__(self, folder: Path, cache: Path) -> None:
+        self.folder = folder
+        self.environment = os.environ | {"MPLBACKEND": "Agg", "PYTHONPATH": str(ROOT), "XDG_CACHE_HOME": str(cache)}
+        self.spent: dict[str, float] = {}
+        """Processor time, s, by command."""
+        self._forks = subprocess.Popen(
+            [sys.executable, str(Path(needs.__file__).parent / "forked_commands.py")],
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env=self.environment,
+        )  # fmt: skip
+
+    def run(self, words: list[str]) -> str:
+        """Run a command and return what went wrong; a failed check is an answer."""
+        if words[0] == "cyclo":
+            print(json.dumps([words[1:], str(self.folder), LONGEST]), file=self._forks.stdin, flush=True)
+            status, said, seconds = json.loads(self._forks.stdout.readline())
+        else:
+            status, said, seconds = self._run_script(words[1:])
+        self.spent[" ".join(words)] = seconds
+        # Checks may fail: of a drive, or of the coarse mesh of coefficients.
+        allowed = (0, 1) if words[1:2] in (["check"], ["validate"], ["derive"]) else (0,)
+        return "" if status in allowed else f"exit status {status}: {said.strip()[-300:]}"
+
+    def _run_script(self, words: list[str]) -> tuple[int, str, float]:
+        """Run a Python script and return its exit status, what it said and its processor time, s."""
+        rest = [str(ROOT / word) if word.startswith(("benchmarks/", "examples/")) else word for word in words]
+        before = os.times()
+        try:
+            done = subprocess.run(
+                [sys.executable, *rest], cwd=self.folder, env=self.environment, capture_output=True, text=True,
+                check=False, timeout=LONGEST,
+            )  # fmt: skip
+        except subprocess.TimeoutExpired:
+            return -signal.SIGALRM, f"not done after {LONGEST} s", LONGEST
+        after = os.times()
+        seconds = after.children_user + after.children_system - before.children_user - before.children_system
+        return done.returncode, done.stderr, seconds
+
+    def close(self) -> None:
+        """Let the process of the forks end, and print what took longest."""
+        self._forks.communicate()
+        print(f"{len(self.spent)} commands, {sum(self.spent.values()):.0f} s of processor time; the slowest:")
+        for command, seconds in sorted(self.spent.items(), key=lambda item: -item[1])[:20]:
+            print(f"{seconds:6.0f} s {command}", flush=True)
+
+
+CASES = ("check", "curves", "dynamics", "export", "fem", "mesh", "validate", "tolerance", "optimise")
+"""Commands that take every case of a drive, or ask for one, where none is named; ``cyclo run`` does so too, in a second."""
+
+
+def one_case(words: list[str], folder: Path) -> list[str]:
+    """Return a command with the first case of its drive, where it has several and none is named."""
+    from ltca.reading.drive_file import load_drive
+
+    if words[0] != "cyclo" or words[1] not in CASES or "--case" in words or "--help" in words:
+        return words
+    name = words[2] if len(words) > 2 and not words[2].startswith("-") else "paper"
+    cases = load_drive(str(folder / name) if name.endswith(".toml") else name).cases
+    return [*words, "--case", next(iter(cases))] if len(cases) > 1 else words
+
+
+def way_of(words: list[str], read: frozenset[str]) -> tuple[object, ...]:
+    """Return what the way of a command through its program depends on.
+
+    Of an option that stands twice the last one counts, but for those that add up; where the results go does not, unless a printed
+    command reads them there (`read`); nor does a number of workers or a seed.
+    """
+    head: list[str] = []
+    options: dict[str, list[str]] = {}
+    group = head
+    for word in words:
+        if re.match(r"--[a-z]", word):
+            group = options.setdefault(word, [])
+            if word not in ("--subject", "--case"):
+                group.clear()
+        else:
+            group.append(word)
+    place = " ".join(options.get("--out", []))
+    if not any(name.startswith(place) for name in read):
+        options.pop("--out", None)
+    for name in ("--seed", "--force"):
+        options.pop(name, None)
+    head = [{"requirements.toml": "examples/requirements/possible-paper.toml"}.get(word, word) for word in head]
+    return (*head, *sorted((name, *values) for name, values in options.items()))
 
 
 def made_small(words: list[str]) -> list[str]:
@@ -527,7 +608,7 @@ def test_what_is_left_out_is_printed_and_not_more():
     kinds = {" ".join(words) for words, _ in all_words().values()}
     assert [kind for kind in SMALLER if not any(kind in words for words in kinds)] == []
     assert made_small(["cyclo", "run", "x", "--angles", "0"])[-2:] == ["0", "--no-figures"]
-    assert made_small(["python", "benchmarks/suite_times.py"])[-2:] == ["--", "tests/analytic"]
+    assert made_small(["python", "benchmarks/suite_times.py"])[-2:] == ["--", "tests/test_import_directions.py"]
     assert "--ccx" not in made_small(["python", "benchmarks/fem.py"])
     assert made_small(["python", "benchmarks/fem.py", "--ccx", "1"])[-2:] == ["--ccx", "6"]
 
@@ -561,21 +642,38 @@ def kind_of(words):
     return "faults" if any(word.endswith("faults.py") for word in words) else "python"
 
 
-@pytest.mark.slow
-@pytest.mark.nightly
-@pytest.mark.parametrize("kind", ["cyclo", "python", "faults"])
-def test_every_printed_command_runs_small(kind, tmp_path):
-    """In the order of their needs: coefficients are derived first. Mentions and `LEFT_OUT` are not run; ``-s`` shows times."""
-    folder = tmp_path / "here"
-    folder.mkdir()
-    set_up(folder)
-    first = ["cyclo", "derive", "my.toml", "--case", "CS-1", "--out", "mine.nc"]
-    assert run_here(made_small(first), folder) == ""
-    shutil.copy(folder / "mine.nc", folder / "coefficients.nc")
-    shutil.copy(folder / "mine.nc", folder / "file.nc")
+@pytest.fixture(scope="module")
+def runner(tmp_path_factory):
+    """The folder of a reader, and what runs commands in it; all kinds share what one of them derives."""
+    place = tmp_path_factory.mktemp("printed")
+    (place / "here").mkdir()
+    set_up(place / "here")
+    found = Runner(place / "here", place / "cache")
+    yield found
+    found.close()
+
+
+MADE_BEFORE = {
+    "mine.nc": "cyclo derive my.toml --case CS-1 --out mine.nc --stations 0.25 --size 2",
+    "solid.nc": "cyclo derive paper --case CS-1 --bodies solid --out solid.nc --stations 0.25 --size 3 --layers 2",
+    "out/paper": "cyclo run paper --positions 4 --no-figures",
+}
+"""What readers have when they come to a command, and what makes it."""
+
+
+def make_what_is_read(runner: Runner) -> None:
+    """Make the results that commands of several pages read, once."""
+    for name, command in MADE_BEFORE.items():
+        if not (runner.folder / name).exists():
+            assert runner.run(command.split()) == ""
+    for name in ("coefficients.nc", "file.nc"):
+        shutil.copy(runner.folder / "mine.nc", runner.folder / name)
     rows = "".join(f"{0.5 * degrees},{0.01 * degrees}\n" for degrees in range(720))
-    (folder / "bench.csv").write_text(f"crank_angle_deg,transmission_error_arcsec\n{rows}", encoding="utf-8")
-    assert run_here(made_small(["cyclo", "run", "paper"]), folder) == ""
+    (runner.folder / "bench.csv").write_text(f"crank_angle_deg,transmission_error_arcsec\n{rows}", encoding="utf-8")
+
+
+def commands_of(kind: str) -> list[str]:
+    """Return the commands of a kind that are run: mentions and `LEFT_OUT` are not."""
     asked = {
         command: words
         for command, (words, _) in all_words().items()
@@ -589,23 +687,34 @@ def test_every_printed_command_runs_small(kind, tmp_path):
         for command, words in asked.items()
         if words[0] == "cyclo" and (trouble_of(words, True) or (words[1] == "derive" and not set(words) & DERIVED))
     }
+    return [command for command in asked if command not in mentions]
+
+
+@pytest.mark.slow
+@pytest.mark.nightly
+@pytest.mark.parametrize("kind", ["cyclo", "python", "faults"])
+def test_every_printed_command_runs_small(kind, runner):
+    """In the order of their needs: coefficients are derived first. ``-s`` shows times."""
+    make_what_is_read(runner)
+    commands = commands_of(kind)
+    read = frozenset(word for command in commands for word in all_words()[command][0] if word.startswith("out/"))
     wrong, page = [], ""
     done = set()
-    for command in (command for command in asked if command not in mentions):
-        words = made_small(asked[command])
-        if " ".join(words) in done:
-            continue
-        done.add(" ".join(words))
+    for command in commands:
         if place_of(command) != page:
             page = place_of(command)
-            start_page(folder)
+            start_page(runner.folder)
+        words = made_small(all_words()[command][0])
         if words[1] == "init":
-            (folder / words[2]).unlink(missing_ok=True)
+            (runner.folder / words[2]).unlink(missing_ok=True)
+        words = one_case(words, runner.folder)
+        if (way := way_of(words, read)) in done:
+            continue
+        done.add(way)
         if words[1] in ("run", "check", "curves", "dynamics", "optimise", "tolerance") and "--out" not in words:
             words += ["--out", f"out/{len(done)}"]
-        began = time.monotonic()
-        trouble = run_here(words, folder)
-        print(f"{time.monotonic() - began:6.0f} s {' '.join(words)} {trouble}", flush=True)
+        trouble = runner.run(words)
+        print(f"{runner.spent[' '.join(words)]:6.1f} s {' '.join(words)} {trouble}", flush=True)
         if trouble:
             wrong.append(f"{place_of(command)}: {' '.join(words)}: {trouble}")
     assert not wrong, "\n".join(wrong)

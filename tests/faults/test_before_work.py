@@ -102,7 +102,7 @@ def test_without_a_terminal_a_line_says_where_it_is(monkeypatch, capsys):
     def two_lines():
         """Wait for them, the second of which knows what was told before: how soon they come is the machine's."""
         capsys.readouterr()
-        said, end = "", time.monotonic() + 60.0
+        said, end = "", time.monotonic() + 300.0
         while said.count("\n") < 2 and time.monotonic() < end:
             time.sleep(0.01)
             said += capsys.readouterr().err

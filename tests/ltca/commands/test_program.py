@@ -26,7 +26,7 @@ ROOT = Path(__file__).parents[3]
 def python(code):
     """Run code in a fresh interpreter on this tree and return the last line it prints; nothing may go to stderr."""
     done = subprocess.run(
-        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=False, timeout=120,
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=False, timeout=600,
         env={**os.environ, "PYTHONPATH": str(ROOT)},
     )  # fmt: skip
     assert done.returncode == 0, done.stderr

@@ -20,7 +20,7 @@ def cyclo(*words, closed=(), **environment):
     start = "from ltca.commands.program import main; import sys; sys.exit(main())"
     command = 'exec "$0" -c "$1" "${@:2}"' + "".join(f" {number}>&-" for number in closed)
     done = subprocess.run(
-        ["bash", "-c", command, sys.executable, start, *words], cwd=ROOT, capture_output=True, check=False, timeout=120,
+        ["bash", "-c", command, sys.executable, start, *words], cwd=ROOT, capture_output=True, check=False, timeout=600,
         env=kept | {"PYTHONPATH": str(ROOT)} | environment,
     )  # fmt: skip
     return done.returncode, done.stdout, done.stderr

@@ -246,8 +246,8 @@ def test_two_processes_do_not_derive_the_same_at_once(tmp_path):
     for process in both:
         process.start()
     for process in both:
-        process.join(timeout=30)
-    assert sorted(queue.get(timeout=5) for _ in both) == [False, True]
+        process.join(timeout=300)
+    assert sorted(queue.get(timeout=300) for _ in both) == [False, True]
 
 
 def test_search_on_another_engine(paper, derived, capsys):

@@ -21,7 +21,7 @@ def asker(address):
     parts = urlsplit(address)
 
     def ask(path="", content=None, *, method=None, headers=None, root=parts.path):
-        connection = http.client.HTTPConnection(parts.hostname, parts.port, timeout=120)
+        connection = http.client.HTTPConnection(parts.hostname, parts.port, timeout=600)
         try:
             body = None if content is None else content if isinstance(content, bytes) else json.dumps(content)
             given = {} if body is None else {"Content-Type": "application/json"}
@@ -75,7 +75,7 @@ def studio(drive, folder, *words, before=(), browser=None):
             yield SimpleNamespace(process=process, address=line.split(": ", 1)[1].strip(), errors=errors)
         finally:
             process.terminate()
-            process.communicate(timeout=60)
+            process.communicate(timeout=300)
 
 
 @pytest.fixture(scope="module")

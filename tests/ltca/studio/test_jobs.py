@@ -44,7 +44,7 @@ def test_what_is_offered_is_what_the_command_has():
 
 
 def finished(jobs, number):
-    until = time.monotonic() + 120.0
+    until = time.monotonic() + 600.0
     while time.monotonic() < until:
         (job,) = (one for one in jobs.told() if one["number"] == number)
         if job["state"] != "running":

@@ -1,0 +1,74 @@
+"""Commands of ``cyclo``, each in a fork of a process that has the libraries already; coefficients on coarse meshes.
+
+A line of the standard input is a command as JSON, ``[words, folder, seconds]``; its answer is a line too, ``[status, told,
+seconds]``: exit status (negative by a signal), the end of what it printed, and its processor time with that of its processes.
+"""
+
+from __future__ import annotations
+
+import json
+import multiprocessing.util
+import os
+import signal
+import sys
+import tempfile
+from importlib import import_module
+
+LIBRARIES = (
+    "ltca.facade", "ltca.analysis.engines", "ltca.studies.study", "fem.reducer.solution", "fem.coefficients.dataset",
+    "xarray", "scipy.optimize", "scipy.interpolate", "scipy.integrate", "matplotlib.figure",
+)  # fmt: skip
+
+
+def run_fork(words: list[str], seconds: int) -> int:
+    """Run a command in this process, a fork, and return its exit status."""
+    from ltca.commands.program import main
+
+    signal.alarm(seconds)
+    try:
+        return main(words)
+    except SystemExit as end:
+        return end.code if isinstance(end.code, int) else int(end.code is not None)
+    finally:
+        multiprocessing.util._exit_function()  # type: ignore[attr-defined]  # folders and processes of pools
+        sys.stdout.flush()
+        sys.stderr.flush()
+
+
+def answer(words: list[str], folder: str, seconds: int) -> tuple[int, str, float]:
+    """Run a command in a fork and return its answer."""
+    with tempfile.TemporaryFile() as printed:
+        child = os.fork()
+        if child == 0:
+            status = 3
+            try:
+                os.chdir(folder)
+                for number, to in ((0, os.open(os.devnull, os.O_RDONLY)), (1, printed.fileno()), (2, printed.fileno())):
+                    os.dup2(to, number)
+                status = run_fork(words, seconds)
+            finally:
+                os._exit(status)
+        _, status, usage = os.wait4(child, 0)
+        printed.seek(0)
+        told = printed.read().decode("utf-8", "replace")
+    return os.waitstatus_to_exitcode(status), told[-1000:], usage.ru_utime + usage.ru_stime
+
+
+def main() -> None:
+    """Answer commands until there are no more."""
+    from coarse_derivations import coarse_derivation
+
+    from ltca.compliance import coefficient_files
+    from ltca.output.provenance import code_hash
+
+    for name in LIBRARIES:
+        import_module(name)
+    code_hash("ltca", "fem")  # kept for all forks
+    coefficient_files.derivation = coarse_derivation
+    coefficient_files.MAX_DERIVATIONS = 1  # in the fork itself: other processes would derive on fine meshes
+    for line in sys.stdin:
+        print(json.dumps(answer(*json.loads(line))), flush=True)
+
+
+if __name__ == "__main__":
+    main()
