@@ -91,11 +91,13 @@ KINDS = [
 ]
 
 
+@pytest.mark.family(full=3)
 @pytest.mark.parametrize("name", KINDS)
 def test_virtual_work_at_every_position(name, unbalanced_work):
     np.testing.assert_allclose(unbalanced_work(kind(name), ANGLES + 0.05), 0.0, atol=1e-7)
 
 
+@pytest.mark.family(full=3)
 @pytest.mark.parametrize("name", KINDS)
 def test_tangent_is_the_slope_of_the_force(name, tangent_and_slope):
     scaled, slope = tangent_and_slope(kind(name), ANGLES[:1])

@@ -124,13 +124,13 @@ def test_linear_bearings_share_resultant_and_moment(rv, cranks, monkeypatch):
         assert np.min(np.abs(moment)) > 1e3 * radius  # there is something to share
 
 
-@pytest.mark.family(quick=1)
+@pytest.mark.family(quick=1, full=3)
 @pytest.mark.parametrize("name", KINDS)
 def test_virtual_work_at_every_position(rv, name, unbalanced_work):
     np.testing.assert_allclose(unbalanced_work(kind(rv, name), ANGLES + 0.05), 0.0, atol=1e-7)
 
 
-@pytest.mark.family(quick=1)
+@pytest.mark.family(quick=1, full=3)
 @pytest.mark.parametrize("name", KINDS)
 def test_tangent_is_the_slope_of_the_force(rv, name, tangent_and_slope):
     scaled, slope = tangent_and_slope(kind(rv, name), ANGLES[:1])
