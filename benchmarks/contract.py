@@ -22,6 +22,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -33,14 +34,13 @@ from fem.options import SolutionOptions
 from fem.reducer.solution import solve_reducer
 from ltca.analysis.loaded_analysis import analyse
 from ltca.commands.program import main as cyclo
-from ltca.drive.engine_support import refusal
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Drive
 from ltca.errors import CycloError, DriveError
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
 from ltca.reading.writing import drive_text
-from ltca.testing.field_changes import EXCEPTIONS, change_of, goes_with, is_refused_by_name, leaf_fields, moves
+from ltca.testing.field_changes import change_of, fault_of_field, leaf_fields
 
 FILE = Path(__file__).resolve().parents[1] / "tests" / "contract" / "drive.toml"
 TOLERANCES = """
@@ -99,14 +99,20 @@ def full_solution(drive: Drive) -> np.ndarray:
     return np.concatenate(numbers)
 
 
-def is_told(engine: str, path: str) -> bool:
-    """Return whether the table of engines lists the refusal of a field, or of the field that it is changed with."""
-    return any(refusal(engine, name) is not None for name in (path.replace(".0.", ".N."), goes_with(path)))
+def answer_or_error(
+    answer: Callable[[Drive], np.ndarray], base: Drive, change: dict[str, Any]
+) -> np.ndarray | CycloError:
+    """Return the answer to a changed drive, or the error by which it is refused."""
+    try:
+        return answer(with_fields(base, change))
+    except CycloError as error:
+        return error
 
 
-def tables(drive: Drive) -> None:
-    """Analyse on half-spaces, to detect drives that no engine accepts."""
-    analyse(drive, np.array([0.5]))
+def is_accepted(base: Drive, change: dict[str, Any]) -> bool:
+    """Return whether half-spaces take a changed drive, to tell a refusal of one engine from that of all."""
+    found = answer_or_error(lambda drive: analyse(drive, np.array([0.5])).transmission_error, base, change)
+    return not isinstance(found, CycloError)
 
 
 def optimum(drive: Drive) -> np.ndarray:
@@ -170,25 +176,13 @@ def main() -> int:
         began, ignored, refused, known = time.perf_counter(), [], 0, {}
         for path in paths:
             base, change = change_of(bases.get(name, drive), path)
-            try:
-                after = answer(with_fields(base, change))
-            except CycloError as error:
-                refused += 1
-                if name == "full-fe" and not is_told(kind, path):
-                    # Either no engine accepts the drive, or `cyclo fields` does not list the refusal by full finite elements.
-                    with contextlib.suppress(CycloError):
-                        tables(with_fields(base, change))
-                        ignored.append(f"{path}: refused, but not listed in ltca.drive.engine_support")
-                if not is_refused_by_name(path, str(error)):
-                    ignored.append(f"{path}: refused without its name: {' '.join(str(error).split())[:200]}")
-                continue
-            if name == "full-fe" and refusal(kind, path.replace(".0.", ".N.")) is not None:
-                ignored.append(f"{path}: accepted, but listed as refused in ltca.drive.engine_support")
-            key = repr(base)
-            if key not in known:
-                known[key] = answer(base)
-            if moves(known[key], after) == (path in EXCEPTIONS[kind]):
-                ignored.append(f"{path}: {'moves the answer' if path in EXCEPTIONS[kind] else 'is ignored'}")
+            after = answer_or_error(answer, base, change)
+            if (key := repr(base)) not in known and not isinstance(after, CycloError):
+                known[key] = answer_or_error(answer, base, {})
+            refused += isinstance(after, CycloError)
+            accepted = partial(is_accepted, base, change)
+            fault = fault_of_field(path, kind, known.get(key, after), after, accepted=accepted, by_table=True)
+            ignored += [fault] if fault else []
         seconds = time.perf_counter() - began
         print(f"{name}: {len(paths)} fields, {refused} refused by name, {len(ignored)} wrong ({seconds:.0f} s)")
         for line in ignored:

@@ -98,15 +98,18 @@ def lever_arms(model: Reducer) -> FloatArray:
         place = geometries[0].placement
         held = place.shaft_pin_centres if place.shaft_pin_centres.size else place.crank_axes
         ring = np.abs(held).mean(axis=-1)
-    arms = np.ones((*np.broadcast_shapes(ring.shape, *(e.shape for e in eccentricities)), coordinates.size))
-    for place, geometry, e in zip(coordinates.rotations, geometries, eccentricities, strict=False):
+    halves = [np.squeeze(geometry.half_width) for geometry in geometries]
+    reaches = [np.squeeze(geometry.half_width + np.abs(geometry.plane)) for geometry in geometries]
+    rows = np.broadcast_shapes(ring.shape, *(arm.shape for arm in (*eccentricities, *halves, *reaches)))
+    arms = np.ones((*rows, coordinates.size))
+    for number, (place, geometry, e) in enumerate(zip(coordinates.rotations, geometries, eccentricities, strict=False)):
         wheel = e * geometry.placement.reduction_ratio
         arms[..., place], arms[..., WHEEL_ANGLE] = wheel - e, wheel
         for twist in coordinates.twist_places:
             arms[..., place - DISC_ROTATION + twist] = e
         for lean in range(coordinates.own - 2 * (1 + coordinates.cranks) * coordinates.leans, coordinates.own):
-            arms[..., place - DISC_ROTATION + lean] = np.squeeze(geometry.half_width)
-        arms[..., coordinates.wheel_lean_place] = np.squeeze(geometry.half_width + np.abs(geometry.plane))[..., None]
+            arms[..., place - DISC_ROTATION + lean] = halves[number]
+        arms[..., coordinates.wheel_lean_place] = reaches[number][..., None]
     if coordinates.ring:
         arms[..., coordinates.ring_place.stop - 1] = ring
     return arms

@@ -6,17 +6,18 @@ changed by a plausible amount, and either the answer changes or a `DriveError` n
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
 
 from ltca.arrays import FloatArray
+from ltca.drive.engine_support import ENGINES, refusal
 from ltca.drive.fields import ANY, element_count, field_kind, field_kinds, missing_part, read_field
 from ltca.drive.materials import JUDGED_BY, PARTS
 from ltca.drive.members.width import needs_slices
 from ltca.drive.parts import Drive
-from ltca.errors import DriveError
+from ltca.errors import CycloError, DriveError
 from ltca.reading.changes import with_fields
 
 # Factors of fields that allow small changes only, or the drive becomes unsound.
@@ -568,3 +569,46 @@ def moves(before: FloatArray, after: FloatArray) -> bool:
     first, second = before[known], after[known]
     size = np.maximum(np.maximum(np.abs(first), np.abs(second)), 1e-9)
     return bool(np.any(np.abs(first - second) > ROUND_OFF * size))
+
+
+def fault_of_field(
+    path: str,
+    model: str,
+    before: FloatArray | CycloError,
+    after: FloatArray | CycloError,
+    *,
+    accepted: Callable[[], bool],
+    by_table: bool = False,
+) -> str:
+    """Return how a model breaks the contract for a field, in words; empty where it keeps it.
+
+    Parameters
+    ----------
+    path : str
+        Of the field, one of `leaf_fields`.
+    model : str
+        Key of `EXCEPTIONS`.
+    before, after : array, shape (numbers,), or CycloError
+        Answers before and after the change of the field, or the errors by which the model refused the drives.
+    accepted : callable
+        Whether another model takes the changed drive; called where an engine refuses it beyond `ltca.drive.engine_support`.
+    by_table : bool, optional
+        Whether the table of a field is its name in a refusal, too.
+    """
+    named = any(refusal(model, name.replace(".0.", ".N.")) is not None for name in (path, goes_with(path)))
+    if isinstance(after, CycloError):
+        message = " ".join(str(after).split())
+        if not (goes_with(path) in message or path in message or (by_table and is_refused_by_name(path, message))):
+            return f"{path} is refused by {model} without its name: {message[:200]}"
+        if model in ENGINES and not named and accepted():
+            return f"{path} is refused by {model}, but not listed in ltca.drive.engine_support"
+        return ""
+    if isinstance(before, CycloError):
+        return f"{path}: {model} refuses the drive before the change: {before}"
+    if refusal(model, path.replace(".0.", ".N.")) is not None:
+        return f"{path} is accepted by {model}, but listed as refused in ltca.drive.engine_support"
+    if moves(before, after) and path in EXCEPTIONS[model]:
+        return f"{path} is listed as an exception of {model}, but moves the answer"
+    if not moves(before, after) and path not in EXCEPTIONS[model]:
+        return f"{path} is ignored by {model}"
+    return ""

@@ -71,6 +71,7 @@ def test_all_forces_are_in_balance_with_what_holds_the_cages(name):
 
 
 @pytest.mark.slow
+@pytest.mark.family(full=3)
 @pytest.mark.parametrize("name", [*NAMES, LONG])
 def test_virtual_work_closes_with_the_moment_of_the_cranks(name, unbalanced_work):
     """T_C (1/1) + T_W (1/u + w′) is the change of what is stored: the cages' part of T_C goes with their speed."""

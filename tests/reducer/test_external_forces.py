@@ -14,7 +14,6 @@ from ltca.analysis.summary import summarise
 from ltca.analysis.torque_curve import torque_curve
 from ltca.drive.parts import Material
 from ltca.drive.units.quantities import ARCMIN
-from ltca.errors import DriveError
 from ltca.page.studies.curves import torque_section
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
@@ -295,18 +294,3 @@ def test_files_keep_every_entry(paper):
     written = f'{head}[[load.external]]\nforce = {{ x = "1 kN" }}\nat = {{ z = 40.0 }}\n\n[clearance]{rest}'
     (entry,) = parse_drive(written).cases["nominal"].load.external
     assert (entry.force.x, entry.at.z, entry.frame) == (1000.0, 40.0, "housing")
-
-
-@pytest.mark.parametrize(
-    ("fields", "message"),
-    [
-        ({"load.external.0.force.x": "3 mm"}, r"load\.external\.0\.force\.x = '3 mm': "),
-        ({"load.external.0.frame": "arm"}, r"load\.external\.0\.frame = 'arm': must be 'housing' or 'output'"),
-        ({"load.external.0.force.w": 1.0}, r"load\.external\.0\.force\.w: is not a field"),
-        ({"load.external.1.force.x": 1.0}, r"load\.external\.1: there is no entry 1; \[\[load\.external\]\] has 0"),
-    ],
-)
-def test_bad_input_is_one_clear_line(paper, fields, message):
-    with pytest.raises(DriveError, match=message) as caught:
-        with_fields(paper, fields)
-    assert all("\n" not in problem for problem in caught.value.problems)

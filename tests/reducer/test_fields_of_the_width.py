@@ -85,8 +85,15 @@ def tilted(paper):
 QUICK = ("disc.hole_errors.inclination_x.3",)
 
 
+# Of two components one is of every full run, the other of the night.
 @pytest.mark.parametrize(
-    "path", [path if path in QUICK else pytest.param(path, marks=pytest.mark.slow) for path in TILTED]
+    "path",
+    [
+        path
+        if path in QUICK
+        else pytest.param(path, marks=pytest.mark.nightly if "y" in path[-4:] else pytest.mark.slow)
+        for path in TILTED
+    ],
 )
 def test_derivatives_are_those_of_balanced_drives(path, tilted):
     """Against differences of drives that are balanced on both sides."""

@@ -92,7 +92,7 @@ def work_of_friction(model, drive, centre, rate):
     return total + friction.of_wheel(parts, drive.reduction_ratio) * (turning + rate[:, WHEEL_ANGLE])
 
 
-@pytest.mark.family(quick=1)
+@pytest.mark.family(quick=1, full=5)
 @pytest.mark.parametrize(
     "name",
     [

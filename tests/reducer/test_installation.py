@@ -74,6 +74,7 @@ def test_stiffness_and_play_at_the_output(paper):
 
 
 @pytest.mark.slow
+@pytest.mark.family(full=3)
 @pytest.mark.parametrize("held", ["pin-shaft", "pin-wheel"])
 @pytest.mark.parametrize("discs", [1, 2, 3])
 def test_virtual_work_at_every_position(joint, discs, held, stored):

@@ -81,18 +81,20 @@ THREE, PINNED, ALL = (
     pytest.param(name, marks=pytest.mark.slow)
     for name in ("three discs on bent sleeved pins", "tied-pinned", "everything")
 )
-KINDS = ["slots", "sleeves", "bent wheel pins", THREE, "free", "tied-clamped", PINNED, ALL]
+KINDS = ["slots", "free", ALL, "bent wheel pins", "sleeves", THREE, "tied-clamped", PINNED]
 QUICK_AND_SLOW = [
     name if name in ("slots", "free", THREE, PINNED, ALL) else pytest.param(name, marks=pytest.mark.slow)
     for name in KINDS
 ]
 
 
+@pytest.mark.family(full=4)
 @pytest.mark.parametrize("name", QUICK_AND_SLOW)
 def test_virtual_work_at_every_position(joint, name, unbalanced_work):
     np.testing.assert_allclose(unbalanced_work(kind(joint, name), ANGLES + 0.05), 0.0, atol=1e-7)
 
 
+@pytest.mark.family(full=4)
 @pytest.mark.parametrize("name", QUICK_AND_SLOW)
 def test_tangent_is_the_slope_of_the_force(joint, name, tangent_and_slope):
     scaled, slope = tangent_and_slope(kind(joint, name), ANGLES[:1])

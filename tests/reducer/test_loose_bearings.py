@@ -46,7 +46,7 @@ def balanced(drive, angles=ANGLES):
     return model, solve_at_output(model, [drive], angles, drive.load.torque)
 
 
-@pytest.mark.family(quick=1)
+@pytest.mark.family(quick=1, full=4)
 @pytest.mark.parametrize("words", [LOOSE, TIGHT], ids=["loose", "tight"])
 @pytest.mark.parametrize(
     "name",

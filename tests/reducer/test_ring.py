@@ -91,7 +91,7 @@ KINDS = [
 ]
 
 
-@pytest.mark.family(quick=1)
+@pytest.mark.family(quick=1, full=3)
 @pytest.mark.parametrize("name", KINDS)
 def test_tangent_is_the_slope_of_the_force(name, tangent_and_slope):
     scaled, slope = tangent_and_slope(kind(name), ANGLES[:1])
@@ -99,7 +99,7 @@ def test_tangent_is_the_slope_of_the_force(name, tangent_and_slope):
     np.testing.assert_allclose(slope, scaled, rtol=0.0, atol=2e-6 * np.abs(scaled).max())
 
 
-@pytest.mark.family(quick=1)
+@pytest.mark.family(quick=1, full=3)
 @pytest.mark.parametrize("name", KINDS)
 def test_virtual_work_at_every_position(name, unbalanced_work):
     """With the energy ½ fᵀSf of the ring."""

@@ -223,31 +223,6 @@ def test_orders_know_the_sun(rv):
     assert not [order.name for order in known_orders(drive) if "sun" in order.name]
 
 
-@pytest.mark.parametrize(
-    ("fields", "message"),
-    [
-        # 2 tan 20° (0.05 + 0.03) = 0.0582
-        (
-            {"first_stage.sun_runout.amount": 0.05, "first_stage.planet_runout.amount": (0.0, -0.03, 0.01)},
-            r"first_stage\.backlash = 0\.05 mm: must be at least 0\.05824 mm beside first_stage\.sun_runout\.amount = 0\.05 mm, "
-            r"first_stage\.planet_runout\.amount = -0\.03 mm",
-        ),
-        (
-            {"first_stage.planet_runout.amount": (0.01, 0.0)},
-            r"first_stage\.planet_runout\.amount has 2 values: must have 3, one for each of the planets",
-        ),
-        (
-            {"first_stage.planet_runout.angle": (0.01,)},
-            r"first_stage\.planet_runout\.angle has 1 value: must have 3",
-        ),
-        ({"first_stage.sun_runout.phase": 1.0}, r"first_stage\.sun_runout\.phase: is not a field"),
-    ],
-)
-def test_bad_input_is_one_clear_line(rv, fields, message):
-    with pytest.raises(DriveError, match=message):
-        with_fields(rv, fields)
-
-
 def test_teeth_jam_when_warm(rv):
     """The carrier colder than its cranks takes the rest of the backlash: 2 tan 20° · 42 mm · 1.2e-5 · 30 K = 0.011 mm."""
     runout = {"first_stage.sun_runout.amount": 0.068}

@@ -10,7 +10,6 @@ from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.results import build_dataset
 from ltca.compliance.response import bearing_pushes
 from ltca.equilibrium.output_torque import solve_at_output
-from ltca.errors import DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.laws.beam import torsion_flexibility
 from ltca.reading.changes import with_fields
@@ -117,20 +116,3 @@ def test_twists_are_told(rv):
     assert float(np.abs(twist).max()) > 1e-5
     assert "crank_twist" not in build_dataset("rv", {"nominal": analyse(rv, ANGLES)})
     np.testing.assert_allclose(sum(found.compliance_shares.values()), 1.0, rtol=1e-12)
-
-
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
-        ({"crank.support.torsion": True}, r"crank\.support\.spline_plane: must be given with crank\.support\.torsion"),
-        ({"crank.support.spline_plane": 30.0}, r"crank\.support\.spline_plane = 30 mm: must be left out without"),
-        (
-            {"crank.support.torsion": True, "crank.support.spline_plane": 7.0, "disc.planes": (-7.0, 7.0)},
-            r"crank\.support\.spline_plane = 7 mm: must be another place",
-        ),
-        ({"crank.support.torsion": 1}, r"crank\.support\.torsion = 1: must be true or false"),
-    ],
-)
-def test_bad_input_is_one_clear_line(rv, words, message):
-    with pytest.raises(DriveError, match=message):
-        with_fields(rv, words)

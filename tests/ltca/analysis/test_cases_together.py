@@ -76,6 +76,15 @@ def test_cases_together_are_those_alone(cases):
         assert_same(found[name], analyse(drive, ANGLES))
 
 
+def test_cases_of_discs_in_other_planes_share_a_batch():
+    """Drives that differ in the planes of their discs and in no length of the residual broke a batch with a ValueError."""
+    drive = shipped("rv")
+    cases = {str(plane): with_fields(drive, {"disc.planes": (-plane, plane)}) for plane in (9.0, 10.0)}
+    angle = ANGLES[:1]
+    for name, together in analyse_cases(cases, angle):
+        assert_same(together, analyse(cases[name], angle))
+
+
 @pytest.mark.slow
 def test_cases_from_poses_of_a_drive_near_by_are_those_from_first_contact():
     """Whatever the search starts from it ends at a residual of 1e-9 of the load; drives with other coordinates start anew."""

@@ -77,6 +77,7 @@ def test_grid_halved():
 
 
 @pytest.mark.slow
+@pytest.mark.family(full=2)
 @pytest.mark.parametrize("case", CASES)
 def test_paper_agrees_on_the_same_law(case):
     """The issue asks for 0.01 %; both end at the same residual, so they agree to 1e-8."""

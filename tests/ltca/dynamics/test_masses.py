@@ -159,21 +159,6 @@ def test_eccentrics_have_the_density_of_the_crankshaft():
         with_fields(PAPER, {"materials.crankshaft.youngs_modulus": 2e5})
 
 
-@pytest.mark.parametrize(
-    ("changes", "message"),
-    [
-        ({"damping.ratio": 0.02, "damping.loss_factor": 0.04}, r"damping\.ratio, damping\.loss_factor: one of the two"),
-        ({"damping.ratio": 1.5}, r"damping\.ratio = 1\.5: must be greater than 0 and less than 1"),
-        ({"inertia.output_mass": 3.0}, r"inertia\.output_mass = 3 kg: must be left out without main_bearing"),
-        ({"inertia.input": "3 kg"}, r"inertia\.input = '3 kg': must have the unit kg·m²"),
-        ({"inertia.input": -1.0}, r"inertia\.input = -1\.0: must be greater than 0 kg·m²"),
-    ],
-)
-def test_wrong_inertias_are_refused_by_name(changes, message):
-    with pytest.raises(DriveError, match=message):
-        with_fields(PAPER, changes)
-
-
 def test_units():
     assert parse_quantity("1 kg·cm²", "kg·m²", "x") == 1e-4
     assert parse_quantity("5 g cm2", "kg·m²", "x") == 5e-7

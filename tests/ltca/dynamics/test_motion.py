@@ -110,6 +110,7 @@ DEAR = ("sleeved", "tied", "elastic ring")
 """Kinds whose pins are displaced by several discs, which takes ten times as long: they turn less far."""
 
 
+@pytest.mark.family(full=6)
 @pytest.mark.parametrize(
     "name",
     [

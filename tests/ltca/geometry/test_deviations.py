@@ -11,7 +11,6 @@ from ltca.arrays import stack_drives
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.equilibrium.balance import solve_equilibrium
 from ltca.equilibrium.reducer import Reducer
-from ltca.errors import DriveError
 from ltca.geometry.coordinates import DISC_ROTATION
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.pairs import ContactGeometry
@@ -186,32 +185,6 @@ def test_runout_along_the_bore_offset(paper_cases):
     shifted[:, 0] += step.real
     shifted[:, 1] += step.imag
     np.testing.assert_allclose(geometry.flank(angles, pose).approach, plain.flank(angles, shifted).approach, atol=1e-13)
-
-
-@pytest.mark.parametrize(
-    ("fields", "message"),
-    [
-        (
-            {"disc.profile_errors.orders": (2,), "disc.profile_errors.cosine": (0.1, 0.1)},
-            "cosine has 2 values: must have 1",
-        ),
-        ({"disc.profile_errors.orders": (2, 2)}, "must name each order once"),
-        (
-            {"disc.profile_errors.parameter": (1.0, 0.5, 2.0), "disc.profile_errors.deviation": (0.0, 0.0, 0.1)},
-            "ascending",
-        ),
-        ({"disc.profile_errors.parameter": (1.0, 1.5, 2.0)}, "deviation has 0 values: must have 3"),
-        ({"disc.profile_errors.orders": (300,), "disc.profile_errors.cosine": (0.2,)}, "folds back|hollow"),
-        ({"crank.eccentricity_error": 1.0}, r"crank\.eccentricity_error = 1 mm: must be at most 0\.5 mm"),
-        ({"disc.runout.amount": -0.7}, r"disc\.runout\.amount = -0\.7 mm: must be at most"),
-        ({"disc.runout.amont": 0.1}, "is not a field"),
-        ({"pin_wheel.pin_errors.radial.14": 0.1}, "no element 14"),
-        ({"crank.axis_offset.x": "1 s"}, r"crank\.axis_offset\.x = '1 s'"),
-    ],
-)
-def test_wrong_deviations_are_refused(paper_cases, fields, message):
-    with pytest.raises(DriveError, match=message):
-        with_fields(paper_cases["CS-1"], fields)
 
 
 def _together_and_alone(drives, angles):

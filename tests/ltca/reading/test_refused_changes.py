@@ -1,0 +1,54 @@
+"""Changes of a drive that are refused: one table of fields, values and messages, each message one line that names the field."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from ltca.errors import DriveError
+from ltca.reading.changes import with_fields
+from ltca.reading.drive_file import load_drive
+
+ROWS = tomllib.loads(Path(__file__).with_name("refused_changes.toml").read_text(encoding="utf-8"))["refused"]
+
+
+def stands_in(pieces, text):
+    """Whether pieces of text stand in a text, one behind the other."""
+    at = 0
+    for piece in pieces:
+        if (at := text.find(piece, at)) < 0:
+            return False
+        at += len(piece)
+    return True
+
+
+def fault(drive, row):
+    """What is wrong with the answer to a change, None where its message is as it should be."""
+    changes = row["changes"] | dict.fromkeys(row.get("left_out", ()))
+    try:
+        with_fields(drive, changes)
+    except DriveError as error:
+        problems = error.problems
+    else:
+        return f"{changes} is accepted"
+    if any("\n" in problem for problem in problems) or not any(stands_in(row["message"], one) for one in problems):
+        return f"{changes}: {problems} for {row['message']}"
+    return None
+
+
+@pytest.mark.parametrize("name", sorted({row["drive"] for row in ROWS}))
+def test_bad_fields_are_refused_in_a_line_that_names_them(name):
+    drive = next(iter(load_drive(name).cases.values()))
+    rows = [row for row in ROWS if row["drive"] == name]
+    assert [told for row in rows if (told := fault(with_fields(drive, row.get("before", {})), row))] == []
+
+
+def test_a_change_that_is_accepted_or_told_otherwise_is_found():
+    drive, row = (
+        load_drive("rv").cases["nominal"],
+        {"changes": {"crank.support.diameter": 27.0}, "message": ["at most", "must"]},
+    )
+    assert "for ['at most', 'must']" in fault(drive, row)
+    assert "is accepted" in fault(drive, row | {"changes": {"crank.support.diameter": 25.0}})
