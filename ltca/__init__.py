@@ -11,6 +11,7 @@ Folders in the order data passes; each one's docstring lists its modules.
 =============  ============================================================
 errors         what the suite raises on purpose
 arrays         Trees of arrays by position, and results that stay as they were returned
+beam           Round shafts and pins as beams: deflections at the planes of the discs under their forces, twists
 quantities     The registry of quantities: names, units, dimensions, words and limits of all results
 output         The edge: files that are whole or not there, folders of one run, processes that end with ours, progress
 drive          What a drive is: frozen definitions of its parts, their deviations and tolerances; nothing computed

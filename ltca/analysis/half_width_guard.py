@@ -21,6 +21,7 @@ from ltca.compliance.grids import GridCompliance
 from ltca.compliance.response import ContactPressures, DiscModel, Response, split_shifts
 from ltca.drive.members.verdict_words import part_words
 from ltca.drive.parts import Drive
+from ltca.drive.pin_beams import shaft_pin_beam, wheel_pin_beam
 from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import BORNE
 from ltca.equilibrium.balance import Equilibrium
@@ -30,7 +31,7 @@ from ltca.geometry.coordinates import WHEEL_ANGLE, Coordinates, X, Y
 from ltca.geometry.interference import ROUNDING, drawn_interference
 from ltca.geometry.rotation import unit
 from ltca.geometry.separation import circle_departure
-from ltca.laws.backed import own_flexibility, shaft_pin_beam, wheel_pin_beam
+from ltca.laws.backed import own_flexibility
 
 HALF_WIDTH_BOUND = 0.3
 """Largest contact half-width as a part of the smallest radius in contact: beyond it the bodies are no half-spaces

@@ -14,18 +14,9 @@ SUMMARY = (
     "write a commented drive file to start from: the paper's drive, a robot joint's, an RV reducer's, one of loose pins"
 )
 EXAMPLES = (
-    ("cyclo init my.toml", "a commented copy of the paper's drive"),
+    ("cyclo init my.toml", "the file of the paper's drive, commented"),
     ("cyclo init joint.toml --like robot-joint", "two discs, the housing held"),
 )
-
-FOLLOWING = (
-    ('# beam = { tip = "tied-clamped" }\nstiffness = ', 'beam = { tip = "tied-clamped" }\n# stiffness = '),
-    ("{ span = 24.0, tip", "{ tip"),
-    ("{ span = 26.0, ends", "{ ends"),
-    ("\nroller_length = ", "\n# roller_length = "),
-)
-"""Lines of shipped drives, and what becomes of them in a file to start from: lengths follow the thickness and number of discs
-that a reader changes, and shaft pins are beams, whose stiffness follows from their sizes."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -54,8 +45,6 @@ def execute(arguments: argparse.Namespace) -> int:
         raise CycloError(f"{path}: exists already; --force overwrites it")
     own = f"name = {json.dumps(path.stem, ensure_ascii=False)}"
     text = shipped_drive(arguments.like).replace(f'name = "{arguments.like}"', own, 1)
-    for shipped, following in FOLLOWING:
-        text = text.replace(shipped, following)
     with whole_file(path) as part:
         part.write_text(text, encoding="utf-8", newline="\n")
     word = shlex.quote(str(path))

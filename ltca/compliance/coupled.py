@@ -48,11 +48,11 @@ from ltca.compliance.undeformed import UndeformedBodies
 from ltca.contact.tracked_grid import ContactKind
 from ltca.drive.hole_contact import shaft_pins_yield
 from ltca.drive.parts import Drive
+from ltca.drive.pin_beams import shaft_pin_beam
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.backed import (
     back_shaft_pins,
-    shaft_pin_beam,
     shaft_pin_seat,
     shaft_pin_stiffness,
     tip_share,

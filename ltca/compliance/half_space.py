@@ -18,6 +18,7 @@ from ltca.compliance.uncoupled import PairLaws, UncoupledContacts
 from ltca.contact.tracked_grid import ContactKind, ContactKinds
 from ltca.drive.hole_contact import hole_modulus, shaft_pins_yield
 from ltca.drive.parts import Drive, LengthProfile, Material, PinShaft, PinWheel, contact_modulus
+from ltca.drive.pin_beams import shaft_pin_beam
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.length_profile import generator_profile, lead_relief
 from ltca.geometry.pair_motion import FlankMotion
@@ -26,7 +27,6 @@ from ltca.laws.backed import (
     HALF_SPACE_DATUM,
     back_shaft_pins,
     back_wheel_pins,
-    shaft_pin_beam,
     shaft_pin_seat,
     shaft_pin_stiffness,
     sleeve_overlap,

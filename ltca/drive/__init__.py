@@ -13,6 +13,7 @@ parts           The drive: validated, frozen definitions of its parts, clearance
 declaration     Every field with unit, bounds, default, meaning and growth with temperature, from the definitions
 engine_support  Fields that engines refuse: the one table behind engines, finite elements and the reference pages
 single_discs    A drive of several discs as drives of one disc each
+pin_beams       Pins as beams, and the springs that shaft pins are equal to
 hole_contact    The contact of holes and shaft pins: whether the pins are elastic there, and the modulus of the pair
 ring_shape      What determines the plane finite-element ring of the pin wheel, and its fingerprint
 yielding_parts  Which parts yield in the torsional stiffness, and which are rigid because a file leaves them out

@@ -15,6 +15,7 @@ from typing import Any
 from ltca.drive.declaration import ANY, declared_fields
 from ltca.drive.members.width import needs_slices
 from ltca.drive.parts import Drive
+from ltca.drive.pin_beams import shaft_pin_spring
 from ltca.drive.units.table import label
 from ltca.errors import DriveError
 
@@ -54,8 +55,9 @@ class Refusal:
         Engines that refuse it.
     reason : str
         Why, as it stands behind "refused by ENGINE:".
-    instead : str
-        What to do instead, for the message; empty where leaving the field out is all that can be done.
+    instead : str or callable
+        What to do instead, for the message, or a function that says it of a drive; empty where leaving the field out is all that
+        can be done.
     equals : str
         Path of the field whose value is accepted; by default the value of a drive that leaves the field out is.
     accepts : callable, optional
@@ -65,9 +67,18 @@ class Refusal:
     path: str
     engines: tuple[str, ...]
     reason: str
-    instead: str = ""
+    instead: str | Callable[[Drive], str] = ""
     equals: str = ""
     accepts: Callable[[Any], bool] | None = None
+
+
+def _spring_of_pins(drive: Drive) -> str:
+    """The spring that stands in the place of the beams of the shaft pins."""
+    spring = shaft_pin_spring(drive)
+    if spring is None:
+        return "give pin_shaft.stiffness in its place"
+    alike = "" if drive.disc.number_of_discs == 1 else ", but lets the discs share the torque alike"
+    return f"give pin_shaft.stiffness in its place: {spring.stiffness:g} N/mm turns the output as far{alike}"
 
 
 _PLANE = ("fe", "full FE")
@@ -100,7 +111,7 @@ REFUSALS = (
     Refusal("crank_bearing.roller_length", _PLANE, _TWO_DIMENSIONS, _HYBRID, equals="disc.thickness"),
     Refusal("crank_bearing.roller_profile", _PLANE, _TWO_DIMENSIONS, _HYBRID, accepts=attrgetter("is_cylinder")),
     Refusal("pin_shaft.seat", _FIXED, "pins are fixed in the model"),
-    Refusal("pin_shaft.beam", _FIXED, "pins do not bend in the model", "give pin_shaft.stiffness in its place"),
+    Refusal("pin_shaft.beam", _FIXED, "pins do not bend in the model", _spring_of_pins),
     Refusal("main_bearing", _RIGID, "the axis of the wheel is fixed in the model"),
     Refusal("carrier.stiffness_torsion", _RIGID, "the carrier is rigid in the model"),
     Refusal("carrier.flange", _RIGID, "the carrier is rigid in the model"),
@@ -194,7 +205,8 @@ def _problems(drive: Drive, row: Refusal, engine: str) -> Iterator[str]:
         named = (
             f"{path} ({_contents(path, value, row.path)})" if is_dataclass(value) else f"{path} = {shown(value)}{unit}"
         )
-        instead = f"; {row.instead}" if row.instead else ""
+        instead = row.instead if isinstance(row.instead, str) else row.instead(drive)
+        instead = f"; {instead}" if instead else ""
         yield f"{named}: must be {bound} for {_IN_MESSAGES[engine]} ({row.reason}){instead}"
 
 

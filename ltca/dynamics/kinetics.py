@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.arrays import ComplexArray, FloatArray
+from ltca.beam import shaft_flexibility
 from ltca.drive.parts import Drive
 from ltca.dynamics.masses import (
     CRANKS,
@@ -43,7 +44,6 @@ from ltca.equilibrium.first_stage import StageMesh
 from ltca.equilibrium.supports import crank_springs
 from ltca.errors import DriveError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, Coordinates, X, Y
-from ltca.laws.beam import shaft_flexibility
 
 OF_WHEEL = (WHEEL_PINS, SLEEVES[WHEEL_PINS], RING)
 OF_SHAFT = (SHAFT_PINS, SLEEVES[SHAFT_PINS], POSTS)

@@ -32,12 +32,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from ltca.arrays import ComplexArray, FloatArray, by_drive
+from ltca.beam import shaft_flexibility, support_parts
 from ltca.drive.parts import Drive
 from ltca.equilibrium.supports import crank_springs, journals
 from ltca.geometry.coordinates import Coordinates
 from ltca.geometry.placement import BatchScalar
 from ltca.geometry.rotation import unit
-from ltca.laws.beam import shaft_flexibility, support_parts
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -2,7 +2,7 @@ r"""Pins displaced by the parts that hold them: beams under several discs, and t
 
 What the forces on pins displace is :math:`u = -S f`, with one symmetric flexibility S and the forces :math:`f = F e` of the
 discs against the displacements, :math:`e = \partial \delta / \partial u`. S is a sum: a pin is one beam under the forces of all
-discs (`ltca.laws.beam`), and the ring moves every pin by the forces on all of them, summed over the discs
+discs (`ltca.beam`), and the ring moves every pin by the forces on all of them, summed over the discs
 (`ltca.compliance.ring`). Displacements of wheel pins are those in the turning wheel, so S does not turn.
 What a disc's own force makes a beam yield lies along the common normal, in series with the contact, and is part of its law
 (`ltca.laws.backed`).
@@ -28,13 +28,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.arrays import ComplexArray, FloatArray, by_drive
+from ltca.beam import PinBeam
 from ltca.compliance.response import DiscResponse, PairSlopes
 from ltca.compliance.ring import ring_flexibility
 from ltca.drive.parts import Drive
+from ltca.drive.pin_beams import from_start, shaft_pin_beam, wheel_pin_beam
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION, WHEEL_ANGLE, Coordinates
-from ltca.laws.backed import from_start, shaft_pin_beam, wheel_pin_beam
-from ltca.laws.beam import PinBeam
 
 PLAIN_ITERATIONS = 20
 """Iterations by the size of the residual; rings so soft that contacts alternate are settled by their energy."""

@@ -1,6 +1,6 @@
 r"""What holds wheel and cranks: springs on coordinates, linear ones and those of bearings with clearance or preload.
 
-Every crank is a beam on two bearings (`ltca.laws.beam`); its stiffness ties x and y of the crank in the planes of the discs,
+Every crank is a beam on two bearings (`ltca.beam`); its stiffness ties x and y of the crank in the planes of the discs,
 alike in every direction. Where it twists its stiffness in torsion ties the angles of its eccentrics against the splined planet.
 The wheel's main bearing holds its x and y, and its lean where it yields in tilt: rows each at its pressure centre. A ring that
 ties the tips of the shaft pins is held by what the pins resist when it moves all tips; as the far flange of a carrier it is held
@@ -26,13 +26,13 @@ from math import isfinite, nan
 import numpy as np
 
 from ltca.arrays import ComplexArray, FloatArray, by_drive
+from ltca.beam import shaft_flexibility, support_parts, torsion_flexibility
 from ltca.drive.members.main_bearing import ROLLER, axial_preload
 from ltca.drive.parts import CrankSupport, Drive, Preload
+from ltca.drive.pin_beams import shaft_pin_beam
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import Coordinates
 from ltca.geometry.pairs import ContactGeometry
-from ltca.laws.backed import shaft_pin_beam
-from ltca.laws.beam import shaft_flexibility, support_parts, torsion_flexibility
 from ltca.laws.bearing_pair import (
     RollingRow,
     SideLaw,

@@ -22,7 +22,6 @@ plane_strain           Load–approach law of a line contact in plane strain, wi
 seats                  Conforming seats: contact over a given arc, series over the load, the wall of a sleeve
 conforming             A pin in a bore that is hardly larger: arc, pressure and approach, with a datum; a sleeve
                        on its pin
-beam                   Round shafts and pins as beams: deflections at the planes of the discs under their forces, twists
 ring_beam              The ring of the pin wheel as a curved beam: displacements of the seats under the forces at all of them
 bearing_pair           Rolling bearings in five directions in closed form, and bearings with clearance or preload
 backed                 A contact in series with the seat of a loose pin or sleeve and with the bending of the pin

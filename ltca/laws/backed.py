@@ -17,9 +17,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ltca.arrays import FloatArray, by_drive
+from ltca.beam import PinBeam
 from ltca.drive.parts import Drive, PinShaft, PinWheel
+from ltca.drive.pin_beams import from_start, shaft_pin_beam, wheel_pin_beam
 from ltca.errors import ConvergenceError
-from ltca.laws.beam import End, PinBeam
 from ltca.laws.conforming import ConformingLaw
 from ltca.laws.contact_law import ContactLaw
 
@@ -217,37 +218,6 @@ def shaft_pin_stiffness(drive: Drive) -> float:
     return drive.hole_stiffness if beam is None else 1.0 / own_flexibility(drive, beam)
 
 
-def wheel_pin_beam(drive: Drive) -> PinBeam | None:
-    """Return a wheel pin as a beam, its middle at the zero of the planes; None where it does not bend."""
-    wheel = drive.pin_wheel
-    if wheel.beam is None:
-        return None
-    material = drive.materials.wheel_pin
-    return PinBeam(
-        span=drive.wheel_pin_span,
-        ends=(wheel.beam.ends, wheel.beam.ends),
-        diameter=wheel.beam_diameter,
-        youngs_modulus=material.youngs_modulus,
-        poisson_ratio=material.poisson_ratio,
-    )
-
-
-def shaft_pin_beam(drive: Drive) -> PinBeam | None:
-    """Return a shaft pin as a beam, its middle at the zero of the planes; None where it is a spring or there is none."""
-    shaft = drive.pin_shaft
-    if shaft is None or shaft.beam is None:
-        return None
-    tips: dict[str, End] = {"free": "free", "tied-clamped": "clamped", "tied-pinned": "supported"}
-    material = drive.materials.shaft_pin
-    return PinBeam(
-        span=drive.shaft_pin_span,
-        ends=("clamped", tips[shaft.beam.tip]),
-        diameter=shaft.beam_diameter,
-        youngs_modulus=material.youngs_modulus,
-        poisson_ratio=material.poisson_ratio,
-    )
-
-
 def tip_share(drive: Drive) -> float:
     """Return the displacement of a shaft pin at the disc per displacement of its tip by the ring; 0 without ring."""
     beam = shaft_pin_beam(drive)
@@ -262,11 +232,6 @@ def tip_slope(drive: Drive) -> float:
     if beam is None or beam.ends[1] == "free" or drive.contact.slices == 1:
         return 0.0
     return float(beam.tip_shape(from_start(beam, drive).tolist(), drive.disc.thickness, slopes=True)[1])
-
-
-def from_start(beam: PinBeam, drive: Drive) -> FloatArray:
-    """Return the planes of the discs from the start of a beam whose middle is at their zero, mm."""
-    return np.asarray(drive.disc.disc_planes) + 0.5 * beam.span
 
 
 def own_flexibility(drive: Drive, beam: PinBeam | None) -> float:

@@ -11,6 +11,7 @@ from ltca.drive.members.bearings import designation_of
 from ltca.drive.members.named_materials import named_parts
 from ltca.drive.members.temperatures import temperature_words
 from ltca.drive.parts import Drive, FirstStage, PinShaft, PinWheel
+from ltca.drive.pin_beams import shaft_pin_spring, two_digits
 from ltca.drive.single_discs import equal_parts, single_discs
 from ltca.drive.units.quantities import ARCMIN
 from ltca.dynamics.mass_values import mass_rows
@@ -310,6 +311,13 @@ def _pins(drive: Drive) -> Rows:
         ]
         reach = f"{drive.shaft_pin_span:g} mm from the flange at {-0.5 * drive.shaft_pin_span:g} mm, tips {tips}"
         rows.append(("shaft pins, as beams", f"⌀ {shaft.beam_diameter:g} mm, {reach}"))
+        if (spring := shaft_pin_spring(drive)) is not None:
+            between = [two_digits(one) for one in (spring.loaded_alike, spring.turned_alike)]
+            told = (
+                "" if drive.disc.number_of_discs == 1 else "; {:g} where discs carry alike, {:g} where they turn alike"
+            )
+            words = f"pin_shaft.stiffness = {spring.stiffness:g} N/mm{told.format(*between)}"
+            rows.append(("shaft pins, springs that turn as far", words))
     return rows
 
 

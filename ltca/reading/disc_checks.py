@@ -228,7 +228,7 @@ def _bearing(drive: Drive) -> Iterator[str]:
     if drive.roller_length > drive.disc.thickness + ROUNDING:
         yield (
             f"crank_bearing.roller_length = {drive.roller_length:g} mm: must be at most "
-            f"{drive.disc.thickness:g} mm, the thickness of the disc"
+            f"{drive.disc.thickness:g} mm, the thickness of the disc, which it is when left out"
         )
     if drive.clearance.bearing > bearing.roller_radius:
         yield (

@@ -771,7 +771,8 @@ def _beam(drive: Drive, part: PinWheel | PinShaft, beam: WheelPinBeam | ShaftPin
         held = "walls" if isinstance(beam, WheelPinBeam) else "flange and tip"
         yield (
             f"{path}.beam.span = {span:g} mm: must be at least {2.0 * reach:.6g} mm, or {which} from {low:.6g} to "
-            f"{high:.6g} mm (disc.planes, disc.thickness) is not between the {held} at ±{half:g} mm"
+            f"{high:.6g} mm (disc.planes, disc.thickness) is not between the {held} at ±{half:g} mm; left "
+            "out, it is as long as the discs with their gaps"
         )
     sleeved = part.seat.kind == "sleeve" and part.seat.bore_radius is not None
     widest = 2.0 * ((part.seat.bore_radius or 0.0) if sleeved else part.pin_radius)

@@ -1,6 +1,6 @@
 """Check of an equilibrium of contacts in slices by the loads of their slices, in six directions per disc.
 
-Independent of `ltca.geometry`, `ltca.compliance`, `ltca.equilibrium`, `ltca.laws.sliced_line` and `ltca.laws.beam`: axes are
+Independent of `ltca.geometry`, `ltca.compliance`, `ltca.equilibrium`, `ltca.laws.sliced_line` and `ltca.beam`: axes are
 lines in space that stand inclined, lean with their bodies and are displaced by the forces of the answer (beams and shafts by the
 theorem of unit loads). At the height z of every point of a slice the section of the disc stands where its lean brings it and the
 pin where its axis crosses; normal and lever arm there are those of these two sections, without any derivative of the middle. From

@@ -23,12 +23,13 @@ from ltca.drive.parts import (
     Material,
     ShaftPinBeam,
 )
+from ltca.drive.pin_beams import shaft_pin_beam
 from ltca.equilibrium.compliance_shares import compliance_shares
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.supports import Supports
 from ltca.errors import DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
-from ltca.laws.backed import own_flexibility, shaft_pin_beam
+from ltca.laws.backed import own_flexibility
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive, parse_drive
 from ltca.reading.writing import drive_text

@@ -16,6 +16,7 @@ from ltca.analysis.summary import summarise
 from ltca.compliance.coefficients import without_coupling
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.drive.parts import CrankSupport, ShaftPinBeam, ShaftPinSeat, WheelPinBeam, WheelPinSeat
+from ltca.drive.pin_beams import from_start, shaft_pin_beam, wheel_pin_beam
 from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.pin_displacements import PinDisplacements
@@ -25,7 +26,7 @@ from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, X, Y
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.placement import position_angles
-from ltca.laws.backed import from_start, shaft_pin_beam, wheel_pin_beam, wheel_pin_seat
+from ltca.laws.backed import wheel_pin_seat
 from ltca.laws.line_contact import LineContactLaw
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import parse_drive, shipped_drive

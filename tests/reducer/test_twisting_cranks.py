@@ -8,10 +8,10 @@ import pytest
 from ltca.analysis.engines import HalfSpace
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.results import build_dataset
+from ltca.beam import torsion_flexibility
 from ltca.compliance.response import bearing_pushes
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.geometry.coordinates import WHEEL_ANGLE
-from ltca.laws.beam import torsion_flexibility
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import parse_drive, shipped_drive
 from ltca.testing.balance_check import find_imbalance

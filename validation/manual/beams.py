@@ -7,7 +7,7 @@ from math import log, pi
 import numpy as np
 from scipy.integrate import quad
 
-from ltca.laws.beam import End, PinBeam, shaft_flexibility
+from ltca.beam import End, PinBeam, shaft_flexibility
 from ltca.laws.ring_beam import RingBeam
 from validation.manual.case import Case, Figure, Reference, absolute_figure, relative_figure
 
@@ -239,7 +239,7 @@ CASES = (
                 uncertainty="A choice of the model, the same on both sides.",
             ),
         ),
-        model="`ltca.laws.beam.PinBeam`: fundamental solutions and a rigid motion.",
+        model="`ltca.beam.PinBeam`: fundamental solutions and a rigid motion.",
         run=_timoshenko,
     ),
     Case(
@@ -255,7 +255,7 @@ CASES = (
                 uncertainty="Half a unit of the last printed digit, 0.005 µm.",
             ),
         ),
-        model="`ltca.laws.beam.PinBeam` without shear, which the handbook leaves out.",
+        model="`ltca.beam.PinBeam` without shear, which the handbook leaves out.",
         input_uncertainty="The force is printed as 278.5 N: 0.05 N, 0.0025 µm.",
         run=_handbook_pin,
     ),
@@ -275,7 +275,7 @@ CASES = (
                 "follow from the closed form.",
             ),
         ),
-        model="`ltca.laws.beam.PinBeam`: shares of the tips by `tip_shape`, `tip_stiffness`; balance of the ring.",
+        model="`ltca.beam.PinBeam`: shares of the tips by `tip_shape`, `tip_stiffness`; balance of the ring.",
         run=_tied_pins,
     ),
     Case(
@@ -289,7 +289,7 @@ CASES = (
                 uncertainty="None: closed forms.",
             ),
         ),
-        model="`ltca.laws.beam.shaft_flexibility`.",
+        model="`ltca.beam.shaft_flexibility`.",
         run=_crankshaft,
     ),
     Case(

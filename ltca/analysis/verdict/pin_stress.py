@@ -22,8 +22,8 @@ import numpy as np
 
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.arrays import ComplexArray, FloatArray
+from ltca.drive.pin_beams import from_start, shaft_pin_beam, wheel_pin_beam
 from ltca.geometry.coordinates import WHEEL_ANGLE
-from ltca.laws.backed import from_start, shaft_pin_beam, wheel_pin_beam
 
 STATIONS = 201
 """Stations along a pin at which moments are evaluated, besides its ends and the edges of the discs."""

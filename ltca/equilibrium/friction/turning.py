@@ -17,13 +17,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ltca.arrays import ComplexArray, FloatArray
+from ltca.beam import support_parts
 from ltca.compliance.response import DiscResponse, bearing_pushes
 from ltca.drive.parts import Drive, PinShaft, PinWheel
 from ltca.equilibrium.friction.slip import Slip
 from ltca.equilibrium.supports import crank_laws, wheel_law
 from ltca.geometry.coordinates import DISC_ROTATION
 from ltca.geometry.pairs import ContactGeometry
-from ltca.laws.beam import support_parts
 from ltca.laws.bearing_pair import SideLaw
 
 FADING_SLIP = 1e-4

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ltca.laws.beam import PinBeam
+from ltca.beam import PinBeam
 
 
 def test_pin_as_a_beam_of_small_elements():
