@@ -304,9 +304,10 @@ class LoadedAnalysis:
         found = [*units, preload_warning(self.drive), self._lost_play()]
         found += [strength_warning(self.drive.materials), deep_seats_warning(self.drive)]
         found += coefficient_warnings(contacts.coefficients for contacts in self.model.discs)
-        if not units and self.drive.load.light_torque > self.torque > 0.0:
+        load = self.drive.load
+        if not units and not load.leaves_out_light_torque and load.light_torque > self.torque > 0.0:
             found.append(
-                f"load.light_torque = {self.drive.load.light_torque:g} N·mm is more than the torque of {self.torque:g} N·mm "
+                f"load.light_torque = {load.light_torque:g} N·mm is more than the torque of {self.torque:g} N·mm "
                 "that it is light against: are the two swapped, or is one in N·m?"
             )
         found.append(displacement_warning(self.drive.crank.eccentricity, self._yielding))

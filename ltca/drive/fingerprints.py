@@ -6,6 +6,9 @@ import hashlib
 from dataclasses import MISSING, fields, is_dataclass
 from typing import Any
 
+HASHED_DEFAULT = "hashed default"
+"""Key of the metadata of a field: the value that hashes leave out, where that is not the default."""
+
 
 def fingerprint_of(part: Any) -> str:
     """Return a hash (hex, 16 digits) of a definition: a dataclass or dict of numbers, texts, tuples and other such
@@ -23,6 +26,7 @@ def _given(part: Any) -> dict[str, Any]:
             continue
         value = getattr(part, item.name)
         default = item.default_factory() if item.default_factory is not MISSING else item.default
+        default = item.metadata.get(HASHED_DEFAULT, default)
         if default is MISSING or value != default:
             given[item.name] = _value(value)
     return given

@@ -128,10 +128,9 @@ def likely_unit_mistakes(drive: Drive, torque: float | None = None) -> list[str]
     share = used / drive.disc.number_of_discs
     if lengths := [*_odd_lengths(drive)]:
         return _yielding(drive, share) or lengths
-    for named, value in (
-        ("load.torque" if used == drive.load.torque else "torque", used),
-        ("load.light_torque", drive.load.light_torque),
-    ):
+    load = drive.load
+    written = ("load.torque", load.torque) if load.leaves_out_light_torque else ("load.light_torque", load.light_torque)
+    for named, value in (("load.torque" if used == load.torque else "torque", used), written):
         pressure = _pressure(drive, value / drive.disc.number_of_discs)
         if pressure > BORNE:
             return [
@@ -354,7 +353,7 @@ def _odd_torques(drive: Drive, torque: float | None) -> Iterator[str]:
                 f"{_newton_metres(path, value)}, {rounded(value / carried)} times {of_it}; a plain number is N·mm, did you "
                 f'mean "{value / 1e6:g} N m"?'
             )
-    if not beyond and load.light_torque < LIGHTEST * load.torque:
+    if not beyond and not load.leaves_out_light_torque and load.light_torque < LIGHTEST * load.torque:
         yield (
             f"{_newton_metres('load.light_torque', load.light_torque)}, {fraction(load.light_torque / load.torque)} of "
             f'load.torque; did you mean "{load.light_torque:g} N m"?'

@@ -158,6 +158,8 @@ def _installation(drive: Drive) -> Rows:
     if crank.number > 1:
         driven = "turned in the carrier" if stage is None else f"driven by a first stage, z₂/z₁ = {stage:g}"
         rows.append(("cranks", f"{crank.number} on a circle of {crank.circle_radius:g} mm, {driven}"))
+    if drive.load.leaves_out_light_torque:
+        rows.append(("light torque", drive.load.light_torque_words))
     rows += _teeth(drive) + _supports(drive) + _outside(drive) + _pins(drive)
     discs = drive.disc.number_of_discs
     if discs == 1:

@@ -119,7 +119,7 @@ def solve_and_write(task: RunTask, out: Path) -> int:
     lives = {name: _lives(analysis) for name, analysis in analyses.items()}
     print(_verdicts(checks, proportions))
     print(run_table(analyses, summaries, lives, loads if others else {}))
-    print("\n".join([*whose_stiffness(analyses), *lives_told(lives), *sampling]))
+    print("\n".join([*whose_stiffness(analyses), *_light_torques(analyses), *lives_told(lives), *sampling]))
     if task.page:
         told = [*sampling, *(f"warning: {one}" for one in told_of_cases(proportions))]
         with steps() as show:
@@ -231,6 +231,12 @@ def _draw(dataset: LabelledDataset, fields: Dataset | None, cases: dict[str, Dri
     with progress("pressure figures", 3 + len(cases)) as advance:
         for path in write_pressure_figures(drawn, fields, next(iter(cases.values())), folder, kind):
             advance(path.name)
+
+
+def _light_torques(analyses: Analyses) -> list[str]:
+    """Lines on light torques that the file leaves out."""
+    words = {name: analysis.drive.load.light_torque_words for name, analysis in analyses.items()}
+    return [f"light torque {text}" for text in told_of_cases({name: [one] for name, one in words.items() if one})]
 
 
 def _many(angles: FloatArray) -> str:

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import field
-from typing import Annotated, Literal
+from math import isnan, nan
+from typing import Annotated, Any, Literal
 
+from pydantic import WrapValidator
 from pydantic.dataclasses import dataclass
 
 from ltca.drive.deviations import STRICT, NonNegativeLength, SignedLength
+from ltca.drive.fingerprints import HASHED_DEFAULT
 from ltca.drive.units.quantities import grows, quantity
 
 REFERENCE_TEMPERATURE = 20.0
@@ -86,6 +90,31 @@ class ExternalLoad:
     frame: Literal["housing", "output"] = "housing"
 
 
+LIGHT_SHARE = 0.03
+"""Light torque as a part of the torque, where it is left out."""
+LIGHT_WITHOUT_TORQUE = 10_000.0
+"""Light torque of a load of 0, where it is left out, N·mm."""
+
+
+class DerivedLightTorque(float):
+    """Light torque of a load that leaves it out, N·mm, from the torque that the load was made with.
+
+    A changed torque (``--torque``, a study, a duty) keeps it, so results at the light torque stay comparable.
+    """
+
+    __slots__ = ()
+
+    @classmethod
+    def of_torque(cls, torque: float) -> DerivedLightTorque:
+        """Return `LIGHT_SHARE` of a torque, N·mm; `LIGHT_WITHOUT_TORQUE` for 0."""
+        return cls(LIGHT_SHARE * torque if torque > 0.0 else LIGHT_WITHOUT_TORQUE)
+
+
+def _kept_if_derived(value: Any, check: Callable[[Any], float]) -> float:
+    """A derived value as it is, so that a replaced load still knows where it comes from; any other checked."""
+    return value if isinstance(value, DerivedLightTorque) else check(value)
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
 class Load:
     """Load on the output.
@@ -96,7 +125,8 @@ class Load:
         Output torque T_out of all discs together, on the pin wheel or, where that is held, on the pin shaft, N·mm. 0 needs a
         drive without play at the output, whose parts hold each other.
     light_torque : float
-        Light torque at which the transmission error is taken as the unloaded one, N·mm.
+        Light torque at which the transmission error is taken as the unloaded one, N·mm; left out, 3 % of ``load.torque`` as
+        the case has it in its file, whatever replaces that later, or 10 N·m where it is 0.
     direction : {"ccw", "cw"}
         Sense in which the crank drives, against the load.
     speed : float or None
@@ -108,11 +138,34 @@ class Load:
     """
 
     torque: Annotated[float, quantity("N*mm", ge=0.0)]
-    light_torque: Annotated[float, quantity("N*mm", gt=0.0)] = 10_000.0
+    # Hashes leave out the fixed default of earlier versions, so those of files that state it stay the same.
+    light_torque: Annotated[float, quantity("N*mm", gt=0.0), WrapValidator(_kept_if_derived)] = field(
+        default=nan, metadata={HASHED_DEFAULT: LIGHT_WITHOUT_TORQUE}
+    )
     direction: Literal["ccw", "cw"] = "ccw"
     speed: Annotated[float, quantity("rpm", gt=0.0)] | None = None
     driven_by: Literal["input", "output"] = "input"
     external: tuple[ExternalLoad, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Derive the light torque where it is left out."""
+        if isnan(self.light_torque):
+            object.__setattr__(self, "light_torque", DerivedLightTorque.of_torque(self.torque))
+
+    @property
+    def leaves_out_light_torque(self) -> bool:
+        """Whether nobody wrote the light torque."""
+        return isinstance(self.light_torque, DerivedLightTorque)
+
+    @property
+    def light_torque_words(self) -> str:
+        """Where a light torque that is left out comes from; empty for one that is given."""
+        if not self.leaves_out_light_torque:
+            return ""
+        value = f"{self.light_torque / 1000.0:.6g} N·m"
+        if self.light_torque == LIGHT_WITHOUT_TORQUE:
+            return f"{value}: load.light_torque is left out, and load.torque is 0 as written"
+        return f"{value}: load.light_torque is left out, {100.0 * LIGHT_SHARE:g} % of load.torque as written"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)

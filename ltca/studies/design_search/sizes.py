@@ -18,8 +18,6 @@ from ltca.reading.member_checks import find_member_problems
 from ltca.studies.design_search.requirements import Requirements
 from ltca.studies.design_search.surroundings import carrier_table, ring_table, stage_of
 
-LIGHT = 0.03
-"""Light torque as a part of the whole."""
 CONTINUOUS = ("pin_circle", "thickness", "bore", "hole_circle")
 """Sizes that refinement varies, beside clearances that have a range; the rest is counted, or comes in stock sizes."""
 
@@ -167,7 +165,7 @@ def drive_table(row: dict[str, float], requirements: Requirements, name: str) ->
             "roller_radius": row["roller_radius"],
             "roller_length": row["roller_length"],
         },
-        "load": {"torque": row["torque"], "light_torque": LIGHT * row["torque"], "speed": asked.speed * turned},
+        "load": {"torque": row["torque"], "speed": asked.speed * turned},
         "clearance": {"bearing": row["bearing_clearance"]},
         "contact": asked.contact,
         "materials": materials,
