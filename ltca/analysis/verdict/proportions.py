@@ -93,8 +93,8 @@ def _tight_print(drive: Drive) -> Iterator[str]:
     if PRINTED in (name_of(drive.materials.disc) or "") and hollow < FINEST_PRINT and drawn_plays(drive)[FLANK] <= 0.0:
         yield (
             f"disc.equidistant_offset = {drive.disc.equidistant_offset:g} mm: the flank of the printed disc has no play, and its "
-            f"hollows are rounder than the pins by {hollow:.3f} mm only; prints are off by {FINEST_PRINT:g} mm and more, and pins "
-            "may bind without a clearance"
+            f"hollows are rounder than the pins by {hollow:.3f} mm only; prints are off by {FINEST_PRINT:g} mm and more, and "
+            "pins may bind without a clearance"
         )
 
 
