@@ -11,6 +11,7 @@ from ltca.drive.single_discs import single_discs
 # A fit that is exact in the definition (r_i + 2 r_BR = r_o) must not overlap by the rounding of the sum.
 ROUNDING = 1e-9
 """Overlap within the rounding of a sum, mm."""
+ROLLERS = "rollers and races"
 FLANK = "wheel pins and flank"
 """Name of the pair whose overlap depends on the errors of single pins as well (`ltca.geometry.first_contact.interference`)."""
 
@@ -81,7 +82,7 @@ def drawn_plays(drive: Drive) -> dict[str, float]:
     It is negative where parts overlap as drawn by more than the rounding of sums. The distance between the circles of holes and
     shaft pins, and between those of bores and several cranks, is the mean one.
     """
-    found = {FLANK: -inf, "rollers and races": -inf, "shaft pins and holes": -inf}
+    found = {FLANK: -inf, ROLLERS: -inf, "shaft pins and holes": -inf}
     for single in single_discs(drive):
         drawn, shaft = drawn_interference(single), single.pin_shaft
         error = single.crank.eccentricity_error

@@ -16,6 +16,7 @@ execution        Who solves the batches and where their results are kept
 run_study        A study from start to files: solve what is left, finish the dataset, sum it up, draw it
 study_results    The final dataset and table of a study: written from its samples in order, read back in flat memory
 sensitivity      Which tolerances matter: standardised regression over random samples, Sobol indices over Saltelli blocks
+binding          Samples that bind, without backlash at the output
 yields           The part of the samples that keeps each limit, and all of them, with its confidence
 optimiser        Best fields of a drive under limits: scipy's differential evolution on the batch solver, Pareto front of two
                  aims

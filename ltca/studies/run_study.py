@@ -15,6 +15,7 @@ from ltca.output.files import whole_file, write_json
 from ltca.quantities import SCALARS
 from ltca.reading.writing import drive_text
 from ltca.studies.batch_analysis import analyse_samples
+from ltca.studies.binding import Binding, find_binding
 from ltca.studies.execution.storage import StudyFolder
 from ltca.studies.execution.workers import Workers, solve_batches
 from ltca.studies.sensitivity import rank
@@ -38,6 +39,8 @@ class StudySummary:
         Of `ltca.studies.sensitivity.rank`.
     judged : Yield or None
         Parts of the samples that keep the limits; None without limits, and of sweeps, whose samples are no chance.
+    binding : Binding or None
+        Which samples bind; None of sweeps.
     failures : tuple of (int, str)
         Failed samples and why.
     solved_positions : int
@@ -50,6 +53,7 @@ class StudySummary:
     nominal: dict[str, float]
     ranking: dict[str, Any]
     judged: Yield | None
+    binding: Binding | None
     failures: tuple[tuple[int, str], ...]
     solved_positions: int
     seconds: float
@@ -106,11 +110,14 @@ def run_study(
         summary = summarise_quantity(each)
         if summary is not None:
             quantities[name] = summary
+    binding = find_binding(study, values)
+    without_play = None if binding is None else binding.keeps_no_limit
     found = StudySummary(
         quantities=quantities,
         nominal=_nominal(study),
         ranking=rank(folder.results, study),
-        judged=find_yield(study.judged, values, study.design, study.not_judged),
+        judged=find_yield(study.judged, values, study.design, study.not_judged, without_play),
+        binding=binding,
         failures=tuple(failures),
         solved_positions=solved,
         seconds=seconds,
@@ -142,6 +149,7 @@ def _write_summary(study: Study, folder: StudyFolder, found: StudySummary) -> No
             "quantities": {name: asdict(summary) for name, summary in found.quantities.items()},
             "sensitivity": found.ranking,
             **({} if found.judged is None else {"yield": found.judged.content()}),
+            **({} if found.binding is None or found.binding.counted is None else {"binding": found.binding.content()}),
             **({"eccentrics": owners} if (owners := study.eccentrics()) else {}),
         },
     )

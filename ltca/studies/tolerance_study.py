@@ -56,7 +56,10 @@ def tolerance_study(
     kept = quantities_for(drive, quantities)
     judged, not_judged = limits_of(drive, file.limits.get(name, {}))
     if quantities is None:  # what has a limit is judged, whatever its solution costs
-        kept = check_quantities((*kept, *dict.fromkeys(one.quantity for one in judged if one.quantity not in kept)))
+        limited = [one.quantity for one in judged]
+        if "max_backlash_output" in limited:  # the least tells which samples bind, and costs nothing beside the largest
+            limited.append("min_backlash_output")
+        kept = check_quantities((*kept, *dict.fromkeys(name for name in limited if name not in kept)))
     try:
         factors = Factors.of_tolerances(drive, file.tolerances)
     except DriveError as error:

@@ -32,6 +32,8 @@ RANGES = {
     ("min", "backlash_wheel"): "min_backlash_wheel",
 }
 """Quantities of studies by sense and name of the limit, of those that are limited at the end of a range over the turn."""
+OF_PLAY = tuple(name for name, stage in STAGES.items() if stage == "play")
+"""Quantities of the backlash at the output."""
 ALONE = tuple(dict.fromkeys(name for _, name in RANGES))
 BY_NAME = {
     SCALARS[name].limited_name: name
@@ -201,14 +203,26 @@ def left_out(judged: tuple[Judged, ...], quantities: Collection[str], not_judged
 
 
 def find_yield(
-    judged: tuple[Judged, ...], values: Mapping[str, FloatArray], design: Design, not_judged: Mapping[str, str]
+    judged: tuple[Judged, ...],
+    values: Mapping[str, FloatArray],
+    design: Design,
+    not_judged: Mapping[str, str],
+    without_play: NDArray[np.bool_] | None = None,
 ) -> Yield | None:
-    """Return the yield of samples by their `values`, shape (samples,), by quantity; None without a limit on any of these."""
+    """Return the yield of samples by their `values`, shape (samples,), by quantity; None without a limit on any of these.
+
+    Samples `without_play`, shape (samples,), keep no limit of the backlash at the output.
+    """
     known = [one for one in judged if one.quantity in values]
     if not known:
         return None
     chosen = independent_samples(design)
-    keeps = [one.keeps(values[one.quantity])[chosen] for one in known]
+    keeps = [one.keeps(values[one.quantity]) for one in known]
+    if without_play is not None:
+        keeps = [
+            kept & ~without_play if one.quantity in OF_PLAY else kept for one, kept in zip(known, keeps, strict=True)
+        ]
+    keeps = [kept[chosen] for kept in keeps]
     count = int(chosen.sum())
     return Yield(
         each=tuple((one, interval(int(kept.sum()), count)) for one, kept in zip(known, keeps, strict=True)),

@@ -1,4 +1,5 @@
-"""What looks odd in the sizes of a drive: proportions beside those of all published drives, as of diameters for radii.
+"""What looks odd in the sizes of a drive: proportions beside those of published drives, as of diameters for radii, and printed
+flanks without play.
 
 Nothing is judged by it: a note names the proportion, the span of published drives and the radius that may be a diameter. Holes
 that do not fit pin and eccentricity are refused anyway, walls that are gone fail.
@@ -13,7 +14,11 @@ from functools import cache
 from importlib import resources
 from math import pi, sin
 
+from ltca.analysis.verdict.geometry import pin_hollow_margin
+from ltca.drive.members.named_materials import FINEST_PRINT, PRINTED, name_of
 from ltca.drive.parts import Drive
+from ltca.drive.single_discs import single_discs
+from ltca.geometry.interference import FLANK, drawn_plays
 
 PIN_NUMBER_FACTOR = 1.6
 """Largest ratio between the numbers of pins of drives that are compared: pins stand closer the more there are."""
@@ -48,7 +53,7 @@ def odd_proportions(drive: Drive) -> list[str]:
     >>> print(odd_proportions(with_fields(paper, {"pin_wheel.pin_radius": 13.0}, check=False))[0].split(":")[0])
     pin_wheel.pin_radius = 13 mm looks odd
     """
-    return list(_odd(drive))
+    return [*_odd(drive), *_tight_print(drive)]
 
 
 def _odd(drive: Drive) -> Iterator[str]:
@@ -79,6 +84,17 @@ def _odd(drive: Drive) -> Iterator[str]:
             f"pin_wheel.pin_radius = {wheel.pin_radius:g} mm looks odd: half the distance of neighbouring pins is {told[0]} "
             f"of it, in published drives with about as many pins {told[1]}; with {0.5 * wheel.pin_radius:g} mm it were "
             f"{told[2]}: is it a diameter?"
+        )
+
+
+def _tight_print(drive: Drive) -> Iterator[str]:
+    """A printed disc whose flank has no play, with hollows that hold its pins closer than prints are."""
+    hollow = min(pin_hollow_margin(single) for single in single_discs(drive))
+    if PRINTED in (name_of(drive.materials.disc) or "") and hollow < FINEST_PRINT and drawn_plays(drive)[FLANK] <= 0.0:
+        yield (
+            f"disc.equidistant_offset = {drive.disc.equidistant_offset:g} mm: the flank of the printed disc has no play, and its "
+            f"hollows are rounder than the pins by {hollow:.3f} mm only; prints are off by {FINEST_PRINT:g} mm and more, and "
+            "pins may bind without a clearance"
         )
 
 

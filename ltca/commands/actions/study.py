@@ -134,6 +134,8 @@ def _print(
         print(f"worst by {SCALARS[leading].title}: cyclo run {words}")
     if found.judged is not None:
         _print_yield(found.judged)
+    for line in [] if found.binding is None else found.binding.words():
+        print(line)
     for key, reason in left_out(study.judged, study.quantities, study.not_judged).items():
         print(f"  limit {key} is not judged: {reason}")
     print(f"results: {folder.results}, {folder.table}, {folder.path / 'summary.json'}")

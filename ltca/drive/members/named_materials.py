@@ -19,6 +19,10 @@ FAR = 1.25
 """Factor beyond the scatter of a modulus from which it belongs to another material."""
 MOST_OTHER = 3
 """Largest number of differing properties of a material that is still printed as "like" a named one."""
+PRINTED = "printed "
+"""What stands in the names of materials that are printed from filament."""
+FINEST_PRINT = 0.05
+"""Smallest tolerance of a length that printers hold, mm; machined parts hold some hundredths and less."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -46,7 +46,10 @@ def values_of_one_factor(study: Study) -> tuple[str, list[str]] | None:
 
 def samples_page(study: Study, found: StudySummary, values: Mapping[str, FloatArray]) -> StudyPage:
     """Return the page of a study; `values` of every quantity have shape (samples,), not a number where a sample failed."""
-    sections = [] if found.judged is None else [_yield_section(found.judged)]
+    binding = [] if found.binding is None else [f"{one[0].upper()}{one[1:]}." for one in found.binding.words()]
+    sections = [_yield_section(found.judged, binding)] if found.judged is not None else []
+    if binding and not sections:
+        sections.append(Section(heading="Samples that bind", notes=binding))
     if isinstance(study.design, SweepDesign):
         sections.append(_responses(study, study.design, values))
     else:
@@ -83,7 +86,7 @@ def yield_words(kept: Kept) -> str:
     return f"{100.0 * kept.part:.1f} % ({100.0 * kept.low:.1f} … {100.0 * kept.high:.1f} %)"
 
 
-def _yield_section(found: Yield) -> Section:
+def _yield_section(found: Yield, binding: list[str]) -> Section:
     def cells(kept: Kept) -> list[Cell]:
         ends = f"{100.0 * kept.low:.1f} … {100.0 * kept.high:.1f} %"
         return [number(float(kept.kept), "{:.0f}"), number(100.0 * kept.part, "{:.1f}", "%"), word(ends)]
@@ -106,7 +109,7 @@ def _yield_section(found: Yield) -> Section:
     left = [[word(key), word(reason)] for key, reason in found.not_judged.items()]
     columns, caption = ["limit", "reason"], "Limits that samples are not judged by"
     others = [Table(name="not_judged", caption=caption, columns=columns, rows=left, words=1)] if left else []
-    return Section(heading="Yield", notes=[told], tables=[table, *others])
+    return Section(heading="Yield", notes=[told, *binding], tables=[table, *others])
 
 
 def _statistics(found: StudySummary) -> Section:

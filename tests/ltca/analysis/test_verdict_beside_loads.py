@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.summary import summarise
+from ltca.analysis.verdict import proportions
 from ltca.analysis.verdict.advice import _inputs, advise
 from ltca.analysis.verdict.proportions import odd_proportions
 from ltca.analysis.verdict.values import judge_analysis
@@ -178,6 +180,38 @@ def test_diameters_entered_as_radii_look_odd():
         with_fields(PAPER, values)
     one = with_fields(PAPER, {"pin_wheel.pin_radius": 13.0}, check=False)
     assert "pin_wheel.pin_radius = 13 mm looks odd" in odd_proportions(one)[0]
+
+
+def test_public_drives_do_not_look_odd_beside_the_others(monkeypatch):
+    """Four of 18 were asked "is it a diameter?" about a radius: none is, with itself left out of what it stands beside."""
+    published = proportions._published()
+    (own,) = {one.source.rpartition("/")[0] for one in published if one.source.endswith(".toml")}
+    names = [one.source.rpartition("/")[2] for one in published if one.source.startswith(own)]
+    assert len(names) == 15
+    for name in names:
+        monkeypatch.setattr(
+            proportions,
+            "_published",
+            lambda name=name: [one for one in published if not one.source.endswith(f"/{name}")],
+        )
+        (drive,) = load_drive(Path(__file__).parents[2] / "literature" / "public_drives" / name).cases.values()
+        assert not any("odd" in told for told in odd_proportions(drive)), name
+
+
+def test_a_low_ratio_alone_does_not_look_odd():
+    """The shipped example of a plastic disc, e z_P/R_C = 0.375, was asked whether its pin circle is a diameter."""
+    drive = next(iter(load_drive(Path(__file__).parents[3] / "examples" / "drives" / "plastic.toml").cases.values()))
+    assert odd_proportions(drive) == []
+
+
+def test_a_printed_flank_without_play_is_pointed_out():
+    """Its hollows of 1.0400 mm hold pins of 1.00138 mm without play: nothing said so. With a play of 0.1 mm nothing is to say."""
+    path = Path(__file__).parents[2] / "literature" / "public_drives" / "printed_40_pins_no_clearance.toml"
+    (drive,) = load_drive(path).cases.values()
+    (told,) = odd_proportions(drive)
+    assert "has no play, and its hollows are rounder than the pins by 0.039 mm only" in told
+    assert odd_proportions(with_fields(drive, {"disc.equidistant_offset": 0.1})) == []
+    assert odd_proportions(with_fields(drive, {"materials.disc": "100Cr6"})) == []
 
 
 @pytest.mark.parametrize("name", ["robot-joint", "rv", "sleeved"])

@@ -21,6 +21,7 @@ from ltca.page.studies.samples import samples_page, values_of_one_factor
 from ltca.page.study_page import StudyPage, study_page
 from ltca.page.tables import number, word
 from ltca.reading.drive_file import parse_drive, shipped_drive
+from ltca.studies.binding import find_binding
 from ltca.studies.optimiser import Optimum, Problem, Variable, designs_of_front, front_span
 from ltca.studies.run_study import StudySummary
 from ltca.studies.study_results import summarise_quantity
@@ -106,7 +107,8 @@ def summary_of(study, values, ranking=None):
     return StudySummary(
         quantities={name: summarise_quantity(each) for name, each in values.items()},
         nominal={"max_pin_pressure_mid": 1400.0}, ranking=ranking or {"method": "regression", "quantities": {}},
-        judged=find_yield(study.judged, values, study.design, study.not_judged), failures=(), solved_positions=0, seconds=1.0,
+        judged=find_yield(study.judged, values, study.design, study.not_judged), binding=find_binding(study, values),
+        failures=(), solved_positions=0, seconds=1.0,
     )  # fmt: skip
 
 

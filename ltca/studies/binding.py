@@ -1,0 +1,122 @@
+"""Samples of a tolerance study that bind: parts overlap in every pose, so that the output has no backlash.
+
+Such a drive can only be put together by force. Its backlash, zero, is below every upper limit; a sample that binds keeps none,
+unless the drive is preloaded as drawn, without any deviation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.arrays import FloatArray
+from ltca.drive.fields import field_kind
+from ltca.drive.members.named_materials import FINEST_PRINT
+from ltca.drive.members.temperatures import warm_drive
+from ltca.geometry.interference import ROLLERS, drawn_plays
+from ltca.studies.designs import ToleranceDesign
+from ltca.studies.study import Study
+from ltca.studies.yields import Kept, independent_samples, interval
+
+LEAST, LARGEST = "min_backlash_output", "max_backlash_output"
+NO_BACKLASH = 1e-3
+"""Backlash at the output that counts as none, arcmin: a hundred times what the search for the free play leaves."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Binding:
+    """Which samples of a study bind.
+
+    Attributes
+    ----------
+    each : array of bool, shape (samples,)
+        By sample; none where the study has no backlash at the output.
+    counted : Kept or None
+        Those among the independent samples; None where the study has no backlash at the output.
+    preloaded : bool
+        Whether parts of the drive without deviations overlap as drawn: then samples bind as they are meant to.
+    wide : str
+        Tolerances that are wider than a play of the drive, in words; empty where none are.
+    asked : bool
+        Whether a limit of the least backlash judges the samples.
+    """
+
+    each: NDArray[np.bool_]
+    counted: Kept | None
+    preloaded: bool
+    wide: str
+    asked: bool
+
+    @property
+    def keeps_no_limit(self) -> NDArray[np.bool_]:
+        """Samples that keep no limit of the backlash, shape (samples,)."""
+        return self.each & (not self.preloaded)
+
+    def content(self) -> dict[str, Any]:
+        """Return the entry of ``summary.json``."""
+        part = {} if self.counted is None else asdict(self.counted)
+        return {"binding" if name == "kept" else name: value for name, value in part.items()} | {
+            "preloaded": self.preloaded
+        }
+
+    def words(self) -> list[str]:
+        """Return what to say of it, one sentence each; nothing where nothing binds or may."""
+        advice = f"[limits] {LEAST} in the drive file judges them"
+        if self.counted is None:
+            told = (
+                f"samples may bind, {self.wide}: name {LEAST} among --quantities, which counts those that do; {advice}"
+            )
+            return [told] if self.wide and not self.preloaded else []
+        if not self.counted.kept:
+            return []
+        found = self.counted
+        ends = f"{100.0 * found.part:.1f} % ({100.0 * found.low:.1f} … {100.0 * found.high:.1f} %)"
+        told = f"{found.kept} of {found.samples} samples bind, without backlash at some position: {ends}"
+        if self.preloaded:
+            return [f"{told}; parts of the drive overlap as drawn, so they count as samples that keep their limits"]
+        return [f"{told}; they keep no limit of the backlash{'' if self.asked else f'; {advice}'}"]
+
+
+def find_binding(study: Study, values: Mapping[str, FloatArray]) -> Binding | None:
+    """Return which samples of a study bind; None of sweeps, whose samples are no chance.
+
+    Parameters
+    ----------
+    study : Study
+        The study.
+    values : mapping of str to array, shape (samples,)
+        Its quantities; not a number where a sample failed.
+    """
+    if not isinstance(study.design, ToleranceDesign):
+        return None
+    least = values.get(LEAST, values.get(LARGEST))
+    each = np.zeros(study.design.samples, dtype=bool) if least is None else least <= NO_BACKLASH
+    chosen = independent_samples(study.design)
+    # What rollers have or lack between their races holds no output.
+    plays = {what: play for what, play in drawn_plays(warm_drive(study.cases[0][1])).items() if what != ROLLERS}
+    return Binding(
+        each=each,
+        counted=None if least is None else interval(int(each[chosen].sum()), int(chosen.sum())),
+        preloaded=min(plays.values()) < 0.0,
+        wide=_wide_tolerances(study.design, plays),
+        asked=any(one.quantity == LEAST for one in study.judged),
+    )
+
+
+def _wide_tolerances(design: ToleranceDesign, plays: Mapping[str, float]) -> str:
+    """The widest tolerance of a length, as wide as those of prints, beyond the least play; empty where none is."""
+    factors = design.factors
+    lengths = {
+        path: distribution.tolerance
+        for (path, _), distribution in zip(factors.fields, factors.distributions, strict=True)
+        if (kind := field_kind(path)) is not None and kind.unit == "mm"
+    }
+    path = max(lengths, key=lambda name: lengths[name], default="")
+    least = min(plays, key=lambda what: plays[what])
+    if not path or lengths[path] < max(FINEST_PRINT, plays[least]):
+        return ""
+    return f"tolerances.{path} of ±{lengths[path]:g} mm is beyond the play of {least}, {plays[least]:.4g} mm"

@@ -1,0 +1,131 @@
+"""What a message suggests works: applied, the drive is accepted and its parts do not overlap."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ltca.errors import DriveError
+from ltca.geometry.flank import FlankProfile
+from ltca.geometry.interference import drawn_plays
+from ltca.reading.changes import with_fields
+from ltca.reading.disc_checks import largest_eccentricity, rounded_down
+from ltca.reading.drive_file import build_drive, load_drive, parse_drive
+
+FOLDER = Path(__file__).parents[2] / "literature" / "public_drives"
+PAPER = load_drive("paper").cases["CS-1"]
+
+
+def public(name, **changes):
+    """A public drive with some numbers of its file written otherwise."""
+    text = (FOLDER / f"{name}.toml").read_text(encoding="utf-8")
+    for field, value in changes.items():
+        text, count = re.subn(rf"(?m)^{field} = \S+", f"{field} = {value}", text, count=1)
+        assert count == 1, field
+    (drive,) = parse_drive(text).cases.values()
+    return drive
+
+
+def refusal(name, **changes):
+    with pytest.raises(DriveError) as caught:
+        public(name, **changes)
+    (problem,) = caught.value.problems
+    return problem
+
+
+def test_a_suggested_hole_still_overlapped_its_pin():
+    """2.4 mm was suggested where pin radius and eccentricity are 2.5 mm; the eccentricity was not named at all."""
+    problem = refusal("holes_of_pin_diameter_plus_eccentricity")
+    hole = re.search(r"must be at least (\S+) mm", problem).group(1)
+    eccentricity = re.search(r"crank\.eccentricity at most (\S+) mm", problem).group(1)
+    assert (float(hole), float(eccentricity)) == (2.0 + 0.5, 2.25 - 2.0)
+    for change in ({"hole_radius": hole}, {"eccentricity": eccentricity}):
+        drive = public("holes_of_pin_diameter_plus_eccentricity", **change)
+        assert drawn_plays(drive)["shaft pins and holes"] == 0.0
+
+
+def test_a_flank_with_loops_names_the_eccentricity_that_has_none():
+    """A larger pin circle alone was named. What is suggested for the eccentricity needs another hole, which is named as well."""
+    problem = refusal("flank_with_loops")
+    eccentricity, hole, circle = re.search(
+        r"at most (\S+) mm \(with pin_shaft\.hole_radius = (\S+) mm\) or pin_wheel\.pin_circle_radius at least (\S+) mm",
+        problem,
+    ).groups()
+    assert float(hole) == pytest.approx(3.0 + float(eccentricity), abs=1e-9)
+    assert public("flank_with_loops", eccentricity=eccentricity, hole_radius=hole).crank.eccentricity == float(
+        eccentricity
+    )
+    # The first circle of the file is that of the wheel pins.
+    assert public("flank_with_loops", pin_circle_radius=circle).pin_wheel.pin_circle_radius == float(circle)
+    # Smaller pins leave the flank a larger eccentricity, e z_P < R_C = 50 mm.
+    smaller = refusal("flank_with_loops", pin_radius=1.0)
+    larger = float(re.search(r"must be at most (\S+) mm", smaller).group(1))
+    assert float(eccentricity) < larger < 50.0 / 50.0
+
+
+@pytest.mark.parametrize(("pins", "circle", "pin"), [(14, 88.0, 6.5), (50, 50.0, 1.5708), (8, 100.0, 15.0)])
+def test_the_largest_eccentricity_is_where_the_path_bends_as_the_equidistant_does(pins, circle, pin):
+    """By sampled curvatures of the path of the pin centres: no more than 1/r just below it, more just above."""
+    values = {
+        "pin_wheel.number_of_pins": pins, "disc.number_of_teeth": pins - 1, "pin_wheel.pin_circle_radius": circle,
+        "pin_wheel.pin_radius": pin, "disc.equidistant_offset": 0.0, "disc.shifting_offset": 0.0,
+    }  # fmt: skip
+    largest = largest_eccentricity(with_fields(PAPER, {**values, "crank.eccentricity": circle / pins}, check=False))
+
+    def sharpest(eccentricity):
+        path = FlankProfile(generating_radius=circle, eccentricity=eccentricity, reduction_ratio=pins, offset=0.0)
+        return path.locus_curvature(np.linspace(0.0, 2.0 * np.pi / pins, 100_001)).max()
+
+    # Bisections leave 1e-9 of the eccentricity, samples 1e-9 of the curvature.
+    assert sharpest(largest * (1.0 - 1e-6)) < 1.0 / pin < sharpest(largest * (1.0 + 1e-6))
+
+
+@pytest.mark.parametrize(
+    ("values", "named"),
+    [
+        (
+            {"crank.eccentricity": 4.6},
+            r"crank\.eccentricity = 4\.6 mm: must be at most 4 mm or pin_shaft\.hole_radius at least 14\.675",
+        ),
+        (
+            {"pin_shaft.hole_radius": 13.0},
+            r"pin_shaft\.hole_radius = 13 mm: must be at least 14\.075 mm .* or crank\.eccentricity at",
+        ),
+        (
+            {"pin_wheel.pin_circle_radius": 55.0, "pin_shaft.pin_circle_radius": 44.0},
+            r"pin_wheel\.pin_circle_radius = 55 mm: must be at least \S+ mm or crank\.eccentricity at most \S+ mm, or the flank",
+        ),
+    ],
+)
+def test_the_field_that_a_study_changed_is_named(values, named):
+    """A sweep over the eccentricity was told of the holes, which it had not touched."""
+    with pytest.raises(DriveError) as caught:
+        with_fields(PAPER, values)
+    assert re.match(named, caught.value.problems[0]), caught.value.problems
+
+
+@pytest.mark.parametrize(
+    ("part", "field", "value", "side"),
+    [
+        ("disc", "equidistant_offset", -0.45, "least"), ("crank_bearing", "roller_radius", 5.6, "most"),
+        ("pin_shaft", "hole_radius", 13.0, "least"), ("crank", "eccentricity", 4.6, "most"),
+    ],
+)  # fmt: skip
+def test_suggested_values_leave_no_overlap(part, field, value, side, paper_table):
+    """Bounds were those up to which bodies yield elastically: the drive was taken, preloaded, with a warning."""
+    with pytest.raises(DriveError) as caught:
+        build_drive(paper_table(**{part: {field: value}}))
+    (problem,) = caught.value.problems
+    told = re.search(rf"{part}\.{field} (?:= \S+ mm: must be )?at {side} (\S+) mm", problem)
+    drive = build_drive(paper_table(**{part: {field: float(told.group(1))}}))
+    assert min(drawn_plays(drive).values()) >= -1e-9
+
+
+def test_bounds_are_cut_off_to_their_sound_side():
+    assert [rounded_down(value) for value in (1.23456, 0.25, 2.925, 4.0, 0.0)] == pytest.approx(
+        [1.234, 0.25, 2.925, 4.0, 0.0]
+    )
+    assert -rounded_down(-80.01234) == pytest.approx(80.02)

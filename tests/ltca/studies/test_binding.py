@@ -1,0 +1,139 @@
+"""Samples that bind: counted, told, and no samples that keep a limit of the backlash."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ltca.analysis.engines import HalfSpace
+from ltca.commands.program import main
+from ltca.page.studies.samples import samples_page
+from ltca.page.study_page import study_page
+from ltca.reading.drive_file import parse_drive
+from ltca.studies.binding import LARGEST, LEAST, find_binding
+from ltca.studies.run_study import StudySummary
+from ltca.studies.study_results import summarise_quantity
+from ltca.studies.tolerance_study import tolerance_study
+from ltca.studies.yields import find_yield
+
+TOOLKIT = Path(__file__).parents[2] / "literature" / "public_drives" / "toolkit_14_to_1.toml"
+TOLERANCES = """
+[tolerances]
+pin_wheel.pin_errors.radial = { distribution = "uniform", tolerance = 0.08 }
+[limits]
+max_backlash_output = 60.0
+"""
+VALUES = {
+    LARGEST: np.array([50.0, 30.0, 0.0, 70.0, 5e-4, np.nan]),
+    LEAST: np.array([40.0, 0.0, 0.0, 20.0, 0.0, np.nan]),
+}
+"""Two samples keep the limit of 60′ and move, of which one binds at some position; two bind at all of them, one is too loose."""
+
+
+def toolkit(offset=0.05, hole=2.3, tolerances=TOLERANCES):
+    """A printed drive with a play of that offset at the flank, of its holes less pin and eccentricity there."""
+    text = TOOLKIT.read_text(encoding="utf-8").replace("equidistant_offset = 0.2", f"equidistant_offset = {offset}")
+    return parse_drive(text.replace("hole_radius = 2.2", f"hole_radius = {hole}") + tolerances)
+
+
+def study_of(file, samples=6, quantities=None):
+    return tolerance_study(file, samples=samples, positions=2, quantities=quantities, engine=HalfSpace())
+
+
+def summary_of(study, values):
+    binding = find_binding(study, values)
+    judged = find_yield(study.judged, values, study.design, study.not_judged, binding.keeps_no_limit)
+    return StudySummary(
+        quantities={name: summarise_quantity(each) for name, each in values.items()}, nominal={},
+        ranking={"method": "regression", "quantities": {}}, judged=judged, binding=binding, failures=(), solved_positions=0,
+        seconds=1.0,
+    )  # fmt: skip
+
+
+def test_bound_parts_were_counted_as_a_kept_limit_of_the_backlash():
+    """Zero is below 60′: four of six samples kept it, of which one moves at every position."""
+    study = study_of(toolkit())
+    assert {LARGEST, LEAST} <= set(study.quantities)  # the least comes with the largest
+    found = summary_of(study, VALUES)
+    (kept,) = (kept for one, kept in found.judged.each if one.quantity == LARGEST)
+    assert (kept.kept, kept.samples) == (1, 6)
+    assert (found.binding.counted.kept, found.binding.counted.samples) == (3, 6)
+    assert found.binding.content()["binding"] == 3
+    (told,) = found.binding.words()
+    assert "3 of 6 samples bind" in told
+    assert "[limits] min_backlash_output" in told
+    page = study_page(samples_page(study, found, VALUES))
+    assert "3 of 6 samples bind" in page
+
+
+def test_a_limit_of_the_least_backlash_is_not_suggested_twice():
+    file = toolkit(tolerances=TOLERANCES + "min_backlash_output = 0.0\n")
+    found = summary_of(study_of(file), VALUES)
+    (told,) = found.binding.words()
+    assert "min_backlash_output" not in told
+    kept = {one.quantity: kept.kept for one, kept in found.judged.each if one.quantity in VALUES}
+    assert kept == {LARGEST: 1, LEAST: 2}  # without a play there is no least one, also where 0′ are asked for
+
+
+def test_drives_that_are_preloaded_as_drawn_bind_as_they_are_meant_to():
+    study = study_of(toolkit(offset=-0.01))
+    found = summary_of(study, VALUES)
+    (kept,) = (kept for one, kept in found.judged.each if one.quantity == LARGEST)
+    assert kept.kept == 4
+    assert "overlap as drawn" in found.binding.words()[0]
+
+
+def test_printed_tolerances_beyond_the_play_suggest_a_limit():
+    """A study without the backlash said nothing of samples that bind. Tolerances of hundredths, and wide plays, say nothing."""
+    asked, values = ("max_pin_load",), {"max_pin_load": np.ones(6)}
+    found = find_binding(study_of(toolkit(), quantities=asked), values)
+    (told,) = found.words()
+    assert (
+        "tolerances.pin_wheel.pin_errors.radial of ±0.08 mm is beyond the play of wheel pins and flank, 0.05 mm" in told
+    )
+    assert "[limits] min_backlash_output" in told
+    assert found.counted is None
+    wide = toolkit(offset=0.1, hole=2.3)
+    assert find_binding(study_of(wide, quantities=asked), values).words() == []
+    fine = toolkit(offset=0.005, tolerances=TOLERANCES.replace("0.08", "0.02"))
+    assert find_binding(study_of(fine, quantities=asked), values).words() == []
+
+
+def test_nothing_is_said_where_no_sample_binds():
+    study = study_of(toolkit())
+    moving = {name: np.full(6, 20.0) for name in VALUES}
+    found = summary_of(study, moving)
+    assert found.binding.words() == []
+    assert found.binding.counted.kept == 0
+
+
+@pytest.mark.slow
+def test_samples_that_bind_stand_in_terminal_and_summary(tmp_path, capsys):
+    """Pins off by up to 0.08 mm in a play of 0.05 mm: pins that stand in and out leave the wheel no play."""
+    path = tmp_path / "printed.toml"
+    text = TOOLKIT.read_text(encoding="utf-8").replace("equidistant_offset = 0.2", "equidistant_offset = 0.05")
+    path.write_text(text + TOLERANCES, encoding="utf-8")
+    small = [
+        "--samples",
+        "12",
+        "--positions",
+        "5",
+        "--quantities",
+        LARGEST,
+        LEAST,
+        "--quick",
+        "--no-figures",
+        "--no-page",
+    ]
+    main(["tolerance", str(path), *small, "--out", str(tmp_path / "out")])
+    told = capsys.readouterr().out
+    summary = json.loads((tmp_path / "out" / "summary.json").read_text(encoding="utf-8"))
+    bound = summary["binding"]["binding"]
+    assert bound > 0
+    assert f"{bound} of 12 samples bind" in told
+    assert summary["quantities"][LEAST]["smallest"] == pytest.approx(0.0, abs=1e-6)
+    (limit,) = (one for one in summary["yield"]["limits"] if one["quantity"] == LARGEST)
+    assert limit["kept"] <= 12 - bound
