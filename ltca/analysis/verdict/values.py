@@ -30,8 +30,12 @@ from ltca.drive.members.limits import Limit
 from ltca.drive.single_discs import single_discs
 from ltca.drive.yielding_parts import yielding_parts
 from ltca.errors import DriveError
+<<<<<<< HEAD
 from ltca.geometry.interference import overlap_at_rest
 from ltca.geometry.play import preload_words
+=======
+from ltca.geometry.play import PLAY_SAMPLED, preload_words
+>>>>>>> words2
 from ltca.quantities import LIMITED, QUANTITIES
 
 DEMANDED = {
@@ -154,7 +158,8 @@ def notes(analysis: LoadedAnalysis) -> list[str]:
     """Return what to know beside the checks, one sentence each: warnings, odd sizes, pins that dwarf the disc."""
     drive, shaft = analysis.drive, analysis.drive.pin_shaft
     found = [*analysis.warnings, *odd_proportions(analysis.as_written), yielding_parts(drive).words]
-    found += [words for words in (analysis.engine_words, analysis.width_words, analysis.hole_words) if words]
+    beside = analysis.engine_words, analysis.width_words, analysis.hole_words, analysis.share_words
+    found += [words for words in beside if words]
     if shaft is not None and shaft.stiffness is not None and analysis.engine.compliance == "half-space":
         disc = drive.materials.disc.youngs_modulus * drive.disc.thickness
         if shaft.stiffness > STIFF_PINS * disc:
@@ -202,7 +207,7 @@ def _of_loads(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) -> 
     yield Value(
         quantity="backlash_output",
         value=play,
-        part=preload_words(summary["preloaded_part_of_turn"] or 0.0),
+        part=", ".join(filter(None, (preload_words(summary["preloaded_part_of_turn"] or 0.0), PLAY_SAMPLED))),
         reason=""
         if play is not None
         else "no pose of rigid parts stops the wheel within half a pin pitch, or none was found",
