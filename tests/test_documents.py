@@ -8,10 +8,7 @@ from __future__ import annotations
 import ast
 import re
 import tomllib
-<<<<<<< HEAD
-=======
-from importlib.util import find_spec, module_from_spec, spec_from_file_location
->>>>>>> words2
+from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 
 import pytest

@@ -30,12 +30,8 @@ from ltca.drive.members.limits import Limit
 from ltca.drive.single_discs import single_discs
 from ltca.drive.yielding_parts import yielding_parts
 from ltca.errors import DriveError
-<<<<<<< HEAD
 from ltca.geometry.interference import overlap_at_rest
-from ltca.geometry.play import preload_words
-=======
 from ltca.geometry.play import PLAY_SAMPLED, preload_words
->>>>>>> words2
 from ltca.quantities import LIMITED, QUANTITIES
 
 DEMANDED = {

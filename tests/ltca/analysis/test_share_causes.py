@@ -7,13 +7,13 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from ltca.laws.beam import PinBeam
 
 from ltca.analysis.engines import HalfSpace
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.share_causes import _of_beam, share_words
 from ltca.analysis.verdict.values import notes
 from ltca.commands.program import main
-from ltca.laws.beam import PinBeam
 from ltca.reading.drive_file import parse_drive, shipped_drive
 
 ANGLES = np.array([0.2, 0.9, 2.3])
