@@ -50,7 +50,9 @@ def execute(arguments: argparse.Namespace) -> int:
     cases = file.select(arguments.case or [next(iter(file.cases))])
     out = arguments.out or default_folder(file.name, "show")
     print(f"{file.name} ({file.source}): cases {', '.join(file.cases)}; all checks passed")
-    with claimed_folder(out, "show", writes=[f"drive_{escape(name)}.png" for name in cases], adding=True):
+    writes = [f"drive_{escape(name)}.png" for name in cases]
+    origins = {f"drive_{name}.png": f"drive {file.name}, case {name}" for name in cases}
+    with claimed_folder(out, "show", writes=writes, adding=True, origins=origins):
         _show(cases, np.array([angle]), out)
     return 0
 

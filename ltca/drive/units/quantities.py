@@ -42,14 +42,15 @@ def quantity(
     ge: float | None = None,
     lt: float | None = None,
     le: float | None = None,
+    divides: bool = False,
 ) -> BeforeValidator:
-    """Return the validator of a quantity, for ``Annotated[float, quantity("mm", gt=0)]``.
+    """Return the validator of a quantity, for ``Annotated[float, quantity("mm", gt=0)]``; `divides` of `QuantityCheck`.
 
     It converts texts, and refuses values that are not finite or out of bounds (greater than, at least, less than, at most),
     which are in the unit inside the suite: ``mm``, ``N``, ``MPa``, ``N*mm``, ``N/mm``, ``rad``, ``dimensionless``.
     """
     bounds = (("greater than", gt), ("at least", ge), ("less than", lt), ("at most", le))
-    return BeforeValidator(QuantityCheck(unit=unit, bounds=bounds, divides=unit == "N*mm"))
+    return BeforeValidator(QuantityCheck(unit=unit, bounds=bounds, divides=divides or unit == "N*mm"))
 
 
 @dataclass(frozen=True, kw_only=True)
