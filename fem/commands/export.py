@@ -103,10 +103,11 @@ def _export_part(arguments: argparse.Namespace) -> int:
     for part in parts:
         _require_straight(part, arguments.format)
     out = arguments.out or default_folder(file.name, "export")
-    writes = [escape(path.name) for part in parts for path in _paths(part, arguments.format, out)]
+    names = [path.name for part in parts for path in _paths(part, arguments.format, out)]
+    origins = dict.fromkeys(names, f"drive {file.name}, case {case}")
     told = ", lengths at 20 °C" if drive.temperature is not None else ""
     print(f"{file.name} {case}, {arguments.part}{told}", flush=True)
-    with claimed_folder(out, "export", writes=writes, adding=True):
+    with claimed_folder(out, "export", writes=map(escape, names), adding=True, origins=origins):
         for part in parts:
             _write(part, arguments, out)
     return 0

@@ -19,6 +19,7 @@ import numpy as np
 
 from fem.errors import MeshError
 from fem.mesh.gmsh_session import gmsh_model
+from ltca.errors import FaultError, one_line
 from ltca.export.flank_outline import ClampedSpline, FlankSpline
 from ltca.export.parts import Body, Circle, Part, Wall
 from ltca.output.files import whole_file
@@ -29,6 +30,7 @@ SAME_VOLUME = 1e-4
 integrates to some 1e-5, a wrong loop is far beyond it."""
 ALONG_WIDTH = 5e-4
 """Departure of straight lines between the outlines of a lofted flank, mm; the smooth surface through them departs by a fifth."""
+LAST_LINE = "END-ISO-10303-21;"
 _PRODUCT = re.compile(r"PRODUCT\('Open CASCADE STEP translator [0-9.]+ [0-9]+(?:\.([0-9]+))?',\s*'[^']*'")
 _HEADER = re.compile(r"HEADER;.*?ENDSEC;", re.DOTALL)
 _SCHEMA = re.compile(r"FILE_SCHEMA\(.*?\);", re.DOTALL)
@@ -61,10 +63,16 @@ def write_solids(part: Part, path: Path, note: Callable[[str], None] = lambda st
         _require_volumes(gmsh, part.bodies)
         note("file")
         with whole_file(path) as file:
-            with _quiet_kernel():
-                gmsh.write(str(file))
+            try:
+                with _quiet_kernel():
+                    gmsh.write(str(file))
+            except Exception as error:  # gmsh raises no other kind
+                raise FaultError(f"{path}: cannot be written: {one_line(error)}") from error
             names = [body.name for body in part.bodies] + [wall.circle.name for wall in part.walls]
-            file.write_text(_named(file.read_text(encoding="ascii"), part, names), encoding="ascii", newline="\n")
+            text = file.read_text(encoding="ascii")
+            if LAST_LINE not in text:  # the kernel does not say that it failed
+                raise FaultError(f"{path}: cannot be written whole")
+            file.write_text(_named(text, part, names), encoding="ascii", newline="\n")
 
 
 def _add_solid(gmsh: ModuleType, body: Body, note: Callable[[str], None]) -> None:

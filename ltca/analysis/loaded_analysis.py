@@ -27,6 +27,7 @@ from ltca.compliance.coefficient_files import coefficient_warnings
 from ltca.compliance.response import ContactPressures
 from ltca.compliance.wall_stress import WallStresses, wall_stresses
 from ltca.drive.hole_contact import hole_words
+from ltca.drive.least_torque import torque_problem
 from ltca.drive.members.named_materials import strength_warning
 from ltca.drive.members.temperatures import temperature_words, warm_drive
 from ltca.drive.parts import Drive, Temperature
@@ -712,7 +713,7 @@ def check_torque(drive: Drive, torque: float | None) -> float:
     Raises
     ------
     DriveError
-        When it is not a finite number of at least zero.
+        When it is not a finite number of at least zero, or too small to be balanced.
     """
     if torque is None:
         return drive.load.torque
@@ -727,4 +728,6 @@ def check_torque(drive: Drive, torque: float | None) -> float:
         raise DriveError([f"torque = {number:g}: must be finite and at least 0 N·mm (load.direction turns it)"])
     if number and not smallest <= number <= largest:
         raise DriveError([f"torque = {number:g}: must be from {smallest:g} to {largest:g} N·mm"])
+    if problems := [*torque_problem(drive, "torque", number, zero=True)]:
+        raise DriveError(problems)
     return number

@@ -62,7 +62,7 @@ def export_model(arguments: argparse.Namespace) -> int:
     require_folder(out)
     from ltca.analysis.engines import lending_between
     from ltca.commands.actions.reduced_model import check_drive, reduce_and_write
-    from ltca.export.simulators.files import file_names, model_name
+    from ltca.export.simulators.files import CALLBACK, LAW, file_names, model_name
 
     own, drive = model_name(file.name, name), file.cases[name]
     if arguments.speed is not None:
@@ -73,7 +73,10 @@ def export_model(arguments: argparse.Namespace) -> int:
         drive = drive.with_fields({"load.speed": arguments.speed})
     check_drive(arguments.simulator, drive)
     engine = lending_between(file.cases.values(), compliance_of(arguments, cases.values()))
-    writes = [escape(one) for one in file_names(arguments.simulator, own)]
-    with claimed_folder(out, "export", writes=writes, adding=True):
+    names = file_names(arguments.simulator, own)
+    writes = [escape(one) for one in names]
+    # Callback and law are those of every drive.
+    origins = {one: f"drive {file.name}, case {name}" for one in names if one not in (CALLBACK, LAW)}
+    with claimed_folder(out, "export", writes=writes, adding=True, origins=origins):
         find_coefficients_of(cases, engine, arguments)
         return reduce_and_write(arguments.simulator, drive, engine, own, out)

@@ -51,8 +51,8 @@ def execute(arguments: argparse.Namespace) -> int:
     cases = file.select(arguments.case or [next(iter(file.cases))])
     out = arguments.out or default_folder(file.name, "show")
     print(f"{file.name} ({file.source}): cases {', '.join(file.cases)}; a valid drive file")
-    pictures = [f"drive_{escape(word)}.png" for word in file_words(cases).values()]
-    with claimed_folder(out, "show", writes=pictures, adding=True):
+    pictures = {f"drive_{word}.png": f"drive {file.name}, case {name}" for name, word in file_words(cases).items()}
+    with claimed_folder(out, "show", writes=[escape(name) for name in pictures], adding=True, origins=pictures):
         _show(cases, np.array([angle]), out)
     return 0
 

@@ -19,6 +19,7 @@ ring_shape      What determines the plane finite-element ring of the pin wheel, 
 yielding_parts  Which parts yield in the torsional stiffness, and which are rigid because a file leaves them out
 fields          Fields of a drive by dotted path: values, numbers of elements, absent parts
 mistakes        Mistakes in a definition as sentences: field, value, bound, and the name that a misspelt one is close to
+least_torque    The least torque of a drive that can be balanced
 unit_mistakes   Likely mistakes of units behind a drive that cannot carry its load
 tolerances      Distributions of the fields of a drive: the ``[tolerances]`` table that studies read
 ==============  ============================================================

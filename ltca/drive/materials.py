@@ -133,7 +133,7 @@ class LengthProfile:
     """
 
     crown_drop: NonNegativeLength = 0.0
-    logarithmic_factor: Annotated[float, quantity("dimensionless", ge=0.0)] = 0.0
+    logarithmic_factor: Annotated[float, quantity("dimensionless", ge=0.0, divides=True)] = 0.0
     end_relief_length: NonNegativeLength = 0.0
     end_relief_depth: NonNegativeLength = 0.0
 

@@ -18,10 +18,12 @@ from typing import ParamSpec, TypeVar
 
 from ltca.drive.declaration import declared_fields
 from ltca.drive.engine_support import given
+from ltca.drive.least_torque import least_torque
 from ltca.drive.members.limits import Limit
 from ltca.drive.members.main_bearing import ROLLER
 from ltca.drive.members.width import needs_slices
 from ltca.drive.parts import Drive, Material, Materials, Preload, contact_modulus
+from ltca.drive.units.table import range_of
 from ltca.errors import ConvergenceError, CycloError, DriveError
 from ltca.quantities import LIMITED
 
@@ -344,7 +346,7 @@ def _odd_torques(drive: Drive, torque: float | None) -> Iterator[str]:
     of_it = f"what this drive carries (some {rounded(carried / 1000.0)} N·m by the pressure of its flank)"
     beyond = False
     for path, value in used:
-        if 0.0 < value < UNLOADED * carried:
+        if least_torque(drive) <= value < UNLOADED * carried:
             share = fraction(value / carried)
             yield f'{_newton_metres(path, value)}, {share} of {of_it}; did you mean "{value:g} N m"?'
         elif value > OVERLOADED * carried:
@@ -429,7 +431,7 @@ def _odd_forces(drive: Drive) -> Iterator[str]:
         largest = max(parts, key=lambda path: abs(parts[path]))
         given[largest] = parts[largest]
     for path, value in given.items():
-        if 0.0 < abs(value) < FAINT * carried:
+        if range_of("N")[0] <= abs(value) < FAINT * carried:  # less is as good as zero
             yield (
                 f"{path} = {value:g} N is {fraction(abs(value) / carried)} of the load of a crank that this drive carries (some "
                 f'{rounded(1e-3 * carried)} kN); a plain number is N, did you mean "{value:g} kN"?'
@@ -600,7 +602,7 @@ def _lengths_beside(drive: Drive) -> Iterator[tuple[str, float, float, str]]:
         inner = 2.0 * bearing.inner_race_radius
         yield "crank.support.diameter", support.diameter, inner, "the diameter of the inner race on it"
     for path, place in _axial_places(drive).items():
-        if place:
+        if place is not None and abs(place) >= range_of("mm")[0]:  # less is as good as zero
             yield path, place, stack, "the thickness of all discs"
     ring = drive.ring
     if ring is not None:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from ltca.arrays import FloatArray, take_positions, take_rows
 from ltca.compliance.response import Response, Start
+from ltca.drive.least_torque import ROUND_OFF_BOUND
 from ltca.equilibrium.neighbours import (
     leading_positions,
     pose_beside,
@@ -22,7 +23,7 @@ from ltca.equilibrium.neighbours import (
     start_beside,
     start_between,
 )
-from ltca.equilibrium.newton import ROUND_OFF_BOUND, Search
+from ltca.equilibrium.newton import Search
 from ltca.equilibrium.reducer import Reducer, complete
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE

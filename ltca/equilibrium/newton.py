@@ -14,16 +14,13 @@ from numpy.typing import NDArray
 
 from ltca.arrays import FloatArray, join_positions, put_positions, take_positions
 from ltca.compliance.response import Response, Start
+from ltca.drive.least_torque import ROUND_OFF, ROUND_OFF_BOUND
 from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 
 TOLERANCE = 1e-9
 """Largest residual accepted, as a part of the load T/(e z_P)."""
-ROUND_OFF = 4.0 * np.finfo(float).eps
-"""Round-off of an approach as a part of the pin circle radius; times the stiffness it bounds the residual below."""
-ROUND_OFF_BOUND = 1e-5
-"""Largest residual accepted on account of round-off, as a part of the load: beyond it there is no answer."""
 STEP_BOUND = 1e-3
 """Largest first step of a mode as a part of e z_P (0.056 mm in the paper's drive): long against elastic approaches
 (µm), short against the radius of a flank (mm), and no length of its own, so that the size of a drive does not matter.

@@ -18,6 +18,7 @@ import numpy as np
 
 from ltca.arrays import FloatArray
 from ltca.drive.members.width import needs_slices
+from ltca.drive.names import shortened_name
 from ltca.drive.parts import Disc, Drive, Inclination, PlacementErrors, Ring
 from ltca.drive.single_discs import single_discs
 from ltca.errors import DriveError
@@ -199,9 +200,8 @@ class Part:
     def stem(self) -> str:
         """Of the names of its files."""
         moved = f"_compensated_{self.compensation:g}mm" if self.compensation else ""
-        head = f"{self.drive}_{self.case}"
         # Names of drives and cases have up to 120 bytes each, those of files 255.
-        return file_word(f"{head if len(head.encode()) < 180 else self.case}_{self.name}{moved}")
+        return file_word(f"{shortened_name(f'{self.drive}_{self.case}', 160)}_{self.name}{moved}")
 
     @property
     def remarks(self) -> tuple[str, ...]:

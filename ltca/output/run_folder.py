@@ -50,15 +50,24 @@ class RunFolder:
         Whether files of earlier runs stay.
     renewing : tuple of str
         Names of files of earlier runs that are replaced even where they were changed since.
+    origins : mapping of str to str, optional
+        What files are made from, as drive and case, by their names.
     """
 
     def __init__(
-        self, path: Path, command: str, beside: tuple[str, ...], adding: bool, renewing: tuple[str, ...] = ()
+        self,
+        path: Path,
+        command: str,
+        beside: tuple[str, ...],
+        adding: bool,
+        renewing: tuple[str, ...] = (),
+        origins: Mapping[str, str] | None = None,
     ) -> None:
         self.path, self.command = path.resolve(), command
         self._beside = {self.path / name for name in beside}
         self._old, self._replaced = _read_manifest(self.path, "files"), _read_manifest(self.path, "replaced")
         self._renewing = renewing
+        self._origins, self._old_origins = dict(origins or {}), _read_manifest(self.path, "origins") if adding else {}
         self._files = dict(self._old) if adding else {}
         self._kept: set[str] = set(self._old) if adding else set()
         self._cleared = adding
@@ -143,6 +152,11 @@ class RunFolder:
         if found:
             more = f" (and {len(found) - 1} more)" if len(found) > 1 else ""
             raise PlaceError(f"{what}: {found[0]}{more} {self._why_not(found[0])}")
+        for name, origin in self._origins.items():
+            if (before := self._old_origins.get(name, origin)) != origin and name in there:
+                raise PlaceError(
+                    f"{what}: {name} was made from {before}, {origin} would replace it: choose another --out"
+                )
 
     def _may_be_replaced(self, path: Path) -> bool:
         """Tell whether what lies in the folder is as a run wrote it; links never are, for a run writes none."""
@@ -197,6 +211,9 @@ class RunFolder:
         }
         if replaced:
             content["replaced"] = dict(replaced)
+        known = self._old_origins | self._origins
+        if origins := {name: known[name] for name in content["files"] if name in known}:
+            content["origins"] = origins
         with whole_file(self.path / MANIFEST) as part:
             part.write_text(json.dumps(content, indent=2, ensure_ascii=False) + "\n", encoding="utf-8", newline="\n")
 
@@ -235,6 +252,7 @@ def claimed_folder(
     beside: tuple[str, ...] = (),
     adding: bool = False,
     renewing: tuple[str, ...] = (),
+    origins: Mapping[str, str] | None = None,
 ) -> Iterator[RunFolder]:
     """Hold a folder, which is made, while a command writes to it.
 
@@ -254,6 +272,8 @@ def claimed_folder(
         Whether files are added to those of earlier runs, which are otherwise replaced.
     renewing : tuple of str
         Names of files of earlier runs that are replaced even where they were changed since.
+    origins : mapping of str to str, optional
+        What files are made from, as drive and case, by their names: a file of another origin is not replaced.
 
     Raises
     ------
@@ -268,7 +288,7 @@ def claimed_folder(
         if BATCHES not in beside:
             _require_no_interrupted_study(path)
         _remove_parts(path, beside)
-        folder = RunFolder(path, command, beside, adding, renewing)
+        folder = RunFolder(path, command, beside, adding, renewing, origins)
         folder.require_room_for(writes, f"--out {path}")
         with told_of_files(path, folder.place):
             try:

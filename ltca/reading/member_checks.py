@@ -9,12 +9,14 @@ from itertools import pairwise
 from math import cos, degrees, fsum, pi, sin
 
 from ltca.drive.fields import ANY, OWN
+from ltca.drive.least_torque import torque_problem
 from ltca.drive.members.first_stage import FirstStage
 from ltca.drive.members.main_bearing import axial_preload
 from ltca.drive.members.pins import PinShaft, PinWheel, ShaftPinBeam, WheelPinBeam
 from ltca.drive.mistakes import entry_words
 from ltca.drive.parts import BearingRow, CrankSupport, Drive, MainBearing, Material, Preload
 from ltca.drive.ring_shape import ring_mesh_problems, seat_radius
+from ltca.drive.units.table import range_of
 from ltca.errors import counted
 from ltca.reading.disc_checks import deviation_bound, part_errors
 from ltca.reading.width_checks import find_width_problems
@@ -83,7 +85,15 @@ def _installation(drive: Drive) -> Iterator[str]:
         *_ring(drive),
         *_carrier(drive),
     )
-    yield from (*parts, *find_pin_problems(drive), *_duty(drive), *_vibrations(drive))
+    yield from (*parts, *find_pin_problems(drive), *_torques(drive), *_duty(drive), *_vibrations(drive))
+
+
+def _torques(drive: Drive) -> Iterator[str]:
+    """Torques too small to be balanced."""
+    yield from torque_problem(drive, "load.torque", drive.load.torque, zero=True)
+    yield from torque_problem(drive, "load.light_torque", drive.load.light_torque, zero=False)
+    for number, entry in enumerate(drive.duty):
+        yield from torque_problem(drive, f"duty.{number}.torque", entry.torque, zero=False)
 
 
 def _ring(drive: Drive) -> Iterator[str]:
@@ -763,6 +773,9 @@ def _race_bore(drive: Drive) -> Iterator[str]:
 def _beam(drive: Drive, part: PinWheel | PinShaft, beam: WheelPinBeam | ShaftPinBeam, path: str) -> Iterator[str]:
     span = drive.wheel_pin_span if isinstance(beam, WheelPinBeam) else drive.shaft_pin_span
     half, thickness, planes = 0.5 * span, drive.disc.thickness, drive.disc.disc_planes
+    if span > (most := range_of("mm")[1]):  # left out it follows from the discs
+        yield f"{path}.beam.span = {span:g} mm, from the first disc to the last: must be at most {most:g} mm"
+        return
     disc = max(range(len(planes)), key=lambda number: abs(planes[number]))
     reach = abs(planes[disc]) + 0.5 * thickness
     if half < reach - ROUNDING * max(reach, 1.0):

@@ -127,3 +127,27 @@ def test_what_the_disc_takes_is_the_same_file(tmp_path):
     assert (tmp_path / "a.nc").read_bytes() == (tmp_path / "b.nc").read_bytes()
     found = xr.load_dataset(tmp_path / "a.nc", engine="h5netcdf")
     np.testing.assert_array_equal(found["x"].values, np.random.default_rng(0).random(20_000))
+
+
+@pytest.mark.slow
+def test_step_on_a_full_disc_is_told_in_a_line(tmp_path):
+    """It was "unforeseen Exception"."""
+    words = [
+        "export",
+        "paper",
+        "--case",
+        "CS-1",
+        "--format",
+        "step",
+        "--part",
+        "pin-wheel",
+        "--out",
+        str(tmp_path / "out"),
+    ]
+    done = subprocess.run([sys.executable, "-c", PROGRAM, "20000", *words], capture_output=True, text=True, check=False)
+    assert done.returncode == 1, done.stderr
+    said = [line for line in done.stderr.splitlines() if line.startswith("cyclo: error: ")]
+    assert len(said) == 1
+    assert "pin-wheel.step: cannot be written" in said[0]
+    assert "unforeseen" not in done.stderr
+    assert list((tmp_path / "out").glob("**/*.step")) == []

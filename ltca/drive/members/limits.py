@@ -83,7 +83,7 @@ def parse_limits(table: Any, problems: list[str], where: str = "limits") -> Limi
             value, source = entry["value"], entry.get("source") or source
         unit = LIMITED[name].unit
         try:
-            number = _quantity(name)(value)
+            number = _quantity(name, sense)(value)
         except PydanticCustomError as error:
             told = error.message()
             beside = f" ({label(unit)})" if unit != "1" and label(unit) not in told else ""
@@ -120,8 +120,15 @@ def _without_unit(name: str) -> str:
     return next((known for known, scalar in LIMITED.items() if name == scalar.key.removeprefix("max_")), name)
 
 
-def _quantity(name: str) -> QuantityCheck:
+def _quantity(name: str, sense: str) -> QuantityCheck:
+    """Check of the value of a limit: no pressure or stress under load is at most 0."""
     scalar = LIMITED[name]
     least, most = scalar.limit or (None, None)
-    bounds = (("greater than", None), ("at least", least), ("less than", None), ("at most", most))
-    return QuantityCheck(unit="dimensionless" if scalar.unit == "1" else scalar.unit, bounds=bounds)
+    positive = sense == "max" and scalar.unit == "MPa"
+    bounds = (
+        ("greater than", 0.0 if positive else None),
+        ("at least", None if positive else least),
+        ("less than", None),
+        ("at most", most),
+    )
+    return QuantityCheck(unit="dimensionless" if scalar.unit == "1" else scalar.unit, bounds=bounds, divides=True)

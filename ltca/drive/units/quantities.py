@@ -42,14 +42,15 @@ def quantity(
     ge: float | None = None,
     lt: float | None = None,
     le: float | None = None,
+    divides: bool = False,
 ) -> BeforeValidator:
-    """Return the validator of a quantity, for ``Annotated[float, quantity("mm", gt=0)]``.
+    """Return the validator of a quantity, for ``Annotated[float, quantity("mm", gt=0)]``; `divides` of `QuantityCheck`.
 
     It converts texts, and refuses values that are not finite or out of bounds (greater than, at least, less than, at most),
     which are in the unit inside the suite: ``mm``, ``N``, ``MPa``, ``N*mm``, ``N/mm``, ``rad``, ``dimensionless``.
     """
     bounds = (("greater than", gt), ("at least", ge), ("less than", lt), ("at most", le))
-    return BeforeValidator(QuantityCheck(unit=unit, bounds=bounds))
+    return BeforeValidator(QuantityCheck(unit=unit, bounds=bounds, divides=divides or unit == "N*mm"))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,10 +63,14 @@ class QuantityCheck:
         The unit inside the suite.
     bounds : tuple of (str, float or None)
         Greater than, at least, less than, at most.
+    divides : bool
+        Whether results are divided by it: where it may be 0, it is that or no less than the smallest positive size. Lengths, to
+        which others are added, may have any size: differences leave some 1e-17 mm.
     """
 
     unit: str
     bounds: tuple[tuple[str, float | None], ...]
+    divides: bool = False
 
     @cached_property
     def inner(self) -> tuple[float, float]:
@@ -74,7 +79,7 @@ class QuantityCheck:
         (_, gt), (_, ge), (_, lt), (_, le) = self.bounds
         low = max(-largest if bound is None else bound for bound in (gt, ge))
         high = min(largest if bound is None else bound for bound in (lt, le))
-        return smallest if gt == 0.0 else low, high
+        return smallest if gt == 0.0 or (self.divides and low == 0.0) else low, high
 
     def __call__(self, value: Any) -> float:
         """Return the value in the unit of the field, or refuse it."""
@@ -93,13 +98,15 @@ class QuantityCheck:
         )
         # Far outside of any drive; products of a few such numbers stay within the range of floats.
         smallest, largest = range_of(self.unit)
-        if holds and abs(number) <= largest and (gt != 0.0 or number >= smallest):
+        small = 0.0 < abs(number) < smallest and self.divides
+        if holds and abs(number) <= largest and not small and (gt != 0.0 or number >= smallest):
             return number
         unit = f" {label(self.unit)}".rstrip()
         if not holds:
             text = " and ".join(f"{word} {bound:g}" for word, bound in self.bounds if bound is not None)
             raise PydanticCustomError("quantity", "must be {text}{unit}", {"text": text, "unit": unit})
-        text = f"at most {largest:g}{unit} in size" if abs(number) > largest else f"at least {smallest:g}{unit}"
+        least = f"{'' if gt == 0.0 else '0 or '}at least {smallest:g}{unit}"
+        text = f"at most {largest:g}{unit} in size" if abs(number) > largest else least
         raise PydanticCustomError("quantity", "must be {text}", {"text": text})
 
 
@@ -188,7 +195,7 @@ def parse_quantity(
     (377300.0, 0.5)
     """
     bounds = (("greater than", gt), ("at least", ge), ("less than", None), ("at most", le))
-    check = QuantityCheck(unit=unit, bounds=bounds)
+    check = QuantityCheck(unit=unit, bounds=bounds, divides=unit == "N*mm")
     number = float(given) if isinstance(given, Real) and not isinstance(given, int) else given  # those of numpy, too
     try:
         return check(number)

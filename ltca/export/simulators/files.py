@@ -7,6 +7,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
+from ltca.drive.names import digest_of
 from ltca.errors import DriveError
 from ltca.export.simulators.functional_mockup_unit import write_unit
 from ltca.export.simulators.lookup_tables import csv_texts, readme_text
@@ -18,18 +19,26 @@ from ltca.output.files import whole_file, write_json
 CALLBACK, LAW = "mujoco_callback.py", "reduced_drive.py"
 HOME = "ltca.analysis.reduced_model.reduced_drive"
 """Of the law in the suite; beside the exported files it is `LAW`."""
+LONGEST_MODEL = 100
+"""Signs of the name of a model that are kept: endings, and what a file is called while it is written, go after it."""
 TABLES = ("wind_up.csv", "friction.csv", "hysteresis.csv", "hysteresis_factor.csv")
 
 
 def model_name(drive: str, case: str) -> str:
     """Return a name that XML, C and Modelica take: letters, digits and underscores, a letter first.
 
+    Where other signs than hyphens are replaced, or the name is cut, it ends with a hash of both names: "groß ö" and "groß ä" are
+    two models.
+
     Examples
     --------
     >>> model_name("robot-joint", "nominal")
     'robot_joint_nominal'
     """
-    name = re.sub(r"[^A-Za-z0-9_]", "_", f"{drive}_{case}")
+    whole = f"{drive}_{case}"
+    name = re.sub(r"[^A-Za-z0-9_]", "_", whole)
+    if len(name) > LONGEST_MODEL or re.search(r"[^A-Za-z0-9_-]", whole):
+        name = f"{name[:LONGEST_MODEL]}_{digest_of(whole)}"
     return name if name[0].isalpha() else f"drive_{name}"
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 from xml.sax.saxutils import escape
 
@@ -9,6 +10,17 @@ import numpy as np
 
 STEPS_PER_RADIAN = 5.0
 """Time steps by radian of the fastest vibration of drive and flange: the step of an explicit integrator, ten times below its limit."""
+
+
+def comment(text: str) -> str:
+    """Return a text for a comment of XML, in which no two hyphens may stand together.
+
+    Examples
+    --------
+    >>> comment("a---b & c")
+    'a- - -b &amp; c'
+    """
+    return re.sub("-(?=-)", "- ", escape(text))
 
 
 def flange_inertia(tables: dict[str, Any]) -> tuple[float, str]:
@@ -64,15 +76,13 @@ def mjcf_text(tables: dict[str, Any]) -> str:
     held = f' solreffriction="{2.0 * time_step(tables):g} 1" solimpfriction="0.99 0.99 0.001"'
     loss = f' frictionloss="{at_rest:.9g}"{held}' if at_rest else ""
     damped = f' damping="{damping:.9g}"' if damping else ""
-    head = escape(
-        f"{tables['drive']} {tables['case']}, fingerprint {tables['fingerprint']}, cyclo {tables['cyclo_version']}"
-    )
-    return f"""<!-- {head.replace("--", "- -")}
+    head = f"{tables['drive']} {tables['case']}, fingerprint {tables['fingerprint']}, cyclo {tables['cyclo_version']}"
+    return f"""<!-- {comment(head)}
      The tendon is a linear spring behind the mean play: within {100.0 * spring["part_of_torque_range"]:.2g} % of the torque range
      of the mean curve, valid up to {tables["limits"]["peak_torque_N_m"]:g} N m. mujoco_callback.py with {name}.json replaces it by
      the curve with transmission error, hysteresis and friction by the load, within {100.0 * worst["part_of_torque_range"]:.2g} %.
      Angles are rad, ccw positive; the length of the tendon is the wind-up, output angle - input angle/({ratio:g}).
-     Damping: {escape(tables["damping"]["words"])}. Inertia of the output: {escape(from_words)}. -->
+     Damping: {comment(tables["damping"]["words"])}. Inertia of the output: {comment(from_words)}. -->
 <mujoco model="{name}">
   <compiler angle="radian" autolimits="true"/>
   <option timestep="{time_step(tables):g}"/>

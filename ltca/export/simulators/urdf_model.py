@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from math import pi
 from typing import Any
-from xml.sax.saxutils import escape
 
-from ltca.export.simulators.mujoco_model import flange_inertia, largest_input_torque, rotor_inertia
+from ltca.export.simulators.mujoco_model import comment, flange_inertia, largest_input_torque, rotor_inertia
 
 
 def urdf_text(tables: dict[str, Any]) -> str:
@@ -22,14 +21,12 @@ def urdf_text(tables: dict[str, Any]) -> str:
     friction = tables["friction"]["at_input_turning_ccw_N_m"]
     at_rest = friction[len(friction) // 2] * abs(ratio)
     flange, from_words = flange_inertia(tables)
-    head = escape(
-        f"{tables['drive']} {tables['case']}, fingerprint {tables['fingerprint']}, cyclo {tables['cyclo_version']}"
-    )
+    head = f"{tables['drive']} {tables['case']}, fingerprint {tables['fingerprint']}, cyclo {tables['cyclo_version']}"
     return f"""<?xml version="1.0"?>
-<!-- {head.replace("--", "- -")}
+<!-- {comment(head)}
      Friction is that without load, at the output; it does not go with speed, so damping is 0. Wind-up, play, hysteresis, friction
      under load and transmission error, which URDF cannot say, are in {name}.json. The drive's own inertia with what turns with its
-     input is {rotor_inertia(tables):.6g} kg m2 at the input. Inertia of the output: {escape(from_words)}. -->
+     input is {rotor_inertia(tables):.6g} kg m2 at the input. Inertia of the output: {comment(from_words)}. -->
 <robot name="{name}">
   <link name="{name}_housing"/>
   <link name="{name}_flange">

@@ -195,10 +195,13 @@ def test_sound_folders_are_taken(name):
         "\u2800",
         "C\u202eS",
         "a\U000e0041",
+        "a\uffff",
+        "a\ufdd0",
+        "a\U0001fffe",
     ],
 )
 def test_names_that_nobody_sees_are_refused(name):
-    """Two cases could have looked alike."""
+    """Two cases could have looked alike; U+FFFF gave MJCF that does not parse."""
     assert not names_a_file(name)
 
 

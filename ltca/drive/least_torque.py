@@ -1,0 +1,40 @@
+"""The least torque of a drive that can be balanced.
+
+Approaches of contacts are differences of places on the pin circle, known to its round-off. Times the stiffness of a contact this
+is a force; a load that is not much larger has no answer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import pi
+
+import numpy as np
+
+from ltca.drive.parts import Drive, contact_modulus
+
+ROUND_OFF = 4.0 * np.finfo(float).eps
+"""Round-off of an approach as a part of the pin circle radius; times the stiffness it bounds the residual below."""
+ROUND_OFF_BOUND = 1e-5
+"""Largest residual accepted on account of round-off, as a part of the load: beyond it there is no answer."""
+
+
+def least_torque(drive: Drive) -> float:
+    """Return the least output torque that can be balanced, N·mm: a ten-millionth to a thousandth of a millionth of a rated one.
+
+    At it the round-off of one wheel pin, of a line of contact of stiffness π E* t/10 (Palmgren), is `ROUND_OFF_BOUND` of the load
+    of the eccentric T/(e u). Where a drive carries anything, one pin touches at least.
+    """
+    stiffness = pi * contact_modulus(drive.materials.disc, drive.flank_pin) * drive.disc.thickness / 10.0
+    residual = ROUND_OFF * drive.pin_wheel.pin_circle_radius * stiffness
+    return float(residual / ROUND_OFF_BOUND * drive.crank.eccentricity * abs(drive.reduction_ratio))
+
+
+def torque_problem(drive: Drive, path: str, torque: float, *, zero: bool) -> Iterator[str]:
+    """Yield what is wrong with a torque that is too small to be balanced, N·mm; `zero` tells whether it may be 0."""
+    least = least_torque(drive)
+    if 0.0 < torque < least:
+        yield (
+            f"{path} = {torque:g} N·mm: must be {'0 or ' if zero else ''}at least {least:.2g} N·mm in this drive: below, the "
+            f"round-off of the pin circle radius is more than {ROUND_OFF_BOUND:g} of the loads"
+        )
