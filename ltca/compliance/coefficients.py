@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -287,7 +287,7 @@ def logarithm_factor(material: Material, thickness: float, plane: str = "strain"
 
 
 def load_coefficients(
-    path: Path, drive: Drive, *, lawful: bool = True, bodies: Bodies | None = None
+    path: Path, drive: Drive, *, lawful: bool | Literal["quick"] = True, bodies: Bodies | None = None
 ) -> InfluenceCoefficients:
     """Read the coefficients of a drive.
 
@@ -297,8 +297,8 @@ def load_coefficients(
         File of ``cyclo derive``.
     drive : Drive
         The drive they must belong to.
-    lawful : bool
-        Check their laws, which takes a second; not needed where that was done when they were derived.
+    lawful : bool or "quick"
+        Check their laws, which takes a second; "quick" those that take milliseconds, where all held when they were derived.
     bodies : {"plane", "solid"}, optional
         What bodies they must be of; any by default.
 

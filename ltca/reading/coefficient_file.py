@@ -11,7 +11,7 @@ from dataclasses import replace
 from functools import lru_cache
 from numbers import Integral, Real
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +25,7 @@ from ltca.reading.coefficient_laws import (
     TILT_INTERPOLATION,
     Check,
     check_laws,
+    check_quick_laws,
     check_stated_quality,
 )
 from ltca.reading.coefficient_schema import NEEDED, is_solid, require_schema
@@ -40,8 +41,10 @@ PACKED = ("disc_approach", "disc_stress")
 KEPT_BITS = 18
 """Bits to which `PACKED` matrices are kept below their largest entry: 4e-6 of it, where the mesh leaves some 4e-3."""
 
-_LAWFUL: set[str] = set()
-"""Checksums of contents that this process has checked already: a run reads its file more than once."""
+_LAWFUL: set[tuple[str, bool]] = set()
+"""Checksums of contents that this process has checked already, by all laws or by the quick ones: a run reads its file more than
+once.
+"""
 
 
 def write_coefficients(dataset: xr.Dataset, path: Path) -> Path:
@@ -63,16 +66,17 @@ def _kept_bits(values: NDArray[np.floating]) -> NDArray[np.float32]:
     return np.asarray(np.rint(values / unit) * unit, dtype=np.float32)
 
 
-def read_coefficients(path: Path, *, lawful: bool = True) -> LabelledDataset:
+def read_coefficients(path: Path, *, lawful: bool | Literal["quick"] = True) -> LabelledDataset:
     """Read coefficients of the right schema into memory.
 
     DamagedFileError when there is no such file, it holds something else, its checksum differs, or, with `lawful`, when a
-    law is broken (``cyclo derive --check`` prints which).
+    law is broken, one of those that take milliseconds with "quick" (``cyclo derive --check`` prints which).
     """
     dataset, checksum = _read(path, _stamp(path))
-    if lawful and checksum not in _LAWFUL:
-        require_laws(dataset, str(path))
-        _LAWFUL.add(checksum)
+    quick = lawful == "quick"
+    if lawful and not {(checksum, quick), (checksum, False)} & _LAWFUL:
+        require_laws(dataset, str(path), quick=quick)
+        _LAWFUL.add((checksum, quick))
     return dataset
 
 
@@ -103,9 +107,9 @@ def _read(path: Path, stamp: tuple[int, ...]) -> tuple[LabelledDataset, str]:
     return dataset, checksum
 
 
-def require_laws(dataset: Labelled, source: str) -> None:
+def require_laws(dataset: Labelled, source: str, *, quick: bool = False) -> None:
     """Refuse coefficients of the right schema that break a law, all that are broken named: DamagedFileError."""
-    if broken := _failed(check_laws(dataset)):
+    if broken := _failed(check_quick_laws(dataset) if quick else check_laws(dataset)):
         said = _words(broken)
         raise DamagedFileError(f"{source}: breaks laws of influence coefficients (cyclo derive --check): {said}")
 

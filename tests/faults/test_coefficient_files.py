@@ -14,11 +14,13 @@ from ltca.compliance import coefficient_files
 from ltca.compliance.coefficient_files import cached_file, find_case_coefficients, find_coefficients
 from ltca.compliance.coefficients import load_coefficients
 from ltca.contact.round_bodies import held_ring_approach
+from ltca.drive.single_discs import single_discs
 from ltca.errors import CycloError, DamagedFileError
 from ltca.output.netcdf import write_netcdf
 from ltca.output.provenance import code_hash
 from ltca.reading.coefficient_file import CHECKSUM, checksum_of, read_coefficients, write_coefficients
 from ltca.reading.coefficient_laws import near_field_unit
+from ltca.reading.drive_file import load_drive
 from ltca.testing.closed_form_bodies import closed_form_coefficients
 
 
@@ -231,6 +233,68 @@ def test_wrong_contents_are_refused(name, drive, sound, tmp_path):
     with pytest.raises(DamagedFileError, match=message) as refused:
         load_coefficients(path, drive)
     assert "\n" not in str(refused.value)
+
+
+def pair(row, column, added):
+    """A pair of entries of the matrix of the disc, changed by units of the near field."""
+
+    def change(contents, unit):
+        for place in {(row, column), (column, row)}:
+            contents["disc_approach"].values[place] += added * unit
+
+    return change
+
+
+def multiplied(name, place=..., factor=1.05):
+    def change(contents, unit):
+        contents[name].values[place] *= factor
+
+    return change
+
+
+# Changes of contents whose checksum is made anew, and the law that tells them.
+FORGED = {
+    "a pair of entries": (pair(100, 300, 3.0), "entry out of line"),
+    "one entry": (multiplied("disc_approach", (3, 40), 0.9), "symmetry of the stored matrices"),
+    "the whole matrix": (multiplied("disc_approach"), "near field, disc"),
+    "a pair across a wall": (pair(10, 700, -3.0), "entry out of line"),
+    "a patch on itself": (pair(640, 640, 3.0), "entry out of line"),
+    "pin": (multiplied("pin_approach"), "near field, pin, roller, race"),
+    "roller": (multiplied("roller_approach"), "roller against the compressed cylinder"),
+    "race": (multiplied("race_approach", 0), "near field, pin, roller, race"),
+    "stresses by some loads": (multiplied("disc_stress", np.s_[:, :312], 3.0), "stress left by even pressure"),
+    "resultants": (multiplied("disc_resultant", (2, 5), 0.9), "resultants of the patches"),
+    "what it states": (lambda contents, unit: contents.attrs.update(rigid_residual=1e-3), "rigid motions"),
+}
+
+
+@pytest.fixture(scope="module")
+def shipped():
+    """A shipped drive of one disc, and its coefficients by finite elements: 13 × 48 stations on the flank, 48 on each wall."""
+    (drive, *_) = single_discs(next(iter(load_drive("robot-joint").cases.values())))
+    path = coefficient_files.shipped_file(drive)
+    assert path is not None
+    return drive, path
+
+
+@pytest.mark.parametrize("name", FORGED)
+@pytest.mark.family(quick=3)
+def test_a_cached_file_whose_checksum_was_changed_with_it_is_found_out(name, shipped, tmp_path):
+    """Files in the cache were read by their checksum alone: one matrix entry, and another load, with exit status 0."""
+    change, law = FORGED[name]
+    drive, sound = shipped
+    contents = read_coefficients(sound, lawful=False).to_xarray().copy(deep=True)
+    change(contents, near_field_unit(contents, "disc"))
+    path = write_coefficients(contents, tmp_path / "cached.nc")
+    with pytest.raises(DamagedFileError, match=law) as refused:
+        load_coefficients(path, drive, lawful="quick")
+    assert str(refused.value).startswith(f"{path}: breaks laws")
+    assert "\n" not in str(refused.value)
+
+
+def test_shipped_files_keep_the_quick_laws():
+    for path in sorted(coefficient_files.SHIPPED.glob("*.nc")):
+        assert read_coefficients(path, lawful="quick").attrs[CHECKSUM]
 
 
 @pytest.mark.slow
