@@ -38,6 +38,8 @@ SHORT_PLACE, LONGEST_PLACE = "/tmp", 69
 """Where sockets go when the path of the folder for temporary files is longer: theirs may have 107 bytes, names in it take 38."""
 FRESH = 10.0
 """Age, s, up to which a folder may be one that is about to be locked."""
+MOST_ON_WINDOWS = 61
+"""Processes of a pool: Windows waits for no more at a time, and the standard library refuses them."""
 NEEDED = (
     "the folder for temporary files must be writable"
     if sys.platform in ("win32", "darwin")
@@ -77,6 +79,8 @@ def process_pool(
 
 def _started_pool(processes: int, preload: str, initializer: Callable[[], None] | None) -> ProcessPoolExecutor:
     context = start_context(preload)
+    if os.name == "nt":
+        processes = min(processes, MOST_ON_WINDOWS)
     return ProcessPoolExecutor(processes, mp_context=context, initializer=initializer or become_worker)
 
 
