@@ -39,7 +39,9 @@ ROOT = Path(__file__).resolve().parents[1]
 OURS = ("ltca", "fem", "validation")
 CODE = re.compile(r"``([^`]+)``|`([^`]+)`")
 FENCE = re.compile(r"```(\w*)\n(.*?)```", re.DOTALL)
-COMMAND = re.compile(r"(?:\.venv/bin/)?(?:cyclo|python3?)\s+\S")
+VENV = re.compile(r"^(?:\.venv/bin/|\.venv\\Scripts\\)")
+"""What stands before a program of an environment, on Windows too."""
+COMMAND = re.compile(rf"(?:{VENV.pattern})?(?:cyclo|python3?)\s+\S")
 PLACEHOLDERS = {"DRIVE": "paper", "REQUIREMENTS.toml": "requirements.toml", "FILE": "file.nc", "NAME": "CS-1", "N": "1",
                 "K": "0", "C": "0.1", "H": "0.1", "DIR": "out", "φ": "0.5", "COMMAND": "run"}  # fmt: skip
 """What stands in usage lines for a value."""
@@ -172,7 +174,7 @@ def commands_in(text: str, lines_too: bool) -> dict[str, bool]:
 
     Lines of shell blocks, whole pieces of code; in docstrings any line.
     """
-    lines = [block for language, block in FENCE.findall(text) if language in ("sh", "text", "")]
+    lines = [block for language, block in FENCE.findall(text) if language in ("sh", "powershell", "text", "")]
     pieces = [
         " ".join(part.split())
         for one, two in CODE.findall(FENCE.sub("", text))
@@ -200,10 +202,10 @@ def printed() -> dict[str, tuple[str, bool]]:
 
 def words_of(command: str, whole: bool) -> tuple[list[str], bool]:
     """Return the words of a command, placeholders replaced, and whether it has to be complete: no mention, nothing left out."""
-    plain = re.sub(r" \| [A-Z]+", "", command.removeprefix(".venv/bin/"))
+    plain = re.sub(r" \| [A-Z]+", "", VENV.sub("", command))
     plain = re.sub(r"(\w)\|[\w|-]+", r"\1", plain).replace("[", " ").replace("]", " ")
     if "import ltca" in plain:
-        plain = command.removeprefix(".venv/bin/")
+        plain = VENV.sub("", command)
     words = [PLACEHOLDERS.get(word, word) for word in shlex.split(plain, comments=True)]
     kept = [word for word in words if word not in ("…", "...")]
     return kept, whole and kept == words and "[-h]" not in command

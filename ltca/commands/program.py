@@ -168,11 +168,11 @@ def main(argv: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         print("cyclo: interrupted", file=sys.stderr)
         return 130
-    except BrokenPipeError:
-        # The reader of our output (head, less) has gone: no message, and none from the interpreter's exit either.
-        _forget_output()
-        return 141
     except Exception as error:  # noqa: BLE001  # the one place where everything ends
+        if _reader_has_gone(error):
+            # No message, and none from the interpreter's exit either.
+            _forget_output()
+            return 141
         if isinstance(error, OSError) and error.filename is None and error.errno in OUTPUT_FAULTS:
             error.filename = "standard output"  # our files are named when they cannot be written
             _forget_output()
@@ -200,6 +200,13 @@ def _run(words: list[str], wanted: str) -> int:
         raise
     with ended_by_signals():
         return int(arguments.execute(arguments))
+
+
+def _reader_has_gone(error: Exception) -> bool:
+    """Tell whether who read our output (head, less) has gone; Windows calls that an invalid argument."""
+    if isinstance(error, OSError) and os.name == "nt":
+        return error.errno in (errno.EPIPE, errno.EINVAL) and error.filename is None
+    return isinstance(error, BrokenPipeError)
 
 
 def _forget_output() -> None:

@@ -40,6 +40,8 @@ FRESH = 10.0
 """Age, s, up to which a folder may be one that is about to be locked."""
 LETTING_GO = 0.3
 """Time, s, after which an ended process has let go of its lock; its pipes may be closed a moment earlier."""
+MOST_ON_WINDOWS = 61
+"""Processes of a pool: Windows waits for no more at a time, and the standard library refuses them."""
 NEEDED = (
     "the folder for temporary files must be writable"
     if sys.platform in ("win32", "darwin")
@@ -79,6 +81,8 @@ def process_pool(
 
 def _started_pool(processes: int, preload: str, initializer: Callable[[], None] | None) -> ProcessPoolExecutor:
     context = start_context(preload)
+    if os.name == "nt":
+        processes = min(processes, MOST_ON_WINDOWS)
     return ProcessPoolExecutor(processes, mp_context=context, initializer=initializer or become_worker)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import resource
 import subprocess
 import sys
 from contextlib import contextmanager
@@ -16,6 +15,7 @@ from ltca.errors import FaultError
 from ltca.output.files import whole_file
 from ltca.output.netcdf import DiscStream, write_netcdf
 
+resource = pytest.importorskip("resource", reason="no limits on the size of files")
 LIMIT = 16_384
 # Commands as a program, with the limit from the start: HDF5 ended the process with a segmentation fault.
 PROGRAM = """

@@ -8,9 +8,11 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
+from ltca.output import processes
 from ltca.output.processes import Terminated, ended_by_signals
 
 pytestmark = pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="reads /proc")
@@ -101,6 +103,18 @@ def test_a_signal_while_an_object_is_removed_is_heard(number, kind):
     with pytest.raises(kind):
         work()
     assert not went_on
+
+
+@pytest.mark.parametrize(("number", "kind"), [(signal.SIGTERM, Terminated), (signal.SIGINT, KeyboardInterrupt)])
+def test_a_signal_is_sent_again_on_windows(number, kind, monkeypatch):
+    """`os.kill` ends a process of Windows at once, whatever the signal, this one too."""
+
+    def kill(*words):
+        raise AssertionError("the process would have ended")
+
+    monkeypatch.setattr(processes, "os", SimpleNamespace(name="nt", getpid=os.getpid, kill=kill))
+    with pytest.raises(kind), ended_by_signals():
+        processes._send(number)
 
 
 @pytest.mark.slow

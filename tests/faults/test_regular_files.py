@@ -6,6 +6,7 @@ import errno
 import os
 import shutil
 import threading
+from types import SimpleNamespace
 
 import h5py
 import numpy as np
@@ -13,6 +14,7 @@ import pytest
 
 from ltca.commands.program import main
 from ltca.errors import DamagedFileError, DriveError
+from ltca.output import regular_files
 from ltca.output.netcdf import require_sound_netcdf
 from ltca.output.regular_files import NotReadableError, read_regular
 from ltca.output.run_folder import MANIFEST, claimed_folder
@@ -184,3 +186,16 @@ def test_results_to_compare_with_that_are_no_regular_file(target, tmp_path):
         (tmp_path / "results.nc").symlink_to(target)
     with pytest.raises(DriveError, match=r"results\.nc is not a regular file"):
         read_compared(tmp_path)
+
+
+def test_a_folder_is_told_of_where_it_cannot_be_opened(tmp_path, monkeypatch):
+    """Windows opens no folder and says that access is denied."""
+
+    def refused(path, flags):
+        raise PermissionError(errno.EACCES, "Permission denied", str(path))
+
+    monkeypatch.setattr(regular_files, "os", SimpleNamespace(**{**vars(os), "open": refused}))
+    with pytest.raises(OSError, match="not a regular file but a folder"), regular_files.regular_file(tmp_path):
+        pass
+    with pytest.raises(PermissionError), regular_files.regular_file(tmp_path / "file"):
+        pass

@@ -9,11 +9,13 @@ import tempfile
 import time
 from multiprocessing.context import BaseContext
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from ltca.commands.program import _told, main
 from ltca.errors import DriveError
+from ltca.output import process_pools
 from ltca.output.files import whole_file
 from ltca.output.process_pools import LOCK, PREFIX, remove_stale_folders
 from ltca.output.run_folder import MANIFEST, claimed_folder
@@ -212,3 +214,19 @@ def test_left_over_folders_of_pools_go_at_the_next_start(tmp_path):
     remove_stale_folders(tmp_path)
     left = sorted(path.name for path in tmp_path.iterdir())
     assert left == sorted([f"{PREFIX}fresh", f"{PREFIX}link", f"{PREFIX}without", "pymp-x"])
+
+
+def test_a_pool_has_no_more_processes_than_windows_waits_for(monkeypatch):
+    """`ProcessPoolExecutor` refuses more than 61 there (its documentation), which a machine of 64 processors asks for."""
+    asked = []
+    monkeypatch.setattr(process_pools, "ProcessPoolExecutor", lambda processes, **_: asked.append(processes))
+    for system in ("posix", "nt"):
+        monkeypatch.setattr(process_pools, "os", SimpleNamespace(**{**vars(os), "name": system}))
+        process_pools._started_pool(64, "", None)
+    assert asked == [64, 61]
+
+
+def test_processes_of_macos_are_no_copies(monkeypatch):
+    """Its own libraries do not work in a copy of a process that has loaded them."""
+    monkeypatch.setattr(process_pools, "sys", SimpleNamespace(platform="darwin"))
+    assert process_pools.start_context("json").get_start_method() == "spawn"

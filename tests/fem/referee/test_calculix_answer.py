@@ -1,8 +1,11 @@
 """What is read from a .dat file of CalculiX: the last increment only, and none whose contacts pull."""
 
+import sys
+from pathlib import Path
+
 import pytest
 
-from fem.referee.calculix import last_output, read_forces, read_pressures, read_wheel_turn
+from fem.referee.calculix import last_output, read_forces, read_pressures, read_wheel_turn, run_calculix
 from ltca.errors import CycloError
 
 
@@ -55,3 +58,20 @@ def test_contacts_that_pull_are_no_answer():
 def test_a_file_without_contacts_is_one_error():
     with pytest.raises(CycloError, match="no contact stresses"):
         last_output("")
+
+
+def test_a_deck_is_copied_where_links_are_for_administrators(tmp_path, monkeypatch):
+    """Windows: a program that finds its deck answers with the deck's own text, which holds what a result has."""
+
+    def refused(self, target):
+        raise OSError(1314, "A required privilege is not held by the client")
+
+    monkeypatch.setattr(Path, "symlink_to", refused)
+    script = (
+        "import pathlib; pathlib.Path('job.dat').write_text(pathlib.Path('job.inp').read_text()); print('Job finished')"
+    )
+    deck, program = tmp_path / "deck.inp", tmp_path / "ccx"
+    deck.write_text("total surface force", encoding="utf-8")
+    program.write_text(f"#!{sys.executable}\n{script}\n", encoding="utf-8")
+    program.chmod(0o755)
+    assert run_calculix(deck, str(program))[0] == "total surface force"

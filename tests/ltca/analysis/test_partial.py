@@ -87,8 +87,9 @@ def test_positions_without_an_answer_are_no_numbers(failing):
 
 @pytest.mark.slow
 def test_a_light_torque_without_any_answer_keeps_the_full_one(tmp_path, capsys, monkeypatch):
-    """So light that round-off is a load: it was "no equilibrium", after minutes, and nothing was written. Refused in a file by now:
-    let through here.
+    """So light that round-off is a load: it was "no equilibrium", after minutes, and nothing was written.
+
+    A file with it is refused by now: let through here.
     """
     monkeypatch.setattr("ltca.reading.member_checks.torque_problem", lambda *_, **__: ())
     text = shipped_drive().replace("light_torque = 10000.0", "light_torque = 1e-6").split("[[case]]")[0]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import io
 import json
 import os
 import re
@@ -9,11 +11,13 @@ import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import xarray as xr
 
+from ltca.commands import program
 from ltca.commands.program import main
 from ltca.errors import DriveError
 from ltca.output.run_folder import MANIFEST
@@ -416,3 +420,26 @@ def test_an_output_that_takes_nothing_is_named(words, unbuffered, tmp_path):
             check=False, cwd=tmp_path, env=environment,
         )  # fmt: skip
     assert (done.returncode, done.stderr) == (1, "cyclo: error: standard output: No space left on device\n")
+
+
+class _Gone(io.StringIO):
+    """Standard output whose reader has gone."""
+
+    def __init__(self, number):
+        super().__init__()
+        self.number = number
+
+    def write(self, text):
+        raise OSError(self.number, os.strerror(self.number))
+
+
+@pytest.mark.parametrize(
+    ("system", "number", "status"),
+    [("posix", errno.EPIPE, 141), ("nt", errno.EPIPE, 141), ("nt", errno.EINVAL, 141), ("posix", errno.EINVAL, 1)],
+)
+def test_a_reader_that_has_gone_is_no_error(system, number, status, monkeypatch, capsys):
+    """Windows says of `cyclo run | more`, left early, that an argument is invalid."""
+    monkeypatch.setattr(program, "os", SimpleNamespace(**{**vars(os), "name": system}))
+    monkeypatch.setattr(sys, "stdout", _Gone(number))
+    assert program.main(["fields", "thickness"]) == status
+    assert (capsys.readouterr().err == "") == (status == 141)

@@ -6,10 +6,13 @@ import json
 import os
 import subprocess
 import sys
+from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from ltca.errors import CycloError
+from ltca.output import files
 from ltca.output.files import whole_file, write_json
 
 
@@ -88,3 +91,23 @@ def test_json_refuses_what_is_no_number(tmp_path):
     with pytest.raises(ValueError, match="JSON"):
         write_json(tmp_path / "b.json", {"x": float("nan")})
     assert [path.name for path in tmp_path.iterdir()] == ["a.json"]
+
+
+def test_a_file_that_a_scanner_holds_for_a_moment_is_replaced_on_windows(tmp_path, monkeypatch):
+    """Windows refuses to replace what another program has open; the second trial is in vain here, the third is not."""
+    path, trials, replace = tmp_path / "a.txt", [], Path.replace
+    path.write_text("old", encoding="utf-8")
+
+    def held(part, place):
+        trials.append(place)
+        if len(trials) < 3:
+            raise PermissionError(13, "Access is denied")
+        return replace(part, place)
+
+    monkeypatch.setattr(Path, "replace", held)
+    monkeypatch.setattr(files, "PAUSES", (0.0,) * 4)
+    monkeypatch.setattr(files, "os", SimpleNamespace(**{**vars(os), "name": "nt"}))
+    with whole_file(path) as part:
+        part.write_text("new", encoding="utf-8")
+    assert path.read_text(encoding="utf-8") == "new"
+    assert len(trials) == 3

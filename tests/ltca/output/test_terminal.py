@@ -12,6 +12,7 @@ import pytest
 from ltca.output.terminal import PLAIN
 
 ROOT = Path(__file__).parents[3]
+pytestmark = pytest.mark.skipif(os.name == "nt", reason="streams are closed by a shell")
 
 
 def cyclo(*words, closed=(), **environment):

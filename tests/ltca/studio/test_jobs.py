@@ -130,3 +130,16 @@ def test_how_far_a_job_is_stands_in_its_last_line_that_says_so(tmp_path, capsys,
     assert _done([*lines, "warning: 3 of 4 pins"]) == [12, 250]
     assert _done(["coefficients: 0 of at most 4 (10 s)"]) == [0, 4]
     assert _done(["disc: 3 of 4 holes", "…"]) == []
+
+
+def test_what_a_job_tells_is_utf_8_whatever_the_locale(tmp_path, monkeypatch):
+    """Of a terminal in cp1252 or latin-1 a page showed replacement signs for ° and µ."""
+    monkeypatch.setenv("PYTHONIOENCODING", "latin-1")
+    jobs = Jobs(tmp_path)
+    number = jobs.start(
+        {"kind": "export", "format": "dxf", "part": "disc"}, PAPER.replace("paper", "größe", 1), "größe", "CS-1"
+    )
+    job = finished(jobs, number)
+    assert job["state"] == "done"
+    assert any("größe" in line for line in job["lines"])
+    jobs.close()

@@ -44,6 +44,7 @@ def same_files(one, other):
 
 
 @pytest.mark.slow
+@pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="reads /proc")
 def test_local_pool_survives_a_killed_worker(study, straight, tmp_path):
     """SIGKILL for a worker after the first of many batches: the pool is built anew, the results are the same."""
     folder = StudyFolder(path=tmp_path / "disturbed")
