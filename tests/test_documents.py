@@ -11,6 +11,7 @@ import tomllib
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 
+import needs
 import pytest
 
 ROOT = Path(__file__).parents[1]
@@ -74,6 +75,32 @@ def test_set_up_lines_are_those_of_the_ci():
         f"{set_up}. && .venv/bin/cyclo run paper",
         f"{set_up}'.[test]' && .venv/bin/python -m pytest -n 2",
     ]
+
+
+def test_the_ci_ends_with_the_test_line_in_a_fresh_clone_with_nothing_beside_it():
+    """It ran where every extra and both referees were installed, so what fails on a new machine stayed green."""
+    script = (ROOT / ".ci" / "run").read_text(encoding="utf-8")
+    end = script[script.index('git clone --quiet . "$apart/clone"') :]
+    assert "line=$(grep -m1 'python -m pytest' README.md)" in end
+    assert "pip install" not in end
+    assert 'HOME="$apart/home" PATH="$apart/programs"' in end
+    assert end.rstrip().endswith('bash -c "$line"')
+    for _, commands, _ in needs.PROGRAMS.values():
+        for name in commands:
+            assert re.search(rf"[{{,]{re.escape(name.removesuffix('-browser'))}\*?[,}}]", end), name
+
+
+def test_every_extra_that_a_test_needs_is_in_the_ci():
+    script = (ROOT / ".ci" / "run").read_text(encoding="utf-8")
+    installed = set(re.search(r"--editable '\.\[([a-z,]+)\]'", script)[1].split(","))
+    system = (ROOT / ".ci" / "system-libraries").read_text(encoding="utf-8")
+    texts = "".join(path.read_text(encoding="utf-8") for path in (ROOT / "tests").rglob("test_*.py"))
+    wanted = {name for call in re.findall(r"mark\.needs\(([^)*]+)\)", texts) for name in re.findall(r'"(\w+)"', call)}
+    assert {"docs", "fast", "robotics", "calculix"} <= wanted - {"dosc"}
+    programs = wanted & set(needs.PROGRAMS)
+    assert wanted - programs <= installed
+    for name in programs - {"compiler"}:  # which is not installed for tests alone
+        assert needs.PROGRAMS[name][2] in system
 
 
 def test_every_command_stands_under_its_question():

@@ -657,7 +657,7 @@ def runner(tmp_path_factory):
 
 MADE_BEFORE = {
     "mine.nc": "cyclo derive my.toml --case CS-1 --out mine.nc --stations 0.25 --size 2",
-    "solid.nc": "cyclo derive paper --case CS-1 --bodies solid --out solid.nc --stations 0.25 --size 3 --layers 2",
+    "solid.nc": "cyclo derive paper --case CS-1 --bodies solid --out solid.nc --stations 0.25 --size 2 --layers 2",
     "out/paper": "cyclo run paper --positions 4 --no-figures",
 }
 """What readers have when they come to a command, and what makes it."""

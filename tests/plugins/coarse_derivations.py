@@ -18,7 +18,7 @@ def coarse_derivation(name: str = coefficient_files.DERIVATION) -> Callable[...,
 
     def derive(drive: Any, *, bodies: str = "plane", **words: Any) -> Any:
         if bodies == "solid":
-            return derive_coefficients(drive, stations=0.25, size=3.0, bodies="solid", **words)
+            return derive_coefficients(drive, stations=0.25, size=2.0, bodies="solid", **words)
         return derive_coefficients(drive, stations=0.25, size=1.5, **words)
 
     return derive

@@ -118,6 +118,19 @@ def children():
     return found
 
 
+KILLED_AT_THE_THIRD = """
+import os, signal
+from ltca.studies.execution.storage import StudyFolder
+store, stored = StudyFolder.store, []
+def store_and_die(folder, *words):
+    store(folder, *words)
+    stored.append(1)
+    if len(stored) == 3:
+        os.kill(os.getpid(), signal.SIGKILL)
+StudyFolder.store = store_and_die
+"""
+
+
 @pytest.mark.nightly
 @pytest.mark.slow
 def test_killed_study_resumes_to_the_same_dataset(tmp_path):
@@ -128,19 +141,16 @@ def test_killed_study_resumes_to_the_same_dataset(tmp_path):
     program += "t.configure(p); sys.exit(t.execute(p.parse_args(sys.argv[1:])))"
     one, other = tmp_path / "disturbed", tmp_path / "straight"
 
-    def start(out, *more):
+    def start(out, *more, before=""):
         return subprocess.Popen(
-            [sys.executable, "-c", program, *arguments, "--out", str(out), *more], stdout=subprocess.PIPE, text=True
-        )
+            [sys.executable, "-c", before + program, *arguments, "--out", str(out), *more],
+            stdout=subprocess.PIPE, text=True,
+        )  # fmt: skip
 
-    process = start(one)
-    deadline = time.monotonic() + 300.0
-    while len(list(one.glob("batches/[0-9]*.npz"))) < 3 and time.monotonic() < deadline:
-        time.sleep(0.02)
-    process.kill()
+    process = start(one, before=KILLED_AT_THE_THIRD)
     process.communicate()
-    kept = len(list(one.glob("batches/[0-9]*.npz")))
-    assert 3 <= kept < 7
+    assert process.returncode == -signal.SIGKILL
+    assert len(list(one.glob("batches/[0-9]*.npz"))) == 3
     resumed = start(one, "--resume", "--workers", "2")
     text, _ = resumed.communicate()
     assert resumed.returncode == 0
