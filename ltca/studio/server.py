@@ -25,7 +25,7 @@ from ltca.errors import CycloError, DriveError, FaultError, shortened
 from ltca.output.files import whole_file
 from ltca.page.run_page import STAGE
 from ltca.page.writing import page_text, script_data
-from ltca.studio.answers import COARSE, DERIVATIVE, FINE, Question, problem_of
+from ltca.studio.answers import CACHED, COARSE, DERIVATIVE, FINE, Question, problem_of
 from ltca.studio.entries import (
     changed_entries,
     declared_entries,
@@ -42,7 +42,7 @@ MOST_BYTES = 4_000_000
 """Of a question; a drive file of many cases has some hundred thousand."""
 LOOKING = 0.25
 """Time, s, between two looks whether who asked is still there."""
-COMPLIANCES = ("half-space", "hybrid", "fe", "file")
+COMPLIANCES = (CACHED, "half-space", "hybrid", "fe", "file")
 PORTABLE = re.compile(r"[\w .-]+")
 """Names of saved files: signs that no file system refuses or reads in another way, letters of any script among them."""
 DEVICE = re.compile(r"(?:con|prn|aux|nul|(?:com|lpt)[0-9¹²³])(?: *\..*)?", re.IGNORECASE)
