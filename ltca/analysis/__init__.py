@@ -5,7 +5,7 @@ Modules in the order data passes:
 =========================  ============================================================
 engines                    Engines: how the bodies of a drive yield and how its equilibrium is found, as frozen values with
                            their options
-half_space_errors          How far half-spaces are off on the shipped drives, told of the one nearest to a drive
+half_space_errors          How far half-spaces are off, measured on the shipped drives, and in which direction
 friction                   Losses of a drive that turns, the loop of one whose input is locked
 loaded_analysis            Loaded tooth contact analysis of one drive at many crank angles: equilibrium, then
                            pressures and bearing forces

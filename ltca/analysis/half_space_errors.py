@@ -1,7 +1,7 @@
-"""How far half-spaces are off: measured against `hybrid` on the shipped drives, told of the one nearest to a drive.
+"""How far half-spaces are off: measured against `hybrid` on the shipped drives, reported for the most similar one.
 
 Half-spaces take the contacts along and nothing beyond them. What that costs differs from drive to drive (thin walls, wide holes,
-plastic), and only a hybrid analysis of the drive itself tells; of the nearest shipped drive it is known.
+plastic), and only a hybrid analysis of the drive itself tells; for the shipped drives it is known.
 """
 
 from __future__ import annotations
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 MEASURED = Path(__file__).with_suffix(".toml")
 """Ratios of half-space to hybrid, and what makes drives alike: ``python benchmarks/half_space_errors.py --write``."""
+SAME = 1e-5
+"""Distance of two drives up to which they have the same disc: what is measured is kept to six digits."""
 WORDS = {
     "stiffness": "torsional stiffness",
     "life": "life of the crank bearing",
@@ -48,14 +50,14 @@ def measured() -> dict[str, dict[str, dict[str, float]]]:
         return tomllib.load(stream)
 
 
-def nearest_shipped(drive: Drive) -> str:
-    """Return the name of the shipped drive that a drive is nearest to.
+def nearest_shipped(drive: Drive) -> tuple[str, bool]:
+    """Return the name of the shipped drive that a drive is most similar to, and whether both have the same disc.
 
     Examples
     --------
     >>> from ltca.reading.drive_file import load_drive
     >>> nearest_shipped(load_drive("paper").cases["CS-1"])
-    'paper'
+    ('paper', True)
     """
     own = likeness(drive)
 
@@ -63,19 +65,53 @@ def nearest_shipped(drive: Drive) -> str:
         kind = 4.0 * abs(own["several_cranks"] - other["several_cranks"]) + abs(own["loose_pins"] - other["loose_pins"])
         return kind + sum(abs(log(own[name] / other[name])) for name in ("teeth", "slenderness", "youngs_modulus"))
 
-    return min(measured(), key=lambda name: distance(measured()[name]["likeness"]))
+    distances = {name: distance(of["likeness"]) for name, of in measured().items()}
+    nearest = min(distances, key=distances.__getitem__)
+    return nearest, distances[nearest] < SAME
+
+
+def _measured_on(drive: Drive) -> tuple[dict[str, float], str]:
+    """Ratios for a drive, and where they were measured."""
+    name, same = nearest_shipped(drive)
+    return measured()[name]["ratio"], f"measured on the {'' if same else 'most similar '}shipped drive {name}"
+
+
+def _off(ratio: float, more: str = "too large", less: str = "too small") -> str:
+    """A ratio as a deviation with its direction."""
+    percent = 100.0 * (ratio - 1.0)
+    return "within 1 %" if abs(percent) < 1.0 else f"{abs(percent):.0f} % {more if percent > 0.0 else less}"
+
+
+def half_space_caution(engine: Engine, drive: Drive) -> str:
+    """Return by how much half-spaces are off in torsion, and in which direction, in a few words; empty for another engine.
+
+    Examples
+    --------
+    >>> from ltca.analysis.engines import HalfSpace
+    >>> from ltca.reading.drive_file import load_drive
+    >>> half_space_caution(HalfSpace(), load_drive("paper").cases["CS-1"])
+    'half-spaces: about 34 % too stiff here (measured on the shipped drive paper)'
+    """
+    if engine.compliance != "half-space":
+        return ""
+    ratio, where = _measured_on(drive)
+    stiff = _off(ratio["stiffness"], "too stiff", "too soft")
+    if stiff.startswith("within"):
+        stiff = f"stiffness {stiff}, transmission error about {_off(ratio['transmission_error'])}"
+        return f"half-spaces: {stiff} here ({where})"
+    return f"half-spaces: about {stiff} here ({where})"
 
 
 def half_space_words(engine: Engine, drive: Drive) -> str:
     """Return what to know of an analysis on half-spaces: why, and by how much they are off; nothing for another engine."""
     if engine.compliance != "half-space":
         return ""
-    name = nearest_shipped(drive)
+    ratio, where = _measured_on(drive)
     why = "as [analysis] of the drive file says" if drive.analysis.compliance == "half-space" else "as asked"
-    told = ", ".join(f"{WORDS[key]} {value:.2f}" for key, value in measured()[name]["ratio"].items())
+    told = ", ".join(f"{WORDS[key]} {_off(value)}" for key, value in ratio.items())
     return (
-        f"half-spaces, {why}: contacts yield, bodies beyond them do not; on {name}, the nearest shipped drive, they give "
-        f"of what hybrid gives: {told}{_supports_of_bodies(drive)}"
+        f"half-spaces, {why}: contacts yield, bodies beyond them do not; against hybrid, {where}: {told}"
+        f"{_supports_of_bodies(drive)}"
     )
 
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from ltca.analysis.engines import Engine, describe_engine
 from ltca.analysis.friction.losses import KINDS
+from ltca.analysis.half_space_errors import half_space_caution
 from ltca.analysis.life.bearing_lives import BearingLives
 from ltca.analysis.summary import refined_value
 from ltca.analysis.summary_rows import rows_of, with_residual_part
@@ -59,7 +60,9 @@ class Run:
     lives : mapping of str to BearingLives or str
         Of the crank bearings by case, or why there are none.
     sampling : sequence of str
-        What the values stand for, and warnings.
+        Warnings, behind "warning: ", and further lines on the positions.
+    method : sequence of (str, str)
+        What the values stand for: names and texts of rows.
     light : LabelledDataset, xarray.Dataset or None
         The same results at the light torque (`ltca.analysis.light_torque`); without them the drive moves at its torque alone.
     compared : Compared or None
@@ -75,6 +78,7 @@ class Run:
     sampling: Sequence[str]
     light: Labelled | None = None
     compared: Compared | None = None
+    method: Sequence[tuple[str, str]] = ()
 
 
 def run_page(run: Run) -> str:
@@ -116,6 +120,7 @@ def answer_context(run: Run, drives: Mapping[str, Drive]) -> dict[str, Any]:
         "version": dataset.attrs["version"],
         "sentence": sentence,
         "state": state,
+        "caution": half_space_caution(run.engine, next(iter(run.drives.values()))),
         "verdicts": verdict_tables(run.checks),
         "summary": summary_tables(drives, run.summaries),
         "orders": orders_table(dataset, drives),
@@ -126,7 +131,6 @@ def answer_context(run: Run, drives: Mapping[str, Drive]) -> dict[str, Any]:
         "comparison": _comparison(run),
         "compared": run.compared,
         "warnings": [line.removeprefix("warning: ") for line in run.sampling if line.startswith("warning: ")],
-        "sampling": [line for line in run.sampling if not line.startswith("warning: ")],
         "data": script_data(content),
         "numbers": numbers,
     }
@@ -234,6 +238,7 @@ def _made(run: Run, drives: Mapping[str, Drive]) -> Table:
         *options,
         ("positions of the crank", where),
         *(("sampling", line) for line in run.sampling if not line.startswith("warning: ")),
+        *run.method,
         *(
             (f"fingerprint of {name}" if len(drives) > 1 else "fingerprint of the drive", drive.fingerprint())
             for name, drive in drives.items()

@@ -10,7 +10,15 @@ from math import gcd
 from typing import Any
 
 from ltca.analysis.derivatives import LostMotion, derivatives
-from ltca.analysis.engines import HalfSpace, describe_engine, engine_of, lending_between
+from ltca.analysis.engines import (
+    CoupledEngine,
+    Engine,
+    HalfSpace,
+    describe_engine,
+    engine_of,
+    lending_between,
+    ring_lender,
+)
 from ltca.analysis.extremes import RESOLVED, sampling_warning
 from ltca.analysis.life.bearing_lives import BearingLives, bearing_lives
 from ltca.analysis.light_torque import at_light_torque
@@ -23,9 +31,15 @@ from ltca.analysis.torque_curve import LOST_MOTION, curve_angles
 from ltca.analysis.verdict.proportions import odd_proportions
 from ltca.analysis.verdict.values import judge_analysis
 from ltca.arrays import FloatArray
+from ltca.compliance.coefficient_files import has_coefficients
+from ltca.compliance.ring import has_ring
+from ltca.drive.engine_support import require
 from ltca.drive.fields import field_kind
+from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.members.verdict_words import CLOSE
 from ltca.drive.parts import Drive
+from ltca.drive.ring_shape import has_ring_of_elements
+from ltca.drive.single_discs import single_discs
 from ltca.drive.units.quantities import ARCMIN
 from ltca.errors import ConvergenceError, CycloError, DriveError
 from ltca.geometry.placement import position_angles
@@ -37,6 +51,10 @@ from ltca.quantities import SCALARS, printed, unit_sign
 from ltca.reading.drive_file import DriveFile, parse_drive
 
 COARSE, FINE, DERIVATIVE = "coarse", "fine", "derivative"
+CACHED = "cached"
+"""Compliance of a fine answer: what the drive file says where its coefficients are there, half-spaces elsewhere."""
+ENGINES = {"half-space": "half-spaces", "hybrid": "hybrid", "fe": "plane strain"}
+"""Names of engines in a caution."""
 COARSE_POSITIONS, FEWER_POSITIONS, MANY_CONTACTS = 36, 16, 60
 """Positions of a coarse answer, and those of a drive of more contacts than this."""
 FINE_POSITIONS = 360
@@ -73,7 +91,8 @@ class Question:
     quality : str
         `COARSE`, `FINE` or `DERIVATIVE`.
     compliance : str
-        How bodies yield in a fine answer: ``half-space``, ``hybrid``, ``fe``, or ``file`` for what the drive file says.
+        How bodies yield in a fine answer: ``half-space``, ``hybrid``, ``fe``, ``file`` for what the drive file says, or
+        `CACHED`.
     field : str
         Of a derivative.
     """
@@ -114,9 +133,14 @@ def _run(question: Question, memory: Memory, file: DriveFile, name: str) -> dict
     """The page of a run of one case in parts."""
     drive, fine = file.cases[name], question.quality == FINE
     failure = ""
+    decides = lending_between(file.cases.values(), engine_of([drive]))
+    engine: Engine
     if fine:
-        compliance = None if question.compliance == "file" else question.compliance
-        engine = lending_between(file.cases.values(), engine_of([drive], compliance))
+        engine = decides
+        if question.compliance == CACHED and not _is_cached(decides, drive):
+            engine = HalfSpace()
+        elif question.compliance not in (CACHED, "file"):
+            engine = lending_between(file.cases.values(), engine_of([drive], question.compliance))
         ((_, found),) = analyse_cases({name: drive}, position_angles(FINE_POSITIONS), None, engine)
     else:
         engine, found = HalfSpace(), _coarse(drive, memory)
@@ -160,12 +184,35 @@ def _run(question: Question, memory: Memory, file: DriveFile, name: str) -> dict
         "load": ", ".join(context["loads"]),
         "sentence": context["sentence"],
         "state": context["state"],
+        "caution": _caution(engine, decides) or context["caution"],
         "warnings": [minus(one) for one in context["warnings"]],
         "html": {"verdict": _part("verdict.html", context), "results": _part("answer.html", context)},
         "data": context["data"],
         "numbers": context["numbers"],
         "summary": _summary(summary),
     }
+
+
+def _is_cached(engine: Engine, drive: Drive) -> bool:
+    """Whether an engine takes a drive, and all its coefficients are there."""
+    if not isinstance(engine, CoupledEngine):
+        return True
+    warm = warm_drive(drive)
+    try:
+        require(warm, engine.compliance)
+    except DriveError:
+        return False
+    bodies = engine.bodies_of(single_discs(warm))
+    rings = not has_ring_of_elements(warm) or has_ring(ring_lender(warm, engine.rings) or warm)
+    return rings and all(has_coefficients(body, engine.bodies) for body in bodies)
+
+
+def _caution(engine: Engine, decides: Engine) -> str:
+    """Which engine an answer is of, where ``cyclo check`` decides on another one; empty otherwise."""
+    own, other = (ENGINES[one.compliance] for one in (engine, decides))
+    if own != other:
+        return f"{own}: cyclo check decides on {other}"
+    return ""
 
 
 def _coarse(drive: Drive, memory: Memory) -> LoadedAnalysis | ConvergenceError:

@@ -31,7 +31,7 @@ from ltca.output.file_names import DEVICE
 from ltca.output.files import whole_file
 from ltca.page.run_page import STAGE
 from ltca.page.writing import page_text, script_data
-from ltca.studio.answers import COARSE, DERIVATIVE, FINE, Question, problem_of
+from ltca.studio.answers import CACHED, COARSE, DERIVATIVE, FINE, Question, problem_of
 from ltca.studio.connections import AT_ONCE, BoundedConnection, print_fault, report_in_a_line
 from ltca.studio.entries import (
     changed_entries,
@@ -55,7 +55,7 @@ QUEUED = 64
 """Connections that the system keeps until the server accepts them."""
 LOOKING = 0.25
 """Time, s, between two looks whether who asked is still there."""
-COMPLIANCES = ("half-space", "hybrid", "fe", "file")
+COMPLIANCES = (CACHED, "half-space", "hybrid", "fe", "file")
 PORTABLE = re.compile(r"[\w .-]+")
 """Names of saved files: signs that no file system refuses or reads in another way, letters of any script among them."""
 HEADERS = {

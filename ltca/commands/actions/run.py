@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from ltca.analysis.engines import Engine, describe_engine
 from ltca.analysis.extremes import is_full_turn, sampling_warning
+from ltca.analysis.half_space_errors import half_space_caution
 from ltca.analysis.life.bearing_lives import BearingLives, bearing_lives
 from ltca.analysis.life.equivalent_load import covers_whole_turns
 from ltca.analysis.light_torque import at_light_torque
@@ -114,17 +115,18 @@ def solve_and_write(task: RunTask, out: Path) -> int:
     how = [describe_engine(engine), _many(angles)]
     print(f"{file.name}: {', '.join(how if others else [load, *how])}")
     checks = _checks(analyses, summaries, file.limits)
-    sampling = _sampling(analyses, summaries, angles)
+    method, warnings = _method(analyses, summaries, angles), _warnings(analyses, summaries, angles)
     proportions = _proportions(analyses)
     lives = {name: _lives(analysis) for name, analysis in analyses.items()}
-    print(_verdicts(checks, proportions))
+    print(_verdicts(checks, proportions, half_space_caution(engine, next(iter(cases.values())))))
     print(run_table(analyses, summaries, lives, loads if others else {}))
-    print("\n".join([*whose_stiffness(analyses), *_light_torques(analyses), *lives_told(lives), *sampling]))
+    lines = [*whose_stiffness(analyses), *_light_torques(analyses), *lives_told(lives)]
+    print("\n".join([*lines, *(text for _, text in method), *warnings]))
     if task.page:
-        told = [*sampling, *(f"warning: {one}" for one in told_of_cases(proportions))]
+        told = [*warnings, *(f"warning: {one}" for one in told_of_cases(proportions))]
         with steps() as show:
             show("page")
-            files.append(_write_page(task, analyses, dataset, summaries, checks, lives, told, out))
+            files.append(_write_page(task, analyses, dataset, summaries, checks, lives, told, method, out))
     print("results: " + ", ".join(str(out / name) for name in files))
     for name, failure in failures.items():
         left = 2 * angles.size
@@ -139,7 +141,7 @@ def solve_and_write(task: RunTask, out: Path) -> int:
 
 def _write_page(
     task: RunTask, analyses: Analyses, dataset: LabelledDataset, summaries: Summaries, checks: dict[str, list[Check]],
-    lives: dict[str, BearingLives | str], sampling: list[str], out: Path,
+    lives: dict[str, BearingLives | str], sampling: list[str], method: list[tuple[str, str]], out: Path,
 ) -> str:  # fmt: skip
     """Write the page of the run; return its name."""
     from ltca.page.run_page import PAGE, Run, run_page
@@ -154,6 +156,7 @@ def _write_page(
         checks=checks,
         lives=lives,
         sampling=sampling,
+        method=method,
         light=labelled_results(task.file.name, light, task.file.text),
         compared=task.compared,
     )
@@ -205,13 +208,14 @@ def _proportions(analyses: Analyses) -> dict[str, list[str]]:
     }
 
 
-def _verdicts(checks: dict[str, list[Check]], proportions: dict[str, list[str]]) -> str:
-    """A line for each case with the check nearest to its limit, then unusual proportions."""
+def _verdicts(checks: dict[str, list[Check]], proportions: dict[str, list[str]], caution: str) -> str:
+    """A line for each case with the check nearest to its limit, then how far the engine is off, and unusual proportions."""
     if not checks:
         return "no verdict on partial results"
     width = max(map(len, checks))
     told = ["verdict, with the check nearest to its limit"]
     told += [f"  {name:<{width}}  {verdict_line(each)}" for name, each in checks.items()]
+    told += [f"  caution: {caution}"] if caution else []
     told += [f"  note: {note}" for note in told_of_cases(proportions)]
     return "\n".join([*told, "  every check, what drives it and would mend it: cyclo check", ""])
 
@@ -243,18 +247,27 @@ def _many(angles: FloatArray) -> str:
     return f"{angles.size} positions" if angles.size > 1 else f"1 position, φ_C = {angles[0]:g} rad"
 
 
-def _sampling(analyses: Analyses, summaries: Summaries, angles: FloatArray) -> list[str]:
-    """Lines on the positions behind the values, and warnings on sampling, drive and solution."""
+def _method(analyses: Analyses, summaries: Summaries, angles: FloatArray) -> list[tuple[str, str]]:
+    """What the values stand for: names and texts on positions, bodies, width and holes."""
     many = _many(angles)
-    whole = is_full_turn(angles)
-    lines = [f"means over {many}; extremes over the turn, refined between them" if whole else f"values of {many}"]
+    sampling = f"values of {many}"
+    if is_full_turn(angles):
+        sampling = f"means over {many}; extremes over the turn, refined between them"
     parts = [part for case in summaries.values() if (part := with_residual_part(case)["residual_part"]) is not None]
     if parts:
-        lines[0] += f"; forces balance within {max(parts):.1e} of the largest bearing load"
-    lines += sorted(
-        {words for one in analyses.values() for words in (one.engine_words, one.width_words, one.hole_words)} - {""}
-    )
-    lines += told_of_cases({name: [one.share_words] * bool(one.share_words) for name, one in analyses.items()})
+        sampling += f"; forces balance within {max(parts):.1e} of the largest bearing load"
+    found = {
+        row
+        for one in analyses.values()
+        for row in (("bodies", one.engine_words), ("width", one.width_words), ("holes", one.hole_words))
+    }
+    shares = told_of_cases({name: [one.share_words] * bool(one.share_words) for name, one in analyses.items()})
+    return [("sampling", sampling), *sorted(row for row in found if row[1]), *(("disc shares", one) for one in shares)]
+
+
+def _warnings(analyses: Analyses, summaries: Summaries, angles: FloatArray) -> list[str]:
+    """Warnings on sampling, drive and solution, as lines."""
+    whole = is_full_turn(angles)
     warnings: dict[str, list[str]] = {}
     for name, analysis in analyses.items():
         found = [sampling_warning(analysis.drive, angles), relieved_rows_warning(analysis), *analysis.warnings]
@@ -262,7 +275,7 @@ def _sampling(analyses: Analyses, summaries: Summaries, angles: FloatArray) -> l
             found.append("extremes are those of the positions: one between them has no answer")
         before = unit_warnings(analysis.as_written, analysis.torque)  # told before the work began
         warnings[name] = [warning for warning in found if warning is not None and warning not in before]
-    return [*lines, *(f"warning: {text}" for text in told_of_cases(warnings))]
+    return [f"warning: {text}" for text in told_of_cases(warnings)]
 
 
 def told_of_cases(texts: Mapping[str, Sequence[str]]) -> list[str]:

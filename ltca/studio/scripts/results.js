@@ -68,9 +68,11 @@ function refuse(problems, what) {
   document.body.dataset.answer = "refused";
 }
 
-function verdict(kind, sentence) {
+function verdict(kind, sentence, caution) {
   el("verdict-line").className = `verdict ${kind}`;
   el("verdict-line").textContent = (kind === "pass" ? "✓ " : kind === "fail" ? "✗ " : "") + sentence;
+  el("caution").textContent = caution || "";
+  el("caution").hidden = !caution;
 }
 
 // In the place of an answer where there has been none: why.
@@ -100,7 +102,7 @@ function show(answer, sequence, older) {
   showNoAnswer(null);
   const fine = answer.positions >= 360 || answer.fine;
   const [, head, rest] = answer.sentence.match(/^(.*?[.])(?: (.*))?$/) || ["", answer.sentence, ""];
-  verdict(answer.state, head);
+  verdict(answer.state, head, answer.caution);
   el("name").textContent = answer.drive;
   el("about").textContent = `${answer.load}, ${answer.model}`;
   el("quality").textContent = older ? "computing …" : `${fine ? "" : "coarse: "}${answer.positions} positions${fine ? "" : ", the fine answer is on its way"}. ${rest || ""}`;

@@ -2,7 +2,7 @@
 const first = JSON.parse(el("data").textContent);
 const state = {
   tab: crypto.randomUUID(), text: first.text, case: first.case, values: {}, own: new Set(), cases: [], entries: {}, named: {},
-  history: [{ text: first.text, what: "as opened" }], at: 0, variants: { "as opened": first.text }, beside: "", compliance: "half-space",
+  history: [{ text: first.text, what: "as opened" }], at: 0, variants: { "as opened": first.text }, beside: "", compliance: "cached",
   sequence: 0, // of the last change; an answer of another one is older
 };
 const KEPT = "cyclo-studio " + first.source;

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from ltca.analysis.engines import HalfSpace
+from ltca.analysis.half_space_errors import half_space_words
 from ltca.analysis.life.bearing_lives import bearing_lives
 from ltca.analysis.light_torque import at_light_torque
 from ltca.analysis.loaded_analysis import analyse
@@ -31,7 +32,8 @@ def run_of(file, positions=POSITIONS, cases=None, compared=None):
     run = Run(
         dataset=dataset, drives=chosen, engine=HalfSpace(), summaries=summaries, checks=checks,
         lives={name: bearing_lives(one) for name, one in analyses.items()},
-        sampling=["means over 8 positions", "warning: <b>few</b> positions"],
+        sampling=["warning: <b>few</b> positions"],
+        method=[("sampling", "means over 8 positions"), ("bodies", half_space_words(HalfSpace(), next(iter(chosen.values()))))],
         light=build_dataset(file.name, light, file.text), compared=compared,
     )  # fmt: skip
     return run, dataset

@@ -122,6 +122,15 @@ def test_names_are_texts_whatever_they_contain(paper_run):
     assert "&lt;b&gt;few&lt;/b&gt; positions" in text
 
 
+def test_how_far_half_spaces_are_off_stands_under_the_verdict_and_rows_are_called_what_they_are(page):
+    """It stood at the end of the page, in one of three rows all called "sampling"."""
+    caution = '<p class="caution">half-spaces: about 34 % too stiff here (measured on the shipped drive paper)</p>'
+    assert page.count(caution) == 1
+    assert page.index('class="verdict') < page.index(caution) < page.index('id="verdict"')
+    made = page[page.index('data-name="computed_by"') :]
+    assert [made.count(f">{name}</th>") for name in ("sampling", "bodies")] == [1, 1]
+
+
 def test_the_verdict_comes_first_and_counts_honestly(page, paper_run):
     checks = paper_run[0].checks
     every = [check for case in checks.values() for check in case]

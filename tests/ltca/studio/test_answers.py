@@ -15,6 +15,7 @@ from ltca.drive.declaration import declared_fields
 from ltca.reading.arguments import SHIPPED_DRIVES
 from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
 from ltca.studio.answers import (
+    CACHED,
     COARSE,
     DERIVATIVE,
     FINE,
@@ -111,6 +112,44 @@ def test_a_fine_answer_is_that_of_the_command(tmp_path, monkeypatch):
     # The command and the studio solve the same positions by the same functions: round-off of sums.
     for value in known:
         assert any(math.isclose(value, one, rel_tol=1e-9) for one in found), value
+
+
+JOINT = shipped_drive("robot-joint")
+DECIDES = "half-spaces: cyclo check decides on hybrid"
+
+
+def asked_joint(quality, text=JOINT, compliance=CACHED):
+    return answer(
+        Question(text=text, source="robot-joint", case="nominal", quality=quality, compliance=compliance), Memory()
+    )
+
+
+def test_a_verdict_on_half_spaces_says_that_the_check_decides_on_hybrid():
+    """The studio said that all values keep their limits where `check` fails the bore."""
+    assert asked_joint(COARSE)["caution"] == DECIDES
+    plain = changed_text(JOINT, "nominal", {"analysis.compliance": "half-space"})
+    assert asked_joint(COARSE, plain)["caution"].startswith("half-spaces: about 24 % too stiff here")
+
+
+@pytest.mark.slow
+def test_a_fine_answer_is_on_what_the_file_says_where_its_coefficients_are_there():
+    """`robot-joint` says nothing of its bodies: hybrid, whose coefficients come with the package."""
+    found = asked_joint(FINE)
+    assert (found["model"], found["caution"]) == ("hybrid", "")
+    assert asked_joint(FINE, compliance="half-space")["caution"] == DECIDES
+
+
+@pytest.mark.slow
+def test_a_fine_answer_derives_nothing_unless_asked(monkeypatch):
+    """A shape without coefficients is answered on half-spaces, at once."""
+
+    def derived(*_, **__):
+        raise AssertionError("coefficients are derived")
+
+    monkeypatch.setattr("ltca.analysis.engines.find_coefficients", derived)
+    found = asked_joint(FINE, changed_text(JOINT, "nominal", {"pin_shaft.hole_radius": "6.1"}))
+    assert found["model"].startswith("half-space")
+    assert found["caution"] == DECIDES
 
 
 def test_a_coarse_answer_from_poses_near_by_is_that_from_nothing():

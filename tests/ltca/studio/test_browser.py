@@ -360,11 +360,19 @@ def test_the_fine_answer_on_other_bodies_is_that_of_a_run(open_alone):
     assert engine.options["compliance"] == "hybrid"
     sentence, rows = as_run_says(text, "nominal", engine)
     page = open_alone("robot-joint")
+    assert page.locator("#caution").is_hidden()
+    assert_same(table_of(page, "verdict")[1:], rows)  # its coefficients come with the package
+    page.select_option("#compliance", "half-space")
+    settled(page)
     half_spaces = table_of(page, "verdict")[1:]
     assert "half-space" in page.locator("#about").inner_text()
+    assert page.locator("#caution").inner_text() == "half-spaces: cyclo check decides on hybrid"
+    line, caution = (page.locator(name).bounding_box() for name in ("#verdict-line", "#caution"))
+    assert abs(line["y"] + line["height"] / 2 - caution["y"] - caution["height"] / 2) < 5  # beside it
     for compliance in ("hybrid", "file"):
         page.select_option("#compliance", compliance)
         settled(page)
+        assert page.locator("#caution").is_hidden()
         assert page.evaluate("document.body.dataset.answer") == "fine"
         assert "hybrid" in page.locator("#about").inner_text()
         assert sentence.startswith(page.locator("#verdict-line").inner_text().lstrip("✓✗ "))
