@@ -21,6 +21,8 @@ MEASURED = Path(__file__).with_suffix(".toml")
 """Ratios of half-space to hybrid, and what makes drives alike: ``python benchmarks/half_space_errors.py --write``."""
 SAME = 1e-5
 """Distance of two drives up to which they have the same disc: what is measured is kept to six digits."""
+FAR = 1.0
+"""Distance beyond which no shipped drive says how far off half-spaces are: a modulus or a number of teeth of e times, say."""
 WORDS = {
     "stiffness": "torsional stiffness",
     "life": "life of the crank bearing",
@@ -50,13 +52,14 @@ def measured() -> dict[str, dict[str, dict[str, float]]]:
         return tomllib.load(stream)
 
 
-def nearest_shipped(drive: Drive) -> tuple[str, bool]:
-    """Return the name of the shipped drive that a drive is most similar to, and whether both have the same disc.
+def nearest_shipped(drive: Drive) -> tuple[str, float]:
+    """Return the name of the shipped drive that a drive is most similar to, and how far apart they are, 0 for the same disc.
 
     Examples
     --------
     >>> from ltca.reading.drive_file import load_drive
-    >>> nearest_shipped(load_drive("paper").cases["CS-1"])
+    >>> name, distance = nearest_shipped(load_drive("paper").cases["CS-1"])
+    >>> name, distance < SAME
     ('paper', True)
     """
     own = likeness(drive)
@@ -67,12 +70,15 @@ def nearest_shipped(drive: Drive) -> tuple[str, bool]:
 
     distances = {name: distance(of["likeness"]) for name, of in measured().items()}
     nearest = min(distances, key=distances.__getitem__)
-    return nearest, distances[nearest] < SAME
+    return nearest, distances[nearest]
 
 
-def _measured_on(drive: Drive) -> tuple[dict[str, float], str]:
-    """Ratios for a drive, and where they were measured."""
-    name, same = nearest_shipped(drive)
+def _measured_on(drive: Drive) -> tuple[dict[str, float], str] | None:
+    """Ratios for a drive, and where they were measured; None where no shipped drive is similar."""
+    name, distance = nearest_shipped(drive)
+    if distance > FAR:
+        return None
+    same = distance < SAME
     return measured()[name]["ratio"], f"measured on the {'' if same else 'most similar '}shipped drive {name}"
 
 
@@ -94,7 +100,9 @@ def half_space_caution(engine: Engine, drive: Drive) -> str:
     """
     if engine.compliance != "half-space":
         return ""
-    ratio, where = _measured_on(drive)
+    if (found := _measured_on(drive)) is None:
+        return "half-spaces: too stiff here; no shipped drive is similar enough to say by how much"
+    ratio, where = found
     stiff = _off(ratio["stiffness"], "too stiff", "too soft")
     if stiff.startswith("within"):
         stiff = f"stiffness {stiff}, transmission error about {_off(ratio['transmission_error'])}"
@@ -106,13 +114,13 @@ def half_space_words(engine: Engine, drive: Drive) -> str:
     """Return what to know of an analysis on half-spaces: why, and by how much they are off; nothing for another engine."""
     if engine.compliance != "half-space":
         return ""
-    ratio, where = _measured_on(drive)
+    found = _measured_on(drive)
     why = "as [analysis] of the drive file says" if drive.analysis.compliance == "half-space" else "as asked"
-    told = ", ".join(f"{WORDS[key]} {_off(value)}" for key, value in ratio.items())
-    return (
-        f"half-spaces, {why}: contacts yield, bodies beyond them do not; against hybrid, {where}: {told}"
-        f"{_supports_of_bodies(drive)}"
-    )
+    told = "how far off they are is not known, no shipped drive is similar"
+    if found is not None:
+        ratio, where = found
+        told = f"against hybrid, {where}: {', '.join(f'{WORDS[key]} {_off(value)}' for key, value in ratio.items())}"
+    return f"half-spaces, {why}: contacts yield, bodies beyond them do not; {told}{_supports_of_bodies(drive)}"
 
 
 def _supports_of_bodies(drive: Drive) -> str:

@@ -47,3 +47,12 @@ def test_the_caution_gives_a_direction():
         "half-spaces: stiffness within 1 %, transmission error about 45 % too small here"
     )
     assert half_space_caution(Hybrid(), PAPER) == ""
+
+
+def test_no_ratio_of_steel_is_given_for_a_printed_disc():
+    """It was told as 24 % too stiff by robot-joint, whose disc is seventy times stiffer."""
+    printed = load_drive("robot-joint").cases["nominal"].with_fields({"materials.disc": "printed PLA"})
+    assert half_space_caution(HalfSpace(), printed) == (
+        "half-spaces: too stiff here; no shipped drive is similar enough to say by how much"
+    )
+    assert "%" not in half_space_words(HalfSpace(), printed)
