@@ -37,7 +37,7 @@ GROUPS: tuple[Group, ...] = (
         ("main bearing, radial", "max_main_bearing_radial"), ("main bearing, axial", "max_main_bearing_axial"),
     )),
     ("parts that carry at once, mean", (
-        ("wheel pins per disc", "mean_loaded_pins"), ("rollers per crank bearing", "mean_loaded_rollers"),
+        ("wheel pins per disc", "mean_loaded_pins"), ("rollers per bearing", "mean_loaded_rollers"),
         ("shaft pins per disc", "mean_loaded_pin_shaft_pins"),
     )),
     ("part of the torque on a disc, largest", (("disc #", "max_torque_share_disc_#"),)),
