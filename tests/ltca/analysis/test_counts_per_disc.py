@@ -65,5 +65,5 @@ def test_rows_say_of_what_the_counts_are():
     drive = load_drive("paper").cases["CS-6"]
     analysis = analyse(drive, position_angles(1))
     table = run_table({"": analysis}, {"": summary_of(analysis)}, {}, {})
-    for words in ("wheel pins per disc", "rollers per crank bearing", "shaft pins per disc"):
+    for words in ("wheel pins per disc", "rollers per bearing", "shaft pins per disc"):
         assert words in table
