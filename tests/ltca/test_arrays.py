@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, is_dataclass
 from typing import NamedTuple
 
 import numpy as np
 import pytest
 
+from ltca.analysis.engines import HalfSpace
 from ltca.arrays import freeze
 from ltca.compliance.response import ContactPressures, KindPressures
+from ltca.reading.drive_file import load_drive
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -97,3 +99,29 @@ def test_an_array_in_two_places_stays_one():
     assert type(frozen) is ContactPressures
     with pytest.raises(ValueError, match="read-only"):
         frozen.pins.mid[0, 0] = 0.0
+
+
+def declared_axes(model, known):
+    """Fields of a model that may differ by drive: class, name, axes as declared and axes as they are."""
+    if id(model) in known:
+        return
+    known[id(model)] = model
+    if isinstance(model, tuple):
+        for item in model:
+            yield from declared_axes(item, known)
+    elif is_dataclass(model) and not isinstance(model, type):
+        for item in fields(model):
+            value, axes = getattr(model, item.name), item.metadata.get("axes")
+            if axes is None:
+                yield from declared_axes(value, known)
+            elif value is not None:
+                yield type(model).__name__, item.name, axes, np.ndim(value)
+
+
+@pytest.mark.parametrize("name", ["paper", "rv"])
+def test_numbers_that_differ_by_drive_have_the_declared_axes_in_one_drive(name):
+    """A number too many would pass: columns of a batch have two axes, of which one is enough to be seen."""
+    drive = next(iter(load_drive(name).cases.values()))
+    found = [*declared_axes(HalfSpace().prepare(drive).model, {})]
+    assert ("FlankProfile", "centre", 0, 0) in found
+    assert [one for one in found if one[2] != one[3]] == []

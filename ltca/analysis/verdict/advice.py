@@ -178,11 +178,12 @@ def _driver(drive: Drive, one: _Input, elasticity: float, check: Check, part: fl
         farthest, whole = MAX_SIZE_FACTOR, part ** (-1.0 / 3.0)
     elif part < 1.0 and one.name != TORQUE:
         safety = None
-    linear = _is_linear(check) and part == 1.0 and check.limit is not None and check.value.value
+    value = check.value.value
+    linear = _is_linear(check) and part == 1.0 and check.limit is not None and value
     if check.verdict == "pass" or check.limit is None or not (linear or safety):
         return Driver(input=one.name, elasticity=elasticity, change="", factor=None)
-    if linear:  # margins and plays at or below nothing follow no power law
-        factor = 1.0 + (check.limit.value / (check.value.value or 1.0) - 1.0) / elasticity
+    if value and linear:  # margins and plays at or below nothing follow no power law
+        factor = 1.0 + (check.limit.value / value - 1.0) / elasticity
     else:
         wanted = log(safety or 1.0) / elasticity * (1.0 if check.limit.sense == "max" else -1.0)
         factor = exp(wanted) if isfinite(wanted) and abs(wanted) <= log(farthest) else 0.0

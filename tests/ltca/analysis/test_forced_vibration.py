@@ -78,6 +78,10 @@ def test_one_mass_on_one_spring_follows_the_closed_form(heavy):
 def test_slow_motion_is_the_quasi_static_one(usual):
     found = forced_vibration(usual, speeds=60, fastest=3.0)
     assert found.order_amplitude[0] == pytest.approx(usual.spectrum.amplitude, rel=1e-6, abs=1e-12)
+    # Waves of whole orders over a turn of the motion: their root mean square by summing them, and not by Parseval.
+    turn = 2.0 * np.pi * np.arange(4096) / 4096
+    waves = np.cos(np.outer(np.arange(1, usual.spectrum.amplitude.size + 1), turn))
+    assert found.amplitude[0] == pytest.approx(np.std(usual.spectrum.amplitude @ waves), rel=1e-4)
     for factor in found.factors.values():
         assert factor == pytest.approx(1.0, abs=1e-4)
     assert found.parts_from is None

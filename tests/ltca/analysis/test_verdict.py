@@ -13,7 +13,16 @@ from ltca.analysis.engines import Hybrid
 from ltca.analysis.half_width_guard import displacement_warning
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.summary import summarise
-from ltca.analysis.verdict.advice import Driver, _all_sizes, _inputs, _without_contradictions, advise
+from ltca.analysis.verdict.advice import (
+    SIZES,
+    Driver,
+    _all_sizes,
+    _driver,
+    _Input,
+    _inputs,
+    _without_contradictions,
+    advise,
+)
 from ltca.analysis.verdict.drive_check import _at_once
 from ltca.analysis.verdict.geometry import pin_hollow_margin, roller_gap, undercut_margin, walls
 from ltca.analysis.verdict.pin_stress import pin_stress, worst_cycle
@@ -586,6 +595,11 @@ def driver_of(name, elasticity, factor):
 
 
 @pytest.mark.slow
+def one_input(name):
+    """An input that changes nothing: what is asked is the factor."""
+    return _Input(name=name, start=None, unit="", changed=lambda factor: {})
+
+
 def test_what_holds_the_contacts_goes_with_the_sizes(monkeypatch):
     """A larger pin circle left the ring where it was, all sizes left ring, posts, module and supports, and each trial derived a
     ring of finite elements anew."""
@@ -610,6 +624,24 @@ def test_what_holds_the_contacts_goes_with_the_sizes(monkeypatch):
     assert (ring.inner_radius, ring.outer_radius, ring.width, ring.bolts.circle_radius) == (160.0, 220.0, 120.0, 194.0)
     assert (posts.radius, posts.size, double.carrier.flange) == (2.0 * circle, 32.0, (20.0, 16.0))
     assert (support.diameter, support.positions) == (40.0, (-44.0, 44.0))
+
+
+@pytest.mark.parametrize(
+    ("quantity", "value", "elasticity"), [("wall", -0.2, 5.0), ("wall", -0.2, -2.0), ("backlash_output", 0.1, 3.0)]
+)
+def test_a_margin_is_brought_to_its_limit_along_its_tangent(paper, quantity, value, elasticity):
+    """Closed form: v (1 + E (f − 1)) is the limit."""
+    driver = _driver(paper, one_input("disc.thickness"), elasticity, check_of(quantity, value, 0.3, "min"), 1.0)
+    assert value * (1.0 + elasticity * (driver.factor - 1.0)) == pytest.approx(0.3, rel=1e-12)
+
+
+def test_sizes_are_told_for_the_whole_torque(paper):
+    """At equal stress the torque grows with the cube of the sizes: carried in an eighth, they have to be twice as large again."""
+    check = check_of("pin_pressure_mid", 1210.0, 1000.0)
+    whole, eighth = (_driver(paper, one_input(SIZES), -2.0, check, part).factor for part in (1.0, 0.125))
+    assert whole == pytest.approx(1.1, rel=1e-12)  # 1.21 by the square root
+    assert eighth == pytest.approx(2.0 * 1.1, rel=1e-12)
+    assert _driver(paper, one_input("disc.thickness"), -2.0, check, 0.125).factor is None
 
 
 def test_no_advice_fails_another_check():

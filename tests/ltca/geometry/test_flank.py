@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
+
 import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
@@ -37,6 +39,17 @@ def test_flank_and_normal_are_those_of_equation_1(drives):
         # round-off of sums of the size of the pin circle radius, magnified by z_P θ in the argument of the cosine
         np.testing.assert_allclose(profile.flank(theta), point, rtol=0.0, atol=1e-13 * radius)
         np.testing.assert_allclose(profile.normal(theta), np.exp(1j * normal_angle), rtol=0.0, atol=1e-12)
+
+
+def test_a_flank_of_which_nothing_else_is_said_is_centred_and_its_first_root_lies_ahead():
+    """Eq. 1 at θ = 0: R − r − e; the roots are a regular polygon, whose centre is that of the disc."""
+    profile = FlankProfile(generating_radius=51.5, eccentricity=3.0, reduction_ratio=14.0, offset=5.0)
+    roots = profile.flank(2.0 * np.pi * np.arange(13) / 13)
+    np.testing.assert_allclose(roots[0], 51.5 - 5.0 - 3.0, rtol=1e-13)
+    np.testing.assert_allclose(np.mean(roots), 0.0, atol=1e-12)
+    # As for every model (tests/ltca/test_arrays.py): what may differ by drive is declared with the axes that it has.
+    declared = {item.name: item.metadata["axes"] for item in fields(profile) if "axes" in item.metadata}
+    assert declared == {name: np.ndim(getattr(profile, name)) for name in declared}
 
 
 def test_generating_pins_touch_the_flank_and_never_overlap_it(drives):
