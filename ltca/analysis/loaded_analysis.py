@@ -21,6 +21,7 @@ from ltca.analysis.half_width_guard import (
     wide_holes_warning,
 )
 from ltca.analysis.run_off import few_slices_warning, run_off_warning, undivided_ends_warning
+from ltca.analysis.share_causes import share_words
 from ltca.arrays import ComplexArray, FloatArray, batch_layout, freeze, stack_drives, take_positions
 from ltca.compliance.coefficient_files import coefficient_warnings
 from ltca.compliance.response import ContactPressures
@@ -236,6 +237,12 @@ class LoadedAnalysis:
         if self.torque == 0.0:  # parts of nothing
             return np.full(self.disc_torques.shape, np.nan)
         return np.asarray(self.disc_torques / self.disc_torques.sum(axis=1, keepdims=True))
+
+    @property
+    def share_words(self) -> str:
+        """Which parts make the discs share the torque unequally; empty where they share it equally or no part does."""
+        known = self.torque_share[self.balanced]
+        return share_words(self.drive, known.mean(axis=0)) if known.size else ""
 
     @property
     def transmission_error(self) -> FloatArray:

@@ -72,6 +72,8 @@ def _show(cases: dict[str, Drive], angle: FloatArray, out: Path) -> None:
         print(f"  at φ_C = {angle[0]:g} rad, {drive.load_words()}, {describe_engine(analysis.engine)}")
         for title, value in _loads(analysis):
             print(f"    {title:<45} {value}")
+        if analysis.share_words:
+            print(f"  note: {analysis.share_words}")
         path = out / f"drive_{name}.png"
         draw_drive(drive, analysis, 0, path, name if len(cases) > 1 or name != "nominal" else "")
         print(f"  picture: {path}")

@@ -153,7 +153,8 @@ def notes(analysis: LoadedAnalysis) -> list[str]:
     """Return what to know beside the checks, one sentence each: warnings, odd sizes, pins that dwarf the disc."""
     drive, shaft = analysis.drive, analysis.drive.pin_shaft
     found = [*analysis.warnings, *odd_proportions(analysis.as_written), yielding_parts(drive).words]
-    found += [words for words in (analysis.engine_words, analysis.width_words, analysis.hole_words) if words]
+    beside = analysis.engine_words, analysis.width_words, analysis.hole_words, analysis.share_words
+    found += [words for words in beside if words]
     if shaft is not None and shaft.stiffness is not None and analysis.engine.compliance == "half-space":
         disc = drive.materials.disc.youngs_modulus * drive.disc.thickness
         if shaft.stiffness > STIFF_PINS * disc:

@@ -248,6 +248,7 @@ def _sampling(analyses: Analyses, summaries: Summaries, angles: FloatArray) -> l
     lines += sorted(
         {words for one in analyses.values() for words in (one.engine_words, one.width_words, one.hole_words)} - {""}
     )
+    lines += told_of_cases({name: [one.share_words] * bool(one.share_words) for name, one in analyses.items()})
     warnings: dict[str, list[str]] = {}
     for name, analysis in analyses.items():
         found = [sampling_warning(analysis.drive, angles), relieved_rows_warning(analysis), *analysis.warnings]

@@ -1,0 +1,71 @@
+"""Why equal discs carry unequal parts of the torque: parts that yield more in the plane of one disc than of another."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ltca.arrays import FloatArray
+from ltca.drive.parts import Drive
+from ltca.equilibrium.supports import crank_stiffness
+from ltca.laws.backed import from_start, shaft_pin_beam, wheel_pin_beam
+from ltca.laws.beam import PinBeam
+
+LEAST_INEQUALITY = 0.05
+"""Difference of a disc's part of the torque from an equal one, by that, from which a cause is named."""
+LEAST_DIFFERENCE = 0.1
+"""Difference of the flexibilities in the planes of the discs, by the largest, from which a part is a cause."""
+
+
+def share_words(drive: Drive, share: FloatArray) -> str:
+    """Name the parts that make discs share the torque unequally: which beam, and how much it yields in which plane.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive.
+    share : array, shape (discs,)
+        Part of the torque that each disc carries, in the mean.
+
+    Returns
+    -------
+    str
+        Empty where the parts are equal within `LEAST_INEQUALITY`, or no part yields by the plane.
+    """
+    if share.size == 1 or not np.all(np.isfinite(share)) or np.max(np.abs(share * share.size - 1.0)) < LEAST_INEQUALITY:
+        return ""
+    causes = []
+    for part, flexibility in _by_plane(drive).items():
+        low, high = int(np.argmin(flexibility)), int(np.argmax(flexibility))
+        if flexibility[high] - flexibility[low] > LEAST_DIFFERENCE * flexibility[high] and share[low] > share[high]:
+            planes = " and ".join(
+                f"{1e6 * flexibility[disc]:.3g} µm in the plane of disc {disc} ({drive.disc.disc_planes[disc]:g} mm)"
+                for disc in (low, high)
+            )
+            causes.append(f"{part} yield by {planes}")
+    if not causes:
+        return ""
+    parts = ", ".join(f"{part:.2f}" for part in share)
+    return f"the discs carry {parts} of the torque, not equal parts: under 1 kN of a disc on each, {'; '.join(causes)}"
+
+
+def _by_plane(drive: Drive) -> dict[str, FloatArray]:
+    """Flexibility of each yielding part in the planes of the discs, mm/N, by its name with its field."""
+    found = {}
+    shaft, wheel, crank = shaft_pin_beam(drive), wheel_pin_beam(drive), crank_stiffness(drive)
+    discs = drive.disc.number_of_discs
+    if shaft is not None:
+        floating = shaft.ends[1] != "free" and drive.posts is None
+        flange = f"clamped at {-0.5 * drive.shaft_pin_span:g} mm"
+        found[f"shaft pins (pin_shaft.beam, {flange})"] = _of_beam(shaft, drive, floating=floating)
+    if wheel is not None:
+        found["wheel pins (pin_wheel.beam)"] = _of_beam(wheel, drive, floating=False)
+    if crank is not None:
+        found["crankshafts on their bearings (crank.support)"] = np.diag(np.linalg.inv(crank))[:discs]
+    return found
+
+
+def _of_beam(beam: PinBeam, drive: Drive, *, floating: bool) -> FloatArray:
+    """Deflection under unit load of each disc on every pin; a ring that floats turns with the tips, which it ties."""
+    planes, width = from_start(beam, drive).tolist(), drive.disc.thickness
+    own = np.diag(beam.flexibility(planes, width))
+    return np.asarray(own + beam.tip_shape(planes, width) ** 2 / beam.tip_stiffness if floating else own)
