@@ -380,11 +380,11 @@ _DECLARED = (
         "backlash_output", "", "arcmin",
         scalars=(
             Scalar(
-                "{}", "backlash at the output, all clearances, largest", digits="z.2f", limit=AT_LEAST_0,
+                "{}", "backlash at the output, all clearances, largest sampled", digits="z.2f", limit=AT_LEAST_0,
                 judged="backlash at the output, all clearances", by_load=False,
             ),
-            Scalar("max_{}", "backlash at the output, all clearances, largest", in_summary=False),
-            Scalar("min_{}", "backlash at the output, all clearances, least", digits="z.2f"),
+            Scalar("max_{}", "backlash at the output, all clearances, largest sampled", in_summary=False),
+            Scalar("min_{}", "backlash at the output, all clearances, least sampled", digits="z.2f"),
         ),
     ),
     _scalar("1", Scalar("preloaded_part_of_turn", "part of the turn where parts overlap in every pose", digits=".2f")),

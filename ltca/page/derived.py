@@ -81,7 +81,7 @@ def _plays(drive: Drive, geometries: list[ContactGeometry], leverage: float) -> 
                 filter(
                     None,
                     (
-                        f"{leverage * turn.least:z.2f}′ … {leverage * turn.largest:z.2f}′",
+                        f"{leverage * turn.least:z.2f}′ … {leverage * turn.largest:z.2f}′ at sampled positions",
                         preload_words(turn.preloaded),
                     ),
                 )

@@ -55,7 +55,7 @@ def wind_up(
         )
     notes += stiffness_notes({name: yielding_parts(drive) for name, drive in drives.items()})
     titles = ["stiffness of the cycloid stage there, N·m/′", "of the reducer with what the file describes, N·m/′"]
-    columns = ["case", "backlash at the output, ′", "torques, N·m", "wind-up between them, ′", *titles]
+    columns = ["case", "backlash at the output, largest sampled, ′", "torques, N·m", "wind-up between them, ′", *titles]
     table = Table(name="wind_up", caption="", columns=columns, rows=rows)
     return Section(heading="Wind-up", notes=notes, tables=[table] if rows else [])
 

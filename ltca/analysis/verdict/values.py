@@ -30,7 +30,7 @@ from ltca.drive.members.limits import Limit
 from ltca.drive.single_discs import single_discs
 from ltca.drive.yielding_parts import yielding_parts
 from ltca.errors import DriveError
-from ltca.geometry.play import preload_words
+from ltca.geometry.play import PLAY_SAMPLED, preload_words
 from ltca.quantities import LIMITED, QUANTITIES
 
 DEMANDED = {
@@ -196,7 +196,7 @@ def _of_loads(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) -> 
     yield Value(
         quantity="backlash_output",
         value=play,
-        part=preload_words(summary["preloaded_part_of_turn"] or 0.0),
+        part=", ".join(filter(None, (preload_words(summary["preloaded_part_of_turn"] or 0.0), PLAY_SAMPLED))),
         reason=""
         if play is not None
         else "no pose of rigid parts stops the wheel within half a pin pitch, or none was found",

@@ -56,7 +56,7 @@ GROUPS: tuple[Group, ...] = (
     ("transmission error, peak to peak [″]", (
         ("at the torque", "ptp_transmission_error"), ("at the light torque", "ptp_transmission_error_light"),
     )),
-    ("backlash at the output, all clearances [′]", (
+    ("backlash at the output, all clearances, sampled [′]", (
         ("largest over a turn", "backlash_output"), ("least over a turn", "min_backlash_output"),
         ("part of turn preloaded", "preloaded_part_of_turn"), ("overlap at rest, mm", "interference"),
     )),
