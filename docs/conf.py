@@ -97,7 +97,8 @@ html_sidebars: dict[str, list[str]] = {"index": [], "start/index": []}
 
 
 def add_single_pages(app: Any, docname: str, source: list[str]) -> None:
-    """Append the pages of single features (``docs/*.md``) to the how-to list."""
+    """Lead links to pages of the build, and append the pages of single features (``docs/*.md``) to the how-to list."""
+    source[0] = generated_pages.built_links(docname, source[0])
     if docname != "how-to/index":
         return
     pages = sorted(path for path in HERE.glob("*.md") if path.stem != root_doc)

@@ -7,10 +7,19 @@ options from the parsers, variables and scalars from the registry of quantities.
 from __future__ import annotations
 
 import argparse
+import posixpath
+import re
 from collections.abc import Iterable
 from pathlib import Path
 
 LEFT_OUT = "left out"
+HEADINGS = {
+    "drive-file": "drive_file",
+    "commands": "commands",
+    "dataset": "dataset",
+    "names-of-results": "quantities",
+}
+"""Generated pages by the headings of ``reference/index.md`` that stand for them in a checkout."""
 NOTE = "<!-- Written by docs/generated_pages.py: do not edit. -->\n"
 
 
@@ -27,6 +36,42 @@ def write_pages(folder: Path) -> None:
         path = folder / name
         if not path.exists() or path.read_text(encoding="utf-8") != NOTE + text:
             path.write_text(NOTE + text, encoding="utf-8")
+
+
+def built_links(docname: str, text: str) -> str:
+    """Return a page whose links to what a checkout has in the place of pages of the build lead to these.
+
+    Headings of ``reference/index.md`` stand for generated pages, scripts of ``examples`` for pages of the gallery, so that links
+    work in a checkout as well.
+
+    Parameters
+    ----------
+    docname : str
+        Page relative to ``docs``, without suffix.
+    text : str
+        Its Markdown.
+
+    Examples
+    --------
+    >>> built_links("start/index", "[fields](../reference/index.md#drive-file), [plot](../../examples/own_coefficients.py)")
+    '[fields](../reference/generated/drive_file.md), [plot](../gallery/own_coefficients.rst)'
+    """
+    folder = posixpath.dirname(docname)
+
+    def built(match: re.Match[str]) -> str:
+        target, _, heading = match[1].partition("#")
+        path = posixpath.normpath(posixpath.join(folder, target)) if target else f"{docname}.md"
+        if path == "reference/index.md" and heading in HEADINGS:
+            page = f"reference/generated/{HEADINGS[heading]}.md"
+        elif path == "../examples":
+            page = "gallery/index.rst"
+        elif posixpath.dirname(path) == "../examples" and path.endswith(".py"):
+            page = f"gallery/{posixpath.basename(path)[:-3]}.rst"
+        else:
+            return match[0]
+        return f"]({posixpath.relpath(page, folder or '.')})"
+
+    return re.sub(r"\]\(([^)\s]+)\)", built, text)
 
 
 def table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:

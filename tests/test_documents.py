@@ -8,14 +8,13 @@ from __future__ import annotations
 import ast
 import re
 import tomllib
-from importlib.util import find_spec
+from importlib.util import find_spec, module_from_spec, spec_from_file_location
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).parents[1]
 PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").rglob("*.md")])
-WRITTEN = ("generated/", "gallery/")  # when the pages are built (docs/generated_pages.py, sphinx-gallery)
 LINK = re.compile(r"\]\(([^)#\s]+)(?:#[^)]*)?\)|src=\"([^\"]+)\"")
 START, END = "# sphinx_gallery_start_ignore", "# sphinx_gallery_end_ignore"
 EXAMPLES = sorted((ROOT / "examples").glob("*.py"))
@@ -23,7 +22,7 @@ EXAMPLES = sorted((ROOT / "examples").glob("*.py"))
 
 def broken(page, text):
     found = [first or second for first, second in LINK.findall(re.sub(r"```.*?```", "", text, flags=re.DOTALL))]
-    local = [link for link in found if "://" not in link and not any(part in link for part in WRITTEN)]
+    local = [link for link in found if "://" not in link]
     return [link for link in local if not (page.parent / link).exists()]
 
 
@@ -34,6 +33,30 @@ def test_links_lead_somewhere(page):
 
 def test_a_broken_link_is_seen():
     assert broken(ROOT / "README.md", "[a](docs/nowhere.md), [b](README.md#there)") == ["docs/nowhere.md"]
+
+
+def headings(page):
+    """Anchors of the headings of a page, as hosting pages make them."""
+    found = re.findall(r"^#+ (.*)", page.read_text(encoding="utf-8"), flags=re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", text.lower()).replace(" ", "-") for text in found}
+
+
+def test_links_of_a_checkout_led_to_pages_that_exist_only_after_a_build():
+    """Headings of the reference stand for pages of the build, scripts for pages of the gallery; a build leads links to these."""
+    spec = spec_from_file_location("generated_pages", ROOT / "docs" / "generated_pages.py")
+    pages = module_from_spec(spec)
+    spec.loader.exec_module(pages)
+    assert set(pages.HEADINGS) <= headings(ROOT / "docs" / "reference" / "index.md")
+    seen = set()
+    for page in PAGES[1:]:
+        name = page.relative_to(ROOT / "docs").with_suffix("").as_posix()
+        built = pages.built_links(name, page.read_text(encoding="utf-8"))
+        for link in re.findall(r"\]\(([^)\s]*(?:generated|gallery)/[^)\s]+)\)", built):
+            seen.add((page.parent / link).resolve().relative_to(ROOT / "docs").as_posix())
+    generated = {f"reference/generated/{name}.md" for name in pages.HEADINGS.values()}
+    gallery = {"gallery/index.rst", *(f"gallery/{example.stem}.rst" for example in EXAMPLES)}
+    assert generated <= seen <= generated | gallery
+    assert {"gallery/index.rst", "gallery/own_coefficients.rst"} <= seen
 
 
 def test_every_page_has_one_title():

@@ -91,9 +91,16 @@ def test_version_of_an_sdist(tmp_path):
     assert version(tmp_path) == "7.8.9"
 
 
-def test_citation_is_that_of_the_newest_release():
-    dated = re.findall(r"^## (\d+\.\d+\.\d+) \((\d{4}-\d\d-\d\d)\)$", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)
-    assert (CITATION["version"], str(CITATION["date-released"])) == dated[0]
+def test_citation_said_0_2_0_where_pages_said_0_3_0_dev():
+    """Between releases it has the version that code of no tag has, and no date; a release has the newest entry's."""
+    entries = re.findall(r"^## (\d+\.\d+\.\d+) \((.*)\)$", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)
+    number, date = entries[0]
+    if date == "not released":
+        expected = PROJECT["tool"]["setuptools_scm"]["fallback_version"], None
+        assert expected[0].startswith(f"{number}.dev")
+    else:
+        expected = number, date
+    assert (str(CITATION["version"]), CITATION.get("date-released") and str(CITATION["date-released"])) == expected
     assert CITATION["license"] == PROJECT["project"]["license"]
     assert [author["name"] for author in CITATION["authors"]] == [one["name"] for one in PROJECT["project"]["authors"]]
 
