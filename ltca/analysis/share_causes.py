@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from ltca.arrays import FloatArray
+from ltca.beam import PinBeam
 from ltca.drive.parts import Drive
+from ltca.drive.pin_beams import from_start, shaft_pin_beam, wheel_pin_beam
 from ltca.equilibrium.supports import crank_stiffness
-from ltca.laws.backed import from_start, shaft_pin_beam, wheel_pin_beam
-from ltca.laws.beam import PinBeam
 
 LEAST_INEQUALITY = 0.05
 """Difference of a disc's part of the torque from an equal one, by that, from which a cause is named."""
