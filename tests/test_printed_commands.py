@@ -72,6 +72,8 @@ SMALLER = {
     "benchmarks/faults.py malformed": "--count 3",
     "benchmarks/faults.py kills": "--kills 1 --commands run",
     "benchmarks/faults.py clusters": "--kills 1",
+    "benchmarks/faults.py discs": "--sizes 64k --commands run",
+    "benchmarks/faults.py folders": "--pairs 1 --commands run",
     "benchmarks/fem.py": "--sizes 6 --series-size 6 ?--ccx 6 ?--series 2 ?--refereed 1",
     "benchmarks/free_play.py": "--count 1",
     "benchmarks/half_space_errors.py": "--positions 4",
@@ -89,7 +91,7 @@ SMALLER = {
     "benchmarks/solid_moves.py": "paper --case CS-1 --positions 1 --plane mine.nc --solid solid.nc",
     "benchmarks/solid_ltca.py": "examples/drives/plastic.toml --size 8 --layers 2",
     "benchmarks/solid_or_plane.py": "--widths 8 --size 8 --layers 2",
-    "benchmarks/startup.py": "--runs 1",
+    "benchmarks/startup.py": "--runs 1 --only help",
     "benchmarks/studio.py": "--edits 2",
     "benchmarks/study_costs.py": "--quick --joint 1:99",
     "benchmarks/suite_times.py": "--processes 1 -- tests/test_import_directions.py",
@@ -517,6 +519,8 @@ def one_case(words: list[str], folder: Path) -> list[str]:
 
     if words[0] != "cyclo" or words[1] not in CASES or "--case" in words or "--help" in words:
         return words
+    if any(word.startswith("out/") for word in words[2:3]):  # made by a command, of one case
+        return words
     name = words[2] if len(words) > 2 and not words[2].startswith("-") else "paper"
     cases = load_drive(str(folder / name) if name.endswith(".toml") else name).cases
     return [*words, "--case", next(iter(cases))] if len(cases) > 1 else words
@@ -563,6 +567,8 @@ def made_small(words: list[str]) -> list[str]:
         small.remove("--no-figures")
     if kind == "dynamics" and "--time" in words:  # has no positions
         small = ["--time", "1 ms", "--compliance", "half-space"]
+    if kind == "benchmarks/startup.py" and "--fem" in words:
+        small[-1] = "full FE"
     if kind == "derive" and "--check" in words:  # derives nothing
         small = []
     of_the_paper = (kind == "derive" and "paper" in words) or (kind == "run" and "--coefficients" in words)
@@ -675,7 +681,7 @@ def make_what_is_read(runner: Runner) -> None:
 
 
 def commands_of(kind: str) -> list[str]:
-    """Return the commands of a kind that are run: mentions and `LEFT_OUT` are not."""
+    """Return the commands of a kind that are run: mentions and those of `LEFT_OUT` are not."""
     asked = {
         command: words
         for command, (words, _) in all_words().items()
@@ -690,6 +696,34 @@ def commands_of(kind: str) -> list[str]:
         if words[0] == "cyclo" and (trouble_of(words, True) or (words[1] == "derive" and not set(words) & DERIVED))
     }
     return [command for command in asked if command not in mentions]
+
+
+@pytest.mark.slow
+def test_small_commands_are_taken_by_their_programs(tmp_path):
+    """What makes a command small is an option that it has: every night would find it out late."""
+    set_up(tmp_path)
+    small = [one_case(made_small(all_words()[command][0]), tmp_path) for command in commands_of("cyclo")]
+    wrong = [f"{' '.join(words)}: {trouble}" for words in small if (trouble := trouble_of(words, True))]
+    scripts = [made_small(all_words()[command][0]) for kind in ("python", "faults") for command in commands_of(kind)]
+    answers = zip(scripts, troubles_of_scripts([(words, True) for words in scripts]), strict=True)
+    wrong += [f"{' '.join(words)}: {trouble}" for words, trouble in answers if trouble]
+    assert not wrong, "\n".join(wrong)
+
+
+def test_commands_that_differ_in_nothing_that_counts_run_once():
+    """83 minutes of a night went to commands that did the same again."""
+
+    def way(text, *read):
+        return way_of(shlex.split(text), frozenset(read))
+
+    same = "cyclo fem paper --angle 0.5 --size 4 --case CS-1"
+    assert way("cyclo fem paper --case CS-1 --angle 0.5 --size 2 --size 4 --out out/x") == way(same)
+    assert way("cyclo design requirements.toml --best 1") == way(
+        "cyclo design examples/requirements/possible-paper.toml --best 1"
+    )
+    for other in ("cyclo fem paper --angle 0.5 --size 4 --case CS-1 --error", "cyclo fem my.toml --angle 0.5 --size 4"):
+        assert way(other) != way(same)
+    assert way("cyclo run paper --out out/x", "out/x/results.nc") != way("cyclo run paper", "out/x/results.nc")
 
 
 @pytest.mark.slow
