@@ -65,8 +65,10 @@ def balanced(drive):
 @pytest.mark.parametrize(
     "name",
     [
-        "teeth, posts",
-        *(pytest.param(name, marks=pytest.mark.slow) for name in ("all", "ring", "teeth, posts, lifting")),
+        *(
+            pytest.param(name, marks=pytest.mark.slow)
+            for name in ("teeth, posts", "all", "ring", "teeth, posts, lifting")
+        ),
         *(pytest.param(name, marks=pytest.mark.nightly) for name in ("all, loose wheel", "loose cranks, posts")),
     ],
 )
