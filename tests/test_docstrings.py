@@ -101,6 +101,7 @@ def problems_or_warning(tree):
         return [str(warning)]
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("error")
 def test_documented_parameters_equal_the_signature():
     assert [relative(path) for path in MODULES if not ast.get_docstring(tree_of(path))] == [], "no module docstring"

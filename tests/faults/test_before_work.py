@@ -58,7 +58,7 @@ def test_memory_of_slices_is_told_before():
     assert 0.3 < peak / (memory_per_position(drive) * positions.size) < 1.0
 
 
-@pytest.mark.family(quick=1)
+@pytest.mark.slow
 @pytest.mark.parametrize("ring", [None, {"inner_radius": 60.0, "outer_radius": 90.0, "width": 50.0}])
 def test_memory_is_told_before(ring):
     """A ring couples all pins: displacements, slopes and their blocks were not counted, nor several discs.

@@ -147,7 +147,7 @@ def test_a_main_bearing_tells_what_it_carries_of_the_drive_alone(paper, held, gi
     assert "main_bearing_x" not in reaction_values(analyse(paper, ANGLES[:1]))
 
 
-@pytest.mark.family(quick=1)
+@pytest.mark.slow
 @pytest.mark.parametrize("held", ["pin-shaft", "pin-wheel"])
 def test_the_output_moves_along_the_axis(paper, held):
     """−500 N by 2e5 N/mm are −2.5 µm; by two rows of 45° of 1e5 N/mm each the same, whatever preload; of rows with clearance it

@@ -9,6 +9,7 @@ import xarray as xr
 
 from fem.commands import fem as command
 from fem.pictures import solution_pictures
+from fem.reducer import solution
 from fem.reducer.solution_files import ARRAYS
 from ltca.errors import CycloError
 from ltca.output.labelled import LabelledDataset
@@ -27,11 +28,21 @@ def run(*words):
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    out = tmp_path_factory.mktemp("fem")
+def made(tmp_path_factory):
+    """Folder of a coarse solution, and the solution."""
+    out, solve, solutions = tmp_path_factory.mktemp("fem"), solution.solve_reducer, []
     words = ("paper", "--case", "CS-3", "--angle", "0.5", "--size", "6", "--out", str(out), "--export", "calculix")
-    assert run(*words) == 0
-    return out
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(
+            solution, "solve_reducer", lambda *given, **more: solutions.append(solve(*given, **more)) or solutions[-1]
+        )
+        assert run(*words) == 0
+    return out, solutions[0]
+
+
+@pytest.fixture(scope="module")
+def folder(made):
+    return made[0]
 
 
 @pytest.mark.slow
@@ -138,10 +149,11 @@ def test_fields_and_deck_are_there(folder):
 
 
 @pytest.mark.slow
-def test_pictures(tmp_path, monkeypatch):
+def test_pictures(made, tmp_path, monkeypatch):
+    monkeypatch.setattr(solution, "solve_reducer", lambda *given, **more: made[1])
     monkeypatch.setattr(solution_pictures, "ZOOM_SIDE", 400)
     monkeypatch.setitem(solution_pictures.draw_solution.__kwdefaults__, "side", 500)
-    assert run("paper", "--case", "CS-1", "--angle", "0.5", "--size", "6", "--out", str(tmp_path), "--pictures") == 0
+    assert run("paper", "--case", "CS-3", "--angle", "0.5", "--size", "6", "--out", str(tmp_path), "--pictures") == 0
     for name in ("von_mises.png", "contacts.png", "deformed.png"):
         assert (tmp_path / name).stat().st_size > 20_000
     page = (tmp_path / "report.html").read_text(encoding="utf-8")

@@ -304,6 +304,7 @@ def of_lost_motion(drive, steps, angles):
         np.testing.assert_allclose(found.slope(path), expected, rtol=0.0, atol=RELATIVE * size, err_msg=path)
 
 
+@pytest.mark.slow
 def test_lost_motion_follows_a_field(paper_cases):
     of_lost_motion(paper_cases["CS-3"], {"disc.shifting_offset": 1e-6, "load.torque": 300.0}, ONE)
 

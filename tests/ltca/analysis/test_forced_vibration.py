@@ -75,6 +75,7 @@ def test_one_mass_on_one_spring_follows_the_closed_form(heavy):
     assert peak == pytest.approx(np.max(amplification(np.linspace(0.9, 1.1, 2001))), rel=2e-2)
 
 
+@pytest.mark.slow
 def test_slow_motion_is_the_quasi_static_one(usual):
     found = forced_vibration(usual, speeds=60, fastest=3.0)
     assert found.order_amplitude[0] == pytest.approx(usual.spectrum.amplitude, rel=1e-6, abs=1e-12)
@@ -109,6 +110,7 @@ def test_centrifugal_forces_are_held_by_the_springs(usual):
     assert held == pytest.approx(usual.basis.T @ _nominal_forces(usual), rel=1e-5, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_a_loss_factor_is_twice_the_ratio_at_resonance(heavy):
     resonance = 60.0 * heavy.at_load[:, 0].mean() / heavy.input_orders[heavy.told_orders[0]]
     heavy = with_mean_stiffness(heavy)
@@ -165,6 +167,7 @@ def test_too_few_orders_ask_for_positions_that_suffice():
     assert "--positions" not in notes[1]
 
 
+@pytest.mark.slow
 def test_a_balance_that_does_not_converge_leaves_the_mean_there(usual, monkeypatch):
     tried = []
 

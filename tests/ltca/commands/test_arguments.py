@@ -89,6 +89,7 @@ NUMBERS = sorted(
 )
 
 
+@pytest.mark.family(quick=12)
 @pytest.mark.parametrize("word", NUMBERS)
 def test_what_is_no_number_is_refused_in_one_line(word, capsys):
     (name, *_) = [name for name in ORDER if word in options(name)]

@@ -211,7 +211,7 @@ def test_an_arm_turned_with_a_displaced_output_has_a_moment():
     assert abs(outside @ motion.frame_turns) > 1.0
 
 
-@pytest.mark.family(quick=1)
+@pytest.mark.family(quick=1, full=3)
 @pytest.mark.parametrize(
     ("name", "mode"),
     [

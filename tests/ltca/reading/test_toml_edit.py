@@ -27,6 +27,7 @@ def written(text, path):
         return None
 
 
+@pytest.mark.family(quick=1)
 @pytest.mark.parametrize(
     ("name", "every"), [*((name, 5) for name in SHIPPED_DRIVES), pytest.param("paper", 1, marks=pytest.mark.slow)]
 )

@@ -64,53 +64,6 @@ def test_what_tilts_or_is_crowned_needs_slices(path, paper):
 
 
 @pytest.mark.parametrize(
-    ("words", "message"),
-    [
-        ({"contact.slices": 4}, "contact.slices = 4: must be odd, 1 for the plane model or 3 to 65"),
-        ({"contact.slices": 2}, "contact.slices = 2: must be odd, 1 for the plane model or 3 to 65"),
-        ({"contact.slices": 67}, "contact.slices = 67: must be less than or equal to 65"),
-        ({"contact.slices": 0}, "contact.slices = 0: must be greater than or equal to 1"),
-        ({"contact.slices": 2.5}, "contact.slices = 2.5: must be a whole number"),
-        (SLICES | {"disc.lead_slope": 0.02}, "disc.lead_slope = 0.02 rad: must be at most 0.01 rad in size"),
-        (SLICES | {"crank.inclination.y": -0.02}, "crank.inclination.y = -0.02 rad: must be at most 0.01 rad in size"),
-        (SLICES | {"pin_shaft.inclination.x": "2°"}, "pin_shaft.inclination.x = 0.0349066 rad: must be at most 0.01 rad"),
-        (
-            SLICES | {"pin_wheel.pin_errors.inclination_x": (0.0, 1e-4)},
-            "pin_wheel.pin_errors.inclination_x has 2 values: must have 14, one for each of the pins",
-        ),
-        (
-            SLICES | {"disc.hole_errors.inclination_y.3": 0.02},
-            "disc.hole_errors.inclination_y holds 0.02 rad: must be at most 0.01 rad in size",
-        ),
-        (SLICES | {"disc.lead_crown_drop": 0.6}, "disc.lead_crown_drop = 0.6 mm: must be at most 0.5 mm, a tenth of"),
-        (SLICES | {"disc.lead_crown_drop": -0.001}, "disc.lead_crown_drop = -0.001: must be at least 0 mm"),
-        (
-            SLICES | {"disc.lead_relief_length": 6.0, "disc.lead_relief_depth": 0.01},
-            "disc.lead_relief_length = 6 mm: must be at most 5.9 mm, half the thickness of the disc",
-        ),
-        (
-            SLICES | {"disc.lead_relief_length": "2 mm"},
-            "disc.lead_relief_depth = 0 mm: must be greater than 0 with disc.lead_relief_length = 2 mm",
-        ),
-        (
-            SLICES | {"disc.lead_relief_depth": "5 µm"},
-            "disc.lead_relief_length = 0 mm: must be greater than 0 with disc.lead_relief_depth = 0.005 mm",
-        ),
-        (SLICES | {"disc.axial_play": 12.0}, "disc.axial_play = 12 mm: must be at most 11.8 mm, the thickness of the disc"),
-        (
-            SLICES | {"disc.number_of_discs": 2, "disc.of.1.lead_slope": 0.02},
-            "disc.of.1.lead_slope = 0.02 rad: must be at most 0.01 rad in size",
-        ),
-    ],
-)  # fmt: skip
-def test_bad_input_is_one_clear_line(words, message, paper):
-    with pytest.raises(DriveError) as caught:
-        with_fields(paper, words)
-    assert len(caught.value.problems) == 1, caught.value.problems
-    assert caught.value.problems[0].startswith(message)
-
-
-@pytest.mark.parametrize(
     ("table", "message"),
     [
         (

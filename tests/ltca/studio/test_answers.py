@@ -163,6 +163,7 @@ def test_a_coarse_answer_from_poses_near_by_is_that_from_nothing():
     assert warm["positions"] == 36
 
 
+@pytest.mark.slow
 def test_a_derivative_is_told_for_a_small_change():
     found = answer(asked(quality=DERIVATIVE, field="load.torque"), Memory())
     assert found["step"] == "1 N·m"
