@@ -112,9 +112,11 @@ ALTERNATIVE = re.compile(
 
 
 def _named_by_change(drive: Drive, problem: str, values: Mapping[str, Any]) -> str:
-    """A contradiction by the field that was changed, where it names two that resolve it and the first is as it was."""
-    told = ALTERNATIVE.fullmatch(problem)
-    if told is None or told["field"] in values or told["other"] not in values:
+    """A contradiction that names two fields by the one that was changed, of both by the later change."""
+    told, changed = ALTERNATIVE.fullmatch(problem), list(values)
+    if told is None or told["other"] not in changed:
+        return problem
+    if told["field"] in changed and changed.index(told["field"]) > changed.index(told["other"]):
         return problem
     field, bound, other, limit, why = told.groups()
     return f"{other} = {read_field(drive, other):g} mm: must be {limit} or {field} {bound}{why}"

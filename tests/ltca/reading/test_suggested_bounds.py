@@ -91,6 +91,14 @@ def test_the_largest_eccentricity_is_where_the_path_bends_as_the_equidistant_doe
             r"crank\.eccentricity = 4\.6 mm: must be at most 4 mm or pin_shaft\.hole_radius at least 14\.675",
         ),
         (
+            {"pin_shaft.hole_radius": 13.9, "crank.eccentricity": 4.6},
+            r"crank\.eccentricity = 4\.6 mm: must be at most 3\.825 mm or pin_shaft\.hole_radius at least 14\.675",
+        ),
+        (
+            {"crank.eccentricity": 4.6, "pin_shaft.hole_radius": 13.9},
+            r"pin_shaft\.hole_radius = 13\.9 mm: must be at least 14\.675 mm .* or crank\.eccentricity at most 3\.825",
+        ),
+        (
             {"pin_shaft.hole_radius": 13.0},
             r"pin_shaft\.hole_radius = 13 mm: must be at least 14\.075 mm .* or crank\.eccentricity at",
         ),
