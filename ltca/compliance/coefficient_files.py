@@ -30,6 +30,7 @@ from ltca.output.process_pools import process_pool
 from ltca.output.processes import interrupts_held
 from ltca.output.progress import progress
 from ltca.output.provenance import cache_home, code_hash, code_version
+from ltca.output.threads import on_one_thread
 from ltca.reading.coefficient_file import require_laws, write_coefficients
 
 if TYPE_CHECKING:
@@ -347,6 +348,7 @@ def _processes(derivations: int, bodies: Bodies) -> int:
     return 1 if bodies == "solid" else min(MAX_DERIVATIONS, derivations, os.cpu_count() or 1)
 
 
+@on_one_thread
 def _derive_file(drive: Drive, path: Path, processes: int, bodies: Bodies) -> None:
     """Derive the coefficients of one drive into a file, one of some processes that share the memory."""
 
