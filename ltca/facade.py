@@ -23,6 +23,7 @@ from ltca.drive.parts import Drive
 from ltca.errors import ConvergenceError, DriveError
 from ltca.front.arguments import angles_given, counted, engine_given, require_drive, torque_given
 from ltca.geometry.placement import position_angles
+from ltca.output.threads import on_one_thread
 from ltca.quantities import SCALARS, printed, unit_sign
 
 if TYPE_CHECKING:
@@ -78,6 +79,7 @@ class AnalysisResult:
         return self.loaded.torque
 
     @property
+    @on_one_thread
     def dataset(self) -> xr.Dataset:
         """Labelled dataset as in ``results.nc``, of this one case; its arrays are read-only.
 
@@ -90,6 +92,7 @@ class AnalysisResult:
         return found
 
     @cached_property
+    @on_one_thread
     def _summary(self) -> dict[str, float | None]:
         return summarise(self.loaded)
 
@@ -105,6 +108,7 @@ class AnalysisResult:
         found = (few, relieved_rows_warning(self.loaded))
         return [*self.loaded.warnings, *(warning for warning in found if warning is not None)]
 
+    @on_one_thread
     def pressure(
         self,
         contact: str = "pin",
@@ -290,6 +294,7 @@ class Plots:
         return f"figures: {', '.join(names)}"
 
 
+@on_one_thread
 def analyse(
     drive: Drive,
     positions: int | None = None,
@@ -383,6 +388,7 @@ def analyse(
         raise
 
 
+@on_one_thread
 def derivatives(result: AnalysisResult, fields: Iterable[str]) -> xr.Dataset:
     """Return how what an analysis answers follows fields of its drive: ∂(loads, poses, angles, …)/∂field at every position.
 

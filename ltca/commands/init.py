@@ -41,6 +41,8 @@ def execute(arguments: argparse.Namespace) -> int:
     path: Path = arguments.file
     if not names_a_file(path.stem):
         raise DriveError([f"{shortened(str(path))}: the drive is named after the file, and its name {NAMING}"])
+    if path.is_dir():
+        raise CycloError(f"{path}: is a folder, not a file")
     if path.exists() and not arguments.force:
         raise CycloError(f"{path}: exists already; --force overwrites it")
     own = f"name = {json.dumps(path.stem, ensure_ascii=False)}"

@@ -22,6 +22,7 @@ from typing import Any, NoReturn
 
 from ltca.errors import CycloError, did_you_mean, printable
 from ltca.output.terminal import prepare_streams
+from ltca.output.threads import use_one_thread
 
 GROUP = "cyclo.commands"
 ORDER = (
@@ -152,9 +153,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     prepare_streams()
     if argv is None and not debug and not sys.warnoptions:
         warnings.simplefilter("ignore")  # of libraries, for those who write code
-    # One thread each: the matrices of a batch are small, and threads that share two cores slow each other down.
-    for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
-        os.environ.setdefault(variable, "1")
+    os.environ.setdefault("OMP_NUM_THREADS", "1")
+    use_one_thread()
     from ltca.output.processes import Terminated
 
     try:

@@ -25,11 +25,12 @@ from ltca.compliance.near_field import NEAR_FIELDS, NearField
 from ltca.drive.engine_support import require
 from ltca.drive.parts import Bodies, Drive
 from ltca.drive.single_discs import single_discs
-from ltca.errors import CycloError, DamagedFileError
+from ltca.errors import CycloError, DamagedFileError, PlaceError
 from ltca.output.process_pools import process_pool
 from ltca.output.processes import interrupts_held
 from ltca.output.progress import progress
 from ltca.output.provenance import cache_home, code_hash, code_version
+from ltca.output.threads import on_one_thread
 from ltca.reading.coefficient_file import require_laws, write_coefficients
 
 if TYPE_CHECKING:
@@ -63,8 +64,11 @@ def cached_file(drive: Drive, bodies: Bodies = "plane") -> Path:
 
 
 def kept_file(name: str) -> Path:
-    """Return where a derived file of a name is kept, or would be."""
+    """Return where a derived file of a name is kept, or would be; PlaceError where a folder stands there."""
     new, kept = (folder / name for folder in (cache_folder(), _kept_folder()))
+    for path in (new, kept):
+        if path.is_dir():
+            raise PlaceError(f"{path}: is a folder in the place of a file that is derived and kept: remove it")
     return kept if kept.exists() and not new.exists() else new
 
 
@@ -348,6 +352,7 @@ def _processes(derivations: int, bodies: Bodies) -> int:
     return 1 if bodies == "solid" else min(MAX_DERIVATIONS, derivations, os.cpu_count() or 1)
 
 
+@on_one_thread
 def _derive_file(drive: Drive, path: Path, processes: int, bodies: Bodies) -> None:
     """Derive the coefficients of one drive into a file, one of some processes that share the memory."""
 

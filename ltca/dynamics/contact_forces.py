@@ -122,6 +122,7 @@ class ContactForces:
 
     @followed.setter
     def followed(self, kept: tuple[Any, ...]) -> None:
+        """Start the next call from these."""
         for each, own in zip(self._each, kept[0], strict=True):
             each.followed = own
         self._start = kept[1]

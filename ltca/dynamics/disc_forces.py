@@ -117,6 +117,7 @@ class DiscContacts:
 
     @followed.setter
     def followed(self, kept: tuple[Any, ...]) -> None:
+        """Start the next call from these."""
         # Shares are changed in place.
         self._parameter, self._point, self._turning, self._share = *kept[:3], kept[3].copy()
 

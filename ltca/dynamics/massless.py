@@ -63,6 +63,7 @@ class MasslessParts:
 
     @followed.setter
     def followed(self, kept: tuple[Any, ...]) -> None:
+        """Start the next call from these."""
         self._place, self._slope, self._others, self._following = kept
 
     def settle(

@@ -13,11 +13,13 @@ from ltca.drive.members.limits import Limit, Limits, parse_limits
 from ltca.drive.parts import Drive
 from ltca.errors import DriveError, shortened
 from ltca.front.arguments import counted, engine_given, require_drive, torque_given
+from ltca.output.threads import on_one_thread
 from ltca.reading.drive_file import DriveFile, listed
 
 MOST_POSITIONS = 100_000
 
 
+@on_one_thread
 def check(
     drive: Drive | DriveFile,
     positions: int = 360,

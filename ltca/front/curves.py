@@ -15,11 +15,13 @@ from ltca.drive.units.quantities import parse_quantity
 from ltca.errors import DriveError
 from ltca.front.arguments import counted, engine_given
 from ltca.front.checks import drive_and_limits
+from ltca.output.threads import on_one_thread
 from ltca.reading.drive_file import DriveFile
 
 MOST_TURNS = 1000
 
 
+@on_one_thread
 def curves(
     drive: Drive | DriveFile,
     turns: int | None = None,

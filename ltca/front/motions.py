@@ -11,10 +11,12 @@ from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import parse_quantity
 from ltca.errors import DriveError
 from ltca.front.arguments import counted, engine_given, require_drive
+from ltca.output.threads import on_one_thread
 
 MOST_SAMPLES = 1_000_000
 
 
+@on_one_thread
 def motion(
     drive: Drive,
     time: float | str,

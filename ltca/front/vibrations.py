@@ -19,6 +19,7 @@ from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import parse_quantity
 from ltca.front.arguments import counted, engine_given
 from ltca.front.checks import drive_and_limits
+from ltca.output.threads import on_one_thread
 from ltca.reading.drive_file import DriveFile
 
 LEAST_POSITIONS, MOST_POSITIONS, MOST_TURNS = 4, 1000, 1000
@@ -82,6 +83,7 @@ class DriveVibrations:
         return "\n".join(rows)
 
 
+@on_one_thread
 def vibration(
     drive: Drive | DriveFile,
     *,

@@ -284,6 +284,9 @@ def claimed_folder(
         When the disc is full or fails.
     """
     require_folder(path)
+    for name in beside:
+        if os.path.lexists(path / name) and not (path / name).is_dir():
+            raise PlaceError(f"--out {path}: {name} is a file in the place of a folder: {ELSEWHERE}")
     with held(path / LOCK, f"--out {path}", command):
         if BATCHES not in beside:
             _require_no_interrupted_study(path)

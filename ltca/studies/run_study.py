@@ -12,6 +12,7 @@ from ltca.analysis.time_need import TOLD_FROM
 from ltca.compliance.coefficient_files import told_seconds
 from ltca.errors import CycloError
 from ltca.output.files import whole_file, write_json
+from ltca.output.threads import on_one_thread
 from ltca.quantities import SCALARS
 from ltca.reading.writing import drive_text
 from ltca.studies.batch_analysis import analyse_samples
@@ -59,6 +60,7 @@ class StudySummary:
     seconds: float
 
 
+@on_one_thread
 def run_study(
     study: Study,
     folder: StudyFolder,

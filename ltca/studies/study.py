@@ -19,6 +19,7 @@ from ltca.drive.parts import Drive
 from ltca.errors import CycloError
 from ltca.geometry.placement import position_angles
 from ltca.output.provenance import code_hash
+from ltca.output.threads import on_one_thread
 from ltca.reading.changes import with_fields
 from ltca.studies.batch_analysis import BatchSettings, Nominal, analyse_samples, solve_nominal
 from ltca.studies.designs import Design, ToleranceDesign
@@ -225,6 +226,7 @@ def _settings(study: Study) -> BatchSettings:
     return replace(settings, nominal=_NOMINAL[key])
 
 
+@on_one_thread
 def run_batch(study: Study, number: int) -> BatchResult:
     """Solve one batch of a study, by its number: the task every worker runs."""
     factors = study.design.rows(*study.samples_of(number))

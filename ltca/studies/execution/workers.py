@@ -67,10 +67,7 @@ class Workers:
             with process_pool(self.processes, preload=preload, initializer=_calm_threads) as pool:
                 yield pool, self.processes
         else:
-            from threadpoolctl import threadpool_limits
-
-            with threadpool_limits(1):
-                yield ThisProcess(), 1
+            yield ThisProcess(), 1
 
 
 def _calm_threads() -> None:
