@@ -109,7 +109,7 @@ def test_a_derived_file_keeps_all_laws_but_those_of_fineness(read):
     checks = check_coefficients(read)
     names = [check.name for check in checks]
     assert len(set(names)) == len(names)
-    assert sum(name.endswith(", tilt") for name in names) == 7
+    assert sum(name.endswith(", tilt") for name in names) == 8
     # On meshes four times as coarse, half of the stations: what a file states of its fineness is not a law.
     require_laws(read, "solid.nc")
     assert read.attrs["dimensions"] == 3

@@ -155,6 +155,9 @@ def spoiled(dataset, name):
         wrong["wide_approach"].values[2] *= 1.01
     elif name == "near field, pin, roller, race":
         wrong["pin_wide_approach"] *= 0.9
+    elif name == "entry out of line against those beside it":
+        disc[50, 80] += 10.0 * disc.max()
+        disc[80, 50] = disc[50, 80]
     elif name == "roller against the compressed cylinder":
         wrong["roller_approach"] *= 1.01
     elif name == "pin against the held ring":
@@ -184,6 +187,7 @@ NAMES = [
     "resultants of the patches and of the stations",
     "near field, disc, worst station",
     "near field, pin, roller, race",
+    "entry out of line against those beside it",
     "roller against the compressed cylinder",
     "pin against the held ring",
     "race against the held ring, worst angle",
