@@ -2,7 +2,6 @@
 
 Modules in the order data passes:
 
-=======
 ==============  ============================================================
 terminal        Streams that take every message: any encoding, no stream at all
 resources       Memory and disc a run will need, against what the machine has, before it starts
