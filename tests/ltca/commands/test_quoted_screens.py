@@ -8,7 +8,6 @@ from pathlib import Path
 import pytest
 
 from ltca.commands.program import main
-from ltca.reading.drive_file import shipped_drive
 
 PAGE = Path(__file__).parents[3] / "docs" / "start" / "index.md"
 DRIVE = "robot-joint"
@@ -36,9 +35,10 @@ def test_the_first_page_quotes_three_commands():
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["show", "check", pytest.param("run", marks=pytest.mark.nightly)])
 def test_the_first_page_quotes_what_is_printed(name, tmp_path, monkeypatch, capsys):
-    """Rows of `check` had places and limits of former versions."""
+    """Rows of `check` had places and limits of former versions, and were those of another file than the page writes."""
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "my.toml").write_text(shipped_drive(DRIVE), encoding="utf-8")
+    assert main(["init", "my.toml", "--like", DRIVE]) == 0
+    capsys.readouterr()
     ((words, lines),) = ((command.split(), lines) for command, lines in quoted().items() if command.split()[1] == name)
     assert main([*words[1:], *WITHOUT[name]]) == 0
     printed = {" ".join(line.split()) for line in capsys.readouterr().out.splitlines()}
