@@ -89,8 +89,10 @@ def _odd(drive: Drive) -> Iterator[str]:
 
 def _tight_print(drive: Drive) -> Iterator[str]:
     """A printed disc whose flank has no play, with hollows that hold its pins closer than prints are."""
+    if PRINTED not in (name_of(drive.materials.disc) or "") or drawn_plays(drive)[FLANK] > 0.0:
+        return
     hollow = min(pin_hollow_margin(single) for single in single_discs(drive))
-    if PRINTED in (name_of(drive.materials.disc) or "") and hollow < FINEST_PRINT and drawn_plays(drive)[FLANK] <= 0.0:
+    if hollow < FINEST_PRINT:
         yield (
             f"disc.equidistant_offset = {drive.disc.equidistant_offset:g} mm: the flank of the printed disc has no play, and its "
             f"hollows are rounder than the pins by {hollow:.3f} mm only; prints are off by {FINEST_PRINT:g} mm and more, and "
