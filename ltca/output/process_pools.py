@@ -207,7 +207,7 @@ def remove_stale_folders(place: Path, fresh: float = FRESH) -> None:
 def _remove_unlocked(folder: Path) -> bool:
     """Remove a folder whose process has ended; False while that holds its lock."""
     try:
-        descriptor = os.open(folder / LOCK, os.O_RDWR | os.O_NOFOLLOW)
+        descriptor = os.open(folder / LOCK, os.O_RDWR | getattr(os, "O_NOFOLLOW", 0))
     except OSError:
         return True  # it has gone, or is none of ours
     try:

@@ -497,7 +497,7 @@ def forwarding_file(address: str) -> Iterator[Path]:
         page = Path(folder) / "studio.html"
         descriptor = os.open(page, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o600)
         told = html.escape(address)
-        with open(descriptor, "w", encoding="utf-8") as file:
+        with open(descriptor, "w", encoding="utf-8", newline="\n") as file:
             file.write(
                 '<!doctype html><meta charset="utf-8"><meta name="referrer" content="no-referrer"><title>cyclo studio</title>'
                 f'<meta http-equiv="refresh" content="0; url={told}"><a href="{told}">cyclo studio</a>\n'
