@@ -292,6 +292,21 @@ def test_a_cached_file_whose_checksum_was_changed_with_it_is_found_out(name, shi
     assert "\n" not in str(refused.value)
 
 
+def test_a_forged_entry_of_the_cache_is_derived_again_with_a_word(drive, derived, capsys):
+    first = find_coefficients(drive)
+    path = cached_file(drive)
+    forged = read_coefficients(path, lawful=False).to_xarray().copy(deep=True)
+    multiplied("roller_approach", factor=1.01)(forged, 1.0)
+    write_coefficients(forged, path)
+    capsys.readouterr()
+    np.testing.assert_array_equal(find_coefficients(drive).roller, first.roller)
+    said = capsys.readouterr().err.splitlines()[0]
+    assert said.startswith(f"warning: {path}: breaks laws")
+    assert "roller against the compressed cylinder" in said
+    assert said.endswith("; derived again")
+    assert len(derived) == 2
+
+
 def test_shipped_files_keep_the_quick_laws():
     for path in sorted(coefficient_files.SHIPPED.glob("*.nc")):
         assert read_coefficients(path, lawful="quick").attrs[CHECKSUM]
