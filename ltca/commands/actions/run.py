@@ -215,7 +215,7 @@ def _verdicts(checks: dict[str, list[Check]], proportions: dict[str, list[str]],
     width = max(map(len, checks))
     told = ["verdict, with the check nearest to its limit"]
     told += [f"  {name:<{width}}  {verdict_line(each)}" for name, each in checks.items()]
-    told += [f"  caution: {caution}"] if caution else []
+    told += [f"  {caution}"] if caution else []
     told += [f"  note: {note}" for note in told_of_cases(proportions)]
     return "\n".join([*told, "  every check, what drives it and would mend it: cyclo check", ""])
 

@@ -109,7 +109,8 @@ def test_first_screen_is_verdict_table_files(tmp_path, capsys):
     for number, line in enumerate(lines[2:8], 1):
         assert re.fullmatch(rf"  CS-{number}  (pass|FAIL)  \S.* \([≤≥] .*\).*", line)
         assert len(line) <= 80
-    assert lines[10].split() == [f"CS-{number}" for number in range(1, 7)]
+    assert lines[8].startswith("  half-spaces: about 34 % too stiff here")
+    assert lines[11].split() == [f"CS-{number}" for number in range(1, 7)]
     assert lines[-1].startswith("results: ")
     assert not (tmp_path / "figures").exists()
 
@@ -268,7 +269,7 @@ def test_a_template_has_the_numbers_of_the_shipped_drive(like, tmp_path, monkeyp
     assert mine == theirs
 
 
-# Lines of these two files hold lengths that the paper and the maker of the drive gave: they are to be changed as well.
+# These two files state lengths that would follow thickness and number where they are left out.
 STATED = {"paper": ("crank_bearing.roller_length",), "sleeved": ("pin_wheel.beam.span", "pin_shaft.beam.span")}
 
 
