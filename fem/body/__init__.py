@@ -6,6 +6,7 @@ Modules in the order data passes:
 assembly          Stiffness of all elements in one product of matrices, and its sum by nodes
 elasticity        Plane linear elasticity of one meshed body: stiffness, rigid modes, distributed loads, energy
 surface           Contact zones on meshed boundaries: the side that carries the pressure and the side opposite
+sparse_factor     Factors of sparse matrices, and what is said where memory is not enough for one
 condensation      Condensation of a body to its loads: one sparse factorisation gives the compliance of all of them
 free_body         Datum of a floating body: its displacement relative to the best-fit rigid motion of some boundaries
 influence         Influence between very many loads of a free body: only the blocks that are asked for, none by a dense factor

@@ -25,6 +25,7 @@ import scipy.sparse.linalg as spla
 from scipy.spatial import cKDTree
 
 from fem.body.elasticity import area_loads, rigid_modes
+from fem.body.sparse_factor import factor_sparse
 from fem.mesh.body_mesh import BodyMesh
 from ltca.arrays import FloatArray, IntArray
 
@@ -142,7 +143,7 @@ def _minimum_degree(graph: sp.csc_matrix) -> FloatArray:
     graph = graph.copy()
     graph.data[:] = -1.0
     graph.setdiag(PROXY_DIAGONAL)
-    factor = spla.splu(graph, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=SYMMETRIC)
+    factor = factor_sparse(graph, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=SYMMETRIC)
     return np.asarray(factor.perm_c, dtype=np.float64)
 
 
@@ -267,7 +268,7 @@ def _factorise(stiffness: sp.csc_matrix, loads: sp.csc_matrix, kept: IntArray) -
     border = loads.tocsr()[kept]
     count = len(kept)
     matrix = sp.vstack([sp.hstack([inner, border]), sp.hstack([border.T, sp.csr_matrix((loads.shape[1],) * 2)])])
-    factor = spla.splu(matrix.tocsc(), permc_spec="NATURAL", diag_pivot_thresh=0.0, options=SYMMETRIC)
+    factor = factor_sparse(matrix.tocsc(), permc_spec="NATURAL", diag_pivot_thresh=0.0, options=SYMMETRIC)
     # SuperLU's object would keep three copies of the factors alive; L and the diagonal of U are enough.
     lower, diagonal = factor.L, factor.U.diagonal()
     trailing = lower[count:, count:].toarray()

@@ -26,6 +26,7 @@ import scipy.sparse.linalg as spla
 
 from fem.body.condensation import SYMMETRIC, order_nodes, statically_determinate
 from fem.body.elasticity import rigid_modes, unknowns_of_nodes
+from fem.body.sparse_factor import factor_sparse
 from fem.mesh.body_mesh import BodyMesh
 from ltca.arrays import FloatArray, IntArray
 
@@ -186,7 +187,7 @@ def _factorise(body: BodyMesh, stiffness: sp.csc_matrix, loads: sp.csc_matrix) -
     kept = unknowns[~held[unknowns]]
     matrix = _bordered_below(stiffness, loads, kept)
     # Nothing pivots: the stiffness is positive definite, what is beside the loads is one.
-    return spla.splu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.0, options=SYMMETRIC), kept
+    return factor_sparse(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.0, options=SYMMETRIC), kept
 
 
 def _displacement(factor: spla.SuperLU, kept: IntArray, force: FloatArray) -> FloatArray:

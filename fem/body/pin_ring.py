@@ -19,11 +19,11 @@ from math import gcd
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.sparse.linalg import splu
 
 from fem.body.assembly import jacobians, shape_functions
 from fem.body.condensation import condense_body
 from fem.body.elasticity import CURVED_QUADRATURE, assemble_stiffness, unknowns_of_boundary
+from fem.body.sparse_factor import factor_sparse
 from fem.body.surface import GAUSS_POINTS, GAUSS_WEIGHTS, quadratic_shapes, quadratic_slopes
 from fem.mesh.body_mesh import BodyMesh
 from fem.mesh.element_size import Refinement
@@ -139,7 +139,7 @@ def seat_flexibility(drive: Drive, size: float = 1.0, *, halvings: int = 0) -> F
         return (found if fixed is not None else without_rigid_motions(found, shape.inner.seat_centres)) / unit
     springs = loads[:, 2 * shape.inner.seats :]
     held = (stiffness + ring.bolts.stiffness / unit * (springs @ springs.T)).tocsc()
-    found = seats.T @ splu(held).solve(seats.toarray())
+    found = seats.T @ factor_sparse(held).solve(seats.toarray())
     return np.asarray(0.5 * (found + found.T) / unit)
 
 

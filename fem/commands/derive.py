@@ -173,10 +173,14 @@ def _derive(name: str, case: str, drive: Drive, arguments: argparse.Namespace, o
     from fem.coefficients.dataset import derive_coefficients
     from fem.coefficients.solid_dataset import LAYERS
     from ltca.output.progress import steps
+    from ltca.output.resources import derivation_memory, tell_memory
     from ltca.reading.coefficient_file import read_coefficients, write_coefficients
     from ltca.reading.coefficient_laws import check_coefficients
 
     start = time.perf_counter()
+    if arguments.bodies == "plane":  # of solid ones the derivation tells it
+        # The mesh is fine along the boundaries: unknowns go with the inverse of the edge.
+        tell_memory(derivation_memory(drive.disc.number_of_teeth) / arguments.size, f"the disc of {name} {case}")
     with steps("deriving coefficients") as show:
         derive_coefficients(
             drive,

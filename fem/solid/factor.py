@@ -12,9 +12,9 @@ from importlib.util import find_spec
 
 import numpy as np
 import scipy.sparse as sp
-import scipy.sparse.linalg as spla
 
 from fem.body.condensation import SYMMETRIC
+from fem.body.sparse_factor import enough_memory, factor_sparse
 from ltca.arrays import FloatArray, IntArray
 
 BLOCK = 16
@@ -55,7 +55,7 @@ def cholmod_is_there() -> bool:
 
 def _superlu(inner: sp.csc_matrix) -> Callable[[FloatArray], FloatArray]:
     # Nothing pivots: the matrix is positive definite.
-    factor = spla.splu(inner, permc_spec="NATURAL", diag_pivot_thresh=0.0, options=SYMMETRIC)
+    factor = factor_sparse(inner, permc_spec="NATURAL", diag_pivot_thresh=0.0, options=SYMMETRIC)
 
     def solve(right: FloatArray) -> FloatArray:
         found = np.empty_like(right)
@@ -78,8 +78,9 @@ def _cholmod(inner: sp.csc_matrix) -> Callable[[FloatArray], FloatArray]:
     del lower
     order = cvxopt.matrix(np.arange(inner.shape[0], dtype=np.int64))
     cvxopt.cholmod.options["supernodal"] = 2
-    factor = cvxopt.cholmod.symbolic(matrix, p=order)
-    cvxopt.cholmod.numeric(matrix, factor)
+    with enough_memory(inner.shape[0]):
+        factor = cvxopt.cholmod.symbolic(matrix, p=order)
+        cvxopt.cholmod.numeric(matrix, factor)
     del matrix
 
     def solve(right: FloatArray) -> FloatArray:

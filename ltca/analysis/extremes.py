@@ -16,6 +16,7 @@ import numpy as np
 
 from ltca.analysis.contact_arrays import array_of, contact_arrays
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse
+from ltca.analysis.memory_need import positions_together
 from ltca.arrays import FloatArray, stack_drives, take_positions
 from ltca.compliance.response import ContactPressures
 from ltca.drive.parts import Drive
@@ -395,7 +396,20 @@ def _solve(
     places: Sequence[tuple[FloatArray, FloatArray]],
     start: FloatArray,
 ) -> None:
-    """Balance new positions of both torques of each analysis in one batch and give them to their stages."""
+    """Balance new positions of both torques of each analysis and give them to their stages: in one batch, those of an analysis
+    that memory does not hold together in several.
+    """
+    if len(analyses) == 1:
+        most = positions_together(analyses[0].drive)
+        if len(start) > most:
+            done = 0
+            for number, at in enumerate(places[0]):
+                for rows in np.array_split(np.arange(at.size), max(1, -(-at.size // most))):
+                    part = [np.zeros(0), np.zeros(0)]
+                    part[number] = at[rows]
+                    _solve(analyses, stages, [(part[0], part[1])], start[done + rows])
+                done += at.size
+            return
     angle = np.concatenate([at for own in places for at in own])
     counts = [at.size for own in places for at in own]
     torque = np.repeat([stage.torque for pair in stages for stage in pair], counts)

@@ -22,7 +22,6 @@ from typing import Any, NoReturn
 
 from ltca.errors import CycloError, did_you_mean, printable
 from ltca.output.terminal import prepare_streams
-from ltca.output.threads import use_one_thread
 
 GROUP = "cyclo.commands"
 ORDER = (
@@ -154,9 +153,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     if argv is None and not debug and not sys.warnoptions:
         warnings.simplefilter("ignore")  # of libraries, for those who write code
     os.environ.setdefault("OMP_NUM_THREADS", "1")
-    use_one_thread()
     from ltca.output.processes import Terminated
+    from ltca.output.threads import use_one_thread
 
+    use_one_thread()
     try:
         wanted = next((word for word in words if word != DEBUG), "")
         status = _run(words, wanted)

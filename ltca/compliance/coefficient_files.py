@@ -30,6 +30,7 @@ from ltca.output.process_pools import process_pool
 from ltca.output.processes import interrupts_held
 from ltca.output.progress import progress
 from ltca.output.provenance import cache_home, code_hash, code_version
+from ltca.output.resources import MUCH, derivation_memory
 from ltca.output.threads import on_one_thread
 from ltca.reading.coefficient_file import require_laws, write_coefficients
 
@@ -48,8 +49,6 @@ MAX_DERIVATIONS = 2
 """Most derivations at the same time: one takes 1.0 GB for a disc like the paper's, 3.1 GB with 99 teeth."""
 SECONDS, SECONDS_PER_TOOTH, SECONDS_PER_HOLE, SECONDS_PER_BORE = 0.8, 0.28, 0.45, 0.5
 """Time of a derivation on one core, s: the mesh is fine along the boundaries and the rest follows its size."""
-GIGABYTES, GIGABYTES_PER_TOOTH, MUCH = 0.55, 0.026, 2.0
-"""Its memory, GB, and from where on it is told beforehand."""
 _ENGINES = {near_field: engine for engine, near_field in NEAR_FIELDS.items()}
 """What coefficients are wanted for."""
 
@@ -313,9 +312,9 @@ def _derive_missing(cases: Mapping[str, Drive], bodies: Bodies) -> None:
     require_cache()
     missing = {cache_folder() / file_name(cases[name], bodies): name for name in missing.values()}
     whole = derivation_words((cases[name] for name in missing.values()), bodies, _processes(len(missing), bodies))
-    most = max(GIGABYTES + GIGABYTES_PER_TOOTH * cases[name].disc.number_of_teeth for name in missing.values())
+    most = max(derivation_memory(cases[name].disc.number_of_teeth) for name in missing.values())
     # What solid bodies need is told by what derives them.
-    needed = f", {most:.0f} GB of memory for each" if most > MUCH and bodies == "plane" else ""
+    needed = f", {most / 1e9:.0f} GB of memory for each" if most > MUCH and bodies == "plane" else ""
     of = ", solid bodies," if bodies == "solid" else ","
     print(
         f"deriving influence coefficients of {', '.join(missing.values())}{of} once for each shape ({whole}"

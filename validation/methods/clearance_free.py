@@ -25,8 +25,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
-from scipy.sparse.linalg import SuperLU, splu
+from scipy.sparse.linalg import SuperLU
 
+from fem.body.sparse_factor import factor_sparse
 from ltca.arrays import FloatArray
 from ltca.contact.hertz import line_half_width
 from ltca.contact.pressure_cells import PatchGrid, PatchSolution, end_grading, solve_patch
@@ -373,4 +374,4 @@ def _factor(blocks: list[FloatArray], coupling: FloatArray, springs: FloatArray)
         ],
         format="csc",
     )
-    return splu(matrix)
+    return factor_sparse(matrix)
