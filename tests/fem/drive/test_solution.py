@@ -133,7 +133,6 @@ def test_further_load_uses_the_same_factors(coarse):
     assert tangential == pytest.approx(1.1 * TANGENTIAL, rel=1.5e-3)
 
 
-@pytest.mark.slow
 def test_further_load_is_that_of_fresh_meshes(coarse):
     more = solve_load(coarse, 1.1 * 377_300.0)
     fresh = solve_drive(drive(), 0.5, SolutionOptions(size=3.0), torque=1.1 * 377_300.0)
