@@ -567,6 +567,8 @@ def made_small(words: list[str]) -> list[str]:
         small.remove("--no-figures")
     if kind == "dynamics" and "--time" in words:  # has no positions
         small = ["--time", "1 ms", "--compliance", "half-space"]
+    if kind == "curves" and "--parts" in words:  # a run for each part
+        small.append("--quick")
     if kind == "fem" and "solid" in words and "--pair" not in words:  # the same with a sixth of the pins: in a minute
         words = ["examples/drives/plastic.toml" if word == "paper" else word for word in words]
         small = ["--angle", "0.3", "--size", "4"]
