@@ -401,9 +401,9 @@ def _solve(
             done = 0
             for number, at in enumerate(places[0]):
                 for rows in np.array_split(np.arange(at.size), max(1, -(-at.size // most))):
-                    part = [np.zeros(0), np.zeros(0)]
-                    part[number] = at[rows]
-                    _solve(analyses, stages, [(part[0], part[1])], start[done + rows])
+                    own_places = [np.zeros(0), np.zeros(0)]
+                    own_places[number] = at[rows]
+                    _solve(analyses, stages, [(own_places[0], own_places[1])], start[done + rows])
                 done += at.size
             return
     angle = np.concatenate([at for own in places for at in own])
