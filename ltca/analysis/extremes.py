@@ -400,7 +400,7 @@ def _solve(
         if len(start) > most:
             done = 0
             for number, at in enumerate(places[0]):
-                for rows in np.array_split(np.arange(at.size), max(1, -(-at.size // most))):
+                for rows in (np.arange(at.size)[first : first + most] for first in range(0, at.size, most)):
                     own_places = [np.zeros(0), np.zeros(0)]
                     own_places[number] = at[rows]
                     _solve(analyses, stages, [(own_places[0], own_places[1])], start[done + rows])
