@@ -109,9 +109,7 @@ def sampling(drive: Drive, crank_angle: FloatArray) -> Sampling:
     )
 
 
-def sampling_warning(
-    drive: Drive, crank_angle: FloatArray, *, refined: bool = True, typed: str = "--positions {}"
-) -> str | None:
+def sampling_warning(drive: Drive, crank_angle: FloatArray, *, refined: bool = True) -> str | None:
     """Return what to say of crank angles that see too few phases of the mesh; None where they see enough.
 
     Parameters
@@ -123,8 +121,6 @@ def sampling_warning(
     refined : bool
         Whether extremes are refined between them. Where they are not, the angles have to see twice as many phases, of
         the holes, too.
-    typed : str
-        How the user gives a number of positions over the turn.
     """
     found = sampling(drive, crank_angle)
     teeth, holes = drive.disc.number_of_teeth, drive.number_of_holes or 1
@@ -139,7 +135,7 @@ def sampling_warning(
     )
     return (
         f"{found.positions} positions see {seen} phase{'s' if seen > 1 else ''} of the {what}: values over them alone say "
-        f"little of the turn; take {typed.format(enough)}"
+        f"little of the turn; take at least {enough} over it, a number that shares no factor with {teeth} and {holes}"
     )
 
 
@@ -404,10 +400,10 @@ def _solve(
         if len(start) > most:
             done = 0
             for number, at in enumerate(places[0]):
-                for rows in np.array_split(np.arange(at.size), max(1, -(-at.size // most))):
-                    none = np.zeros(0)
-                    own_angles = (none, at[rows]) if number else (at[rows], none)
-                    _solve(analyses, stages, [own_angles], start[done + rows])
+                for rows in (np.arange(at.size)[first : first + most] for first in range(0, at.size, most)):
+                    own_places = [np.zeros(0), np.zeros(0)]
+                    own_places[number] = at[rows]
+                    _solve(analyses, stages, [(own_places[0], own_places[1])], start[done + rows])
                 done += at.size
             return
     angle = np.concatenate([at for own in places for at in own])
