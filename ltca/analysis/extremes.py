@@ -109,7 +109,9 @@ def sampling(drive: Drive, crank_angle: FloatArray) -> Sampling:
     )
 
 
-def sampling_warning(drive: Drive, crank_angle: FloatArray, *, refined: bool = True) -> str | None:
+def sampling_warning(
+    drive: Drive, crank_angle: FloatArray, *, refined: bool = True, typed: str = "--positions {}"
+) -> str | None:
     """Return what to say of crank angles that see too few phases of the mesh; None where they see enough.
 
     Parameters
@@ -121,6 +123,8 @@ def sampling_warning(drive: Drive, crank_angle: FloatArray, *, refined: bool = T
     refined : bool
         Whether extremes are refined between them. Where they are not, the angles have to see twice as many phases, of
         the holes, too.
+    typed : str
+        How the user gives a number of positions over the turn.
     """
     found = sampling(drive, crank_angle)
     teeth, holes = drive.disc.number_of_teeth, drive.number_of_holes or 1
@@ -135,7 +139,7 @@ def sampling_warning(drive: Drive, crank_angle: FloatArray, *, refined: bool = T
     )
     return (
         f"{found.positions} positions see {seen} phase{'s' if seen > 1 else ''} of the {what}: values over them alone say "
-        f"little of the turn; take at least {enough} over it, a number that shares no factor with {teeth} and {holes}"
+        f"little of the turn; take {typed.format(enough)}"
     )
 
 
@@ -401,9 +405,9 @@ def _solve(
             done = 0
             for number, at in enumerate(places[0]):
                 for rows in (np.arange(at.size)[first : first + most] for first in range(0, at.size, most)):
-                    own_places = [np.zeros(0), np.zeros(0)]
-                    own_places[number] = at[rows]
-                    _solve(analyses, stages, [(own_places[0], own_places[1])], start[done + rows])
+                    none = np.zeros(0)
+                    own_places = (none, at[rows]) if number else (at[rows], none)
+                    _solve(analyses, stages, [own_places], start[done + rows])
                 done += at.size
             return
     angle = np.concatenate([at for own in places for at in own])

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from ltca.laws.beam import PinBeam
+from ltca.beam import PinBeam
 
 from ltca.analysis.engines import HalfSpace
 from ltca.analysis.loaded_analysis import analyse
