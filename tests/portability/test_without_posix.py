@@ -180,8 +180,8 @@ def test_a_design_is_found_without_posix(tmp_path):
 
 
 @pytest.mark.slow
+@pytest.mark.needs("studio")
 def test_a_studio_answers_and_runs_jobs_without_posix(tmp_path):
-    pytest.importorskip("uvicorn", reason="no uvicorn (pip install 'cyclo-ltca[studio]')")
     text = shipped_drive("paper")
     words = [*CYCLO, "studio", "paper", "--no-browser"]
     with subprocess.Popen(words, cwd=tmp_path, env=WITHOUT, stdout=subprocess.PIPE, text=True) as process:

@@ -7,12 +7,12 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from ltca.beam import PinBeam
 
 from ltca.analysis.engines import HalfSpace
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.share_causes import _of_beam, share_words
 from ltca.analysis.verdict.values import notes
+from ltca.beam import PinBeam
 from ltca.commands.program import main
 from ltca.reading.drive_file import parse_drive, shipped_drive
 

@@ -222,7 +222,7 @@ def test_usual_drives_do_not_look_odd(name):
 @pytest.mark.parametrize(
     ("table", "told"),
     [
-        ({"max_pin_pressure_mid": -1500.0}, "must be at least 0 MPa"),
+        ({"max_pin_pressure_mid": -1500.0}, "must be greater than 0 MPa"),
         ({"min_mean_efficiency": 80.0}, "and at most 1"),
         ({"max_bearing_deflection": -1e-3}, "must be at least 0 mm"),
     ],

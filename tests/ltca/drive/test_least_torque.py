@@ -18,7 +18,7 @@ from ltca.drive.units.quantities import parse_quantity
 from ltca.errors import CycloError, DriveError
 from ltca.quantities import LIMITED
 from ltca.reading.changes import with_fields
-from ltca.reading.drive_file import load_drive
+from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
 
 EXTREME = (5e-324, 1e-320, 1e-200, 1e-30, 1e-9, 1e9, 1e200, 1e300)
 
@@ -152,3 +152,15 @@ def test_a_tiny_torque_is_no_torque_but_zero_is():
     assert parse_quantity("0", "N*mm", "--torque", ge=0.0) == 0.0
     with pytest.raises(DriveError, match="must be 0 or at least 1e-09 N·mm"):
         parse_quantity("1e-10", "N*mm", "--torque", ge=0.0)
+
+
+def test_a_light_torque_that_nobody_wrote_is_named_as_left_out():
+    """Of a torque some ten times the least one the message named a field that is not in the file."""
+    lines = [line for line in shipped_drive("paper").splitlines() if not line.startswith("light_torque")]
+    torque = 10.0 * least_torque(drive_of("paper"))
+    text = "\n".join(f"torque = {torque!r}" if line.startswith("torque = ") else line for line in lines)
+    with pytest.raises(
+        DriveError, match=r"load\.light_torque, left out and so 3 % of load\.torque as written, = "
+    ) as refused:
+        parse_drive(text)
+    assert "load.torque = " not in str(refused.value)
