@@ -28,6 +28,7 @@ pressure_fields            Pressure over every loaded contact at chosen crank an
 tilted_fields              The same over contacts in slices, which tilt
 torque_curve               Torque against wind-up over both directions, and what is read from it: backlash, lost
                            motion, torsional stiffness
+share_causes               Beams and planes by which equal discs share the torque unequally
 stiffness_by_part          Torsional stiffness with and without each part that a file describes
 transmission_error_orders  Orders of the transmission error by name, fitted together
 life                       Rating life and static safety of the crank bearings from the loads of their rollers

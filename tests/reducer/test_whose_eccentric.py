@@ -47,7 +47,7 @@ def test_a_study_says_whose_the_eccentric_is(tmp_path, capsys):
         str(path),
         "--quick",
         "--samples",
-        "4",
+        "24",
         "--positions",
         "3",
         "--out",

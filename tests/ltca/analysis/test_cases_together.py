@@ -120,9 +120,10 @@ def test_summaries_together_are_those_alone(cases, names):
 
 
 @pytest.mark.slow
-def test_a_case_without_an_answer_costs_the_others_nothing():
+def test_a_case_without_an_answer_costs_the_others_nothing(monkeypatch):
     drive = load_drive("paper").cases["CS-2"]
-    # Less than round-off of the approaches makes of the loads.
+    # Less than round-off of the approaches makes of the loads: refused in a file, let through here.
+    monkeypatch.setattr("ltca.reading.member_checks.torque_problem", lambda *_, **__: ())
     lost = with_fields(drive, {"load.torque": 2e-5, "load.light_torque": 1e-5})
     found = dict(analyse_cases({"sound": drive, "lost": lost, "light": drive}, ANGLES[:2]))
     assert isinstance(found["lost"], ConvergenceError)
