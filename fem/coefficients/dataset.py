@@ -27,7 +27,7 @@ from fem.coefficients.bodies import (
     require_element_size,
 )
 from fem.coefficients.solid_dataset import LAYERS, need_of_solid, require_solid, with_solid_bodies
-from fem.coefficients.stations import FLANK_CLUSTERING, DiscStations
+from fem.coefficients.stations import DiscStations, root_clustering
 from fem.mesh.gmsh_session import load_gmsh
 from fem.mesh.memory_need import require_memory
 from fem.shapes import DriveShapes
@@ -157,7 +157,7 @@ def derive_coefficients(
         fingerprint=nominal.shape_fingerprint(),
         shape=json.dumps(nominal.body_shape()),
         clearances_left_out=int(not keep_clearance),
-        flank_clustering=FLANK_CLUSTERING,
+        flank_clustering=root_clustering(shapes.disc),
         plane=state,
         thickness=plane.thickness,
         core_radius=shapes.wheel_pins[0].core_radius,

@@ -20,7 +20,7 @@ from fem.coefficients.patch_loads import patch_loads
 from fem.coefficients.pieces import Pieces
 from fem.coefficients.solid_bodies import Differences, SolidOptions, Support, Wall, solid_differences
 from fem.coefficients.solid_need import SolidNeed, solid_need
-from fem.coefficients.stations import FLANK_CLUSTERING, RACE_ANGLES, DiscStations, patch_half_width
+from fem.coefficients.stations import RACE_ANGLES, DiscStations, patch_half_width, root_clustering
 from fem.coefficients.wall_strain import (
     continue_under_patches,
     wall_modulus,
@@ -102,7 +102,7 @@ class _Places:
         for number in np.unique(stations.boundary).tolist():
             count = int(np.count_nonzero(stations.boundary == number))
             uniform = 2.0 * np.pi * (np.arange(count) + 0.5) / count
-            found.append(uniform if number else clustered_parameter(uniform, teeth, FLANK_CLUSTERING))
+            found.append(uniform if number else clustered_parameter(uniform, teeth, root_clustering(self.shape)))
         return np.concatenate(found)
 
     def loads(self, body: BodyMesh, at: FloatArray, boundary: IntArray, width: FloatArray) -> sp.csc_matrix:
@@ -119,7 +119,7 @@ class _Places:
     def interpolation(self, parameter: FloatArray, boundary: IntArray) -> sp.csr_matrix:
         """Weights of the stations at parameters of boundaries, shape (places, stations), as the LTCA takes them."""
         teeth = round(self.shape.flank.profile.reduction_ratio) - 1
-        curves = boundaries_of(self.stations.boundary, teeth, FLANK_CLUSTERING)
+        curves = boundaries_of(self.stations.boundary, teeth, root_clustering(self.shape))
         at, weights = weights_of([curves[number] for number in boundary.tolist()], parameter)
         rows = np.repeat(np.arange(len(parameter)), at.shape[-1])
         return sp.csr_matrix((weights.ravel(), (rows, at.ravel())), shape=(len(parameter), self.stations.count))

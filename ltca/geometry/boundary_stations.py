@@ -21,7 +21,7 @@ from ltca.arrays import FloatArray
 
 LAGRANGE_POINTS = 6
 HALLEY_STEPS = 3
-"""Iterations of Kepler's equation: up to a = 0.8 two leave 1e-8 of the anomaly, three its rounding."""
+"""Iterations of Kepler's equation: up to a = 0.8 two leave 1e-8 of the anomaly; three leave its rounding up to 0.97 (6e-13)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -432,13 +432,20 @@ def _check_lone_entries(dataset: Labelled) -> Iterator[Check]:
     """An approach changes gradually with the places of load and contact: no entry stands out among those beside it.
 
     Its second difference, where load and contact move together along one wall, or the contact alone along another one, is
-    compared with the second differences at the next stations. An entry that is wrong alone is large in its own alone.
+    compared with the second differences at the next stations. An entry that is wrong alone is large in its own alone. Where
+    another wall is nearer than the next station, what a patch does at its own place alone is no error: there is no law then.
     """
     boundary = dataset["station_boundary"].values
     x, y = dataset["station_x"].values, dataset["station_y"].values
     starts = [0, *(np.flatnonzero(np.diff(boundary)) + 1).tolist(), boundary.size]
-    walls = [slice(*ends) for ends in pairwise(starts) if ends[1] - ends[0] >= LONE_STATIONS]
+    everywhere = [slice(*ends) for ends in pairwise(starts)]
+    walls = [wall for wall in everywhere if wall.stop - wall.start >= LONE_STATIONS]
     spacing = [float(np.max(np.hypot(np.diff(x[wall]), np.diff(y[wall])))) for wall in walls]
+
+    def apart(one: slice, other: slice) -> float:
+        return float(np.sqrt(np.min((x[one, None] - x[other]) ** 2 + (y[one, None] - y[other]) ** 2)))
+
+    nearest = [min((apart(wall, other) for other in everywhere if other != wall), default=np.inf) for wall in walls]
     reason = (
         "approaches change gradually along walls, in ratio to the next stations where it is more than half a unit of the near "
         "field; a wrong entry does so alone"
@@ -447,11 +454,10 @@ def _check_lone_entries(dataset: Labelled) -> Iterator[Check]:
         approach, unit = dataset[f"disc_{name}"].values, near_field_unit(dataset, "disc", tilt)
         ratios = [0.0]
         for first, rows in enumerate(walls):
-            for second, columns in enumerate(walls[first:], first):
-                far = LONE_DISTANCE * max(spacing[first], spacing[second])
-                if first == second:
-                    ratios.append(_out_of_line(approach[rows, columns], unit, together=True))
-                elif np.min((x[rows, None] - x[columns]) ** 2 + (y[rows, None] - y[columns]) ** 2) > far**2:
+            if nearest[first] > spacing[first]:
+                ratios.append(_out_of_line(approach[rows, rows], unit, together=True))
+            for second, columns in enumerate(walls[first + 1 :], first + 1):
+                if apart(rows, columns) > LONE_DISTANCE * max(spacing[first], spacing[second]):
                     ratios.append(_out_of_line(approach[rows, columns], unit, together=False))
         yield Check(name=LONE + also, value=max(ratios), lowest=0.0, highest=LONE_LIMIT, reason=reason)
 
@@ -471,10 +477,14 @@ def _out_of_line(block: FloatArray, unit: float, *, together: bool) -> float:
     bent += block
     place = max((int(np.argmax(bent)), int(np.argmin(bent))), key=lambda each: abs(bent.flat[each]))
     row, column = np.unravel_index(place, bent.shape)
-    # Where both move together an entry is in the differences of its own diagonal, otherwise in those of its own column.
-    beside = (int(column) + np.array([-2, -1, 1, 2])) % bent.shape[1]
-    largest = abs(float(bent.flat[place]))
-    return largest / max(float(np.max(np.abs(bent[row, beside]))), 1e-300) if largest > LONE_LEAST * unit else 0.0
+    # Where both move together an entry is in three differences of its own diagonal, otherwise of its own column: those two and
+    # three stations away are without it, as all of the neighbouring diagonals or columns. Over a hole a patch bends the wall
+    # under itself, by turns more and less, and the wall beside it hardly: that shows along the own diagonal alone.
+    beside, away = np.array([-2, -1, 1, 2]), np.array([-3, -2, 2, 3])
+    others = bent[row, (column + beside) % bent.shape[1]]
+    along = bent[(row + away) % bent.shape[0], (column + away) % bent.shape[1] if together else column]
+    largest, next_largest = abs(float(bent.flat[place])), float(np.max(np.abs([others, along])))
+    return largest / max(next_largest, 1e-300) if largest > LONE_LEAST * unit else 0.0
 
 
 def _fall(distance: FloatArray | float, half_width: FloatArray) -> FloatArray:
@@ -584,14 +594,19 @@ def _slope(values: ComplexArray, at: FloatArray | None = None) -> ComplexArray:
     return np.asarray(np.exp(1j * np.outer(at, order)) @ series) / count
 
 
-def _opening_of_walls(dataset: Labelled) -> float:
-    """Largest gap of a wall that is closed again by its strain and displacement, relative to the change of its length.
+def _opening_of_walls(dataset: Labelled) -> Iterator[tuple[float, float]]:
+    """Gap of each wall that is closed again by its strain and displacement, relative to the change of its length, and what the
+    stations of that wall miss of its turn.
 
     Along a wall with unit tangent t and normal m the strain is ε = u_t′ + u_m t·m′; over the closed wall u_t returns to its
     initial value, so ∮ε ds = ∮u_m t·dm. An unloaded wall has ε = σ(1 − ν²)/E (plane strain), and u_m is the approach with
     its sign; in solid bodies ε lies between that and σ/E of plane stress. So stresses are related to approaches, in size and
     sign, by the loads on the other walls; the best factor between both sides over all of them counts, since few stations miss
     the peak beside a near load.
+
+    A closed wall turns by 2π, whatever its shape (Hopf): how far ∮t·dm, summed as the displacement is, departs from that tells
+    how well the stations follow a flank that turns within a small part of its roots. Sums of known displacements along 3,024
+    flanks were off by 0.81 of 2δ/(1 − δ) at most where by more than 0.02, δ being that departure by 2π.
     """
     boundary, stressed = dataset["station_boundary"].values, dataset["stress_station_boundary"].values
     points = dataset["station_x"].values + 1j * dataset["station_y"].values
@@ -600,7 +615,6 @@ def _opening_of_walls(dataset: Labelled) -> float:
     if dataset.attrs["plane"] != "stress":
         stiffness /= 1.0 - float(dataset.attrs["disc_poisson_ratio"]) ** 2
     least_factor = 1.0 / _plane_stress(dataset, "disc")
-    found = [0.0]
     least = 1e-9 * float(np.max(np.abs(dataset["disc_approach"].values)))
     for number in np.unique(boundary).tolist():
         own, seen = boundary == number, stressed == number
@@ -614,8 +628,8 @@ def _opening_of_walls(dataset: Labelled) -> float:
         length = np.abs(_slope(points[own], parameter)) / np.count_nonzero(seen)
         strained = length @ dataset["disc_stress"].values[np.ix_(seen, ~own)] / stiffness
         factor = float(strained @ displaced / (displaced @ displaced))
-        found.append(max(factor - 1.0, least_factor - factor))
-    return max(found)
+        turns = -1.0 if number else 1.0  # normals point out of the body: into holes
+        yield float(np.max([0.0, factor - 1.0, least_factor - factor])), abs(float(np.mean(turning)) - turns)
 
 
 def _check_stresses(dataset: Labelled) -> Iterator[Check]:
@@ -634,14 +648,21 @@ def _check_stresses(dataset: Labelled) -> Iterator[Check]:
         "loads do elsewhere cancels, but for how well the stations resolve it: they miss more across walls thinner than they "
         "are apart; of the sum of magnitudes",
     )
+    # Both sums have the error of the missed part; where all may be missed, there is no bound.
+    walls = [
+        (opening, WALLS_CLOSE_LIMIT + 2.0 * part / (1.0 - part) if (part := missed + turn) < 1.0 else np.inf)
+        for opening, turn in _opening_of_walls(dataset)
+    ]
+    # The wall that is nearest to its bound, or farthest beyond it; NaN first.
+    used = [opening / highest for opening, highest in walls]
+    opening, highest = walls[int(np.argmax(used))] if walls else (0.0, WALLS_CLOSE_LIMIT)
     yield Check(
         name=WALLS_CLOSE,
-        value=_opening_of_walls(dataset),
+        value=opening,
         lowest=0.0,
-        # Both sums have the error of the missed part; where all may be missed, there is no bound.
-        highest=WALLS_CLOSE_LIMIT + 2.0 * missed / (1.0 - missed) if missed < 1.0 else np.inf,
-        reason="a wall strained all around stays closed (∮ε ds = ∮u·dm); means over patches and arcs for points, and what "
-        "stations farther apart than walls are thick miss",
+        highest=highest,
+        reason="a wall strained all around stays closed (∮ε ds = ∮u·dm); means over patches and arcs for points, what stations "
+        "farther apart than walls are thick miss, and what they miss of the turn of the wall, 2π",
     )
 
 

@@ -104,8 +104,8 @@ STATEMENTS = (
 POISSON_RATIOS = tuple(f"{body}_poisson_ratio" for body in PARTS)
 # Interpolation takes six stations; with fewer on a boundary some would count twice.
 FEWEST_STATIONS = 6
-# Beyond it stations at the tips are nine times as far apart as in the roots.
-MAX_CLUSTERING = 0.8
+# Kepler's equation is inverted to round-off up to it; stations at the tips are 66 times as far apart as in the roots.
+MAX_CLUSTERING = 0.97
 # Relative rounding of numbers that stand in a file twice.
 REPEATED_TOLERANCE = 1e-9
 # Tolerance for uniform parameters and unit normals: the rounding of seven digits.

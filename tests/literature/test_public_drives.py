@@ -176,3 +176,34 @@ def test_overlap_of_holes_stands_in_the_row_of_overlaps(tmp_path, capsys, monkey
     told = capsys.readouterr().out
     assert "checks passed" not in told
     assert re.search(r"assembly: overlap at rest +0\.0500 mm, shaft pins and holes", told)
+
+
+def checked(name, capsys, *options):
+    """Check a drive by the default engine: exit status, verdicts, and warnings and notes but those that are true."""
+    status = main(["check", str(FOLDER / f"{name}.toml"), "--no-advice", "--no-page", *options])
+    printed = capsys.readouterr()
+    lines = (printed.err + printed.out).splitlines()
+    told = [line for line in lines if re.match(r"\s*(cyclo: )?(warning|note|error|question)\b", line)]
+    true = (*NOTES.get(name, ()), "the stiffness is that of flanks and wheel pins")
+    return status, printed.out, [line for line in told if not any(part in line for part in true)]
+
+
+@pytest.mark.slow
+def test_coefficients_of_a_printed_drive_just_derived_break_no_law(coarse_derivations, capsys, monkeypatch, tmp_path):
+    """The check of the drive of 1 N·m ended in "breaks laws of influence coefficients", 1.624: must be at most 0.100005."""
+    monkeypatch.chdir(tmp_path)
+    status, out, told = checked("printed_21_rollers_1_newton_metre", capsys, "--positions", "2")
+    assert status in (0, 1), told
+    assert "hybrid" in out
+
+
+@pytest.mark.slow
+@pytest.mark.nightly
+@pytest.mark.parametrize("name", ANSWERED)
+def test_answered_by_the_default_engine(name, capsys, monkeypatch, tmp_path):
+    """Influence coefficients of default fineness are derived for each; their laws refused two drives."""
+    monkeypatch.chdir(tmp_path)
+    status, out, told = checked(name, capsys, "--positions", "3")
+    assert status in (0, 1), told
+    assert "hybrid" in out
+    assert told == []
