@@ -94,6 +94,43 @@ def test_shards_run_each_test_once_and_go_on_with_what_has_not_passed(suite, wor
     assert "shard 2/2: nothing left to run; 8 passed in earlier runs of any shard" in text
 
 
+@pytest.mark.parametrize(
+    "changed",
+    [
+        "README.md", "pyproject.toml", ".ci/run", "docs/start/index.md", "docs/conf.py", "examples/notes.md",
+        "tests/plugins/needs.py", "tests/portability/sitecustomize.py", "tests/contract/drive.toml",
+        "tests/contract/measured.csv", "tests/regression/fields.json", "tests/conftest.py", "tests/contract/test_a.py",
+    ],
+)  # fmt: skip
+def test_a_change_of_documents_data_or_plugins_was_skipped_as_the_same_code(changed, tmp_path):
+    """The hash was that of packages, test and conftest files alone: a printed command that was wrong counted as passed."""
+    path, test = tmp_path / changed, "tests/contract/test_a.py"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(b"before")
+    before = shards._Code(tmp_path).of(test)
+    assert shards._Code(tmp_path).of(test) == before
+    path.write_bytes(b"after")
+    assert shards._Code(tmp_path).of(test) != before
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        "tests/budget.toml",
+        "tests/contract/test_b.py",
+        "CHANGELOG.md",
+        "docs/gallery/a.md",
+        "docs/reference/generated/a.md",
+    ],
+)
+def test_what_deals_tests_out_or_is_built_changes_no_hash(changed, tmp_path):
+    path = tmp_path / changed
+    before = shards._Code(tmp_path).of("tests/contract/test_a.py")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(b"after")
+    assert shards._Code(tmp_path).of("tests/contract/test_a.py") == before
+
+
 @pytest.mark.slow
 def test_outcomes_of_other_code_count_only_where_asked_for(suite):
     assert suite("--shard", "1/2")[1] == "aadd"
