@@ -317,7 +317,7 @@ def test_120_half_open_connections_do_not_stop_it(tmp_path):
     ):
         ask, parts = asker(found.address), urlsplit(found.address)
         for number in range(120):
-            one = stack.enter_context(socket.create_connection((parts.hostname, parts.port), timeout=30))
+            one = stack.enter_context(socket.create_connection((parts.hostname, parts.port), timeout=300))
             with suppress(ConnectionError):
                 one.sendall(b"" if number % 2 else b"GET / HTTP/1.1\r\nHost: ")
         assert ask().status == 200
