@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import ast
 import json
 import os
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -30,6 +32,20 @@ def test_a_file_of_unknown_time_counts_by_its_tests():
 
 def test_every_known_file_is_there():
     gone = [name for name in shards.known_seconds(ROOT) if not (ROOT / name).is_file()]
+    assert gone == []
+
+
+def test_a_test_among_the_slowest_had_got_parameters_and_another_name():
+    """Every test listed is there, and named with parameters where its function is parametrized."""
+    gone = []
+    for name in tomllib.loads((ROOT / "tests" / "budget.toml").read_text(encoding="utf-8"))["slowest"]:
+        file, _, test = name.partition("::")
+        function, bracket, _ = test.partition("[")
+        tree = ast.parse((ROOT / file).read_text(encoding="utf-8")) if (ROOT / file).is_file() else ast.Module()
+        nodes = {node.name: node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)}
+        marks = "".join(map(ast.unparse, nodes[function].decorator_list)) if function in nodes else ""
+        if function not in nodes or ("parametrize(" in marks and not bracket):
+            gone.append(name)
     assert gone == []
 
 
