@@ -21,13 +21,18 @@ def item(*names):
     added = []
     return SimpleNamespace(
         nodeid="test_x.py::test_x", iter_markers=lambda name: [pytest.mark.needs(*names).mark], add_marker=added.append,
-        added=added,
+        added=added, stash=pytest.Stash(),
     )  # fmt: skip
+
+
+def config(all_needs=False):
+    return SimpleNamespace(option=SimpleNamespace(all_needs=all_needs))
 
 
 def reasons(*names):
     marked = item(*names)
-    needs.pytest_collection_modifyitems([marked])
+    needs.pytest_collection_modifyitems(config(), [marked])
+    needs.pytest_runtest_setup(marked)
     return [mark.kwargs["reason"] for mark in marked.added]
 
 
@@ -53,6 +58,17 @@ def test_sphinx_without_its_extensions_is_not_the_extra_docs(monkeypatch):
 def test_a_program_that_is_not_there_is_named(monkeypatch):
     monkeypatch.setattr(needs, "program", lambda need: None)
     assert reasons("calculix") == ["needs CalculiX: apt install calculix-ccx"]
+
+
+def test_a_need_that_the_ci_lacks_was_a_skip(monkeypatch):
+    """Its job of tests that need something was green with half of them skipped; `--all-needs` lets them fail."""
+    monkeypatch.setattr(needs, "program", lambda need: None)
+    lacks, has = item("calculix"), item("test")
+    needs.pytest_collection_modifyitems(config(all_needs=True), [lacks, has])
+    assert lacks.added == has.added == []
+    with pytest.raises(pytest.fail.Exception, match="--all-needs: needs CalculiX: apt install calculix-ccx"):
+        needs.pytest_runtest_setup(lacks)
+    needs.pytest_runtest_setup(has)
 
 
 @pytest.mark.parametrize("names", [("dosc",), ("docs", "robotic"), ()])

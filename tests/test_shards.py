@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import ast
 import json
 import os
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -30,6 +32,20 @@ def test_a_file_of_unknown_time_counts_by_its_tests():
 
 def test_every_known_file_is_there():
     gone = [name for name in shards.known_seconds(ROOT) if not (ROOT / name).is_file()]
+    assert gone == []
+
+
+def test_a_test_among_the_slowest_had_got_parameters_and_another_name():
+    """Every test listed is there, and named with parameters where its function is parametrized."""
+    gone = []
+    for name in tomllib.loads((ROOT / "tests" / "budget.toml").read_text(encoding="utf-8"))["slowest"]:
+        file, _, test = name.partition("::")
+        function, bracket, _ = test.partition("[")
+        tree = ast.parse((ROOT / file).read_text(encoding="utf-8")) if (ROOT / file).is_file() else ast.Module()
+        nodes = {node.name: node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)}
+        marks = "".join(map(ast.unparse, nodes[function].decorator_list)) if function in nodes else ""
+        if function not in nodes or ("parametrize(" in marks and not bracket):
+            gone.append(name)
     assert gone == []
 
 
@@ -92,6 +108,43 @@ def test_shards_run_each_test_once_and_go_on_with_what_has_not_passed(suite, wor
     status, ran, text = suite("--shard", "2/2", workers=workers)
     assert (status, ran) == (0, ""), text
     assert "shard 2/2: nothing left to run; 8 passed in earlier runs of any shard" in text
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        "README.md", "pyproject.toml", ".ci/run", "docs/start/index.md", "docs/conf.py", "examples/notes.md",
+        "tests/plugins/needs.py", "tests/portability/sitecustomize.py", "tests/contract/drive.toml",
+        "tests/contract/measured.csv", "tests/regression/fields.json", "tests/conftest.py", "tests/contract/test_a.py",
+    ],
+)  # fmt: skip
+def test_a_change_of_documents_data_or_plugins_was_skipped_as_the_same_code(changed, tmp_path):
+    """The hash was that of packages, test and conftest files alone: a printed command that was wrong counted as passed."""
+    path, test = tmp_path / changed, "tests/contract/test_a.py"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(b"before")
+    before = shards._Code(tmp_path).of(test)
+    assert shards._Code(tmp_path).of(test) == before
+    path.write_bytes(b"after")
+    assert shards._Code(tmp_path).of(test) != before
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        "tests/budget.toml",
+        "tests/contract/test_b.py",
+        "CHANGELOG.md",
+        "docs/gallery/a.md",
+        "docs/reference/generated/a.md",
+    ],
+)
+def test_what_deals_tests_out_or_is_built_changes_no_hash(changed, tmp_path):
+    path = tmp_path / changed
+    before = shards._Code(tmp_path).of("tests/contract/test_a.py")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(b"after")
+    assert shards._Code(tmp_path).of("tests/contract/test_a.py") == before
 
 
 @pytest.mark.slow

@@ -25,6 +25,12 @@ def blas_threads():
     return {pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas"}
 
 
+limitable = pytest.mark.skipif(
+    not blas_threads(), reason="the linear algebra has no threads that threadpoolctl limits (Accelerate of macOS)"
+)
+
+
+@limitable
 def test_a_function_has_one_thread_and_gives_the_others_back():
     @threads.on_one_thread
     def counted(number, *, other=1):
@@ -37,6 +43,7 @@ def test_a_function_has_one_thread_and_gives_the_others_back():
     assert counted.__doc__ == "A docstring."
 
 
+@limitable
 def test_the_program_has_one_thread_whatever_the_environment_says(monkeypatch):
     for variable in threads.VARIABLES:
         monkeypatch.setenv(variable, "2")

@@ -2,6 +2,7 @@
 
 ``@pytest.mark.needs("docs")`` skips a test where one of its needs is missing, with the line that installs it; a need that is
 neither is an error. ``-m needs`` runs the tests that need anything, ``-m "not needs"`` those that run after the README's line.
+With ``--all-needs`` a test whose needs are missing fails instead of being skipped, where all are meant to be installed.
 
 An extra is there when every distribution that it lists is installed, and those that a distribution lists in brackets
 (`dask[distributed]`).
@@ -81,6 +82,13 @@ def missing(need: str) -> str:
     return f"needs extra {need} ({', '.join(lacking)}): pip install --editable '.[{need}]'" if lacking else ""
 
 
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Declare the option."""
+    parser.getgroup("needs").addoption(
+        "--all-needs", action="store_true", help="a missing extra or program of a test is an error, not a skip"
+    )
+
+
 def pytest_configure(config: pytest.Config) -> None:
     """Declare the marker."""
     config.addinivalue_line(
@@ -88,13 +96,27 @@ def pytest_configure(config: pytest.Config) -> None:
     )
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Skip the tests whose needs are not installed."""
+LACKING = pytest.StashKey[str]()
+"""Reason for which a test fails in its set-up."""
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Skip the tests whose needs are not installed, or with ``--all-needs`` let them fail."""
     for item in items:
         names = [name for mark in item.iter_markers("needs") for name in mark.args or ("",)]
         try:
             reasons = list(filter(None, map(missing, names)))
         except ValueError as error:
             raise pytest.UsageError(f"{item.nodeid}: {error}") from None
-        if reasons:
-            item.add_marker(pytest.mark.skip(reason="; ".join(dict.fromkeys(reasons))))
+        reason = "; ".join(dict.fromkeys(reasons))
+        if reason and config.option.all_needs:
+            item.stash[LACKING] = reason
+        elif reason:
+            item.add_marker(pytest.mark.skip(reason=reason))
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Fail where a need is missing, before any fixture is made."""
+    if LACKING in item.stash:
+        pytest.fail(f"--all-needs: {item.stash[LACKING]}", pytrace=False)

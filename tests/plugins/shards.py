@@ -3,9 +3,9 @@
 Whole files are dealt to the shards by the seconds that ``tests/budget.toml`` lists under ``[nightly]``, so that the shards last
 about equally long. The dealing depends on the selected tests and on that table alone.
 
-The outcome of every test is appended to ``build/nightly/shard-1-of-4.jsonl`` as soon as it is known, with a hash of the code. A
-later run skips the tests that passed with the same code, in whichever shard, and continues with the others; ``--kept`` changes
-which outcomes count.
+The outcome of every test is appended to ``build/nightly/shard-1-of-4.jsonl`` as soon as it is known, with a hash of the code and
+of the files that tests read (`READ_BY_TESTS`: documents, data, plugins). A later run skips the tests that passed with the same
+hash, in whichever shard, and continues with the others; ``--kept`` changes which outcomes count.
 """
 
 from __future__ import annotations
@@ -25,6 +25,15 @@ import pytest
 
 PACKAGES = ("ltca", "fem", "validation", "benchmarks", "examples")
 """Packages whose code an outcome depends on, beside the file of the test and the conftest files above it."""
+READ_BY_TESTS = (
+    "pyproject.toml", "*.md", ".ci/*", "docs/**/*.md", "docs/**/*.rst", "docs/*.py", "examples/**/*.md",
+    "tests/**/*.toml", "tests/**/*.csv", "tests/**/*.json", "tests/**/*.py",
+)  # fmt: skip
+"""Files that tests read or that plugins of pytest are made of: an outcome of any test depends on all of them."""
+NOT_READ = re.compile(
+    r"(test_\w+|conftest)\.py$|tests/budget\.toml$|CHANGELOG\.md$|docs/(gallery|build|reference/generated)/"
+)
+"""Except what each test has for itself, what only deals the tests out, what releases alone read, what is built."""
 SECONDS_PER_TEST = 8.0
 """Assumed for a file that the table of seconds does not list."""
 FOLDER = Path("build", "nightly")
@@ -98,18 +107,23 @@ def outcomes(folder: Path) -> Iterator[dict[str, Any]]:
 
 
 class _Code:
-    """Hashes of the code that the outcome of a test depends on."""
+    """Hashes of the code, and of the files read by tests, that the outcome of a test depends on."""
 
     def __init__(self, root: Path) -> None:
         from ltca.output.provenance import code_hash
 
         self._root = root
-        self._packages = code_hash(*PACKAGES)
+        self._common = hashlib.sha256(code_hash(*PACKAGES).encode())
+        for path in sorted({path for pattern in READ_BY_TESTS for path in root.glob(pattern)}):
+            name = path.relative_to(root).as_posix()
+            if path.is_file() and not NOT_READ.search(name):
+                content = path.read_bytes()
+                self._common.update(f"{name}\0{len(content)}\0".encode() + content)
         self.of = cache(self._of)
 
     def _of(self, name: str) -> str:
         """Return the hash for the tests of a file."""
-        digest = hashlib.sha256(self._packages.encode())
+        digest = self._common.copy()
         path = self._root / name
         conftests = [folder / "conftest.py" for folder in path.parents if folder.is_relative_to(self._root)]
         for source in (path, *conftests):

@@ -39,11 +39,17 @@ def asker(address):
 
 
 def exchanged(address, sent):
-    """Send bytes to the server of an address as they are; give all that it answers until it closes or has no more to say."""
+    """Send bytes to the server of an address as they are; give all that it answers until it closes.
+
+    Raises
+    ------
+    TimeoutError
+        If it does not close: the client has said that nothing more will come.
+    """
     parts = urlsplit(address)
-    with socket.create_connection((parts.hostname, parts.port), timeout=30) as connection:
+    with socket.create_connection((parts.hostname, parts.port), timeout=300) as connection:
         found = b""
-        with suppress(ConnectionError, TimeoutError):  # it may close before all is sent
+        with suppress(ConnectionError):  # it may close before all is sent
             connection.sendall(sent)
             connection.shutdown(socket.SHUT_WR)
             while more := connection.recv(65536):

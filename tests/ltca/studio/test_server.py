@@ -11,7 +11,7 @@ import signal
 import socket
 import time
 import tomllib
-from contextlib import ExitStack, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from urllib.parse import urlsplit
 
@@ -204,20 +204,28 @@ def wait_until(there):
     return found
 
 
+@contextmanager
+def computing_in(server):
+    """Give a function that asks a studio for a fine answer in a tab, and returns the answer to come and its process."""
+    ask = asker(server.address)
+    with concurrent.futures.ThreadPoolExecutor() as pool:
+
+        def begin(tab):
+            ask("answer", question(HEAVY, tab=tab))  # what answers coarse questions is there
+            before = workers_of(server)
+            asked = pool.submit(ask, "answer", question(HEAVY, "fine", tab=tab))
+            return asked, wait_until(
+                lambda: next((one for one in workers_of(server) - before if stat_of(one)[1] >= 5), None)
+            )
+
+        yield begin
+
+
 @pytest.fixture
 def computing(running):
     """Ask for a fine answer of the heavy drive in a tab; give the answer to come, and the process that computes it."""
-    with concurrent.futures.ThreadPoolExecutor() as pool:
-
-        def ask(tab):
-            running.ask("answer", question(HEAVY, tab=tab))  # what answers coarse questions is there
-            before = workers_of(running)
-            asked = pool.submit(running.ask, "answer", question(HEAVY, "fine", tab=tab))
-            return asked, wait_until(
-                lambda: next((one for one in workers_of(running) - before if stat_of(one)[1] >= 5), None)
-            )
-
-        yield ask
+    with computing_in(running) as begin:
+        yield begin
 
 
 def test_an_answer_that_is_no_longer_wanted_is_dropped_at_once(running, computing):
@@ -309,7 +317,7 @@ def test_120_half_open_connections_do_not_stop_it(tmp_path):
     ):
         ask, parts = asker(found.address), urlsplit(found.address)
         for number in range(120):
-            one = stack.enter_context(socket.create_connection((parts.hostname, parts.port), timeout=30))
+            one = stack.enter_context(socket.create_connection((parts.hostname, parts.port), timeout=300))
             with suppress(ConnectionError):
                 one.sendall(b"" if number % 2 else b"GET / HTTP/1.1\r\nHost: ")
         assert ask().status == 200
@@ -337,13 +345,10 @@ def test_the_command_line_of_the_browser_has_no_token(tmp_path):
 
 def test_an_end_amid_an_answer_is_quiet(tmp_path):
     """The server told of a task that it had cancelled."""
-    with studio("paper", tmp_path) as found, concurrent.futures.ThreadPoolExecutor() as pool:
-        ask = asker(found.address)
-        ask("answer", question(HEAVY))
-        fine = pool.submit(ask, "answer", question(HEAVY, "fine"))
-        time.sleep(0.3)
+    with studio("paper", tmp_path) as found, computing_in(found) as begin:
+        fine, _ = begin("one")
         found.process.send_signal(signal.SIGINT)
-        assert found.process.wait(60) == 0
+        assert found.process.wait(300) == 0
         assert found.errors() == ""
         assert fine.result().body.keys() & {"superseded", "sentence"}
 

@@ -120,11 +120,11 @@ BESIDE = 0.1 / ARCMIN
 """Five times the bound of angles: beyond a stop by so much the drive holds, within it does not."""
 
 
-def held_by_every_format(folder, tables, crank_angle, wound):
-    """Torques of the drive on input and output at a wind-up, by the law, the callback and the unit."""
-    law = ReducedDrive(tables)
-    at = crank_angle / law.cranks
-    found = {"law": law.step(at, at / law.ratio + wound)}
+def held_by_law(folder, tables, angles):
+    return ReducedDrive(tables).step(*angles)
+
+
+def held_by_callback(folder, tables, angles):
     sys.path.insert(0, str(folder / "mujoco"))
     try:
         from mujoco_callback import DriveCallback
@@ -132,35 +132,43 @@ def held_by_every_format(folder, tables, crank_angle, wound):
         joint = mujoco.MjModel.from_xml_path(str(folder / "mujoco" / "paper_CS_4.xml"))
         data = mujoco.MjData(joint)
         mujoco.set_mjcb_passive(DriveCallback(joint, folder / "mujoco" / "paper_CS_4.json"))
-        data.qpos[:] = at, at / law.ratio + wound
+        data.qpos[:] = angles
         mujoco.mj_forward(joint, data)
-        found["callback"] = tuple(data.qfrc_passive)
+        return tuple(data.qfrc_passive)
     finally:
         mujoco.set_mjcb_passive(None)
         sys.path.remove(str(folder / "mujoco"))
         for name in ("mujoco_callback", "reduced_drive"):
             sys.modules.pop(name, None)
-    values = {"input_angle": at, "output_angle": at / law.ratio + wound}
+
+
+def held_by_unit(folder, tables, angles):
+    values = dict(zip(("input_angle", "output_angle"), angles, strict=True))
     path = str(folder / "fmu" / "paper_CS_4.fmu")
     answer = fmpy.simulate_fmu(path, stop_time=0.1, output_interval=0.1, start_values=values)
-    found["unit"] = (answer["input_torque"][-1], answer["output_torque"][-1])
-    return found
+    return answer["input_torque"][-1], answer["output_torque"][-1]
 
 
-@pytest.mark.needs("robotics", "compiler")
-def test_play_lies_where_the_analysis_has_it_and_torques_push_back(folder, tables, stops):
+@pytest.mark.parametrize(
+    "held",
+    [
+        held_by_law,
+        pytest.param(held_by_callback, marks=pytest.mark.needs("robotics")),
+        pytest.param(held_by_unit, marks=pytest.mark.needs("robotics", "compiler")),
+    ],
+)
+def test_play_lies_where_the_analysis_has_it_and_torques_push_back(held, folder, tables, stops):
     """Beyond either stop the drive pushes the output back, within neither; the input takes part 1/i of it the other way."""
     crank_angle, low, high = stops
-    stiffness = tables["linear_spring"]["stiffness_N_m_per_rad"]
+    stiffness, ratio = tables["linear_spring"]["stiffness_N_m_per_rad"], tables["transmission_ratio"]
+    at = crank_angle / ReducedDrive(tables).cranks
     for wound, back in ((low - BESIDE, 1.0), (low + BESIDE, 0.0), (high - BESIDE, 0.0), (high + BESIDE, -1.0)):
-        for name, (on_input, on_output) in held_by_every_format(folder, tables, crank_angle, wound).items():
-            # A tenth of the mean spring: contacts at their first touch are softer. Within, the light torque alone is there.
-            least = 0.1 * stiffness * BESIDE
-            assert back * on_output > least if back else abs(on_output) < 1e-3 * tables["limits"]["rated_torque_N_m"], (
-                name
-            )
-            # Turned together by dφ and dφ/i nothing is wound up: T_in dφ + T_out dφ/i = 0.
-            assert on_input == pytest.approx(-on_output / tables["transmission_ratio"], abs=1e-9), name
+        on_input, on_output = held(folder, tables, (at, at / ratio + wound))
+        # A tenth of the mean spring: contacts at their first touch are softer. Within, the light torque alone is there.
+        least = 0.1 * stiffness * BESIDE
+        assert back * on_output > least if back else abs(on_output) < 1e-3 * tables["limits"]["rated_torque_N_m"]
+        # Turned together by dφ and dφ/i nothing is wound up: T_in dφ + T_out dφ/i = 0.
+        assert on_input == pytest.approx(-on_output / ratio, abs=1e-9)
 
 
 @pytest.mark.needs("robotics")

@@ -24,7 +24,7 @@ from ltca.geometry.placement import position_angles
 from ltca.geometry.play import free_play
 from ltca.reading.drive_file import load_drive
 
-pytestmark = [pytest.mark.slow, pytest.mark.nightly, pytest.mark.needs("robotics", "compiler")]
+pytestmark = [pytest.mark.slow, pytest.mark.nightly, pytest.mark.needs("robotics")]
 mujoco, fmpy = needs.optional("mujoco"), needs.optional("fmpy")
 
 ANGLES = (1.234, 17.71, 42.9)
@@ -283,6 +283,7 @@ def unit(folder, tables):
     found.slave.freeInstance()
 
 
+@pytest.mark.needs("compiler")
 def test_fmu_torque_along_the_loop(unit, expected, tables):
     held = []
     for crank_angle, path in zip(ANGLES, expected[1], strict=True):
@@ -291,6 +292,7 @@ def test_fmu_torque_along_the_loop(unit, expected, tables):
     assert np.max(np.abs(held - expected[0])) < MOST_TORQUE * 2.0 * tables["limits"]["rated_torque_N_m"]
 
 
+@pytest.mark.needs("compiler")
 def test_fmu_wind_up_along_the_loop(unit, expected):
     found = []
     for crank_angle in ANGLES:
@@ -299,6 +301,7 @@ def test_fmu_wind_up_along_the_loop(unit, expected):
     assert np.max(np.abs(found - expected[1])) < MOST_ANGLE
 
 
+@pytest.mark.needs("compiler")
 def test_fmu_play(unit, play, tables):
     low, high = edges(
         lambda wound: unit.torque_at(wound, goes_on=False), 1.1 * LIGHT * tables["limits"]["rated_torque_N_m"]
@@ -306,6 +309,7 @@ def test_fmu_play(unit, play, tables):
     assert abs(high - low - play) < MOST_ANGLE
 
 
+@pytest.mark.needs("compiler")
 def test_fmu_is_driven_back(unit, driving_back):
     """Turned as the load would turn it, the input is held back below the torque that drives back, and pushed on above."""
     for part, pushed in ((0.95, False), (1.05, True)):
@@ -321,6 +325,7 @@ def test_fmu_is_driven_back(unit, driving_back):
         assert (unit.get("input_torque") * np.sign(unit.ratio) > 0.0) == pushed
 
 
+@pytest.mark.needs("compiler")
 def test_fmu_goes_back_to_a_kept_state(unit):
     unit.torque_at(0.004)
     kept = unit.slave.getFMUState()
@@ -362,6 +367,7 @@ def test_spring_of_the_mjcf_alone(folder, tables):
     assert data.qfrc_passive[0] == pytest.approx(rated / tables["transmission_ratio"], rel=1e-3)
 
 
+@pytest.mark.needs("compiler")
 def test_fmu_of_a_printed_drive_follows_the_loop_of_a_mean_crank_angle(tmp_path):
     """With five pins and friction 0.1 single contacts show at each crank angle, which the law holds to its scatter alone.
 
