@@ -12,20 +12,20 @@ import scipy.sparse.linalg as spla
 from ltca.errors import FaultError
 
 OUT_OF_MEMORY = ("invalid arguments", "not enough memory", "out of memory", "malloc", "memory allocation")
-"""What the libraries say that find none: of SuperLU "gstrf was called with invalid arguments"."""
+"""Parts of the messages of libraries that find too little memory: SuperLU says "gstrf was called with invalid arguments"."""
 
 
 @contextmanager
 def enough_memory(unknowns: int) -> Iterator[None]:
-    """Raise FaultError in the place of what a library raises that finds no memory for a system of so many unknowns."""
+    """Replace the error of a library that finds no memory for a system of so many unknowns by a FaultError."""
     try:
         yield
     except (MemoryError, SystemError, RuntimeError, ArithmeticError) as error:
         if not isinstance(error, MemoryError) and not any(sign in str(error).lower() for sign in OUT_OF_MEMORY):
             raise
         raise FaultError(
-            f"memory is not enough to solve {unknowns:,} unknowns: take larger elements (--size), or raise the limit of memory "
-            "(ulimit -v, container)"
+            f"memory is not enough to solve {unknowns:,} unknowns: take a coarser mesh (--size where the command has it), "
+            "or raise the limit of memory (ulimit -v, container)"
         ) from error
 
 

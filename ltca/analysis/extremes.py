@@ -236,7 +236,9 @@ def _searched(analyses: Sequence[LoadedAnalysis]) -> list[tuple[_Stage, _Stage]]
     going, places = list(range(len(analyses))), [(scan, scan) for scan in scans]
     for _ in range(MAX_REFINEMENTS + 1):
         asked = [(stages[number], places[number]) for number in going]
-        start = np.concatenate([stage.start(at) for pair, own in asked for stage, at in zip(pair, own, strict=True)])
+        start = np.concatenate(
+            [stage.start(at) for pair, angles in asked for stage, at in zip(pair, angles, strict=True)]
+        )
         _solve(
             [analyses[number] for number in going],
             [stages[number] for number in going],
@@ -396,22 +398,29 @@ def _solve(
     places: Sequence[tuple[FloatArray, FloatArray]],
     start: FloatArray,
 ) -> None:
-    """Balance new positions of both torques of each analysis and give them to their stages: in one batch, those of an analysis
-    that memory does not hold together in several.
-    """
-    if len(analyses) == 1:
-        most = positions_together(analyses[0].drive)
-        if len(start) > most:
-            done = 0
-            for number, at in enumerate(places[0]):
-                for rows in (np.arange(at.size)[first : first + most] for first in range(0, at.size, most)):
-                    none = np.zeros(0)
-                    own_places = (none, at[rows]) if number else (at[rows], none)
-                    _solve(analyses, stages, [own_places], start[done + rows])
-                done += at.size
-            return
-    angle = np.concatenate([at for own in places for at in own])
-    counts = [at.size for own in places for at in own]
+    """Balance new positions of both torques of each analysis and give them to their stages, in as many batches as memory needs."""
+    most = min(positions_together(analysis.drive) for analysis in analyses)
+    angle = np.concatenate([at for pair in places for at in pair])
+    ends = np.cumsum([at.size for pair in places for at in pair])[:-1]
+    for first in range(0, angle.size, most):
+        batch = slice(first, first + most)
+        parts = np.split(angle[batch], np.clip(ends - first, 0, most))
+        pairs = list(zip(parts[::2], parts[1::2], strict=True))
+        rows = [row for row, (full, light) in enumerate(pairs) if full.size + light.size]
+        _solve_batch(
+            [analyses[row] for row in rows], [stages[row] for row in rows], [pairs[row] for row in rows], start[batch]
+        )
+
+
+def _solve_batch(
+    analyses: Sequence[LoadedAnalysis],
+    stages: Sequence[tuple[_Stage, _Stage]],
+    places: Sequence[tuple[FloatArray, FloatArray]],
+    start: FloatArray,
+) -> None:
+    """Balance positions of analyses, each of which has some, and give them to their stages."""
+    angle = np.concatenate([at for pair in places for at in pair])
+    counts = [at.size for pair in places for at in pair]
     torque = np.repeat([stage.torque for pair in stages for stage in pair], counts)
     if len(analyses) == 1:
         model, drives = analyses[0].model, [analyses[0].drive]
@@ -420,8 +429,8 @@ def _solve(
         model = stack_drives([analysis.model for analysis in analyses], 1).take(rows)
         drives = [analyses[row].drive for row in rows.tolist()]
     found, first = solve_at_output(model, drives, angle, torque, start), 0
-    for analysis, pair, own in zip(analyses, stages, places, strict=True):
-        for stage, at in zip(pair, own, strict=True):
+    for analysis, pair, angles in zip(analyses, stages, places, strict=True):
+        for stage, at in zip(pair, angles, strict=True):
             if not at.size:
                 continue
             part = take_positions(found, np.arange(first, first + at.size))

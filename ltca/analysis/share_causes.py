@@ -1,4 +1,8 @@
-"""Why equal discs carry unequal parts of the torque: parts that yield more in the plane of one disc than of another."""
+"""Why equal discs carry unequal parts of the torque: parts that yield more in the plane of one disc than of another.
+
+Compared are the beams of shaft pins and wheel pins and the crankshafts on their bearings. A ring that posts hold counts as rigid
+here, though the posts yield. Main bearing, carrier and the torsion of the cranks are never named as causes, though they may be.
+"""
 
 from __future__ import annotations
 
@@ -50,22 +54,22 @@ def share_words(drive: Drive, share: FloatArray) -> str:
 
 def _by_plane(drive: Drive) -> dict[str, FloatArray]:
     """Flexibility of each yielding part in the planes of the discs, mm/N, by its name with its field."""
-    found = {}
+    flexibility = {}
     shaft, wheel, crank = shaft_pin_beam(drive), wheel_pin_beam(drive), crank_stiffness(drive)
     discs = drive.disc.number_of_discs
     if shaft is not None:
         floating = shaft.ends[1] != "free" and drive.posts is None
         flange = f"clamped at {-0.5 * drive.shaft_pin_span:g} mm"
-        found[f"shaft pins (pin_shaft.beam, {flange})"] = _of_beam(shaft, drive, floating=floating)
+        flexibility[f"shaft pins (pin_shaft.beam, {flange})"] = _of_beam(shaft, drive, floating=floating)
     if wheel is not None:
-        found["wheel pins (pin_wheel.beam)"] = _of_beam(wheel, drive, floating=False)
+        flexibility["wheel pins (pin_wheel.beam)"] = _of_beam(wheel, drive, floating=False)
     if crank is not None:
-        found["crankshafts on their bearings (crank.support)"] = np.diag(np.linalg.inv(crank))[:discs]
-    return found
+        flexibility["crankshafts on their bearings (crank.support)"] = np.diag(np.linalg.inv(crank))[:discs]
+    return flexibility
 
 
 def _of_beam(beam: PinBeam, drive: Drive, *, floating: bool) -> FloatArray:
     """Deflection under unit load of each disc on every pin; a ring that floats turns with the tips, which it ties."""
     planes, width = from_start(beam, drive).tolist(), drive.disc.thickness
-    own = np.diag(beam.flexibility(planes, width))
-    return np.asarray(own + beam.tip_shape(planes, width) ** 2 / beam.tip_stiffness if floating else own)
+    at_load = np.diag(beam.flexibility(planes, width))
+    return np.asarray(at_load + beam.tip_shape(planes, width) ** 2 / beam.tip_stiffness if floating else at_load)

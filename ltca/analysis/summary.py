@@ -49,13 +49,13 @@ OF_RANGES = (
     "ptp_transmission_error_light",
     "pin_shaft_loaded_range",
 )
-"""What needs more than one position."""
+"""Ranges, which need more than one position."""
 OF_LOADS = ("pin_shaft_loaded_range", "mean_loaded_pins", "mean_loaded_rollers", "mean_loaded_pin_shaft_pins")
 """Counts of loaded contacts: those of a disc, or of a crank bearing in a disc, are means over discs and bearings as well."""
 Values = Mapping[str, float]
 """Scalars by name."""
 OF_FLANK = ("backlash_wheel", "backlash_disc", "interference")
-"""What is known of the discs in their nominal places."""
+"""Backlash and overlap of the discs in their nominal places."""
 FREE_PLAY = ("backlash_output", "min_backlash_output", "preloaded_part_of_turn")
 """Free play of the output: largest and least over a turn, and the part of it where parts overlap in every pose."""
 

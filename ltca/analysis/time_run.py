@@ -682,7 +682,7 @@ class Recorder:
 
     def checkpoint(self, solver: DOP853) -> Checkpoint:
         """Return where the run stands after a step of the solver."""
-        followed = named_arrays(self._run.equation.followed(), "inner") | named_arrays(self._summed(), "summed")
+        followed = named_arrays(self._run.equation.warm_start(), "inner") | named_arrays(self._summed(), "summed")
         return Checkpoint(
             time=float(solver.t),
             step=float(solver.h_abs),
@@ -695,36 +695,37 @@ class Recorder:
             followed={name: values.copy() for name, values in followed.items()},
         )
 
-    def go_on(self, found: Checkpoint) -> DOP853:
+    def resume(self, checkpoint: Checkpoint) -> DOP853:
         """Take over an interrupted run and return its solver as it stood; DamagedFileError where it does not fit."""
         run, size = self._run, self._run.start.shape
         fits = all(
             values.shape == size and np.all(np.isfinite(values))
-            for values in (found.state, found.rate, found.tolerances)
+            for values in (checkpoint.state, checkpoint.rate, checkpoint.tolerances)
         )
-        rows = {len(values) for values in found.samples.values()}
-        fits = fits and 0.0 < found.time < run.course.time and found.step > 0.0
-        if not fits or rows != {found.rows} or not 0 < found.rows <= self.times.size:
+        rows = {len(values) for values in checkpoint.samples.values()}
+        fits = fits and 0.0 < checkpoint.time < run.course.time and checkpoint.step > 0.0
+        if not fits or rows != {checkpoint.rows} or not 0 < checkpoint.rows <= self.times.size:
             raise DamagedFileError("does not fit the run in time that it says it is of")
-        solver = self.solver(found.time, found.state, found.step, found.tolerances)
+        solver = self.solver(checkpoint.time, checkpoint.state, checkpoint.step, checkpoint.tolerances)
         equation = run.equation
         # What one call at the state leaves has the structure of what is kept.
-        moment = equation.solved(found.time, found.state)
+        moment = equation.solved(checkpoint.time, checkpoint.state)
         if equation.contacts.has_energy:
             self._before = equation.contacts.stored(moment.place)[1]
         self._teeth = moment.forces.teeth
         try:
-            inner = with_named_arrays(equation.followed(), found.followed, "inner")
-            self._before, self._teeth = with_named_arrays(self._summed(), found.followed, "summed")
+            inner = with_named_arrays(equation.warm_start(), checkpoint.followed, "inner")
+            self._before, self._teeth = with_named_arrays(self._summed(), checkpoint.followed, "summed")
             fields_of = {item.name for item in fields(Samples)}
-            if set(found.samples) != fields_of:
+            if set(checkpoint.samples) != fields_of:
                 raise ValueError(f"samples: must be {', '.join(sorted(fields_of))}")
         except ValueError as error:
             raise DamagedFileError(f"does not fit the run in time that it says it is of: {error}") from error
-        equation.follow(inner)
-        solver.f, solver.h_abs, solver.nfev = found.rate, found.step, found.evaluations
-        self.rows = found.rows
-        for name, values in found.samples.items():
+        equation.start_from(inner)
+        equation.contacts.forget_grids()  # those of the calls above: the uninterrupted run had none when it was saved
+        solver.f, solver.h_abs, solver.nfev = checkpoint.rate, checkpoint.step, checkpoint.evaluations
+        self.rows = checkpoint.rows
+        for name, values in checkpoint.samples.items():
             self.arrays[name] = np.zeros((self.times.size, *values.shape[1:]))
             self.arrays[name][: self.rows] = values
         return solver
@@ -795,6 +796,8 @@ def run_in_time(
     ------
     ConvergenceError
         Where the solver's step vanishes.
+    DamagedFileError
+        Where the checkpoint does not fit the run.
     """
     equation = run.equation
     recorder = Recorder(run, samples or samples_of(run.course, run.drive))
@@ -803,7 +806,7 @@ def run_in_time(
         recorder.take(run.start)
         solver = recorder.solver(0.0, run.start, step, run.tolerances())
     else:
-        solver = recorder.go_on(resumed)
+        solver = recorder.resume(resumed)
     advance(recorder.rows)
     taken = 0
     while solver.status == "running":

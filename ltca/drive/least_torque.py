@@ -20,7 +20,7 @@ ROUND_OFF_BOUND = 1e-5
 
 
 def least_torque(drive: Drive) -> float:
-    """Return the least output torque that can be balanced, N·mm: a ten-millionth to a thousandth of a millionth of a rated one.
+    """Return the least output torque that can be balanced, N·mm: 1.9e-7 to 4.9e-7 of the torque of shipped drives.
 
     At it the round-off of one wheel pin, of a line of contact of stiffness π E* t/10 (Palmgren), is `ROUND_OFF_BOUND` of the load
     of the eccentric T/(e u). Where a drive carries anything, one pin touches at least.

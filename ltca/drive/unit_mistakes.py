@@ -21,6 +21,7 @@ from ltca.drive.engine_support import given
 from ltca.drive.least_torque import least_torque
 from ltca.drive.members.limits import Limit
 from ltca.drive.members.main_bearing import ROLLER
+from ltca.drive.members.operation import LIGHT_SHARE
 from ltca.drive.members.width import needs_slices
 from ltca.drive.parts import Drive, Material, Materials, Preload, contact_modulus
 from ltca.drive.units.table import range_of
@@ -131,12 +132,16 @@ def likely_unit_mistakes(drive: Drive, torque: float | None = None) -> list[str]
     if lengths := [*_odd_lengths(drive)]:
         return _yielding(drive, share) or lengths
     load = drive.load
-    written = ("load.torque", load.torque) if load.leaves_out_light_torque else ("load.light_torque", load.light_torque)
-    for named, value in (("load.torque" if used == load.torque else "torque", used), written):
-        pressure = _pressure(drive, value / drive.disc.number_of_discs)
+    named = "load.torque" if used == load.torque else "torque"
+    torques = [(named, used, used, ""), ("load.light_torque", load.light_torque, load.light_torque, "")]
+    if load.leaves_out_light_torque:
+        light = f": the light torque, left out and so {100.0 * LIGHT_SHARE:g} % of it as written, is solved too"
+        torques[1] = ("load.torque", load.light_torque / LIGHT_SHARE, load.light_torque, light)
+    for named, value, solved, share_of_it in torques:
+        pressure = _pressure(drive, solved / drive.disc.number_of_discs)
         if pressure > BORNE:
             return [
-                f"{named} = {value:g} N·mm is {value / 1000.0:g} N·m and would press the wheel pins with some "
+                f"{named} = {value:g} N·mm is {value / 1000.0:g} N·m{share_of_it} and would press the wheel pins with some "
                 f'{pressure:.2g} MPa, which no steel bears; a plain number is N·mm, newton metres are written "377.3 N m"'
             ]
     return _yielding(drive, share)

@@ -116,15 +116,15 @@ class ContactForces:
         return len(self._telling) == len(self._model.discs)
 
     @property
-    def followed(self) -> tuple[Any, ...]:
+    def warm_start(self) -> tuple[Any, ...]:
         """Inner unknowns from which the next call starts, as nested tuples; None for contact grids, see `forget_grids`."""
-        return tuple(each.followed for each in self._each), self._start if self.has_energy else None
+        return tuple(each.warm_start for each in self._each), self._start if self.has_energy else None
 
-    @followed.setter
-    def followed(self, kept: tuple[Any, ...]) -> None:
+    @warm_start.setter
+    def warm_start(self, kept: tuple[Any, ...]) -> None:
         """Start the next call from these."""
-        for each, own in zip(self._each, kept[0], strict=True):
-            each.followed = own
+        for contacts, start in zip(self._each, kept[0], strict=True):
+            contacts.warm_start = start
         self._start = kept[1]
 
     def forget_grids(self) -> None:

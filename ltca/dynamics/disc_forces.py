@@ -111,12 +111,12 @@ class DiscContacts:
         self.state: dict[str, FloatArray] = {}
 
     @property
-    def followed(self) -> tuple[FloatArray | ComplexArray | None, ...]:
+    def warm_start(self) -> tuple[FloatArray | ComplexArray | None, ...]:
         """Contact parameters, what moves them on to first order, and shares of rollers: where the next call starts."""
         return self._parameter, self._point, self._turning, self._share
 
-    @followed.setter
-    def followed(self, kept: tuple[Any, ...]) -> None:
+    @warm_start.setter
+    def warm_start(self, kept: tuple[Any, ...]) -> None:
         """Start the next call from these."""
         # Shares are changed in place.
         self._parameter, self._point, self._turning, self._share = *kept[:3], kept[3].copy()

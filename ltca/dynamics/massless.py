@@ -57,12 +57,12 @@ class MasslessParts:
         self._following = np.zeros(columns.shape[1])
 
     @property
-    def followed(self) -> tuple[FloatArray | None, ...]:
+    def warm_start(self) -> tuple[FloatArray | None, ...]:
         """Places, slopes, coordinates of the others and rates of the last call, from which the next one starts."""
         return self._place, self._slope, self._others, self._following
 
-    @followed.setter
-    def followed(self, kept: tuple[Any, ...]) -> None:
+    @warm_start.setter
+    def warm_start(self, kept: tuple[Any, ...]) -> None:
         """Start the next call from these."""
         self._place, self._slope, self._others, self._following = kept
 

@@ -107,15 +107,15 @@ class Equation:
         """B and, last, the motions of parts without mass, shape (n, m + k)."""
         return self.basis if self.massless is None else np.hstack((self.basis, self.massless.columns))
 
-    def followed(self) -> tuple[Any, ...]:
+    def warm_start(self) -> tuple[Any, ...]:
         """Return the inner unknowns from which the next call starts: the last digits of its forces depend on them."""
-        return self.contacts.followed, None if self.massless is None else self.massless.followed
+        return self.contacts.warm_start, None if self.massless is None else self.massless.warm_start
 
-    def follow(self, kept: tuple[Any, ...]) -> None:
-        """Start the next call from inner unknowns that `followed` returned."""
-        self.contacts.followed = kept[0]
+    def start_from(self, kept: tuple[Any, ...]) -> None:
+        """Start the next call from inner unknowns that `warm_start` returned."""
+        self.contacts.warm_start = kept[0]
         if self.massless is not None:
-            self.massless.followed = kept[1]
+            self.massless.warm_start = kept[1]
 
     def place(self, time: float, state: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return x and its rate of a state, shape (2m + 4,)."""

@@ -20,6 +20,9 @@ cranks have clearance in their bearings, their displacements are common to all d
 with a circle for every bearing (`_JoinedProgramme`). Where parts overlap
 in every pose the drive is preloaded: parts keep the overlap of the pose in which it is least, and the play is what the other
 parts leave, none where the overlapping ones hold the wheel. Displacements beyond that are those of the loaded analysis.
+
+Over a turn the largest and the least play are those of sampled positions (`plays_over_a_turn`): the largest is within 0.2 % of
+the largest of the turn, and 0.3 % of that of all turns (docs/theory/conventions.md).
 """
 
 from __future__ import annotations

@@ -38,7 +38,25 @@ def write_arrays(path: Path, arrays: Mapping[str, ArrayLike]) -> None:
 
 
 def read_arrays(path: Path, what: str) -> dict[str, NDArray[Any]]:
-    """Return the arrays of a file of `write_arrays`, which is of some kind, as "a batch of a study"; DamagedFileError."""
+    """Read the arrays of a file of `write_arrays`.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    what : str
+        Its kind in words, for messages: "a batch of a study".
+
+    Returns
+    -------
+    dict of str to array
+        By name, without the checksum.
+
+    Raises
+    ------
+    DamagedFileError
+        Where the file cannot be read, is cut off, declares more than `LARGEST` bytes or does not match its checksum.
+    """
     try:
         # Opened here: of a file that is no archive numpy leaves its own stream open.
         with regular_file(path, LARGEST) as stream, zipfile.ZipFile(stream) as archive:

@@ -15,7 +15,7 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 VARIABLES = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "BLIS_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
-"""What libraries of linear algebra read before OMP_NUM_THREADS, as they are loaded."""
+"""Variables that libraries of linear algebra read as they are loaded, and prefer to OMP_NUM_THREADS."""
 
 
 def use_one_thread() -> None:

@@ -28,7 +28,7 @@ NEIGHBOURS = "near field, neighbours and sizes"
 EVEN_PRESSURE = "stress left by even pressure on all walls"
 WALLS_CLOSE = "stress along closed walls against their displacement"
 STRESS_CONVERGENCE = "convergence of the stresses: change from a mesh of twice the size"
-LONE = "entry out of line against those beside it"
+OUT_OF_LINE = "entry out of line against those beside it"
 BRACKET_LOWEST = "least share of plane stress, solid disc"
 BRACKET_HIGHEST = "largest share of plane stress, solid disc"
 INTERPOLATION, TILT_INTERPOLATION = "interpolation between stations", "interpolation between stations, tilt"
@@ -84,10 +84,10 @@ INTERPOLATION_LIMIT = CONVERGENCE_LIMIT
 # quarter of the stations 2.9, since neighbours that far apart feel the ligament bend.
 NEIGHBOUR_BOUNDS = (0.3, 5.0)
 # An entry out of line by less than this, in units of the near field (a patch on itself has about 8), is none that matters.
-LONE_LEAST = 0.5
+LEAST_OUT_OF_LINE = 0.5
 # Set after the figures of some discs were known: 1.0 to 1.3 with the default stations, 1.5 with half of them. With six to
 # twelve stations on a wall 2 to 8, which is no measure of anything: there is no law then.
-LONE_LIMIT, LONE_STATIONS, LONE_DISTANCE = 10.0, 24, 2.0
+OUT_OF_LINE_LIMIT, OUT_OF_LINE_STATIONS, OUT_OF_LINE_DISTANCE = 10.0, 24, 2.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -374,7 +374,9 @@ def _disc_slopes(dataset: Labelled, tilt: bool, name: str) -> FloatArray:
 
 
 def _round_slopes(dataset: Labelled, tilt: bool, name: str) -> FloatArray:
-    """The same of pin, roller and race, whose wider patch is twice as wide."""
+    """Fall of the approach of pin, roller and race to a patch twice as wide, in units of the near field by ln; empty where the
+    file has none.
+    """
     bodies = ("pin", "roller", "race")
     if not all(_holds(dataset, f"{body}_wide_{name}") for body in bodies):
         return np.zeros(0)
@@ -438,8 +440,12 @@ def _check_lone_entries(dataset: Labelled) -> Iterator[Check]:
     boundary = dataset["station_boundary"].values
     x, y = dataset["station_x"].values, dataset["station_y"].values
     starts = [0, *(np.flatnonzero(np.diff(boundary)) + 1).tolist(), boundary.size]
+<<<<<<< HEAD
     everywhere = [slice(*ends) for ends in pairwise(starts)]
     walls = [wall for wall in everywhere if wall.stop - wall.start >= LONE_STATIONS]
+=======
+    walls = [slice(*ends) for ends in pairwise(starts) if ends[1] - ends[0] >= OUT_OF_LINE_STATIONS]
+>>>>>>> mendone
     spacing = [float(np.max(np.hypot(np.diff(x[wall]), np.diff(y[wall])))) for wall in walls]
 
     def apart(one: slice, other: slice) -> float:
@@ -454,16 +460,24 @@ def _check_lone_entries(dataset: Labelled) -> Iterator[Check]:
         approach, unit = dataset[f"disc_{name}"].values, near_field_unit(dataset, "disc", tilt)
         ratios = [0.0]
         for first, rows in enumerate(walls):
+<<<<<<< HEAD
             if nearest[first] > spacing[first]:
                 ratios.append(_out_of_line(approach[rows, rows], unit, together=True))
             for second, columns in enumerate(walls[first + 1 :], first + 1):
                 if apart(rows, columns) > LONE_DISTANCE * max(spacing[first], spacing[second]):
+=======
+            for second, columns in enumerate(walls[first:], first):
+                far = OUT_OF_LINE_DISTANCE * max(spacing[first], spacing[second])
+                if first == second:
+                    ratios.append(_out_of_line(approach[rows, columns], unit, together=True))
+                elif np.min((x[rows, None] - x[columns]) ** 2 + (y[rows, None] - y[columns]) ** 2) > far**2:
+>>>>>>> mendone
                     ratios.append(_out_of_line(approach[rows, columns], unit, together=False))
-        yield Check(name=LONE + also, value=max(ratios), lowest=0.0, highest=LONE_LIMIT, reason=reason)
+        yield Check(name=OUT_OF_LINE + also, value=max(ratios), lowest=0.0, highest=OUT_OF_LINE_LIMIT, reason=reason)
 
 
 def _out_of_line(block: FloatArray, unit: float, *, together: bool) -> float:
-    """Largest second difference of entries between two walls relative to the next ones; 0 below `LONE_LEAST` units."""
+    """Largest second difference of entries between two walls relative to the next ones; 0 below `LEAST_OUT_OF_LINE` units."""
     bent = np.empty_like(block)
     if together:
         np.add(block[2:, 2:], block[:-2, :-2], out=bent[1:-1, 1:-1])
@@ -477,6 +491,7 @@ def _out_of_line(block: FloatArray, unit: float, *, together: bool) -> float:
     bent += block
     place = max((int(np.argmax(bent)), int(np.argmin(bent))), key=lambda each: abs(bent.flat[each]))
     row, column = np.unravel_index(place, bent.shape)
+<<<<<<< HEAD
     # Where both move together an entry is in three differences of its own diagonal, otherwise of its own column: those two and
     # three stations away are without it, as all of the neighbouring diagonals or columns. Over a hole a patch bends the wall
     # under itself, by turns more and less, and the wall beside it hardly: that shows along the own diagonal alone.
@@ -485,6 +500,14 @@ def _out_of_line(block: FloatArray, unit: float, *, together: bool) -> float:
     along = bent[(row + away) % bent.shape[0], (column + away) % bent.shape[1] if together else column]
     largest, next_largest = abs(float(bent.flat[place])), float(np.max(np.abs([others, along])))
     return largest / max(next_largest, 1e-300) if largest > LONE_LEAST * unit else 0.0
+=======
+    # Where both move together an entry is in the differences of its own diagonal, otherwise in those of its own column.
+    beside = (int(column) + np.array([-2, -1, 1, 2])) % bent.shape[1]
+    largest = abs(float(bent.flat[place]))
+    return (
+        largest / max(float(np.max(np.abs(bent[row, beside]))), 1e-300) if largest > LEAST_OUT_OF_LINE * unit else 0.0
+    )
+>>>>>>> mendone
 
 
 def _fall(distance: FloatArray | float, half_width: FloatArray) -> FloatArray:

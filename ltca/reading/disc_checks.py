@@ -124,7 +124,7 @@ def _has_plain_flank(drive: Drive, pin_circle_radius: float, eccentricity: float
 
 
 def _loops(drive: Drive) -> str:
-    """What to say of a flank with loops: the bounds of eccentricity and pin circle, beside which holes may have to change."""
+    """Message about a flank with loops: bounds of eccentricity and pin circle, and the hole radius that goes with them."""
     most, circle, shaft = rounded_down(largest_eccentricity(drive)), _smallest_pin_circle(drive), drive.pin_shaft
     bound = f"at most {most:g} mm"
     if shaft is not None and not _leads(drive, most):

@@ -24,7 +24,8 @@ from ltca.studies.yields import Kept, independent_samples, interval
 
 LEAST, LARGEST = "min_backlash_output", "max_backlash_output"
 NO_BACKLASH = 1e-3
-"""Backlash at the output that counts as none, arcmin: a hundred times what the search for the free play leaves."""
+"""Backlash at the output that counts as none, arcmin. A choice: a hundred times the gain at which the search for the free play
+ends (`ltca.geometry.play.LEAST_GAIN`, some 1e-5 arcmin), and a thousandth of the unit that backlashes are stated in."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -34,9 +35,9 @@ class Binding:
     Attributes
     ----------
     each : array of bool, shape (samples,)
-        By sample; none where the study has no backlash at the output.
+        By sample; none where the study lacks the least backlash at the output.
     counted : Kept or None
-        Those among the independent samples; None where the study has no backlash at the output.
+        Those among the independent samples; None where the study lacks the least backlash at the output.
     preloaded : bool
         Whether parts of the drive without deviations overlap as drawn: then samples bind as they are meant to.
     wide : str
@@ -64,21 +65,21 @@ class Binding:
         }
 
     def words(self) -> list[str]:
-        """Return what to say of it, one sentence each; nothing where nothing binds or may."""
+        """Messages about samples that bind, one sentence each; empty where none does or may."""
         advice = f"[limits] {LEAST} in the drive file judges them"
         if self.counted is None:
-            told = (
+            message = (
                 f"samples may bind, {self.wide}: name {LEAST} among --quantities, which counts those that do; {advice}"
             )
-            return [told] if self.wide and not self.preloaded else []
+            return [message] if self.wide and not self.preloaded else []
         if not self.counted.kept:
             return []
-        found = self.counted
-        ends = f"{100.0 * found.part:.1f} % ({100.0 * found.low:.1f} … {100.0 * found.high:.1f} %)"
-        told = f"{found.kept} of {found.samples} samples bind, without backlash at some position: {ends}"
+        bound = self.counted
+        share = f"{100.0 * bound.part:.1f} % ({100.0 * bound.low:.1f} … {100.0 * bound.high:.1f} %)"
+        count = f"{bound.kept} of {bound.samples} samples bind, without backlash at some position: {share}"
         if self.preloaded:
-            return [f"{told}; parts of the drive overlap as drawn, so they count as samples that keep their limits"]
-        return [f"{told}; they keep no limit of the backlash{'' if self.asked else f'; {advice}'}"]
+            return [f"{count}; parts of the drive overlap as drawn, so they count as samples that keep their limits"]
+        return [f"{count}; they keep no limit of the backlash{'' if self.asked else f'; {advice}'}"]
 
 
 def find_binding(study: Study, values: Mapping[str, FloatArray]) -> Binding | None:
@@ -93,7 +94,7 @@ def find_binding(study: Study, values: Mapping[str, FloatArray]) -> Binding | No
     """
     if not isinstance(study.design, ToleranceDesign):
         return None
-    least = values.get(LEAST, values.get(LARGEST))
+    least = values.get(LEAST)  # the largest is zero only where parts overlap at every position
     each = np.zeros(study.design.samples, dtype=bool) if least is None else least <= NO_BACKLASH
     chosen = independent_samples(study.design)
     # What rollers have or lack between their races holds no output.

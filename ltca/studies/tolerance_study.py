@@ -8,6 +8,7 @@ from ltca.analysis.engines import Engine, engine_of
 from ltca.drive.tolerances import Factors
 from ltca.errors import DriveError
 from ltca.reading.drive_file import DriveFile
+from ltca.studies.binding import LARGEST, LEAST
 from ltca.studies.designs import FEWEST_BLOCKS, ToleranceDesign
 from ltca.studies.quantities import check_quantities, quantities_for
 from ltca.studies.study import Study
@@ -38,7 +39,8 @@ def tolerance_study(
     sequence : {"random", "sobol", "saltelli"}
         See `ltca.studies.designs.ToleranceDesign`.
     quantities : tuple of str, optional
-        What is kept; by default as `ltca.studies.quantities.quantities_for` says, and what has a limit.
+        What is kept; by default as `ltca.studies.quantities.quantities_for` says, and what has a limit. The least
+        backlash at the output always comes with the largest.
     engine : Engine, optional
         How bodies yield; half-spaces by default.
 
@@ -56,10 +58,10 @@ def tolerance_study(
     kept = quantities_for(drive, quantities)
     judged, not_judged = limits_of(drive, file.limits.get(name, {}))
     if quantities is None:  # what has a limit is judged, whatever its solution costs
-        limited = [one.quantity for one in judged]
-        if "max_backlash_output" in limited:  # the least tells which samples bind, and costs nothing beside the largest
-            limited.append("min_backlash_output")
-        kept = check_quantities((*kept, *dict.fromkeys(name for name in limited if name not in kept)))
+        kept = (*kept, *(one.quantity for one in judged))
+    if LARGEST in kept:  # the least tells which samples bind, and costs nothing beside the largest
+        kept = (*kept, LEAST)
+    kept = check_quantities(tuple(dict.fromkeys(kept)))
     try:
         factors = Factors.of_tolerances(drive, file.tolerances)
     except DriveError as error:

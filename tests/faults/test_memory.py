@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,7 @@ from fem.body.sparse_factor import enough_memory, factor_sparse
 from fem.solid.factor import cholmod_is_there
 from ltca.analysis import extremes
 from ltca.analysis.loaded_analysis import analyse
+from ltca.analysis.summary import summarise_cases
 from ltca.errors import FaultError
 from ltca.geometry.placement import position_angles
 from ltca.output import resources
@@ -49,6 +51,31 @@ def test_a_turn_that_memory_does_not_hold_is_searched_in_parts(monkeypatch):
     assert sum(sizes) > 500
     assert parts.values == pytest.approx(whole.values, rel=1e-9)
     assert (parts.added_positions, parts.added_light_positions) == (whole.added_positions, whole.added_light_positions)
+
+
+def test_turns_of_several_cases_are_searched_in_parts(monkeypatch):
+    """2.3 GB a case: up to 55 cases of one layout were balanced together at all places, however large each of them."""
+    case = load_drive("paper").cases["CS-1"]
+    drives = [case, replace(case, load=replace(case.load, torque=0.7 * case.load.torque))]
+    analyses = {str(number): analyse(drive, position_angles(13)) for number, drive in enumerate(drives)}
+    whole = summarise_cases(analyses, without_load=False)
+    solve, sizes, cases = extremes.solve_at_output, [], []
+
+    def counted(model, drives, angle, *rest):
+        sizes.append(np.size(angle))
+        cases.append(len({id(drive) for drive in drives}))
+        return solve(model, drives, angle, *rest)
+
+    monkeypatch.setattr(extremes, "solve_at_output", counted)
+    monkeypatch.setattr(extremes, "positions_together", lambda _: 100)
+    parts = summarise_cases(analyses, without_load=False)
+    assert max(sizes) <= 100
+    assert sum(sizes) > 1000  # 13 teeth, 24 places for each, at two torques of two cases: 4 (312 - 13) at least
+    assert max(cases) == 2  # they share the batches in which both have places
+    for name, values in whole.items():
+        refined = {key: value for key, value in values.items() if key.startswith("refined_") and value is not None}
+        assert len(refined) > 5
+        assert {key: parts[name][key] for key in refined} == pytest.approx(refined, rel=1e-9)
 
 
 @pytest.mark.slow

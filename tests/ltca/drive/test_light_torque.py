@@ -104,7 +104,23 @@ def test_no_question_about_a_light_torque_that_nobody_wrote(drive):
 def test_an_impossible_torque_is_named_and_no_light_torque_that_follows_it():
     huge = build_drive({**tomllib.loads(PAPER), "load": {"torque": 1e12}, "tolerances": {}})
     (told,) = likely_unit_mistakes(huge, 1e3)
-    assert told.startswith("load.torque = 1e+12 N·mm is 1e+09 N·m and would press")
+    assert told.startswith("load.torque = 1e+12 N·mm is 1e+09 N·m: the light torque, left out and so 3 % of it")
+
+
+def test_a_torque_that_is_not_solved_was_blamed_where_the_light_torque_is_left_out():
+    """Solved are 1 N·m and 3 % of the torque as written: the load is judged by what is solved."""
+
+    def first_refused(mistakes):
+        return next(
+            torque for torque in np.geomspace(1e6, 1e14, 81).tolist() if "would press" in "".join(mistakes(torque))
+        )
+
+    def of_torque(torque):
+        return build_drive({**tomllib.loads(PAPER), "load": {"torque": torque}, "tolerances": {}})
+
+    written = first_refused(lambda torque: likely_unit_mistakes(of_torque(torque), 1e3))
+    solved = first_refused(lambda torque: likely_unit_mistakes(of_torque(1e6), torque))
+    assert written / solved == pytest.approx(1.0 / 0.03, rel=0.27)  # one step between torques is 1.26
 
 
 WORDS = "6 N·m: load.light_torque is left out, 3 % of load.torque as written"

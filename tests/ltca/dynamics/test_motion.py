@@ -636,6 +636,7 @@ RESUMED = {
     "with an elastic ring": ("elastic ring", HalfSpace(), 5e-5),
     "of bodies that yield": ("paper", Hybrid(), 1e-4),
     "on contact grids": ("paper", HalfSpace(method="direct"), 1e-4),
+    "on contact grids in slices": ("paper, sliced", HalfSpace(method="direct"), 2e-6),
 }
 
 

@@ -69,6 +69,16 @@ def test_bound_parts_were_counted_as_a_kept_limit_of_the_backlash():
     assert "3 of 6 samples bind" in page
 
 
+def test_samples_that_bind_at_some_position_were_not_counted_where_the_largest_backlash_alone_was_asked_for():
+    """Two of six samples were said to bind "at some position": those whose largest backlash is zero, that at every one."""
+    study = study_of(toolkit(), quantities=(LARGEST,))
+    assert study.quantities == (LARGEST, LEAST)
+    assert find_binding(study, VALUES).counted.kept == 3
+    without = find_binding(study, {LARGEST: VALUES[LARGEST]})  # of a study that was kept before
+    assert without.counted is None
+    assert not np.any(without.each)
+
+
 def test_a_limit_of_the_least_backlash_is_not_suggested_twice():
     file = toolkit(tolerances=TOLERANCES + "min_backlash_output = 0.0\n")
     found = summary_of(study_of(file), VALUES)
