@@ -440,12 +440,8 @@ def _check_lone_entries(dataset: Labelled) -> Iterator[Check]:
     boundary = dataset["station_boundary"].values
     x, y = dataset["station_x"].values, dataset["station_y"].values
     starts = [0, *(np.flatnonzero(np.diff(boundary)) + 1).tolist(), boundary.size]
-<<<<<<< HEAD
     everywhere = [slice(*ends) for ends in pairwise(starts)]
-    walls = [wall for wall in everywhere if wall.stop - wall.start >= LONE_STATIONS]
-=======
-    walls = [slice(*ends) for ends in pairwise(starts) if ends[1] - ends[0] >= OUT_OF_LINE_STATIONS]
->>>>>>> mendone
+    walls = [wall for wall in everywhere if wall.stop - wall.start >= OUT_OF_LINE_STATIONS]
     spacing = [float(np.max(np.hypot(np.diff(x[wall]), np.diff(y[wall])))) for wall in walls]
 
     def apart(one: slice, other: slice) -> float:
@@ -460,18 +456,10 @@ def _check_lone_entries(dataset: Labelled) -> Iterator[Check]:
         approach, unit = dataset[f"disc_{name}"].values, near_field_unit(dataset, "disc", tilt)
         ratios = [0.0]
         for first, rows in enumerate(walls):
-<<<<<<< HEAD
             if nearest[first] > spacing[first]:
                 ratios.append(_out_of_line(approach[rows, rows], unit, together=True))
             for second, columns in enumerate(walls[first + 1 :], first + 1):
-                if apart(rows, columns) > LONE_DISTANCE * max(spacing[first], spacing[second]):
-=======
-            for second, columns in enumerate(walls[first:], first):
-                far = OUT_OF_LINE_DISTANCE * max(spacing[first], spacing[second])
-                if first == second:
-                    ratios.append(_out_of_line(approach[rows, columns], unit, together=True))
-                elif np.min((x[rows, None] - x[columns]) ** 2 + (y[rows, None] - y[columns]) ** 2) > far**2:
->>>>>>> mendone
+                if apart(rows, columns) > OUT_OF_LINE_DISTANCE * max(spacing[first], spacing[second]):
                     ratios.append(_out_of_line(approach[rows, columns], unit, together=False))
         yield Check(name=OUT_OF_LINE + also, value=max(ratios), lowest=0.0, highest=OUT_OF_LINE_LIMIT, reason=reason)
 
@@ -491,7 +479,6 @@ def _out_of_line(block: FloatArray, unit: float, *, together: bool) -> float:
     bent += block
     place = max((int(np.argmax(bent)), int(np.argmin(bent))), key=lambda each: abs(bent.flat[each]))
     row, column = np.unravel_index(place, bent.shape)
-<<<<<<< HEAD
     # Where both move together an entry is in three differences of its own diagonal, otherwise of its own column: those two and
     # three stations away are without it, as all of the neighbouring diagonals or columns. Over a hole a patch bends the wall
     # under itself, by turns more and less, and the wall beside it hardly: that shows along the own diagonal alone.
@@ -499,15 +486,7 @@ def _out_of_line(block: FloatArray, unit: float, *, together: bool) -> float:
     others = bent[row, (column + beside) % bent.shape[1]]
     along = bent[(row + away) % bent.shape[0], (column + away) % bent.shape[1] if together else column]
     largest, next_largest = abs(float(bent.flat[place])), float(np.max(np.abs([others, along])))
-    return largest / max(next_largest, 1e-300) if largest > LONE_LEAST * unit else 0.0
-=======
-    # Where both move together an entry is in the differences of its own diagonal, otherwise in those of its own column.
-    beside = (int(column) + np.array([-2, -1, 1, 2])) % bent.shape[1]
-    largest = abs(float(bent.flat[place]))
-    return (
-        largest / max(float(np.max(np.abs(bent[row, beside]))), 1e-300) if largest > LEAST_OUT_OF_LINE * unit else 0.0
-    )
->>>>>>> mendone
+    return largest / max(next_largest, 1e-300) if largest > LEAST_OUT_OF_LINE * unit else 0.0
 
 
 def _fall(distance: FloatArray | float, half_width: FloatArray) -> FloatArray:
