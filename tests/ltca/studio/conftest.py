@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import http.client
 import json
 import os
@@ -49,11 +50,14 @@ def exchanged(address, sent):
     parts = urlsplit(address)
     with socket.create_connection((parts.hostname, parts.port), timeout=300) as connection:
         found = b""
-        with suppress(ConnectionError):  # it may close before all is sent
+        try:
             connection.sendall(sent)
             connection.shutdown(socket.SHUT_WR)
             while more := connection.recv(65536):
                 found += more
+        except OSError as error:  # it may close before all is sent
+            if not isinstance(error, ConnectionError) and error.errno != errno.ENOTCONN:
+                raise
         return found
 
 
