@@ -179,9 +179,7 @@ def _derive(name: str, case: str, drive: Drive, arguments: argparse.Namespace, o
 
     start = time.perf_counter()
     if arguments.bodies == "plane":  # of solid ones the derivation tells it
-        # Measured at size 1. Elsewhere an estimate, not measured: the mesh is fine along the boundaries, so unknowns are taken to
-        # go with the inverse of the edge.
-        tell_memory(derivation_memory(drive.disc.number_of_teeth) / arguments.size, f"the disc of {name} {case}")
+        tell_memory(derivation_memory(drive.disc.number_of_teeth, arguments.size), f"the disc of {name} {case}")
     with steps("deriving coefficients") as show:
         derive_coefficients(
             drive,

@@ -398,7 +398,7 @@ def _solve(
     places: Sequence[tuple[FloatArray, FloatArray]],
     start: FloatArray,
 ) -> None:
-    """Balance new positions of both torques of each analysis, in as many batches as memory needs, and give them to the stages."""
+    """Balance new positions of both torques of each analysis and give them to their stages, in batches that memory holds."""
     most = min(positions_together(analysis.drive) for analysis in analyses)
     angle = np.concatenate([at for pair in places for at in pair])
     ends = np.cumsum([at.size for pair in places for at in pair])[:-1]

@@ -11,8 +11,9 @@ from ltca.errors import PlaceError
 MUCH = 2e9
 """Memory from which on it is told before the work, bytes."""
 
-DERIVATION, DERIVATION_PER_TOOTH = 0.55e9, 0.026e9
-"""Memory to derive influence coefficients of plane bodies, bytes: measured 1.0 GB for 13 teeth, 3.1 for 99, 5.4 for 198."""
+DERIVATION, OF_MESH, OF_MESH_PER_TOOTH = 0.15e9, 0.4e9, 0.026e9
+"""Memory to derive influence coefficients of plane bodies, bytes: of any mesh, and of one of size 1 with its part for each tooth.
+Measured 1.0 GB for 13 teeth, 3.1 for 99, 5.4 for 198; for 13 teeth 0.36 GB at size 2 and 3.3 GB at size 0.5."""
 
 
 def available_memory() -> float:
@@ -31,9 +32,12 @@ def available_memory() -> float:
     return max(min(limits), 0.0)
 
 
-def derivation_memory(teeth: int) -> float:
-    """Return about how much memory the derivation of plane bodies takes, of a disc with so many teeth, bytes."""
-    return DERIVATION + DERIVATION_PER_TOOTH * teeth
+def derivation_memory(teeth: int, size: float = 1.0) -> float:
+    """Estimate the memory for the derivation of plane bodies of a disc with so many teeth, bytes.
+
+    `size` is the edge of elements by the default one; the memory for a mesh goes with its inverse square.
+    """
+    return DERIVATION + (OF_MESH + OF_MESH_PER_TOOTH * teeth) / size**2
 
 
 def tell_memory(memory: float, what: str) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import fields, replace
-from functools import cache
+from functools import cache, partial
 from itertools import pairwise
 from pathlib import Path
 from types import SimpleNamespace
@@ -16,8 +16,9 @@ from scipy.integrate import solve_ivp
 
 from ltca.analysis.engines import HalfSpace, Hybrid, PlaneStrain
 from ltca.analysis.friction.losses import losses
-from ltca.analysis.time_run import Course, Samples, prepare_run, run_in_time
+from ltca.analysis.time_run import Course, Recorder, Samples, prepare_run, run_in_time
 from ltca.compliance.coefficients import load_coefficients
+from ltca.compliance.grids import GridCompliance
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.single_discs import single_discs
 from ltca.dynamics.contact_forces import ContactForces
@@ -73,6 +74,7 @@ def drive_of(name):
             first["robot-joint"], {"installation.held": "pin-wheel", "damping.ratio": 0.03}
         ),
         "paper, no offsets": with_fields(first["paper"], {"disc.equidistant_offset": 0.0, "disc.shifting_offset": 0.0}),
+        "paper, sloped in slices": with_fields(first["paper"], {"contact.slices": 3, "disc.lead_slope": 5e-4}),
         "paper, damped": with_fields(first["paper"], {"damping.ratio": 0.03}),
         "paper, rubs": with_fields(first["paper"], {**RUBBING, "damping.ratio": 0.03}),
         "bent pins": with_fields(
@@ -636,12 +638,29 @@ RESUMED = {
     "with an elastic ring": ("elastic ring", HalfSpace(), 5e-5),
     "of bodies that yield": ("paper", Hybrid(), 1e-4),
     "on contact grids": ("paper", HalfSpace(method="direct"), 1e-4),
-    "on contact grids in slices": ("paper, sliced", HalfSpace(method="direct"), 2e-6),
+    "on contact grids in slices": ("paper, sloped in slices", HalfSpace(method="direct"), 1e-4),
 }
 
 
-@pytest.mark.parametrize("case", ["paper", *(pytest.param(one, marks=pytest.mark.slow) for one in [*RESUMED][1:])])
-def test_a_resumed_run_without_damping_is_the_uninterrupted_one(case, often, coarse_derivations):
+@pytest.fixture
+def coarse_tilted_grids(monkeypatch):
+    """Four cells over half of each contact in slices: with the twelve of programs a run takes many minutes."""
+    of_drive = GridCompliance.of_drive.__func__
+
+    def coarse(cls, drive):
+        return of_drive(cls, drive, 4) if drive.contact.slices > 1 else of_drive(cls, drive)
+
+    monkeypatch.setattr(GridCompliance, "of_drive", classmethod(coarse))
+
+
+@pytest.mark.parametrize(
+    "case",
+    [
+        pytest.param(one, marks=NIGHTLY if "slices" in one else pytest.mark.slow if number else ())
+        for number, one in enumerate(RESUMED)
+    ],
+)
+def test_a_resumed_run_without_damping_is_the_uninterrupted_one(case, often, coarse_derivations, coarse_tilted_grids):
     """It departed by 7e-4 of the load after 380 rows: the solver began its step, contacts their places, anew."""
     name, engine, time = RESUMED[case]
     drive = drive_of(name)
@@ -653,6 +672,20 @@ def test_a_resumed_run_without_damping_is_the_uninterrupted_one(case, often, coa
             values, abs=1e-9 * np.abs(values).max(initial=0.0), nan_ok=True
         ), item.name
     assert again.evaluations == whole.evaluations
+
+
+@pytest.mark.slow
+def test_a_resumed_run_kept_the_grids_of_calls_that_the_uninterrupted_one_had_not(often, coarse_tilted_grids):
+    """Grids were solved from those that taking a run over had left; an uninterrupted run has none when it is saved."""
+    course, kept = Course.of_values("steady", 1e-4, 1500.0), []
+    prepare = partial(prepare_run, drive_of("paper, sloped in slices"), HalfSpace(method="direct"), course)
+    run_in_time(prepare(), samples=21, save=lambda state: kept.append(state()) if not kept else None)
+    run = prepare()
+    recorder = Recorder(run, 21)
+    recorder.resume(kept[0])
+    for disc in run.equation.contacts._model.discs:
+        assert isinstance(disc, GridCompliance)
+        assert not any(disc._kept)
 
 
 def test_a_checkpoint_of_another_shape_is_refused(often):
