@@ -244,7 +244,7 @@ def _many(angles: FloatArray) -> str:
 
 
 def _method(analyses: Analyses, summaries: Summaries, angles: FloatArray) -> list[tuple[str, str]]:
-    """What the values stand for: names and texts on positions, bodies, width and holes."""
+    """Method behind the values: names and texts on positions, bodies, width and holes."""
     many = _many(angles)
     sampling = f"values of {many}"
     if is_full_turn(angles):
