@@ -178,7 +178,9 @@ class Load:
         """Name of the light torque in messages, with the rule for one that is left out."""
         if not isinstance(self.light_torque, DerivedLightTorque):
             return "load.light_torque"
-        return f"load.light_torque, left out and so {LIGHT_DEFAULT} as written,"
+        zero = f"{LIGHT_WITHOUT_TORQUE:g} N·mm with load.torque = 0"
+        rule = LIGHT_DEFAULT if self.light_torque.written_torque > 0.0 else zero
+        return f"load.light_torque, left out and so {rule} as written,"
 
     @property
     def light_torque_words(self) -> str:
