@@ -15,7 +15,7 @@ import numpy as np
 sys.path[0] = str(Path(__file__).resolve().parents[1])  # the package fem, not the benchmark of that name
 
 from ltca.analysis.engines import Engine, HalfSpace, Hybrid
-from ltca.analysis.half_space_errors import MEASURED, likeness, measured
+from ltca.analysis.half_space_errors import MEASURED, body_fingerprint, likeness, measured
 from ltca.analysis.life.bearing_lives import bearing_lives
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.summary import summarise
@@ -62,6 +62,7 @@ def main() -> None:
         for key, value in found.items():
             told = known.get(name, {}).get("ratio", {}).get(key, float("nan"))
             print(f"{name:<12} {key:<20} {value:.3f}  told {told:.3f}", flush=True)
+        lines += ["", f"[{name}]", f'bodies = "{body_fingerprint(drive)}"']
         lines += ["", f"[{name}.ratio]", *(f"{key} = {value:.3f}" for key, value in found.items())]
         lines += ["", f"[{name}.likeness]", *(f"{key} = {value:.6g}" for key, value in likeness(drive).items())]
     if arguments.write:

@@ -14,6 +14,7 @@ from ltca.analysis.engines import Engine, describe_engine, lent_words
 from ltca.analysis.half_space_errors import half_space_words
 from ltca.analysis.life.bearing_lives import BearingLives, lives_over, passages_of_duty
 from ltca.analysis.life.life_text import life_content, life_lines
+from ltca.analysis.light_torque import light_torque_lines
 from ltca.analysis.memory_need import positions_together
 from ltca.analysis.pressure_safety import PressureOfTurns, PressureSafety
 from ltca.analysis.stiffness_by_part import StiffnessByPart, stiffness_by_part
@@ -241,6 +242,7 @@ def curve_lines(found: DriveCurves, title: str) -> list[str]:
             for words in [half_space_words(found.engine, drive) or lent_words(found.engine, drive)]
             if words
         ),
+        *(f"  {line}" for line in light_torque_lines({drive.case: drive})),
         f"  {floating:<40}  {_range(curve.backlash * ARCMIN)}′",
         *([f"  {UNDER_FORCES}"] if curve.displaced else []),
         f"  lost motion at ±{100.0 * curve.lost_motion_part:g} % of the rated torque   {_range(curve.lost_motion * ARCMIN)}′",

@@ -124,7 +124,7 @@ def sampling_warning(
         Whether extremes are refined between them. Where they are not, the angles have to see twice as many phases, of
         the holes, too.
     typed : str
-        How the user gives a number of positions over the turn.
+        How the user gives a number of positions over the turn; empty where the user cannot.
     """
     found = sampling(drive, crank_angle)
     teeth, holes = drive.disc.number_of_teeth, drive.number_of_holes or 1
@@ -139,7 +139,7 @@ def sampling_warning(
     )
     return (
         f"{found.positions} positions see {seen} phase{'s' if seen > 1 else ''} of the {what}: values over them alone say "
-        f"little of the turn; take {typed.format(enough)}"
+        "little of the turn" + (f"; take {typed.format(enough)}" if typed else "")
     )
 
 

@@ -23,7 +23,6 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from ltca.analysis.force_orders import ForceSpectrum, force_content
 from ltca.analysis.forces_in_motion import forces_in_motion
@@ -37,6 +36,7 @@ from ltca.dynamics.masses import drive_masses
 from ltca.dynamics.modes import Modes, solve_modes
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.placement import position_angles
+from ltca.output.threads import on_one_thread
 
 SPEEDS = 300
 """Evenly spaced speeds of a response; critical ones come to them."""
@@ -102,6 +102,7 @@ class ForcedVibration:
         return float(beyond[0]) if beyond.size else None
 
 
+@on_one_thread  # of tens of rows: more threads wait for each other ten times as long as they work
 def forced_vibration(found: Vibration, *, fastest: float | None = None, speeds: int = SPEEDS) -> ForcedVibration:
     """Return the response of a drive over the speed of its input.
 
@@ -126,9 +127,7 @@ def forced_vibration(found: Vibration, *, fastest: float | None = None, speeds: 
     drive = found.drive
     if drive.damping is None:
         raise DriveError(["damping.ratio: must be given (or damping.loss_factor) for a response over speed"])
-    # Matrices of some tens of rows: more threads of BLAS than one wait for each other ten times as long as they work.
-    with threadpool_limits(1):
-        return _respond(found, speed_range(drive)[1] if fastest is None else fastest, speeds)
+    return _respond(found, speed_range(drive)[1] if fastest is None else fastest, speeds)
 
 
 def _respond(found: Vibration, top: float, speeds: int) -> ForcedVibration:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -9,7 +10,9 @@ import numpy as np
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.compliance.grids import GridCompliance
 from ltca.compliance.response import ContactPressures, KindPressures
+from ltca.drive.parts import Drive
 from ltca.equilibrium.reducer import bearing_forces
+from ltca.output.case_texts import with_case_names
 
 
 def at_light_torque(analysis: LoadedAnalysis) -> LoadedAnalysis:
@@ -33,6 +36,18 @@ def at_light_torque(analysis: LoadedAnalysis) -> LoadedAnalysis:
         balanced=analysis.balanced_light,
         back=None,
     )
+
+
+def light_torque_lines(cases: Mapping[str, Drive], torque: float | None = None) -> list[str]:
+    """Return lines on the light torques that the file leaves out, for every screen with results at the light torque.
+
+    `torque` is the output torque in N·mm, that of each drive by default.
+    """
+    loads = {
+        name: drive.load if torque is None else replace(drive.load, torque=torque) for name, drive in cases.items()
+    }
+    words = {name: load.light_torque_words for name, load in loads.items()}
+    return with_case_names({name: [f"light torque {text}"] if text else [] for name, text in words.items()})
 
 
 def _unknown(pressures: ContactPressures) -> ContactPressures:

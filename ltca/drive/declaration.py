@@ -21,7 +21,7 @@ from pydantic.functional_validators import BeforeValidator
 
 from ltca.drive.materials import PARTS
 from ltca.drive.members.bearings import BearingName, NamedBearing
-from ltca.drive.members.operation import LIGHT_SHARE
+from ltca.drive.members.operation import LIGHT_DEFAULT
 from ltca.drive.names import Name
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import COUNT, Grows, QuantityCheck
@@ -299,7 +299,7 @@ def _values(hint: Any) -> tuple[str, str, tuple[str, ...], str]:
     return kind, unit, (), " and ".join(bounds)
 
 
-_IN_FILES = {"name": "that of the file", "load.light_torque": f"{100.0 * LIGHT_SHARE:g} % of load.torque"}
+_IN_FILES = {"name": "that of the file", "load.light_torque": LIGHT_DEFAULT}
 """What files have in the place of a default of the definition."""
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import unicodedata
 from functools import lru_cache
 from typing import Annotated, Any
@@ -12,8 +11,6 @@ from pydantic_core import PydanticCustomError
 
 LONGEST_NAME = 120
 """Bytes: file systems take 255 for a file, and names of figures go before it."""
-DIGITS = 12
-"""Hexadecimal digits of a hash in the name of a file."""
 UNPRINTED = ("Cc", "Cf", "Zl", "Zp")
 """Unicode categories of control and invisible characters: of zero width, joining, or changing the direction of text."""
 BLANK = "\u034f\u115f\u1160\u17b4\u17b5\u2800\u3164\uffa0"
@@ -23,25 +20,6 @@ PRINTED = "\u0600\u0601\u0602\u0603\u0604\u0605\u06dd\u070f\u08e2"
 JOINERS = "\u200c\u200d"
 """Part of the spelling within words of some scripts."""
 NAMING = f"must be a text of at most {LONGEST_NAME} bytes that can name a file, without /, \\, control and invisible characters"
-
-
-def shortened_name(text: str, most: int) -> str:
-    """Return a text of at most so many bytes for the name of a file: a longer one is cut and gets a hash of the whole.
-
-    Examples
-    --------
-    >>> shortened_name("paper_CS-1", 40), shortened_name("a" * 60, 20)
-    ('paper_CS-1', 'aaaaaaa_11ee391211c6')
-    """
-    if len(text.encode("utf-8", "replace")) <= most:
-        return text
-    head = text.encode("utf-8", "replace")[: most - DIGITS - 1].decode("utf-8", "ignore")
-    return f"{head}_{digest_of(text)}"
-
-
-def digest_of(text: str) -> str:
-    """Return `DIGITS` digits that tell a text from others."""
-    return hashlib.sha256(text.encode("utf-8", "replace")).hexdigest()[:DIGITS]
 
 
 def is_no_character(sign: str) -> bool:

@@ -18,7 +18,6 @@ import numpy as np
 
 from ltca.arrays import FloatArray
 from ltca.drive.members.width import needs_slices
-from ltca.drive.names import shortened_name
 from ltca.drive.parts import Disc, Drive, Inclination, PlacementErrors, Ring
 from ltca.drive.single_discs import single_discs
 from ltca.errors import DriveError
@@ -26,7 +25,7 @@ from ltca.export.flank_outline import FlankSpline, MadeFlank, follow_flank
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.length_profile import lead_relief
 from ltca.geometry.placement import Placement
-from ltca.output.file_names import file_word
+from ltca.output.file_names import file_word, shortened_file_name
 
 PARTS = ("disc", "pin-wheel", "pin-shaft", "carrier", "assembly")
 """What can be exported."""
@@ -201,7 +200,7 @@ class Part:
         """Of the names of its files."""
         moved = f"_compensated_{self.compensation:g}mm" if self.compensation else ""
         # Names of drives and cases have up to 120 bytes each, those of files 255.
-        return file_word(f"{shortened_name(f'{self.drive}_{self.case}', 160)}_{self.name}{moved}")
+        return file_word(f"{shortened_file_name(f'{self.drive}_{self.case}', 160)}_{self.name}{moved}")
 
     @property
     def remarks(self) -> tuple[str, ...]:

@@ -25,7 +25,7 @@ from ltca.figures.house_style import (
     STYLE,
     formula,
     save_figure,
-    shortened_name,
+    shortened_label,
 )
 from ltca.figures.shared_axes import LEAST_AMPLITUDE, Axis, Plane, order_axes, pressure_axis, torque_axes
 
@@ -86,7 +86,7 @@ def draw_torque_curve(curve: TorqueCurve, title: str, path: Path, plane: Plane |
             f"play: lost motion {_from_to(*lost)}′\nbetween ±{100.0 * curve.lost_motion_part:g} % of the rated torque (dashed)",
             fontsize=8.0,
         )
-        axes.set_title(shortened_name(title, 48))
+        axes.set_title(shortened_label(title, 48))
         if curve.loop is not None:
             axes.text(0.98, 0.02, f"mean and range\nover {angles}", transform=axes.transAxes, ha="right", fontsize=7.5)
         return _save(figure, path)
@@ -151,7 +151,7 @@ def draw_spectrum(spectrum: Spectrum, title: str, path: Path, plane: Plane | Non
         set_axis(axes, plane.y)
         axes.set_xlabel("order per turn of the crank")
         axes.set_ylabel("amplitude [″]")
-        axes.set_title(f"{shortened_name(title, 48)}; unexplained {spectrum.residual * ARCSEC:.2g}″ rms")
+        axes.set_title(f"{shortened_label(title, 48)}; unexplained {spectrum.residual * ARCSEC:.2g}″ rms")
         return _save(figure, path)
 
 
@@ -199,5 +199,5 @@ def draw_pressure(
             if bounded
             else f"{safety.largest:.0f} MPa, no limit"
         )
-        axes.set_title(f"{shortened_name(title, 40)}: {told} ({pin})")
+        axes.set_title(f"{shortened_label(title, 40)}: {told} ({pin})")
         return _save(figure, path)

@@ -10,7 +10,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from ltca.arrays import FloatArray
-from ltca.figures.house_style import COLOURS, INK, OTHERS, formula, shortened_name
+from ltca.figures.house_style import COLOURS, INK, OTHERS, formula, shortened_label
 from ltca.figures.shared_axes import Axis, axis_of
 
 DASHES: tuple[Any, ...] = ("-", (0, (4, 2)), (0, (1, 1.5)), (0, (6, 1.5, 1, 1.5)), (0, (8, 3)))
@@ -136,7 +136,7 @@ def set_axis(axes: Any, axis: Axis) -> None:
 def name_panel(axes: Any, name: str, across: int = 1) -> None:
     """Write a name above the left of a panel, shortened in its middle where panels `across` leave no room."""
     if name != UNNAMED_CASE:
-        axes.set_title(shortened_name(name, LETTERS[across]), loc="left", fontsize=8.5, color=INK, pad=3.0)
+        axes.set_title(shortened_label(name, LETTERS[across]), loc="left", fontsize=8.5, color=INK, pad=3.0)
 
 
 def label_all(figure: Figure, panels: Any, x_label: str, y_label: str) -> None:

@@ -16,7 +16,7 @@ from matplotlib.patches import Arc, Circle, Polygon
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.drive.parts import Drive, PinShaft, PinWheel
 from ltca.figures.free_labels import FreeLabels
-from ltca.figures.house_style import CRANK_ANGLE, STYLE, save_figure, shortened_name
+from ltca.figures.house_style import CRANK_ANGLE, STYLE, save_figure, shortened_label
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, X, Y
 
 STEEL, PIN, ROLLER, RACE, SHAFT = "#e9edf2", "#cfd6de", "#d9dde3", "#bfc8d2", "#c9cfd8"
@@ -57,7 +57,7 @@ def drive_figure(drive: Drive, analysis: LoadedAnalysis, position: int, case: st
             if len(discs) > 1:
                 axes.set_title(f"disc {number}, seen from the same side", fontsize=9.5)
         panels[0].set_ylabel("y [mm]")
-        name = shortened_name(drive.name + (f", {case}" if case else ""), 48)
+        name = shortened_label(drive.name + (f", {case}" if case else ""), 48)
         angle = shown[0].crank_angle
         # A name may hold a dollar sign: the formula stands in a text of its own.
         held = ", wheel held" if drive.wheel_is_held else ""

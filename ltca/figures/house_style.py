@@ -53,7 +53,7 @@ def formula(text: Any) -> Any:
     return text
 
 
-def shortened_name(name: str, letters: int) -> str:
+def shortened_label(name: str, letters: int) -> str:
     """Return a name with its middle left out where it has more letters than there is room for."""
     if len(name) <= letters:
         return name

@@ -17,7 +17,7 @@ from ltca.contact.tracked_grid import END_STRETCH
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
 from ltca.figures.curve_panels import MOST_CURVES, TWO_COLUMNS_FROM, draw_panels, name_panel
-from ltca.figures.house_style import COLOUR_MAP, COLOURS, OTHERS, STYLE, save_figure, shortened_name
+from ltca.figures.house_style import COLOUR_MAP, COLOURS, OTHERS, STYLE, save_figure, shortened_label
 from ltca.figures.run_figures import with_paper_number
 from ltca.geometry.flank import FlankProfile
 from ltca.output.file_names import file_words
@@ -257,7 +257,7 @@ def draw_roller_pressure(fields: xr.Dataset, case: str) -> Figure:
     )
     bar.set_ticks([tick for tick in ticks if tick <= top])
     bar.outline.set_visible(False)
-    figure.suptitle(f"{with_paper_number(shortened_name(case, 40), 31, fields)}: {title}, largest {top:.0f} MPa")
+    figure.suptitle(f"{with_paper_number(shortened_label(case, 40), 31, fields)}: {title}, largest {top:.0f} MPa")
     return figure
 
 

@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ltca.figures.field_scale import field_scale
-from ltca.figures.house_style import COLOURS, DASHED, INK, OTHERS, STYLE, save_figure, shortened_name
+from ltca.figures.house_style import COLOURS, DASHED, INK, OTHERS, STYLE, save_figure, shortened_label
 from ltca.quantities import SCALARS
 from ltca.studies.designs import SweepDesign
 from ltca.studies.execution.storage import StudyFolder
@@ -59,7 +59,7 @@ def study_figures(
 
 def _head(study: Study, rest: str) -> str:
     samples = f"{study.design.samples} samples × {study.positions} positions"
-    return f"{shortened_name(study.name, 40)}, {study.engine.compliance}: {samples}{rest}"
+    return f"{shortened_label(study.name, 40)}, {study.engine.compliance}: {samples}{rest}"
 
 
 def _panels(count: int, height: float, width: float = 3.4, most: int = 3) -> tuple[Figure, Any]:
@@ -133,7 +133,7 @@ def _responses(study: Study, design: SweepDesign, values: Mapping[str, Any]) -> 
                 axis.tick_params(labelleft=False)
             axis.yaxis.set_major_locator(mpl.ticker.MaxNLocator(3))
             if factor.is_text:
-                axis.set_xticks(range(len(factor.levels)), [shortened_name(str(level), 14) for level in factor.levels])
+                axis.set_xticks(range(len(factor.levels)), [shortened_label(str(level), 14) for level in factor.levels])
                 axis.margins(x=0.25)
             else:
                 axis.xaxis.set_major_locator(mpl.ticker.MaxNLocator(3))
@@ -185,7 +185,7 @@ def _ranking(study: Study, ranking: Mapping[str, Any]) -> Figure:
         colours = [OTHERS if is_chance(entry, path) else COLOURS[1] for path in shares]
         places = np.arange(len(shares))
         axis.barh(places, [100.0 * share for share in shares.values()], color=colours, height=0.7)
-        axis.set_yticks(places, [shortened_name(study.field_words(path), 40) for path in shares], fontsize=7.0)
+        axis.set_yticks(places, [shortened_label(study.field_words(path), 40) for path in shares], fontsize=7.0)
         axis.invert_yaxis()
         axis.grid(visible=False, axis="y")
         axis.set_xlim(0.0, max(1.0, 104.0 * max(shares.values(), default=0.0)))
@@ -196,7 +196,7 @@ def _ranking(study: Study, ranking: Mapping[str, Any]) -> Figure:
         axis.set_title(
             "\n".join(fill(line, 2 * TITLE_LETTERS // 3 + 8) for line in words.split("\n")), fontsize=8.0, loc="left"
         )
-    told = f"{shortened_name(study.name, 40)}: {ranking['method']}"
+    told = f"{shortened_label(study.name, 40)}: {ranking['method']}"
     letters = int(12.5 * figure.get_figwidth())
     told += f"\n{study.design.samples} samples; "
     if by_regression:

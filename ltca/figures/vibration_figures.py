@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from ltca.analysis.forced_vibration import ForcedVibration
 from ltca.analysis.vibration import Vibration, speed_range
 from ltca.drive.units.quantities import ARCSEC
-from ltca.figures.house_style import COLOURS, DASHED, MARK, OTHERS, STYLE, save_figure, shortened_name
+from ltca.figures.house_style import COLOURS, DASHED, MARK, OTHERS, STYLE, save_figure, shortened_label
 
 ROOM = 1.15
 """Frequencies drawn above the highest mode that an order meets, or that order at the largest speed."""
@@ -67,7 +67,7 @@ def draw_campbell(found: Vibration, fastest: float, title: str, path: Path) -> P
         axes.set_xlabel(SPEED)
         axes.set_ylabel("frequency [Hz]")
         axes.set_title(
-            f"{shortened_name(title, 40)}: eigenfrequencies over a turn, orders by turn of the input", fontsize=9.0
+            f"{shortened_label(title, 40)}: eigenfrequencies over a turn, orders by turn of the input", fontsize=9.0
         )
         return save_figure(figure, path)
 
@@ -104,7 +104,7 @@ def draw_response(answer: ForcedVibration, found: Vibration, title: str, path: P
         for axes in (above, below):
             _end(axes, answer)
             axes.legend(frameon=False, fontsize=7.0, loc="upper left", ncols=2)
-        above.set_title(shortened_name(title, 60))
+        above.set_title(shortened_label(title, 60))
         figure.align_ylabels()
         return save_figure(figure, path)
 

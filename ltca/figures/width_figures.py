@@ -9,7 +9,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from ltca.figures.curve_panels import case_names, lines_of
-from ltca.figures.house_style import INK, shortened_name
+from ltca.figures.house_style import INK, shortened_label
 
 PARTS = (
     ("pin", "pin_load", "z_pin", "pin_line_load", "pin_pressure_along_width", "wheel pin"),
@@ -45,7 +45,7 @@ def draw_along_width(figure: Figure, data: xr.Dataset, _: Any = None) -> None:
                 values = data[variable].values[case, position, pair]
                 grid[row, column].stairs(
                     values, edges, baseline=None, color=line.colour, linestyle=line.dashes, linewidth=1.4,
-                    label=shortened_name(names[case], LETTERS),
+                    label=shortened_label(names[case], LETTERS),
                 )  # fmt: skip
             told.append((int(pair), float(np.degrees(data["crank_angle"].values[position]))))
         which = f"{name}, where it carries most"

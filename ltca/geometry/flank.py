@@ -54,6 +54,38 @@ class CurvePoints(NamedTuple):
         return np.asarray((self.tangent.conjugate() * self.second).imag / np.abs(self.tangent) ** 3)
 
 
+LEAST_SQUARE = 1e-9
+"""Least S² of a trochoid with cusps."""
+
+
+def trochoid_curvature(
+    radius: FloatArray | float, eccentricity: FloatArray | float, pins: FloatArray | float, cosine: FloatArray | float
+) -> FloatArray:
+    """Return the curvature of the path of the pin centres over the disc, 1/mm, positive where the disc is convex.
+
+    (1 + z K² − K (1 + z) c)/(R S³) with K = e z/R and S² = 1 + K² − 2 K c.
+
+    Parameters
+    ----------
+    radius : float or array
+        Generating circle R of the pins, mm.
+    eccentricity : float or array
+        e, mm.
+    pins : float or array
+        Number z of wheel pins.
+    cosine : float or array
+        c, of the angle of a pin from the direction of the eccentric.
+
+    Examples
+    --------
+    >>> float(trochoid_curvature(60.0, 0.0, 40, 0.3))  # a circle
+    0.016666666666666666
+    """
+    shortening = np.asarray(eccentricity * pins / radius)
+    lever = np.sqrt(np.maximum(1.0 + shortening**2 - 2.0 * shortening * cosine, LEAST_SQUARE))
+    return np.asarray((1.0 + pins * shortening**2 - shortening * (1.0 + pins) * cosine) / (radius * lever**3))
+
+
 class CurveFrame(NamedTuple):
     """Moving frame of a curve over θ, with the speed |c′| and the rotation w dθ."""
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import re
 import sys
 import unicodedata
@@ -11,6 +12,8 @@ REFUSED = re.compile(r'[<>:"|?*%]|[ .](?=[ .]*$)')
 """Signs that Windows refuses, or leaves out at the end of a name, and the one by which they are written."""
 DEVICE = re.compile(r"(?:con|prn|aux|nul|(?:com|lpt)[0-9¹²³])(?: *\..*)?", re.IGNORECASE)
 """Names that Windows takes for devices, whatever ending they have."""
+DIGITS = 12
+"""Hexadecimal digits of a hash in the name of a file."""
 
 
 def file_words(names: Iterable[str], system: str = sys.platform) -> dict[str, str]:
@@ -45,6 +48,25 @@ def file_words(names: Iterable[str], system: str = sys.platform) -> dict[str, st
 def file_word(name: str, system: str = sys.platform) -> str:
     """Return one name as a part of names of files; of names that share a folder `file_words` tells the parts."""
     return file_words([name], system)[name]
+
+
+def shortened_file_name(text: str, most: int) -> str:
+    """Return a text of at most so many bytes for the name of a file: a longer one is cut and gets a hash of the whole.
+
+    Examples
+    --------
+    >>> shortened_file_name("paper_CS-1", 40), shortened_file_name("a" * 60, 20)
+    ('paper_CS-1', 'aaaaaaa_11ee391211c6')
+    """
+    if len(text.encode("utf-8", "replace")) <= most:
+        return text
+    head = text.encode("utf-8", "replace")[: most - DIGITS - 1].decode("utf-8", "ignore")
+    return f"{head}_{digest_of(text)}"
+
+
+def digest_of(text: str) -> str:
+    """Return `DIGITS` digits that tell a text from others."""
+    return hashlib.sha256(text.encode("utf-8", "replace")).hexdigest()[:DIGITS]
 
 
 def _on_windows(name: str) -> str:

@@ -313,10 +313,10 @@ def _pins(drive: Drive) -> Rows:
         rows.append(("shaft pins, as beams", f"⌀ {shaft.beam_diameter:g} mm, {reach}"))
         if (spring := shaft_pin_spring(drive)) is not None:
             between = [two_digits(one) for one in (spring.loaded_alike, spring.turned_alike)]
-            told = (
+            ranges = (
                 "" if drive.disc.number_of_discs == 1 else "; {:g} where discs carry alike, {:g} where they turn alike"
             )
-            words = f"pin_shaft.stiffness = {spring.stiffness:g} N/mm{told.format(*between)}"
+            words = f"pin_shaft.stiffness = {spring.stiffness:g} N/mm{ranges.format(*between)}"
             rows.append(("shaft pins, springs that turn as far", words))
     return rows
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from ltca.analysis.engines import Engine, describe_engine
 from ltca.analysis.friction.losses import KINDS
-from ltca.analysis.half_space_errors import half_space_caution
+from ltca.analysis.half_space_errors import half_space_cautions
 from ltca.analysis.life.bearing_lives import BearingLives
 from ltca.analysis.summary import refined_value
 from ltca.analysis.summary_rows import rows_of, with_residual_part
@@ -120,7 +120,7 @@ def answer_context(run: Run, drives: Mapping[str, Drive]) -> dict[str, Any]:
         "version": dataset.attrs["version"],
         "sentence": sentence,
         "state": state,
-        "caution": half_space_caution(run.engine, next(iter(run.drives.values()))),
+        "caution": "; ".join(half_space_cautions(run.engine, run.drives)),
         "verdicts": verdict_tables(run.checks),
         "summary": summary_tables(drives, run.summaries),
         "orders": orders_table(dataset, drives),

@@ -82,11 +82,13 @@ def verdict_tables(checks: Checks) -> list[Table]:
 
 
 def _reasons(each: Mapping[str, Check], cases: int) -> str:
-    """Why a value is not known, with the cases unless it is the same in all."""
-    owners: dict[str, list[str]] = {}
+    """Reasons for a missing value, with the names of the cases unless all have the same reason."""
+    names: dict[str, list[str]] = {}
     for case, check in each.items():
-        owners.setdefault(check.value.reason, []).append(case)
-    return "; ".join(reason if len(own) == cases else f"{', '.join(own)}: {reason}" for reason, own in owners.items())
+        names.setdefault(check.value.reason, []).append(case)
+    return "; ".join(
+        reason if len(affected) == cases else f"{', '.join(affected)}: {reason}" for reason, affected in names.items()
+    )
 
 
 def _urgency(line: tuple[Any, dict[str, Check]]) -> tuple[bool, bool, float]:

@@ -14,7 +14,7 @@ from ltca.drive.deviations import BoreErrors
 from ltca.drive.members.width import LARGEST_SLOPE
 from ltca.drive.parts import Drive, LengthProfile, PlacementErrors, RollerErrors
 from ltca.errors import counted
-from ltca.geometry.flank import CurveFrame, FlankProfile
+from ltca.geometry.flank import CurveFrame, FlankProfile, trochoid_curvature
 from ltca.geometry.interference import ROUNDING, drawn_interference
 from ltca.geometry.rotation import unit
 from ltca.reading.width_checks import find_lead_problems, slope_bound
@@ -166,17 +166,12 @@ def rounded_down(value: float) -> float:
 def _smallest_path_radius(radius: float, eccentricity: float, ratio: float) -> float:
     """Smallest convex radius of the pin-centre path, mm.
 
-    Its curvature (1 + z K² − K (1 + z) c)/(R (1 + K² − 2 K c)^(3/2)), K = e z/R, with c = cos ψ, is stationary at the ends of
-    c and where 3 (1 + z K² − K (1 + z) c) = (1 + z) (1 + K² − 2 K c).
+    Its curvature is stationary at the ends of c = cos ψ and where 3 (1 + z K² − K (1 + z) c) = (1 + z) (1 + K² − 2 K c).
     """
     shortening = eccentricity * ratio / radius
-    ends = (-1.0, 1.0)
     inside = (2.0 - ratio + (2.0 * ratio - 1.0) * shortening**2) / (shortening * (1.0 + ratio))
-    largest = max(
-        (1.0 + ratio * shortening**2 - shortening * (1.0 + ratio) * cosine)
-        / (radius * (1.0 + shortening**2 - 2.0 * shortening * cosine) ** 1.5)
-        for cosine in ((*ends, inside) if abs(inside) < 1.0 else ends)
-    )
+    cosines = np.array([-1.0, 1.0, *([inside] if abs(inside) < 1.0 else [])])
+    largest = float(trochoid_curvature(radius, eccentricity, ratio, cosines).max())
     return 1.0 / largest if largest > 0.0 else float("inf")
 
 

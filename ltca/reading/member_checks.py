@@ -12,7 +12,6 @@ from ltca.drive.fields import ANY, OWN
 from ltca.drive.least_torque import torque_problem
 from ltca.drive.members.first_stage import FirstStage
 from ltca.drive.members.main_bearing import axial_preload
-from ltca.drive.members.operation import LIGHT_SHARE
 from ltca.drive.members.pins import PinShaft, PinWheel, ShaftPinBeam, WheelPinBeam
 from ltca.drive.mistakes import entry_words
 from ltca.drive.parts import BearingRow, CrankSupport, Drive, MainBearing, Material, Preload
@@ -89,13 +88,6 @@ def _installation(drive: Drive) -> Iterator[str]:
     yield from (*parts, *find_pin_problems(drive), *_torques(drive), *_duty(drive), *_vibrations(drive))
 
 
-LIGHT_WORDS = (
-    "load.light_torque",
-    f"load.light_torque, left out and so {100.0 * LIGHT_SHARE:g} % of load.torque as written,",
-)
-"""Names of a light torque that is given, and of one that is left out."""
-
-
 def _torques(drive: Drive) -> Iterator[str]:
     """Torques too small to be balanced."""
     if drive.tooth_number_difference == 0:
@@ -104,9 +96,7 @@ def _torques(drive: Drive) -> Iterator[str]:
     yield from found
     # One left out follows from the torque, which is to blame for both.
     if not (found and drive.load.leaves_out_light_torque):
-        yield from torque_problem(
-            drive, LIGHT_WORDS[drive.load.leaves_out_light_torque], drive.load.light_torque, zero=False
-        )
+        yield from torque_problem(drive, drive.load.light_torque_name, drive.load.light_torque, zero=False)
     for number, entry in enumerate(drive.duty):
         yield from torque_problem(drive, f"duty.{number}.torque", entry.torque, zero=False)
 

@@ -21,7 +21,7 @@ from ltca.analysis.engines import (
 )
 from ltca.analysis.extremes import RESOLVED, sampling_warning
 from ltca.analysis.life.bearing_lives import BearingLives, bearing_lives
-from ltca.analysis.light_torque import at_light_torque
+from ltca.analysis.light_torque import at_light_torque, light_torque_lines
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse_cases
 from ltca.analysis.reactions import relieved_rows_warning
 from ltca.analysis.results import case_arrays, labelled_results
@@ -160,7 +160,8 @@ def _run(question: Question, memory: Memory, file: DriveFile, name: str) -> dict
     told = [*analysis.warnings, relieved_rows_warning(analysis), *odd_proportions(analysis.as_written)]
     angles = analysis.full.crank_angle
     if fine:
-        told.append(sampling_warning(analysis.drive, angles))
+        told.append(sampling_warning(analysis.drive, angles, typed=""))
+    told += light_torque_lines({name: analysis.drive})
     if failure:
         told.insert(0, f"partial, some positions have no answer: {failure}")
     run = Run(

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import gc
 
-from threadpoolctl import threadpool_limits
-
+from ltca.output.threads import use_one_thread
 from ltca.reading.drive_file import shipped_drive
 from ltca.studio.answers import COARSE, FINE, Memory, Question, answer
 
-threadpool_limits(1)
+use_one_thread()
 
 # Tables of laws, compiled templates and whatever libraries load late: of any drive.
 for _quality in (COARSE, FINE):

@@ -10,10 +10,11 @@ import pytest
 
 from ltca.commands.actions import reduced_model
 from ltca.commands.program import main
-from ltca.drive.names import LONGEST_NAME, names_a_file, shortened_name
+from ltca.drive.names import LONGEST_NAME, names_a_file
 from ltca.errors import PlaceError
 from ltca.export.simulators.files import file_names, model_name
 from ltca.export.simulators.mujoco_model import comment
+from ltca.output.file_names import shortened_file_name
 from ltca.output.files import whole_file
 from ltca.output.run_folder import claimed_folder
 from ltca.reading.drive_file import shipped_drive
@@ -45,7 +46,7 @@ def test_the_longest_names_fit_while_they_are_written(kind, tmp_path):
 
 def test_a_cut_name_tells_what_was_cut():
     for most in (20, 60):
-        names = {shortened_name("ä" * 60 + end, most) for end in "abc"}
+        names = {shortened_file_name("ä" * 60 + end, most) for end in "abc"}
         assert len(names) == 3
         assert all(len(name.encode()) <= most for name in names)
 
@@ -73,6 +74,41 @@ def test_a_file_made_from_another_case_is_not_replaced(drives, capsys, monkeypat
     assert "a_b_c.mo was made from drive a_b, case c, drive a, case b_c would replace it: choose another --out" in said
     assert said.count("\n") == 1
     assert first.read_text() == "a model"
+
+
+@pytest.mark.parametrize("first", [("a-b", "c"), ("a_b", "c")])
+def test_names_that_differ_in_a_hyphen_are_one_model_and_refused_in_one_folder(first, tmp_path, capsys, monkeypatch):
+    """ "a-b" with "c" and "a_b" with "c" are both "a_b_c": the second run into a folder ends before its work."""
+    monkeypatch.setattr(reduced_model, "reduce_drive", lambda *_: pytest.fail("the computation has started"))
+    second = {"a-b": "a_b", "a_b": "a-b"}[first[0]]
+    head = shipped_drive().split("[[case]]")[0].replace('direction = "ccw" ', 'speed = 1500.0\ndirection = "ccw" ', 1)
+    cases = '[[case]]\nname = "c"\n'
+    (tmp_path / "d.toml").write_text(
+        re.sub(r'(?m)^name = "paper"', f'name = "{second}"', head) + cases, encoding="utf-8"
+    )
+    model = tmp_path / "out" / "a_b_c.mo"
+    origins = {model.name: f"drive {first[0]}, case c"}
+    with claimed_folder(model.parent, "export", adding=True, origins=origins), whole_file(model) as part:
+        part.write_text("a model")
+    words = ["--for", "modelica", "--compliance", "half-space", "--out", str(model.parent)]
+    assert main(["export", str(tmp_path / "d.toml"), *words]) == 2
+    said = capsys.readouterr().err
+    assert f"a_b_c.mo was made from drive {first[0]}, case c, drive {second}, case c would replace it" in said
+    assert model.read_text() == "a model"
+
+
+def test_cases_of_one_file_that_differ_in_a_hyphen_are_refused_in_one_folder(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(reduced_model, "reduce_drive", lambda *_: pytest.fail("the computation has started"))
+    head = shipped_drive().split("[[case]]")[0].replace('direction = "ccw" ', 'speed = 1500.0\ndirection = "ccw" ', 1)
+    cases = '[[case]]\nname = "x-y"\n[[case]]\nname = "x_y"\n'
+    (tmp_path / "d.toml").write_text(head + cases, encoding="utf-8")
+    model = tmp_path / "out" / "paper_x_y.mo"
+    origins = {model.name: "drive paper, case x-y"}
+    with claimed_folder(model.parent, "export", adding=True, origins=origins), whole_file(model) as part:
+        part.write_text("a model")
+    words = ["--for", "modelica", "--compliance", "half-space", "--out", str(model.parent), "--case", "x_y"]
+    assert main(["export", str(tmp_path / "d.toml"), *words]) == 2
+    assert "made from drive paper, case x-y, drive paper, case x_y would replace it" in capsys.readouterr().err
 
 
 def test_a_file_of_the_same_case_is_replaced_and_its_origin_kept(tmp_path):

@@ -124,8 +124,7 @@ def _write_manual(arguments: argparse.Namespace) -> int:
         raise DriveError(idle)
     out: Path = arguments.out or MANUAL_FOLDER
     require_folder(out)
-    from threadpoolctl import threadpool_limits
-
+    from ltca.output.threads import on_one_thread
     from validation.manual.kept import KeptOutcomes
     from validation.manual.page import file_names, printed_difference, verdict_word, write_index, write_page
     from validation.manual.register import chosen_cases
@@ -134,12 +133,11 @@ def _write_manual(arguments: argparse.Namespace) -> int:
     kept = KeptOutcomes(folder=out / KEPT)
     with claimed_folder(out, "validate", writes=file_names(cases), beside=(KEPT,)):
         outcomes, times = [], []
-        # One thread: sums in another order would change last digits.
-        with steps() as show, threadpool_limits(limits=1):
+        with steps() as show:
             for number, case in enumerate(cases, start=1):
                 show(f"[{number}/{len(cases)}] {case.title}")
                 began = time.perf_counter()
-                outcome, was_kept = kept.get(case)
+                outcome, was_kept = on_one_thread(kept.get)(case)
                 times.append(f"{'kept':>8}" if was_kept else f"{time.perf_counter() - began:>6.1f} s")
                 outcomes.append(outcome)
                 # An interruption leaves the pages of what is finished.
@@ -159,18 +157,16 @@ def _write_manual(arguments: argparse.Namespace) -> int:
 
 
 def _run_and_write(plan: Plan, out: Path) -> int:
-    from threadpoolctl import threadpool_limits
-
     from ltca.output.progress import steps
+    from ltca.output.threads import on_one_thread
     from validation.report.headline import write_files
     from validation.report.page import write_report
     from validation.rows import failed_rows
     from validation.study import run_validation
 
-    # One thread: sums in another order would change last digits, and a resumed run shall end with the same bytes.
-    with steps() as show, threadpool_limits(limits=1):
+    with steps() as show:
         progress = _Progress(plan, show)
-        study = run_validation(plan, out / KEPT, progress.step, progress.say)
+        study = on_one_thread(run_validation)(plan, out / KEPT, progress.step, progress.say)
         progress.step("report")
         paths = [write_report(study, out / "report.html"), *write_files(study, out)]
     failed = failed_rows(study.rows)

@@ -48,6 +48,11 @@ from ltca.output.provenance import code_version
 
 NEWTON_METRE = 1e3
 """N·mm of 1 N·m."""
+NOT_IDENTIFIED = (
+    "orders without a name are below the residual of the fit: the table needs these terms, but they are not identified as "
+    "motions of the drive"
+)
+"""Meaning of ``identified = false``."""
 FORMAT = 3
 """Of the JSON file; a later one says so."""
 BRISTLE_ANGLE = 1e-3
@@ -462,11 +467,17 @@ def _content(found: ReducedModel) -> dict[str, Any]:
                 {
                     "order": order.value,
                     "name": order.name,
+                    "identified": bool(order.name),
                     "cos_rad": table.cosine[place].tolist(),
                     "sin_rad": table.sine[place].tolist(),
                 }
                 for place, order in enumerate(table.orders)
             ],
+            "not_identified": {
+                "count": sum(not order.name for order in table.orders),
+                "rms_rad": table.unidentified.tolist(),
+                "words": NOT_IDENTIFIED,
+            },
             "turns": table.turns,
             "positions": table.positions,
         },
@@ -489,6 +500,7 @@ def _content(found: ReducedModel) -> dict[str, Any]:
                 {
                     "order": order.value,
                     "name": order.name,
+                    "identified": bool(order.name),
                     "cos_ccw": float(factor.cosine[1, place]),
                     "sin_ccw": float(factor.sine[1, place]),
                     "cos_cw": float(factor.cosine[0, place]),

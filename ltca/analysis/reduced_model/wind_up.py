@@ -74,6 +74,12 @@ class WindUp:
         return float(self.mean[middle - 1]), float(self.mean[middle])
 
     @property
+    def unidentified(self) -> FloatArray:
+        """Root mean square of all orders without a name together, shape (nodes,), rad."""
+        unnamed = np.array([not order.name for order in self.orders], dtype=bool)
+        return np.asarray(np.sqrt(0.5 * np.sum(self.cosine[unnamed] ** 2 + self.sine[unnamed] ** 2, axis=0)))
+
+    @property
     def play(self) -> float:
         """Mean over the crank angle, rad."""
         low, high = self.stops

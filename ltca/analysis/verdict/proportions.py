@@ -1,4 +1,4 @@
-"""What looks odd in the sizes of a drive: proportions beside those of published drives, as of diameters for radii, and printed
+"""Notes on unusual sizes of a drive: proportions outside the span of published drives, diameters given for radii, and printed
 flanks without play.
 
 Nothing is judged by it: a note names the proportion, the span of published drives and the radius that may be a diameter. Holes

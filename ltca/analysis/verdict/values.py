@@ -14,6 +14,7 @@ from ltca.analysis.half_width_guard import HALF_WIDTH_BOUND
 from ltca.analysis.life.bearing_lives import bearing_lives
 from ltca.analysis.life.equivalent_load import covers_whole_turns
 from ltca.analysis.life.life_text import life_summary
+from ltca.analysis.light_torque import light_torque_lines
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.analysis.results import case_arrays
 from ltca.analysis.summary import refined_value
@@ -156,6 +157,7 @@ def notes(analysis: LoadedAnalysis) -> list[str]:
     found = [*analysis.warnings, *odd_proportions(analysis.as_written), yielding_parts(drive).words]
     beside = analysis.engine_words, analysis.width_words, analysis.hole_words, analysis.share_words
     found += [words for words in beside if words]
+    found += light_torque_lines({drive.case: drive}, analysis.torque)
     if shaft is not None and shaft.stiffness is not None and analysis.engine.compliance == "half-space":
         disc = drive.materials.disc.youngs_modulus * drive.disc.thickness
         if shaft.stiffness > STIFF_PINS * disc:

@@ -18,8 +18,9 @@ from ltca.analysis.drive_curves import (
     solve_curves,
 )
 from ltca.analysis.engines import Engine, describe_engine
-from ltca.analysis.half_space_errors import half_space_words
+from ltca.analysis.half_space_errors import half_space_notes
 from ltca.analysis.life.life_text import life_lines
+from ltca.analysis.light_torque import light_torque_lines
 from ltca.drive.parts import Drive
 from ltca.output.file_names import file_words
 from ltca.output.files import write_json
@@ -77,8 +78,10 @@ def solve_and_write(
     if not arguments.no_page:
         sections = _sections(every)
         loads = dict.fromkeys(drive.load_words() for drive in cases.values())
-        words = half_space_words(engine, next(iter(cases.values())))
-        told = "; ".join(filter(None, (f"curves at {', '.join(loads)}, {describe_engine(engine)}", words)))
+        notes = half_space_notes(engine, cases)
+        told = "; ".join(
+            [f"curves at {', '.join(loads)}, {describe_engine(engine)}", *notes, *light_torque_lines(cases)]
+        )
         page = StudyPage(name=file.name, told=told, sections=sections, made=engine.options, text=file.text)
         files.append(write_study_page(page, out))
     print("results: " + ", ".join(map(str, files)))

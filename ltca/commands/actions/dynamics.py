@@ -13,7 +13,7 @@ from ltca.analysis.drive_curves import fewest_turns
 from ltca.analysis.engines import Engine, describe_engine
 from ltca.analysis.force_dataset import force_dataset
 from ltca.analysis.forced_vibration import ForcedVibration, forced_vibration, response_content, response_notes
-from ltca.analysis.half_space_errors import half_space_words
+from ltca.analysis.half_space_errors import half_space_notes, half_space_words
 from ltca.analysis.vibration import (
     TORQUE_PARTS,
     Vibration,
@@ -107,8 +107,8 @@ def solve_and_write(
     files.append(out / "dynamics.json")
     if not arguments.no_page:
         loads = dict.fromkeys(drive.load_words() for drive in cases.values())
-        words = half_space_words(engine, next(iter(cases.values())))
-        told = "; ".join(filter(None, (f"vibrations at {', '.join(loads)}, {describe_engine(engine)}", words)))
+        notes = half_space_notes(engine, cases)
+        told = "; ".join([f"vibrations at {', '.join(loads)}, {describe_engine(engine)}", *notes])
         sections = [
             section
             for name, found in every.items()

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from ltca.analysis.engines import Engine, describe_engine
 from ltca.analysis.extremes import is_full_turn, sampling_warning
-from ltca.analysis.half_space_errors import half_space_caution
+from ltca.analysis.half_space_errors import half_space_cautions
 from ltca.analysis.life.bearing_lives import BearingLives, bearing_lives
 from ltca.analysis.life.equivalent_load import covers_whole_turns
-from ltca.analysis.light_torque import at_light_torque
+from ltca.analysis.light_torque import at_light_torque, light_torque_lines
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse_cases
 from ltca.analysis.reactions import relieved_rows_warning
 from ltca.analysis.results import labelled_results
@@ -29,6 +29,7 @@ from ltca.drive.parts import Drive
 from ltca.drive.unit_mistakes import unit_warnings
 from ltca.drive.yielding_parts import yielding_parts
 from ltca.errors import ConvergenceError, CycloError
+from ltca.output.case_texts import with_case_names
 from ltca.output.files import whole_file, write_json
 from ltca.output.labelled import LabelledDataset
 from ltca.output.netcdf import write_netcdf
@@ -118,12 +119,13 @@ def solve_and_write(task: RunTask, out: Path) -> int:
     method, warnings = _method(analyses, summaries, angles), _warnings(analyses, summaries, angles)
     proportions = _proportions(analyses)
     lives = {name: _lives(analysis) for name, analysis in analyses.items()}
-    print(_verdicts(checks, proportions, half_space_caution(engine, next(iter(cases.values())))))
+    print(_verdicts(checks, proportions, half_space_cautions(engine, cases)))
     print(run_table(analyses, summaries, lives, loads if others else {}))
-    lines = [*whose_stiffness(analyses), *_light_torques(analyses), *lives_told(lives)]
+    light_torques = light_torque_lines(cases, torque)
+    lines = [*whose_stiffness(analyses), *light_torques, *lives_told(lives)]
     print("\n".join([*lines, *(text for _, text in method), *warnings]))
     if task.page:
-        told = [*warnings, *(f"warning: {one}" for one in told_of_cases(proportions))]
+        told = [*warnings, *(f"warning: {one}" for one in with_case_names(proportions))]
         with steps() as show:
             show("page")
             files.append(_write_page(task, analyses, dataset, summaries, checks, lives, told, method, out))
@@ -208,15 +210,15 @@ def _proportions(analyses: Analyses) -> dict[str, list[str]]:
     }
 
 
-def _verdicts(checks: dict[str, list[Check]], proportions: dict[str, list[str]], caution: str) -> str:
+def _verdicts(checks: dict[str, list[Check]], proportions: dict[str, list[str]], cautions: Sequence[str]) -> str:
     """A line for each case with the check nearest to its limit, then how far the engine is off, and unusual proportions."""
     if not checks:
         return "no verdict on partial results"
     width = max(map(len, checks))
     told = ["verdict, with the check nearest to its limit"]
     told += [f"  {name:<{width}}  {verdict_line(each)}" for name, each in checks.items()]
-    told += [f"  {caution}"] if caution else []
-    told += [f"  note: {note}" for note in told_of_cases(proportions)]
+    told += [f"  {caution}" for caution in cautions]
+    told += [f"  note: {note}" for note in with_case_names(proportions)]
     return "\n".join([*told, "  every check, what drives it and would mend it: cyclo check", ""])
 
 
@@ -237,18 +239,12 @@ def _draw(dataset: LabelledDataset, fields: Dataset | None, cases: dict[str, Dri
             advance(path.name)
 
 
-def _light_torques(analyses: Analyses) -> list[str]:
-    """Lines on light torques that the file leaves out."""
-    words = {name: analysis.drive.load.light_torque_words for name, analysis in analyses.items()}
-    return [f"light torque {text}" for text in told_of_cases({name: [one] for name, one in words.items() if one})]
-
-
 def _many(angles: FloatArray) -> str:
     return f"{angles.size} positions" if angles.size > 1 else f"1 position, φ_C = {angles[0]:g} rad"
 
 
 def _method(analyses: Analyses, summaries: Summaries, angles: FloatArray) -> list[tuple[str, str]]:
-    """What the values stand for: names and texts on positions, bodies, width and holes."""
+    """Method behind the values: names and texts on positions, bodies, width and holes."""
     many = _many(angles)
     sampling = f"values of {many}"
     if is_full_turn(angles):
@@ -261,7 +257,7 @@ def _method(analyses: Analyses, summaries: Summaries, angles: FloatArray) -> lis
         for one in analyses.values()
         for row in (("bodies", one.engine_words), ("width", one.width_words), ("holes", one.hole_words))
     }
-    shares = told_of_cases({name: [one.share_words] * bool(one.share_words) for name, one in analyses.items()})
+    shares = with_case_names({name: [one.share_words] * bool(one.share_words) for name, one in analyses.items()})
     return [("sampling", sampling), *sorted(row for row in found if row[1]), *(("disc shares", one) for one in shares)]
 
 
@@ -275,22 +271,4 @@ def _warnings(analyses: Analyses, summaries: Summaries, angles: FloatArray) -> l
             found.append("extremes are those of the positions: one between them has no answer")
         before = unit_warnings(analysis.as_written, analysis.torque)  # told before the work began
         warnings[name] = [warning for warning in found if warning is not None and warning not in before]
-    return [f"warning: {text}" for text in told_of_cases(warnings)]
-
-
-def told_of_cases(texts: Mapping[str, Sequence[str]]) -> list[str]:
-    """Return texts of cases with the names of those that each is about, none where it is about all of them.
-
-    Examples
-    --------
-    >>> told_of_cases({"CS-1": ["few positions", "edges"], "CS-2": ["few positions"], "CS-3": ["few positions"]})
-    ['few positions', 'case CS-1: edges']
-    >>> told_of_cases({"CS-1": ["edges"], "CS-2": [], "CS-3": ["edges"]}), told_of_cases({"CS-1": ["edges"]})
-    (['cases CS-1, CS-3: edges'], ['edges'])
-    """
-    found = []
-    for text in dict.fromkeys(text for each in texts.values() for text in each):
-        of = [name for name, each in texts.items() if text in each]
-        named = f"case{'s' * (len(of) > 1)} {', '.join(of)}: " if len(of) < len(texts) else ""
-        found.append(named + text)
-    return found
+    return [f"warning: {text}" for text in with_case_names(warnings)]

@@ -11,7 +11,8 @@ from pathlib import Path
 
 from ltca.analysis.engines import describe_engine
 from ltca.analysis.extremes import sampling_warning
-from ltca.analysis.half_space_errors import half_space_words
+from ltca.analysis.half_space_errors import half_space_notes
+from ltca.analysis.light_torque import light_torque_lines
 from ltca.arrays import FloatArray
 from ltca.errors import DriveError
 from ltca.geometry.placement import position_angles
@@ -116,8 +117,8 @@ def _print(
 ) -> None:
     samples = f"{study.design.samples} samples × {study.positions} positions"
     print(f"{study.name}, {study.load_words()}: {samples}, {describe_engine(study.engine)}")
-    if words := half_space_words(study.engine, study.cases[0][1]):
-        print(words)
+    for line in (*half_space_notes(study.engine, dict(study.cases)), *light_torque_lines(dict(study.cases))):
+        print(line)
     if found.solved_positions:
         rate = found.solved_positions / found.seconds
         print(f"solved in {found.seconds:.1f} s, {rate:.0f} positions/s")

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from ltca.analysis.engines import Engine, describe_engine
-from ltca.analysis.half_space_errors import half_space_words
+from ltca.analysis.half_space_errors import half_space_notes, half_space_words
 from ltca.analysis.time_dataset import loads_by_kind, time_content, time_dataset
 from ltca.analysis.time_run import Checkpoint, Course, PreparedRun, TimeRun, prepare_run, run_in_time, samples_of
 from ltca.drive.parts import Drive
@@ -106,13 +106,12 @@ def run_and_write(
     if not arguments.no_page:
         loads = dict.fromkeys(drive.load_words() for drive in cases.values())
         told = f"run in time at {', '.join(loads)}, {describe_engine(engine)}"
-        words = half_space_words(engine, next(iter(cases.values())))
         sections = [
             section for name, found in every.items() for section in time_sections(name if len(every) > 1 else "", found)
         ]
         page = StudyPage(
             name=file.name,
-            told="; ".join(filter(None, (told, words))),
+            told="; ".join([told, *half_space_notes(engine, cases)]),
             sections=sections,
             made=engine.options,
             text=file.text,

@@ -94,20 +94,36 @@ LIGHT_SHARE = 0.03
 """Light torque as a part of the torque, where it is left out."""
 LIGHT_WITHOUT_TORQUE = 10_000.0
 """Light torque of a load of 0, where it is left out, N·mm."""
+LIGHT_DEFAULT = f"{100.0 * LIGHT_SHARE:g} % of load.torque"
+"""Default of the light torque, for screens and messages."""
 
 
 class DerivedLightTorque(float):
-    """Light torque of a load that leaves it out, N·mm, from the torque that the load was made with.
+    """Light torque of a load that leaves it out, N·mm: `LIGHT_SHARE` of a torque, or `LIGHT_WITHOUT_TORQUE` for 0.
 
     A changed torque (``--torque``, a study, a duty) keeps it, so results at the light torque stay comparable.
+
+    Attributes
+    ----------
+    written_torque : float
+        Torque that the load was made with, N·mm.
     """
 
-    __slots__ = ()
+    __slots__ = ("written_torque",)
+
+    written_torque: float
 
     @classmethod
     def of_torque(cls, torque: float) -> DerivedLightTorque:
-        """Return `LIGHT_SHARE` of a torque, N·mm; `LIGHT_WITHOUT_TORQUE` for 0."""
-        return cls(LIGHT_SHARE * torque if torque > 0.0 else LIGHT_WITHOUT_TORQUE)
+        """Derive the light torque from a torque, N·mm."""
+        derived = cls(LIGHT_SHARE * torque if torque > 0.0 else LIGHT_WITHOUT_TORQUE)
+        derived.written_torque = torque
+        return derived
+
+    @property
+    def origin(self) -> str:
+        """Rule that the value follows from."""
+        return f"{LIGHT_DEFAULT} as written" if self.written_torque > 0.0 else "load.torque is 0 as written"
 
 
 def _kept_if_derived(value: Any, check: Callable[[Any], float]) -> float:
@@ -154,18 +170,31 @@ class Load:
 
     @property
     def leaves_out_light_torque(self) -> bool:
-        """Whether nobody wrote the light torque."""
+        """Whether the light torque is derived because the file leaves it out."""
         return isinstance(self.light_torque, DerivedLightTorque)
 
     @property
+    def light_torque_name(self) -> str:
+        """Name of the light torque in messages, with the rule for one that is left out."""
+        if not isinstance(self.light_torque, DerivedLightTorque):
+            return "load.light_torque"
+        zero = f"{LIGHT_WITHOUT_TORQUE:g} N·mm with load.torque = 0"
+        rule = LIGHT_DEFAULT if self.light_torque.written_torque > 0.0 else zero
+        return f"load.light_torque, left out and so {rule} as written,"
+
+    @property
     def light_torque_words(self) -> str:
-        """Where a light torque that is left out comes from; empty for one that is given."""
-        if not self.leaves_out_light_torque:
+        """Value and origin of a light torque that is left out, and whether it exceeds the torque; empty for a given one."""
+        if not isinstance(self.light_torque, DerivedLightTorque):
             return ""
         value = f"{self.light_torque / 1000.0:.6g} N·m"
-        if self.light_torque == LIGHT_WITHOUT_TORQUE:
-            return f"{value}: load.light_torque is left out, and load.torque is 0 as written"
-        return f"{value}: load.light_torque is left out, {100.0 * LIGHT_SHARE:g} % of load.torque as written"
+        if self.light_torque > self.torque > 0.0:
+            return (
+                f"{value} ({self.light_torque.origin}) exceeds the torque {self.torque / 1000.0:.6g} N·m: results at the "
+                "light torque are not those of a lightly loaded drive, load.light_torque states another"
+            )
+        comma = "," if self.light_torque.written_torque > 0.0 else ", and"
+        return f"{value}: load.light_torque is left out{comma} {self.light_torque.origin}"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)

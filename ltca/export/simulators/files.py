@@ -7,13 +7,13 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from ltca.drive.names import digest_of
 from ltca.errors import DriveError
 from ltca.export.simulators.functional_mockup_unit import write_unit
 from ltca.export.simulators.lookup_tables import csv_texts, readme_text
 from ltca.export.simulators.modelica_package import modelica_text
 from ltca.export.simulators.mujoco_model import mjcf_text
 from ltca.export.simulators.urdf_model import urdf_text
+from ltca.output.file_names import digest_of
 from ltca.output.files import whole_file, write_json
 
 CALLBACK, LAW = "mujoco_callback.py", "reduced_drive.py"

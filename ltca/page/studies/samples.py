@@ -7,6 +7,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from ltca.analysis.engines import describe_engine
+from ltca.analysis.half_space_errors import half_space_notes
+from ltca.analysis.light_torque import light_torque_lines
 from ltca.arrays import FloatArray
 from ltca.drive.units.quantities import label
 from ltca.page.study_page import Curves, Factor, Mark, Responses, Section, StudyPage
@@ -70,6 +72,7 @@ def samples_page(study: Study, found: StudySummary, values: Mapping[str, FloatAr
         state = "fail"
     told = f"{study.load_words()}: {study.design.samples} samples × {study.positions} positions, {describe_engine(study.engine)}"
     made = {**study.engine.options, "positions": str(study.positions), "samples": str(study.design.samples)}
+    told = "; ".join([told, *half_space_notes(study.engine, dict(study.cases)), *light_torque_lines(dict(study.cases))])
     return StudyPage(
         name=study.name, told=told, sentence=" ".join(sentences), state=state, sections=sections, made=made
     )

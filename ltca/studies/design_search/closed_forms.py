@@ -19,6 +19,7 @@ from ltca.arrays import FloatArray
 from ltca.drive.members.judgement import ANYWHERE
 from ltca.drive.parts import contact_modulus
 from ltca.drive.units.quantities import ARCMIN
+from ltca.geometry.flank import trochoid_curvature
 from ltca.studies.design_search.requirements import CLEARANCES, Requirements
 from ltca.studies.design_search.sizes import Sizes, stack_length
 from ltca.studies.design_search.surroundings import seat_depth
@@ -149,10 +150,7 @@ def _locus(sizes: Sizes, cosine: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def _locus_curvature(sizes: Sizes, cosine: FloatArray) -> FloatArray:
-    K1 = (sizes.eccentricity * sizes.pins / sizes.pin_circle)[:, None]
-    z, R = sizes.pins[:, None], sizes.pin_circle[:, None]
-    S = np.sqrt(np.maximum(1.0 + K1**2 - 2.0 * K1 * cosine, TINY))
-    return np.asarray((1.0 + z * K1**2 - K1 * (1.0 + z) * cosine) / (R * S**3))
+    return trochoid_curvature(sizes.pin_circle[:, None], sizes.eccentricity[:, None], sizes.pins[:, None], cosine)
 
 
 def flank_values(sizes: Sizes, setting: Setting) -> dict[str, FloatArray]:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
+from ltca.output.threads import use_one_thread
 from ltca.reading.drive_file import load_drive
 from ltca.studies.batch_analysis import BatchSettings, analyse_samples
 from ltca.studies.quantities import quantities_for
 
-threadpool_limits(1)
+use_one_thread()
 
 # The tables of line contact do not depend on the drive; solving one position of any drive builds them all.
 _ANY = next(iter(load_drive("paper").cases.values()))

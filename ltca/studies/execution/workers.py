@@ -7,7 +7,6 @@ alone, so who solves it and when shows nowhere in them.
 from __future__ import annotations
 
 import logging
-import os
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, wait
 from concurrent.futures.process import BrokenProcessPool
@@ -18,6 +17,7 @@ from typing import Any, cast
 from ltca.errors import CycloError, FaultError
 from ltca.output.process_pools import become_worker, process_pool
 from ltca.output.progress import be_silent
+from ltca.output.threads import use_one_thread
 from ltca.studies.study import BatchResult, Study, run_batch
 
 SCHEDULER_TIMEOUT = 10.0
@@ -72,10 +72,7 @@ class Workers:
 
 def _calm_threads() -> None:
     """One thread a worker: threads of small dense algebra wait for each other (up to 40 times slower, measured)."""
-    from threadpoolctl import threadpool_limits
-
-    os.environ["OMP_NUM_THREADS"] = "1"
-    threadpool_limits(1)
+    use_one_thread()
     be_silent()
     become_worker()
 

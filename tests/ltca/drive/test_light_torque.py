@@ -12,8 +12,9 @@ import numpy as np
 import pytest
 
 from ltca.analysis.life.bearing_lives import at_entry
-from ltca.analysis.light_torque import at_light_torque
+from ltca.analysis.light_torque import at_light_torque, light_torque_lines
 from ltca.analysis.loaded_analysis import analyse
+from ltca.analysis.verdict.values import notes
 from ltca.commands.program import main
 from ltca.drive.declaration import declared_fields
 from ltca.drive.parts import Load
@@ -22,6 +23,7 @@ from ltca.errors import DriveError
 from ltca.page.derived import derived_rows
 from ltca.reading.drive_file import build_drive, load_drive, parse_drive, shipped_drive
 from ltca.reading.writing import drive_text
+from ltca.studio.answers import CACHED, COARSE, Memory, Question, answer
 
 ANGLE = np.array([0.3])
 STATED = "light_torque = 10000.0 "
@@ -82,7 +84,10 @@ def test_without_a_torque_it_is_ten_newton_metres():
     load = Load(torque=0.0)
     assert load.light_torque == 10_000.0
     assert load.light_torque_words == "10 N·m: load.light_torque is left out, and load.torque is 0 as written"
-    assert replace(load, torque=50.0).light_torque_words == load.light_torque_words
+    assert replace(load, torque=5e4).light_torque_words == load.light_torque_words
+    assert replace(load, torque=50.0).light_torque_words.startswith(
+        "10 N·m (load.torque is 0 as written) exceeds the torque 0.05 N·m: "
+    )
 
 
 @pytest.mark.parametrize("value", [float("nan"), 0.0, -1.0, "3 %", None])
@@ -171,3 +176,46 @@ def test_hashes_of_drives_that_state_ten_newton_metres_stay():
     assert cases["CS-1"].fingerprint() == "7f209deb5911bb17"
     assert load_drive("sleeved").cases["nominal"].fingerprint() == "02f147d624b0f529"
     assert json.dumps(cases["CS-1"].load.light_torque) == "10000.0"
+
+
+def test_a_torque_whose_three_percent_are_ten_newton_metres_was_told_to_be_0():
+    """3 % of 1e4/0.03 N·mm are the 10 N·m of a load of 0."""
+    load = Load(torque=1e4 / 0.03)
+    assert load.light_torque == pytest.approx(1e4)
+    assert load.light_torque_words == "10 N·m: load.light_torque is left out, 3 % of load.torque as written"
+    assert pickle.loads(pickle.dumps(Load(torque=0.0))).light_torque_words.endswith("load.torque is 0 as written")
+
+
+def test_no_line_told_that_a_derived_light_torque_exceeds_the_torque(drive):
+    """`--torque` below the light torque, which keeps following the torque of the file."""
+    analysis = analyse(drive, ANGLE, 5e3)
+    (line,) = light_torque_lines({"nominal": analysis.drive}, analysis.torque)
+    assert line.startswith("light torque 6 N·m (3 % of load.torque as written) exceeds the torque 5 N·m: ")
+    assert line in notes(analysis)  # of `check`
+
+
+def test_only_run_and_show_told_of_a_light_torque_left_out(drive):
+    line = f"light torque {WORDS}"
+    assert light_torque_lines({"a": drive, "b": drive}) == [line]
+    stated = drive.with_fields({"load.light_torque": 6e3})
+    assert light_torque_lines({"a": drive, "b": stated}) == [f"case a: light torque {WORDS}"]
+    assert light_torque_lines({"a": stated}) == []
+    assert line in notes(analyse(drive, ANGLE))
+    found = answer(Question(text=LEFT_OUT, source="x", case="nominal", quality=COARSE, compliance=CACHED), Memory())
+    assert line in found["warnings"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "command",
+    [
+        ["check", "--positions", "4", "--no-advice"],
+        ["curves"],
+        ["tolerance", "--samples", "8", "--positions", "2"],
+    ],
+)
+def test_commands_with_results_at_the_light_torque_print_it(command, tmp_path, capsys):
+    path = tmp_path / "small.toml"
+    path.write_text(LEFT_OUT, encoding="utf-8")
+    main([command[0], str(path), *command[1:], "--compliance", "half-space", "--no-page", "--out", str(tmp_path / "o")])
+    assert f"light torque {WORDS}\n" in capsys.readouterr().out

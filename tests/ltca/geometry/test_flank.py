@@ -10,7 +10,7 @@ from scipy.optimize import minimize_scalar
 
 import ltca.geometry.flank
 from ltca.errors import ConvergenceError
-from ltca.geometry.flank import FlankProfile
+from ltca.geometry.flank import FlankProfile, trochoid_curvature
 
 
 def flank_of_equation_1(drive, theta):
@@ -179,3 +179,13 @@ def test_root_and_tip_radius(drives):
         assert radius.min() == pytest.approx(profile.root_radius, abs=2e-5 * profile.eccentricity)
         assert radius.max() == pytest.approx(profile.tip_radius, abs=2e-4 * profile.eccentricity)
         assert np.argmin(radius) == 0 or radius[0] == pytest.approx(radius.min(), rel=1e-12)
+
+
+@pytest.mark.parametrize(("radius", "eccentricity", "pins"), [(60.0, 1.0, 40), (88.0, 4.0, 14)])
+def test_the_curvature_of_the_trochoid_was_written_three_times(radius, eccentricity, pins):
+    """At the ends (1 ± z K)/(R (1 ± K)²) by hand, on a circle 1/R."""
+    shortening = eccentricity * pins / radius
+    ends = [(1.0 + way * pins * shortening) / (radius * (1.0 + way * shortening) ** 2) for way in (-1.0, 1.0)]
+    found = trochoid_curvature(radius, eccentricity, pins, np.array([1.0, -1.0]))
+    np.testing.assert_allclose(found, ends, rtol=1e-12)
+    np.testing.assert_allclose(trochoid_curvature(radius, 0.0, pins, np.array([0.3])), 1.0 / radius, rtol=1e-15)

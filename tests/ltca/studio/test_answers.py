@@ -9,9 +9,10 @@ import re
 import numpy as np
 import pytest
 
-from ltca.analysis.extremes import RESOLVED, sampling
+from ltca.analysis.extremes import RESOLVED, sampling, sampling_warning
 from ltca.commands.program import main
 from ltca.drive.declaration import declared_fields
+from ltca.geometry.placement import position_angles
 from ltca.reading.arguments import SHIPPED_DRIVES
 from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
 from ltca.studio.answers import (
@@ -195,3 +196,12 @@ def test_mistakes_and_drives_without_an_answer_are_told():
     assert answer(asked(quality=DERIVATIVE, field="name"), Memory())["problems"][0]["text"].startswith(
         "name: must be a real number"
     )
+
+
+def test_the_studio_named_an_option_that_it_has_not():
+    """ "take --positions 17" stood among the warnings of the studio, which has no such option."""
+    drive = load_drive("paper").cases["CS-1"]
+    told = sampling_warning(drive, position_angles(13), typed="")
+    assert told is not None
+    assert told.endswith("values over them alone say little of the turn")
+    assert sampling_warning(drive, position_angles(13)).startswith(f"{told}; take --positions ")

@@ -6,8 +6,8 @@ import numpy as np
 
 from ltca.analysis.engines import HalfSpace
 from ltca.analysis.reduced_model import wind_up as wind_up_module
-from ltca.analysis.reduced_model.wind_up import frictionless, scattered_angles, wind_up
-from ltca.analysis.transmission_error_orders import fit_several, known_orders, named_orders
+from ltca.analysis.reduced_model.wind_up import WindUp, frictionless, scattered_angles, wind_up
+from ltca.analysis.transmission_error_orders import Order, fit_several, known_orders, named_orders
 
 TOO_WEAK = {
     "flank -1 wheel pins",
@@ -42,3 +42,18 @@ def test_the_export_named_orders_that_the_drive_has_not(paper_cases, monkeypatch
     amplitude = np.hypot(table.cosine, table.sine)
     for order, row in zip(table.orders, amplitude, strict=True):
         assert order.name or np.all(row <= table.residual), order
+
+
+def test_orders_below_the_residual_stood_among_the_named_ones_without_a_sum():
+    """Amplitudes of 5 and 12 µrad have the rms √((5² + 12²)/2) µrad; the named order is not in it."""
+    table = WindUp(
+        torque=np.array([1.0]),
+        mean=np.zeros(1),
+        orders=(Order(13.0, "flank, 1 z_C"), Order(12.07, ""), Order(2.5, "")),
+        cosine=1e-6 * np.array([[100.0], [3.0], [12.0]]),
+        sine=1e-6 * np.array([[0.0], [4.0], [0.0]]),
+        residual=np.array([2e-5]),
+        turns=1,
+        positions=8,
+    )
+    np.testing.assert_allclose(table.unidentified, 1e-6 * np.sqrt(84.5), rtol=1e-12)
