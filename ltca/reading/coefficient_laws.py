@@ -435,7 +435,8 @@ def _check_lone_entries(dataset: Labelled) -> Iterator[Check]:
 
     Its second difference, where load and contact move together along one wall, or the contact alone along another one, is
     compared with the second differences at the next stations. An entry that is wrong alone is large in its own alone. Where
-    another wall is nearer than the next station, what a patch does at its own place alone is no error: there is no law then.
+    another wall is nearer than the next station, what a patch does at its own place and the next is no error: there is no law of
+    these then.
     """
     boundary = dataset["station_boundary"].values
     x, y = dataset["station_x"].values, dataset["station_y"].values
@@ -456,16 +457,19 @@ def _check_lone_entries(dataset: Labelled) -> Iterator[Check]:
         approach, unit = dataset[f"disc_{name}"].values, near_field_unit(dataset, "disc", tilt)
         ratios = [0.0]
         for first, rows in enumerate(walls):
-            if nearest[first] > spacing[first]:
-                ratios.append(_out_of_line(approach[rows, rows], unit, together=True))
+            thin = nearest[first] <= spacing[first]
+            ratios.append(_out_of_line(approach[rows, rows], unit, together=True, beside_alone=thin))
             for second, columns in enumerate(walls[first + 1 :], first + 1):
                 if apart(rows, columns) > OUT_OF_LINE_DISTANCE * max(spacing[first], spacing[second]):
                     ratios.append(_out_of_line(approach[rows, columns], unit, together=False))
         yield Check(name=OUT_OF_LINE + also, value=max(ratios), lowest=0.0, highest=OUT_OF_LINE_LIMIT, reason=reason)
 
 
-def _out_of_line(block: FloatArray, unit: float, *, together: bool) -> float:
-    """Largest second difference of entries between two walls relative to the next ones; 0 below `LEAST_OUT_OF_LINE` units."""
+def _out_of_line(block: FloatArray, unit: float, *, together: bool, beside_alone: bool = False) -> float:
+    """Largest second difference of entries between two walls relative to the next ones; 0 below `LEAST_OUT_OF_LINE` units.
+
+    With `beside_alone` those of patches on themselves and on the next ones are left out.
+    """
     bent = np.empty_like(block)
     if together:
         np.add(block[2:, 2:], block[:-2, :-2], out=bent[1:-1, 1:-1])
@@ -477,6 +481,10 @@ def _out_of_line(block: FloatArray, unit: float, *, together: bool) -> float:
         bent[0], bent[-1] = block[1] + block[-1], block[0] + block[-2]
     bent *= -0.5
     bent += block
+    if beside_alone:
+        own = np.arange(len(bent))
+        for step in (-1, 0, 1):
+            bent[own, (own + step) % len(bent)] = 0.0
     place = max((int(np.argmax(bent)), int(np.argmin(bent))), key=lambda each: abs(bent.flat[each]))
     row, column = np.unravel_index(place, bent.shape)
     # Where both move together an entry is in three differences of its own diagonal, otherwise of its own column: those two and
