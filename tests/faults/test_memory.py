@@ -26,9 +26,14 @@ from ltca.reading.drive_file import load_drive
 
 ROOT = Path(__file__).parents[2]
 PROGRAM = """
-import resource, sys
+import re, resource, sys
+from importlib import import_module
+from pathlib import Path
 from ltca.commands.program import main
-limit = int(float(sys.argv[1]))
+for name in ("fem.coefficients.dataset", "fem.commands.derive", "gmsh", "xarray", "scipy.sparse.linalg", "ltca.analysis.engines"):
+    import_module(name)
+used = 1024 * int(re.search(r"VmSize:\\s+(\\d+)", Path("/proc/self/status").read_text())[1])
+limit = used + int(float(sys.argv[1]))
 resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
 sys.exit(main(sys.argv[2:]))
 """
@@ -80,18 +85,29 @@ def test_turns_of_several_cases_are_searched_in_parts(monkeypatch):
 
 @pytest.mark.slow
 def test_the_memory_of_a_turn_does_not_grow_with_its_places(monkeypatch):
-    """Peak of the search in parts of 200 and of 50 positions, as a ratio: between 1 and 4 (what is kept stays)."""
+    """Peak of the search with some 1430 positions together and with 100.
+
+    The arrays of a part are proportional to its positions; as much again is left for what is kept of all parts (measured: 37 %).
+    """
     import tracemalloc
 
     analysis = analyse(load_drive("robot-joint").cases["nominal"], position_angles(13))
-    peaks = []
+    solve, peaks, largest = extremes.solve_at_output, [], []
+
+    def counted(model, drives, angle, *rest):
+        largest[-1] = max(largest[-1], np.size(angle))
+        return solve(model, drives, angle, *rest)
+
+    monkeypatch.setattr(extremes, "solve_at_output", counted)
     for most in (10_000, 100):
+        largest.append(0)
         monkeypatch.setattr(extremes, "positions_together", lambda _, most=most: most)
         tracemalloc.start()
         extremes.refine_extremes(analysis)
         peaks.append(tracemalloc.get_traced_memory()[1])
         tracemalloc.stop()
-    assert peaks[1] < 0.35 * peaks[0]
+    assert largest[0] > 10 * largest[1]
+    assert peaks[1] / peaks[0] < 2.0 * largest[1] / largest[0]
 
 
 def test_much_memory_is_told_before_the_work(capsys, monkeypatch, tmp_path):
@@ -154,11 +170,13 @@ def test_every_sparse_solver_is_asked_through_the_check():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("limit", [0.9e9, 1.1e9, 1.3e9])
-def test_too_little_memory_is_one_line(limit, tmp_path):
+@pytest.mark.skipif(not Path("/proc/self/status").is_file(), reason="the address space in use is read from /proc")
+@pytest.mark.parametrize("room", [0.3e9, 0.5e9, 0.8e9])
+def test_too_little_memory_is_one_line(room, tmp_path):
+    """Address space beyond that of the libraries, bytes: the derivation at this size takes 5 GB of memory."""
     words = ["derive", "paper", "--case", "CS-1", "--size", "0.4", "--out", str(tmp_path / "coefficients.nc")]
     done = subprocess.run(
-        [sys.executable, "-c", PROGRAM, str(limit), *words], capture_output=True, text=True, check=False
+        [sys.executable, "-c", PROGRAM, str(room), *words], capture_output=True, text=True, check=False
     )
     said = [line for line in done.stderr.splitlines() if line.startswith("cyclo: error: ")]
     assert done.returncode in (1, 2), done.stderr
