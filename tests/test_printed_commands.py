@@ -545,7 +545,7 @@ def way_of(words: list[str], read: frozenset[str]) -> tuple[object, ...]:
     place = " ".join(options.get("--out", []))
     if not any(name.startswith(place) for name in read):
         options.pop("--out", None)
-    for name in ("--seed", "--force"):
+    for name in ("--seed", "--force", "--workers"):
         options.pop(name, None)
     head = [{"requirements.toml": "examples/requirements/possible-paper.toml"}.get(word, word) for word in head]
     return (*head, *sorted((name, *values) for name, values in options.items()))

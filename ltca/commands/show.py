@@ -60,6 +60,7 @@ def execute(arguments: argparse.Namespace) -> int:
 def _show(cases: dict[str, Drive], angle: FloatArray, out: Path) -> None:
     from ltca.analysis.engines import describe_engine
     from ltca.analysis.loaded_analysis import analyse
+    from ltca.analysis.verdict.proportions import odd_proportions
     from ltca.figures.drive_picture import draw_drive
     from ltca.output.file_names import file_words
     from ltca.page.derived import derived_rows
@@ -70,6 +71,8 @@ def _show(cases: dict[str, Drive], angle: FloatArray, out: Path) -> None:
         analysis = analyse(drive, angle)
         for warning in analysis.warnings:
             print(f"  warning: {warning}")
+        for proportion in odd_proportions(analysis.as_written):
+            print(f"  note: {proportion}")
         written, drive = drive, analysis.drive
         for title, value in derived_rows(written, drive):
             print(f"  {title:<47} {value}")

@@ -6,6 +6,7 @@ unless the drive is preloaded as drawn, without any deviation.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
@@ -17,7 +18,7 @@ from ltca.arrays import FloatArray
 from ltca.drive.fields import field_kind
 from ltca.drive.members.named_materials import FINEST_PRINT
 from ltca.drive.members.temperatures import warm_drive
-from ltca.geometry.interference import ROLLERS, drawn_plays
+from ltca.geometry.interference import FLANK, ROLLERS, drawn_plays
 from ltca.studies.designs import ToleranceDesign
 from ltca.studies.study import Study
 from ltca.studies.yields import Kept, independent_samples, interval
@@ -108,16 +109,26 @@ def find_binding(study: Study, values: Mapping[str, FloatArray]) -> Binding | No
     )
 
 
+HOLE_FIELDS = "pin_shaft.", "disc.hole_errors.", "clearance.pin_hole", "disc.clearance.pin_hole"
+FLANK_FIELDS = (
+    "pin_wheel.", "disc.profile_errors.", "disc.equidistant_offset", "disc.shifting_offset", "disc.runout.",
+)  # fmt: skip
+"""Beginnings of fields that act in one pair of parts alone; other lengths act in both."""
+
+
 def _wide_tolerances(design: ToleranceDesign, plays: Mapping[str, float]) -> str:
-    """The widest tolerance of a length, as wide as those of prints, beyond the least play; empty where none is."""
+    """The widest tolerance of a length, as wide as those of prints, beyond the play where it acts; empty where none is."""
     factors = design.factors
-    lengths = {
-        path: distribution.tolerance
-        for (path, _), distribution in zip(factors.fields, factors.distributions, strict=True)
-        if (kind := field_kind(path)) is not None and kind.unit == "mm"
-    }
-    path = max(lengths, key=lambda name: lengths[name], default="")
-    least = min(plays, key=lambda what: plays[what])
-    if not path or lengths[path] < max(FINEST_PRINT, plays[least]):
+    wide: list[tuple[float, str, str]] = []
+    for (path, _), distribution in zip(factors.fields, factors.distributions, strict=True):
+        if (kind := field_kind(path)) is None or kind.unit != "mm":
+            continue
+        of_any_disc = re.sub(r"^disc\.of\.\d+\.", "disc.", path)
+        where = [pair for pair in plays if not of_any_disc.startswith(HOLE_FIELDS if pair == FLANK else FLANK_FIELDS)]
+        least = min(where, key=lambda pair: plays[pair], default="")
+        if least and distribution.tolerance >= max(FINEST_PRINT, plays[least]):
+            wide.append((distribution.tolerance, path, least))
+    if not wide:
         return ""
-    return f"tolerances.{path} of ±{lengths[path]:g} mm is beyond the play of {least}, {plays[least]:.4g} mm"
+    tolerance, path, least = max(wide, key=lambda entry: entry[0])
+    return f"tolerances.{path} of ±{tolerance:g} mm is beyond the play of {least}, {plays[least]:.4g} mm"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
@@ -91,7 +93,7 @@ QUICK = ("disc.hole_errors.inclination_x.3",)
     [
         path
         if path in QUICK
-        else pytest.param(path, marks=pytest.mark.nightly if "y" in path[-4:] else pytest.mark.slow)
+        else pytest.param(path, marks=pytest.mark.nightly if re.search(r"[._]y(\.\d+)?$", path) else pytest.mark.slow)
         for path in TILTED
     ],
 )

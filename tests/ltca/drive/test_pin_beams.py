@@ -32,7 +32,7 @@ def test_a_free_pin_of_one_disc_is_a_cantilever(vary):
     shear = arm / (6.0 * (1.0 + nu) / (7.0 + 6.0 * nu) * modulus / (2.0 * (1.0 + nu)) * pi * diameter**2 / 4.0)
     assert spring.loaded_alike == pytest.approx(1.0 / (bending + shear), rel=1e-5)
     assert spring.turned_alike == pytest.approx(spring.loaded_alike, rel=1e-12)
-    assert spring.stiffness == pytest.approx(spring.loaded_alike, rel=0.05)  # two digits
+    assert spring.stiffness == pytest.approx(spring.loaded_alike, rel=0.03)  # two digits
 
 
 @pytest.mark.parametrize("phases", [(0.0, pi), (0.0, 2.0), (0.0, 0.5 * pi)])
@@ -84,7 +84,7 @@ def test_tied_pins_of_two_discs_yield_as_statics_pin_by_pin_say(phases):
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["robot-joint", "sleeved"])
 def test_the_spring_turns_the_output_as_far_and_shares_the_torque_alike(name):
-    """Between both bounds, and within 5 % in torsion; the file of `sleeved` had named 2e5 N/mm, 7 % too soft. Shares differ."""
+    """Between both bounds, and within 3 % in torsion; the file of `sleeved` had named 2e5 N/mm, 7 % too soft. Shares differ."""
     drive = load_drive(name).cases["nominal"]
     beams = drive.with_fields(TIED) if name == "robot-joint" else drive
     spring = shaft_pin_spring(beams)

@@ -633,6 +633,7 @@ def resumed(prepare, samples):
 
 RESUMED = {
     "paper": ("paper", HalfSpace(), 5e-4),
+    "one with damping": ("paper, damped", HalfSpace(), 5e-4),
     "one that rubs, with parts without mass": ("paper, tied, rubs", HalfSpace(), 3e-4),
     "with a first stage and posts": ("rv, posts", HalfSpace(), 3e-4),
     "with an elastic ring": ("elastic ring", HalfSpace(), 5e-5),
@@ -660,7 +661,7 @@ def coarse_tilted_grids(monkeypatch):
         for number, one in enumerate(RESUMED)
     ],
 )
-def test_a_resumed_run_without_damping_is_the_uninterrupted_one(case, often, coarse_derivations, coarse_tilted_grids):
+def test_a_resumed_run_is_the_uninterrupted_one(case, often, coarse_derivations, coarse_tilted_grids):
     """It departed by 7e-4 of the load after 380 rows: the solver began its step, contacts their places, anew."""
     name, engine, time = RESUMED[case]
     drive = drive_of(name)

@@ -112,6 +112,13 @@ def test_printed_tolerances_beyond_the_play_suggest_a_limit():
     assert find_binding(study_of(fine, quantities=asked), values).words() == []
 
 
+def test_a_tolerance_of_wheel_pins_is_compared_with_the_play_of_the_flank():
+    """It named the holes, whose play is the least, 2.22 - 1.2 - 1 mm, and in which no wheel pin acts."""
+    study = study_of(toolkit(offset=0.06, hole=2.22), quantities=("max_pin_load",))
+    (message,) = find_binding(study, {"max_pin_load": np.ones(6)}).words()
+    assert "pin_errors.radial of ±0.08 mm is beyond the play of wheel pins and flank, 0.06 mm" in message
+
+
 def test_nothing_is_said_where_no_sample_binds():
     study = study_of(toolkit())
     moving = {name: np.full(6, 20.0) for name in VALUES}
