@@ -60,6 +60,7 @@ from ltca.laws.backed import (
 )
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.spring import SpringLaw
+from ltca.mechanics.contacts import ContactLaws
 
 MAX_ITERATIONS = 60
 POSITIONS_PER_CHUNK = 256
@@ -233,6 +234,37 @@ class CoupledCompliance:
             parts.append(self._solve(bodies, start, rows))
         joined: DiscResponse = join_positions(parts)
         return joined
+
+    @property
+    def contact_laws(self) -> ContactLaws:
+        """Laws of the contacts."""
+        near = self.near_field
+        return ContactLaws(
+            (near.pin, near.outer, self.hole_law, near.inner), self.outer_radius, self.hole_radius, self.inner_radius
+        )
+
+    def body_flexibility(
+        self, places: tuple[Any, ...], loaded: Sequence[NDArray[np.intp]]
+    ) -> list[tuple[FloatArray, FloatArray, float]]:
+        """Return the body parts of approaches by loads and, of solid bodies in slices, of tilts by moments at half the width.
+
+        Each is the matrix of wheel pins, bores and holes by the loads of some of them, shape (positions, contacts, loaded), that
+        between the rollers on the races, and what a roller yields at one contact under the load of the other, mm/N.
+        """
+        parts = [(self.coefficients, self.own, self.race, self.hole_spring, 1.0)]
+        tilting, own = self.coefficients.tilting, self.own.tilting
+        if self.race_tilting is not None and tilting is not None and own is not None:
+            # What a pin stands on behind its contact is rigid against moments.
+            parts.append((tilting, own, self.race_tilting, 0.0, (0.5 * self.coefficients.thickness) ** 2))
+        first = np.cumsum((0, *(each.shape[1] for each in places[:2])))
+        chosen = np.concatenate([at + some for at, some in zip(first, loaded, strict=True)], axis=1)
+        found = []
+        for body, diagonal, race, spring, unit in parts:
+            matrix = body.disc_matrix(*places, loaded)
+            each = np.repeat((diagonal.pin, diagonal.outer, diagonal.hole + spring), [some.shape[1] for some in loaded])
+            matrix[np.arange(chosen.shape[0])[:, None], chosen, np.arange(chosen.shape[1])] += each
+            found.append((unit * matrix, unit * race, unit * float(body.roller[0, 1])))
+        return found
 
     def body_matrix(self, bodies: UndeformedBodies, loaded: Sequence[NDArray[np.intp]]) -> FloatArray:
         """Return C of all contacts by the loads of some, pins, rollers and holes, mm/N, shape (positions, contacts, loaded)."""

@@ -37,6 +37,7 @@ from ltca.laws.backed import (
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.generator_law import law_for_profile
 from ltca.laws.spring import SpringLaw
+from ltca.mechanics.contacts import ContactLaws
 
 SAMPLES_PER_LOBE = 180
 """Stations on a lobe at which the range of effective radii is searched."""
@@ -160,6 +161,17 @@ class HalfSpaceCompliance(UncoupledContacts[ContactLaw]):
             hole_law=hole,
             kinds=replace(kinds, pins=replace(kinds.pins, lead=None)),
             rigid_shaft_pins=rigid,
+        )
+
+    @property
+    def contact_laws(self) -> ContactLaws:
+        """Laws of the contacts."""
+        rollers = self.roller_laws
+        return ContactLaws(
+            (self.pin_law, rollers.outer, self.hole_law, rollers.inner),
+            rollers.outer_radius,
+            self.geometry.placement.hole_effective_radii,
+            rollers.inner_radius,
         )
 
     def laws(self, flank: FlankMotion, warm_start: NDArray[np.object_] | None) -> PairLaws[ContactLaw]:

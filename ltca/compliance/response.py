@@ -20,6 +20,7 @@ from ltca.geometry.pair_motion import BoreMotion, FlankMotion, KnownPins, PairMo
 from ltca.geometry.pairs import ContactGeometry
 
 if TYPE_CHECKING:
+    from ltca.mechanics.contacts import Following, Inner
     from ltca.laws.sliced_contact import SlicedContact
 
 
@@ -139,16 +140,17 @@ class DiscResponse:
     rollers: RollerState
     pin_load: FloatArray
     hole_load: FloatArray
-    warm_start: NDArray[np.object_]
+    warm_start: NDArray[np.object_] | None = None
     shifts: ComplexArray | None = None
     leans: ComplexArray | None = None
     ring: ComplexArray | None = None
-    follow: FollowingPins | None = None
+    follow: Following | FollowingPins | None = None
     slopes: PairSlopes | None = None
     friction: FloatArray | None = None
     leaning_pins: LeaningPairs | None = None
     leaning_holes: LeaningPairs | None = None
     left: FloatArray | None = None
+    inner: Inner | None = None
 
     @property
     def kept(self) -> DiscResponse:
@@ -226,7 +228,9 @@ class Response(DiscResponse):
     @property
     def kept(self) -> Response:
         """The response of balanced positions without what the search alone asks for, which is two fifths of one on a ring."""
-        follow = None if self.follow is None else replace(self.follow, by_pose=None)
+        follow = self.follow
+        if follow is not None:
+            follow = replace(follow, by_pose=None) if isinstance(follow, FollowingPins) else follow.kept
         rollers = self.rollers.kept
         return replace(self, follow=follow, rollers=rollers, parts=tuple(part.kept for part in self.parts))
 
@@ -372,9 +376,10 @@ class Start:
 
     parameter: FloatArray
     share: FloatArray
-    warm_start: NDArray[np.object_]
+    warm_start: NDArray[np.object_] | None = None
     known: KnownPins | None = None
-    follow: FollowingPins | None = None
+    follow: Following | FollowingPins | None = None
+    inner: Inner | None = None
 
     @classmethod
     def after(cls, response: Response) -> Start:
@@ -384,6 +389,7 @@ class Start:
             share=response.rollers.share,
             warm_start=response.warm_start,
             follow=response.follow,
+            inner=response.inner,
         )
 
     @classmethod

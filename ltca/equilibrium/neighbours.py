@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.arrays import FloatArray
+from ltca.arrays import FloatArray, take_positions
 from ltca.compliance.response import Start
 from ltca.geometry.coordinates import Coordinates
 from ltca.geometry.pairs import ContactGeometry
@@ -78,7 +78,12 @@ def start_between(angle: FloatArray, known: Start, wanted: FloatArray, ratio: fl
 
     along = between(known.parameter - angle[:, None] / ratio) + wanted[:, None] / ratio
     nearer = np.where(part[:, 0] < 0.5, before, after)
-    return Start(parameter=along, share=between(known.share), warm_start=known.warm_start[nearer])
+    return Start(
+        parameter=along,
+        share=between(known.share),
+        warm_start=None if known.warm_start is None else known.warm_start[nearer],
+        inner=take_positions(known.inner, nearer),
+    )
 
 
 def pose_beside(angle: FloatArray, pose: FloatArray, wanted: FloatArray, coordinates: Coordinates) -> FloatArray:
@@ -89,7 +94,7 @@ def pose_beside(angle: FloatArray, pose: FloatArray, wanted: FloatArray, coordin
 def start_beside(angle: FloatArray, known: Start, wanted: FloatArray, ratio: float) -> Start:
     """Return inner unknowns as seen from the wheel, row by row, from `angle` turned to `wanted`; see `start_between`."""
     along = (known.parameter - angle[:, None] / ratio) + wanted[:, None] / ratio
-    return Start(parameter=along, share=known.share, warm_start=known.warm_start)
+    return Start(parameter=along, share=known.share, warm_start=known.warm_start, inner=known.inner)
 
 
 def turned_poses(pose: FloatArray, angle: FloatArray, coordinates: Coordinates) -> FloatArray:

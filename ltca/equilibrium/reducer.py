@@ -15,7 +15,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.arrays import ComplexArray, FloatArray, by_drive, has_rows, map_arrays, take_rows
+from ltca.arrays import ComplexArray, FloatArray, by_drive, has_rows, join_positions, map_arrays, take_positions, take_rows
 from ltca.compliance.response import (
     ContactPressures,
     DiscModel,
@@ -40,6 +40,10 @@ from ltca.geometry.pair_motion import KnownPins
 from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.rotation import unit
 from ltca.laws.carrier import far_flange_stiffness
+from ltca.mechanics.contacts import ContactSystem
+
+POSITIONS_AT_ONCE = 256
+"""Positions whose contacts are found at once: few enough for the processor's cache."""
 
 
 class JointFriction(Protocol):
@@ -183,6 +187,72 @@ class Reducer:
             Whether contacts in slices and displacements of pins that have nearly settled will do: force and tangent are then
             those of settled ones to first order, and `Response.left` tells what is left.
         """
+        if any(not hasattr(disc, "contact_laws") for disc in self.discs):
+            return self._respond_apart(crank_angle, pose, start, roughly=roughly)
+        rows = crank_angle.size
+        if rows > POSITIONS_AT_ONCE:
+            parts_of = np.array_split(np.arange(rows), -(-rows // POSITIONS_AT_ONCE))
+            found: Response = join_positions(
+                [
+                    self.take(some).respond(*take_positions((crank_angle, pose, start), some), roughly=roughly)
+                    for some in parts_of
+                ]
+            )
+            return found
+        coordinates = self.coordinates
+        at = ContactSystem(self).respond(crank_angle, pose, start, roughly=roughly)
+        parts, force, tangent = at.responses(), at.force.copy(), at.tangent.copy()
+        if self.friction is not None:
+            for number, part in enumerate(parts):
+                own, geometry = coordinates.columns(number), self.discs[number].geometry
+                push = np.abs(bearing_pushes(part.rollers, geometry.placement.cranks))
+                force[:, own] += self.friction.of_bearings(geometry, pose[:, own], push)
+        shifts = at.shifts
+        if shifts is not None and self.pins is not None and self.pins.ring is not None:
+            ring = -self.pins.of_ring(at.members.forces(at.corrected_load))
+            parts = tuple(replace(part, ring=ring) for part in parts)
+        left, follow, inner = at.left, at.following(), at.inner
+        if shifts is not None:
+            shifts = shifts[:, : len(self.discs)]
+        contact_stiffness = np.einsum("bii->bi", tangent).copy()
+        beside_discs: tuple[ComplexArray, FloatArray] | tuple[()] = ()
+        if self.stage is not None and self._teeth_press:
+            beside_discs = self._press_teeth(self.stage, crank_angle, pose, parts, force, tangent)
+        if self.supports is not None:
+            held, stiffness = self.supports.respond(pose, *beside_discs)
+            force += held
+            tangent += stiffness
+        if self.external is not None and coordinates.wheel:
+            pressed = self.external.on_wheel(crank_angle)
+            force[:, coordinates.wheel_place] -= np.stack((pressed.real, pressed.imag), axis=-1)
+            if coordinates.wheel_leans:
+                tilting = self.external.tilting(crank_angle)
+                force[:, coordinates.wheel_lean_place] -= np.stack((tilting.real, tilting.imag), axis=-1)
+        if self.friction is not None:
+            ratio = self.discs[0].geometry.placement.reduction_ratio
+            beside = self.force_beside_pins(crank_angle, pose, parts)
+            force[:, WHEEL_ANGLE] += self.friction.of_wheel(parts, ratio, beside)
+        return Response(
+            force=force,
+            tangent=tangent,
+            flank=_beside([part.flank for part in parts]),
+            holes=_beside([part.holes for part in parts]),
+            rollers=_beside([part.rollers for part in parts]),
+            pin_load=_beside([part.pin_load for part in parts]),
+            hole_load=_beside([part.hole_load for part in parts]),
+            parts=parts,
+            shifts=shifts,
+            ring=parts[0].ring,
+            follow=follow,
+            left=left,
+            inner=inner,
+            contact_stiffness=contact_stiffness,
+        )
+
+    def _respond_apart(
+        self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None, *, roughly: bool = False
+    ) -> Response:
+        """The same of contact grids, whose laws know their contacts by their places."""
         count, coordinates = len(self.discs), self.coordinates
         places = [coordinates.columns(number) for number in range(count)]
         starts = [None] * count if start is None else _split_start(start, count)

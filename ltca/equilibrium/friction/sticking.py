@@ -134,6 +134,31 @@ class StickingFriction:
             tangent=np.matmul(slip.by_pose.swapaxes(1, 2), change),
         )
 
+    def along(
+        self,
+        geometry: ContactGeometry,
+        pose: FloatArray,
+        slip: Slip,
+        load: FloatArray,
+        stiffness: FloatArray,
+        disc: int,
+    ) -> tuple[FloatArray, FloatArray, FloatArray | None]:
+        """Return friction; see `ltca.equilibrium.friction.turning.TurningFriction`."""
+        pins = geometry.placement.wheel_pin_radii.shape[-1]
+        coefficient = np.r_[np.full(pins, self.pin), np.full(load.shape[1] - pins, self.hole)]
+        stiffness = np.where(self.closed[:, disc], stiffness, 0.0)
+        moved = np.einsum("bpj,bj->bp", slip.by_pose, pose - self.pose[:, disc])
+        tangential, sticks = stick_or_slip(self.tangential[:, disc], stiffness, moved, coefficient * load)
+        return (
+            np.where(sticks, 0.0, np.sign(tangential) * coefficient),
+            np.where(sticks, tangential, 0.0),
+            np.where(sticks, stiffness, 0.0),
+        )
+
+    def of_bearings(self, geometry: ContactGeometry, pose: FloatArray, push: FloatArray) -> FloatArray:
+        """Return what the crank bearings of a disc resist with: nothing."""
+        return np.zeros(pose.shape)
+
     def of_wheel(
         self, parts: Sequence[DiscResponse], reduction_ratio: float, external: ComplexArray | float = 0.0
     ) -> FloatArray:

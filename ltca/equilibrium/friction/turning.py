@@ -183,6 +183,34 @@ class TurningFriction:
             force[:, twists] += rolled * push
         return Rubbing(tangential=tangential, force=force, tangent=tangent)
 
+    def along(
+        self,
+        geometry: ContactGeometry,
+        pose: FloatArray,
+        slip: Slip,
+        load: FloatArray,
+        stiffness: FloatArray,
+        disc: int,
+    ) -> tuple[FloatArray, FloatArray, FloatArray | None]:
+        """Return the friction of wheel pins and shaft pins by their loads, what it has beside, N, and what it grows with slip by,
+        N/mm or None; each of shape (positions, pairs).
+        """
+        pins = geometry.placement.wheel_pin_radii.shape[-1]
+        soft = FADING_SLIP * geometry.placement.mean_eccentricity
+        sense = (self.motion * self.strength) * np.clip(slip.by_crank / soft, -1.0, 1.0)
+        sense[:, :pins] *= self.pin
+        sense[:, pins:] *= self.hole
+        return sense, np.zeros(load.shape), None
+
+    def of_bearings(self, geometry: ContactGeometry, pose: FloatArray, push: FloatArray) -> FloatArray:
+        """Return what the crank bearings of a disc resist with by the sizes of their forces, N, shape (positions, cranks)."""
+        force = np.zeros(pose.shape)
+        rolled = self.motion * self.strength * self.rolling * push
+        force[:, DISC_ROTATION] -= rolled.sum(axis=1)
+        if twists := geometry.coordinates_of(pose).twist_places:
+            force[:, twists] += rolled
+        return force
+
     def of_wheel(
         self, parts: Sequence[DiscResponse], reduction_ratio: float, external: ComplexArray | float = 0.0
     ) -> FloatArray:

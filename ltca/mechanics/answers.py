@@ -1,0 +1,126 @@
+"""What the contacts of a disc answer at poses, from the one system of all of them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ltca.arrays import FloatArray
+from ltca.compliance.response import DiscResponse, LeaningPairs
+from ltca.compliance.rollers import RollerState
+
+if TYPE_CHECKING:
+    from ltca.mechanics.contacts import Linearised
+
+
+def disc_response(at: Linearised, disc: int) -> DiscResponse:
+    """Return the contacts of one disc."""
+    system, each, kinds = at.system, at.discs[disc], at.system.of_kind[disc]
+    load = at.corrected_load
+    pins, bores, holes, races = (load[:, 0, kind] for kind in kinds)
+    flank, in_holes = each.flank, each.holes
+    rollers = _rollers(at, disc)
+    if system.coupled and system.components == 1:
+        approach = _approaches(at, disc)
+        flank = replace(flank, approach=approach[:, : system.pins])
+        in_holes = replace(in_holes, approach=approach[:, system.pins + system.rollers :])
+        at_bore = approach[:, system.pins : system.pins + system.rollers]
+        rays, free = each.rays, bores <= 0.0
+        resting = np.abs(rays.outermost * rays.direction - each.displacement) - rays.bore_play
+        inner = at.after[:, 0, kinds[3]] + np.diag(at.system.model.discs[disc].race) * races
+        rollers = replace(
+            rollers,
+            inner_approach=np.where(free, 0.0, inner),
+            outer_approach=np.where(free, np.minimum(resting, at_bore), at_bore),
+        )
+    own, every = system.columns[disc], [at.at[disc][kind] for kind in range(4)]
+    chosen = np.concatenate([np.arange(part.start, part.stop) for part in every])
+    mine = at.force_map[:, :, chosen]
+    loaded = load[at.row, :, at.contacts[:, chosen]].swapaxes(1, 2)
+    force = np.einsum("bcij,bci->bj", mine, loaded)[:, own]
+    friction = None
+    if at.rubs:
+        both = np.concatenate((pins, holes), axis=1)
+        friction = at.rubs[disc] * both
+        if at.sticking is not None:
+            pairs = both.shape[1]
+            friction = friction + at.sticking[2][:, disc * pairs : (disc + 1) * pairs]
+            force = force + np.einsum(
+                "bpj,bp->bj", at.sticking[1][:, disc * pairs : (disc + 1) * pairs], at.sticking[2][:, disc * pairs : (disc + 1) * pairs]
+            )[:, own]
+    leaning: tuple[Any, Any] = (None, None)
+    if each.tilts is not None:
+        found = at.slices_after(disc)
+        leaning = tuple(
+            LeaningPairs(tilt=tilt, contact=contact) for tilt, contact in zip(each.tilts, (found[0], found[2]), strict=True)
+        )
+    return DiscResponse(
+        force=force,
+        tangent=at.tangent[:, own[:, None], own],
+        flank=flank,
+        holes=in_holes,
+        rollers=rollers,
+        pin_load=pins,
+        hole_load=holes,
+        shifts=each.shifts,
+        leans=each.leans,
+        friction=friction,
+        leaning_pins=leaning[0],
+        leaning_holes=leaning[1],
+    )
+
+
+def _approaches(at: Linearised, disc: int) -> FloatArray:
+    """Approaches of pairs of coupled bodies, on pins, bores and holes: what other contacts' loads leave of the overlap."""
+    system, some = at.system, at.chosen[disc]
+    kinds = system.of_kind[disc]
+    overlap = np.concatenate([at.overlap[:, 0, kinds[kind]] for kind in range(3)], axis=1)
+    found = overlap - at.yielding[disc][0]
+    walls = np.concatenate((some[0], system.pins + some[1], system.pins + system.rollers + some[2]), axis=1)
+    own = np.arange(walls.shape[1])
+    diagonal = at.bodies[disc][0][at.row, walls, own]
+    near = np.concatenate([at.after[:, 0, kinds[kind]][at.row, some[kind]] for kind in range(3)], axis=1)
+    load = np.concatenate([at.corrected_load[:, 0, kinds[kind]][at.row, some[kind]] for kind in range(3)], axis=1)
+    found[at.row, walls] = near + diagonal * load
+    return np.asarray(found)
+
+
+def _rollers(at: Linearised, disc: int) -> RollerState:
+    """Rollers of one disc: those that carry nothing rest on the race."""
+    system, each, (_, bores, _, races) = at.system, at.discs[disc], at.system.of_kind[disc]
+    load, own = at.corrected_load, slice(disc * system.rollers, (disc + 1) * system.rollers)
+    rays = each.rays
+    place = at.place_after[:, own]
+    carries = (load[:, 0, bores] > 0.0) | (load[:, 0, races] > 0.0)
+    arm = rays.outermost * rays.direction - each.displacement
+    rest = np.abs(arm)
+    outer = each.outer - each.cosine * (place - each.inward)
+    share = np.divide(place, each.total, out=np.full(place.shape, 0.5), where=carries & (each.total != 0.0))
+    state = RollerState(
+        share=share,
+        inner_approach=np.where(carries, place, 0.0),
+        outer_approach=np.where(carries, outer, rest - rays.bore_play),
+        inner_load=load[:, 0, races],
+        outer_load=load[:, 0, bores],
+        outer_direction=np.where(carries, each.outward, arm / rest),
+    )
+    if each.tilts is None:
+        return state
+    inner, outer_contact = at.slices_after(disc)[3], at.slices_after(disc)[1]
+    after = at.after[:, 1]
+    return replace(
+        state,
+        inner_moment=inner.moment,
+        outer_moment=outer_contact.moment,
+        lean=np.where(carries, at.lean_after[:, own] / at.half, 0.0),
+        inner_tilt=np.where(carries, after[:, races] / at.half, 0.0),
+        outer_tilt=np.where(carries, after[:, bores] / at.half, 0.0),
+        inner_slices=inner.slice_load,
+        outer_slices=outer_contact.slice_load,
+        inner_near=inner.near,
+        outer_near=outer_contact.near,
+        inner_lines=inner.line_load,
+        outer_lines=outer_contact.line_load,
+    )

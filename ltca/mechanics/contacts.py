@@ -1,0 +1,962 @@
+r"""All contacts of a reducer at poses, with everything elastic that couples them: one system for every engine.
+
+A contact is a place and a local law. It approaches by d and, in slices, tilts; its deformation e carries the load f(e), and what
+all loads take of d is
+
+.. math:: e + C f(e) = d(q, x, u), \qquad u = -S L^T f, \qquad T^T f = 0,
+
+with the pose q, the places x of the rollers between their races (and their leans), the displacements u of the pins, the influence
+coefficients C of the bodies and the flexibility S of beams and ring. T and N are the derivatives of d by x and u, L is N with
+friction. Newton's step solves for all of them at once: with K = ∂f/∂e and W = C + N S Lᵀ
+
+.. math:: (1 + W K)\, de = G\,dq + T\,dx - r, \qquad r = e - d + C f + N (u + S L^T f),
+
+e and u are eliminated contact by contact, then x roller by roller; what is left is a force and a tangent of the pose alone. The
+derivatives of C and of the radii of curvature by the pose are left out, which keeps the tangent symmetric.
+
+Contacts are numbered disc after disc: wheel pins, rollers in the bores, shaft pins in their holes, rollers on the races. Arrays
+have the shape (positions, components, contacts), with the approach and, in slices, the tilt times half the thickness of the disc
+as components.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.arrays import ComplexArray, FloatArray
+from ltca.compliance.response import DiscResponse, LeaningPairs, PairSlopes, Start
+from ltca.compliance.rollers import RollerState
+from ltca.errors import ConvergenceError
+from ltca.geometry.coordinates import DISC_ROTATION, Coordinates, X, Y
+from ltca.geometry.pair_motion import KnownPins, PairTilt, dot
+from ltca.geometry.pairs import ContactGeometry
+from ltca.geometry.rotation import unit
+from ltca.laws.sliced_contact import EXACT, ROUGH, SlicedContact
+
+if TYPE_CHECKING:
+    from ltca.equilibrium.reducer import Reducer
+
+Indices = NDArray[np.intp]
+
+KINDS = ("pins", "bores", "holes", "races")
+CANDIDATE_MARGIN = 0.25
+"""Gap within which an open contact of coupled bodies may carry, by the largest overlap of its position."""
+ROUGHLY_SETTLED = 0.02
+"""Largest correction of a deformation, by the largest approach, with which a step of the pose is judged."""
+SETTLED = 1e-6
+"""The same of an answer: loads are corrected to first order, and the error left is of its square."""
+MAX_CORRECTIONS = 60
+
+
+class ContactLaws(NamedTuple):
+    """Laws of the contacts of a disc, in the order of `KINDS`, and the effective radii of those that have one of their own, mm."""
+
+    laws: tuple[Any, Any, Any, Any]
+    outer_radius: FloatArray
+    hole_radius: FloatArray
+    inner_radius: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class Inner:
+    """What is unknown beside the pose, as it was found at some pose.
+
+    Attributes
+    ----------
+    lean : array, shape (positions, rollers)
+        Of the rollers along their rays by half the thickness of the disc, mm; zero in the plane.
+    approach : array, shape (positions, components, contacts), or None
+        Deformations e; None where they are the approaches themselves.
+    near : tuple of array
+        What the laws of each disc and kind start from nearby (`ltca.laws.sliced_contact.SlicedContact.near`); empty in the plane.
+    """
+
+    lean: FloatArray
+    approach: FloatArray | None
+    near: tuple[FloatArray, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Following:
+    """How the inner unknowns follow the pose to first order.
+
+    Attributes
+    ----------
+    pose : array, shape (positions, coordinates)
+        Where they were found.
+    place, lean : array, shape (positions, rollers)
+        Of the rollers: inward from where they only touch the race, and lean by half the thickness of the disc, mm.
+    approach : array, shape (positions, components, contacts), or None
+        e, mm; None where it is the approach itself.
+    shifts : array of complex, shape (positions, rows, pairs), or None
+        u, mm.
+    by_pose, approach_by_pose, shifts_by_pose : array
+        Derivatives by the pose.
+    """
+
+    pose: FloatArray
+    place: FloatArray
+    lean: FloatArray
+    approach: FloatArray | None
+    shifts: ComplexArray | None
+    by_pose: FloatArray | None
+    approach_by_pose: FloatArray | None
+    shifts_by_pose: ComplexArray | None
+
+    @property
+    def kept(self) -> Following:
+        """The same without derivatives, for balanced positions that are kept."""
+        return replace(self, by_pose=None, approach_by_pose=None, shifts_by_pose=None)
+
+    def at(self, pose: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray | None, ComplexArray | None]:
+        """Return places and leans of rollers, deformations and displacements of pins to expect at other poses."""
+        place, lean, approach, shifts = self.place, self.lean, self.approach, self.shifts
+        if self.by_pose is None:
+            return place, lean, approach, shifts
+        moved = (pose - self.pose)[:, None, :, None]
+        change = np.matmul(self.by_pose, moved)[..., 0]
+        place = place + change[..., 0]
+        if change.shape[-1] > 1:
+            lean = lean + change[..., 1]
+        if approach is not None and self.approach_by_pose is not None:
+            approach = approach + np.matmul(self.approach_by_pose, moved)[..., 0]
+        if shifts is not None and self.shifts_by_pose is not None:
+            shifts = shifts + np.matmul(self.shifts_by_pose, moved)[..., 0]
+        return place, lean, approach, shifts
+
+
+class _Disc:
+    """Places of the contacts of one disc at poses."""
+
+    def __init__(
+        self,
+        geometry: ContactGeometry,
+        angle: FloatArray,
+        pose: FloatArray,
+        parameter: FloatArray | None,
+        known: KnownPins | None,
+        shifts: ComplexArray | None,
+        leans: ComplexArray | None,
+    ) -> None:
+        self.geometry, self.angle, self.pose, self.shifts, self.leans = geometry, angle, pose, shifts, leans
+        pins = geometry.placement.wheel_pin_radii.shape[-1]
+        on_pins, on_holes = (None, None) if shifts is None else (shifts[:, :pins], shifts[:, pins:])
+        self.flank = geometry.flank(angle, pose, parameter, on_pins, known)
+        self.holes = geometry.holes(angle, pose, on_holes)
+        self.bores, self.rays = geometry.bores(angle, pose), geometry.rollers(angle)
+        self.rollers = self.rays.direction.shape[1]
+        self.displacement = self.bores.each(self.bores.displacement, self.rollers)
+        self.total = self.rays.outermost - self.rays.touching_distance(self.displacement)
+        self.tilts: tuple[PairTilt, PairTilt] | None = None
+        self.apart: FloatArray | float = 0.0
+        if geometry.coordinates_of(pose).leans:
+            lean_pins, lean_holes = (None, None) if leans is None else (leans[:, :pins], leans[:, pins:])
+            self.tilts = (
+                geometry.flank_tilt(angle, pose, self.flank, lean_pins),
+                geometry.hole_tilt(pose, self.holes, lean_holes),
+            )
+            journals = self.bores.each(geometry.journal_leans(pose), self.rollers)
+            self.at_race, self.at_bore = (dot(self.rays.direction, lean) for lean in (journals, geometry.lean(pose)))
+
+    def place_rollers(self, inward: FloatArray) -> None:
+        """Put the rollers inward of where they only touch the race, mm."""
+        rays = self.rays
+        place = rays.outermost - inward
+        arm = place * rays.direction - self.displacement
+        self.length = np.abs(arm)
+        self.outward = arm / self.length
+        self.cosine = dot(self.outward, rays.direction)
+        # |s n − d| less the bore play as a product: no cancellation for rollers that barely touch.
+        along = dot(rays.direction, self.displacement)
+        beyond = place + (rays.outermost - self.total) - 2.0 * along
+        self.inward, self.outer = inward, (self.total - inward) * beyond / (self.length + rays.bore_play)
+
+
+class ContactSystem:
+    """Contacts of all discs of a reducer.
+
+    Parameters
+    ----------
+    model : Reducer
+        Discs with their laws and bodies, what displaces pins, and friction.
+    """
+
+    def __init__(self, model: Reducer) -> None:
+        self.model, self.coordinates = model, model.coordinates
+        self.geometries = model.geometries
+        place = self.geometries[0].placement
+        self.pins, self.rollers = place.wheel_pin_radii.shape[-1], place.roller_radii.shape[-1]
+        self.holes, self.discs = place.hole_radii.shape[-1], len(model.discs)
+        self.each = self.pins + 2 * self.rollers + self.holes
+        self.contacts = self.discs * self.each
+        self.components = 1 + self.coordinates.leans
+        self.laws: list[ContactLaws] = [disc.contact_laws for disc in model.discs]
+        self.coupled = any(disc.coefficients is not None for disc in model.discs)
+        self.deforms = self.coupled or model.pins is not None
+        ends = np.cumsum((0, self.pins, self.rollers, self.holes, self.rollers))
+        self.of_kind = [
+            [slice(disc * self.each + first, disc * self.each + last) for first, last in zip(ends, ends[1:], strict=False)]
+            for disc in range(self.discs)
+        ]
+        self.columns = [self.coordinates.columns(disc) for disc in range(self.discs)]
+        self.one = replace(self.coordinates, discs=1)
+
+    @property
+    def half(self) -> FloatArray:
+        """Half the thickness of the discs, by which tilts are measured, mm, shape (…,) of one number or (positions, 1)."""
+        return np.asarray(self.geometries[0].half_width, dtype=float)
+
+    def respond(
+        self, angle: FloatArray, pose: FloatArray, start: Start | None, *, roughly: bool
+    ) -> Linearised:
+        """Return contacts at poses, found to first order in what is left of the inner unknowns."""
+        state = self._begin(pose, start)
+        known = None if start is None or self.deforms or self.components > 1 else start.known
+        for margin in (CANDIDATE_MARGIN, np.inf):
+            at = Linearised(self, angle, pose, state, known, roughly=roughly, margin=margin)
+            history = [float(np.max(at.moved, initial=0.0))]
+            while not at.settled(roughly):
+                if len(history) > MAX_CORRECTIONS:
+                    raise ConvergenceError("deformations of contacts do not settle; largest correction in mm", history)
+                at = at.corrected(roughly=roughly)
+                history.append(float(np.max(at.moved, initial=0.0)))
+            if not at.leaves_out:
+                return at
+        raise AssertionError("all contacts are taken, none is left out")
+
+    def _begin(self, pose: FloatArray, start: Start | None) -> _State:
+        """Inner unknowns to start from; NaN where nothing is known."""
+        rows, rollers = pose.shape[0], self.discs * self.rollers
+        unknown = np.full((rows, rollers), np.nan)
+        state = _State(parameter=None, place=unknown, share=np.full((rows, rollers), 0.5), lean=unknown, approach=None, shifts=None, near=())
+        if self.model.pins is not None:
+            state = state._replace(shifts=self.model.pins.unmoved(rows))
+        if start is None:
+            return state
+        state = state._replace(parameter=start.parameter, share=start.share)
+        if start.inner is not None:
+            state = state._replace(approach=start.inner.approach, near=start.inner.near)
+            if self.components > 1 and start.inner.lean.shape == unknown.shape:
+                state = state._replace(lean=start.inner.lean)
+            if not self.deforms or (state.approach is not None and state.approach.shape[1:] != (self.components, self.contacts)):
+                state = state._replace(approach=None)
+            if self.components == 1:
+                state = state._replace(near=())
+        if start.follow is not None:
+            place, lean, approach, shifts = start.follow.at(pose)
+            state = state._replace(place=place, lean=lean, approach=approach, shifts=shifts)
+        return state
+
+
+class _State(NamedTuple):
+    """Inner unknowns at poses: contact parameters, places and leans of rollers, deformations, displacements of pins, and what
+    laws start from.
+    """
+
+    parameter: FloatArray | None
+    place: FloatArray
+    share: FloatArray
+    lean: FloatArray
+    approach: FloatArray | None
+    shifts: ComplexArray | None
+    near: tuple[FloatArray, ...]
+
+
+class Linearised:
+    """Contacts at poses and near-by inner unknowns, and how everything follows the pose to first order.
+
+    Parameters
+    ----------
+    system : ContactSystem
+        The contacts.
+    angle : array, shape (positions,)
+        φ_C, rad.
+    pose : array, shape (positions, coordinates)
+        q.
+    state : _State
+        Inner unknowns.
+    known : KnownPins, optional
+        Pins that cannot touch are left out by.
+    roughly : bool
+        Whether laws that iterate may come as close as a search needs.
+    places : list of _Disc, optional
+        Places of the contacts, where only the inner unknowns have changed.
+    margin : float
+        Gap by the largest overlap within which open contacts of coupled bodies are taken.
+
+    Attributes
+    ----------
+    force, tangent : array, shape (positions, coordinates) and (positions, coordinates, coordinates)
+        Generalised force of the contacts once the inner unknowns have settled, to first order, and its derivative.
+    left : array, shape (positions,)
+        Force that the second order may amount to, N.
+    """
+
+    def __init__(
+        self,
+        system: ContactSystem,
+        angle: FloatArray,
+        pose: FloatArray,
+        state: _State,
+        known: KnownPins | None,
+        *,
+        roughly: bool,
+        places: list[_Disc] | None = None,
+        margin: float = CANDIDATE_MARGIN,
+    ) -> None:
+        self.system, self.angle, self.pose, self.known, self.margin = system, angle, pose, known, margin
+        self.row = np.arange(angle.size)[:, None]
+        self.half = system.half
+        self._moved_slices: dict[int, list[SlicedContact]] = {}
+        self.discs = self._placed(state) if places is None else places
+        self._approach(state)
+        self._carry(state, roughly)
+        self._choose()
+        self._linearise()
+
+    def _placed(self, state: _State) -> list[_Disc]:
+        """Places of the contacts of every disc with the pins displaced as the state says."""
+        system, found = self.system, []
+        for disc, (geometry, own) in enumerate(zip(system.geometries, system.columns, strict=True)):
+            first, last = disc * system.pins, (disc + 1) * system.pins
+            known = self.known
+            if known is not None:
+                known = KnownPins(
+                    approach=known.approach[:, first:last], point=known.point[:, first:last], turning=known.turning[:, first:last]
+                )
+            shifts = leans = None
+            if state.shifts is not None:
+                shifts = state.shifts[:, disc]
+                if system.components > 1:
+                    leans = state.shifts[:, system.discs + disc] / self.half
+            parameter = None if state.parameter is None else state.parameter[:, first:last]
+            found.append(_Disc(geometry, self.angle, self.pose[:, own], parameter, known, shifts, leans))
+        return found
+
+    def _approach(self, state: _State) -> None:
+        """Place the rollers, and find approaches d and deformations e of all contacts."""
+        system, (rows,) = self.system, self.angle.shape
+        shape = (rows, system.components, system.contacts)
+        self.overlap, e = np.zeros(shape), state.approach
+        self.place, self.lean = state.place.copy(), state.lean.copy()
+        given = system.deforms and e is not None
+        e = e.copy() if given and e is not None else None
+        for disc, at in enumerate(self.discs):
+            own = slice(disc * system.rollers, (disc + 1) * system.rollers)
+            _, bores, _, races = system.of_kind[disc]
+            place, lean = self.place[:, own], self.lean[:, own]
+            unplaced = np.isnan(place)
+            if unplaced.any():
+                place = np.where(unplaced, state.share[:, own] * at.total, place)
+            at_race = at_bore = middle = np.zeros(())
+            if at.tilts is None:
+                lean = np.zeros(place.shape)
+            else:
+                at_race, at_bore = self.half * at.at_race, self.half * at.at_bore
+                middle = 0.5 * (at_race + at_bore)
+                lean = np.where(np.isnan(lean), middle, lean)
+            if e is not None:
+                reach = e[:, 0] + (np.abs(e[:, 1]) if at.tilts is not None else 0.0)
+                loose = (reach[:, bores] <= 0.0) | (reach[:, races] <= 0.0)
+                by = np.where(loose, 0.5 * (e[:, 0, bores] - e[:, 0, races]), 0.0)
+                place = place + by
+                e[:, 0, races] += by
+                e[:, 0, bores] -= by
+                if at.tilts is not None:
+                    by = np.where(loose, 0.5 * (e[:, 1, races] - e[:, 1, bores]), 0.0)
+                    lean = lean + by
+                    e[:, 1, races] -= by
+                    e[:, 1, bores] += by
+            else:
+                in_bore, on_race = at.total - place, place
+                if at.tilts is not None:
+                    in_bore, on_race = in_bore + np.abs(lean - at_bore), on_race + np.abs(at_race - lean)
+                loose = (in_bore <= 0.0) | (on_race <= 0.0)
+                place = np.where(loose, 0.5 * at.total, place)
+                if at.tilts is not None:
+                    lean = np.where(loose, middle, lean)
+            at.place_rollers(place)
+            self.place[:, own], self.lean[:, own] = place, lean
+            for kind, values in zip(system.of_kind[disc], (at.flank.approach, at.outer, at.holes.approach, place), strict=True):
+                self.overlap[:, 0, kind] = values
+            if at.tilts is not None:
+                tilts = (self.half * at.tilts[0].tilt, lean - at_bore, self.half * at.tilts[1].tilt, at_race - lean)
+                for kind, values in zip(system.of_kind[disc], tilts, strict=True):
+                    self.overlap[:, 1, kind] = values
+        if e is None:
+            e = self.overlap
+            if system.coupled:  # a fair share of a rigid overlap
+                e = e.copy()
+                e[:, 0] *= np.where(e[:, 0] > 0.0, 0.5, 1.0)
+        elif system.coupled:
+            e = np.where(self._within()[:, None], e, self.overlap)
+        self.deformation = e
+
+    def _within(self) -> NDArray[np.bool_]:
+        """Contacts near enough to carry when the bodies yield under others."""
+        if not np.isfinite(self.margin):
+            return np.ones(self.overlap[:, 0].shape, dtype=bool)
+        reach = self.overlap[:, 0] + (np.abs(self.overlap[:, 1]) if self.system.components > 1 else 0.0)
+        most = np.max(reach, axis=1, initial=0.0)[:, None]
+        return (reach > 0.0) | (reach > -self.margin * most)
+
+    def _carry(self, state: _State, roughly: bool) -> None:
+        """Loads of all contacts at their deformations, and their derivatives."""
+        system, e = self.system, self.deformation
+        self.load = np.zeros(e.shape)
+        count = 1 if system.components == 1 else 3
+        self.stiffness = np.zeros((count, e.shape[0], e.shape[2]))
+        self.sliced: list[list[SlicedContact]] = []
+        self.law_left = np.zeros(e.shape[0])
+        exactness = ROUGH if roughly else EXACT
+        for disc, (at, laws) in enumerate(zip(self.discs, system.laws, strict=True)):
+            radii = at.flank.effective_radius, laws.outer_radius, laws.hole_radius, laws.inner_radius
+            found = []
+            for number, (kind, law, radius) in enumerate(zip(system.of_kind[disc], laws.laws, radii, strict=True)):
+                if kind.start == kind.stop and system.components == 1:
+                    continue
+                pressed = e[:, 0, kind]
+                if system.components == 1:
+                    closed = pressed > 0.0
+                    some = law.take(closed.shape, closed).load_and_stiffness(
+                        pressed[closed], np.broadcast_to(radius, closed.shape)[closed]
+                    )
+                    self.load[:, 0, kind][closed], self.stiffness[0][:, kind][closed] = some
+                    continue
+                near = state.near[4 * disc + number] if state.near else None
+                one = law.respond(pressed, e[:, 1, kind] / self.half, np.broadcast_to(radius, pressed.shape), near, exactness)
+                self.load[:, 0, kind], self.load[:, 1, kind] = one.load, one.moment / self.half
+                for values, mine in zip(
+                    self.stiffness, (one.by_approach, one.by_tilt / self.half, one.moment_by_tilt / self.half**2), strict=True
+                ):
+                    values[:, kind] = mine
+                if one.left is not None and one.left.size:
+                    self.law_left = np.maximum(self.law_left, one.left.max(axis=1))
+                found.append(one.still)
+            self.sliced.append(found)
+
+    def _choose(self) -> None:
+        """Choose the contacts of the linear system: those that carry, and of coupled bodies open ones that may."""
+        system, carries = self.system, np.any(self.stiffness != 0.0, axis=0) | (self.load[:, 0] > 0.0)
+        if system.coupled:
+            carries = carries | self._within()
+        self.chosen: list[list[Indices]] = []
+        for disc in range(system.discs):
+            pins, bores, holes, races = (carries[:, kind] for kind in system.of_kind[disc])
+            rollers = _padded(bores | races)
+            self.chosen.append([_padded(pins), rollers, _padded(holes), rollers])
+        parts = [
+            first.start + some
+            for kinds, own in zip(system.of_kind, self.chosen, strict=True)
+            for first, some in zip(kinds, own, strict=True)
+        ]
+        self.contacts: Indices = np.concatenate(parts, axis=1)
+        self.rollers: Indices = np.concatenate(
+            [disc * system.rollers + own[1] for disc, own in enumerate(self.chosen)], axis=1
+        )
+        ends = np.cumsum([0, *(part.shape[1] for part in parts)])
+        self.at = [
+            [slice(ends[4 * disc + kind], ends[4 * disc + kind + 1]) for kind in range(4)] for disc in range(system.discs)
+        ]
+        ends = np.cumsum([0, *(own[1].shape[1] for own in self.chosen)])
+        self.of_rollers = [slice(first, last) for first, last in zip(ends, ends[1:], strict=False)]
+
+    def _gradients(self) -> tuple[FloatArray, FloatArray]:
+        """∂d/∂q of the chosen contacts, shape (positions, components, chosen, coordinates), and how the tangents of the chosen
+        rollers in the bores turn with the pose, Im(n̄ ∂), shape (positions, rollers, coordinates).
+        """
+        system, row = self.system, self.row
+        rows, size = self.pose.shape
+        g = np.zeros((rows, system.components, self.contacts.shape[1], size))
+        across = np.zeros((rows, self.rollers.shape[1], size))
+        for disc, (at, own) in enumerate(zip(self.discs, system.columns, strict=True)):
+            pins, bores, holes, races = self.at[disc]
+            some = self.chosen[disc]
+            every = slice(None) if system.discs == 1 else own
+            by_approach = g[:, 0]
+            by_approach[:, pins, every] = at.flank.gradient[row, some[0]]
+            by_approach[:, holes, every] = at.holes.gradient[row, some[2]]
+            moved = at.bores.gradient
+            moved = moved if moved.shape[1] == 1 else moved[row, some[1] // (system.rollers // moved.shape[1])]
+            turned = at.outward[row, some[1]].conjugate()[..., None] * moved
+            by_approach[:, bores, every] = -turned.real
+            across[:, self.of_rollers[disc], every] = turned.imag
+            if at.tilts is None:
+                continue
+            half = self.half[..., None] if self.half.ndim else self.half
+            by_tilt = g[:, 1]
+            by_tilt[:, pins, every] = half * at.tilts[0].gradient[row, some[0]]
+            by_tilt[:, holes, every] = half * at.tilts[1].gradient[row, some[2]]
+            ray = at.rays.direction[row, some[1]]
+            both = half * np.stack((ray.real, ray.imag), axis=-1)
+            lean = own[system.one.lean_place]
+            by_tilt[:, bores, lean] = -both
+            crank_of = some[1] // (system.rollers // at.bores.arm.shape[1])
+            for crank in range(system.one.cranks):
+                first = own[system.one.crank_lean(crank)]
+                by_tilt[:, races, first : first + 2] = both * (crank_of == crank)[..., None]
+        return g, across
+
+    def _linearise(self) -> None:
+        """Eliminate deformations, displacements of pins and places of rollers."""
+        system, row = self.system, self.row
+        rows, size = self.pose.shape
+        g, across = self._gradients()
+        load = self.load[row, :, self.contacts].swapaxes(1, 2)
+        stiffness = self.stiffness[:, row, self.contacts]
+        force_map = self.force_map = self._rub(g)
+        out, n = self._of_rollers("outward"), self._rays()
+        cosine, slant = dot(out, n), (out.conjugate() * n).imag
+        bend = self._picked(self.load[:, 0], "bores") / self._of_rollers("length")
+        components, rollers = system.components, self.rollers.shape[1]
+        tangent = self._bends()
+        tangent += np.matmul(across.swapaxes(1, 2), bend[..., None] * across)
+        # Directions in which a roller's own place and lean press its two contacts.
+        outward, inward = np.ones((2, rows, components, rollers))
+        outward[:, 0], inward[:, 1:] = -cosine, -1.0
+        bores, races = self._positions(1), self._positions(3)
+        unbalanced = (outward * load[:, :, bores] + inward * load[:, :, races]).swapaxes(1, 2)
+        placed = np.zeros((rows, rollers, components, size))
+        placed[:, :, 0] = (bend * slant)[..., None] * across
+        own_bend = bend * slant**2
+        force = np.matmul(force_map.reshape(rows, -1, size).swapaxes(1, 2), load.reshape(rows, -1, 1))[..., 0]
+        if self.sticking is not None:
+            by_slip, slip, held = self.sticking
+            force += np.einsum("bpj,bp->bj", slip, held)
+            tangent += np.matmul(slip.swapaxes(1, 2), by_slip[..., None] * slip)
+        if not system.deforms:
+            pressed = _pressed(stiffness, g)
+            tangent += np.matmul(
+                force_map.reshape(rows, -1, size).swapaxes(1, 2), pressed.reshape(rows, -1, size)
+            )
+            of_bores, of_races = stiffness[..., bores], stiffness[..., races]
+            placed += (outward[..., None] * pressed[:, :, bores] + inward[..., None] * pressed[:, :, races]).swapaxes(1, 2)
+            own = _own_stiffness(of_bores, outward) + _own_stiffness(of_races, inward)
+            own[:, :, 0, 0] += own_bend
+            solved = _solved_blocks(own, np.concatenate((placed, unbalanced[..., None]), axis=-1))
+            back = placed.reshape(rows, -1, size).swapaxes(1, 2)
+            flat = solved.reshape(rows, -1, size + 1)
+            tangent -= np.matmul(back, flat[..., :-1])
+            force -= np.matmul(back, flat[..., -1:])[..., 0]
+            self.dx, self.dx_by_pose = -solved[..., -1], -solved[..., :-1]
+            self.de = np.zeros(load.shape)
+            self.de[:, :, bores] = outward * self.dx.swapaxes(1, 2)
+            self.de[:, :, races] = inward * self.dx.swapaxes(1, 2)
+            self.de_by_pose = None
+        else:
+            force, tangent = self._eliminate(
+                g, force_map, stiffness, load, (outward, inward), unbalanced, placed, own_bend, force, tangent
+            )
+        self.gradient, self.chosen_stiffness = g, stiffness
+        self.force, self.tangent = force, tangent
+        change = _pressed(stiffness, self.de[..., None])[..., 0]
+        near = self.deformation[row, :, self.contacts].swapaxes(1, 2)
+        deep = np.abs(near).sum(axis=1) + 1e-300
+        moved = np.abs(self.de).sum(axis=1)
+        self.moved = np.max(np.where(stiffness[0] > 0.0, moved, 0.0), axis=1, initial=0.0)
+        error = np.abs(change).sum(axis=1) * np.minimum(1.0, moved / deep)
+        self.left = np.maximum(np.max(error, axis=1, initial=0.0), self.law_left)
+        self.change = change
+
+    def _eliminate(
+        self,
+        g: FloatArray,
+        force_map: FloatArray,
+        stiffness: FloatArray,
+        load: FloatArray,
+        presses: tuple[FloatArray, FloatArray],
+        unbalanced: FloatArray,
+        placed: FloatArray,
+        own_bend: FloatArray,
+        force: FloatArray,
+        tangent: FloatArray,
+    ) -> tuple[FloatArray, FloatArray]:
+        """The same where loads deform more than their own contacts: force and tangent of the pose."""
+        system = self.system
+        rows, components, count, size = g.shape
+        rollers = unbalanced.shape[1]
+        whole, left = self._flexibility(load)
+        t = np.zeros((rows, components, count, rollers, components))
+        each = np.arange(rollers)
+        for press, places in zip(presses, (self._positions(1), self._positions(3)), strict=True):
+            for component in range(components):
+                t[:, component, places, each, component] = press[:, component]
+        flat = t.reshape(rows, components * count, rollers * components)
+        right = np.concatenate((g.reshape(rows, -1, size), flat, left.reshape(rows, -1, 1)), axis=-1)
+        system_matrix = _pressed(stiffness, whole.reshape(rows, -1, components, count).transpose(0, 2, 3, 1))
+        system_matrix = system_matrix.transpose(0, 3, 1, 2).reshape(rows, components * count, components * count)
+        own = np.arange(components * count)
+        system_matrix[:, own, own] += 1.0
+        x = np.linalg.solve(system_matrix, right).reshape(rows, components, count, -1)
+        kx = _pressed(stiffness, x).reshape(rows, components * count, -1)
+        back = np.concatenate((force_map.reshape(rows, -1, size), flat), axis=-1)
+        products = np.matmul(back.swapaxes(1, 2), kx)
+        tangent = tangent + products[:, :size, :size]
+        force = force - products[:, :size, -1]
+        block = products[:, size:, size:-1].copy()
+        first = np.arange(rollers) * components
+        block[:, first, first] += own_bend
+        flat_placed = placed.reshape(rows, -1, size)
+        down, across = products[:, size:, :size] + flat_placed, products[:, :size, size:-1] + flat_placed.swapaxes(1, 2)
+        loose = np.einsum("bii->bi", block) == 0.0
+        block[:, np.arange(block.shape[1]), np.arange(block.shape[1])] += loose
+        short = unbalanced.reshape(rows, -1) - products[:, size:, -1]
+        solved = np.linalg.solve(block, np.concatenate((down, short[..., None]), axis=-1))
+        tangent = tangent - np.matmul(across, solved[..., :-1])
+        force = force - np.matmul(across, solved[..., -1:])[..., 0]
+        of_rollers = x[..., size:-1].reshape(rows, components * count, -1)
+        moved = np.matmul(of_rollers, solved).reshape(rows, components, count, -1)
+        self.de = -(x[..., -1] + moved[..., -1])
+        self.de_by_pose = x[..., :size] - moved[..., :-1]
+        solved = solved.reshape(rows, rollers, components, size + 1)
+        self.dx, self.dx_by_pose = -solved[..., -1], -solved[..., :-1]
+        if self.sticking is None and system.model.friction is None:
+            tangent = 0.5 * (tangent + tangent.swapaxes(1, 2))
+        return force, tangent
+
+    def _flexibility(self, load: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """W among the chosen contacts, shape (positions, components, chosen, components, chosen), and what is left of their
+        deformations, r.
+        """
+        system, row = self.system, self.row
+        rows, components, count = load.shape
+        whole = np.zeros((rows, components, count, components, count))
+        self.bodies: list[list[FloatArray]] = []
+        for disc, model in enumerate(system.model.discs):
+            self.bodies.append([])
+            if model.coefficients is None:
+                continue
+            places, some = self._body_places(disc), self.chosen[disc][:3]
+            pins, bores, holes, races = self.at[disc]
+            among = np.r_[pins, bores, holes]
+            for component, (matrix, race, cross) in enumerate(model.body_flexibility(places, some)):
+                self.bodies[disc].append(matrix)
+                walls = np.concatenate(
+                    (some[0], system.pins + some[1], system.pins + system.rollers + some[2]), axis=1
+                )
+                whole[:, component, among[:, None], component, among] = matrix[row, walls]
+                on_race = race[some[1][:, :, None], some[1][:, None, :]]
+                whole[:, component, races, component, races] = on_race
+                first, second = np.arange(bores.start, bores.stop), np.arange(races.start, races.stop)
+                whole[:, component, first, component, second] = whole[:, component, second, component, first] = cross
+        deformed = self.deformation[row, :, self.contacts].swapaxes(1, 2)
+        left = deformed - self.overlap[row, :, self.contacts].swapaxes(1, 2)
+        flat = load.reshape(rows, -1, 1)
+        if system.coupled:
+            left += np.matmul(whole.reshape(rows, components * count, -1), flat).reshape(left.shape)
+        if self.shifts is not None and system.model.pins is not None:
+            from ltca.mechanics.displaced_pins import PinMembers
+
+            members = self.members = PinMembers(self)
+            self.left_shifts = self.shifts + system.model.pins.under(members.forces(self.load))
+            left += members.approaches(self.left_shifts)
+            members.add_flexibility(whole)
+        return whole, left
+
+    @property
+    def inner(self) -> Inner:
+        """Inner unknowns beside the pose, to start from elsewhere."""
+        state = self._state()
+        return Inner(lean=state.lean, approach=state.approach, near=state.near)
+
+    @cached_property
+    def shifts(self) -> ComplexArray | None:
+        """Displacements of the pins, mm."""
+        if self.system.model.pins is None:
+            return None
+        each = [at.shifts for at in self.discs]
+        if self.system.components > 1:
+            each += [None if at.leans is None else at.leans * self.half for at in self.discs]
+        return np.stack([one for one in each if one is not None], axis=1)
+
+    def _body_places(self, disc: int) -> tuple[FloatArray, FloatArray, FloatArray, ComplexArray, float]:
+        """Where the contacts of a disc lie on its body: θ on the flank, polar angles in bores and holes, places of the first."""
+        at = self.discs[disc]
+        turn, holes = at.pose[:, DISC_ROTATION, None], at.holes.gradient
+        in_bore = np.angle(at.rays.outermost * at.rays.direction - at.displacement) - turn
+        in_hole = np.angle(-(holes[..., X] + 1j * holes[..., Y])) - turn
+        on_flank = at.geometry.profile.flank(at.flank.parameter)
+        return at.flank.parameter, in_bore, in_hole, on_flank, float(at.geometry.placement.bore_radius)
+
+    def _rub(self, g: FloatArray) -> FloatArray:
+        """What loads press the pose with, G and friction along the tangents of pins and holes."""
+        self.sticking: tuple[FloatArray, FloatArray, FloatArray] | None = None
+        self.rubs: list[FloatArray] = []
+        friction = self.system.model.friction
+        if friction is None:
+            return g
+        from ltca.equilibrium.friction.slip import Slip
+
+        system, found, row = self.system, g.copy(), self.row
+        sticking: list[list[FloatArray]] = []
+        for disc, (at, own) in enumerate(zip(self.discs, system.columns, strict=True)):
+            slip = Slip.of_disc(at.geometry, self.angle, at.pose, at)
+            kinds = system.of_kind[disc][0], system.of_kind[disc][2]
+            load = np.concatenate([self.load[:, 0, kind] for kind in kinds], axis=1)
+            stiffness = np.concatenate([self.stiffness[0][:, kind] for kind in kinds], axis=1)
+            by_load, held, by_slip = friction.along(at.geometry, at.pose, slip, load, stiffness, disc)
+            self.rubs.append(by_load)
+            pins, _, holes, _ = self.at[disc]
+            some = self.chosen[disc]
+            for where, which in ((pins, some[0]), (holes, system.pins + some[2])):
+                by = by_load[row, which][..., None]
+                first = found[:, 0]
+                first[:, where, own] += by * slip.by_pose[row, which]
+                if at.tilts is None:
+                    continue
+                motion = at.flank if where is pins else at.holes
+                along = self._thick * by * motion.along[row, which if where is pins else some[2]][..., :2]
+                second = found[:, 1]
+                second[:, where, own[system.one.lean_place]] += along
+                if where is pins and system.one.wheel_leans:
+                    second[:, where, own[system.one.wheel_lean_place]] -= along
+            if by_slip is not None:
+                whole = np.zeros((*load.shape, self.pose.shape[1]))
+                whole[..., own] = slip.by_pose
+                sticking.append([by_slip, whole, held])
+        if sticking:
+            by_slip, whole, held = (np.concatenate(parts, axis=1) for parts in zip(*sticking, strict=True))
+            self.sticking = by_slip, whole, held
+        return found
+
+    @property
+    def _thick(self) -> FloatArray:
+        return self.half[..., None] if self.half.ndim else self.half
+
+    def _bends(self) -> FloatArray:
+        """Σ F ∂²d/∂q² of all contacts but what the rollers' places turn."""
+        system = self.system
+        rows, size = self.pose.shape
+        found = np.zeros((rows, size, size))
+        for disc, (at, own) in enumerate(zip(self.discs, system.columns, strict=True)):
+            pins, bores, holes, _ = system.of_kind[disc]
+            mine = at.flank.bend(self.load[:, 0, pins]) + at.holes.bend(self.load[:, 0, holes])
+            if at.tilts is not None:
+                mine += at.flank.bend_leans(self.load[:, 1, pins] * self.half, system.one)
+                mine += at.holes.bend_leans(self.load[:, 1, holes] * self.half, system.one)
+            cranks = at.bores.arm.shape[1]
+            push = (self.load[:, 0, bores] * at.outward).reshape(rows, cranks, -1).sum(axis=2).conjugate()
+            mine[:, DISC_ROTATION, DISC_ROTATION] += (push * at.bores.arm).real.sum(axis=1)
+            if at.bores.twists:
+                mine[:, at.bores.twists, at.bores.twists] -= (push * at.bores.lever).real
+            if system.discs == 1:
+                found += mine
+            else:
+                found[:, own[:, None], own] += mine
+        return found
+
+    def _of_rollers(self, name: str) -> NDArray[Any]:
+        """An array of the discs by roller, of the chosen ones."""
+        return np.concatenate(
+            [getattr(at, name)[self.row, own[1]] for at, own in zip(self.discs, self.chosen, strict=True)], axis=1
+        )
+
+    def _rays(self) -> ComplexArray:
+        return np.concatenate(
+            [at.rays.direction[self.row, own[1]] for at, own in zip(self.discs, self.chosen, strict=True)], axis=1
+        )
+
+    def _picked(self, values: FloatArray, kind: str) -> FloatArray:
+        """Values of all contacts, of the chosen ones of a kind."""
+        number = KINDS.index(kind)
+        return np.concatenate(
+            [
+                values[:, kinds[number]][self.row, own[number]]
+                for kinds, own in zip(self.system.of_kind, self.chosen, strict=True)
+            ],
+            axis=1,
+        )
+
+    def _positions(self, number: int) -> Indices:
+        """Where the contacts of a kind stand among the chosen."""
+        return np.concatenate([np.arange(own[number].start, own[number].stop) for own in self.at])
+
+    def settled(self, roughly: bool) -> bool:
+        """Whether the inner unknowns are close enough for a step of the pose, or for an answer."""
+        deep = np.max(np.abs(self.overlap[:, 0]) * (self.load[:, 0] > 0.0), axis=1, initial=0.0)
+        return bool(np.all(self.moved <= (ROUGHLY_SETTLED if roughly else SETTLED) * deep))
+
+    def _state(self) -> _State:
+        """Inner unknowns after the correction."""
+        system, row = self.system, self.row
+        approach = None
+        if system.deforms:
+            approach = self.after
+            if not system.coupled:  # open ones are as far apart as their bodies
+                approach = self.overlap.copy()
+                approach[row, :, self.contacts] = self.after[row, :, self.contacts]
+        shifts = None if self.shifts is None else self._moved_shifts()
+        return _State(
+            parameter=np.concatenate([at.flank.parameter for at in self.discs], axis=1),
+            place=self.place_after,
+            share=np.full(self.place.shape, 0.5),
+            lean=self.lean_after,
+            approach=approach,
+            shifts=shifts,
+            near=tuple(one.near for found in self.sliced for one in found),
+        )
+
+    @cached_property
+    def after(self) -> FloatArray:
+        """Deformations of all contacts after the correction."""
+        found = self.deformation.copy()
+        near = found[self.row, :, self.contacts].swapaxes(1, 2) + self.de
+        found[self.row, :, self.contacts] = near.swapaxes(1, 2)
+        return found
+
+    @cached_property
+    def place_after(self) -> FloatArray:
+        """Places of the rollers after the correction, inward of where they only touch the race, mm."""
+        found = self.place.copy()
+        found[self.row, self.rollers] += self.dx[..., 0]
+        return found
+
+    @cached_property
+    def lean_after(self) -> FloatArray:
+        """Their leans by half the thickness of the disc, mm."""
+        found = self.lean.copy()
+        if self.system.components > 1:
+            found[self.row, self.rollers] += self.dx[..., 1]
+        return found
+
+    def slices_after(self, disc: int) -> list[SlicedContact]:
+        """Return the contacts of a disc in slices, by kind, moved along their slopes by the correction."""
+        if disc not in self._moved_slices:
+            found = []
+            for one, kind in zip(self.sliced[disc], self.system.of_kind[disc], strict=True):
+                change = self.after[:, :, kind] - self.deformation[:, :, kind]
+                found.append(one.moved(change[:, 0], change[:, 1] / self.half, self.corrected_load[:, :, kind], self.half))
+            self._moved_slices[disc] = found
+        return self._moved_slices[disc]
+
+    def _moved_shifts(self) -> ComplexArray:
+        """Displacements of the pins after the correction."""
+        pins = self.system.model.pins
+        assert pins is not None
+        return -pins.under(self.members.forces(self.corrected_load))
+
+    @cached_property
+    def corrected_load(self) -> FloatArray:
+        """Loads of all contacts, to first order in what is left of the inner unknowns."""
+        load = self.load.copy()
+        load[self.row, :, self.contacts] += self.change.swapaxes(1, 2)
+        return load
+
+    def corrected(self, *, roughly: bool) -> Linearised:
+        """Return the contacts at the same poses with the inner unknowns corrected."""
+        places = self.discs if self.shifts is None else None
+        return Linearised(
+            self.system, self.angle, self.pose, self._state(), self.known, roughly=roughly, places=places, margin=self.margin
+        )
+
+    @cached_property
+    def yielding(self) -> list[list[FloatArray]]:
+        """What the bodies take of the approaches on pins, bores and holes, and of their tilts, by disc and component."""
+        found: list[list[FloatArray]] = []
+        for disc, bodies in enumerate(self.bodies if self.system.coupled else []):
+            some, kinds = self.chosen[disc], self.system.of_kind[disc]
+            found.append([])
+            for component, matrix in enumerate(bodies):
+                load = self.corrected_load[:, component]
+                loaded = np.concatenate([load[:, kinds[kind]][self.row, some[kind]] for kind in range(3)], axis=1)
+                found[disc].append(np.matmul(matrix, loaded[..., None])[..., 0])
+        return found
+
+    @property
+    def leaves_out(self) -> bool:
+        """Whether a contact of coupled bodies that was left out is pressed together after all."""
+        if not self.system.coupled or not np.isfinite(self.margin):
+            return False
+        for disc, yielding in enumerate(self.yielding):
+            some, kinds = self.chosen[disc], self.system.of_kind[disc]
+            for kind, part in enumerate(np.split(yielding[0], np.cumsum((self.system.pins, self.system.rollers)), axis=1)):
+                pressed = self.overlap[:, 0, kinds[kind]] - part > 0.0
+                pressed[self.row, some[kind]] = False
+                if pressed.any():
+                    return True
+        return False
+
+    def responses(self) -> tuple[DiscResponse, ...]:
+        """Return the contacts of every disc, loads corrected to first order."""
+        from ltca.mechanics.answers import disc_response
+
+        return tuple(disc_response(self, disc) for disc in range(self.system.discs))
+
+    def following(self) -> Following:
+        """Return how the inner unknowns follow the pose."""
+        state = self._state()
+        shifts = None
+        if self.shifts is not None and self.de_by_pose is not None:
+            pins = self.system.model.pins
+            assert pins is not None
+            change = _pressed(self.chosen_stiffness, self.de_by_pose)
+            each = []
+            for column in range(self.pose.shape[1]):
+                load = np.zeros(self.load.shape)
+                load[self.row, :, self.contacts] = change[..., column].swapaxes(1, 2)
+                each.append(-pins.under(self.members.forces(load)))
+            shifts = np.stack(each, axis=-1)
+        by_pose = np.zeros((*self.place.shape, *self.dx_by_pose.shape[2:]))
+        by_pose[self.row, self.rollers] = self.dx_by_pose
+        by_approach = None
+        if self.de_by_pose is not None:
+            by_approach = np.zeros((*self.load.shape, self.pose.shape[1]))
+            by_approach[self.row, :, self.contacts] = self.de_by_pose.swapaxes(1, 2)
+        return Following(
+            pose=self.pose,
+            place=state.place,
+            lean=state.lean,
+            approach=state.approach,
+            shifts=state.shifts,
+            by_pose=by_pose,
+            approach_by_pose=by_approach,
+            shifts_by_pose=shifts,
+        )
+
+
+def _padded(mask: NDArray[np.bool_]) -> Indices:
+    """Numbers of what is chosen in each row, ascending, padded to the fullest row with others."""
+    count = int(np.max(np.count_nonzero(mask, axis=1), initial=0))
+    if count == mask.shape[1]:
+        return np.broadcast_to(np.arange(count), mask.shape)
+    return np.sort(np.argsort(~mask, axis=1, kind="stable")[:, :count], axis=1)
+
+
+def _pressed(stiffness: FloatArray, moved: FloatArray) -> FloatArray:
+    """K of columns of deformations, shape (positions, components, contacts, columns)."""
+    if stiffness.shape[0] == 1:
+        return stiffness[0][:, None, :, None] * moved
+    k, mixed, turning = (each[..., None] for each in stiffness)
+    first, second = moved[:, 0], moved[:, 1]
+    return np.stack((k * first + mixed * second, mixed * first + turning * second), axis=1)
+
+
+def _own_stiffness(stiffness: FloatArray, press: FloatArray) -> FloatArray:
+    """Stiffness of contacts against the place and lean of their rollers, shape (positions, rollers, components, components)."""
+    if stiffness.shape[0] == 1:
+        return (stiffness[0] * press[:, 0] ** 2)[..., None, None]
+    k, mixed, turning = stiffness
+    first, second = press[:, 0], press[:, 1]
+    cross = first * mixed * second
+    return np.stack((np.stack((k * first**2, cross), -1), np.stack((cross, turning * second**2), -1)), -2)
+
+
+def _solved_blocks(blocks: FloatArray, right: FloatArray) -> FloatArray:
+    """Columns solved roller by roller; what nothing holds stays where it is."""
+    if blocks.shape[-1] == 1:
+        held = blocks[..., 0, 0]
+        return right / np.where(held != 0.0, held, np.inf)[..., None, None]
+    determinant = blocks[..., 0, 0] * blocks[..., 1, 1] - blocks[..., 0, 1] ** 2
+    inverse = 1.0 / np.where(determinant > 0.0, determinant, np.inf)
+    first, second = right[..., 0, :], right[..., 1, :]
+    a, b, c = (blocks[..., i, j][..., None] for i, j in ((0, 0), (0, 1), (1, 1)))
+    return np.stack((c * first - b * second, a * second - b * first), axis=-2) * inverse[..., None, None]
+
+
+__all__ = ["ContactLaws", "ContactSystem", "Following", "Inner", "Linearised"]

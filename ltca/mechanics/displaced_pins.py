@@ -1,0 +1,131 @@
+"""Contacts on pins that beams and the ring of the wheel displace: how they follow the displacements, and what they press."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ltca.arrays import ComplexArray, FloatArray
+from ltca.geometry.coordinates import DISC_PLACE, WHEEL_ANGLE
+from ltca.geometry.pair_motion import dot
+from ltca.geometry.rotation import unit
+
+if TYPE_CHECKING:
+    from ltca.mechanics.contacts import Linearised
+
+
+class PinMembers:
+    """Wheel pins and shaft pins of all discs under their contacts.
+
+    Displacements of wheel pins are those in the turning wheel. A pin moves against a disc as the disc moves the other way against
+    it, so that the derivatives N are those by the place of the disc, turned round.
+
+    Parameters
+    ----------
+    at : Linearised
+        The contacts at poses.
+    """
+
+    def __init__(self, at: Linearised) -> None:
+        self.at, system = at, at.system
+        place, pins = system.geometries[0].placement, system.pins
+        turned = unit(place.wheel_rotation(at.angle) + at.pose[:, WHEEL_ANGLE]).conjugate()[:, None]
+        self.normal, self.pressing, self.turning = [], [], []
+        for disc, each in enumerate(at.discs):
+            frame = np.where(np.arange(pins + system.holes) < pins, turned, 1.0)
+
+            def seen(first: FloatArray, second: FloatArray, frame: ComplexArray = frame) -> ComplexArray:
+                both = np.concatenate((first, second), axis=1)[..., DISC_PLACE]
+                return np.asarray(-(both[..., 0] + 1j * both[..., 1]) * frame)
+
+            normal = seen(each.flank.gradient, each.holes.gradient)
+            pressing = normal
+            if at.rubs:
+                pressing = normal + at.rubs[disc] * seen(each.flank.along, each.holes.along)
+            self.normal.append(normal)
+            self.pressing.append(pressing)
+            if each.tilts is not None:
+                self.turning.append(at.half * seen(each.tilts[0].gradient, each.tilts[1].gradient))
+
+    def forces(self, load: FloatArray) -> ComplexArray:
+        """Return Lᵀ f of loads of all contacts, by row of the displacements, shape (positions, rows, pairs)."""
+        system, forces, moments = self.at.system, [], []
+        for disc, kinds in enumerate(system.of_kind):
+            pressed = np.concatenate((load[..., kinds[0]], load[..., kinds[2]]), axis=-1)
+            force = pressed[:, 0] * self.pressing[disc]
+            if self.turning:
+                force = force + pressed[:, 1] * self.turning[disc]
+                moments.append(pressed[:, 1] * self.pressing[disc])
+            forces.append(force)
+        return np.stack(forces + moments, axis=1)
+
+    def approaches(self, shifts: ComplexArray) -> FloatArray:
+        """Return N u of the chosen contacts, shape (positions, components, chosen)."""
+        system, at = self.at.system, self.at
+        found = np.zeros((shifts.shape[0], system.components, at.contacts.shape[1]))
+        for disc in range(system.discs):
+            by = dot(self.normal[disc], shifts[:, disc])
+            each = [by]
+            if self.turning:
+                each.append(dot(self.turning[disc], shifts[:, disc]) + dot(self.normal[disc], shifts[:, system.discs + disc]))
+            some = at.chosen[disc]
+            for kind, first in ((0, 0), (2, system.pins)):
+                for component, values in enumerate(each):
+                    found[:, component, at.at[disc][kind]] = values[at.row, first + some[kind]]
+        return found
+
+    def add_flexibility(self, whole: FloatArray) -> None:
+        """Add N S Lᵀ of the chosen contacts to W, in place."""
+        at, system = self.at, self.at.system
+        held = system.model.pins
+        assert held is not None
+        places, pairs, discs = [], [], []
+        for disc in range(system.discs):
+            for kind, first in ((0, 0), (2, system.pins)):
+                own = at.at[disc][kind]
+                places.append(np.arange(own.start, own.stop))
+                pairs.append(first + at.chosen[disc][kind])
+                discs.append(np.full(own.stop - own.start, disc))
+        place, pair, disc_of = np.concatenate(places), np.concatenate(pairs, axis=1), np.concatenate(discs)
+        row = at.row
+
+        def chosen(values: list[ComplexArray]) -> ComplexArray:
+            return np.stack(values, axis=1)[row, disc_of, pair]
+
+        none = np.zeros(pair.shape, dtype=complex)
+        normal, pressing = chosen(self.normal), chosen(self.pressing)
+        # By component and kind of displacement: shifts, and leans in slices.
+        by: list[list[ComplexArray]] = [[normal]]
+        onto: list[list[ComplexArray]] = [[pressing]]
+        if self.turning:
+            turning = chosen(self.turning)
+            by, onto = [[normal, none], [turning, normal]], [[pressing, none], [turning, pressing]]
+        kinds = len(by[0])
+        same = pair[:, :, None] == pair[:, None, :]
+        first, second = place[:, None], place[None, :]
+        if held.beams.any():
+            behind = (row[..., None],) if held.beams.ndim > 3 else ()
+            for i in range(kinds):
+                for j in range(kinds):
+                    at_pin = (*behind, pair[:, :, None], (disc_of + i * system.discs)[:, None], disc_of + j * system.discs)
+                    beam = held.beams[at_pin] * same
+                    if not beam.any():
+                        continue
+                    for a, mine in enumerate(by):
+                        for b, theirs in enumerate(onto):
+                            whole[:, a, first, b, second] += beam * dot(mine[i][:, :, None], theirs[j][:, None, :])
+        if held.ring is None:
+            return
+        seats = held.ring.shape[-2]
+        on_wheel = pair < seats
+        seat = np.minimum(pair, seats - 1)
+        behind = (row[..., None],) if held.ring.ndim > 4 else ()
+        for a, mine in enumerate(by):
+            for b, theirs in enumerate(onto):
+                total = np.zeros(same.shape)
+                for x, left in enumerate((mine[0].real, mine[0].imag)):
+                    for y, right in enumerate((theirs[0].real, theirs[0].imag)):
+                        moved = held.ring[(*behind, seat[:, :, None], x, seat[:, None, :], y)]
+                        total += moved * (left * on_wheel)[:, :, None] * (right * on_wheel)[:, None, :]
+                whole[:, a, first, b, second] += total
