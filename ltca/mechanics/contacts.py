@@ -52,6 +52,10 @@ ROUGHLY_SETTLED = 0.02
 SETTLED = 1e-6
 """The same of an answer: loads are corrected to first order, and the error left is of its square."""
 MAX_CORRECTIONS = 60
+ROUND_OFF = 1e-13
+"""Correction that is nothing but round-off of places, mm."""
+LEAST_TURNING = 1e-9
+"""Stiffness against leaning by that of the place and the square of half the width: what touches at one end alone turns freely."""
 
 
 class ContactLaws(NamedTuple):
@@ -361,7 +365,7 @@ class Linearised:
                 at_race, at_bore = self.half * at.at_race, self.half * at.at_bore
                 middle = 0.5 * (at_race + at_bore)
                 lean = np.where(np.isnan(lean), middle, lean)
-            if e is not None:
+            if e is not None and system.coupled:
                 reach = e[:, 0] + (np.abs(e[:, 1]) if at.tilts is not None else 0.0)
                 loose = (reach[:, bores] <= 0.0) | (reach[:, races] <= 0.0)
                 by = np.where(loose, 0.5 * (e[:, 0, bores] - e[:, 0, races]), 0.0)
@@ -396,6 +400,9 @@ class Linearised:
                 e[:, 0] *= np.where(e[:, 0] > 0.0, 0.5, 1.0)
         elif system.coupled:
             e = np.where(self._within()[:, None], e, self.overlap)
+        else:  # nothing but the two contacts of a roller deforms
+            for _, bores, _, races in system.of_kind:
+                e[:, :, bores], e[:, :, races] = self.overlap[:, :, bores], self.overlap[:, :, races]
         self.deformation = e
 
     def _within(self) -> NDArray[np.bool_]:
@@ -515,6 +522,7 @@ class Linearised:
         cosine, slant = dot(out, n), (out.conjugate() * n).imag
         bend = self._picked(self.load[:, 0], "bores") / self._of_rollers("length")
         components, rollers = system.components, self.rollers.shape[1]
+        self.each = components * self.contacts.shape[1]
         tangent = self._bends()
         tangent += np.matmul(across.swapaxes(1, 2), bend[..., None] * across)
         # Directions in which a roller's own place and lean press its two contacts.
@@ -525,7 +533,7 @@ class Linearised:
         placed = np.zeros((rows, rollers, components, size))
         placed[:, :, 0] = (bend * slant)[..., None] * across
         own_bend = bend * slant**2
-        force = np.matmul(force_map.reshape(rows, -1, size).swapaxes(1, 2), load.reshape(rows, -1, 1))[..., 0]
+        force = np.matmul(force_map.reshape(rows, self.each, size).swapaxes(1, 2), load.reshape(rows, self.each, 1))[..., 0]
         if self.sticking is not None:
             by_slip, slip, held = self.sticking
             force += np.einsum("bpj,bp->bj", slip, held)
@@ -533,18 +541,19 @@ class Linearised:
         if not system.deforms:
             pressed = _pressed(stiffness, g)
             tangent += np.matmul(
-                force_map.reshape(rows, -1, size).swapaxes(1, 2), pressed.reshape(rows, -1, size)
+                force_map.reshape(rows, self.each, size).swapaxes(1, 2), pressed.reshape(rows, self.each, size)
             )
             of_bores, of_races = stiffness[..., bores], stiffness[..., races]
             placed += (outward[..., None] * pressed[:, :, bores] + inward[..., None] * pressed[:, :, races]).swapaxes(1, 2)
             own = _own_stiffness(of_bores, outward) + _own_stiffness(of_races, inward)
             own[:, :, 0, 0] += own_bend
+            _hold_turning(own)
             solved = _solved_blocks(own, np.concatenate((placed, unbalanced[..., None]), axis=-1))
-            back = placed.reshape(rows, -1, size).swapaxes(1, 2)
-            flat = solved.reshape(rows, -1, size + 1)
+            back = placed.reshape(rows, rollers * components, size).swapaxes(1, 2)
+            flat = solved.reshape(rows, rollers * components, size + 1)
             tangent -= np.matmul(back, flat[..., :-1])
             force -= np.matmul(back, flat[..., -1:])[..., 0]
-            self.dx, self.dx_by_pose = -solved[..., -1], -solved[..., :-1]
+            self.dx, self.dx_by_pose = self._bounded(-solved[..., -1]), -solved[..., :-1]
             self.de = np.zeros(load.shape)
             self.de[:, :, bores] = outward * self.dx.swapaxes(1, 2)
             self.de[:, :, races] = inward * self.dx.swapaxes(1, 2)
@@ -582,43 +591,69 @@ class Linearised:
         rows, components, count, size = g.shape
         rollers = unbalanced.shape[1]
         whole, left = self._flexibility(load)
+        bent = None
+        if self.shifts is not None:
+            # Loads turn with displaced pins: as if contacts lay along their tangents, without loads. What they turn with the pose
+            # is in the tangent already.
+            bent, along = self.members.turned_loads(size)
+            held = _pressed(bent, along)
+            shape = rows, components * along.shape[2], size
+            tangent = tangent - np.matmul(along.reshape(shape).swapaxes(1, 2), held.reshape(shape))
+            g, force_map = np.concatenate((g, along), axis=2), np.concatenate((force_map, along), axis=2)
+            left = np.concatenate((left, np.zeros(along.shape[:3])), axis=2)
+            stiffness = np.concatenate((_filled(stiffness, bent.shape[0]), bent), axis=2)
+        mine, count = count, g.shape[2]
+        each = components * count
         t = np.zeros((rows, components, count, rollers, components))
-        each = np.arange(rollers)
+        own = np.arange(rollers)
         for press, places in zip(presses, (self._positions(1), self._positions(3)), strict=True):
             for component in range(components):
-                t[:, component, places, each, component] = press[:, component]
+                t[:, component, places, own, component] = press[:, component]
         flat = t.reshape(rows, components * count, rollers * components)
-        right = np.concatenate((g.reshape(rows, -1, size), flat, left.reshape(rows, -1, 1)), axis=-1)
-        system_matrix = _pressed(stiffness, whole.reshape(rows, -1, components, count).transpose(0, 2, 3, 1))
+        right = np.concatenate((g.reshape(rows, each, size), flat, left.reshape(rows, each, 1)), axis=-1)
+        system_matrix = _pressed(stiffness, whole.reshape(rows, components * count, components, count).transpose(0, 2, 3, 1))
         system_matrix = system_matrix.transpose(0, 3, 1, 2).reshape(rows, components * count, components * count)
         own = np.arange(components * count)
         system_matrix[:, own, own] += 1.0
-        x = np.linalg.solve(system_matrix, right).reshape(rows, components, count, -1)
-        kx = _pressed(stiffness, x).reshape(rows, components * count, -1)
-        back = np.concatenate((force_map.reshape(rows, -1, size), flat), axis=-1)
+        x = np.linalg.solve(system_matrix, right).reshape(rows, components, count, right.shape[-1])
+        kx = _pressed(stiffness, x).reshape(rows, components * count, right.shape[-1])
+        back = np.concatenate((force_map.reshape(rows, each, size), flat), axis=-1)
         products = np.matmul(back.swapaxes(1, 2), kx)
         tangent = tangent + products[:, :size, :size]
         force = force - products[:, :size, -1]
         block = products[:, size:, size:-1].copy()
         first = np.arange(rollers) * components
         block[:, first, first] += own_bend
-        flat_placed = placed.reshape(rows, -1, size)
+        flat_placed = placed.reshape(rows, rollers * components, size)
         down, across = products[:, size:, :size] + flat_placed, products[:, :size, size:-1] + flat_placed.swapaxes(1, 2)
-        loose = np.einsum("bii->bi", block) == 0.0
-        block[:, np.arange(block.shape[1]), np.arange(block.shape[1])] += loose
-        short = unbalanced.reshape(rows, -1) - products[:, size:, -1]
+        diagonal = np.einsum("bii->bi", block)
+        if components > 1:
+            diagonal[:, 1::2] += LEAST_TURNING * np.abs(diagonal[:, ::2])
+        diagonal += diagonal == 0.0
+        short = unbalanced.reshape(rows, rollers * components) - products[:, size:, -1]
         solved = np.linalg.solve(block, np.concatenate((down, short[..., None]), axis=-1))
         tangent = tangent - np.matmul(across, solved[..., :-1])
         force = force - np.matmul(across, solved[..., -1:])[..., 0]
-        of_rollers = x[..., size:-1].reshape(rows, components * count, -1)
-        moved = np.matmul(of_rollers, solved).reshape(rows, components, count, -1)
-        self.de = -(x[..., -1] + moved[..., -1])
-        self.de_by_pose = x[..., :size] - moved[..., :-1]
+        of_rollers = x[..., size:-1].reshape(rows, components * count, rollers * components)
+        moved = np.matmul(of_rollers, solved).reshape(rows, components, count, size + 1)
+        self.de = -(x[..., -1] - moved[..., -1])[:, :, :mine]
+        self.de_by_pose = (x[..., :size] - moved[..., :-1])[:, :, :mine]
         solved = solved.reshape(rows, rollers, components, size + 1)
-        self.dx, self.dx_by_pose = -solved[..., -1], -solved[..., :-1]
+        self.dx, self.dx_by_pose = self._bounded(-solved[..., -1]), -solved[..., :-1]
         if self.sticking is None and system.model.friction is None:
             tangent = 0.5 * (tangent + tangent.swapaxes(1, 2))
         return force, tangent
+
+    def _bounded(self, dx: FloatArray) -> FloatArray:
+        """Corrections of places and leans that go no farther than half of what is pressed together: beyond, other slices meet
+        than the slopes know of.
+        """
+        if self.system.components == 1:
+            return dx
+        each = [0.5 * (np.abs(at.total) + self.half * np.abs(at.at_race - at.at_bore)) for at in self.discs]
+        room = np.concatenate([one[self.row, own[1]] for one, own in zip(each, self.chosen, strict=True)], axis=1)
+        long = np.abs(dx).max(axis=-1)
+        return np.asarray(dx * np.divide(room, long, out=np.ones(long.shape), where=long > room)[..., None])
 
     def _flexibility(self, load: FloatArray) -> tuple[FloatArray, FloatArray]:
         """W among the chosen contacts, shape (positions, components, chosen, components, chosen), and what is left of their
@@ -626,7 +661,13 @@ class Linearised:
         """
         system, row = self.system, self.row
         rows, components, count = load.shape
-        whole = np.zeros((rows, components, count, components, count))
+        members = None
+        if self.shifts is not None:
+            from ltca.mechanics.displaced_pins import PinMembers
+
+            members = self.members = PinMembers(self)
+        entries = count + (0 if members is None else members.count)
+        whole = np.zeros((rows, components, entries, components, entries))
         self.bodies: list[list[FloatArray]] = []
         for disc, model in enumerate(system.model.discs):
             self.bodies.append([])
@@ -647,13 +688,9 @@ class Linearised:
                 whole[:, component, first, component, second] = whole[:, component, second, component, first] = cross
         deformed = self.deformation[row, :, self.contacts].swapaxes(1, 2)
         left = deformed - self.overlap[row, :, self.contacts].swapaxes(1, 2)
-        flat = load.reshape(rows, -1, 1)
         if system.coupled:
-            left += np.matmul(whole.reshape(rows, components * count, -1), flat).reshape(left.shape)
-        if self.shifts is not None and system.model.pins is not None:
-            from ltca.mechanics.displaced_pins import PinMembers
-
-            members = self.members = PinMembers(self)
+            left += np.einsum("bcicj,bcj->bci", whole[:, :, :count, :, :count], load)
+        if members is not None and system.model.pins is not None:
             self.left_shifts = self.shifts + system.model.pins.under(members.forces(self.load))
             left += members.approaches(self.left_shifts)
             members.add_flexibility(whole)
@@ -780,7 +817,8 @@ class Linearised:
     def settled(self, roughly: bool) -> bool:
         """Whether the inner unknowns are close enough for a step of the pose, or for an answer."""
         deep = np.max(np.abs(self.overlap[:, 0]) * (self.load[:, 0] > 0.0), axis=1, initial=0.0)
-        return bool(np.all(self.moved <= (ROUGHLY_SETTLED if roughly else SETTLED) * deep))
+        part = ROUGHLY_SETTLED if roughly else SETTLED
+        return bool(np.all(self.moved <= part * deep + ROUND_OFF))
 
     def _state(self) -> _State:
         """Inner unknowns after the correction."""
@@ -937,6 +975,13 @@ def _pressed(stiffness: FloatArray, moved: FloatArray) -> FloatArray:
     return np.stack((k * first + mixed * second, mixed * first + turning * second), axis=1)
 
 
+def _filled(stiffness: FloatArray, count: int) -> FloatArray:
+    """Stiffnesses with zeros for the parts that they do not have."""
+    if stiffness.shape[0] == count:
+        return stiffness
+    return np.concatenate((stiffness, np.zeros((count - stiffness.shape[0], *stiffness.shape[1:]))))
+
+
 def _own_stiffness(stiffness: FloatArray, press: FloatArray) -> FloatArray:
     """Stiffness of contacts against the place and lean of their rollers, shape (positions, rollers, components, components)."""
     if stiffness.shape[0] == 1:
@@ -945,6 +990,12 @@ def _own_stiffness(stiffness: FloatArray, press: FloatArray) -> FloatArray:
     first, second = press[:, 0], press[:, 1]
     cross = first * mixed * second
     return np.stack((np.stack((k * first**2, cross), -1), np.stack((cross, turning * second**2), -1)), -2)
+
+
+def _hold_turning(blocks: FloatArray) -> None:
+    """Let rollers that touch at one end alone turn about it against a little, in place."""
+    if blocks.shape[-1] > 1:
+        blocks[..., 1, 1] += LEAST_TURNING * blocks[..., 0, 0]
 
 
 def _solved_blocks(blocks: FloatArray, right: FloatArray) -> FloatArray:

@@ -31,7 +31,8 @@ class PinMembers:
         self.at, system = at, at.system
         place, pins = system.geometries[0].placement, system.pins
         turned = unit(place.wheel_rotation(at.angle) + at.pose[:, WHEEL_ANGLE]).conjugate()[:, None]
-        self.normal, self.pressing, self.turning = [], [], []
+        self.normal, self.pressing, self.turning, self.along = [], [], [], []
+        self._chosen()
         for disc, each in enumerate(at.discs):
             frame = np.where(np.arange(pins + system.holes) < pins, turned, 1.0)
 
@@ -40,9 +41,9 @@ class PinMembers:
                 return np.asarray(-(both[..., 0] + 1j * both[..., 1]) * frame)
 
             normal = seen(each.flank.gradient, each.holes.gradient)
-            pressing = normal
-            if at.rubs:
-                pressing = normal + at.rubs[disc] * seen(each.flank.along, each.holes.along)
+            along = seen(each.flank.along, each.holes.along)
+            pressing = normal + at.rubs[disc] * along if at.rubs else normal
+            self.along.append(along)
             self.normal.append(normal)
             self.pressing.append(pressing)
             if each.tilts is not None:
@@ -75,11 +76,9 @@ class PinMembers:
                     found[:, component, at.at[disc][kind]] = values[at.row, first + some[kind]]
         return found
 
-    def add_flexibility(self, whole: FloatArray) -> None:
-        """Add N S Lᵀ of the chosen contacts to W, in place."""
+    def _chosen(self) -> None:
+        """Where the contacts on pins stand among the chosen, and on which pins and discs."""
         at, system = self.at, self.at.system
-        held = system.model.pins
-        assert held is not None
         places, pairs, discs = [], [], []
         for disc in range(system.discs):
             for kind, first in ((0, 0), (2, system.pins)):
@@ -87,19 +86,60 @@ class PinMembers:
                 places.append(np.arange(own.start, own.stop))
                 pairs.append(first + at.chosen[disc][kind])
                 discs.append(np.full(own.stop - own.start, disc))
-        place, pair, disc_of = np.concatenate(places), np.concatenate(pairs, axis=1), np.concatenate(discs)
-        row = at.row
+        self.place, self.pair, self.disc = np.concatenate(places), np.concatenate(pairs, axis=1), np.concatenate(discs)
+        self.count = self.place.size
 
-        def chosen(values: list[ComplexArray]) -> ComplexArray:
-            return np.stack(values, axis=1)[row, disc_of, pair]
+    def turned_loads(self, size: int) -> tuple[FloatArray, FloatArray]:
+        """Return what loads on pins that move along their contacts resist with, and the slip by the pose.
+
+        They are entries of the linear system behind the chosen contacts: stiffnesses F κ and, in slices, M κ between place and
+        lean, shape (1 or 3, positions, entries), and slips, shape (positions, components, entries, coordinates).
+        """
+        at, system = self.at, self.at.system
+        rows, each = at.pose.shape[0], []
+        slip = np.zeros((rows, system.components, self.count, size))
+        last = 0
+        for disc, own in enumerate(system.columns):
+            of_disc = at.discs[disc]
+            for kind, motion, sign in ((0, of_disc.flank, -1.0), (2, of_disc.holes, 1.0)):
+                some, first = at.chosen[disc][kind], last
+                last += some.shape[1]
+                bend = sign * motion.bending[at.row, some]
+                load = at.load[:, :, system.of_kind[disc][kind]]
+                #bend = np.maximum(bend, 0.0)
+                parts = [bend * load[:, component][at.row, some] for component in range(system.components)]
+                each.append(np.stack([*parts, np.zeros(bend.shape)]) if system.components > 1 else np.stack(parts))
+                along = motion.along[at.row, some]
+                by_place = slip[:, 0]
+                by_place[:, first:last, own] = along
+                if system.components > 1:
+                    half = at.half[..., None] if at.half.ndim else at.half
+                    by_lean = slip[:, 1]
+                    by_lean[:, first:last, own[system.one.lean_place]] = half * along[..., DISC_PLACE]
+                    if kind == 0 and system.one.wheel_leans:
+                        by_lean[:, first:last, own[system.one.wheel_lean_place]] = -half * along[..., DISC_PLACE]
+        return np.concatenate(each, axis=2), slip
+
+    def add_flexibility(self, whole: FloatArray) -> None:
+        """Add N S Lᵀ to W, in place: of the chosen contacts, and behind these of what slips along them (`turned_loads`)."""
+        at, system = self.at, self.at.system
+        held = system.model.pins
+        assert held is not None
+        row = at.row
+        pair, disc_of = np.concatenate((self.pair, self.pair), axis=1), np.concatenate((self.disc, self.disc))
+        place = np.concatenate((self.place, at.contacts.shape[1] + np.arange(self.count)))
+
+        def chosen(values: list[ComplexArray], along: list[ComplexArray]) -> ComplexArray:
+            first, second = (np.stack(each, axis=1)[row, self.disc, self.pair] for each in (values, along))
+            return np.concatenate((first, second), axis=1)
 
         none = np.zeros(pair.shape, dtype=complex)
-        normal, pressing = chosen(self.normal), chosen(self.pressing)
+        normal, pressing = chosen(self.normal, self.along), chosen(self.pressing, self.along)
         # By component and kind of displacement: shifts, and leans in slices.
         by: list[list[ComplexArray]] = [[normal]]
         onto: list[list[ComplexArray]] = [[pressing]]
         if self.turning:
-            turning = chosen(self.turning)
+            turning = chosen(self.turning, [np.zeros(one.shape) for one in self.turning])
             by, onto = [[normal, none], [turning, normal]], [[pressing, none], [turning, pressing]]
         kinds = len(by[0])
         same = pair[:, :, None] == pair[:, None, :]
