@@ -52,6 +52,9 @@ ROUGHLY_SETTLED = 0.02
 SETTLED = 1e-6
 """The same of an answer: loads are corrected to first order, and the error left is of its square."""
 MAX_CORRECTIONS = 60
+MAX_HALVINGS = 12
+STEEPEST = 0.3
+"""Largest slope of the energy at the end of a correction by that at its start."""
 ROUND_OFF = 1e-13
 """Correction that is nothing but round-off of places, mm."""
 LEAST_TURNING = 1e-9
@@ -317,6 +320,7 @@ class Linearised:
         self.system, self.angle, self.pose, self.known, self.margin = system, angle, pose, known, margin
         self.row = np.arange(angle.size)[:, None]
         self.half = system.half
+        self.off: Any = None
         self._moved_slices: dict[int, list[SlicedContact]] = {}
         self.discs = self._placed(state) if places is None else places
         self._approach(state)
@@ -559,15 +563,22 @@ class Linearised:
             self.de[:, :, races] = inward * self.dx.swapaxes(1, 2)
             self.de_by_pose = None
         else:
-            force, tangent = self._eliminate(
-                g, force_map, stiffness, load, (outward, inward), unbalanced, placed, own_bend, force, tangent
-            )
+            whole, left = self._flexibility(load)
+            self.off_by = np.zeros(self.load.shape)
+            self.off_by[row, :, self.contacts] = left.swapaxes(1, 2)
+            self.off = np.max(np.abs(left).sum(axis=1) * (stiffness[0] > 0.0), axis=1, initial=0.0)
+            given = g, force_map, stiffness, whole, left, (outward, inward), unbalanced, placed, own_bend, force, tangent
+            force, tangent = self._eliminate(*given, turning=True)
+            if self.shifts is not None and not self._is_near(stiffness):
+                # Far off loads may turn with soft pins more than these hold against.
+                force, tangent = self._eliminate(*given, turning=False)
         self.gradient, self.chosen_stiffness = g, stiffness
         self.force, self.tangent = force, tangent
         change = _pressed(stiffness, self.de[..., None])[..., 0]
         near = self.deformation[row, :, self.contacts].swapaxes(1, 2)
         deep = np.abs(near).sum(axis=1) + 1e-300
         moved = np.abs(self.de).sum(axis=1)
+        self.off = np.zeros(rows) if self.off is None else self.off
         self.moved = np.max(np.where(stiffness[0] > 0.0, moved, 0.0), axis=1, initial=0.0)
         error = np.abs(change).sum(axis=1) * np.minimum(1.0, moved / deep)
         self.left = np.maximum(np.max(error, axis=1, initial=0.0), self.law_left)
@@ -578,24 +589,32 @@ class Linearised:
         g: FloatArray,
         force_map: FloatArray,
         stiffness: FloatArray,
-        load: FloatArray,
+        whole: FloatArray,
+        left: FloatArray,
         presses: tuple[FloatArray, FloatArray],
         unbalanced: FloatArray,
         placed: FloatArray,
         own_bend: FloatArray,
         force: FloatArray,
         tangent: FloatArray,
+        *,
+        turning: bool,
     ) -> tuple[FloatArray, FloatArray]:
-        """The same where loads deform more than their own contacts: force and tangent of the pose."""
+        """The same where loads deform more than their own contacts: force and tangent of the pose.
+
+        Without `turning` loads that turn with displaced pins count where they hold these back alone.
+        """
         system = self.system
         rows, components, count, size = g.shape
         rollers = unbalanced.shape[1]
-        whole, left = self._flexibility(load)
         bent = None
         if self.shifts is not None:
             # Loads turn with displaced pins: as if contacts lay along their tangents, without loads. What they turn with the pose
             # is in the tangent already.
             bent, along = self.members.turned_loads(size)
+            if not turning:
+                bent[0] = np.maximum(bent[0], 0.0)
+                bent[1:] = 0.0
             held = _pressed(bent, along)
             shape = rows, components * along.shape[2], size
             tangent = tangent - np.matmul(along.reshape(shape).swapaxes(1, 2), held.reshape(shape))
@@ -643,6 +662,12 @@ class Linearised:
         if self.sticking is None and system.model.friction is None:
             tangent = 0.5 * (tangent + tangent.swapaxes(1, 2))
         return force, tangent
+
+    def _is_near(self, stiffness: FloatArray) -> bool:
+        """Whether corrections of deformations are so small that loads follow them linearly."""
+        moved = np.max(np.where(stiffness[0] > 0.0, np.abs(self.de).sum(axis=1), 0.0), axis=1, initial=0.0)
+        deep = np.max(np.abs(self.overlap[:, 0]) * (self.load[:, 0] > 0.0), axis=1, initial=0.0)
+        return bool(np.all(moved <= ROUGHLY_SETTLED * deep + ROUND_OFF))
 
     def _bounded(self, dx: FloatArray) -> FloatArray:
         """Corrections of places and leans that go no farther than half of what is pressed together: beyond, other slices meet
@@ -820,7 +845,7 @@ class Linearised:
         part = ROUGHLY_SETTLED if roughly else SETTLED
         return bool(np.all(self.moved <= part * deep + ROUND_OFF))
 
-    def _state(self) -> _State:
+    def _state(self, fraction: FloatArray | None = None) -> _State:
         """Inner unknowns after the correction."""
         system, row = self.system, self.row
         approach = None
@@ -830,11 +855,19 @@ class Linearised:
                 approach = self.overlap.copy()
                 approach[row, :, self.contacts] = self.after[row, :, self.contacts]
         shifts = None if self.shifts is None else self._moved_shifts()
+        place, lean = self.place_after, self.lean_after
+        if fraction is not None and not np.all(fraction == 1.0):
+            part = fraction[:, None]
+            place, lean = self.place + part * (place - self.place), self.lean + part * (lean - self.lean)
+            if approach is not None:
+                approach = self.deformation + part[..., None] * (approach - self.deformation)
+            if shifts is not None and self.shifts is not None:
+                shifts = self.shifts + part[..., None] * (shifts - self.shifts)
         return _State(
             parameter=np.concatenate([at.flank.parameter for at in self.discs], axis=1),
-            place=self.place_after,
+            place=place,
             share=np.full(self.place.shape, 0.5),
-            lean=self.lean_after,
+            lean=lean,
             approach=approach,
             shifts=shifts,
             near=tuple(one.near for found in self.sliced for one in found),
@@ -887,11 +920,47 @@ class Linearised:
         return load
 
     def corrected(self, *, roughly: bool) -> Linearised:
-        """Return the contacts at the same poses with the inner unknowns corrected."""
+        """Return the contacts at the same poses with the inner unknowns corrected, by parts where the whole leaves more over."""
+        rows = self.angle.size
+        fraction, low, high = np.ones(rows), np.zeros(rows), np.ones(rows)
         places = self.discs if self.shifts is None else None
-        return Linearised(
-            self.system, self.angle, self.pose, self._state(), self.known, roughly=roughly, places=places, margin=self.margin
-        )
+        start = self.along(self.step)
+        low_slope, high_slope = start.copy(), np.zeros(rows)
+        for _ in range(MAX_HALVINGS):
+            found = Linearised(
+                self.system,
+                self.angle,
+                self.pose,
+                self._state(fraction),
+                self.known,
+                roughly=roughly,
+                places=places,
+                margin=self.margin,
+            )
+            if not self.system.deforms:
+                break
+            end = found.along(self.step)
+            far = (end > STEEPEST * np.abs(start)) & (found.off > ROUND_OFF * 100.0)
+            if not far.any():
+                break
+            high, high_slope = np.where(far, fraction, high), np.where(far, end, high_slope)
+            near = (end < 0.0) & ~far & (fraction < 1.0)
+            low, low_slope = np.where(near, fraction, low), np.where(near, end, low_slope)
+            rise = high_slope - low_slope
+            place = np.divide(-low_slope, rise, out=np.full(rows, 0.5), where=rise != 0.0).clip(0.1, 0.9)
+            fraction = np.where(far, low + (high - low) * place, fraction)
+        return found
+
+    @cached_property
+    def step(self) -> FloatArray:
+        """Correction of the deformations of all contacts."""
+        return self.after - self.deformation
+
+    def along(self, step: FloatArray) -> FloatArray:
+        """Return the slope of the energy of the inner unknowns along a step of the deformations, rᵀ K de, N·mm."""
+        if not self.system.deforms:
+            return np.zeros(step.shape[0])
+        return np.asarray((self.off_by * _pressed(self.stiffness, step[..., None])[..., 0]).sum(axis=(1, 2)))
 
     @cached_property
     def yielding(self) -> list[list[FloatArray]]:
