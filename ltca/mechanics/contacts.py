@@ -21,7 +21,7 @@ as components.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -227,6 +227,13 @@ class ContactSystem:
         known = None if start is None or self.deforms or self.components > 1 else start.known
         for margin in (CANDIDATE_MARGIN, np.inf):
             at = Linearised(self, angle, pose, state, known, roughly=roughly, margin=margin)
+            if self.deforms and not at.settled(roughly=True):
+                # What was expected may be farther off than nothing at all.
+                anew = Linearised(
+                    self, angle, pose, state._replace(approach=None, shifts=state.shifts * 0.0 if state.shifts is not None else None), known, roughly=roughly, margin=margin
+                )
+                if np.max(anew.off) < np.max(at.off):
+                    at = anew
             history = [float(np.max(at.moved, initial=0.0))]
             while not at.settled(roughly):
                 if len(history) > MAX_CORRECTIONS:
@@ -323,6 +330,7 @@ class Linearised:
         self.off: Any = None
         self._moved_slices: dict[int, list[SlicedContact]] = {}
         self.discs = self._placed(state) if places is None else places
+        self._nearby = state
         self._approach(state)
         self._carry(state, roughly)
         self._choose()
@@ -861,8 +869,8 @@ class Linearised:
             place, lean = self.place + part * (place - self.place), self.lean + part * (lean - self.lean)
             if approach is not None:
                 approach = self.deformation + part[..., None] * (approach - self.deformation)
-            if shifts is not None and self.shifts is not None:
-                shifts = self.shifts + part[..., None] * (shifts - self.shifts)
+        if fraction is not None and shifts is not None and self.shifts is not None:
+            shifts = self.shifts + fraction[:, None, None] * (shifts - self.shifts)
         return _State(
             parameter=np.concatenate([at.flank.parameter for at in self.discs], axis=1),
             place=place,
@@ -917,7 +925,7 @@ class Linearised:
         """Loads of all contacts, to first order in what is left of the inner unknowns."""
         load = self.load.copy()
         load[self.row, :, self.contacts] += self.change.swapaxes(1, 2)
-        return load
+        return np.where(load[:, :1] > 0.0, load, 0.0)
 
     def corrected(self, *, roughly: bool) -> Linearised:
         """Return the contacts at the same poses with the inner unknowns corrected, by parts where the whole leaves more over."""
