@@ -329,6 +329,7 @@ class Linearised:
         self.half = system.half
         self.off: Any = None
         self._moved_slices: dict[int, list[SlicedContact]] = {}
+        self.held = places is not None
         self.discs = self._placed(state) if places is None else places
         self._nearby = state
         self._approach(state)
@@ -410,9 +411,10 @@ class Linearised:
             if system.coupled:  # a fair share of a rigid overlap
                 e = e.copy()
                 e[:, 0] *= np.where(e[:, 0] > 0.0, 0.5, 1.0)
-        elif system.coupled:
+        else:
             e = np.where(self._within()[:, None], e, self.overlap)
-        else:  # nothing but the two contacts of a roller deforms
+        if not system.coupled and system.deforms:  # nothing but the two contacts of a roller deforms
+            e = e.copy()
             for _, bores, _, races in system.of_kind:
                 e[:, :, bores], e[:, :, races] = self.overlap[:, :, bores], self.overlap[:, :, races]
         self.deformation = e
@@ -463,7 +465,7 @@ class Linearised:
     def _choose(self) -> None:
         """Choose the contacts of the linear system: those that carry, and of coupled bodies open ones that may."""
         system, carries = self.system, np.any(self.stiffness != 0.0, axis=0) | (self.load[:, 0] > 0.0)
-        if system.coupled:
+        if system.deforms:
             carries = carries | self._within()
         self.chosen: list[list[Indices]] = []
         for disc in range(system.discs):
@@ -576,8 +578,9 @@ class Linearised:
             self.off_by[row, :, self.contacts] = left.swapaxes(1, 2)
             self.off = np.max(np.abs(left).sum(axis=1) * (stiffness[0] > 0.0), axis=1, initial=0.0)
             given = g, force_map, stiffness, whole, left, (outward, inward), unbalanced, placed, own_bend, force, tangent
-            force, tangent = self._eliminate(*given, turning=True)
-            if self.shifts is not None and not self._is_near(stiffness):
+            moves = self.shifts is not None and not self.held
+            force, tangent = self._eliminate(*given, turning=moves)
+            if moves and not self._is_near(stiffness):
                 # Far off loads may turn with soft pins more than these hold against.
                 force, tangent = self._eliminate(*given, turning=False)
         self.gradient, self.chosen_stiffness = g, stiffness
@@ -621,7 +624,7 @@ class Linearised:
             # is in the tangent already.
             bent, along = self.members.turned_loads(size)
             if not turning:
-                bent[0] = np.maximum(bent[0], 0.0)
+                bent[0] = 0.0 if self.held else np.maximum(bent[0], 0.0)
                 bent[1:] = 0.0
             held = _pressed(bent, along)
             shape = rows, components * along.shape[2], size
@@ -859,9 +862,6 @@ class Linearised:
         approach = None
         if system.deforms:
             approach = self.after
-            if not system.coupled:  # open ones are as far apart as their bodies
-                approach = self.overlap.copy()
-                approach[row, :, self.contacts] = self.after[row, :, self.contacts]
         shifts = None if self.shifts is None else self._moved_shifts()
         place, lean = self.place_after, self.lean_after
         if fraction is not None and not np.all(fraction == 1.0):
@@ -928,10 +928,25 @@ class Linearised:
         return np.where(load[:, :1] > 0.0, load, 0.0)
 
     def corrected(self, *, roughly: bool) -> Linearised:
-        """Return the contacts at the same poses with the inner unknowns corrected, by parts where the whole leaves more over."""
+        """Return the contacts at the same poses with the inner unknowns corrected.
+
+        Deformations are found for pins that stand where they stand, and gaps taken as linear in what displaces these, a convex
+        problem; then the pins are put where the loads press them.
+        """
+        at = self._stepped(roughly=roughly)
+        if self.shifts is None:
+            return at
+        for _ in range(MAX_CORRECTIONS):
+            if at.settled(roughly=True):
+                break
+            at = at._stepped(roughly=roughly)
+        state = at._state()
+        return Linearised(self.system, self.angle, self.pose, state, self.known, roughly=roughly, margin=self.margin)
+
+    def _stepped(self, *, roughly: bool) -> Linearised:
+        """The contacts a step of the deformations on, or where the energy along it has nearly ceased to fall."""
         rows = self.angle.size
         fraction, low, high = np.ones(rows), np.zeros(rows), np.ones(rows)
-        places = self.discs if self.shifts is None else None
         start = self.along(self.step)
         low_slope, high_slope = start.copy(), np.zeros(rows)
         for _ in range(MAX_HALVINGS):
@@ -942,7 +957,7 @@ class Linearised:
                 self._state(fraction),
                 self.known,
                 roughly=roughly,
-                places=places,
+                places=self.discs,
                 margin=self.margin,
             )
             if not self.system.deforms:
