@@ -238,7 +238,9 @@ class ContactSystem:
             while not at.settled(roughly):
                 if len(history) > MAX_CORRECTIONS:
                     raise ConvergenceError("deformations of contacts do not settle; largest correction in mm", history)
-                at = at.corrected(roughly=roughly)
+                # Contacts that take turns as pins move are met half way.
+                turns = len(history) > 4 and history[-1] > 0.5 * history[-3]
+                at = at.corrected(roughly=roughly, part=0.5 if turns else 1.0)
                 history.append(float(np.max(at.moved, initial=0.0)))
             if not at.leaves_out:
                 return at
@@ -576,7 +578,19 @@ class Linearised:
             whole, left = self._flexibility(load)
             self.off_by = np.zeros(self.load.shape)
             self.off_by[row, :, self.contacts] = left.swapaxes(1, 2)
-            self.off = np.max(np.abs(left).sum(axis=1) * (stiffness[0] > 0.0), axis=1, initial=0.0)
+            near, wanted = self.deformation[row, 0, self.contacts], np.abs(left).sum(axis=1)
+            expected = near - left[:, 0]
+            stiff = stiffness[0][:, bores] + stiffness[0][:, races]
+            # An open roller stands in the middle of its play.
+            free, middle = stiff <= 0.0, 0.5 * (expected[:, bores] + expected[:, races])
+            both = 0.5 * np.abs(left[:, 0, bores] + left[:, 0, races])
+            for places in (bores, races):
+                expected[:, places] = np.where(free, middle, expected[:, places])
+                wanted[:, places] = np.where(free, both, wanted[:, places])
+            matters = (stiffness[0] > 0.0) | (expected > 0.0)
+            self.off = np.max(wanted * matters, axis=1, initial=0.0)
+            apart = np.abs(unbalanced).sum(axis=-1) / np.where(stiff > 0.0, stiff, np.inf)
+            self.off = np.maximum(self.off, np.max(apart, axis=1, initial=0.0))
             given = g, force_map, stiffness, whole, left, (outward, inward), unbalanced, placed, own_bend, force, tangent
             moves = self.shifts is not None and not self.held
             force, tangent = self._eliminate(*given, turning=moves)
@@ -666,7 +680,7 @@ class Linearised:
         force = force - np.matmul(across, solved[..., -1:])[..., 0]
         of_rollers = x[..., size:-1].reshape(rows, components * count, rollers * components)
         moved = np.matmul(of_rollers, solved).reshape(rows, components, count, size + 1)
-        self.de = -(x[..., -1] - moved[..., -1])[:, :, :mine]
+        self.de = -(x[..., -1] + moved[..., -1])[:, :, :mine]
         self.de_by_pose = (x[..., :size] - moved[..., :-1])[:, :, :mine]
         solved = solved.reshape(rows, rollers, components, size + 1)
         self.dx, self.dx_by_pose = self._bounded(-solved[..., -1]), -solved[..., :-1]
@@ -927,10 +941,10 @@ class Linearised:
         load[self.row, :, self.contacts] += self.change.swapaxes(1, 2)
         return np.where(load[:, :1] > 0.0, load, 0.0)
 
-    def corrected(self, *, roughly: bool) -> Linearised:
+    def corrected(self, *, roughly: bool, part: float = 1.0) -> Linearised:
         """Return the contacts at the same poses with the inner unknowns corrected.
 
-        Deformations are found for pins that stand where they stand, and gaps taken as linear in what displaces these, a convex
+        Displacements of pins move by a part of what is left of them. Deformations are found for pins that stand where they stand, and gaps taken as linear in what displaces these, a convex
         problem; then the pins are put where the loads press them.
         """
         at = self._stepped(roughly=roughly)
@@ -941,6 +955,8 @@ class Linearised:
                 break
             at = at._stepped(roughly=roughly)
         state = at._state()
+        if part < 1.0 and state.shifts is not None:
+            state = state._replace(shifts=self.shifts + part * (state.shifts - self.shifts))
         return Linearised(self.system, self.angle, self.pose, state, self.known, roughly=roughly, margin=self.margin)
 
     def _stepped(self, *, roughly: bool) -> Linearised:
@@ -963,14 +979,17 @@ class Linearised:
             if not self.system.deforms:
                 break
             end = found.along(self.step)
-            far = (end > STEEPEST * np.abs(start)) & (found.off > ROUND_OFF * 100.0)
+            far = found.off > self.off if self.system.coupled else end > STEEPEST * np.abs(start)
+            far = far & (found.off > 0.5 * self.off) & (found.off > ROUND_OFF * 100.0)
             if not far.any():
                 break
             high, high_slope = np.where(far, fraction, high), np.where(far, end, high_slope)
             near = (end < 0.0) & ~far & (fraction < 1.0)
             low, low_slope = np.where(near, fraction, low), np.where(near, end, low_slope)
             rise = high_slope - low_slope
-            place = np.divide(-low_slope, rise, out=np.full(rows, 0.5), where=rise != 0.0).clip(0.1, 0.9)
+            place = np.divide(-low_slope, rise, out=np.full(rows, 0.5), where=rise != 0.0)
+            # A contact that closes has no slope before.
+            place = np.where(place > 0.0, place, 0.5).clip(0.1, 0.9)
             fraction = np.where(far, low + (high - low) * place, fraction)
         return found
 
