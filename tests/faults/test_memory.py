@@ -15,11 +15,12 @@ import scipy.sparse.linalg as spla
 
 from fem.body.sparse_factor import enough_memory, factor_sparse
 from fem.solid.factor import cholmod_is_there
-from ltca.analysis import extremes
+from ltca.analysis import extremes, summary
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.summary import summarise_cases
 from ltca.errors import FaultError
 from ltca.geometry.placement import position_angles
+from ltca.geometry.play import POSITIONS
 from ltca.output import resources
 from ltca.output.resources import derivation_memory, require_room, tell_memory
 from ltca.reading.drive_file import load_drive
@@ -81,6 +82,28 @@ def test_turns_of_several_cases_are_searched_in_parts(monkeypatch):
         refined = {key: value for key, value in values.items() if key.startswith("refined_") and value is not None}
         assert len(refined) > 5
         assert {key: parts[name][key] for key in refined} == pytest.approx(refined, rel=1e-9)
+
+
+def test_free_play_of_several_cases_was_found_at_once(monkeypatch):
+    """48 positions of each of up to 55 cases, however large: 0.5 kB for a pair of contacts at each, 1 GB for 900 pairs."""
+    case = load_drive("paper").cases["CS-1"]
+    analyses = {str(number): analyse(case, position_angles(3)) for number in range(5)}
+    whole, sizes = summarise_cases(analyses, masses=False), {"plays_over_a_turn": [], "interference": []}
+
+    def counted(name, positions):
+        function = getattr(summary, name)
+
+        def count(*words):
+            sizes[name].append(positions(*words))
+            return function(*words)
+
+        monkeypatch.setattr(summary, name, count)
+
+    counted("plays_over_a_turn", lambda drives, *_: len(drives) * POSITIONS)
+    counted("interference", lambda _, angle: angle.size)
+    monkeypatch.setattr(summary, "positions_together", lambda _: 100)
+    assert summarise_cases(analyses, masses=False) == whole
+    assert sizes == {"plays_over_a_turn": [96, 96, 48], "interference": [15]}
 
 
 @pytest.mark.slow
