@@ -13,6 +13,7 @@ ROUNDING = 1e-9
 """Overlap within the rounding of a sum, mm."""
 ROLLERS = "rollers and races"
 FLANK = "wheel pins and flank"
+HOLES = "shaft pins and holes"
 """Name of the pair whose overlap depends on the errors of single pins as well (`ltca.geometry.first_contact.interference`)."""
 
 
@@ -82,7 +83,7 @@ def drawn_plays(drive: Drive) -> dict[str, float]:
     It is negative where parts overlap as drawn by more than the rounding of sums. The distance between the circles of holes and
     shaft pins, and between those of bores and several cranks, is the mean one.
     """
-    found = {FLANK: -inf, ROLLERS: -inf, "shaft pins and holes": -inf}
+    found = {FLANK: -inf, ROLLERS: -inf, HOLES: -inf}
     for single in single_discs(drive):
         drawn, shaft = drawn_interference(single), single.pin_shaft
         error = single.crank.eccentricity_error
