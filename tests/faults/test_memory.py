@@ -18,6 +18,7 @@ from fem.coefficients import dataset
 from fem.solid.factor import cholmod_is_there
 from ltca.analysis import extremes, summary
 from ltca.analysis.loaded_analysis import analyse
+from ltca.analysis.memory_need import positions_together
 from ltca.analysis.summary import summarise_cases
 from ltca.commands.program import main
 from ltca.errors import FaultError
@@ -84,6 +85,14 @@ def test_turns_of_several_cases_are_searched_in_parts(monkeypatch):
         refined = {key: value for key, value in values.items() if key.startswith("refined_") and value is not None}
         assert len(refined) > 5
         assert {key: parts[name][key] for key in refined} == pytest.approx(refined, rel=1e-9)
+
+
+def test_a_part_of_a_turn_takes_200_mb_by_the_number_of_contacts():
+    """0.9 kB for a pair at a position: 14 + 11 + 8 pairs of the paper's drive, 2 (40 + 14 + 8) of the joint, 2e8/900 in all."""
+    counts = {
+        name: positions_together(next(iter(load_drive(name).cases.values()))) for name in ("paper", "robot-joint")
+    }
+    assert counts == {"paper": 222_222 // 33, "robot-joint": 222_222 // 124}
 
 
 def test_free_play_of_several_cases_was_found_at_once(monkeypatch):
