@@ -94,10 +94,10 @@ def _torques(drive: Drive) -> Iterator[str]:
     """Torques too small to be balanced."""
     if drive.tooth_number_difference == 0:
         return  # no ratio: a problem of its own
-    found = [*torque_problem(drive, "load.torque", drive.load.torque, zero=True)]
-    yield from found
+    problems = [*torque_problem(drive, "load.torque", drive.load.torque, zero=True)]
+    yield from problems
     # One left out follows from the torque, which is to blame for both.
-    if not (found and drive.load.leaves_out_light_torque):
+    if not (problems and drive.load.leaves_out_light_torque):
         yield from torque_problem(drive, drive.load.light_torque_name, drive.load.light_torque, zero=False)
     for number, entry in enumerate(drive.duty):
         yield from torque_problem(drive, f"duty.{number}.torque", entry.torque, zero=False)
