@@ -6,6 +6,7 @@
 
 from __future__ import annotations
 
+import argparse
 import os
 import re
 import shlex
@@ -151,6 +152,8 @@ DRAWN = {
 
 
 if __name__ == "__main__":
-    for name in sys.argv[1:] or DRAWN:
+    parser = argparse.ArgumentParser(description="Draw pictures of the documents anew.")
+    parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join(DRAWN)}; default all")
+    for name in parser.parse_args().names or DRAWN:
         DRAWN[name](name)
     sys.exit(0)
