@@ -114,9 +114,10 @@ def draw_studio(name):
     from playwright.sync_api import sync_playwright
 
     from tests.ltca.studio.conftest import studio
+    from tests.plugins.needs import program
 
     with tempfile.TemporaryDirectory() as folder, studio("robot-joint", folder) as found, sync_playwright() as driver:
-        page = driver.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"]).new_page(
+        page = driver.chromium.launch(executable_path=program("chromium"), args=["--no-sandbox"]).new_page(
             viewport={"width": 1400, "height": 900}
         )
         page.goto(found.address)
