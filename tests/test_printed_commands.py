@@ -112,6 +112,7 @@ LEFT_OUT = {
     r"--load-rating \"5 kN\"$": "an option behind the name of its command",
     r" --write\b": "would replace tests/budget.toml; the same without it is run",
     r"ltca\.laws\.shipped_tables": "would replace tables of the package; tests/ltca/laws/test_shipped_tables.py makes them",
+    r"tests\.test_pictures": "would replace pictures of the documents, which the same file and test_robot_joint.py compare",
     r"tests\.test_quantities": "would replace the schema of the package, which the same file compares",
     r"validation\.levels\.other_codes": "asks codes that are not everywhere, and would replace their stored answers",
     r"moving_arm\.py out/": "needs what the command before it wrote; tests/ltca/commands/test_robot_joint.py runs the page",

@@ -13,7 +13,7 @@ from ltca.drive.fields import read_field
 from ltca.drive.parts import Drive
 from ltca.errors import DriveError
 from ltca.geometry.interference import ROUNDING, drawn_interference
-from ltca.reading.disc_checks import LOOPS, hole_that_fits, largest_eccentricity, rounded_down
+from ltca.reading.disc_checks import has_loops, hole_that_fits, largest_eccentricity, rounded_down
 from ltca.reading.physical_checks import is_sound
 
 CAUSES = (
@@ -115,7 +115,7 @@ def find_cause(drive: Drive, problems: list[str]) -> tuple[list[str], Mend]:
             values = [f"{name} = {getattr(getattr(drive, part), name):g} mm" for name in (smaller, larger)]
             told = f"{part}.{values[0]}: must be less than {values[1]}; the two seem to be swapped"
             return [told], partial(_sound_swapped, part=part)
-    if len(problems) == 1 and problems[0].endswith(LOOPS) and _sound_without_loops(drive):
+    if len(problems) == 1 and has_loops(drive) and _sound_without_loops(drive):
         return problems, _sound_without_loops
     causes = sorted(_causes(drive), key=lambda cause: cause.distance)
     if not causes:
