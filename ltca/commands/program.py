@@ -153,14 +153,15 @@ def main(argv: Sequence[str] | None = None) -> int:
     if argv is None and not debug and not sys.warnoptions:
         warnings.simplefilter("ignore")  # of libraries, for those who write code
     os.environ.setdefault("OMP_NUM_THREADS", "1")
-    from ltca.output.processes import Terminated
+    from ltca.output.processes import Terminated, ended_by_signals
     from ltca.output.threads import use_one_thread
 
     use_one_thread()
     try:
         wanted = next((word for word in words if word != DEBUG), "")
-        status = _run(words, wanted)
-        sys.stdout.flush()  # what cannot be written is told, not left to the interpreter's exit
+        with ended_by_signals():
+            status = _run(words, wanted)
+            sys.stdout.flush()  # what cannot be written is told, not left to the interpreter's exit
         return status
     except Terminated:
         print("cyclo: terminated", file=sys.stderr)
@@ -188,8 +189,6 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _run(words: list[str], wanted: str) -> int:
     """Run a command, or print the help that was asked for, and return the exit status."""
-    from ltca.output.processes import ended_by_signals
-
     if not set(words) - {DEBUG}:
         build_parser().print_help(sys.stderr)
         return USAGE_ERROR
@@ -198,8 +197,7 @@ def _run(words: list[str], wanted: str) -> int:
     except SystemExit:
         sys.stdout.flush()
         raise
-    with ended_by_signals():
-        return int(arguments.execute(arguments))
+    return int(arguments.execute(arguments))
 
 
 def _reader_has_gone(error: Exception) -> bool:
