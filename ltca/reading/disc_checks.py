@@ -68,8 +68,7 @@ def _flank(drive: Drive) -> Iterator[str]:
         yield (
             f"pin_wheel.pin_radius = {wheel.pin_radius:g} mm: must be less than "
             f"{smallest_radius - disc.equidistant_offset:.6g} mm (smallest radius of the pin-centre path on its "
-            f"convex side less the equidistant offset){_or_eccentricity(drive, largest_eccentricity(drive))}, or the flank is "
-            "undercut"
+            f"convex side less the equidistant offset){_or_eccentricity_and_hole(drive)}, or the flank is undercut"
         )
     if profile.root_radius <= 0.0:
         yield (
@@ -125,10 +124,8 @@ def _has_plain_flank(drive: Drive, pin_circle_radius: float, eccentricity: float
 
 def _loops(drive: Drive) -> str:
     """Message about a flank with loops: bounds of eccentricity and pin circle, and the hole radius that goes with them."""
-    most, circle, shaft = rounded_down(largest_eccentricity(drive)), _smallest_pin_circle(drive), drive.pin_shaft
-    bound = f"at most {most:g} mm"
-    if shaft is not None and not _leads(drive, most):
-        bound += f" (with pin_shaft.hole_radius = {hole_that_fits(drive, most):.6g} mm)"
+    most, circle = rounded_down(largest_eccentricity(drive)), _smallest_pin_circle(drive)
+    bound = f"at most {most:g} mm{_with_hole(drive, most)}"
     if isfinite(circle):
         bound += f" or pin_wheel.pin_circle_radius at least {-rounded_down(-circle):g} mm"
     return f"crank.eccentricity = {drive.crank.eccentricity:g} mm: must be {bound}, {LOOPS}"
@@ -153,6 +150,19 @@ def _or_eccentricity(drive: Drive, largest: float) -> str:
     """The eccentricity that mends a problem as well, in words; empty where there is none, or holes would have to change."""
     bound = rounded_down(largest)
     return f" or crank.eccentricity at most {bound:g} mm" if bound > 0.0 and _leads(drive, bound) else ""
+
+
+def _or_eccentricity_and_hole(drive: Drive) -> str:
+    """The eccentricity that mends an undercut as well, with the hole radius that goes with it, in words; empty without any."""
+    bound = rounded_down(largest_eccentricity(drive))
+    return f" or crank.eccentricity at most {bound:g} mm{_with_hole(drive, bound)}" if bound > 0.0 else ""
+
+
+def _with_hole(drive: Drive, eccentricity: float) -> str:
+    """The hole radius that goes with an eccentricity, in brackets; empty where that of the drive does."""
+    if _leads(drive, eccentricity):
+        return ""
+    return f" (with pin_shaft.hole_radius = {hole_that_fits(drive, eccentricity):.6g} mm)"
 
 
 def rounded_down(value: float) -> float:

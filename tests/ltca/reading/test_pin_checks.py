@@ -109,7 +109,7 @@ def test_a_pin_typed_too_large_is_named_itself(sleeved):
     with pytest.raises(DriveError) as caught:
         parse_drive(text)
     (problem,) = caught.value.problems
-    told = "pin_wheel.pin_radius = 35 mm: must be at most 3.51 mm for the rest of the drive: the pin has no play in its slot"
+    told = "pin_wheel.pin_radius = 35 mm: must be at most 3.509 mm for the rest of the drive: the pin has no play in its slot"
     assert problem == told
 
 
