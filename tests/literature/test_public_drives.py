@@ -164,6 +164,20 @@ def test_backlash_of_the_toolkit_flank():
     assert found == pytest.approx(98.985, abs=0.005)
 
 
+def test_half_widths_passed_above_a_note_that_those_of_holes_do_not():
+    """0.153 of a wheel pin passed against 0.3, and a note said that shaft pins touch their holes over more than 0.3."""
+    drive, check = drive_of("holes_0_05_too_small"), checks_of("holes_0_05_too_small")["half_width_ratio"]
+    (note,) = (
+        note for note in analyse(drive, position_angles(4)).warnings if "shaft pins touch their holes over" in note
+    )
+    widest = float(re.search(r"half-width of (\S+) mm", note)[1])
+    assert (check.verdict, check.limit.value) == ("fail", 0.3)
+    assert check.value.part.startswith("shaft pin")
+    assert check.value.value == pytest.approx(widest / 2.0, rel=1e-3)  # pins of 2 mm
+    sound = checks_of("catalogue_25_to_1")["half_width_ratio"]
+    assert sound.verdict == "pass"
+
+
 @pytest.mark.slow
 def test_overlap_of_holes_stands_in_the_row_of_overlaps(tmp_path, capsys, monkeypatch):
     """0 mm stood above a note of 0.05 mm, and "all checks passed" above both: the row counted the flank alone."""
