@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -70,8 +70,10 @@ def check_compliance(arguments: argparse.Namespace) -> None:
         option = "--coefficients" if arguments.coefficients else option
         raise DriveError([f"{option}: has no effect with --quick, which is half-spaces; leave one of them out"])
     compliance = "half-space" if arguments.quick else arguments.compliance
+    given = _options(arguments)
+    arguments.half_spaces_asked = compliance == "half-space" or bool(given["method"] or given["contacts"])
     if compliance is not None:
-        refuse_idle_options(compliance, **_options(arguments))
+        refuse_idle_options(compliance, **given)
 
 
 def settle_compliance(arguments: argparse.Namespace, drives: Iterable[Drive]) -> str:
@@ -89,11 +91,12 @@ def settle_compliance(arguments: argparse.Namespace, drives: Iterable[Drive]) ->
 
 def compliance_of(arguments: argparse.Namespace, drives: Iterable[Drive]) -> Engine:
     """Return the engine that the arguments ask for, or else the drives; with method and contacts where a command has these."""
-    from ltca.analysis.engines import engine_named
+    from ltca.analysis.engines import HalfSpace, engine_named
 
     compliance, given = settle_compliance(arguments, drives), _options(arguments)
     files = None if given["coefficients"] is None else tuple(arguments.coefficients)
-    return engine_named(compliance, **{**given, "coefficients": files})
+    engine = engine_named(compliance, **{**given, "coefficients": files})
+    return replace(engine, asked=arguments.half_spaces_asked) if isinstance(engine, HalfSpace) else engine
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
