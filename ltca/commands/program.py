@@ -46,6 +46,8 @@ ORDER = (
 )
 USAGE_ERROR, FAULT = 2, 1
 OUTPUT_FAULTS = (errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EBADF, errno.EFBIG)
+WRONG_PLACE = (errno.ENAMETOOLONG, errno.EACCES, errno.EPERM, errno.EROFS, errno.ENOTDIR, errno.ELOOP)
+"""What a path answers that cannot be used by whoever asks."""
 NO_MEMORY = ("failed to map segment", "annot allocate memory", "can't start new thread", "can't allocate lock")
 """What the loader of libraries, and threads, say where a library or a stack finds no memory."""
 DISTRIBUTION = "cyclo-ltca"
@@ -180,7 +182,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         if debug:
             traceback.print_exc()
         print(f"cyclo: error: {_told(error)}", file=sys.stderr)
-        if isinstance(error, OSError) and error.errno == errno.ENAMETOOLONG:
+        if isinstance(error, OSError) and error.filename is not None and error.errno in WRONG_PLACE:
             return USAGE_ERROR  # whichever argument it was
         if isinstance(error, ModuleNotFoundError) and what_installs(error.name or ""):
             return USAGE_ERROR

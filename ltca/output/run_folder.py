@@ -230,9 +230,12 @@ def figure_files(kind: str | None, *names: str) -> list[str]:
 
 
 def require_folder(path: Path) -> None:
-    """Refuse (`PlaceError`) a file in the place of the folder that ``--out`` gives, which need not be there yet."""
+    """Refuse (`PlaceError`) a file in the place of the folder that ``--out`` gives, which need not be there yet, and a root."""
     if path.exists() and not path.is_dir():
         raise PlaceError(f"--out {path}: is a file, not a folder")
+    place = path.resolve()
+    if place == place.parent:
+        raise PlaceError(f"--out {path}: is the root of a file system, must be a folder below it")
 
 
 def _require_no_interrupted_study(path: Path) -> None:

@@ -6,6 +6,7 @@ import json
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -47,6 +48,18 @@ def holder(tmp_path):
         assert process.stdout.readline() == "held\n"
         yield process
         process.kill()
+
+
+@pytest.mark.parametrize("command", ["run", "show", "tolerance"])
+def test_the_root_of_a_file_system_was_taken_for_a_folder_of_results(command, capsys, tmp_path):
+    """`--out /` put results beside /etc; so does a path that leads there."""
+    root = Path(tmp_path.anchor)
+    before = sorted(path.name for path in root.iterdir())
+    for out in (str(root), f"{tmp_path}{'/..' * (len(tmp_path.parts) + 1)}"):
+        assert main([command, "paper", "--out", out]) == 2
+        (line,) = capsys.readouterr().err.splitlines()
+        assert "is the root of a file system" in line
+    assert sorted(path.name for path in root.iterdir()) == before
 
 
 def test_two_processes_in_one_folder(holder, tmp_path, capsys):
