@@ -15,6 +15,7 @@ from ltca.reading.arguments import (
     compliance_for,
     default_folder,
     refuse_idle_options,
+    refuse_impossible_torques,
     tell_unit_mistakes,
 )
 
@@ -146,6 +147,7 @@ def open_drives(arguments: argparse.Namespace, command: str) -> OpenedDrives:
     file = load_drive(arguments.drive)
     cases = file.select_warm(arguments.case)
     settle_compliance(arguments, cases.values())
+    refuse_impossible_torques(file.cases[name] for name in cases)
     tell_unit_mistakes(file.cases[name] for name in cases)
     out = arguments.out or default_folder(file.name, command)
     require_folder(out)
