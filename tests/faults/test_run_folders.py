@@ -15,7 +15,7 @@ from ltca.errors import FaultError, PlaceError
 from ltca.output import files
 from ltca.output.files import STALE, whole_file
 from ltca.output.locks import claimed_file
-from ltca.output.run_folder import LOCK, MANIFEST, claimed_folder, figure_files
+from ltca.output.run_folder import LOCK, MANIFEST, claimed_folder, figure_files, require_folder
 
 FIGURES = ("fig24_pin_load", "fig25_loaded_pins")
 HOLDER = """
@@ -50,15 +50,20 @@ def holder(tmp_path):
         process.kill()
 
 
-@pytest.mark.parametrize("command", ["run", "show", "tolerance"])
-def test_the_root_of_a_file_system_was_taken_for_a_folder_of_results(command, capsys, tmp_path):
+def test_the_root_of_a_file_system_was_taken_for_a_folder_of_results(tmp_path):
     """`--out /` put results beside /etc; so does a path that leads there."""
     root = Path(tmp_path.anchor)
     before = sorted(path.name for path in root.iterdir())
-    for out in (str(root), f"{tmp_path}{'/..' * (len(tmp_path.parts) + 1)}"):
-        assert main([command, "paper", "--out", out]) == 2
-        (line,) = capsys.readouterr().err.splitlines()
-        assert "is the root of a file system" in line
+    for out in (root, tmp_path.joinpath(*[".."] * (len(tmp_path.parts) + 1))):
+        with pytest.raises(PlaceError, match="is the root of a file system, must be a folder below it"):
+            require_folder(out)
+        with pytest.raises(PlaceError, match="is the root of a file system"), claimed_folder(out, "run"):
+            pass  # nothing is written where it is taken
+    assert (
+        main(["run", "paper", "--positions", "1000000", "--out", str(root)]) == 2
+    )  # more than there is room for anyway
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "is the root of a file system" in line
     assert sorted(path.name for path in root.iterdir()) == before
 
 
