@@ -31,6 +31,7 @@ from ltca.drive.mistakes import describe_mistakes
 from ltca.drive.parts import BearingRow, Drive, Duty, ExternalLoad, MainBearing
 from ltca.errors import DriveError, shortened
 from ltca.reading.alternatives import Alternatives
+from ltca.reading.contradictions import explain_change
 from ltca.reading.physical_checks import find_contradictions
 
 
@@ -100,6 +101,8 @@ def with_fields(drive: Drive, values: Mapping[str, Any], *, check: bool = True) 
         changed = _with_own(changed, own, problems)
     if not problems and check:
         problems += [_named_by_change(problem, values) for problem in find_contradictions(changed)]
+        if len(values) == 1:
+            problems = explain_change(drive, changed, next(iter(values)), problems)
     if problems:
         raise DriveError(problems)
     return changed

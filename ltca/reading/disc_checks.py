@@ -67,8 +67,7 @@ def _flank(drive: Drive) -> Iterator[str]:
             f"less than {smallest_radius - disc.equidistant_offset:.6g} mm (smallest radius of the pin-centre path on its "
             "convex side less the equidistant offset)"
         )
-        most = largest_eccentricity(drive)
-        yield _or_eccentricity(drive, "pin_wheel.pin_radius", of_pins, most, ", or the flank is undercut")
+        yield _or_eccentricity_and_hole(drive, "pin_wheel.pin_radius", of_pins, ", or the flank is undercut")
     if profile.root_radius <= 0.0:
         yield (
             f"pin_wheel.pin_circle_radius = {wheel.pin_circle_radius:g} mm: leaves a root radius of "
@@ -136,11 +135,8 @@ def _crosses_itself(pin_circle_radius: float, shifted_radius: float, pitch_radiu
 
 def _loops(drive: Drive) -> str:
     """Message about a flank with loops: bounds of eccentricity and pin circle, and the hole radius that goes with them."""
-    most, circle, shaft = rounded_down(largest_eccentricity(drive)), _smallest_pin_circle(drive), drive.pin_shaft
-    bound = f"at most {most:g} mm"
-    if shaft is not None and not _leads(drive, most):
-        bound += f" (with pin_shaft.hole_radius = {hole_that_fits(drive, most):.6g} mm)"
-    consequence = ", or the flank has loops"
+    most, circle = rounded_down(largest_eccentricity(drive)), _smallest_pin_circle(drive)
+    bound, consequence = f"at most {most:g} mm{_with_hole(drive, most)}", ", or the flank has loops"
     if not isfinite(circle):
         return f"crank.eccentricity = {drive.crank.eccentricity:g} mm: must be {bound}{consequence}"
     other_bound = f"at least {-rounded_down(-circle):g} mm"
@@ -170,6 +166,22 @@ def _or_eccentricity(drive: Drive, path: str, bound: str, largest: float, conseq
     if most <= 0.0 or not _leads(drive, most):
         return f"{path} = {read_field(drive, path):g} mm: must be {bound}{consequence}"
     return Alternatives.of(drive, {path: bound, "crank.eccentricity": f"at most {most:g} mm"}, consequence)
+
+
+def _or_eccentricity_and_hole(drive: Drive, path: str, bound: str, consequence: str) -> str:
+    """Message about a length and its bound, or the eccentricity that mends it as well with the hole radius that goes with it."""
+    most = rounded_down(largest_eccentricity(drive))
+    if most <= 0.0:
+        return f"{path} = {read_field(drive, path):g} mm: must be {bound}{consequence}"
+    other = f"at most {most:g} mm{_with_hole(drive, most)}"
+    return Alternatives.of(drive, {path: bound, "crank.eccentricity": other}, consequence)
+
+
+def _with_hole(drive: Drive, eccentricity: float) -> str:
+    """The hole radius that goes with an eccentricity, in brackets; empty where that of the drive does."""
+    if _leads(drive, eccentricity):
+        return ""
+    return f" (with pin_shaft.hole_radius = {hole_that_fits(drive, eccentricity):.6g} mm)"
 
 
 def rounded_down(value: float) -> float:

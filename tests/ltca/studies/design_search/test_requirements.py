@@ -5,7 +5,9 @@ from pathlib import Path
 
 import pytest
 
+from ltca.commands.program import main
 from ltca.errors import DriveError
+from ltca.reading.drive_file import shipped_drive
 from ltca.studies.design_search.requirement_file import load_requirements, parse_requirements
 
 EXAMPLES = sorted((Path(__file__).parents[4] / "examples" / "requirements").glob("*.toml"))
@@ -94,3 +96,27 @@ def test_a_crown_is_searched_with_slices_alone():
     held = parse_requirements(SOUND + '[contact]\nslices = 5\n[shop]\nlead_crown_drop = "4 µm"\n').asked
     assert held.lead_crowns == pytest.approx((0.004, 0.004), rel=1e-12)
     assert held.starting["lead_crown_drop"] == pytest.approx(0.004, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("command", "kind", "told"),
+    [
+        ("design", "drive", "is a drive file, which cyclo show, check and run take; must be a requirement file"),
+        ("design", "study", "is a study file, which cyclo sweep takes; must be a requirement file"),
+        ("sweep", "drive", "is a drive file, which cyclo show, check and run take; must be a study file"),
+        ("sweep", "requirements", "is a requirement file, which cyclo design takes; must be a study file"),
+        ("show", "requirements", "is a requirement file, which cyclo design takes; must be a drive file"),
+        ("check", "study", "is a study file, which cyclo sweep takes; must be a drive file"),
+    ],
+)
+def test_a_file_of_another_kind_had_ten_mistakes(command, kind, told, tmp_path, capsys):
+    """`cyclo design` of a drive file told of 18 mistakes, and not that the file is a drive."""
+    text = {
+        "drive": shipped_drive("paper"),
+        "study": 'drive = "paper"\n[factors]\n"load.torque" = ["300 N m", "310 N m"]\n',
+        "requirements": 'ratio = 29\ntorque = "200 N m"\nspeed = "30 rpm"\nouter_diameter = "130 mm"\nlength = "40 mm"\n',
+    }
+    path = tmp_path / "file.toml"
+    path.write_text(text[kind], encoding="utf-8")
+    assert main([command, str(path)]) == 2
+    assert capsys.readouterr().err == f"cyclo: error: {path}: {told}\n"
