@@ -117,7 +117,7 @@ LEFT_OUT = {
     r"cyclo validate$": "a mention: it needs a drive or --manual",
     r"validate --manual": "tests/validation/manual computes every case, tests/validation/commands runs the command",
     r"cyclo studio\b": "serves until it is ended; tests/ltca/studio does so",
-    r"solid_(ltca|or_plane)\.py": "minutes at any size at which meshes fit the contacts; tests/fem/solid_drive solves such drives",
+    r"solid_(ltca|or_plane)\.py": "minutes at any size at which meshes fit; tests/fem/solid_drive solves such drives",
     r"mutants\.py": "its map alone takes longer than all tests; tests/test_mutants.py runs its parts",
     r"random_drives\.py --count N$": "a usage; its number is a placeholder",
 }
