@@ -130,6 +130,9 @@ NEEDED = {
 }
 """Commands that need an extra or another program (`needs`), and are left out where it is missing."""
 
+COMMIT = "HEAD~1"
+"""Stands for every commit: one is as good as another."""
+
 LONGEST = 900
 """Time, s, after which a command is not small."""
 
@@ -531,7 +534,7 @@ def way_of(words: list[str], read: frozenset[str]) -> tuple[object, ...]:
     """Return what the way of a command through its program depends on.
 
     Of an option that stands twice the last one counts, but for those that add up; where the results go does not, unless a printed
-    command reads them there (`read`); nor does a number of workers or a seed.
+    command reads them there (`read`); nor does a number of workers, a seed, or which commit is asked for.
     """
     head: list[str] = []
     options: dict[str, list[str]] = {}
@@ -548,7 +551,11 @@ def way_of(words: list[str], read: frozenset[str]) -> tuple[object, ...]:
         options.pop("--out", None)
     for name in ("--seed", "--force", "--workers"):
         options.pop(name, None)
-    head = [{"requirements.toml": "examples/requirements/possible-paper.toml"}.get(word, word) for word in head]
+    same = {"requirements.toml": "examples/requirements/possible-paper.toml"}
+    if "validate" in head[:2]:  # some minutes each
+        same["my.toml"] = "paper"
+        options.setdefault("--case", ["CS-1"])
+    head = [COMMIT if re.fullmatch(r"HEAD(~\d)?|[0-9a-f]{7,40}", word) else same.get(word, word) for word in head]
     return (*head, *sorted((name, *values) for name, values in options.items()))
 
 
