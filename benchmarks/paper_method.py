@@ -15,19 +15,12 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import argparse
+import sys
 from collections import Counter
 from dataclasses import replace
+from pathlib import Path
 
-import numpy as np
-
-from ltca.compliance.half_space import HalfSpaceCompliance
-from ltca.drive.parts import Clearance
-from ltca.equilibrium.balance import solve_equilibrium
-from ltca.equilibrium.reducer import Reducer
-from ltca.geometry.placement import position_angles
-from ltca.reading.drive_file import load_drive
-from validation.methods.clearance_free import analyse_without_clearance
-from validation.methods.paper_method import iterate_held_wheel, lead_of_pose, pose_of_lead
+sys.path[0] = str(Path(__file__).resolve().parents[1])  # the package fem, not the benchmark of that name
 
 
 def main() -> None:
@@ -35,6 +28,18 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--positions", type=int, default=72, help="crank angles over one turn; default 72")
     arguments = parser.parse_args()
+    # Not for the help.
+    import numpy as np
+
+    from ltca.compliance.half_space import HalfSpaceCompliance
+    from ltca.drive.parts import Clearance
+    from ltca.equilibrium.balance import solve_equilibrium
+    from ltca.equilibrium.reducer import Reducer
+    from ltca.geometry.placement import position_angles
+    from ltca.reading.drive_file import load_drive
+    from validation.methods.clearance_free import analyse_without_clearance
+    from validation.methods.paper_method import iterate_held_wheel, lead_of_pose, pose_of_lead
+
     angles = position_angles(arguments.positions)
     cases = load_drive("paper").cases
     free = replace(cases["CS-1"], clearance=Clearance())

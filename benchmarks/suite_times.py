@@ -124,12 +124,10 @@ NIGHTLY = "\n[nightly]\n"
 
 def nightly_text(folder: Path) -> str:
     """Return the seconds of each file of the nightly set, as its shards kept them, as TOML; the last outcome of a test counts."""
-    last = {}
-    for path in sorted(folder.glob("shard-*.jsonl"), key=lambda path: path.stat().st_mtime):
-        for line in path.read_text(encoding="utf-8").splitlines():
-            kept = json.loads(line)
-            if kept.get("outcome") in ("passed", "failed"):
-                last[kept["test"]] = kept["seconds"]
+    sys.path.insert(0, str(ROOT / "tests" / "plugins"))
+    from shards import outcomes
+
+    last = {kept["test"]: kept["seconds"] for kept in outcomes(folder) if kept.get("outcome") in ("passed", "failed")}
     seconds: Counter[str] = Counter()
     for name, spent in last.items():
         seconds[name.partition("::")[0]] += spent

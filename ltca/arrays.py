@@ -343,10 +343,10 @@ def named_arrays(tree: Any, name: str) -> dict[str, NDArray[Any]]:
     parts = _parts(tree)
     if parts is None:
         return {name: np.asarray(tree)}
-    found: dict[str, NDArray[Any]] = {}
+    named: dict[str, NDArray[Any]] = {}
     for key, part in parts.items():
-        found |= named_arrays(part, f"{name}.{key}")
-    return found
+        named |= named_arrays(part, f"{name}.{key}")
+    return named
 
 
 def with_named_arrays(like: Any, arrays: Mapping[str, NDArray[Any]], name: str) -> Any:
@@ -361,10 +361,10 @@ def with_named_arrays(like: Any, arrays: Mapping[str, NDArray[Any]], name: str) 
         return None
     parts = _parts(like)
     if parts is None:
-        old, found = np.asarray(like), arrays.get(name)
-        if found is None or found.shape != old.shape or found.dtype.kind != old.dtype.kind:
+        old, new = np.asarray(like), arrays.get(name)
+        if new is None or new.shape != old.shape or new.dtype.kind != old.dtype.kind:
             raise ValueError(f"{name}: there is none of shape {old.shape}")
-        return found if isinstance(like, np.ndarray) else found.item()
+        return new if isinstance(like, np.ndarray) else new.item()
     made = {key: with_named_arrays(part, arrays, f"{name}.{key}") for key, part in parts.items()}
     if isinstance(like, np.ndarray):
         objects = np.empty(like.size, dtype=object)

@@ -105,8 +105,8 @@ class AnalysisResult:
     def warnings(self) -> list[str]:
         """What to know of drive, positions and answer before they are used, one sentence each, as `cyclo run` prints it."""
         few = sampling_warning(self.drive, self.loaded.full.crank_angle, typed="positions={}")
-        found = (few, relieved_rows_warning(self.loaded))
-        return [*self.loaded.warnings, *(warning for warning in found if warning is not None)]
+        warnings = (few, relieved_rows_warning(self.loaded))
+        return [*self.loaded.warnings, *(warning for warning in warnings if warning is not None)]
 
     @on_one_thread
     def pressure(

@@ -219,6 +219,14 @@ def test_commands_import_lightly():
     assert heavy_imports(ROOT / "ltca" / "commands" / "any.py", ast.parse(text)) == ["numpy"]
 
 
+def test_the_help_of_the_paper_s_benchmark_loaded_all_models():
+    path = ROOT / "benchmarks" / "paper_method.py"
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    assert heavy_imports(path, tree) == []
+    inside = {node.module for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)}
+    assert "validation.methods.paper_method" in inside
+
+
 def test_a_plane_run_loads_nothing_of_the_width():
     """What `ltca.compliance.sliced` names is loaded with the first drive in slices."""
     homes = set(sliced._HOMES)

@@ -1,13 +1,17 @@
 """Pictures of the documents are what the commands beside them draw.
 
-``python -m tests.test_pictures`` draws them anew.
+``python -m tests.test_pictures`` draws them anew: all, or those that it names (``studio.png`` with chromium and the extras
+``studio`` and ``browser``, ``moving_arm.png`` in a minute with the extra ``robotics``).
 """
 
 from __future__ import annotations
 
+import argparse
+import os
 import re
 import shlex
 import shutil
+import subprocess
 import sys
 import tempfile
 from pathlib import Path
@@ -22,8 +26,8 @@ CAPTION = re.compile(r'src="docs/pictures/([\w.]+)".*?>\n\n\*[^`\n]*`([^`]+)`\.\
 BY_HAND = {"several_cranks.svg"}
 """Diagrams that no command draws."""
 NOT_COMPARED = {
-    "moving_arm.png": "rendered by MuJoCo with OpenGL; tests/ltca/commands/test_robot_joint.py runs the commands of the page",
-    "studio.png": "a page in a browser, with the texts of its day",
+    "moving_arm.png": "takes the commands of its page; tests/ltca/commands/test_robot_joint.py runs them and compares the curves",
+    "studio.png": "a page in a browser, whose fonts and widgets are those of the system",
 }
 
 
@@ -91,10 +95,66 @@ def test_the_picture_of_the_seats_is_what_its_command_draws(tmp_path):
         np.testing.assert_allclose(*numbers, atol=0.02)
 
 
-if __name__ == "__main__":
+@pytest.mark.parametrize(("page", "name"), [("robot_joint", "moving_arm.png"), ("studio", "studio.png")])
+def test_a_picture_that_no_caption_drew_was_older_than_its_program(page, name):
+    """The page names the command that draws it, and the command knows the picture."""
+    text = (ROOT / "docs" / "how-to" / f"{page}.md").read_text(encoding="utf-8")
+    assert f"`python -m tests.test_pictures {name}`" in text
+    assert name in DRAWN
+
+
+def draw_captioned(name):
+    """Draw a picture of the README."""
     with tempfile.TemporaryDirectory() as new:
-        for name, command in captioned().items():
-            folder = Path(new) / name
-            shutil.copy(drawn(command, folder), PICTURES / name)
-        drawn_by_module(PICTURES)
+        shutil.copy(drawn(captioned()[name], Path(new)), PICTURES / name)
+
+
+def draw_studio(name):
+    """Draw the first screen of the studio of `robot-joint` once its fine answer is there."""
+    from playwright.sync_api import sync_playwright
+
+    from tests.ltca.studio.conftest import studio
+    from tests.plugins.needs import program
+
+    with tempfile.TemporaryDirectory() as folder, studio("robot-joint", folder) as found, sync_playwright() as driver:
+        page = driver.chromium.launch(executable_path=program("chromium"), args=["--no-sandbox"]).new_page(
+            viewport={"width": 1400, "height": 900}
+        )
+        page.goto(found.address)
+        page.wait_for_function("() => document.body.dataset.answer === 'fine'", timeout=300_000)
+        page.screenshot(path=PICTURES / name)
+
+
+def draw_arm(name):
+    """Run the commands of the page of a moving arm."""
+    page = (ROOT / "docs" / "how-to" / "robot_joint.md").read_text(encoding="utf-8")
+    (added,) = re.findall(r"```toml\n(.*?)```", page, re.DOTALL)
+    first, rest, *_ = re.findall(r"```sh\n(.*?)```", page, re.DOTALL)
+    environment = {"MUJOCO_GL": "egl"} | os.environ
+    with tempfile.TemporaryDirectory() as folder:
+        for command in (first, *rest.strip().splitlines()):
+            name_of, *words = shlex.split(command)
+            words[0] = str(ROOT / words[0]) if name_of == "python" else words[0]
+            program = [sys.executable] if name_of == "python" else [sys.executable, "-m", "ltca.commands.program"]
+            subprocess.run([*program, *words], cwd=folder, env=environment, check=True)
+            if command == first:
+                with (Path(folder) / "joint.toml").open("a", encoding="utf-8") as file:
+                    file.write(f"\n{added}")
+        shutil.copy(Path(folder) / "out" / "joint" / name, PICTURES / name)
+
+
+DRAWN = {
+    "loaded_drive.png": draw_captioned,
+    "seats.svg": lambda _: drawn_by_module(PICTURES),
+    "studio.png": draw_studio,
+    "moving_arm.png": draw_arm,
+}
+"""What draws each picture anew."""
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description="Draw pictures of the documents anew.")
+    parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join(DRAWN)}; default all")
+    for name in parser.parse_args().names or DRAWN:
+        DRAWN[name](name)
     sys.exit(0)

@@ -159,3 +159,24 @@ def test_outcomes_of_other_code_count_only_where_asked_for(suite):
     kept = suite.folder / "build/nightly/shard-1-of-2.jsonl"
     kept.write_text('{"test": "test_a.py::test_a[1]", "outc', encoding="utf-8")
     assert suite("--shard", "1/2")[1] == "aadd"
+    assert suite("--shard", "1/2")[1] == ""  # the outcome behind the cut line was lost with it
+
+
+def test_a_cut_line_stopped_the_table_of_nightly_seconds(tmp_path, monkeypatch):
+    """Seconds of each file, 2 + 3 and 7; of a test that ran twice those of the shard that ran last."""
+    monkeypatch.syspath_prepend(ROOT / "benchmarks")
+    from suite_times import nightly_text
+
+    def line(test, seconds, outcome="passed"):
+        return json.dumps({"test": test, "outcome": outcome, "seconds": seconds, "code": "0"}) + "\n"
+
+    later, earlier = tmp_path / "shard-1-of-2.jsonl", tmp_path / "shard-2-of-2.jsonl"
+    later.write_text(
+        line("a.py::x", 2.0) + line("a.py::y", 3.0, "failed") + '{"test": "a.py::z", "outc', encoding="utf-8"
+    )
+    earlier.write_text(
+        line("b.py::x", 7.0) + line("a.py::x", 100.0) + line("c.py::x", 0.1, "skipped"), encoding="utf-8"
+    )
+    os.utime(earlier, (1.0, 1.0))
+    table = tomllib.loads(nightly_text(tmp_path))
+    assert table == {"nightly": {"a.py": 5, "b.py": 7}}

@@ -10,6 +10,7 @@ from ltca.reading.arguments import (
     add_case_argument,
     add_drive_argument,
     add_size_argument,
+    refuse_impossible_torques,
     tell_unit_mistakes,
 )
 
@@ -53,5 +54,7 @@ def chosen_case(arguments: argparse.Namespace) -> tuple[DriveFile, str, Drive]:
 
     file = load_drive(arguments.drive)
     case, drive = next(iter(file.select_warm([arguments.case] if arguments.case else None).items()))
+    if hasattr(arguments, "torque"):
+        refuse_impossible_torques([file.cases[case]], arguments.torque)
     tell_unit_mistakes([file.cases[case]], getattr(arguments, "torque", None))
     return file, case, drive

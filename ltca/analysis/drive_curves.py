@@ -229,9 +229,11 @@ def curve_lines(found: DriveCurves, title: str) -> list[str]:
         f"  width of the loop there                   {_range(curve.loop.width * ARCMIN)}′",
         f"  energy lost in a loop at the rated torque {_range(curve.loop.energy / 1e3)} J",
     ]  # fmt: skip
+    told_apart = spectrum.resolved()
     strongest = [
-        (spectrum.orders[number], spectrum.amplitude[number]) for number in np.argsort(-spectrum.amplitude)[:8]
+        (told_apart.orders[number], told_apart.amplitude[number]) for number in np.argsort(-told_apart.amplitude)[:8]
     ]
+    width = max(32, *(len(order.name) for order, _ in strongest))
     limit = found.settings.pressure
     told = "without a limit" if limit is None else f"safety {safety.safety:.3f} against {limit:g} MPa"
     return [
@@ -252,11 +254,22 @@ def curve_lines(found: DriveCurves, title: str) -> list[str]:
         f"  {curve.yielding.words}",
         *([] if found.parts is None else found.parts.lines),
         f"orders of the transmission error {over}",
-        *(f"  {order.value:>9.4f}  {order.name:<32}{size * ARCSEC:>9.4f}″" for order, size in strongest),
-        f"  unexplained, rms{'':<29}{spectrum.residual * ARCSEC:>9.4f}″",
+        *(f"  {order.value:>9.4f}  {order.name:<{width}}{size * ARCSEC:>9.4f}″" for order, size in strongest),
+        f"  {'unexplained, rms':<{width + 13}}{spectrum.residual * ARCSEC:>9.4f}″",
+        *([f"  {resolution_words(found)}"] if any(" or " in order.name for order, _ in strongest) else []),
         *life_lines(found.lives, drive, life_speed(drive, found.settings)),
         f"flank pressure {safety.largest:.1f} MPa, {told}, largest {over}",
     ]
+
+
+def resolution_words(found: DriveCurves) -> str:
+    """Return which orders the turns do not tell apart; nothing where they tell all apart."""
+    if len(found.spectrum.groups) == len(found.spectrum.orders):
+        return ""
+    return (
+        f"{found.turns} turns do not tell orders apart that are nearer than 1/{found.turns}: "
+        'a row with "or" is the sum of those it names'
+    )
 
 
 def speed_words(drive: Drive, speed: float) -> str:
@@ -289,8 +302,15 @@ def curve_contents(found: DriveCurves) -> dict[str, Any]:
             "turns": found.turns,
             "positions": found.positions,
             "orders": [
-                {"order": entry.value, "name": entry.name, "amplitude_rad": float(size), "phase_rad": float(phase)}
-                for entry, size, phase in zip(spectrum.orders, spectrum.amplitude, spectrum.phase, strict=True)
+                {"order": entry.value, "name": name, "amplitude_rad": float(size), "phase_rad": float(phase)}
+                for entry, name, size, phase in zip(
+                    spectrum.orders, spectrum.names, spectrum.amplitude, spectrum.phase, strict=True
+                )
+            ],
+            "not_told_apart": [
+                {"orders": [spectrum.orders[place].value for place in places], "amplitude_rad": float(size)}
+                for places, size in zip(spectrum.groups, spectrum.resolved().amplitude, strict=True)
+                if len(places) > 1
             ],
             "residual_rms_rad": spectrum.residual,
         },

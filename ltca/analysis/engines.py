@@ -173,6 +173,8 @@ class HalfSpace:
         What the paper's iteration runs on, tables by default; the other methods have their own.
     rings : tuple of Drive
         Drives whose rings of finite elements also serve drives of nearly their rings, see `lending_rings`.
+    asked : bool
+        Whether half-spaces were asked for, whatever the drive file says: for the words that give the reason for them.
 
     Raises
     ------
@@ -196,6 +198,7 @@ class HalfSpace:
     method: Method = "tables"
     contacts: Contacts | None = None
     rings: tuple[Drive, ...] = field(default=(), repr=False)
+    asked: bool = field(default=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         """Check the names; fill in the contacts of the method."""

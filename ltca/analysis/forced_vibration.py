@@ -372,7 +372,7 @@ def response_content(found: ForcedVibration, vibration: Vibration) -> dict[str, 
         "orders": [
             {
                 "order": vibration.spectrum.orders[place].value,
-                "name": vibration.spectrum.orders[place].name,
+                "name": vibration.spectrum.names[place],
                 "amplitude_rad": found.order_amplitude[:, place].tolist(),
             }
             for place in orders

@@ -154,7 +154,10 @@ def half_space_words(engine: Engine, drive: Drive) -> str:
     """Return the reason for half-spaces, and their measured errors; empty for another engine."""
     if engine.compliance != "half-space":
         return ""
-    why = "as [analysis] of the drive file says" if drive.analysis.compliance == "half-space" else "as asked"
+    told = drive.analysis.compliance == "half-space"
+    why = "as [analysis] of the drive file says" if told else "as asked"
+    if told and getattr(engine, "asked", False):
+        why = "as asked; without that [analysis] of the drive file says the same"
     errors = "the error is not known, no shipped drive is similar"
     if (shipped := _similar_shipped(drive)) is not None:
         ratio, name, same = shipped

@@ -126,7 +126,8 @@ def _cause(drive: Drive, contacts: Response, name: str, worst: tuple[np.intp, ..
 def wide_holes_warning(drive: Drive, pressures: ContactPressures) -> str | None:
     """Return a warning where shaft pins touch their holes over more than a half-space stands for; None elsewhere.
 
-    Their loads go through springs and hold; the pressures are those of bodies that are less curved.
+    Their loads go through springs and hold; the pressures are those of bodies that are less curved. The verdict has the same
+    half-width and bound in its row "half-width by radius", which fails then.
     """
     if drive.pin_shaft is None:
         return None

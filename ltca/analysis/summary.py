@@ -12,6 +12,7 @@ from ltca.analysis.contact_arrays import array_of
 from ltca.analysis.extremes import Sampling, is_full_turn, refine_together, sampling
 from ltca.analysis.friction.losses import KINDS
 from ltca.analysis.loaded_analysis import MAX_BATCH_POSITIONS, LoadedAnalysis
+from ltca.analysis.memory_need import positions_together
 from ltca.analysis.results import case_arrays
 from ltca.arrays import FloatArray, batch_layout, stack_drives, take_rows
 from ltca.drive.units.quantities import ARCMIN, ARCSEC
@@ -21,7 +22,7 @@ from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.first_contact import backlash, interference
 from ltca.geometry.interference import overlap_at_rest
-from ltca.geometry.play import TurnPlay, plays_over_a_turn
+from ltca.geometry.play import POSITIONS, TurnPlay, plays_over_a_turn
 from ltca.quantities import NEED_SLICES, REFINED, SCALARS, scalar_named
 
 LOADED_FRACTION = 1e-3
@@ -104,7 +105,8 @@ def summarise_cases(
     if without_load:
         layouts = [batch_layout(analysis.model.geometries) for analysis in each]
         unloaded = _together(_unloaded, each, layouts)
-        plays = _together(partial(_plays, near=near), each, layouts)
+        turn = POSITIONS if near is None else 2
+        plays = _together(partial(_plays, near=near), each, layouts, positions=turn)
     refined = _together(_refined, each, [_refined_with(analysis) for analysis in each])
     known = zip(each, unloaded, plays, refined, strict=True)
     return {name: _summary(*of, masses=masses) for name, of in zip(analyses, known, strict=True)}
@@ -114,24 +116,30 @@ def _together(
     function: Callable[[Sequence[LoadedAnalysis]], Sequence[Values]],
     analyses: Sequence[LoadedAnalysis],
     layouts: Sequence[Hashable],
+    *,
+    positions: int | None = None,
 ) -> list[Values]:
-    """What a function finds of each analysis: of those of one layout and as many positions together, or one by one."""
+    """Values of each analysis by a function that takes those of one layout together, in batches that memory holds, or one by one.
+
+    `positions` are those at which it looks at each of them, by default those of the analyses.
+    """
     groups: dict[Hashable, list[int]] = {}
     for number, (analysis, layout) in enumerate(zip(analyses, layouts, strict=True)):
         alone = number if layout is None else None
         groups.setdefault((layout, alone, analysis.full.crank_angle.tobytes()), []).append(number)
-    found: dict[int, Values] = {}
+    by_number: dict[int, Values] = {}
     for members in groups.values():
-        many = max(1, MAX_BATCH_POSITIONS // analyses[members[0]].full.crank_angle.size)
+        most = min(MAX_BATCH_POSITIONS, *(positions_together(analyses[number].drive) for number in members))
+        many = max(1, most // (positions or analyses[members[0]].full.crank_angle.size))
         for part in (members[first : first + many] for first in range(0, len(members), many)):
             try:
-                answers = function([analyses[number] for number in part])
+                values = function([analyses[number] for number in part])
             except ConvergenceError:  # one of them has no answer
                 if len(part) == 1:
                     raise
-                answers = [function([analyses[number]])[0] for number in part]
-            found |= zip(part, answers, strict=True)
-    return [found[number] for number in range(len(analyses))]
+                values = [function([analyses[number]])[0] for number in part]
+            by_number |= zip(part, values, strict=True)
+    return [by_number[number] for number in range(len(analyses))]
 
 
 def _summary(

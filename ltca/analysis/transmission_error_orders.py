@@ -22,6 +22,8 @@ from ltca.geometry.placement import Placement
 
 LEAST_SINGULAR_RATIO = 1e-3
 """Least singular value, relative to the largest, at which orders can be distinguished."""
+SAME_DISTANCE = 1e-6
+"""Part of the distance of orders that turns tell apart by which one may be nearer, for the rounding of angles."""
 POSITIONS_PER_CHUNK = 20_000
 """Positions whose columns are held in memory at once."""
 
@@ -49,6 +51,8 @@ class Spectrum:
         rad.
     residual : float
         Root mean square of what no order explains, rad.
+    turns : float
+        Turns of the crank that the positions cover.
     """
 
     orders: tuple[Order, ...]
@@ -56,10 +60,61 @@ class Spectrum:
     phase: FloatArray
     mean: float
     residual: float
+    turns: float = np.inf
 
     def of(self, value: float) -> float:
         """Return the amplitude of the fitted order nearest to a value, rad."""
         return float(self.amplitude[int(np.argmin([abs(order.value - value) for order in self.orders]))])
+
+    @property
+    def groups(self) -> tuple[tuple[int, ...], ...]:
+        """Places of orders that the turns do not tell apart, ascending; alone where they do.
+
+        Two orders shift by less than a period against each other over N turns where they are nearer than 1/N: their sum is
+        known, the share of each is not.
+        """
+        groups = [[0]]
+        for place in range(1, len(self.orders)):
+            step = self.orders[place].value - self.orders[place - 1].value
+            if step * self.turns < 1.0 - SAME_DISTANCE:
+                groups[-1].append(place)
+            else:
+                groups.append([place])
+        return tuple(map(tuple, groups))
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Name of each order; of one that is not told from others the names of all of them."""
+        return tuple(" or ".join(self.orders[place].name for place in places) for places in self.groups for _ in places)
+
+    def resolved(self) -> Spectrum:
+        """Return the spectrum with one order for each of `groups`, as results show it.
+
+        Orders that are not told apart become the largest of them, under the names of all, with √2 times the root mean square of
+        their sum over the turns.
+        """
+        orders, waves, names = list[Order](), list[complex](), self.names
+        values = np.array([order.value for order in self.orders])
+        complex_amplitude = self.amplitude * np.exp(-1j * self.phase)
+        for places in map(list, self.groups):
+            largest = max(places, key=lambda place: self.amplitude[place])
+            orders.append(Order(self.orders[largest].value, names[largest]))
+            if len(places) == 1:
+                waves.append(complex(complex_amplitude[largest]))
+                continue
+            wave = complex_amplitude[places]
+            shift = np.subtract.outer(values[places], values[places]) * self.turns  # periods over all turns
+            mean = np.sinc(shift) * np.exp(1j * np.pi * shift)
+            size = np.sqrt(max(float(np.real(wave @ mean @ wave.conj())), 0.0))
+            waves.append(complex(size * np.exp(1j * np.angle(wave @ mean[:, places.index(largest)]))))
+        return Spectrum(
+            orders=tuple(orders),
+            amplitude=np.abs(waves),
+            phase=-np.angle(waves),
+            mean=self.mean,
+            residual=self.residual,
+            turns=self.turns,
+        )
 
 
 def known_orders(drive: Drive, *, harmonics: int = 4) -> tuple[Order, ...]:
@@ -212,6 +267,7 @@ def fit_several(crank_angle: FloatArray, errors: FloatArray, orders: tuple[Order
             phase=np.arctan2(sine, cosine),
             mean=float(mean),
             residual=float(residual),
+            turns=float(np.ptp(angle)) / (2.0 * np.pi) * angle.size / (angle.size - 1),
         )
         for mean, cosine, sine, residual in zip(
             solved[0], solved[1 : len(orders) + 1].T, solved[len(orders) + 1 :].T, left, strict=True

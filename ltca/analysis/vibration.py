@@ -161,7 +161,15 @@ class Vibration:
     @property
     def told_orders(self) -> tuple[int, ...]:
         """Places of the largest orders of the transmission error, largest first."""
-        return tuple(int(place) for place in np.argsort(-self.spectrum.amplitude, kind="stable")[:TOLD_ORDERS])
+        amplitude, groups = self.spectrum.resolved().amplitude, self.spectrum.groups
+        largest = [max(places, key=lambda place: self.spectrum.amplitude[place]) for places in groups]
+        return tuple(largest[group] for group in np.argsort(-amplitude, kind="stable")[:TOLD_ORDERS])
+
+    def told_as(self, place: int) -> tuple[Order, float]:
+        """Return an order and its amplitude, rad, together with those that the turns do not tell from it."""
+        group = next(number for number, places in enumerate(self.spectrum.groups) if place in places)
+        order = Order(self.spectrum.orders[place].value, self.spectrum.names[place])
+        return order, float(self.spectrum.resolved().amplitude[group])
 
     def critical_speeds(self, fastest: float | None = None) -> tuple[CriticalSpeed, ...]:
         """Return the critical speeds up to a speed of the input, turns a minute, ascending.
@@ -175,7 +183,7 @@ class Vibration:
         top, found = high if fastest is None else fastest, []
         known = bool(self.drive.duty or self.drive.load.speed is not None)
         for place in self.told_orders:
-            order = self.input_orders[place]
+            order, (told, amplitude) = self.input_orders[place], self.told_as(place)
             for mode in range(self.at_load.shape[1]):
                 speeds = 60.0 * self.at_load[:, mode] / order
                 slowest, mean, largest = float(speeds.min()), float(speeds.mean()), float(speeds.max())
@@ -186,8 +194,8 @@ class Vibration:
                         speed=mean,
                         slowest=slowest,
                         fastest=largest,
-                        order=self.spectrum.orders[place],
-                        amplitude=float(self.spectrum.amplitude[place]),
+                        order=told,
+                        amplitude=amplitude,
                         mode=mode,
                         in_duty=known and largest >= low and slowest <= high,
                     )
@@ -394,10 +402,12 @@ def vibration_content(found: Vibration, fastest: float | None = None) -> dict[st
                 {
                     "order": one.value,
                     "by_turn_of_input": float(by_input),
-                    "name": one.name,
+                    "name": name,
                     "amplitude_rad": float(size),
                 }
-                for one, by_input, size in zip(spectrum.orders, found.input_orders, spectrum.amplitude, strict=True)
+                for one, name, by_input, size in zip(
+                    spectrum.orders, spectrum.names, found.input_orders, spectrum.amplitude, strict=True
+                )
             ],
             "residual_rms_rad": spectrum.residual,
         },

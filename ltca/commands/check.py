@@ -18,6 +18,7 @@ from ltca.reading.arguments import (
     add_page_argument,
     count_argument,
     default_folder,
+    refuse_impossible_torques,
     tell_unit_mistakes,
     torque_argument,
 )
@@ -60,6 +61,7 @@ def execute(arguments: argparse.Namespace) -> int:
     file = load_drive(arguments.drive)
     cases = file.select(arguments.case)
     settle_compliance(arguments, cases.values())
+    refuse_impossible_torques(cases.values(), arguments.torque)
     tell_unit_mistakes(cases.values(), arguments.torque, (file.limits[name] for name in cases))
     out = arguments.out or default_folder(file.name, "check")
     require_folder(out)

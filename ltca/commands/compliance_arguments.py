@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +15,7 @@ from ltca.reading.arguments import (
     compliance_for,
     default_folder,
     refuse_idle_options,
+    refuse_impossible_torques,
     tell_unit_mistakes,
 )
 
@@ -70,8 +71,10 @@ def check_compliance(arguments: argparse.Namespace) -> None:
         option = "--coefficients" if arguments.coefficients else option
         raise DriveError([f"{option}: has no effect with --quick, which is half-spaces; leave one of them out"])
     compliance = "half-space" if arguments.quick else arguments.compliance
+    given = _options(arguments)
+    arguments.half_spaces_asked = compliance == "half-space" or bool(given["method"] or given["contacts"])
     if compliance is not None:
-        refuse_idle_options(compliance, **_options(arguments))
+        refuse_idle_options(compliance, **given)
 
 
 def settle_compliance(arguments: argparse.Namespace, drives: Iterable[Drive]) -> str:
@@ -89,11 +92,12 @@ def settle_compliance(arguments: argparse.Namespace, drives: Iterable[Drive]) ->
 
 def compliance_of(arguments: argparse.Namespace, drives: Iterable[Drive]) -> Engine:
     """Return the engine that the arguments ask for, or else the drives; with method and contacts where a command has these."""
-    from ltca.analysis.engines import engine_named
+    from ltca.analysis.engines import HalfSpace, engine_named
 
     compliance, given = settle_compliance(arguments, drives), _options(arguments)
     files = None if given["coefficients"] is None else tuple(arguments.coefficients)
-    return engine_named(compliance, **{**given, "coefficients": files})
+    engine = engine_named(compliance, **{**given, "coefficients": files})
+    return replace(engine, asked=arguments.half_spaces_asked) if isinstance(engine, HalfSpace) else engine
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -143,6 +147,7 @@ def open_drives(arguments: argparse.Namespace, command: str) -> OpenedDrives:
     file = load_drive(arguments.drive)
     cases = file.select_warm(arguments.case)
     settle_compliance(arguments, cases.values())
+    refuse_impossible_torques(file.cases[name] for name in cases)
     tell_unit_mistakes(file.cases[name] for name in cases)
     out = arguments.out or default_folder(file.name, command)
     require_folder(out)

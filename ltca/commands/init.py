@@ -45,6 +45,8 @@ def execute(arguments: argparse.Namespace) -> int:
         raise CycloError(f"{path}: is a folder, not a file")
     if path.exists() and not arguments.force:
         raise CycloError(f"{path}: exists already; --force overwrites it")
+    if path.exists() and not path.is_file():  # a device would be replaced by a file
+        raise CycloError(f"{path}: is no regular file, nothing is written in its place")
     own = f"name = {json.dumps(path.stem, ensure_ascii=False)}"
     text = shipped_drive(arguments.like).replace(f'name = "{arguments.like}"', own, 1)
     with whole_file(path) as part:

@@ -46,6 +46,8 @@ ORDER = (
 )
 USAGE_ERROR, FAULT = 2, 1
 OUTPUT_FAULTS = (errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EBADF, errno.EFBIG)
+WRONG_PLACE = (errno.ENAMETOOLONG, errno.EACCES, errno.EPERM, errno.EROFS, errno.ENOTDIR, errno.ELOOP)
+"""What a path answers that cannot be used by whoever asks."""
 NO_MEMORY = ("failed to map segment", "annot allocate memory", "can't start new thread", "can't allocate lock")
 """What the loader of libraries, and threads, say where a library or a stack finds no memory."""
 DISTRIBUTION = "cyclo-ltca"
@@ -153,14 +155,15 @@ def main(argv: Sequence[str] | None = None) -> int:
     if argv is None and not debug and not sys.warnoptions:
         warnings.simplefilter("ignore")  # of libraries, for those who write code
     os.environ.setdefault("OMP_NUM_THREADS", "1")
-    from ltca.output.processes import Terminated
+    from ltca.output.processes import Terminated, ended_by_signals
     from ltca.output.threads import use_one_thread
 
     use_one_thread()
     try:
         wanted = next((word for word in words if word != DEBUG), "")
-        status = _run(words, wanted)
-        sys.stdout.flush()  # what cannot be written is told, not left to the interpreter's exit
+        with ended_by_signals():
+            status = _run(words, wanted)
+            sys.stdout.flush()  # what cannot be written is told, not left to the interpreter's exit
         return status
     except Terminated:
         print("cyclo: terminated", file=sys.stderr)
@@ -179,7 +182,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         if debug:
             traceback.print_exc()
         print(f"cyclo: error: {_told(error)}", file=sys.stderr)
-        if isinstance(error, OSError) and error.errno == errno.ENAMETOOLONG:
+        if isinstance(error, OSError) and error.filename is not None and error.errno in WRONG_PLACE:
             return USAGE_ERROR  # whichever argument it was
         if isinstance(error, ModuleNotFoundError) and what_installs(error.name or ""):
             return USAGE_ERROR
@@ -188,8 +191,6 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _run(words: list[str], wanted: str) -> int:
     """Run a command, or print the help that was asked for, and return the exit status."""
-    from ltca.output.processes import ended_by_signals
-
     if not set(words) - {DEBUG}:
         build_parser().print_help(sys.stderr)
         return USAGE_ERROR
@@ -198,8 +199,7 @@ def _run(words: list[str], wanted: str) -> int:
     except SystemExit:
         sys.stdout.flush()
         raise
-    with ended_by_signals():
-        return int(arguments.execute(arguments))
+    return int(arguments.execute(arguments))
 
 
 def _reader_has_gone(error: Exception) -> bool:

@@ -64,7 +64,7 @@ def export_model(arguments: argparse.Namespace) -> int:
     from ltca.commands.actions.reduced_model import check_drive, reduce_and_write
     from ltca.export.simulators.files import CALLBACK, LAW, file_names, model_name
 
-    own, drive = model_name(file.name, name), file.cases[name]
+    own, drive = model_name(file.name, name, file.cases), file.cases[name]
     if arguments.speed is not None:
         if drive.duty:
             raise DriveError(

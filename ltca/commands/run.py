@@ -24,6 +24,7 @@ from ltca.reading.arguments import (
     default_folder,
     path_argument,
     quantity_argument,
+    refuse_impossible_torques,
     tell_unit_mistakes,
     torque_argument,
 )
@@ -109,6 +110,7 @@ def execute(arguments: argparse.Namespace) -> int:
     file = load_drive(arguments.drive)
     cases = file.select(arguments.case)
     settle_compliance(arguments, cases.values())
+    refuse_impossible_torques(cases.values(), arguments.torque)
     tell_unit_mistakes(cases.values(), arguments.torque, (file.limits[name] for name in cases))
     out = arguments.out or default_folder(file.name, "run")
     require_folder(out)

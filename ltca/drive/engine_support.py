@@ -77,8 +77,9 @@ def _spring_of_pins(drive: Drive) -> str:
     spring = shaft_pin_spring(drive)
     if spring is None:
         return "give pin_shaft.stiffness in its place"
+    near = f" {spring.accuracy}" if spring.accuracy else ""
     alike = "" if drive.disc.number_of_discs == 1 else ", but lets the discs share the torque alike"
-    return f"give pin_shaft.stiffness in its place: {spring.stiffness:g} N/mm turns the output as far{alike}"
+    return f"give pin_shaft.stiffness in its place: {spring.stiffness:g} N/mm turns the output as far{near}{alike}"
 
 
 _PLANE = ("fe", "full FE")

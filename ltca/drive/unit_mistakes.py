@@ -43,6 +43,9 @@ HOTTEST = 200.0
 """Temperature at which bearing steel softens, °C; a cold room in kelvin is beyond it."""
 BORNE = 10_000.0
 """Pressure beyond the strength of any gear: bearing steel yields below 6000 MPa, MPa."""
+CRUSHED = 0.2
+"""Pressure of a wheel pin by the contact modulus beyond which no contact is answered: its half-width, twice that by the pin
+radius, is beyond 0.3 of it even where the estimate of the load is off by a factor of two."""
 UNLOADED = 1.0 / 500.0
 """Fraction of the torque that a drive carries (`carried_torque`) below which its torque is likely in newton metres: rated
 torques are a quarter of it and more, a hundredth of them is above; newton metres read as N·mm are about a thousandth."""
@@ -140,11 +143,29 @@ def likely_unit_mistakes(drive: Drive, torque: float | None = None) -> list[str]
     for named, value, solved, share_of_it in torques:
         pressure = _pressure(drive, solved / drive.disc.number_of_discs)
         if pressure > BORNE:
-            return [
-                f"{named} = {value:g} N·mm is {value / 1000.0:g} N·m{share_of_it} and would press the wheel pins with some "
-                f'{pressure:.2g} MPa, which no steel bears; a plain number is N·mm, newton metres are written "377.3 N m"'
-            ]
+            return [_crushing(named, value, pressure, share_of_it)]
     return _yielding(drive, share)
+
+
+def impossible_torque(drive: Drive, torque: float | None = None) -> str:
+    """Return what is wrong with an output torque, N·mm, or that of the load, under which no drive is answered; else nothing.
+
+    Nothing is said where other values look like numbers in another unit: the load of a pin follows from them.
+    """
+    used = drive.load.torque if torque is None else torque
+    pressure = _pressure(drive, used / drive.disc.number_of_discs)
+    if pressure <= CRUSHED * contact_modulus(drive.materials.disc, drive.flank_pin):
+        return ""
+    if _impossible(drive) or _modulus(drive) or any(_odd_lengths(drive)):
+        return ""
+    return _crushing("load.torque" if used == drive.load.torque else "torque", used, pressure)
+
+
+def _crushing(named: str, value: float, pressure: float, share_of_it: str = "") -> str:
+    return (
+        f"{named} = {value:g} N·mm is {value / 1000.0:g} N·m{share_of_it} and would press the wheel pins with some "
+        f'{pressure:.2g} MPa, which no steel bears; a plain number is N·mm, newton metres are written "377.3 N m"'
+    )
 
 
 def _yielding(drive: Drive, share: float) -> list[str]:

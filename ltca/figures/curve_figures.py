@@ -143,7 +143,7 @@ def draw_spectrum(spectrum: Spectrum, title: str, path: Path, plane: Plane | Non
                 place = float(values[number]), float(heights[number])
                 axes.text(*place, f"{order.value:.4g}", fontsize=7.0, ha="center", va="bottom")
             axes.text(
-                0.42, 0.96 - 0.055 * row, f"{order.value:>8.4f}  {heights[number]:.3f}″  {order.name}",
+                0.42, 0.96 - 0.055 * row, f"{order.value:>8.4f}  {heights[number]:.3f}″  {shortened_label(order.name, 40)}",
                 transform=axes.transAxes, fontsize=7.5, family="monospace",
             )  # fmt: skip
         axes.set_xlim(plane.x.low, plane.x.high)

@@ -91,9 +91,14 @@ def draw_response(answer: ForcedVibration, found: Vibration, title: str, path: P
         above, below = figure.subplots(2, 1, sharex=True)
         above.plot(answer.speed, answer.amplitude * ARCSEC, color=COLOURS[0], label="root mean square")
         for number, place in enumerate(found.told_orders[:4]):
-            order = found.spectrum.orders[place]
             size = answer.order_amplitude[:, place] * ARCSEC
-            above.plot(answer.speed, size, color=COLOURS[1 + number], linewidth=0.9, label=order.name)
+            above.plot(
+                answer.speed,
+                size,
+                color=COLOURS[1 + number],
+                linewidth=0.9,
+                label=shortened_label(found.spectrum.names[place], 40),
+            )
         above.set_yscale("log")
         above.yaxis.set_major_formatter("{x:g}")
         above.set_ylabel("transmission error [″]")

@@ -13,6 +13,7 @@ ROUNDING = 1e-9
 """Overlap within the rounding of a sum, mm."""
 ROLLERS = "rollers and races"
 FLANK = "wheel pins and flank"
+HOLES = "shaft pins and holes"
 """Name of the pair whose overlap depends on the errors of single pins as well (`ltca.geometry.first_contact.interference`)."""
 
 
@@ -82,7 +83,7 @@ def drawn_plays(drive: Drive) -> dict[str, float]:
     It is negative where parts overlap as drawn by more than the rounding of sums. The distance between the circles of holes and
     shaft pins, and between those of bores and several cranks, is the mean one.
     """
-    found = {FLANK: -inf, ROLLERS: -inf, "shaft pins and holes": -inf}
+    overlaps = {FLANK: -inf, ROLLERS: -inf, HOLES: -inf}
     for single in single_discs(drive):
         drawn, shaft = drawn_interference(single), single.pin_shaft
         error = single.crank.eccentricity_error
@@ -94,9 +95,9 @@ def drawn_plays(drive: Drive) -> dict[str, float]:
         if shaft is not None and shaft.pin_errors.radial:
             radial = shaft.pin_errors.radial
             holes += abs(sum(radial) / len(radial))
-        for what, overlap in zip(found, (pins, rollers, holes), strict=True):
-            found[what] = max(found[what], overlap)
-    return {what: _zero(-overlap) for what, overlap in found.items() if overlap > -inf}
+        for what, overlap in zip(overlaps, (pins, rollers, holes), strict=True):
+            overlaps[what] = max(overlaps[what], overlap)
+    return {what: _zero(-overlap) for what, overlap in overlaps.items() if overlap > -inf}
 
 
 def overlap_at_rest(drive: Drive, flank: float) -> tuple[float, str]:

@@ -64,13 +64,13 @@ def read_arrays(path: Path, what: str) -> dict[str, NDArray[Any]]:
         if declared > LARGEST:
             raise DamagedFileError(f"{path}: declares {declared:,} bytes, which {what} has not")
         with regular_file(path, LARGEST) as stream, np.load(stream, allow_pickle=False) as stored:
-            found = {name: stored[name] for name in stored.files}
-        stated = str(found.pop(CHECKSUM))
+            arrays = {name: stored[name] for name in stored.files}
+        stated = str(arrays.pop(CHECKSUM))
     except DAMAGE as error:
         raise DamagedFileError(f"{path}: cannot be read as {what}: {one_line(error)}") from error
-    if stated != _checksum(found):
+    if stated != _checksum(arrays):
         raise DamagedFileError(f"{path}: is damaged (checksum)")
-    return found
+    return arrays
 
 
 def _checksum(arrays: Mapping[str, NDArray[Any]]) -> str:

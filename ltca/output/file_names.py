@@ -37,10 +37,10 @@ def file_words(names: Iterable[str], system: str = sys.platform) -> dict[str, st
         word = _on_windows(name) if system == "win32" else name
         if system in ("win32", "darwin"):
             first, count = word, 1
-            while _alike(word) in taken:
+            while spelled_alike(word) in taken:
                 count += 1
                 word = f"{first}~{count}"
-            taken.add(_alike(word))
+            taken.add(spelled_alike(word))
         words[name] = word
     return words
 
@@ -74,5 +74,12 @@ def _on_windows(name: str) -> str:
     return f"%{ord(word[0]):02X}{word[1:]}" if DEVICE.fullmatch(word) else word
 
 
-def _alike(word: str) -> str:
+def spelled_alike(word: str) -> str:
+    """Return what Windows and macOS tell names by: neither capitals count there, nor how accents are composed.
+
+    Examples
+    --------
+    >>> spelled_alike("Paper_A.json") == spelled_alike("paper_a.json")
+    True
+    """
     return unicodedata.normalize("NFC", unicodedata.normalize("NFC", word).casefold())

@@ -28,18 +28,29 @@ class Terminated(BaseException):
 
 @contextmanager
 def ended_by_signals() -> Iterator[None]:
-    """Turn SIGTERM into `Terminated` while the block runs; only the main thread can."""
+    """Turn SIGTERM into `Terminated` while the block runs; only the main thread can.
+
+    Compiled libraries, while they are loaded for one, turn any exception that comes inside them into one of their own: an error
+    that leaves the block after a signal has come is that signal's, of Ctrl-C as well.
+    """
     if threading.current_thread() is not threading.main_thread():
         yield
         return
 
     armed, told = True, sys.unraisablehook
+    heard: type[BaseException] | None = None
 
     def end(number: int, frame: Any) -> None:
-        nonlocal armed
+        nonlocal armed, heard
         if armed:
             armed = False  # a second one would cut the cleaning short
+            heard = Terminated
             raise Terminated
+
+    def interrupt(number: int, frame: Any) -> None:
+        nonlocal heard
+        heard = KeyboardInterrupt
+        raise KeyboardInterrupt
 
     def again(unraisable: Any) -> None:
         # A signal that comes while an object is being removed raises where nobody hears it: it is sent once more.
@@ -57,9 +68,15 @@ def ended_by_signals() -> Iterator[None]:
         timer.start()
 
     before = {number: signal.signal(number, end) for number in ENDS}
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+        before[signal.SIGINT] = signal.signal(signal.SIGINT, interrupt)
     sys.unraisablehook = again
     try:
         yield
+    except Exception as error:
+        if heard is None:
+            raise
+        raise heard from error
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)

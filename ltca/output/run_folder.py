@@ -17,6 +17,7 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from ltca.errors import CycloError, DamagedFileError, PlaceError
+from ltca.output.file_names import spelled_alike
 from ltca.output.files import PART, told_of_files, whole_file
 from ltca.output.locks import held
 from ltca.output.regular_files import read_regular, regular_file
@@ -152,10 +153,14 @@ class RunFolder:
         if found:
             more = f" (and {len(found) - 1} more)" if len(found) > 1 else ""
             raise PlaceError(f"{what}: {found[0]}{more} {self._why_not(found[0])}")
+        # Where names differ in capitals alone, Windows and macOS would have one file for both, now or after a copy.
+        before = {spelled_alike(name): (name, self._old_origins[name]) for name in self._old_origins if name in there}
         for name, origin in self._origins.items():
-            if (before := self._old_origins.get(name, origin)) != origin and name in there:
+            other, made = before.get(spelled_alike(name), (name, origin))
+            if made != origin:
+                where = "" if other == name else f" by {name} on Windows and macOS"
                 raise PlaceError(
-                    f"{what}: {name} was made from {before}, {origin} would replace it: choose another --out"
+                    f"{what}: {other} was made from {made}, {origin} would replace it{where}: choose another --out"
                 )
 
     def _may_be_replaced(self, path: Path) -> bool:
@@ -230,9 +235,12 @@ def figure_files(kind: str | None, *names: str) -> list[str]:
 
 
 def require_folder(path: Path) -> None:
-    """Refuse (`PlaceError`) a file in the place of the folder that ``--out`` gives, which need not be there yet."""
+    """Refuse (`PlaceError`) a file in the place of the folder that ``--out`` gives, which need not be there yet, and a root."""
     if path.exists() and not path.is_dir():
         raise PlaceError(f"--out {path}: is a file, not a folder")
+    place = path.resolve()
+    if place == place.parent:
+        raise PlaceError(f"--out {path}: is the root of a file system, must be a folder below it")
 
 
 def _require_no_interrupted_study(path: Path) -> None:

@@ -316,7 +316,8 @@ def _pins(drive: Drive) -> Rows:
             ranges = (
                 "" if drive.disc.number_of_discs == 1 else "; {:g} where discs carry alike, {:g} where they turn alike"
             )
-            words = f"pin_shaft.stiffness = {spring.stiffness:g} N/mm{ranges.format(*between)}"
+            near = f", {spring.accuracy}" if spring.accuracy else ""
+            words = f"pin_shaft.stiffness = {spring.stiffness:g} N/mm{near}{ranges.format(*between)}"
             rows.append(("shaft pins, springs that turn as far", words))
     return rows
 

@@ -37,14 +37,16 @@ def verdict_of(checks: Checks) -> tuple[str, str]:
         return f"{failing} of {len(judged)} checks fail{'s' if failing == 1 else ''}{of}.", "fail"
     if not judged:
         return "Nothing is judged: neither drive file nor materials have limits.", ""
-    told = [f"All {len(judged)} values that can be judged keep their limits{' in every case' if several else ''}."]
+    sentences = [f"All {len(judged)} values that can be judged keep their limits{' in every case' if several else ''}."]
     if unknown:
         limited = sum(bound != NOTHING for _, bound, _ in unknown)
-        told.append(f"{_values(len(unknown))} not known, {limited} of them with a limit: the reasons are listed below.")
-    told += (
+        sentences.append(
+            f"{_values(len(unknown))} not known, {limited} of them with a limit: the reasons are listed below."
+        )
+    sentences += (
         [f"{_values(len(others))} without a limit and only inform{'s' if len(others) == 1 else ''}."] if others else []
     )
-    return " ".join(told), "pass"
+    return " ".join(sentences), "pass"
 
 
 def _values(count: int) -> str:
@@ -108,7 +110,7 @@ def _judged_unknown_others(checks: Checks) -> tuple[_Rows, _Rows, _Rows]:
 
 def _by_check(checks: Checks, wanted: Callable[[Check], bool]) -> _Rows:
     """Checks by title, limit and source, then by case."""
-    found: _Rows = {}
+    cells: _Rows = {}
     for case, each in checks.items():
         for check in filter(wanted, each):
             limit = check.limit
@@ -117,8 +119,8 @@ def _by_check(checks: Checks, wanted: Callable[[Check], bool]) -> _Rows:
                 if limit is None
                 else f"{'≤' if limit.sense == 'max' else '≥'} {with_unit(limit.value, check.value, 5)}"
             )
-            found.setdefault((check.title, bound, "" if limit is None else limit.source), {})[case] = check
-    return found
+            cells.setdefault((check.title, bound, "" if limit is None else limit.source), {})[case] = check
+    return cells
 
 
 def _judged(check: Check | None) -> Cell:

@@ -13,6 +13,7 @@ bearing_names       Bought bearings in drive files, as fields: names, clearance 
 measured            Files of measured flanks, as deviations
 physical_checks     Physical checks of a drive: contradictions between numbers that are valid by themselves
 member_checks       Checks of the members together: cranks, values per disc, supports, seats and beams of pins, duty
+alternatives        Contradictions that a bound of either of two fields resolves, with the fields as data
 disc_checks         Checks of a drive of one disc: tooth numbers, flank, pins, bearing, holes and bores, deviations
 width_checks        Checks of the width of the contacts: slices, what needs them, leads and inclinations
 contradictions      Cause of contradictions: the field that alone can resolve all of them, not the one whose bound is

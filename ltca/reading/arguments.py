@@ -275,6 +275,17 @@ def count_argument(option: str, least: int, most: int) -> Callable[[str], int]:
     return read
 
 
+def refuse_impossible_torques(drives: Iterable[Drive], torque: float | None = None) -> None:
+    """Refuse (`DriveError`) an output torque, N·mm, or those of the drives, that presses wheel pins beyond what is answered.
+
+    It comes before `tell_unit_mistakes`: a question about a value that is refused for the same reason is none.
+    """
+    from ltca.drive.unit_mistakes import impossible_torque
+
+    if told := next(filter(None, (impossible_torque(drive, torque) for drive in drives)), ""):
+        raise DriveError([told])
+
+
 def tell_unit_mistakes(drives: Iterable[Drive], torque: float | None = None, limits: Iterable[Limits] = ()) -> None:
     """Print warnings to stderr about values of drives, as written, that were probably meant in another unit, each once.
 

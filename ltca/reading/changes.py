@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from dataclasses import is_dataclass, replace
 from functools import cache
@@ -31,6 +30,8 @@ from ltca.drive.members.preload import preload_table
 from ltca.drive.mistakes import describe_mistakes
 from ltca.drive.parts import BearingRow, Drive, Duty, ExternalLoad, MainBearing
 from ltca.errors import DriveError, shortened
+from ltca.reading.alternatives import Alternatives
+from ltca.reading.contradictions import explain_change
 from ltca.reading.physical_checks import find_contradictions
 
 
@@ -99,27 +100,20 @@ def with_fields(drive: Drive, values: Mapping[str, Any], *, check: bool = True) 
     if own and not problems:
         changed = _with_own(changed, own, problems)
     if not problems and check:
-        problems += [_named_by_change(changed, problem, values) for problem in find_contradictions(changed)]
+        problems += [_named_by_change(problem, values) for problem in find_contradictions(changed)]
+        if len(values) == 1:
+            problems = explain_change(drive, changed, next(iter(values)), problems)
     if problems:
         raise DriveError(problems)
     return changed
 
 
-ALTERNATIVE = re.compile(
-    r"(?P<field>\S+) = \S+ mm: must be (?P<bound>.+) or (?P<other>[\w.]+) (?P<limit>at (?:most|least) \S+ mm)(?P<why>, or .+)"
-)
-"""A contradiction that either of two fields resolves."""
-
-
-def _named_by_change(drive: Drive, problem: str, values: Mapping[str, Any]) -> str:
-    """A contradiction that names two fields by the one that was changed, of both by the later change."""
-    told, changed = ALTERNATIVE.fullmatch(problem), list(values)
-    if told is None or told["other"] not in changed:
+def _named_by_change(problem: str, values: Mapping[str, Any]) -> str:
+    """A contradiction that either of two fields resolves by the one that was changed, of both by the later change."""
+    if not isinstance(problem, Alternatives):
         return problem
-    if told["field"] in changed and changed.index(told["field"]) > changed.index(told["other"]):
-        return problem
-    field, bound, other, limit, why = told.groups()
-    return f"{other} = {read_field(drive, other):g} mm: must be {limit} or {field} {bound}{why}"
+    changed = [path for path in values if path in (problem.field, problem.other)]
+    return problem.other_first if changed[-1:] == [problem.other] else problem
 
 
 INSTEAD = {"stiffness": "beam", "beam": "stiffness", "planes": "gap", "gap": "planes"}

@@ -301,8 +301,8 @@ def _check_definiteness(dataset: Labelled) -> Iterator[Check]:
         smallest = float(np.linalg.eigvalsh(0.5 * (disc + disc.T))[len(motions)]) / near_field_unit(
             dataset, "disc", tilt
         )
-        told = f"smallest eigenvalue, disc{also}"
-        yield Check(name=told, value=smallest, lowest=0.1, highest=np.inf, reason=DEFINITE)
+        name_of_check = f"smallest eigenvalue, disc{also}"
+        yield Check(name=name_of_check, value=smallest, lowest=0.1, highest=np.inf, reason=DEFINITE)
         yield rounds[_round_eigenvalue(also)]
 
 
@@ -368,9 +368,9 @@ def _disc_slopes(dataset: Labelled, tilt: bool, name: str) -> FloatArray:
     if not (_holds(dataset, "wide_station") and _holds(dataset, f"wide_{name}")):
         return np.zeros(0)
     wide = dataset["wide_station"].values
-    own, broad = np.diag(dataset[f"disc_{name}"].values)[wide], dataset[f"wide_{name}"].values
+    narrow, broad = np.diag(dataset[f"disc_{name}"].values)[wide], dataset[f"wide_{name}"].values
     ratio = np.log(dataset["wide_half_width"].values / dataset["station_half_width"].values[wide])
-    return np.asarray((own - broad) / ratio / near_field_unit(dataset, "disc", tilt))
+    return np.asarray((narrow - broad) / ratio / near_field_unit(dataset, "disc", tilt))
 
 
 def _round_slopes(dataset: Labelled, tilt: bool, name: str) -> FloatArray:

@@ -13,7 +13,7 @@ from ltca.drive.fields import read_field
 from ltca.drive.parts import Drive
 from ltca.errors import DriveError
 from ltca.geometry.interference import ROUNDING, drawn_interference
-from ltca.reading.disc_checks import LOOPS, hole_that_fits, largest_eccentricity, rounded_down
+from ltca.reading.disc_checks import has_loops, hole_that_fits, largest_eccentricity, rounded_down
 from ltca.reading.physical_checks import is_sound
 
 CAUSES = (
@@ -66,11 +66,7 @@ class Cause:
         least = self.bound > self.value
         if self.path in COUNTS:
             return f"{'at least' if least else 'at most'} {self.bound:g}"
-        # What fits exactly (races about a roller) is a round number again.
-        for text in (f"{self.bound:.4g}", f"{self.bound + (5e-5 if least else -5e-5) * abs(self.bound):.4g}"):
-            if float(text) == self.bound or (float(text) > self.bound) == least:
-                break
-        return f"{'at least' if least else 'at most'} {text} mm"
+        return f"at least {-rounded_down(-self.bound):g} mm" if least else f"at most {rounded_down(self.bound):g} mm"
 
     def mends(self, drive: Drive) -> bool:
         """Tell whether a similar drive is sound with the field at its bound, or a little beyond."""
@@ -115,7 +111,7 @@ def find_cause(drive: Drive, problems: list[str]) -> tuple[list[str], Mend]:
             values = [f"{name} = {getattr(getattr(drive, part), name):g} mm" for name in (smaller, larger)]
             told = f"{part}.{values[0]}: must be less than {values[1]}; the two seem to be swapped"
             return [told], partial(_sound_swapped, part=part)
-    if len(problems) == 1 and problems[0].endswith(LOOPS) and _sound_without_loops(drive):
+    if len(problems) == 1 and has_loops(drive) and _sound_without_loops(drive):
         return problems, _sound_without_loops
     causes = sorted(_causes(drive), key=lambda cause: cause.distance)
     if not causes:
@@ -136,6 +132,25 @@ def find_cause(drive: Drive, problems: list[str]) -> tuple[list[str], Mend]:
     )
     reasons = "; ".join(dict.fromkeys(_consequence(problem, first.path) for problem in problems[:2]))
     return [f"{first.named()}: must be {first.bounded()}{instead} for the rest of the drive: {reasons}"], first.mends
+
+
+def explain_change(before: Drive, after: Drive, path: str, problems: list[str]) -> list[str]:
+    """Return one sentence on the only field that was changed, or the contradictions where they name it or its bound is not known.
+
+    The bound is the last sound value on the way from a sound drive to the changed one: where the flank is undercut, another field
+    than the changed one may be named, and be sound itself.
+    """
+    named = all(problem.startswith((f"{path} ", f"{path}:")) for problem in problems)
+    if named or path not in CAUSES or not (_has(before, path) and _has(after, path) and is_sound(before)):
+        return problems
+    sound, wrong = float(read_field(before, path)), float(read_field(after, path))
+    value = wrong
+    for _ in range(20):
+        middle = 0.5 * (sound + wrong)
+        sound, wrong = (middle, wrong) if _sound_with(after, path, middle) else (sound, middle)
+    cause = Cause(path=path, value=value, bound=_without_overlap(after, path, sound))
+    reasons = "; ".join(dict.fromkeys(_consequence(problem, path) for problem in problems[:2]))
+    return [f"{cause.named()}: must be {cause.bounded()} for the rest of the drive: {reasons}"]
 
 
 def _sound_swapped(drive: Drive, part: str) -> bool:

@@ -11,18 +11,18 @@ import numpy as np
 
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.drive.deviations import BoreErrors
+from ltca.drive.fields import read_field
 from ltca.drive.members.width import LARGEST_SLOPE
 from ltca.drive.parts import Drive, LengthProfile, PlacementErrors, RollerErrors
 from ltca.errors import counted
 from ltca.geometry.flank import CurveFrame, FlankProfile, trochoid_curvature
 from ltca.geometry.interference import ROUNDING, drawn_interference
 from ltca.geometry.rotation import unit
+from ltca.reading.alternatives import Alternatives
 from ltca.reading.width_checks import find_lead_problems, slope_bound
 
 ELASTIC = "a tenth of the smallest pin or roller radius, beyond what bodies yield elastically"
 """Bound of overlaps in words: bodies strained by a tenth are no longer linear-elastic; sharper limits need a load."""
-LOOPS = "or the flank has loops"
-"""End of the sentence on a flank with loops."""
 MOST_HOLE_PLAY = 1.5
 """Largest difference of hole and pin radius, by the eccentricity, at which the pins still lead the disc."""
 POINTS_PER_WAVE = 24
@@ -51,9 +51,7 @@ def _tooth_numbers(drive: Drive) -> Iterator[str]:
 
 def _flank(drive: Drive) -> Iterator[str]:
     wheel, disc, e = drive.pin_wheel, drive.disc, drive.crank.eccentricity
-    pitch_radius = e * drive.reduction_ratio
-    smallest = min(wheel.pin_circle_radius, wheel.pin_circle_radius + disc.shifting_offset)
-    if pitch_radius >= smallest:
+    if has_loops(drive):
         yield _loops(drive)
         return
     profile = FlankProfile.of_drive(drive)
@@ -65,12 +63,11 @@ def _flank(drive: Drive) -> Iterator[str]:
         return
     smallest_radius = _smallest_path_radius(wheel.pin_circle_radius + disc.shifting_offset, e, drive.reduction_ratio)
     if smallest_radius <= profile.offset:
-        yield (
-            f"pin_wheel.pin_radius = {wheel.pin_radius:g} mm: must be less than "
-            f"{smallest_radius - disc.equidistant_offset:.6g} mm (smallest radius of the pin-centre path on its "
-            f"convex side less the equidistant offset){_or_eccentricity(drive, largest_eccentricity(drive))}, or the flank is "
-            "undercut"
+        of_pins = (
+            f"less than {smallest_radius - disc.equidistant_offset:.6g} mm (smallest radius of the pin-centre path on its "
+            "convex side less the equidistant offset)"
         )
+        yield _or_eccentricity_and_hole(drive, "pin_wheel.pin_radius", of_pins, ", or the flank is undercut")
     if profile.root_radius <= 0.0:
         yield (
             f"pin_wheel.pin_circle_radius = {wheel.pin_circle_radius:g} mm: leaves a root radius of "
@@ -116,22 +113,36 @@ def _last_sound(is_sound: Callable[[float], bool], wrong: float = 1.0) -> float:
 
 def _has_plain_flank(drive: Drive, pin_circle_radius: float, eccentricity: float) -> bool:
     """Tell whether the flank on another pin circle, with another eccentricity, has neither loops nor an undercut."""
-    radius, shifted = pin_circle_radius, pin_circle_radius + drive.disc.shifting_offset
-    if eccentricity * drive.reduction_ratio >= min(radius, shifted):
+    shifted = pin_circle_radius + drive.disc.shifting_offset
+    if _crosses_itself(pin_circle_radius, shifted, eccentricity * drive.reduction_ratio):
         return False
     offset = drive.pin_wheel.pin_radius + drive.disc.equidistant_offset
     return _smallest_path_radius(shifted, eccentricity, drive.reduction_ratio) > offset
 
 
+def has_loops(drive: Drive) -> bool:
+    """Tell whether the path of the pin centres over the disc crosses itself, so that the flank has loops."""
+    radius = drive.pin_wheel.pin_circle_radius
+    return _crosses_itself(
+        radius, radius + drive.disc.shifting_offset, drive.crank.eccentricity * drive.reduction_ratio
+    )
+
+
+def _crosses_itself(pin_circle_radius: float, shifted_radius: float, pitch_radius: float) -> bool:
+    """Tell whether the path of the pin centres crosses itself, as designed or shifted."""
+    return pitch_radius >= min(pin_circle_radius, shifted_radius)
+
+
 def _loops(drive: Drive) -> str:
     """Message about a flank with loops: bounds of eccentricity and pin circle, and the hole radius that goes with them."""
-    most, circle, shaft = rounded_down(largest_eccentricity(drive)), _smallest_pin_circle(drive), drive.pin_shaft
-    bound = f"at most {most:g} mm"
-    if shaft is not None and not _leads(drive, most):
-        bound += f" (with pin_shaft.hole_radius = {hole_that_fits(drive, most):.6g} mm)"
-    if isfinite(circle):
-        bound += f" or pin_wheel.pin_circle_radius at least {-rounded_down(-circle):g} mm"
-    return f"crank.eccentricity = {drive.crank.eccentricity:g} mm: must be {bound}, {LOOPS}"
+    most, circle = rounded_down(largest_eccentricity(drive)), _smallest_pin_circle(drive)
+    bound, consequence = f"at most {most:g} mm{_with_hole(drive, most)}", ", or the flank has loops"
+    if not isfinite(circle):
+        return f"crank.eccentricity = {drive.crank.eccentricity:g} mm: must be {bound}{consequence}"
+    other_bound = f"at least {-rounded_down(-circle):g} mm"
+    return Alternatives.of(
+        drive, {"crank.eccentricity": bound, "pin_wheel.pin_circle_radius": other_bound}, consequence
+    )
 
 
 def hole_that_fits(drive: Drive, eccentricity: float) -> float:
@@ -149,10 +160,28 @@ def _leads(drive: Drive, eccentricity: float) -> bool:
     return fits and shaft.hole_radius - shaft.pin_radius <= MOST_HOLE_PLAY * eccentricity
 
 
-def _or_eccentricity(drive: Drive, largest: float) -> str:
-    """The eccentricity that mends a problem as well, in words; empty where there is none, or holes would have to change."""
-    bound = rounded_down(largest)
-    return f" or crank.eccentricity at most {bound:g} mm" if bound > 0.0 and _leads(drive, bound) else ""
+def _or_eccentricity(drive: Drive, path: str, bound: str, largest: float, consequence: str) -> str:
+    """Message about a length and its bound, or the largest eccentricity, unless that is zero or holes would have to change."""
+    most = rounded_down(largest)
+    if most <= 0.0 or not _leads(drive, most):
+        return f"{path} = {read_field(drive, path):g} mm: must be {bound}{consequence}"
+    return Alternatives.of(drive, {path: bound, "crank.eccentricity": f"at most {most:g} mm"}, consequence)
+
+
+def _or_eccentricity_and_hole(drive: Drive, path: str, bound: str, consequence: str) -> str:
+    """Message about a length and its bound, or the eccentricity that mends it as well with the hole radius that goes with it."""
+    most = rounded_down(largest_eccentricity(drive))
+    if most <= 0.0:
+        return f"{path} = {read_field(drive, path):g} mm: must be {bound}{consequence}"
+    other = f"at most {most:g} mm{_with_hole(drive, most)}"
+    return Alternatives.of(drive, {path: bound, "crank.eccentricity": other}, consequence)
+
+
+def _with_hole(drive: Drive, eccentricity: float) -> str:
+    """The hole radius that goes with an eccentricity, in brackets; empty where that of the drive does."""
+    if _leads(drive, eccentricity):
+        return ""
+    return f" (with pin_shaft.hole_radius = {hole_that_fits(drive, eccentricity):.6g} mm)"
 
 
 def rounded_down(value: float) -> float:
@@ -244,12 +273,16 @@ def _holes(drive: Drive) -> Iterator[str]:
     overlap = fitting - drive.hole_radius
     if overlap > most + ROUNDING:
         play_of_sleeve = " - the play of its sleeve" if shaft.seat_play else ""
-        yield (
-            f"pin_shaft.hole_radius = {shaft.hole_radius:g} mm: must be at least {fitting:.6g} mm (pin_shaft.pin_radius + "
-            f"crank.eccentricity{play_of_sleeve}, and half the clearance unless clearance.pin_hole has it)"
-            f"{_or_eccentricity(drive, shaft.hole_radius + shaft.seat_play - shaft.pin_radius)}, or it overlaps its pin by "
-            f"{overlap:.4g} mm, more than {most:g} mm, {ELASTIC} (and half the eccentricity at most)"
+        bound = (
+            f"at least {fitting:.6g} mm (pin_shaft.pin_radius + crank.eccentricity{play_of_sleeve}, and half the clearance "
+            "unless clearance.pin_hole has it)"
         )
+        consequence = (
+            f", or it overlaps its pin by {overlap:.4g} mm, more than {most:g} mm, {ELASTIC} "
+            "(and half the eccentricity at most)"
+        )
+        largest = shaft.hole_radius + shaft.seat_play - shaft.pin_radius
+        yield _or_eccentricity(drive, "pin_shaft.hole_radius", bound, largest, consequence)
     elif play > MOST_HOLE_PLAY * e:
         yield (
             f"pin_shaft.hole_radius = {shaft.hole_radius:g} mm: must be at most {shaft.pin_radius + MOST_HOLE_PLAY * e:g} mm, "

@@ -24,7 +24,7 @@ from ltca.reading.changes import INSTEAD
 from ltca.reading.contradictions import explain_contradictions, find_cause
 from ltca.reading.measured.tables import MeasuredFiles, Named, without_files
 from ltca.reading.physical_checks import find_contradictions
-from ltca.reading.toml_text import parse_toml, read_text
+from ltca.reading.toml_text import parse_toml, read_text, require_kind
 
 NOMINAL_CASE = "nominal"
 BESIDE_THE_DRIVE = ("tolerances", "limits")
@@ -167,6 +167,7 @@ def load_drive(source: str | Path) -> DriveFile:
 def parse_drive(text: str, source: str = "drive") -> DriveFile:
     """Validate the text of a drive file; see `load_drive`."""
     table = parse_toml(text, source)
+    require_kind(table, "drive", source)
     cases = table.pop("case", [])
     scatter, bounds = table.pop("tolerances", {}), table.pop("limits", {})
     table.setdefault("name", Path(source).stem)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 from itertools import pairwise
 from math import cos, degrees, fsum, pi, sin
 
@@ -18,6 +19,7 @@ from ltca.drive.parts import BearingRow, CrankSupport, Drive, MainBearing, Mater
 from ltca.drive.ring_shape import ring_mesh_problems, seat_radius
 from ltca.drive.units.table import range_of
 from ltca.errors import counted
+from ltca.reading.alternatives import Alternatives
 from ltca.reading.disc_checks import deviation_bound, part_errors
 from ltca.reading.width_checks import find_width_problems
 
@@ -92,10 +94,10 @@ def _torques(drive: Drive) -> Iterator[str]:
     """Torques too small to be balanced."""
     if drive.tooth_number_difference == 0:
         return  # no ratio: a problem of its own
-    found = [*torque_problem(drive, "load.torque", drive.load.torque, zero=True)]
-    yield from found
+    problems = [*torque_problem(drive, "load.torque", drive.load.torque, zero=True)]
+    yield from problems
     # One left out follows from the torque, which is to blame for both.
-    if not (found and drive.load.leaves_out_light_torque):
+    if not (problems and drive.load.leaves_out_light_torque):
         yield from torque_problem(drive, drive.load.light_torque_name, drive.load.light_torque, zero=False)
     for number, entry in enumerate(drive.duty):
         yield from torque_problem(drive, f"duty.{number}.torque", entry.torque, zero=False)
@@ -631,13 +633,21 @@ def _entry(drive: Drive, number: int) -> str:
 
 def named_in_disc(drive: Drive, problem: str, disc: int) -> str:
     """Return a problem of a drive of one disc as one of the whole drive, with the paths of the values per disc."""
+    if isinstance(problem, Alternatives):
+        return problem.reworded(partial(_with_paths_of_disc, drive, disc))
+    return _with_paths_of_disc(drive, disc, problem)
+
+
+def _with_paths_of_disc(drive: Drive, disc: int, problem: str) -> str:
     for common, own in OWN.items():
         table, _, name = own.replace(ANY, "").replace("..", ".").partition(".of.")
         if table == "crank" and drive.crank.number > 1:
             continue  # several cranks are checked with the whole drive
         entry = (drive.disc.of[disc] if drive.disc.of else None) if table == "disc" else drive.crank.eccentric(disc)
         if entry is not None and getattr(entry, name) is not None:
-            problem = re.sub(rf"\b{re.escape(common)}\b", own.replace(ANY, str(disc)), problem)
+            # A table named by one word is a word of sentences as well: only what has a field behind it is a path.
+            field = "" if "." in common else r"(?=\.)"
+            problem = re.sub(rf"\b{re.escape(common)}\b{field}", own.replace(ANY, str(disc)), problem)
     return problem
 
 

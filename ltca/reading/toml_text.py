@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -71,6 +72,27 @@ def parse_toml(text: str, source: str, most_values: int = MOST_VALUES, longest: 
         if not level:
             return table
     raise DriveError([_too_deep()], source)
+
+
+FILE_KINDS = {
+    "drive": (("pin_wheel", "crank_bearing"), "a drive file, which cyclo show, check and run take"),
+    "study": (("factors",), "a study file, which cyclo sweep takes"),
+    "requirements": (("ratio", "outer_diameter"), "a requirement file, which cyclo design takes"),
+}
+"""Keys that only files of a kind have, and its words, by kind."""
+
+
+def require_kind(table: Mapping[str, Any], kind: str, source: str) -> None:
+    """Refuse (`DriveError`) the table of a file of another kind in one sentence, in place of all that it lacks of this one.
+
+    Files of a kind are those with a key that only it has; a file with keys of both kinds is taken for the wanted one.
+    """
+    if any(key in table for key in FILE_KINDS[kind][0]):
+        return
+    for other, (keys, words) in FILE_KINDS.items():
+        if other != kind and any(key in table for key in keys):
+            wanted = FILE_KINDS[kind][1].partition(",")[0]
+            raise DriveError([f"is {words}; must be {wanted}"], source)
 
 
 def _too_deep() -> str:

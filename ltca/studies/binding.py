@@ -6,7 +6,6 @@ unless the drive is preloaded as drawn, without any deviation.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
@@ -18,7 +17,12 @@ from ltca.arrays import FloatArray
 from ltca.drive.fields import field_kind
 from ltca.drive.members.named_materials import FINEST_PRINT
 from ltca.drive.members.temperatures import warm_drive
-from ltca.geometry.interference import FLANK, ROLLERS, drawn_plays
+from ltca.drive.parts import Drive
+from ltca.drive.single_discs import single_discs
+from ltca.geometry.coordinates import RIGID
+from ltca.geometry.interference import FLANK, HOLES, ROLLERS, drawn_plays
+from ltca.geometry.pairs import ContactGeometry
+from ltca.reading.changes import with_fields
 from ltca.studies.designs import ToleranceDesign
 from ltca.studies.study import Study
 from ltca.studies.yields import Kept, independent_samples, interval
@@ -104,31 +108,70 @@ def find_binding(study: Study, values: Mapping[str, FloatArray]) -> Binding | No
         each=each,
         counted=None if least is None else interval(int(each[chosen].sum()), int(chosen.sum())),
         preloaded=min(plays.values()) < 0.0,
-        wide=_wide_tolerances(study.design, plays),
+        wide=_wide_tolerances(study.cases[0][1], study.design, plays),
         asked=any(one.quantity == LEAST for one in study.judged),
     )
 
 
-HOLE_FIELDS = "pin_shaft.", "disc.hole_errors.", "clearance.pin_hole", "disc.clearance.pin_hole"
-FLANK_FIELDS = (
-    "pin_wheel.", "disc.profile_errors.", "disc.equidistant_offset", "disc.shifting_offset", "disc.runout.",
-)  # fmt: skip
-"""Beginnings of fields that act in one pair of parts alone; other lengths act in both."""
+CHANGE = 1e-4
+"""Change of a length by which its effect on gaps is seen, mm."""
+ACTING = 0.05
+"""Change of some gap, by that of a length, from which the length acts there: what it moves, it moves by about as much; what
+the flank is generated with moves gaps by the offsets alone, by a thousandth."""
+CRANK_ANGLE = 1.0
+"""Angle at which gaps are compared, rad: any at which no part stands on an axis of symmetry."""
 
 
-def _wide_tolerances(design: ToleranceDesign, plays: Mapping[str, float]) -> str:
+def _wide_tolerances(drive: Drive, design: ToleranceDesign, plays: Mapping[str, float]) -> str:
     """The widest tolerance of a length, as wide as those of prints, beyond the play where it acts; empty where none is."""
     factors = design.factors
     wide: list[tuple[float, str, str]] = []
-    for (path, _), distribution in zip(factors.fields, factors.distributions, strict=True):
-        if (kind := field_kind(path)) is None or kind.unit != "mm":
+    first = 0
+    for (path, count), distribution in zip(factors.fields, factors.distributions, strict=True):
+        centres = np.array(factors.centres[first : first + (count or 1)])
+        first += centres.size
+        kind, tolerance = field_kind(path), distribution.tolerance
+        if kind is None or kind.unit != "mm" or tolerance < max(FINEST_PRINT, min(plays.values())):
             continue
-        of_any_disc = re.sub(r"^disc\.of\.\d+\.", "disc.", path)
-        where = [pair for pair in plays if not of_any_disc.startswith(HOLE_FIELDS if pair == FLANK else FLANK_FIELDS)]
-        least = min(where, key=lambda pair: plays[pair], default="")
-        if least and distribution.tolerance >= max(FINEST_PRINT, plays[least]):
-            wide.append((distribution.tolerance, path, least))
+        pairs = [pair for pair in pairs_that_a_length_moves(drive, path, centres) if tolerance >= plays[pair]]
+        if pairs:
+            wide.append((tolerance, path, min(pairs, key=lambda pair: plays[pair])))
     if not wide:
         return ""
     tolerance, path, least = max(wide, key=lambda entry: entry[0])
     return f"tolerances.{path} of ±{tolerance:g} mm is beyond the play of {least}, {plays[least]:.4g} mm"
+
+
+def pairs_that_a_length_moves(drive: Drive, path: str, centres: FloatArray) -> list[str]:
+    """Return the pairs, of wheel pins and flank and of shaft pins and holes, whose gaps a length or the errors of parts move.
+
+    What rollers gain or lack moves the disc, and with it both.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive.
+    path : str
+        The field, in mm.
+    centres : array, shape (elements,)
+        Its values, one of a field that is no array.
+    """
+    values = (centres + CHANGE).tolist()
+    is_array = (kind := field_kind(path)) is not None and kind.is_array
+    changed = with_fields(drive, {path: tuple(values) if is_array else values[0]}, check=False)
+    before, after = _gaps(drive), _gaps(changed)
+    moved = {pair for pair, gap in before.items() if np.any(np.abs(after[pair] - gap) > ACTING * CHANGE)}
+    return [pair for pair in before if pair != ROLLERS and before[pair].size and moved & {pair, ROLLERS}]
+
+
+def _gaps(drive: Drive) -> dict[str, FloatArray]:
+    """Gaps of all pairs by the parts that touch, discs and wheel in their nominal places, mm."""
+    angle, pose = np.array([CRANK_ANGLE]), np.zeros((1, RIGID))
+    gaps: dict[str, list[FloatArray]] = {FLANK: [], ROLLERS: [], HOLES: []}
+    for disc in (ContactGeometry.of_drive(single) for single in single_discs(warm_drive(drive))):
+        rays, bores = disc.rollers(angle), disc.bores(angle, pose)
+        arm = rays.outermost * rays.direction - bores.each(bores.displacement, rays.direction.shape[1])
+        gaps[FLANK].append(-disc.flank(angle, pose).approach)
+        gaps[ROLLERS].append(rays.bore_play - np.abs(arm))
+        gaps[HOLES].append(-disc.holes(angle, pose).approach)
+    return {pair: np.concatenate([each.ravel() for each in of_discs]) for pair, of_discs in gaps.items()}

@@ -126,8 +126,8 @@ class SampleBatch:
         """Largest face load factor of each sample, of which every disc has some groups; not a number without slices."""
         if kind.along is None:
             return np.full(self.samples, np.nan)
-        found = face_load_factor(kind.along, groups * self.discs, self.samples)
-        return np.asarray(np.nanmax(self.by_sample(found), axis=1))
+        factor = face_load_factor(kind.along, groups * self.discs, self.samples)
+        return np.asarray(np.nanmax(self.by_sample(factor), axis=1))
 
     def tilts(self) -> FloatArray:
         """Tilts of all discs at all positions, rad; none without slices."""

@@ -41,7 +41,7 @@ from ltca.errors import MOST_TOLD, DriveError, did_you_mean, shortened
 from ltca.reading.arguments import SHIPPED_DRIVES
 from ltca.reading.changes import BEARING, with_fields
 from ltca.reading.drive_file import listed, load_drive
-from ltca.reading.toml_text import parse_toml, read_text
+from ltca.reading.toml_text import parse_toml, read_text, require_kind
 from ltca.studies.designs import SweepDesign, SweepFactor
 from ltca.studies.quantities import DEFAULT_QUANTITIES, check_quantities, quantities_for_all, with_what_varies
 from ltca.studies.study import Study
@@ -82,6 +82,7 @@ def load_sweep(path: Path, engine: Engine | EngineChoice | None = None) -> Study
     """
     text = read_text(path, "no such file; docs/how-to/studies.md says what a study file holds")
     table = parse_toml(text, str(path), MOST_VALUES, MOST_VALUES)
+    require_kind(table, "study", str(path))
     source = table.get("drive")
     if not isinstance(source, str) or not source:
         told = "drive: is missing" if source is None else f"drive = {shortened(source)}: is no name of a file"

@@ -210,9 +210,9 @@ def _is_cached(engine: Engine, drive: Drive) -> bool:
 
 def _caution(engine: Engine, decides: Engine) -> str:
     """Which engine an answer is of, where ``cyclo check`` decides on another one; empty otherwise."""
-    own, other = (ENGINES[one.compliance] for one in (engine, decides))
-    if own != other:
-        return f"{own}: cyclo check decides on {other}"
+    engine_name, other = (ENGINES[one.compliance] for one in (engine, decides))
+    if engine_name != other:
+        return f"{engine_name}: cyclo check decides on {other}"
     return ""
 
 

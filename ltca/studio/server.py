@@ -446,8 +446,8 @@ def serve(studio: Studio, port: int, *, browser: bool, told: Callable[[str], Non
     # Named as TCP: asyncio sends small packets of no other socket at once, and each answer would wait for 40 ms.
     with socket.socket(socket.AF_INET, socket.SOCK_STREAM, socket.IPPROTO_TCP) as listening:
         # On Windows SO_REUSEADDR would share a port with whoever has it.
-        own = getattr(socket, "SO_EXCLUSIVEADDRUSE", socket.SO_REUSEADDR)
-        listening.setsockopt(socket.SOL_SOCKET, own, 1)
+        option = getattr(socket, "SO_EXCLUSIVEADDRUSE", socket.SO_REUSEADDR)
+        listening.setsockopt(socket.SOL_SOCKET, option, 1)
         try:
             listening.bind((HOST, port))
             listening.listen(QUEUED)  # who has the address may ask before the server looks
@@ -496,10 +496,10 @@ def forwarding_file(address: str) -> Iterator[Path]:
     with TemporaryDirectory(prefix="cyclo-studio-", ignore_cleanup_errors=True) as folder:  # of mode 0700
         page = Path(folder) / "studio.html"
         descriptor = os.open(page, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o600)
-        told = html.escape(address)
+        escaped = html.escape(address)
         with open(descriptor, "w", encoding="utf-8", newline="\n") as file:
             file.write(
                 '<!doctype html><meta charset="utf-8"><meta name="referrer" content="no-referrer"><title>cyclo studio</title>'
-                f'<meta http-equiv="refresh" content="0; url={told}"><a href="{told}">cyclo studio</a>\n'
+                f'<meta http-equiv="refresh" content="0; url={escaped}"><a href="{escaped}">cyclo studio</a>\n'
             )
         yield page

@@ -183,7 +183,7 @@ def paper(drive: Drive) -> np.ndarray:
 def vibrations(drive: Drive) -> np.ndarray:
     """Everything that masses, modes, orders, critical speeds and the response have."""
     turns = fewest_turns(warm_drive(drive), 40)  # warm rollers are all but a period apart
-    found = vibration(drive, engine=HalfSpace(), positions=4, torque_parts=(), turns=turns)
+    found = vibration(drive, engine=HalfSpace(), positions=4, torque_parts=(0.5,), turns=turns)
     content = vibration_content(found)
     critical = [[one["speed_rpm"], one["in_range"]] for one in content["critical_speeds"]]
     parts = [

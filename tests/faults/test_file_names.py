@@ -111,6 +111,37 @@ def test_cases_of_one_file_that_differ_in_a_hyphen_are_refused_in_one_folder(tmp
     assert "made from drive paper, case x-y, drive paper, case x_y would replace it" in capsys.readouterr().err
 
 
+def test_cases_that_differ_in_capitals_were_one_file_on_windows_and_macos():
+    cases = ["loose", "Loose", "LOOSE", "tight"]
+    names = [model_name("paper", case, cases) for case in cases]
+    for kind in ("json", "mujoco", "urdf", "modelica", "fmu"):
+        own = [file_names(kind, name)[0] for name in names]
+        assert len({name.casefold() for name in own}) == len(cases)
+    assert names[-1] == "paper_tight"  # alone of its kind, it keeps its name
+    assert all(re.fullmatch(r"paper_[A-Za-z]+_[0-9a-f]{12}", name) for name in names[:-1])
+
+
+@pytest.mark.parametrize(
+    "command", [["--for", "modelica", "--compliance", "half-space"], ["--format", "csv", "--part", "disc"]]
+)
+def test_a_file_named_alike_but_for_capitals_is_not_written_beside_another(command, tmp_path, capsys, monkeypatch):
+    """Files of the drives "Joint" and "joint" in one folder are one file after a copy to Windows or macOS."""
+    monkeypatch.setattr(reduced_model, "reduce_drive", lambda *_: pytest.fail("the computation has started"))
+    head = shipped_drive().split("[[case]]")[0].replace('direction = "ccw" ', 'speed = 1500.0\ndirection = "ccw" ', 1)
+    cases, out = '[[case]]\nname = "c"\n', tmp_path / "out"
+    (tmp_path / "d.toml").write_text(re.sub(r'(?m)^name = "paper"', 'name = "joint"', head) + cases, encoding="utf-8")
+    model = "Joint_c.mo" if command[0] == "--for" else "Joint_c_disc_flank.csv"
+    with (
+        claimed_folder(out, "export", adding=True, origins={model: "drive Joint, case c"}),
+        whole_file(out / model) as part,
+    ):
+        part.write_text("a model")
+    assert main(["export", str(tmp_path / "d.toml"), *command, "--out", str(out)]) == 2
+    said = capsys.readouterr().err
+    assert f"{model} was made from drive Joint, case c, drive joint, case c would replace it by joint_c" in said
+    assert "on Windows and macOS: choose another --out" in said
+
+
 def test_a_file_of_the_same_case_is_replaced_and_its_origin_kept(tmp_path):
     picture = tmp_path / "drive_a.png"
     for text in ("first", "second"):

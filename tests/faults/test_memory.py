@@ -14,12 +14,16 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 
 from fem.body.sparse_factor import enough_memory, factor_sparse
+from fem.coefficients import dataset
 from fem.solid.factor import cholmod_is_there
-from ltca.analysis import extremes
+from ltca.analysis import extremes, summary
 from ltca.analysis.loaded_analysis import analyse
+from ltca.analysis.memory_need import positions_together
 from ltca.analysis.summary import summarise_cases
+from ltca.commands.program import main
 from ltca.errors import FaultError
 from ltca.geometry.placement import position_angles
+from ltca.geometry.play import POSITIONS
 from ltca.output import resources
 from ltca.output.resources import derivation_memory, require_room, tell_memory
 from ltca.reading.drive_file import load_drive
@@ -83,6 +87,36 @@ def test_turns_of_several_cases_are_searched_in_parts(monkeypatch):
         assert {key: parts[name][key] for key in refined} == pytest.approx(refined, rel=1e-9)
 
 
+def test_a_part_of_a_turn_takes_200_mb_by_the_number_of_contacts():
+    """0.9 kB for a pair at a position: 14 + 11 + 8 pairs of the paper's drive, 2 (40 + 14 + 8) of the joint, 2e8/900 in all."""
+    counts = {
+        name: positions_together(next(iter(load_drive(name).cases.values()))) for name in ("paper", "robot-joint")
+    }
+    assert counts == {"paper": 222_222 // 33, "robot-joint": 222_222 // 124}
+
+
+def test_free_play_of_several_cases_was_found_at_once(monkeypatch):
+    """48 positions of each of up to 55 cases, however large: 0.5 kB for a pair of contacts at each, 1 GB for 900 pairs."""
+    case = load_drive("paper").cases["CS-1"]
+    analyses = {str(number): analyse(case, position_angles(3)) for number in range(5)}
+    whole, sizes = summarise_cases(analyses, masses=False), {"plays_over_a_turn": [], "interference": []}
+
+    def counted(name, positions):
+        function = getattr(summary, name)
+
+        def count(*words):
+            sizes[name].append(positions(*words))
+            return function(*words)
+
+        monkeypatch.setattr(summary, name, count)
+
+    counted("plays_over_a_turn", lambda drives, *_: len(drives) * POSITIONS)
+    counted("interference", lambda _, angle: angle.size)
+    monkeypatch.setattr(summary, "positions_together", lambda _: 100)
+    assert summarise_cases(analyses, masses=False) == whole
+    assert sizes == {"plays_over_a_turn": [96, 96, 48], "interference": [15]}
+
+
 @pytest.mark.slow
 def test_the_memory_of_a_turn_does_not_grow_with_its_places(monkeypatch):
     """Peak of the search with some 1430 positions together and with 100.
@@ -118,6 +152,20 @@ def test_much_memory_is_told_before_the_work(capsys, monkeypatch, tmp_path):
     assert capsys.readouterr().err == "--positions 360: needs about 3.9 GB of memory\n"
     tell_memory(5.4e9, "the disc of wide nominal")
     assert capsys.readouterr().err == "the disc of wide nominal: needs about 5.4 GB of memory\n"
+
+
+@pytest.mark.parametrize(("size", "said"), [("0.5", True), ("1", False)])
+def test_the_memory_of_a_derivation_was_not_told_before_it(size, said, tmp_path, monkeypatch, capsys):
+    """3.3 GB were measured for 13 teeth at half the size, 1 GB at the whole one: above 2 GB a line comes before the work."""
+
+    def refused(*_words, **_options):
+        assert ("the disc of paper CS-1: needs about 3" in capsys.readouterr().err) == said
+        raise FaultError("no derivation")
+
+    monkeypatch.setattr(dataset, "derive_coefficients", refused)
+    words = ["derive", "paper", "--case", "CS-1", "--size", size, "--out", str(tmp_path / "coefficients.nc")]
+    assert main(words) == 1
+    assert capsys.readouterr().err == "cyclo: error: no derivation\n"
 
 
 @pytest.mark.parametrize(

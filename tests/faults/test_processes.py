@@ -12,6 +12,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from ltca.commands.program import main
 from ltca.output import processes
 from ltca.output.processes import Terminated, ended_by_signals
 
@@ -103,6 +104,38 @@ def test_a_signal_while_an_object_is_removed_is_heard(number, kind):
     with pytest.raises(kind):
         work()
     assert not went_on
+
+
+@pytest.mark.parametrize(("number", "kind"), [(signal.SIGTERM, Terminated), (signal.SIGINT, KeyboardInterrupt)])
+def test_a_signal_that_a_library_made_its_own_error_while_it_was_loaded(number, kind):
+    """`cyclo` ended with "unforeseen SchemaError": a compiled library had turned the exception of SIGTERM into that."""
+
+    def load():
+        try:
+            os.kill(os.getpid(), number)
+            time.sleep(5.0)
+        except (Terminated, KeyboardInterrupt):
+            raise ValueError("the schema is wrong")  # noqa: B904
+
+    with pytest.raises(kind) as ended, ended_by_signals():
+        load()
+    assert isinstance(ended.value.__cause__, ValueError)
+    with pytest.raises(ValueError, match="of no signal"), ended_by_signals():
+        raise ValueError("of no signal")
+
+
+@pytest.mark.parametrize(("number", "status"), [(signal.SIGTERM, 143), (signal.SIGINT, 130)])
+def test_a_signal_while_a_command_was_loaded_was_an_unforeseen_error(number, status, monkeypatch, capsys):
+    def load(entry):
+        try:
+            os.kill(os.getpid(), number)
+            time.sleep(5.0)
+        except (Terminated, KeyboardInterrupt):
+            raise ValueError("the schema is wrong")  # noqa: B904
+
+    monkeypatch.setattr("importlib.metadata.EntryPoint.load", load)
+    assert main(["show", "paper"]) == status
+    assert "unforeseen" not in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(("number", "kind"), [(signal.SIGTERM, Terminated), (signal.SIGINT, KeyboardInterrupt)])

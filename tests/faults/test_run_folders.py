@@ -6,6 +6,7 @@ import json
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -14,7 +15,7 @@ from ltca.errors import FaultError, PlaceError
 from ltca.output import files
 from ltca.output.files import STALE, whole_file
 from ltca.output.locks import claimed_file
-from ltca.output.run_folder import LOCK, MANIFEST, claimed_folder, figure_files
+from ltca.output.run_folder import LOCK, MANIFEST, claimed_folder, figure_files, require_folder
 
 FIGURES = ("fig24_pin_load", "fig25_loaded_pins")
 HOLDER = """
@@ -47,6 +48,18 @@ def holder(tmp_path):
         assert process.stdout.readline() == "held\n"
         yield process
         process.kill()
+
+
+def test_the_root_of_a_file_system_was_taken_for_a_folder_of_results(tmp_path):
+    """`--out /` put results beside /etc; so does a path that leads there."""
+    root = Path(tmp_path.anchor)
+    before = sorted(path.name for path in root.iterdir())
+    for out in (root, tmp_path.joinpath(*[".."] * (len(tmp_path.parts) + 1))):
+        with pytest.raises(PlaceError, match="is the root of a file system, must be a folder below it"):
+            require_folder(out)
+        with pytest.raises(PlaceError, match="is the root of a file system"), claimed_folder(out, "run"):
+            pass  # nothing is written where it is taken
+    assert sorted(path.name for path in root.iterdir()) == before
 
 
 def test_two_processes_in_one_folder(holder, tmp_path, capsys):

@@ -11,8 +11,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from ltca.analysis.engines import HalfSpace
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.summary import summarise_cases
+from ltca.analysis.verdict.drive_check import check_drive
 from ltca.analysis.verdict.proportions import odd_proportions
 from ltca.analysis.verdict.values import judge_analysis
 from ltca.commands.program import main
@@ -22,6 +24,7 @@ from ltca.geometry.coordinates import DISC_ROTATION
 from ltca.geometry.first_contact import backlash
 from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.placement import position_angles
+from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
 
 FOLDER = Path(__file__).parent / "public_drives"
@@ -162,6 +165,44 @@ def test_backlash_of_the_toolkit_flank():
     geometry = ContactGeometry.of_drive(drive_of("toolkit_14_to_1"))
     found = np.degrees(backlash([geometry], position_angles(15), DISC_ROTATION).mean()) * 60.0
     assert found == pytest.approx(98.985, abs=0.005)
+
+
+def test_half_widths_passed_above_a_note_that_those_of_holes_do_not():
+    """0.153 of a wheel pin passed against 0.3, and a note said that shaft pins touch their holes over more than 0.3."""
+    drive, check = drive_of("holes_0_05_too_small"), checks_of("holes_0_05_too_small")["half_width_ratio"]
+    (note,) = (
+        note for note in analyse(drive, position_angles(4)).warnings if "shaft pins touch their holes over" in note
+    )
+    widest = float(re.search(r"half-width of (\S+) mm", note)[1])
+    assert (check.verdict, check.limit.value) == ("fail", 0.3)
+    assert check.value.part.startswith("shaft pin")
+    assert check.value.value == pytest.approx(widest / 2.0, rel=1e-3)  # pins of 2 mm
+    sound = checks_of("catalogue_25_to_1")["half_width_ratio"]
+    assert sound.verdict == "pass"
+
+
+@pytest.mark.slow
+def test_advice_never_named_the_holes_that_overlap_their_pins():
+    """Of holes 0.05 mm too small a size × 6.1 was advised; at 2.5 mm, pin and eccentricity, there is no overlap."""
+    file = load_drive(FOLDER / "holes_0_05_too_small.toml")
+    (drive,) = file.cases.values()
+    found = check_drive(drive, {}, HalfSpace(), positions=60)
+    (advised,) = (one for one in found.drivers["pin_shaft_pressure_mid"] if one.input == "pin_shaft.hole_radius")
+    assert advised.change
+    hole = drive.pin_shaft.hole_radius * advised.factor
+    assert 2.45 < hole <= 2.5
+    mended = check_drive(
+        with_fields(drive, {"pin_shaft.hole_radius": hole}), {}, HalfSpace(), positions=60, advice=False
+    )
+    before, after = found["pin_shaft_pressure_mid"], mended["pin_shaft_pressure_mid"]
+    assert before.safety < 0.75
+    assert (before.verdict, after.verdict) == ("fail", "pass")
+    # Flank and bore are pressed by the overlap as well, and by more than the fit takes away.
+    for quantity in ("pin_pressure_mid", "roller_pressure_mid_outer"):
+        strongest = found.drivers[quantity][0]
+        assert (strongest.input, strongest.change) == ("pin_shaft.hole_radius", "")
+    sound = check_drive(with_fields(drive, {"pin_shaft.hole_radius": 2.5}), {}, HalfSpace(), positions=60)
+    assert not [one for each in sound.drivers.values() for one in each if one.input == "pin_shaft.hole_radius"]
 
 
 @pytest.mark.slow

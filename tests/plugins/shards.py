@@ -97,8 +97,8 @@ def known_seconds(root: Path) -> dict[str, float]:
 
 
 def outcomes(folder: Path) -> Iterator[dict[str, Any]]:
-    """Yield the outcomes that are kept in a folder, oldest first within a shard; a line that was cut is no outcome."""
-    for path in sorted(folder.glob("shard-*.jsonl")):
+    """Yield the outcomes that are kept in a folder, those of the shard that ran last at the end; a line that was cut is none."""
+    for path in sorted(folder.glob("shard-*.jsonl"), key=lambda path: (path.stat().st_mtime, path.name)):
         for line in path.read_text(encoding="utf-8").splitlines():
             try:
                 yield json.loads(line)
@@ -162,6 +162,11 @@ class _Recorder(_Worker):
         self.began = time.monotonic()
         self.reports: defaultdict[str, list[pytest.TestReport]] = defaultdict(list)
         self.counts: Counter[str] = Counter()
+        if self.path.is_file() and not self.path.read_bytes().endswith(
+            b"\n"
+        ):  # cut: the next outcome gets its own line
+            with self.path.open("a", encoding="utf-8") as stream:
+                stream.write("\n")
         wanted = config.option.kept
         if wanted == "none":
             self.path.unlink(missing_ok=True)

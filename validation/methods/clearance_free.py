@@ -369,7 +369,7 @@ def _factor(blocks: list[FloatArray], coupling: FloatArray, springs: FloatArray)
     """LU of the matrix of Eq. 30; RuntimeError when it is singular."""
     matrix = sparse.bmat(
         [
-            [sparse.block_diag(map(sparse.coo_array, blocks)), sparse.csr_array(-coupling)],
+            [sparse.block_diag([*map(sparse.coo_array, blocks)]), sparse.csr_array(-coupling)],
             [sparse.csr_array(-coupling.T), -springs],
         ],
         format="csc",

@@ -29,6 +29,7 @@ from ltca.drive.ring_shape import has_ring_of_elements
 from ltca.drive.units.table import label
 from ltca.equilibrium.output_angle import play_before_cranks
 from ltca.errors import ConvergenceError, CycloError
+from ltca.geometry.interference import ROUNDING, drawn_interference
 from ltca.geometry.play import TurnPlay, play_over_a_turn
 from ltca.reading.changes import with_fields
 
@@ -78,12 +79,16 @@ class _Input:
     changed: Callable[[float], dict[str, Any]]
     beside: tuple[str, ...] = ()
     is_count: bool = False
+    fit: float = 1.0
+    """Factor with which parts that overlap as drawn fit: the only step, and the largest change, since what follows is play."""
 
     @property
     def steps(self) -> tuple[float, ...]:
         """Changes to try, by the input: the first that makes a drive is taken."""
         if self.is_count and self.start:
             return (1.0 / self.start, -1.0 / self.start)
+        if self.fit > 1.0:
+            return (self.fit - 1.0,)
         return (RELATIVE_STEP, -RELATIVE_STEP, 0.5 * RELATIVE_STEP, -0.5 * RELATIVE_STEP)
 
 
@@ -187,7 +192,7 @@ def _driver(drive: Drive, one: _Input, elasticity: float, check: Check, part: fl
     else:
         wanted = log(safety or 1.0) / elasticity * (1.0 if check.limit.sense == "max" else -1.0)
         factor = exp(wanted) if isfinite(wanted) and abs(wanted) <= log(farthest) else 0.0
-    if not 1.0 / farthest <= factor <= farthest:
+    if not 1.0 / farthest <= factor <= farthest or 1.0 < one.fit < factor:
         return Driver(input=one.name, elasticity=elasticity, change="", factor=None)
     factor *= whole
     if one.is_count and one.start:  # the next whole number beyond
@@ -328,7 +333,12 @@ def _inputs(drive: Drive, torque: float) -> list[_Input]:
     ring = {} if drive.ring is None else {"ring.inner_radius": grown, "ring.outer_radius": grown}
     if drive.ring is not None and drive.ring.bolts is not None:
         ring["ring.bolts.circle_radius"] = grown
+    overlap = drawn_interference(drive).holes if shaft else 0.0
+    hole_radius = field("pin_shaft.hole_radius") if overlap > ROUNDING else None
+    if hole_radius is not None and hole_radius.start:
+        hole_radius = replace(hole_radius, fit=1.0 + overlap / hole_radius.start)
     chosen = [
+        hole_radius,
         field("disc.thickness", {"crank_bearing.roller_length": lambda value, more: value * (1.0 + more / thickness)}),
         field("crank_bearing.roller_length") if wide < 0.98 * thickness else None,
         field("crank_bearing.roller_radius", {"crank_bearing.inner_race_radius": shrunk}),

@@ -336,13 +336,15 @@ def _of_theory(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) ->
     """How far half-spaces and samples stand for what they stand for."""
     drive, pressures = analysis.drive, analysis.pressures
     radius = np.minimum(analysis.full.response.flank.effective_radius, drive.pin_wheel.pin_radius)
-    ratios = (
+    ratios = [
         (pressures.pins.half_width / radius, "wheel pin"),
         (
             np.maximum(pressures.outer.half_width, pressures.inner.half_width) / drive.crank_bearing.roller_radius,
             "roller",
         ),
-    )
+    ]
+    if drive.pin_shaft is not None:  # as `wide_holes_warning` has it, which tells what it means for the drive
+        ratios.append((pressures.holes.widest / drive.pin_shaft.pin_radius, "shaft pin"))
     yield most_of(largest_value(analysis, "half_width_ratio", each, name) for each, name in ratios)
     softer = min(drive.materials.disc.youngs_modulus, drive.flank_pin.youngs_modulus)
     yield largest_value(analysis, "contact_strain", pressures.pins.mid / softer, "wheel pin")

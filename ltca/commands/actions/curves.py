@@ -15,6 +15,7 @@ from ltca.analysis.drive_curves import (
     fewest_turns,
     life_speed,
     positions_per_turn,
+    resolution_words,
     solve_curves,
 )
 from ltca.analysis.engines import Engine, describe_engine
@@ -41,7 +42,10 @@ def tell_of_turns(drive: Drive, turns: int, positions: int) -> None:
     """Print before a long computation how many turns would do."""
     least = fewest_turns(drive, turns)
     if least < turns:
-        told = f"all {turns} turns of the crank are {positions} positions; --turns {least} would tell the orders apart, too"
+        told = (
+            f"all {turns} turns of the crank are {positions} positions; --turns {least} would do, too, "
+            f"where orders nearer than 1/{least} need not be told apart"
+        )
         print(told, file=sys.stderr)
 
 
@@ -100,8 +104,13 @@ def _sections(every: Mapping[str, DriveCurves]) -> list[Section]:
         torque_section({name: found.curve for name, found in every.items()}),
         *parts_section({name: found.parts for name, found in every.items() if found.parts is not None}),
         orders_section(
-            {name: found.spectrum for name, found in every.items()},
-            [f"over {found.turns} turns, {found.positions} positions" for found in every.values()],
+            {name: found.spectrum.resolved() for name, found in every.items()},
+            [
+                "; ".join(
+                    [f"over {found.turns} turns, {found.positions} positions", *filter(None, [resolution_words(found)])]
+                )
+                for found in every.values()
+            ],
         ),
         life_section(lives, lines),
         pressure_section(turns),
@@ -113,7 +122,7 @@ def _draw(every: Mapping[str, DriveCurves], name: str, folder: Path, kind: str) 
     from ltca.figures.shared_axes import order_axes, pressure_axis, torque_axes
 
     torques = torque_axes(found.curve for found in every.values())
-    orders = order_axes(found.spectrum for found in every.values())
+    orders = order_axes(found.spectrum.resolved() for found in every.values())
     pressures = pressure_axis(found.safety for found in every.values())
     files, words = [], file_words(every)
     for case, found in every.items():
@@ -121,7 +130,9 @@ def _draw(every: Mapping[str, DriveCurves], name: str, folder: Path, kind: str) 
         discs = found.drive.disc.number_of_discs
         files += [
             figures.draw_torque_curve(found.curve, title, folder / f"torque_curve{ending}", torques),
-            figures.draw_spectrum(found.spectrum, title, folder / f"transmission_error_orders{ending}", orders),
+            figures.draw_spectrum(
+                found.spectrum.resolved(), title, folder / f"transmission_error_orders{ending}", orders
+            ),
             figures.draw_pressure(
                 found.crank_angle,
                 found.pressure,

@@ -125,10 +125,10 @@ def solve_and_write(task: RunTask, out: Path) -> int:
     lines = [*whose_stiffness(analyses), *light_torques, *lives_told(lives)]
     print("\n".join([*lines, *(text for _, text in method), *warnings]))
     if task.page:
-        told = [*warnings, *(f"warning: {one}" for one in with_case_names(proportions))]
+        messages = [*warnings, *(f"warning: {one}" for one in with_case_names(proportions))]
         with steps() as show:
             show("page")
-            files.append(_write_page(task, analyses, dataset, summaries, checks, lives, told, method, out))
+            files.append(_write_page(task, analyses, dataset, summaries, checks, lives, messages, method, out))
     print("results: " + ", ".join(str(out / name) for name in files))
     for name, failure in failures.items():
         left = 2 * angles.size

@@ -41,9 +41,9 @@ def verdict_table(checks: Sequence[Check]) -> str:
         value, limit = check.value, check.limit
         bound = "" if limit is None else f"{'≤' if limit.sense == 'max' else '≥'} {with_unit(limit.value, value, 5)}"
         safety = "" if check.safety is None else f"{check.safety:.3f}"
-        told = WORDS["not known"] if value.value is None else with_unit(value.value, value, 5)
+        value_text = WORDS["not known"] if value.value is None else with_unit(value.value, value, 5)
         verdict = WORDS["fail" if check.fails else check.verdict]
-        rows.append((check.title, told, bound, safety, verdict, place_words(check)))
+        rows.append((check.title, value_text, bound, safety, verdict, place_words(check)))
     widths = [max(len(row[column]) for row in rows) for column in range(5)]
     lines = [
         f"  {row[0]:<{widths[0]}}  {row[1]:>{widths[1]}}  {row[2]:>{widths[2]}}  {row[3]:>{widths[3]}}  "

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -13,7 +14,7 @@ from ltca.export.simulators.lookup_tables import csv_texts, readme_text
 from ltca.export.simulators.modelica_package import modelica_text
 from ltca.export.simulators.mujoco_model import mjcf_text
 from ltca.export.simulators.urdf_model import urdf_text
-from ltca.output.file_names import digest_of
+from ltca.output.file_names import digest_of, spelled_alike
 from ltca.output.files import whole_file, write_json
 
 CALLBACK, LAW = "mujoco_callback.py", "reduced_drive.py"
@@ -24,20 +25,23 @@ LONGEST_MODEL = 100
 TABLES = ("wind_up.csv", "friction.csv", "hysteresis.csv", "hysteresis_factor.csv")
 
 
-def model_name(drive: str, case: str) -> str:
+def model_name(drive: str, case: str, cases: Iterable[str] = ()) -> str:
     """Return a name that XML, C and Modelica take: letters, digits and underscores, a letter first.
 
-    Where other signs than hyphens are replaced, or the name is cut, it ends with a hash of both names: "groß ö" and "groß ä" are
-    two models.
+    Where other signs than hyphens are replaced, the name is cut, or Windows and macOS take that of another one of all `cases` of
+    the drive file for it, it ends with a hash of both names: "groß ö" and "groß ä" are two models, and "a" and "A".
 
     Examples
     --------
     >>> model_name("robot-joint", "nominal")
     'robot_joint_nominal'
+    >>> model_name("d", "a", ["a", "A"]).lower() == model_name("d", "A", ["a", "A"]).lower()
+    False
     """
     whole = f"{drive}_{case}"
     name = re.sub(r"[^A-Za-z0-9_]", "_", whole)
-    if len(name) > LONGEST_MODEL or re.search(r"[^A-Za-z0-9_-]", whole):
+    alike = any(other != case and spelled_alike(other) == spelled_alike(case) for other in cases)
+    if len(name) > LONGEST_MODEL or re.search(r"[^A-Za-z0-9_-]", whole) or alike:
         name = f"{name[:LONGEST_MODEL]}_{digest_of(whole)}"
     return name if name[0].isalpha() else f"drive_{name}"
 

@@ -158,7 +158,7 @@ def _campbell(case: str, ending: str, found: Vibration, fastest: float) -> Secti
     highest, beside = ROOM * float(found.at_load[:, met].max()), dict[str, str]()
     for place in found.told_orders:
         order = float(found.input_orders[place])
-        name = f"order {order:.5g}, {minus(found.spectrum.orders[place].name)}"
+        name = f"order {order:.5g}, {minus(found.spectrum.names[place])}"
         lines[name], beside[name] = order * x / 60.0, f"{order:.4g}"
     plot = Curves(
         title="Campbell diagram: modes, and dashed the orders by turn of the input", unit="Hz",
@@ -194,7 +194,7 @@ def _response(case: str, found: Vibration, answer: ForcedVibration) -> Section:
     x = answer.speed
     lines = {"root mean square": answer.amplitude * ARCSEC}
     for place in found.told_orders[:4]:
-        lines[found.spectrum.orders[place].name] = answer.order_amplitude[:, place] * ARCSEC
+        lines[found.spectrum.names[place]] = answer.order_amplitude[:, place] * ARCSEC
     error = Curves(
         title="Transmission error in motion", unit="arc seconds", axis="speed of the input, rpm", x=x, lines=lines
     )

@@ -292,6 +292,9 @@ def inner_values(sizes: Sizes, setting: Setting, flank: dict[str, FloatArray]) -
     found["disc_shear"], found["contact_strain"] = 0.3 * worst, flank["pin_pressure_mid"] / setting.softer
     # b = 2 p ρ/E* with ρ below the pin's radius: what half-spaces allow is a part of that radius.
     found["half_width_ratio"] = 2.0 * flank["pin_pressure_mid"] / setting.flank
+    if not several:  # 1/ρ = 1/r − 1/(r + e) of a pin in its hole
+        in_holes = 2.0 * found["pin_shaft_pressure_mid"] / setting.hole * (sizes.hole_pin / sizes.eccentricity + 1.0)
+        found["half_width_ratio"] = np.maximum(found["half_width_ratio"], in_holes)
     return found
 
 

@@ -16,7 +16,7 @@ from ltca.drive.members.width import FEWEST_SLICES, MOST_SLICES, Contact
 from ltca.drive.mistakes import describe_mistakes
 from ltca.errors import DriveError, did_you_mean, shortened
 from ltca.quantities import NEED_SLICES
-from ltca.reading.toml_text import parse_toml, read_text
+from ltca.reading.toml_text import parse_toml, read_text, require_kind
 from ltca.studies.design_search.requirements import (
     CLEARANCES,
     FINEST_CLEARANCE,
@@ -48,6 +48,7 @@ def parse_requirements(
     `source` is named in messages, a stock file is looked for in `folder`; `name` is that of the designs where the file has none.
     """
     table = parse_toml(text, source)
+    require_kind(table, "requirements", source)
     table.setdefault("name", name)
     problems: list[str] = []
     shop = table.get("shop")

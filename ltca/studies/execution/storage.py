@@ -200,9 +200,9 @@ def write_batch(path: Path, study: Study, result: BatchResult) -> None:
 def read_batch(path: Path, study: Study) -> BatchResult:
     """Read one batch; `DamagedFileError` when it is damaged, or belongs to another study or to another number."""
     kind = "a batch of a study"
-    found = read_arrays(path, kind)
+    arrays = read_arrays(path, kind)
     try:
-        number, factors, values, messages, fingerprint = (found[name] for name in PARTS)
+        number, factors, values, messages, fingerprint = (arrays[name] for name in PARTS)
         result = BatchResult(
             number=int(number),
             factors=factors,

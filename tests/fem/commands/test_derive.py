@@ -247,29 +247,6 @@ def test_failure_leaves_the_old_file(dataset, tmp_path, monkeypatch):
     assert [entry.name for entry in tmp_path.iterdir()] == ["c.nc"]
 
 
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
-        (("nowhere.toml",), "nowhere.toml"),
-        (("paper", "--case", "CS-9"), "CS-9"),
-        (("paper", "--stations", "0.1"), "--stations = 0.1"),
-        (("paper", "--stations", "nan"), "stations = 'nan'"),
-        (("paper", "--size", "0"), "size = 0"),
-        (("paper", "--size", "-1"), "size = -1"),
-        (("paper", "--size", "3"), "size = 3 .* at most 2"),
-        (("paper", "--size", "1e-6"), "memory"),
-        (("paper", "--out", "/proc/none/c.nc"), "/proc/none"),
-    ],
-)
-def test_wrong_input_is_refused_before_any_work(words, message, monkeypatch):
-    def never(*args, **options):
-        raise AssertionError("work was begun")
-
-    monkeypatch.setattr("fem.coefficients.bodies.mesh_disc", never)
-    with pytest.raises(CycloError, match=message):
-        run(*words)
-
-
 def test_folder_as_file_is_refused(tmp_path):
     with pytest.raises(CycloError, match="is a folder"):
         run("paper", "--out", str(tmp_path))

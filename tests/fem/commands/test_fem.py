@@ -179,23 +179,6 @@ def test_pictures_without_gl(monkeypatch, tmp_path):
     rendering_problem.cache_clear()
 
 
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
-        (("paper", "--angle", "nan"), "--angle = 'nan': must be finite in rad"),
-        (("paper", "--size", "0"), "--size = 0: must be greater than 0"),
-        (("paper", "--size", "0.001"), "unknowns and need about"),
-        (("paper", "--torque", "-5"), "--torque = -5: must be at least 0 N·mm"),
-        (("paper", "--case", "CS-9"), "case 'CS-9' is not defined"),
-        (("nowhere.toml",), "no such file"),
-    ],
-)
-def test_mistakes_are_named(words, message, tmp_path):
-    with pytest.raises(CycloError, match=message):
-        run(*words, "--out", str(tmp_path / "out"))
-    assert not (tmp_path / "out").exists()
-
-
 def test_file_in_place_of_the_folder(tmp_path):
     (tmp_path / "taken").write_text("")
     with pytest.raises(CycloError, match="is a file, not a folder"):

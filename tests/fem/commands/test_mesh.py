@@ -109,24 +109,6 @@ def test_the_probe_tells_how_the_rendering_ended(monkeypatch: pytest.MonkeyPatch
     offscreen.rendering_problem.cache_clear()
 
 
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
-        (["paper", "--case", "CS-9"], "case 'CS-9' is not defined"),
-        (["none.toml"], "none.toml"),
-        (["paper", "--size", "0"], "--size = 0: must be greater than 0"),
-        (["paper", "--size", "-1"], "--size = -1: must be greater than 0"),
-        (["paper", "--size", "nan"], "--size = 'nan': must be finite"),
-        (["paper", "--angle", "inf"], "--angle = 'inf': must be finite in rad"),
-        (["paper", "--size", "0.0001"], r"the drive's mesh would have about [\d,]+ unknowns"),
-    ],
-)
-def test_wrong_input_ends_in_one_message_and_no_files(tmp_path: Path, words: list[str], message: str) -> None:
-    with pytest.raises(CycloError, match=message):
-        run(*words, "--out", str(tmp_path / "out"))
-    assert not (tmp_path / "out").exists()
-
-
 def test_out_that_is_a_file_is_refused(tmp_path: Path) -> None:
     (tmp_path / "out").write_text("x")
     with pytest.raises(CycloError, match="is a file, not a folder"):

@@ -9,52 +9,13 @@ import pytest
 import xarray as xr
 
 from fem.commands import fem as command
-from ltca.errors import CycloError, DriveError
+from ltca.errors import DriveError
 
 
 def run(*words):
     parser = argparse.ArgumentParser()
     command.configure(parser)
     return command.execute(parser.parse_args(words))
-
-
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
-        (["--bodies", "solid", "--load", "100"], "--load: belongs to one pair"),
-        (["--bodies", "solid", "--plane", "stress"], "--plane: has no effect with --bodies solid"),
-        (["--bodies", "solid", "--referee", "calculix"], "--referee: has no effect with --bodies solid"),
-        (["--layers", "3"], "--layers: has no effect with plane bodies"),
-        (["--bodies", "solid", "--pair", "bore", "--layers", "3"], "--layers: has no effect with --pair"),
-        (["--bodies", "solid", "--size", "0.05"], "the disc as a solid body"),
-        (["--pair", "flank"], "--pair: has no effect with plane bodies"),
-        (["--tilt", "1e-4", "--load", "100"], "--load: has no effect with plane bodies"),
-        (["--bodies", "solid", "--pair", "bore", "--plane", "stress"], "--plane: has no effect with --pair"),
-        (["--bodies", "solid", "--pair", "bore", "--error"], "--error: has no effect with --pair"),
-        (["--bodies", "solid", "--pair", "bore", "--load", "9", "--approach", "0.01"], "--approach: must be left out"),
-        (["--bodies", "solid", "--pair", "bore", "--load", "9", "--torque", "1e5"], "--torque: has no effect"),
-        (["--bodies", "solid", "--pair", "bore", "--contact", "11"], "--contact 11: must be between 0 and 10"),
-        (["--bodies", "solid", "--pair", "bore", "--contact", "6"], "--load: must be given"),
-        # Blocks that touch nowhere were meshed and factorised for a quarter of an hour before they carried nothing.
-        (
-            ["--bodies", "solid", "--pair", "bore", "--approach", "0"],
-            "approach = 0 mm of .*: must be greater than 0 mm",
-        ),
-        (["--bodies", "solid", "--pair", "bore", "--block", "0.05"], "too wide for a block of 0.05 mm"),
-        (
-            ["--bodies", "solid", "--pair", "bore", "--load", "1e-3"],
-            "must be at least 0.0005 of the depth of the block",
-        ),
-        (
-            ["--bodies", "solid", "--pair", "bore", "--approach", "1e-8"],
-            "must be at least 0.0005 of the depth of the block",
-        ),
-    ],
-)
-def test_what_does_not_go_together_is_refused(words, message, tmp_path):
-    with pytest.raises(CycloError, match=message):
-        run("paper", "--case", "CS-1", "--angle", "0.5", "--out", str(tmp_path / "out"), *words)
-    assert not (tmp_path / "out").exists()
 
 
 @pytest.mark.parametrize("words", [("--load", "0"), ("--tilt", "0.02"), ("--block", "-1")])

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import argparse
+from dataclasses import replace
+
 import pytest
 
 from ltca.analysis.engines import HalfSpace, Hybrid
@@ -11,6 +14,12 @@ from ltca.analysis.half_space_errors import (
     half_space_cautions,
     half_space_words,
     measured,
+)
+from ltca.commands.compliance_arguments import (
+    add_compliance_arguments,
+    check_compliance,
+    compliance_of,
+    settle_compliance,
 )
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
@@ -98,3 +107,23 @@ def test_a_case_of_another_material_got_the_caution_of_the_first_case():
     assert second.startswith("case printed: half-spaces: bodies beyond the contacts do not yield")
     assert len(half_space_cautions(HalfSpace(), {"a": steel, "b": steel})) == 1
     assert half_space_cautions(Hybrid(), {"a": steel}) == []
+
+
+def test_quick_was_what_the_drive_file_says():
+    """`run paper --quick` gave the file as the reason for half-spaces, which had been asked for."""
+    parser = argparse.ArgumentParser()
+    add_compliance_arguments(parser)
+
+    def words(*options):
+        arguments = parser.parse_args(options)
+        check_compliance(arguments)
+        settle_compliance(arguments, [PAPER])
+        return half_space_words(compliance_of(arguments, [PAPER]), PAPER)
+
+    assert words().startswith("half-spaces, as [analysis] of the drive file says: ")
+    for options in (["--quick"], ["--compliance", "half-space"]):
+        assert words(*options).startswith(
+            "half-spaces, as asked; without that [analysis] of the drive file says the same: "
+        )
+    hybrid = replace(PAPER, analysis=replace(PAPER.analysis, compliance="hybrid"))
+    assert half_space_words(HalfSpace(asked=True), hybrid).startswith("half-spaces, as asked: ")

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import json
+import re
+
 import numpy as np
 import pytest
 
@@ -83,6 +86,51 @@ def test_as_few_turns_as_tell_the_orders_apart(paper_cases):
         else:
             assert max(fit_orders(angle, np.cos(angle), orders).amplitude) == pytest.approx(1.0)
     assert least_turns(orders, 192, 2) == 2
+
+
+def test_orders_were_named_that_so_few_turns_do_not_tell_apart():
+    """`cyclo curves --turns 4` named 2.925 of the wheel pins and 2.917 of the cage, which over 40 turns are not there."""
+    names = (Order(8.0, "holes"), Order(8.1667, "rollers"), Order(8.25, "pins"), Order(8.5, "flank"))
+    angle = 2.0 * np.pi * np.arange(4 * 600) / 600
+    error = 1.0 + 0.9 * np.cos(8.0 * angle) + 0.2 * np.cos(8.1667 * angle - 0.4) + 0.1 * np.cos(8.5 * angle)
+    found = fit_orders(angle, error, names)
+    assert found.turns == pytest.approx(4.0)
+    assert found.groups == ((0, 1, 2), (3,))
+    assert found.names == ("holes or rollers or pins",) * 3 + ("flank",)
+    shown = found.resolved()
+    assert [order.name for order in shown.orders] == ["holes or rollers or pins", "flank"]
+    together = 0.9 * np.cos(8.0 * angle) + 0.2 * np.cos(8.1667 * angle - 0.4)
+    # √2 of a root mean square over samples; whole periods of twice the orders do not quite fit into the turns
+    assert shown.amplitude == pytest.approx([np.sqrt(2.0 * np.mean(together**2)), 0.1], rel=2e-3)
+    # Exactly a quarter apart, they have shifted by a whole period over four turns.
+    apart = fit_orders(angle, error, names[::2])
+    assert apart.groups == ((0,), (1,))
+    assert apart.resolved().amplitude == pytest.approx(apart.amplitude, rel=1e-12)
+    assert apart.resolved().phase == pytest.approx(apart.phase, abs=1e-9)
+
+
+@pytest.mark.slow
+def test_printed_orders_of_four_turns_are_sums_of_those_not_told_apart(tmp_path, capsys):
+    words = [
+        "curves",
+        "paper",
+        "--case",
+        "CS-1",
+        "--turns",
+        "4",
+        "--quick",
+        "--no-page",
+        "--out",
+        str(tmp_path / "out"),
+    ]
+    assert main(words) == 0
+    rows = re.findall(r"^ +([\d.]+)  (\S.*?) +[\d.]+″$", capsys.readouterr().out, flags=re.M)
+    assert ("13.0000", "flank, 1 z_C or roller passage, 2 n_BR(1 − c)") in rows
+    values = sorted(float(value) for value, _ in rows)
+    assert min(np.diff(values)) > 0.25
+    kept = json.loads((tmp_path / "out" / "curves.json").read_text(encoding="utf-8"))["transmission_error_orders"]
+    # c = 0.398 of the cage: 22 · 0.602 / 2 = 6.622, nearer than a quarter to 6.5 = 7 · 13/14
+    assert any(entry["orders"] == pytest.approx([6.5, 6.6224], abs=1e-4) for entry in kept["not_told_apart"])
 
 
 def test_too_few_turns_are_refused_with_the_least_before_the_work(tmp_path, capsys):

@@ -5,7 +5,8 @@ import re
 import pytest
 
 from ltca.commands.program import main
-from ltca.reading.drive_file import shipped_drive
+from ltca.drive.unit_mistakes import impossible_torque
+from ltca.reading.drive_file import load_drive, shipped_drive
 
 COMMANDS = {
     "curves": ["--turns", "1", "--quick", "--no-page"],
@@ -37,3 +38,24 @@ def test_run_tells_them_before_it_works_and_once(tmp_path, capsys):
     out = capsys.readouterr()
     assert out.err.startswith("warning: disc.phases: 180 rad are")
     assert "disc.phases" not in out.out
+
+
+@pytest.mark.parametrize("command", ["run", "check", "fem"])
+def test_a_question_about_a_torque_came_before_its_refusal(command, capsys, tmp_path):
+    """`did you mean "1e+06 N m"?` was asked about a torque that the next line refused."""
+    words = [command, "paper", "--case", "CS-1", "--torque", "1e12", "--out", str(tmp_path / "out")]
+    assert main(words) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("cyclo: error: torque = 1e+12 N·mm is 1e+09 N·m and would press the wheel pins with some ")
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_torque_beyond_any_of_the_file_is_refused_by_its_field(capsys, tmp_path):
+    path = tmp_path / "drive.toml"
+    path.write_text(re.sub(r"(?m)^torque = .*$", "torque = 1e12", shipped_drive("paper")), encoding="utf-8")
+    for command in ("run", "check", "curves"):
+        assert main([command, str(path), "--case", "CS-1", "--quick", "--out", str(tmp_path / "out")]) == 2
+        (line,) = capsys.readouterr().err.splitlines()
+        assert line.startswith("cyclo: error: load.torque = 1e+12 N·mm is 1e+09 N·m and would press the wheel pins")
+    # where the command gives one, that of the file is not asked about
+    assert impossible_torque(load_drive(path).cases["CS-1"], 377_300.0) == ""

@@ -80,6 +80,11 @@ def test_a_torque_below_round_off_is_refused_in_the_file(field, value, words):
     assert problem.startswith(words)
 
 
+def test_a_torque_of_a_duty_below_round_off_is_refused():
+    with pytest.raises(DriveError, match=r"^duty\.0\.torque = 0\.01 N·mm: must be at least 0\.18 N·mm in this drive"):
+        with_fields(drive_of("paper"), {"duty.0.torque": 0.01, "duty.0.speed": 1.0, "duty.0.share": 1.0})
+
+
 @pytest.mark.parametrize("torque", [5e-324, 1e-200, 1e-5])
 def test_a_torque_below_round_off_is_refused_as_an_argument(torque):
     with pytest.raises(DriveError, match=r"^torque = .*: must be .*N·mm"):

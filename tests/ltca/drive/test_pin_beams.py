@@ -10,7 +10,7 @@ import pytest
 
 from ltca.analysis.loaded_analysis import analyse
 from ltca.drive.engine_support import require
-from ltca.drive.pin_beams import shaft_pin_spring
+from ltca.drive.pin_beams import _wind_up, shaft_pin_spring
 from ltca.errors import DriveError
 from ltca.geometry.placement import position_angles
 from ltca.page.derived import derived_rows
@@ -32,7 +32,8 @@ def test_a_free_pin_of_one_disc_is_a_cantilever(vary):
     shear = arm / (6.0 * (1.0 + nu) / (7.0 + 6.0 * nu) * modulus / (2.0 * (1.0 + nu)) * pi * diameter**2 / 4.0)
     assert spring.loaded_alike == pytest.approx(1.0 / (bending + shear), rel=1e-5)
     assert spring.turned_alike == pytest.approx(spring.loaded_alike, rel=1e-12)
-    assert spring.stiffness == pytest.approx(spring.loaded_alike, rel=0.03)  # two digits
+    assert spring.stiffness == pytest.approx(spring.loaded_alike, rel=0.005)  # three digits
+    assert (spring.error, spring.accuracy) == (0.0, "")
 
 
 @pytest.mark.parametrize("phases", [(0.0, pi), (0.0, 2.0), (0.0, 0.5 * pi)])
@@ -100,7 +101,55 @@ def test_the_spring_turns_the_output_as_far_and_shares_the_torque_alike(name):
             assert found.torque_share.max() > 0.6
     bent = stiffness[None]
     assert stiffness[spring.loaded_alike] < bent < stiffness[spring.turned_alike]
-    assert stiffness[spring.stiffness] == pytest.approx(bent, rel=0.05)
+    assert stiffness[spring.stiffness] == pytest.approx(bent, rel=0.035)
+
+
+def test_the_spring_was_a_mean_whatever_yields_beside_the_pins():
+    """Slender pins turn their discs alike, stiff ones let flank and bearing share: the mean was 58 % too soft at worst."""
+    thin = {"disc.thickness": 0.2, "crank_bearing.roller_length": 0.2, "disc.planes": JOINT.disc.disc_planes}
+    thin["pin_shaft.beam.span"] = JOINT.with_fields(TIED).shaft_pin_span
+    slender, stiff = (
+        shaft_pin_spring(JOINT.with_fields({"pin_shaft.beam.tip": "free", "pin_shaft.beam.diameter": diameter, **more}))
+        for diameter, more in ((1.0, {}), (10.0, thin))
+    )
+    assert slender.turned_alike / slender.loaded_alike > 4.0
+    # Pins of ⌀ 1 mm yield by far more than contacts of 8 mm; those of ⌀ 10 mm by far less than contacts of 0.2 mm.
+    assert slender.together == pytest.approx(slender.turned_alike, rel=2e-3)
+    assert stiff.loaded_alike == pytest.approx(stiff.together, rel=0.1)
+    assert stiff.turned_alike > 2.0 * stiff.loaded_alike
+
+
+@pytest.mark.parametrize("moment", [0.1, 1.0, 30.0])
+def test_pins_behind_gaps_carry_a_moment(moment):
+    """The rotation by which it is carried, by bisection."""
+    generator = np.random.default_rng(3)
+    lever, gap = generator.uniform(0.0, 3.0, (4, 9)), generator.uniform(-0.1, 0.5, (4, 9))
+    lever[:, 4] = 0.0
+    low, high = np.full((4, 1), -10.0), np.full((4, 1), 100.0)
+    for _ in range(80):
+        middle = 0.5 * (low + high)
+        more = np.sum(np.maximum(middle * lever - gap, 0.0) * lever, axis=1, keepdims=True) < moment
+        low, high = np.where(more, middle, low), np.where(more, high, middle)
+    np.testing.assert_allclose(_wind_up(lever, gap, moment), middle, rtol=1e-12)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("tip", "diameter", "most"), [("free", 10.0, 0.08), ("free", 6.0, 0.25), ("tied-pinned", 6.0, 0.1)]
+)
+def test_the_spring_of_slender_and_of_free_pins_was_not_told_to_be_off(tip, diameter, most):
+    """It "turns the output as far", and was 40 % too soft with free tips of ⌀ 6 mm."""
+    beams = JOINT.with_fields({"pin_shaft.beam.tip": tip, "pin_shaft.beam.diameter": diameter})
+    spring = shaft_pin_spring(beams)
+    bent, sprung = (
+        np.mean((found.torque - drive.load.light_torque) / found.wind_up)
+        for drive in (beams, beams.with_fields({"pin_shaft.stiffness": spring.stiffness}))
+        for found in (analyse(drive, position_angles(12)),)
+    )
+    assert sprung == pytest.approx(bent, rel=most)
+    assert most <= spring.error
+    with pytest.raises(DriveError, match=rf"turns the output as far within some {100.0 * spring.error:g} %"):
+        require(beams, "full FE")
 
 
 @pytest.mark.parametrize("engine", ["full FE", "FE mesh", "solid disc", "direct"])
@@ -121,12 +170,12 @@ def test_show_prints_the_spring_that_pins_are_equal_to():
     spring = shaft_pin_spring(JOINT.with_fields(TIED))
     drive = JOINT.with_fields(TIED)
     row = dict(derived_rows(drive, drive, plays=False))["shaft pins, springs that turn as far"]
-    assert row.startswith(f"pin_shaft.stiffness = {spring.stiffness:g} N/mm; ")
+    assert row.startswith(f"pin_shaft.stiffness = {spring.stiffness:g} N/mm, within some 10 %; ")
     assert "shaft pins, springs that turn as far" not in dict(derived_rows(JOINT, JOINT, plays=False))
 
 
 def test_the_lines_of_springs_in_shipped_files_are_those_of_their_beams():
-    """4e5 N/mm of `robot-joint` beside its beam, 2e5 N/mm in the comment of `sleeved`, whose beam is equal to 2.7e5."""
+    """4e5 N/mm of `robot-joint` beside its beam, 2e5 N/mm in the comment of `sleeved`, whose beam is equal to 2.63e5."""
     assert JOINT.pin_shaft.stiffness == pytest.approx(shaft_pin_spring(JOINT.with_fields(TIED)).stiffness, rel=0.03)
     sleeved = load_drive("sleeved")
     (line,) = re.findall(r"(?m)^# stiffness = (\S+)", sleeved.text)

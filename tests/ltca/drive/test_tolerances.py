@@ -41,33 +41,6 @@ def test_units_and_flat_names():
     assert file.tolerances["disc.runout.amount"].tolerance == pytest.approx(0.004)
 
 
-@pytest.mark.parametrize(
-    ("entry", "message"),
-    [
-        ('disc.thicknes = { distribution = "normal", tolerance = 1.0 }', "thicknes: is not a field"),
-        ('load.direction = { distribution = "normal", tolerance = 1.0 }', "not a field of the drive that can scatter"),
-        ('disc.thickness = { distribution = "norm", tolerance = 1.0 }', "must be 'normal', 'uniform' or"),
-        ('disc.thickness = { distribution = "normal" }', "tolerance: is missing"),
-        (
-            'disc.thickness = { distribution = "normal", tolerance = -1.0 }',
-            "tolerance = -1.0: must be greater than 0 mm",
-        ),
-        ('disc.thickness = { distribution = "normal", tolerance = "1 s" }', "must have the unit mm"),
-        ('disc.thickness = { distribution = "normal", tolerance = 0.1, mean = 0.2 }', "must be smaller in size"),
-        ('disc.thickness = { distribution = "uniform", tolerance = 0.1, cpk = 1.0 }', "no meaning for a uniform"),
-        (
-            'disc.thickness = { distribution = "normal", tolerance = 0.1, cpk = 0.0 }',
-            "cpk = 0.0: must be greater than 0",
-        ),
-        ('disc.thickness = { distribution = "normal", tolerance = 0.1, sigma = 1.0 }', "sigma: is not a field"),
-        ("disc = 3", "must be a table with a distribution"),
-    ],
-)
-def test_wrong_entries_are_refused(entry, message):
-    with pytest.raises(DriveError, match=message):
-        parse_drive(with_table(entry), "paper")
-
-
 PROBABILITY = (np.arange(20000) + 0.5) / 20000
 
 

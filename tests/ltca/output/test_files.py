@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import subprocess
@@ -11,7 +12,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from ltca.errors import CycloError
+from ltca.commands.program import main
+from ltca.errors import CycloError, FaultError, PlaceError
 from ltca.output import files
 from ltca.output.files import whole_file, write_json
 
@@ -62,6 +64,39 @@ def test_folder_that_cannot_be_made(tmp_path):
     (tmp_path / "file").touch()
     with pytest.raises(CycloError, match="cannot be written"), whole_file(tmp_path / "file" / "x.txt") as part:
         part.touch()
+
+
+def test_a_folder_that_takes_no_file_was_a_fault_of_ours(tmp_path):
+    """`cyclo init /proc/x.toml` ended with status 1, as a full disc does."""
+    (tmp_path / "file").touch()
+    (tmp_path / "loop").symlink_to("loop")
+    places = [tmp_path / "file" / "x.txt", tmp_path / "loop" / "x.txt"]
+    for place in [*places, *([Path("/proc/x.txt")] if Path("/proc/self").exists() else [])]:
+        with pytest.raises(PlaceError, match="cannot be written") as caught, whole_file(place) as part:
+            part.touch()
+        assert caught.value.exit_status == 2
+    with pytest.raises(FaultError, match="No space left"), whole_file(tmp_path / "full.txt"):
+        raise OSError(errno.ENOSPC, "No space left on device")
+    assert not (tmp_path / "full.txt").exists()
+
+
+@pytest.mark.skipif(not Path("/proc/self").exists(), reason="/proc takes no files, whoever asks")
+@pytest.mark.parametrize(
+    "words",
+    [["init", "/proc/x.toml"], ["show", "paper", "--out", "/proc/x"], ["derive", "paper", "--out", "/proc/x.nc"]],
+)
+def test_a_command_that_was_to_write_where_nothing_can_be(words, capsys):
+    assert main(words) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "/proc/x" in line
+    assert "cannot be written" in line
+
+
+def test_a_device_was_replaced_by_a_drive_file(tmp_path, capsys):
+    os.mkfifo(tmp_path / "pipe.toml")
+    assert main(["init", str(tmp_path / "pipe.toml"), "--force"]) == 2
+    assert "is no regular file" in capsys.readouterr().err
+    assert (tmp_path / "pipe.toml").is_fifo()
 
 
 def test_a_killed_run_leaves_no_half_written_file(tmp_path):

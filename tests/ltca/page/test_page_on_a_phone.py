@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import pytest
 
+from ltca.analysis.verdict.advice import Driver
 from ltca.page.run_page import run_page
+from ltca.page.studies.check import check_page
+from ltca.page.study_page import study_page
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import DriveFile, parse_drive, shipped_drive
 
@@ -109,3 +112,18 @@ def test_a_phone_misses_nothing(kind, paper_run, run_of, phone):
     least, most, dark = seen["palette"]
     yellow, navy = "rgb(254,232,56)", "rgb(0,34,78)"
     assert (least, most) == ((navy, yellow) if dark else (yellow, navy))
+
+
+def test_a_heading_out_of_sight_left_a_gap_above_a_table(paper_run, phone):
+    """The last columns of "What drives each value" were two words wide: their headings had six lines, 100 px."""
+    checks = {"CS-1": paper_run[0].checks["CS-1"]}
+    inputs = ("all sizes", "pin_wheel.pin_circle_radius", "disc.equidistant_offset")
+    drivers = {
+        "CS-1": {"pin_pressure_mid": [Driver(input=one, elasticity=0.1, change="", factor=None) for one in inputs]}
+    }
+    page = phone(study_page(check_page("paper", "", "verdict", checks, drivers, {}, {})))
+    height, line = page.evaluate(
+        "[document.querySelector('table[data-name=drivers] thead').offsetHeight,"
+        " parseFloat(getComputedStyle(document.querySelector('table[data-name=drivers] thead th')).lineHeight)]"
+    )
+    assert height < 4 * line

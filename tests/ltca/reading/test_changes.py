@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+import re
 
 import pytest
 
@@ -112,3 +113,40 @@ def test_all_mistakes_together():
 
 def test_no_change_is_the_drive_itself():
     assert PAPER.with_fields({}) == PAPER == with_fields(PAPER, {})
+
+
+def test_a_sweep_of_the_eccentricity_blamed_the_pin_radius_for_an_undercut(paper_cases):
+    """Between undercut and loops the holes had to change as well, and the message named the sound pin radius alone."""
+    drive = paper_cases["CS-1"]
+    # Undercut at the smallest radius of the path, loops at R/z_P = 6.286 mm.
+    with pytest.raises(DriveError) as caught:
+        with_fields(drive, {"crank.eccentricity": 6.2})
+    flank, holes = caught.value.problems
+    assert flank.startswith(
+        "crank.eccentricity = 6.2 mm: must be at most 6.117 mm (with pin_shaft.hole_radius = 16.192 mm)"
+    )
+    assert flank.endswith("or the flank is undercut")
+    assert holes.startswith("crank.eccentricity = 6.2 mm: must be at most 4 mm")
+    with_fields(drive, {"crank.eccentricity": 6.117, "pin_shaft.hole_radius": 16.192})
+
+
+@pytest.mark.parametrize(
+    ("path", "value"),
+    [
+        ("disc.equidistant_offset", 9.75),
+        ("disc.shifting_offset", -8.8),
+        ("pin_wheel.pin_circle_radius", 79.2),
+        ("crank_bearing.outer_race_radius", 35.4),
+    ],
+)
+def test_the_only_changed_field_was_not_named_where_it_broke_the_rule_of_another(paper_cases, path, value):
+    """A sweep of an offset blamed the circle of the shaft pins, which nobody had changed."""
+    drive = paper_cases["CS-1"]
+    with pytest.raises(DriveError) as caught:
+        with_fields(drive, {path: value})
+    (problem,) = caught.value.problems
+    assert problem.startswith(f"{path} = {value:g} mm: must be at ")
+    bound = float(re.search(r"must be at (?:most|least) (\S+) mm", problem)[1])
+    with_fields(drive, {path: bound})
+    with pytest.raises(DriveError):
+        with_fields(drive, {path: bound + 0.01 * (value - bound)})

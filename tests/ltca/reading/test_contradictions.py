@@ -52,7 +52,7 @@ ONE_LINE = {
         "equidistant_offset = 0.15",
         "equidistant_offset = 15",
     ): r"disc\.equidistant_offset = 15 mm: must be at most 7\.51\d? mm",
-    ("shifting_offset = 0.09", "shifting_offset = 9"): r"disc\.shifting_offset = 9 mm: must be at most 0\.65 mm",
+    ("shifting_offset = 0.09", "shifting_offset = 9"): r"disc\.shifting_offset = 9 mm: must be at most 0\.6499 mm",
     (
         "outer_race_radius = 29.5",
         "outer_race_radius = 295",
@@ -127,7 +127,7 @@ def test_a_case_that_is_wrong_in_another_way_is_told_beside(paper_table):
     with pytest.raises(DriveError) as caught:
         parse_drive(text)
     first, *others = caught.value.problems
-    assert first.startswith("case A: disc.shifting_offset = 9 mm: must be at most 0.65 mm")
+    assert first.startswith("case A: disc.shifting_offset = 9 mm: must be at most 0.6499 mm")
     assert others
     assert all(problem.startswith("case B: ") for problem in others)
 

@@ -10,14 +10,18 @@ import pytest
 
 from ltca.analysis.engines import HalfSpace
 from ltca.commands.program import main
+from ltca.drive.fields import read_field
+from ltca.geometry.interference import FLANK, HOLES
 from ltca.page.studies.samples import samples_page
 from ltca.page.study_page import study_page
-from ltca.reading.drive_file import parse_drive
-from ltca.studies.binding import LARGEST, LEAST, find_binding
+from ltca.reading.changes import with_fields
+from ltca.reading.drive_file import load_drive, parse_drive
+from ltca.studies.binding import LARGEST, LEAST, find_binding, pairs_that_a_length_moves
 from ltca.studies.run_study import StudySummary
 from ltca.studies.study_results import summarise_quantity
 from ltca.studies.tolerance_study import tolerance_study
 from ltca.studies.yields import find_yield
+from ltca.testing.field_changes import change_of
 
 TOOLKIT = Path(__file__).parents[2] / "literature" / "public_drives" / "toolkit_14_to_1.toml"
 TOLERANCES = """
@@ -154,3 +158,38 @@ def test_samples_that_bind_stand_in_terminal_and_summary(tmp_path, capsys):
     assert summary["quantities"][LEAST]["smallest"] == pytest.approx(0.0, abs=1e-6)
     (limit,) = (one for one in summary["yield"]["limits"] if one["quantity"] == LARGEST)
     assert limit["kept"] <= 12 - bound
+
+
+@pytest.mark.parametrize(
+    ("path", "pairs"),
+    [
+        ("pin_wheel.pin_radius", []),  # the flank is generated with it
+        ("pin_wheel.pin_errors.diameter", [FLANK]),
+        ("pin_wheel.pin_errors.radial", [FLANK]),
+        ("disc.runout.amount", [FLANK]),
+        ("disc.of.0.profile_errors.deviation", [FLANK]),
+        ("pin_shaft.hole_radius", [HOLES]),
+        ("disc.hole_errors.tangential", [HOLES]),
+        ("crank.eccentricity", [HOLES]),  # the flank is generated with it
+        ("crank.eccentricity_error", [FLANK, HOLES]),
+        ("crank_bearing.roller_errors.diameter", [FLANK, HOLES]),
+        ("clearance.bearing", [FLANK, HOLES]),
+        ("pin_shaft.pin_circle_radius", []),  # pins and holes share the circle
+        ("pin_wheel.core_radius", []),
+        ("disc.thickness", []),
+        ("main_bearing.clearance", []),
+        ("materials.disc.hardness_depth", []),
+    ],
+)
+def test_a_length_acts_where_it_moves_a_gap(path, pairs):
+    """Fields were listed by hand: lengths along the axis and of other members counted as acting in both pairs."""
+    contract = load_drive(Path(__file__).parents[2] / "contract" / "drive.toml").cases["nominal"]
+    base, change = change_of(contract, path)
+    drive = with_fields(base, change, check=False)
+    assert pairs_that_a_length_moves(drive, path, np.atleast_1d(read_field(drive, path))) == pairs
+
+
+def test_a_wide_tolerance_of_the_thickness_was_said_to_bind():
+    tolerances = '[tolerances]\ndisc.thickness = { distribution = "uniform", tolerance = 0.2 }\n'
+    study = study_of(toolkit(tolerances=tolerances), quantities=("max_pin_load",))
+    assert find_binding(study, {"max_pin_load": np.ones(6)}).words() == []

@@ -84,3 +84,16 @@ def test_cells_that_do_not_settle_are_counted(monkeypatch):
     # one more where the first step was cut, as it says
     told = sum(changed) + np.count_nonzero(holes != system.hole_carrying)
     assert caught.value.history[0] - told in (0, 1)
+
+
+def test_the_first_block_was_left_out_of_the_matrix():
+    """Sparse libraries look at blocks before they use them: of a generator the first was gone, an empty one without notice."""
+    generator = np.random.default_rng(5)
+    blocks = [matrix @ matrix.T + np.eye(len(matrix)) for matrix in (generator.normal(size=(n, n)) for n in (3, 0, 2))]
+    coupling, springs = generator.normal(size=(5, 2)), np.eye(2)
+    whole = np.zeros((7, 7))
+    whole[:3, :3], whole[3:5, 3:5] = blocks[0], blocks[2]
+    whole[:5, 5:], whole[5:, :5], whole[5:, 5:] = -coupling, -coupling.T, -springs
+    right = np.arange(1.0, 8.0)
+    found = clearance_free._factor(blocks, coupling, springs).solve(right)
+    np.testing.assert_allclose(found, np.linalg.solve(whole, right), rtol=1e-10)
