@@ -260,7 +260,8 @@ class CoupledCompliance:
         chosen = np.concatenate([at + some for at, some in zip(first, loaded, strict=True)], axis=1)
         found = []
         for body, diagonal, race, spring, unit in parts:
-            matrix = body.disc_matrix(*places, loaded)
+            flank, bore, holes, on_flank, radius = places
+            matrix = body.disc_matrix(flank, bore, holes, on_flank, radius, loaded)
             each = np.repeat((diagonal.pin, diagonal.outer, diagonal.hole + spring), [some.shape[1] for some in loaded])
             matrix[np.arange(chosen.shape[0])[:, None], chosen, np.arange(chosen.shape[1])] += each
             found.append((unit * matrix, unit * race, unit * float(body.roller[0, 1])))

@@ -20,8 +20,8 @@ from ltca.geometry.pair_motion import BoreMotion, FlankMotion, KnownPins, PairMo
 from ltca.geometry.pairs import ContactGeometry
 
 if TYPE_CHECKING:
-    from ltca.mechanics.contacts import Following, Inner
     from ltca.laws.sliced_contact import SlicedContact
+    from ltca.mechanics.contacts import Following, Inner
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -131,6 +131,8 @@ class DiscResponse:
         Wheel pins and shaft pins in slices; None in the plane.
     left : array, shape (positions,), or None
         Force that contacts, or displacements of pins, which have not settled amount to, N; None where all have.
+    inner : Inner or None
+        Inner unknowns of the one system of all contacts (`ltca.mechanics.contacts`).
     """
 
     force: FloatArray
@@ -140,7 +142,7 @@ class DiscResponse:
     rollers: RollerState
     pin_load: FloatArray
     hole_load: FloatArray
-    warm_start: NDArray[np.object_] | None = None
+    warm_start: NDArray[np.object_]
     shifts: ComplexArray | None = None
     leans: ComplexArray | None = None
     ring: ComplexArray | None = None
@@ -370,13 +372,15 @@ class Start:
     known : KnownPins or None
         Approaches of the pins of these drives at other poses, by which a model may leave out pins that cannot touch; None
         where all are asked for.
-    follow : FollowingPins or None
-        Displacements of pins by what holds them, of the same positions.
+    follow : Following, FollowingPins or None
+        How the inner unknowns follow the pose, of the same positions.
+    inner : Inner or None
+        Inner unknowns of the one system of all contacts.
     """
 
     parameter: FloatArray
     share: FloatArray
-    warm_start: NDArray[np.object_] | None = None
+    warm_start: NDArray[np.object_]
     known: KnownPins | None = None
     follow: Following | FollowingPins | None = None
     inner: Inner | None = None

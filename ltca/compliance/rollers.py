@@ -91,7 +91,7 @@ class RollerState:
     inner_load: FloatArray
     outer_load: FloatArray
     outer_direction: ComplexArray
-    tangent: FloatArray | None = None
+    tangent: FloatArray
     inner_moment: FloatArray | None = None
     outer_moment: FloatArray | None = None
     lean: FloatArray | None = None

@@ -81,7 +81,7 @@ def start_between(angle: FloatArray, known: Start, wanted: FloatArray, ratio: fl
     return Start(
         parameter=along,
         share=between(known.share),
-        warm_start=None if known.warm_start is None else known.warm_start[nearer],
+        warm_start=known.warm_start[nearer],
         inner=take_positions(known.inner, nearer),
     )
 

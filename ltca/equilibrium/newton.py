@@ -39,8 +39,6 @@ RIDGE = 1e-9
 """Largest negative stiffness of a mode at a minimum by the stiffest: that of round-off."""
 FIRST_VALLEY_STEP = 1e-5
 """First step along a soft mode relative to the smallest pin radius; each step is at most four times the last."""
-INNER_WEIGHT = 100.0
-"""What is left of the inner unknowns counts so many times: moments of the cranks are balanced more closely than forces."""
 LEAST_PIVOT_RATIO = 1e-6
 """Least pivot ratio accepted by the elimination: with smaller ones the modes of the tangent are computed."""
 LINE_SEARCH_SLOPE_RATIO = 0.3
@@ -333,7 +331,7 @@ class Search:
 def _left_over(gradient: FloatArray, response: Response) -> FloatArray:
     """Largest unbalanced force of every position, N, and what contacts and pins that have not settled amount to."""
     left: FloatArray = np.max(np.abs(gradient), axis=1)
-    return left if response.left is None else np.maximum(left, INNER_WEIGHT * response.left)
+    return left if response.left is None else np.maximum(left, response.left)
 
 
 def _damped_step(

@@ -15,7 +15,16 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.arrays import ComplexArray, FloatArray, by_drive, has_rows, join_positions, map_arrays, take_positions, take_rows
+from ltca.arrays import (
+    ComplexArray,
+    FloatArray,
+    by_drive,
+    has_rows,
+    join_positions,
+    map_arrays,
+    take_positions,
+    take_rows,
+)
 from ltca.compliance.response import (
     ContactPressures,
     DiscModel,
@@ -32,6 +41,7 @@ from ltca.compliance.response import (
 from ltca.drive.parts import Drive
 from ltca.equilibrium.external_force import ExternalForce
 from ltca.equilibrium.first_stage import StageMesh
+from ltca.equilibrium.friction.slip import Slip
 from ltca.equilibrium.friction.turning import Rubbing, TurningFriction
 from ltca.equilibrium.pin_displacements import PinDisplacements
 from ltca.equilibrium.supports import Supports
@@ -88,6 +98,22 @@ class JointFriction(Protocol):
         """Return what friction does to a disc."""
         ...
 
+    def along(
+        self,
+        geometry: ContactGeometry,
+        pose: FloatArray,
+        slip: Slip,
+        load: FloatArray,
+        stiffness: FloatArray,
+        disc: int,
+    ) -> tuple[FloatArray, FloatArray, FloatArray | None]:
+        """Return the friction of pins by their loads, what it has beside, N, and what it grows with slip by, N/mm."""
+        ...
+
+    def of_bearings(self, geometry: ContactGeometry, pose: FloatArray, push: FloatArray) -> FloatArray:
+        """Return what the crank bearings of a disc resist with by the sizes of their forces, N."""
+        ...
+
     def of_wheel(
         self, parts: Sequence[DiscResponse], reduction_ratio: float, external: ComplexArray | float = 0.0
     ) -> FloatArray:
@@ -119,6 +145,8 @@ class Reducer:
         Teeth of the first stage.
     external : ExternalForce or None
         Forces from outside on the output.
+    one_system : bool
+        Whether contacts, displaced pins and rollers are found in one system with the pose (`ltca.mechanics`), not one in another.
     """
 
     discs: tuple[DiscModel, ...]
@@ -128,6 +156,7 @@ class Reducer:
     friction: JointFriction | None = None
     stage: StageMesh | None = None
     external: ExternalForce | None = None
+    one_system: bool = False
     _by_position: bool | None = field(init=False, repr=False, compare=False, default=None)
 
     @classmethod
@@ -187,72 +216,8 @@ class Reducer:
             Whether contacts in slices and displacements of pins that have nearly settled will do: force and tangent are then
             those of settled ones to first order, and `Response.left` tells what is left.
         """
-        if any(not hasattr(disc, "contact_laws") for disc in self.discs):
-            return self._respond_apart(crank_angle, pose, start, roughly=roughly)
-        rows = crank_angle.size
-        if rows > POSITIONS_AT_ONCE:
-            parts_of = np.array_split(np.arange(rows), -(-rows // POSITIONS_AT_ONCE))
-            found: Response = join_positions(
-                [
-                    self.take(some).respond(*take_positions((crank_angle, pose, start), some), roughly=roughly)
-                    for some in parts_of
-                ]
-            )
-            return found
-        coordinates = self.coordinates
-        at = ContactSystem(self).respond(crank_angle, pose, start, roughly=roughly)
-        parts, force, tangent = at.responses(), at.force.copy(), at.tangent.copy()
-        if self.friction is not None:
-            for number, part in enumerate(parts):
-                own, geometry = coordinates.columns(number), self.discs[number].geometry
-                push = np.abs(bearing_pushes(part.rollers, geometry.placement.cranks))
-                force[:, own] += self.friction.of_bearings(geometry, pose[:, own], push)
-        shifts = at.shifts
-        if shifts is not None and self.pins is not None and self.pins.ring is not None:
-            ring = -self.pins.of_ring(at.members.forces(at.corrected_load))
-            parts = tuple(replace(part, ring=ring) for part in parts)
-        left, follow, inner = at.left, at.following(), at.inner
-        if shifts is not None:
-            shifts = shifts[:, : len(self.discs)]
-        contact_stiffness = np.einsum("bii->bi", tangent).copy()
-        beside_discs: tuple[ComplexArray, FloatArray] | tuple[()] = ()
-        if self.stage is not None and self._teeth_press:
-            beside_discs = self._press_teeth(self.stage, crank_angle, pose, parts, force, tangent)
-        if self.supports is not None:
-            held, stiffness = self.supports.respond(pose, *beside_discs)
-            force += held
-            tangent += stiffness
-        if self.external is not None and coordinates.wheel:
-            pressed = self.external.on_wheel(crank_angle)
-            force[:, coordinates.wheel_place] -= np.stack((pressed.real, pressed.imag), axis=-1)
-            if coordinates.wheel_leans:
-                tilting = self.external.tilting(crank_angle)
-                force[:, coordinates.wheel_lean_place] -= np.stack((tilting.real, tilting.imag), axis=-1)
-        if self.friction is not None:
-            ratio = self.discs[0].geometry.placement.reduction_ratio
-            beside = self.force_beside_pins(crank_angle, pose, parts)
-            force[:, WHEEL_ANGLE] += self.friction.of_wheel(parts, ratio, beside)
-        return Response(
-            force=force,
-            tangent=tangent,
-            flank=_beside([part.flank for part in parts]),
-            holes=_beside([part.holes for part in parts]),
-            rollers=_beside([part.rollers for part in parts]),
-            pin_load=_beside([part.pin_load for part in parts]),
-            hole_load=_beside([part.hole_load for part in parts]),
-            parts=parts,
-            shifts=shifts,
-            ring=parts[0].ring,
-            follow=follow,
-            left=left,
-            inner=inner,
-            contact_stiffness=contact_stiffness,
-        )
-
-    def _respond_apart(
-        self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None, *, roughly: bool = False
-    ) -> Response:
-        """The same of contact grids, whose laws know their contacts by their places."""
+        if self.one_system:
+            return self._respond_together(crank_angle, pose, start, roughly=roughly)
         count, coordinates = len(self.discs), self.coordinates
         places = [coordinates.columns(number) for number in range(count)]
         starts = [None] * count if start is None else _split_start(start, count)
@@ -285,7 +250,7 @@ class Reducer:
             parts = respond(None)
         else:
             begin = self.pins.unmoved(crank_angle.size)
-            if start is not None and start.follow is not None:
+            if start is not None and isinstance(start.follow, FollowingPins):
                 begin = start.follow.at(pose)
             placement = self.discs[0].geometry.placement
             turned = unit(placement.wheel_rotation(crank_angle) + pose[:, WHEEL_ANGLE])
@@ -301,7 +266,33 @@ class Reducer:
         if settled is not None:
             force += settled.force
             tangent += settled.tangent
-        contact_stiffness = np.einsum("bii->bi", tangent).copy()
+        contact_stiffness = self._hold(crank_angle, pose, parts, force, tangent)
+        return Response(
+            force=force,
+            tangent=tangent,
+            **_contacts_of(parts),
+            warm_start=np.stack([part.warm_start for part in parts], axis=1),
+            parts=parts,
+            shifts=shifts,
+            ring=parts[0].ring,
+            follow=None if settled is None else FollowingPins(settled.onward, settled.by_pose, pose),
+            left=_largest([*(part.left for part in parts), None if settled is None else settled.left]),
+            contact_stiffness=contact_stiffness,
+        )
+
+    def _hold(
+        self,
+        crank_angle: FloatArray,
+        pose: FloatArray,
+        parts: Sequence[DiscResponse],
+        force: FloatArray,
+        tangent: FloatArray,
+    ) -> FloatArray:
+        """Add what first stage, supports, forces from outside and friction of bearings do to force and tangent, in place; return
+        the diagonal of the tangent of the contacts alone.
+        """
+        coordinates = self.coordinates
+        contact_stiffness = np.asarray(np.einsum("bii->bi", tangent).copy(), dtype=float)
         beside_discs: tuple[ComplexArray, FloatArray] | tuple[()] = ()
         if self.stage is not None and self._teeth_press:
             beside_discs = self._press_teeth(self.stage, crank_angle, pose, parts, force, tangent)
@@ -319,20 +310,49 @@ class Reducer:
             ratio = self.discs[0].geometry.placement.reduction_ratio
             beside = self.force_beside_pins(crank_angle, pose, parts)
             force[:, WHEEL_ANGLE] += self.friction.of_wheel(parts, ratio, beside)
+        return contact_stiffness
+
+    def _respond_together(
+        self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None, *, roughly: bool = False
+    ) -> Response:
+        """The same by one system of all contacts."""
+        rows = crank_angle.size
+        if rows > POSITIONS_AT_ONCE:
+            parts_of = np.array_split(np.arange(rows), -(-rows // POSITIONS_AT_ONCE))
+            found: Response = join_positions(
+                [
+                    self.take(some).respond(*take_positions((crank_angle, pose, start), some), roughly=roughly)
+                    for some in parts_of
+                ]
+            )
+            return found
+        coordinates = self.coordinates
+        at = ContactSystem(self).respond(crank_angle, pose, start, roughly=roughly)
+        parts, force, tangent = at.responses(), at.force.copy(), at.tangent.copy()
+        if self.friction is not None:
+            for number, part in enumerate(parts):
+                own, geometry = coordinates.columns(number), self.discs[number].geometry
+                push = np.abs(bearing_pushes(part.rollers, geometry.placement.cranks))
+                force[:, own] += self.friction.of_bearings(geometry, pose[:, own], push)
+        shifts = at.shifts
+        if shifts is not None and self.pins is not None and self.pins.ring is not None:
+            ring = -self.pins.of_ring(at.members.forces(at.corrected_load))
+            parts = tuple(replace(part, ring=ring) for part in parts)
+        left, follow, inner = at.left, at.following(), at.inner
+        if shifts is not None:
+            shifts = shifts[:, : len(self.discs)]
+        contact_stiffness = self._hold(crank_angle, pose, parts, force, tangent)
         return Response(
             force=force,
             tangent=tangent,
-            flank=_beside([part.flank for part in parts]),
-            holes=_beside([part.holes for part in parts]),
-            rollers=_beside([part.rollers for part in parts]),
-            pin_load=_beside([part.pin_load for part in parts]),
-            hole_load=_beside([part.hole_load for part in parts]),
-            warm_start=np.stack([part.warm_start for part in parts], axis=1),
+            **_contacts_of(parts),
+            warm_start=np.full((crank_angle.size, len(parts)), None, dtype=object),
             parts=parts,
             shifts=shifts,
             ring=parts[0].ring,
-            follow=None if settled is None else FollowingPins(settled.onward, settled.by_pose, pose),
-            left=_largest([*(part.left for part in parts), None if settled is None else settled.left]),
+            follow=follow,
+            left=left,
+            inner=inner,
             contact_stiffness=contact_stiffness,
         )
 
@@ -561,6 +581,12 @@ def _largest(forces: Sequence[FloatArray | None]) -> FloatArray | None:
     """Largest of forces that are left over of each position, N."""
     left = [force for force in forces if force is not None]
     return np.max(left, axis=0) if left else None
+
+
+def _contacts_of(parts: Sequence[DiscResponse]) -> dict[str, Any]:
+    """The contacts of all discs, disc after disc."""
+    names = ("flank", "holes", "rollers", "pin_load", "hole_load")
+    return {name: _beside([getattr(part, name) for part in parts]) for name in names}
 
 
 def _beside(values: Sequence[Any]) -> Any:

@@ -186,7 +186,9 @@ class SlicedContact:
         self.near[rows, :2] += np.stack((approach, tilt), axis=1)
         self.near[rows, 2 : 2 + slices] += moved
 
-    def moved(self, approach: FloatArray, tilt: FloatArray, load: FloatArray, half: FloatArray | float) -> SlicedContact:
+    def moved(
+        self, approach: FloatArray, tilt: FloatArray, load: FloatArray, half: FloatArray | float
+    ) -> SlicedContact:
         """Return contacts that approach and tilt by a little more, mm and rad, and carry these loads and moments by `half`,
         shape (positions, 2, contacts): their slices follow their slopes.
         """
@@ -196,13 +198,20 @@ class SlicedContact:
         slices = self.slice_load.shape[-1]
         by_approach, by_tilt = self.near[..., 2 + slices : 2 + 2 * slices], self.near[..., 2 + 2 * slices :]
         added = approach[..., None] * by_approach + tilt[..., None] * by_tilt
-        grown = np.divide(self.slice_load + added, self.slice_load, out=np.ones(added.shape), where=self.slice_load > 0.0)
+        grown = np.divide(
+            self.slice_load + added, self.slice_load, out=np.ones(added.shape), where=self.slice_load > 0.0
+        )
         near = self.near.copy()
         near[..., 0] += approach
         near[..., 1] += tilt
         near[..., 2 : 2 + slices] += added
         return replace(
-            self, load=force, moment=moment, slice_load=self.slice_load + added, line_load=self.line_load * grown[..., None], near=near
+            self,
+            load=force,
+            moment=moment,
+            slice_load=self.slice_load + added,
+            line_load=self.line_load * grown[..., None],
+            near=near,
         )
 
     def _arrays(self) -> list[tuple[str, FloatArray]]:

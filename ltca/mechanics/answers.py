@@ -23,13 +23,14 @@ def disc_response(at: Linearised, disc: int) -> DiscResponse:
     flank, in_holes = each.flank, each.holes
     rollers = _rollers(at, disc)
     if system.coupled and system.components == 1:
+        body: Any = system.model.discs[disc]
         approach = _approaches(at, disc)
         flank = replace(flank, approach=approach[:, : system.pins])
         in_holes = replace(in_holes, approach=approach[:, system.pins + system.rollers :])
         at_bore = approach[:, system.pins : system.pins + system.rollers]
         rays, free = each.rays, bores <= 0.0
         resting = np.abs(rays.outermost * rays.direction - each.displacement) - rays.bore_play
-        inner = at.after[:, 0, kinds[3]] + np.diag(at.system.model.discs[disc].race) * races
+        inner = at.after[:, 0, kinds[3]] + np.diag(body.race) * races
         rollers = replace(
             rollers,
             inner_approach=np.where(free, 0.0, inner),
@@ -47,14 +48,20 @@ def disc_response(at: Linearised, disc: int) -> DiscResponse:
         if at.sticking is not None:
             pairs = both.shape[1]
             friction = friction + at.sticking[2][:, disc * pairs : (disc + 1) * pairs]
-            force = force + np.einsum(
-                "bpj,bp->bj", at.sticking[1][:, disc * pairs : (disc + 1) * pairs], at.sticking[2][:, disc * pairs : (disc + 1) * pairs]
-            )[:, own]
-    leaning: tuple[Any, Any] = (None, None)
+            force = (
+                force
+                + np.einsum(
+                    "bpj,bp->bj",
+                    at.sticking[1][:, disc * pairs : (disc + 1) * pairs],
+                    at.sticking[2][:, disc * pairs : (disc + 1) * pairs],
+                )[:, own]
+            )
+    leaning: tuple[Any, ...] = (None, None)
     if each.tilts is not None:
         found = at.slices_after(disc)
         leaning = tuple(
-            LeaningPairs(tilt=tilt, contact=contact) for tilt, contact in zip(each.tilts, (found[0], found[2]), strict=True)
+            LeaningPairs(tilt=tilt, contact=contact)
+            for tilt, contact in zip(each.tilts, (found[0], found[2]), strict=True)
         )
     return DiscResponse(
         force=force,
@@ -64,6 +71,7 @@ def disc_response(at: Linearised, disc: int) -> DiscResponse:
         rollers=rollers,
         pin_load=pins,
         hole_load=holes,
+        warm_start=np.full(pins.shape[0], None, dtype=object),
         shifts=each.shifts,
         leans=each.leans,
         friction=friction,
@@ -105,6 +113,7 @@ def _rollers(at: Linearised, disc: int) -> RollerState:
         inner_load=load[:, 0, races],
         outer_load=load[:, 0, bores],
         outer_direction=np.where(carries, each.outward, arm / rest),
+        tangent=np.zeros((*carries.shape, 2, 2)),
     )
     if each.tilts is None:
         return state

@@ -21,22 +21,20 @@ as components.
 
 from __future__ import annotations
 
-from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ltca.arrays import ComplexArray, FloatArray
-from ltca.compliance.response import DiscResponse, LeaningPairs, PairSlopes, Start
-from ltca.compliance.rollers import RollerState
+from ltca.compliance.response import DiscResponse, Start
 from ltca.errors import ConvergenceError
-from ltca.geometry.coordinates import DISC_ROTATION, Coordinates, X, Y
+from ltca.geometry.coordinates import DISC_ROTATION, X, Y
 from ltca.geometry.pair_motion import KnownPins, PairTilt, dot
 from ltca.geometry.pairs import ContactGeometry
-from ltca.geometry.rotation import unit
 from ltca.laws.sliced_contact import EXACT, ROUGH, SlicedContact
 
 if TYPE_CHECKING:
@@ -55,6 +53,7 @@ MAX_CORRECTIONS = 60
 MAX_HALVINGS = 12
 STEEPEST = 0.3
 """Largest slope of the energy at the end of a correction by that at its start."""
+LEFT_WEIGHT = 100.0
 ROUND_OFF = 1e-13
 """Correction that is nothing but round-off of places, mm."""
 LEAST_TURNING = 1e-9
@@ -62,7 +61,7 @@ LEAST_TURNING = 1e-9
 
 
 class ContactLaws(NamedTuple):
-    """Laws of the contacts of a disc, in the order of `KINDS`, and the effective radii of those that have one of their own, mm."""
+    """Laws of the contacts of a disc, in the order of `KINDS`, and effective radii of those that have one of their own, mm."""
 
     laws: tuple[Any, Any, Any, Any]
     outer_radius: FloatArray
@@ -203,12 +202,14 @@ class ContactSystem:
         self.each = self.pins + 2 * self.rollers + self.holes
         self.contacts = self.discs * self.each
         self.components = 1 + self.coordinates.leans
-        self.laws: list[ContactLaws] = [disc.contact_laws for disc in model.discs]
+        bodies: tuple[Any, ...] = model.discs
+        self.bodies = bodies
+        self.laws: list[ContactLaws] = [disc.contact_laws for disc in bodies]
         self.coupled = any(disc.coefficients is not None for disc in model.discs)
         self.deforms = self.coupled or model.pins is not None
         ends = np.cumsum((0, self.pins, self.rollers, self.holes, self.rollers))
         self.of_kind = [
-            [slice(disc * self.each + first, disc * self.each + last) for first, last in zip(ends, ends[1:], strict=False)]
+            [slice(disc * self.each + first, disc * self.each + last) for first, last in pairwise(ends)]
             for disc in range(self.discs)
         ]
         self.columns = [self.coordinates.columns(disc) for disc in range(self.discs)]
@@ -219,9 +220,7 @@ class ContactSystem:
         """Half the thickness of the discs, by which tilts are measured, mm, shape (…,) of one number or (positions, 1)."""
         return np.asarray(self.geometries[0].half_width, dtype=float)
 
-    def respond(
-        self, angle: FloatArray, pose: FloatArray, start: Start | None, *, roughly: bool
-    ) -> Linearised:
+    def respond(self, angle: FloatArray, pose: FloatArray, start: Start | None, *, roughly: bool) -> Linearised:
         """Return contacts at poses, found to first order in what is left of the inner unknowns."""
         state = self._begin(pose, start)
         known = None if start is None or self.deforms or self.components > 1 else start.known
@@ -230,7 +229,13 @@ class ContactSystem:
             if self.deforms and not at.settled(roughly=True):
                 # What was expected may be farther off than nothing at all.
                 anew = Linearised(
-                    self, angle, pose, state._replace(approach=None, shifts=state.shifts * 0.0 if state.shifts is not None else None), known, roughly=roughly, margin=margin
+                    self,
+                    angle,
+                    pose,
+                    state._replace(approach=None, shifts=state.shifts * 0.0 if state.shifts is not None else None),
+                    known,
+                    roughly=roughly,
+                    margin=margin,
                 )
                 if np.max(anew.off) < np.max(at.off):
                     at = anew
@@ -250,7 +255,15 @@ class ContactSystem:
         """Inner unknowns to start from; NaN where nothing is known."""
         rows, rollers = pose.shape[0], self.discs * self.rollers
         unknown = np.full((rows, rollers), np.nan)
-        state = _State(parameter=None, place=unknown, share=np.full((rows, rollers), 0.5), lean=unknown, approach=None, shifts=None, near=())
+        state = _State(
+            parameter=None,
+            place=unknown,
+            share=np.full((rows, rollers), 0.5),
+            lean=unknown,
+            approach=None,
+            shifts=None,
+            near=(),
+        )
         if self.model.pins is not None:
             state = state._replace(shifts=self.model.pins.unmoved(rows))
         if start is None:
@@ -260,7 +273,9 @@ class ContactSystem:
             state = state._replace(approach=start.inner.approach, near=start.inner.near)
             if self.components > 1 and start.inner.lean.shape == unknown.shape:
                 state = state._replace(lean=start.inner.lean)
-            if not self.deforms or (state.approach is not None and state.approach.shape[1:] != (self.components, self.contacts)):
+            if not self.deforms or (
+                state.approach is not None and state.approach.shape[1:] != (self.components, self.contacts)
+            ):
                 state = state._replace(approach=None)
             if self.components == 1:
                 state = state._replace(near=())
@@ -347,7 +362,9 @@ class Linearised:
             known = self.known
             if known is not None:
                 known = KnownPins(
-                    approach=known.approach[:, first:last], point=known.point[:, first:last], turning=known.turning[:, first:last]
+                    approach=known.approach[:, first:last],
+                    point=known.point[:, first:last],
+                    turning=known.turning[:, first:last],
                 )
             shifts = leans = None
             if state.shifts is not None:
@@ -402,7 +419,9 @@ class Linearised:
                     lean = np.where(loose, middle, lean)
             at.place_rollers(place)
             self.place[:, own], self.lean[:, own] = place, lean
-            for kind, values in zip(system.of_kind[disc], (at.flank.approach, at.outer, at.holes.approach, place), strict=True):
+            for kind, values in zip(
+                system.of_kind[disc], (at.flank.approach, at.outer, at.holes.approach, place), strict=True
+            ):
                 self.overlap[:, 0, kind] = values
             if at.tilts is not None:
                 tilts = (self.half * at.tilts[0].tilt, lean - at_bore, self.half * at.tilts[1].tilt, at_race - lean)
@@ -427,7 +446,7 @@ class Linearised:
             return np.ones(self.overlap[:, 0].shape, dtype=bool)
         reach = self.overlap[:, 0] + (np.abs(self.overlap[:, 1]) if self.system.components > 1 else 0.0)
         most = np.max(reach, axis=1, initial=0.0)[:, None]
-        return (reach > 0.0) | (reach > -self.margin * most)
+        return np.asarray((reach > 0.0) | (reach > -self.margin * most))
 
     def _carry(self, state: _State, roughly: bool) -> None:
         """Loads of all contacts at their deformations, and their derivatives."""
@@ -453,10 +472,14 @@ class Linearised:
                     self.load[:, 0, kind][closed], self.stiffness[0][:, kind][closed] = some
                     continue
                 near = state.near[4 * disc + number] if state.near else None
-                one = law.respond(pressed, e[:, 1, kind] / self.half, np.broadcast_to(radius, pressed.shape), near, exactness)
+                one = law.respond(
+                    pressed, e[:, 1, kind] / self.half, np.broadcast_to(radius, pressed.shape), near, exactness
+                )
                 self.load[:, 0, kind], self.load[:, 1, kind] = one.load, one.moment / self.half
                 for values, mine in zip(
-                    self.stiffness, (one.by_approach, one.by_tilt / self.half, one.moment_by_tilt / self.half**2), strict=True
+                    self.stiffness,
+                    (one.by_approach, one.by_tilt / self.half, one.moment_by_tilt / self.half**2),
+                    strict=True,
                 ):
                     values[:, kind] = mine
                 if one.left is not None and one.left.size:
@@ -485,10 +508,11 @@ class Linearised:
         )
         ends = np.cumsum([0, *(part.shape[1] for part in parts)])
         self.at = [
-            [slice(ends[4 * disc + kind], ends[4 * disc + kind + 1]) for kind in range(4)] for disc in range(system.discs)
+            [slice(ends[4 * disc + kind], ends[4 * disc + kind + 1]) for kind in range(4)]
+            for disc in range(system.discs)
         ]
         ends = np.cumsum([0, *(own[1].shape[1] for own in self.chosen)])
-        self.of_rollers = [slice(first, last) for first, last in zip(ends, ends[1:], strict=False)]
+        self.of_rollers = [slice(first, last) for first, last in pairwise(ends)]
 
     def _gradients(self) -> tuple[FloatArray, FloatArray]:
         """∂d/∂q of the chosen contacts, shape (positions, components, chosen, coordinates), and how the tangents of the chosen
@@ -549,7 +573,9 @@ class Linearised:
         placed = np.zeros((rows, rollers, components, size))
         placed[:, :, 0] = (bend * slant)[..., None] * across
         own_bend = bend * slant**2
-        force = np.matmul(force_map.reshape(rows, self.each, size).swapaxes(1, 2), load.reshape(rows, self.each, 1))[..., 0]
+        force = np.matmul(force_map.reshape(rows, self.each, size).swapaxes(1, 2), load.reshape(rows, self.each, 1))[
+            ..., 0
+        ]
         if self.sticking is not None:
             by_slip, slip, held = self.sticking
             force += np.einsum("bpj,bp->bj", slip, held)
@@ -560,7 +586,9 @@ class Linearised:
                 force_map.reshape(rows, self.each, size).swapaxes(1, 2), pressed.reshape(rows, self.each, size)
             )
             of_bores, of_races = stiffness[..., bores], stiffness[..., races]
-            placed += (outward[..., None] * pressed[:, :, bores] + inward[..., None] * pressed[:, :, races]).swapaxes(1, 2)
+            placed += (outward[..., None] * pressed[:, :, bores] + inward[..., None] * pressed[:, :, races]).swapaxes(
+                1, 2
+            )
             own = _own_stiffness(of_bores, outward) + _own_stiffness(of_races, inward)
             own[:, :, 0, 0] += own_bend
             _hold_turning(own)
@@ -591,7 +619,19 @@ class Linearised:
             self.off = np.max(wanted * matters, axis=1, initial=0.0)
             apart = np.abs(unbalanced).sum(axis=-1) / np.where(stiff > 0.0, stiff, np.inf)
             self.off = np.maximum(self.off, np.max(apart, axis=1, initial=0.0))
-            given = g, force_map, stiffness, whole, left, (outward, inward), unbalanced, placed, own_bend, force, tangent
+            given = (
+                g,
+                force_map,
+                stiffness,
+                whole,
+                left,
+                (outward, inward),
+                unbalanced,
+                placed,
+                own_bend,
+                force,
+                tangent,
+            )
             moves = self.shifts is not None and not self.held
             force, tangent = self._eliminate(*given, turning=moves)
             if moves and not self._is_near(stiffness):
@@ -606,7 +646,8 @@ class Linearised:
         self.off = np.zeros(rows) if self.off is None else self.off
         self.moved = np.max(np.where(stiffness[0] > 0.0, moved, 0.0), axis=1, initial=0.0)
         error = np.abs(change).sum(axis=1) * np.minimum(1.0, moved / deep)
-        self.left = np.maximum(np.max(error, axis=1, initial=0.0), self.law_left)
+        # Moments of the cranks are balanced more closely than forces.
+        self.left = np.maximum(LEFT_WEIGHT * np.max(error, axis=1, initial=0.0), self.law_left)
         self.change = change
 
     def _eliminate(
@@ -655,11 +696,14 @@ class Linearised:
                 t[:, component, places, own, component] = press[:, component]
         flat = t.reshape(rows, components * count, rollers * components)
         right = np.concatenate((g.reshape(rows, each, size), flat, left.reshape(rows, each, 1)), axis=-1)
-        system_matrix = _pressed(stiffness, whole.reshape(rows, components * count, components, count).transpose(0, 2, 3, 1))
+        system_matrix = _pressed(
+            stiffness, whole.reshape(rows, components * count, components, count).transpose(0, 2, 3, 1)
+        )
         system_matrix = system_matrix.transpose(0, 3, 1, 2).reshape(rows, components * count, components * count)
         own = np.arange(components * count)
         system_matrix[:, own, own] += 1.0
-        x = np.linalg.solve(system_matrix, right).reshape(rows, components, count, right.shape[-1])
+        found: FloatArray = np.asarray(np.linalg.solve(system_matrix, right), dtype=float)
+        x = found.reshape(rows, components, count, right.shape[-1])
         kx = _pressed(stiffness, x).reshape(rows, components * count, right.shape[-1])
         back = np.concatenate((force_map.reshape(rows, each, size), flat), axis=-1)
         products = np.matmul(back.swapaxes(1, 2), kx)
@@ -719,7 +763,7 @@ class Linearised:
         entries = count + (0 if members is None else members.count)
         whole = np.zeros((rows, components, entries, components, entries))
         self.bodies: list[list[FloatArray]] = []
-        for disc, model in enumerate(system.model.discs):
+        for disc, model in enumerate(system.bodies):
             self.bodies.append([])
             if model.coefficients is None:
                 continue
@@ -728,9 +772,7 @@ class Linearised:
             among = np.r_[pins, bores, holes]
             for component, (matrix, race, cross) in enumerate(model.body_flexibility(places, some)):
                 self.bodies[disc].append(matrix)
-                walls = np.concatenate(
-                    (some[0], system.pins + some[1], system.pins + system.rollers + some[2]), axis=1
-                )
+                walls = np.concatenate((some[0], system.pins + some[1], system.pins + system.rollers + some[2]), axis=1)
                 whole[:, component, among[:, None], component, among] = matrix[row, walls]
                 on_race = race[some[1][:, :, None], some[1][:, None, :]]
                 whole[:, component, races, component, races] = on_race
@@ -740,7 +782,7 @@ class Linearised:
         left = deformed - self.overlap[row, :, self.contacts].swapaxes(1, 2)
         if system.coupled:
             left += np.einsum("bcicj,bcj->bci", whole[:, :, :count, :, :count], load)
-        if members is not None and system.model.pins is not None:
+        if members is not None and self.shifts is not None and system.model.pins is not None:
             self.left_shifts = self.shifts + system.model.pins.under(members.forces(self.load))
             left += members.approaches(self.left_shifts)
             members.add_flexibility(whole)
@@ -872,8 +914,7 @@ class Linearised:
 
     def _state(self, fraction: FloatArray | None = None) -> _State:
         """Inner unknowns after the correction."""
-        system, row = self.system, self.row
-        approach = None
+        system, approach = self.system, None
         if system.deforms:
             approach = self.after
         shifts = None if self.shifts is None else self._moved_shifts()
@@ -924,7 +965,9 @@ class Linearised:
             found = []
             for one, kind in zip(self.sliced[disc], self.system.of_kind[disc], strict=True):
                 change = self.after[:, :, kind] - self.deformation[:, :, kind]
-                found.append(one.moved(change[:, 0], change[:, 1] / self.half, self.corrected_load[:, :, kind], self.half))
+                found.append(
+                    one.moved(change[:, 0], change[:, 1] / self.half, self.corrected_load[:, :, kind], self.half)
+                )
             self._moved_slices[disc] = found
         return self._moved_slices[disc]
 
@@ -944,8 +987,8 @@ class Linearised:
     def corrected(self, *, roughly: bool, part: float = 1.0) -> Linearised:
         """Return the contacts at the same poses with the inner unknowns corrected.
 
-        Displacements of pins move by a part of what is left of them. Deformations are found for pins that stand where they stand, and gaps taken as linear in what displaces these, a convex
-        problem; then the pins are put where the loads press them.
+        Deformations are found for pins that stand where they stand, and gaps taken as linear in what displaces these, a convex
+        problem; then the pins are put where the loads press them, or a part of the way there.
         """
         at = self._stepped(roughly=roughly)
         if self.shifts is None:
@@ -1024,7 +1067,9 @@ class Linearised:
             return False
         for disc, yielding in enumerate(self.yielding):
             some, kinds = self.chosen[disc], self.system.of_kind[disc]
-            for kind, part in enumerate(np.split(yielding[0], np.cumsum((self.system.pins, self.system.rollers)), axis=1)):
+            for kind, part in enumerate(
+                np.split(yielding[0], np.cumsum((self.system.pins, self.system.rollers)), axis=1)
+            ):
                 pressed = self.overlap[:, 0, kinds[kind]] - part > 0.0
                 pressed[self.row, some[kind]] = False
                 if pressed.any():
@@ -1080,7 +1125,7 @@ def _padded(mask: NDArray[np.bool_]) -> Indices:
 def _pressed(stiffness: FloatArray, moved: FloatArray) -> FloatArray:
     """K of columns of deformations, shape (positions, components, contacts, columns)."""
     if stiffness.shape[0] == 1:
-        return stiffness[0][:, None, :, None] * moved
+        return np.asarray(stiffness[0][:, None, :, None] * moved)
     k, mixed, turning = (each[..., None] for each in stiffness)
     first, second = moved[:, 0], moved[:, 1]
     return np.stack((k * first + mixed * second, mixed * first + turning * second), axis=1)
@@ -1096,7 +1141,7 @@ def _filled(stiffness: FloatArray, count: int) -> FloatArray:
 def _own_stiffness(stiffness: FloatArray, press: FloatArray) -> FloatArray:
     """Stiffness of contacts against the place and lean of their rollers, shape (positions, rollers, components, components)."""
     if stiffness.shape[0] == 1:
-        return (stiffness[0] * press[:, 0] ** 2)[..., None, None]
+        return np.asarray((stiffness[0] * press[:, 0] ** 2)[..., None, None])
     k, mixed, turning = stiffness
     first, second = press[:, 0], press[:, 1]
     cross = first * mixed * second

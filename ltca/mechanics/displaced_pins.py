@@ -69,7 +69,9 @@ class PinMembers:
             by = dot(self.normal[disc], shifts[:, disc])
             each = [by]
             if self.turning:
-                each.append(dot(self.turning[disc], shifts[:, disc]) + dot(self.normal[disc], shifts[:, system.discs + disc]))
+                each.append(
+                    dot(self.turning[disc], shifts[:, disc]) + dot(self.normal[disc], shifts[:, system.discs + disc])
+                )
             some = at.chosen[disc]
             for kind, first in ((0, 0), (2, system.pins)):
                 for component, values in enumerate(each):
@@ -106,7 +108,7 @@ class PinMembers:
                 last += some.shape[1]
                 bend = sign * motion.bending[at.row, some]
                 load = at.load[:, :, system.of_kind[disc][kind]]
-                #bend = np.maximum(bend, 0.0)
+                # bend = np.maximum(bend, 0.0)
                 parts = [bend * load[:, component][at.row, some] for component in range(system.components)]
                 each.append(np.stack([*parts, np.zeros(bend.shape)]) if system.components > 1 else np.stack(parts))
                 along = motion.along[at.row, some]
@@ -139,7 +141,7 @@ class PinMembers:
         by: list[list[ComplexArray]] = [[normal]]
         onto: list[list[ComplexArray]] = [[pressing]]
         if self.turning:
-            turning = chosen(self.turning, [np.zeros(one.shape) for one in self.turning])
+            turning = chosen(self.turning, [np.zeros_like(one) for one in self.turning])
             by, onto = [[normal, none], [turning, normal]], [[pressing, none], [turning, pressing]]
         kinds = len(by[0])
         same = pair[:, :, None] == pair[:, None, :]
@@ -148,7 +150,12 @@ class PinMembers:
             behind = (row[..., None],) if held.beams.ndim > 3 else ()
             for i in range(kinds):
                 for j in range(kinds):
-                    at_pin = (*behind, pair[:, :, None], (disc_of + i * system.discs)[:, None], disc_of + j * system.discs)
+                    at_pin = (
+                        *behind,
+                        pair[:, :, None],
+                        (disc_of + i * system.discs)[:, None],
+                        disc_of + j * system.discs,
+                    )
                     beam = held.beams[at_pin] * same
                     if not beam.any():
                         continue

@@ -13,13 +13,28 @@ around with the crank, and with it what plays and yielding displace the members 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
 from ltca.arrays import FloatArray
-from ltca.compliance.response import DiscResponse
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, X, Y
+from ltca.geometry.pair_motion import FlankMotion, PairMotion
 from ltca.geometry.pairs import ContactGeometry
+
+
+class Pairs(Protocol):
+    """Pairs of pins and flank and of pins and holes of a disc."""
+
+    @property
+    def flank(self) -> FlankMotion:
+        """Wheel pins."""
+        ...
+
+    @property
+    def holes(self) -> PairMotion:
+        """Shaft pins."""
+        ...
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -38,7 +53,7 @@ class Slip:
     by_crank: FloatArray
 
     @classmethod
-    def of_disc(cls, geometry: ContactGeometry, crank_angle: FloatArray, pose: FloatArray, part: DiscResponse) -> Slip:
+    def of_disc(cls, geometry: ContactGeometry, crank_angle: FloatArray, pose: FloatArray, part: Pairs) -> Slip:
         """Return the slip of the contacts of one disc at crank angles, rad, and its poses, shape (positions, coordinates)."""
         place = geometry.placement
         flank, holes = part.flank.along.copy(), part.holes.along.copy()
