@@ -77,7 +77,8 @@ def test_load_moment_and_pressure(drop, tilt, load, span, slices):
     given = [np.array([value]) for value in (approach, tilt, RADIUS)]
     found = line.respond(*given)
     assert found.load[0] == pytest.approx(load, rel=0.01)
-    assert found.moment[0] == pytest.approx(moment, abs=0.02 * arm)
+    # docs/theory/width.md: 2 %, of short lines 3 %; of L/b = 88 and a third of the line 2.3 %.
+    assert found.moment[0] == pytest.approx(moment, abs=(0.03 if slices == 17 else 0.02) * arm)
     if drop:
         largest = float(pressure.max())
         assert estimate_along_width(kind, found.line_load, given[2]).largest[0] == pytest.approx(largest, rel=0.03)
