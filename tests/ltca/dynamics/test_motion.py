@@ -364,8 +364,8 @@ def test_forces_are_slopes_of_what_is_stored(name, kind, tmp_path):
 def test_energy_closes_where_contacts_feel_each_other(name, engine, course, coarse_derivations, monkeypatch):
     """With what the bodies and pins store, and the work of contacts that move over them: 1e-4 of the throughput was asked for.
 
-    Bodies of coarse meshes: the balance is one of any coefficients. The work of moving contacts is told from what is left, in steps
-    ten times as close.
+    Bodies of coarse meshes: the balance is one of any coefficients. The work of moving contacts is told from what is left, in
+    steps ten times as close.
     """
     monkeypatch.setattr(time_run, "RELATIVE_TOLERANCE", 0.1 * time_run.RELATIVE_TOLERANCE)
     monkeypatch.setattr(time_run, "PLACE_TOLERANCE", 0.1 * time_run.PLACE_TOLERANCE)

@@ -1,4 +1,4 @@
-"""One system of all contacts against the solvers that find rollers, pins and bodies one inside another: random drives of every kind.
+"""One system of all contacts against solvers that find rollers, pins and bodies one inside another: drives of every kind.
 
 Both search to a residual of 1e-12 of the load; what is left of a difference is that residual through the inverse of the tangent.
 """
