@@ -22,6 +22,7 @@ reading        Files that are read: drives, checked against physics, changed and
                arguments
 laws           Load–approach laws of single contacts: tables of the half-space, plane strain, springs
 compliance     Loads of all pairs at a pose: how the bodies yield, two kinds of models behind one interface
+mechanics      All contacts of a reducer and what couples them, in one system beside these models
 equilibrium    The pose that balances
 dynamics       Masses, and vibrations about a balanced position
 analysis       An analysis of a drive and what is read from it

@@ -22,7 +22,8 @@ PACKAGES = ("ltca", "fem", "validation")
 # The floors of the house, lowest first: a module imports from its own floor or from lower ones, never from above.
 FLOORS = (
     "ltca.errors", "ltca.arrays", "ltca.beam", "ltca.quantities", "ltca.output", "ltca.drive", "ltca.geometry", "ltca.contact",
-    "ltca.reading", "ltca.laws", "ltca.compliance", "ltca.equilibrium", "ltca.dynamics", "ltca.analysis", "ltca.studies",
+    "ltca.reading", "ltca.laws", "ltca.compliance", "ltca.mechanics", "ltca.equilibrium", "ltca.dynamics", "ltca.analysis",
+    "ltca.studies",
     "ltca.figures", "ltca.page", "ltca.export", "ltca.studio", "ltca.testing", "ltca",
     "fem.errors", "fem.discretisation_error", "fem.shapes", "fem.mesh", "fem.body", "fem.solid", "fem.options", "fem.contact",
     "fem.drive", "fem.solid_contact", "fem.reducer",

@@ -30,6 +30,7 @@ from numpy.typing import NDArray
 from ltca.arrays import ComplexArray, FloatArray, join_positions, take_positions
 from ltca.compliance import sliced
 from ltca.compliance.coefficients import SOLID, InfluenceCoefficients
+from ltca.compliance.contact_laws import ContactLaws
 from ltca.compliance.near_field import NearField, NearFieldLaws, OwnParts
 from ltca.compliance.pressures import pressures_in_slices, pressures_of_law
 from ltca.compliance.response import (
@@ -60,7 +61,6 @@ from ltca.laws.backed import (
 )
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.spring import SpringLaw
-from ltca.mechanics.contacts import ContactLaws
 
 MAX_ITERATIONS = 60
 POSITIONS_PER_CHUNK = 256

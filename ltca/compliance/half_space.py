@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ltca.arrays import FloatArray
 from ltca.compliance import sliced
+from ltca.compliance.contact_laws import ContactLaws
 from ltca.compliance.pressures import pressures_of_law
 from ltca.compliance.response import DiscResponse, KindPressures
 from ltca.compliance.rollers import RollerLaws
@@ -37,7 +38,6 @@ from ltca.laws.backed import (
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.generator_law import law_for_profile
 from ltca.laws.spring import SpringLaw
-from ltca.mechanics.contacts import ContactLaws
 
 SAMPLES_PER_LOBE = 180
 """Stations on a lobe at which the range of effective radii is searched."""

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.coefficients import InfluenceCoefficients
+from ltca.compliance.inner_unknowns import Following, Inner
 from ltca.compliance.rollers import RollerState
 from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION, Coordinates, X, Y
 from ltca.geometry.pair_motion import BoreMotion, FlankMotion, KnownPins, PairMotion, PairTilt, RollerRays
@@ -21,7 +22,6 @@ from ltca.geometry.pairs import ContactGeometry
 
 if TYPE_CHECKING:
     from ltca.laws.sliced_contact import SlicedContact
-    from ltca.mechanics.contacts import Following, Inner
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

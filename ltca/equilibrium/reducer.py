@@ -41,7 +41,7 @@ from ltca.compliance.response import (
 from ltca.drive.parts import Drive
 from ltca.equilibrium.external_force import ExternalForce
 from ltca.equilibrium.first_stage import StageMesh
-from ltca.equilibrium.friction.slip import Slip
+from ltca.equilibrium.friction.slip import Pairs
 from ltca.equilibrium.friction.turning import Rubbing, TurningFriction
 from ltca.equilibrium.pin_displacements import PinDisplacements
 from ltca.equilibrium.supports import Supports
@@ -50,6 +50,7 @@ from ltca.geometry.pair_motion import KnownPins
 from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.rotation import unit
 from ltca.laws.carrier import far_flange_stiffness
+from ltca.mechanics.answers import disc_response
 from ltca.mechanics.contacts import ContactSystem
 
 POSITIONS_AT_ONCE = 256
@@ -101,13 +102,14 @@ class JointFriction(Protocol):
     def along(
         self,
         geometry: ContactGeometry,
+        crank_angle: FloatArray,
         pose: FloatArray,
-        slip: Slip,
+        pairs: Pairs,
         load: FloatArray,
         stiffness: FloatArray,
         disc: int,
-    ) -> tuple[FloatArray, FloatArray, FloatArray | None]:
-        """Return the friction of pins by their loads, what it has beside, N, and what it grows with slip by, N/mm."""
+    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray | None]:
+        """Return slip by the pose, friction of pins by load, what it has beside, N, and what it grows with slip by, N/mm."""
         ...
 
     def of_bearings(self, geometry: ContactGeometry, pose: FloatArray, push: FloatArray) -> FloatArray:
@@ -328,7 +330,8 @@ class Reducer:
             return found
         coordinates = self.coordinates
         at = ContactSystem(self).respond(crank_angle, pose, start, roughly=roughly)
-        parts, force, tangent = at.responses(), at.force.copy(), at.tangent.copy()
+        parts = tuple(disc_response(at, disc) for disc in range(len(self.discs)))
+        force, tangent = at.force.copy(), at.tangent.copy()
         if self.friction is not None:
             for number, part in enumerate(parts):
                 own, geometry = coordinates.columns(number), self.discs[number].geometry

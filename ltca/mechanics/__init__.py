@@ -1,1 +1,8 @@
-"""Mechanics of a reducer at a pose: its contacts, their laws, and everything elastic that couples them, in one linear system."""
+"""Mechanics of a reducer at a pose: its contacts, their laws, and everything elastic that couples them, in one linear system.
+
+===============  ================================================================================================
+displaced_pins   Contacts on pins that beams and the ring displace: how they follow, and what they press
+contacts         All contacts at poses with everything elastic that couples them, linearised
+answers          What the contacts of a disc answer at poses
+===============  ================================================================================================
+"""

@@ -21,7 +21,7 @@ as components.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -30,15 +30,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.arrays import ComplexArray, FloatArray
-from ltca.compliance.response import DiscResponse, Start
+from ltca.compliance import sliced
+from ltca.compliance.contact_laws import ContactLaws
+from ltca.compliance.inner_unknowns import Following, Inner
+from ltca.compliance.response import Start
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_ROTATION, X, Y
 from ltca.geometry.pair_motion import KnownPins, PairTilt, dot
 from ltca.geometry.pairs import ContactGeometry
-from ltca.laws.sliced_contact import EXACT, ROUGH, SlicedContact
+from ltca.mechanics.displaced_pins import PinMembers
 
 if TYPE_CHECKING:
-    from ltca.equilibrium.reducer import Reducer
+    from ltca.laws.sliced_contact import SlicedContact
 
 Indices = NDArray[np.intp]
 
@@ -58,83 +61,6 @@ ROUND_OFF = 1e-13
 """Correction that is nothing but round-off of places, mm."""
 LEAST_TURNING = 1e-9
 """Stiffness against leaning by that of the place and the square of half the width: what touches at one end alone turns freely."""
-
-
-class ContactLaws(NamedTuple):
-    """Laws of the contacts of a disc, in the order of `KINDS`, and effective radii of those that have one of their own, mm."""
-
-    laws: tuple[Any, Any, Any, Any]
-    outer_radius: FloatArray
-    hole_radius: FloatArray
-    inner_radius: FloatArray
-
-
-@dataclass(frozen=True, slots=True)
-class Inner:
-    """What is unknown beside the pose, as it was found at some pose.
-
-    Attributes
-    ----------
-    lean : array, shape (positions, rollers)
-        Of the rollers along their rays by half the thickness of the disc, mm; zero in the plane.
-    approach : array, shape (positions, components, contacts), or None
-        Deformations e; None where they are the approaches themselves.
-    near : tuple of array
-        What the laws of each disc and kind start from nearby (`ltca.laws.sliced_contact.SlicedContact.near`); empty in the plane.
-    """
-
-    lean: FloatArray
-    approach: FloatArray | None
-    near: tuple[FloatArray, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Following:
-    """How the inner unknowns follow the pose to first order.
-
-    Attributes
-    ----------
-    pose : array, shape (positions, coordinates)
-        Where they were found.
-    place, lean : array, shape (positions, rollers)
-        Of the rollers: inward from where they only touch the race, and lean by half the thickness of the disc, mm.
-    approach : array, shape (positions, components, contacts), or None
-        e, mm; None where it is the approach itself.
-    shifts : array of complex, shape (positions, rows, pairs), or None
-        u, mm.
-    by_pose, approach_by_pose, shifts_by_pose : array
-        Derivatives by the pose.
-    """
-
-    pose: FloatArray
-    place: FloatArray
-    lean: FloatArray
-    approach: FloatArray | None
-    shifts: ComplexArray | None
-    by_pose: FloatArray | None
-    approach_by_pose: FloatArray | None
-    shifts_by_pose: ComplexArray | None
-
-    @property
-    def kept(self) -> Following:
-        """The same without derivatives, for balanced positions that are kept."""
-        return replace(self, by_pose=None, approach_by_pose=None, shifts_by_pose=None)
-
-    def at(self, pose: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray | None, ComplexArray | None]:
-        """Return places and leans of rollers, deformations and displacements of pins to expect at other poses."""
-        place, lean, approach, shifts = self.place, self.lean, self.approach, self.shifts
-        if self.by_pose is None:
-            return place, lean, approach, shifts
-        moved = (pose - self.pose)[:, None, :, None]
-        change = np.matmul(self.by_pose, moved)[..., 0]
-        place = place + change[..., 0]
-        if change.shape[-1] > 1:
-            lean = lean + change[..., 1]
-        if approach is not None and self.approach_by_pose is not None:
-            approach = approach + np.matmul(self.approach_by_pose, moved)[..., 0]
-        if shifts is not None and self.shifts_by_pose is not None:
-            shifts = shifts + np.matmul(self.shifts_by_pose, moved)[..., 0]
-        return place, lean, approach, shifts
 
 
 class _Disc:
@@ -189,11 +115,11 @@ class ContactSystem:
 
     Parameters
     ----------
-    model : Reducer
+    model : ltca.equilibrium.reducer.Reducer
         Discs with their laws and bodies, what displaces pins, and friction.
     """
 
-    def __init__(self, model: Reducer) -> None:
+    def __init__(self, model: Any) -> None:
         self.model, self.coordinates = model, model.coordinates
         self.geometries = model.geometries
         place = self.geometries[0].placement
@@ -321,12 +247,11 @@ class Linearised:
     margin : float
         Gap by the largest overlap within which open contacts of coupled bodies are taken.
 
-    Attributes
-    ----------
-    force, tangent : array, shape (positions, coordinates) and (positions, coordinates, coordinates)
-        Generalised force of the contacts once the inner unknowns have settled, to first order, and its derivative.
-    left : array, shape (positions,)
-        Force that the second order may amount to, N.
+    Notes
+    -----
+    ``force`` and ``tangent`` are the generalised force of the contacts once the inner unknowns have settled, to first order, and
+    its derivative, shapes (positions, coordinates) and (positions, coordinates, coordinates); ``left`` is the force that the
+    second order may amount to, N, shape (positions,).
     """
 
     def __init__(
@@ -456,7 +381,7 @@ class Linearised:
         self.stiffness = np.zeros((count, e.shape[0], e.shape[2]))
         self.sliced: list[list[SlicedContact]] = []
         self.law_left = np.zeros(e.shape[0])
-        exactness = ROUGH if roughly else EXACT
+        exactness = None if system.components == 1 else (sliced.ROUGH if roughly else sliced.EXACT)
         for disc, (at, laws) in enumerate(zip(self.discs, system.laws, strict=True)):
             radii = at.flank.effective_radius, laws.outer_radius, laws.hole_radius, laws.inner_radius
             found = []
@@ -757,8 +682,6 @@ class Linearised:
         rows, components, count = load.shape
         members = None
         if self.shifts is not None:
-            from ltca.mechanics.displaced_pins import PinMembers
-
             members = self.members = PinMembers(self)
         entries = count + (0 if members is None else members.count)
         whole = np.zeros((rows, components, entries, components, entries))
@@ -820,23 +743,20 @@ class Linearised:
         friction = self.system.model.friction
         if friction is None:
             return g
-        from ltca.equilibrium.friction.slip import Slip
-
         system, found, row = self.system, g.copy(), self.row
         sticking: list[list[FloatArray]] = []
         for disc, (at, own) in enumerate(zip(self.discs, system.columns, strict=True)):
-            slip = Slip.of_disc(at.geometry, self.angle, at.pose, at)
             kinds = system.of_kind[disc][0], system.of_kind[disc][2]
             load = np.concatenate([self.load[:, 0, kind] for kind in kinds], axis=1)
             stiffness = np.concatenate([self.stiffness[0][:, kind] for kind in kinds], axis=1)
-            by_load, held, by_slip = friction.along(at.geometry, at.pose, slip, load, stiffness, disc)
+            slip, by_load, held, by_slip = friction.along(at.geometry, self.angle, at.pose, at, load, stiffness, disc)
             self.rubs.append(by_load)
             pins, _, holes, _ = self.at[disc]
             some = self.chosen[disc]
             for where, which in ((pins, some[0]), (holes, system.pins + some[2])):
                 by = by_load[row, which][..., None]
                 first = found[:, 0]
-                first[:, where, own] += by * slip.by_pose[row, which]
+                first[:, where, own] += by * slip[row, which]
                 if at.tilts is None:
                     continue
                 motion = at.flank if where is pins else at.holes
@@ -847,7 +767,7 @@ class Linearised:
                     second[:, where, own[system.one.wheel_lean_place]] -= along
             if by_slip is not None:
                 whole = np.zeros((*load.shape, self.pose.shape[1]))
-                whole[..., own] = slip.by_pose
+                whole[..., own] = slip
                 sticking.append([by_slip, whole, held])
         if sticking:
             by_slip, whole, held = (np.concatenate(parts, axis=1) for parts in zip(*sticking, strict=True))
@@ -975,7 +895,7 @@ class Linearised:
         """Displacements of the pins after the correction."""
         pins = self.system.model.pins
         assert pins is not None
-        return -pins.under(self.members.forces(self.corrected_load))
+        return np.asarray(-pins.under(self.members.forces(self.corrected_load)))
 
     @cached_property
     def corrected_load(self) -> FloatArray:
@@ -1076,12 +996,6 @@ class Linearised:
                     return True
         return False
 
-    def responses(self) -> tuple[DiscResponse, ...]:
-        """Return the contacts of every disc, loads corrected to first order."""
-        from ltca.mechanics.answers import disc_response
-
-        return tuple(disc_response(self, disc) for disc in range(self.system.discs))
-
     def following(self) -> Following:
         """Return how the inner unknowns follow the pose."""
         state = self._state()
@@ -1164,6 +1078,3 @@ def _solved_blocks(blocks: FloatArray, right: FloatArray) -> FloatArray:
     first, second = right[..., 0, :], right[..., 1, :]
     a, b, c = (blocks[..., i, j][..., None] for i, j in ((0, 0), (0, 1), (1, 1)))
     return np.stack((c * first - b * second, a * second - b * first), axis=-2) * inverse[..., None, None]
-
-
-__all__ = ["ContactLaws", "ContactSystem", "Following", "Inner", "Linearised"]

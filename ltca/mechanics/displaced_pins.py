@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 
@@ -10,9 +10,6 @@ from ltca.arrays import ComplexArray, FloatArray
 from ltca.geometry.coordinates import DISC_PLACE, WHEEL_ANGLE
 from ltca.geometry.pair_motion import dot
 from ltca.geometry.rotation import unit
-
-if TYPE_CHECKING:
-    from ltca.mechanics.contacts import Linearised
 
 
 class PinMembers:
@@ -23,11 +20,11 @@ class PinMembers:
 
     Parameters
     ----------
-    at : Linearised
+    at : ltca.mechanics.contacts.Linearised
         The contacts at poses.
     """
 
-    def __init__(self, at: Linearised) -> None:
+    def __init__(self, at: Any) -> None:
         self.at, system = at, at.system
         place, pins = system.geometries[0].placement, system.pins
         turned = unit(place.wheel_rotation(at.angle) + at.pose[:, WHEEL_ANGLE]).conjugate()[:, None]

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from ltca.arrays import ComplexArray, FloatArray, by_drive
 from ltca.compliance.response import DiscResponse
 from ltca.equilibrium.balance import Equilibrium
-from ltca.equilibrium.friction.slip import Slip
+from ltca.equilibrium.friction.slip import Pairs, Slip
 from ltca.equilibrium.friction.turning import Rubbing
 from ltca.equilibrium.reducer import JointFriction, Reducer
 from ltca.geometry.pairs import ContactGeometry
@@ -137,19 +137,22 @@ class StickingFriction:
     def along(
         self,
         geometry: ContactGeometry,
+        crank_angle: FloatArray,
         pose: FloatArray,
-        slip: Slip,
+        pairs: Pairs,
         load: FloatArray,
         stiffness: FloatArray,
         disc: int,
-    ) -> tuple[FloatArray, FloatArray, FloatArray | None]:
+    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray | None]:
         """Return friction; see `ltca.equilibrium.friction.turning.TurningFriction`."""
+        slip = Slip.of_disc(geometry, crank_angle, pose, pairs)
         pins = geometry.placement.wheel_pin_radii.shape[-1]
         coefficient = np.r_[np.full(pins, self.pin), np.full(load.shape[1] - pins, self.hole)]
         stiffness = np.where(self.closed[:, disc], stiffness, 0.0)
         moved = np.einsum("bpj,bj->bp", slip.by_pose, pose - self.pose[:, disc])
         tangential, sticks = stick_or_slip(self.tangential[:, disc], stiffness, moved, coefficient * load)
         return (
+            slip.by_pose,
             np.where(sticks, 0.0, np.sign(tangential) * coefficient),
             np.where(sticks, tangential, 0.0),
             np.where(sticks, stiffness, 0.0),

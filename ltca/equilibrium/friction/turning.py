@@ -20,7 +20,7 @@ from ltca.arrays import ComplexArray, FloatArray
 from ltca.beam import support_parts
 from ltca.compliance.response import DiscResponse, bearing_pushes
 from ltca.drive.parts import Drive, PinShaft, PinWheel
-from ltca.equilibrium.friction.slip import Slip
+from ltca.equilibrium.friction.slip import Pairs, Slip
 from ltca.equilibrium.supports import crank_laws, wheel_law
 from ltca.geometry.coordinates import DISC_ROTATION
 from ltca.geometry.pairs import ContactGeometry
@@ -186,21 +186,23 @@ class TurningFriction:
     def along(
         self,
         geometry: ContactGeometry,
+        crank_angle: FloatArray,
         pose: FloatArray,
-        slip: Slip,
+        pairs: Pairs,
         load: FloatArray,
         stiffness: FloatArray,
         disc: int,
-    ) -> tuple[FloatArray, FloatArray, FloatArray | None]:
-        """Return the friction of wheel pins and shaft pins by their loads, what it has beside, N, and what it grows with slip by,
-        N/mm or None; each of shape (positions, pairs).
+    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray | None]:
+        """Return slip by the pose, the friction of wheel pins and shaft pins by their loads, what it has beside, N, and what it
+        grows with slip by, N/mm or None; each of shape (positions, pairs) but the first, which has the coordinates behind.
         """
+        slip = Slip.of_disc(geometry, crank_angle, pose, pairs)
         pins = geometry.placement.wheel_pin_radii.shape[-1]
         soft = FADING_SLIP * geometry.placement.mean_eccentricity
         sense = (self.motion * self.strength) * np.clip(slip.by_crank / soft, -1.0, 1.0)
         sense[:, :pins] *= self.pin
         sense[:, pins:] *= self.hole
-        return sense, np.zeros(load.shape), None
+        return slip.by_pose, sense, np.zeros(load.shape), None
 
     def of_bearings(self, geometry: ContactGeometry, pose: FloatArray, push: FloatArray) -> FloatArray:
         """Return what the crank bearings of a disc resist with by the sizes of their forces, N, shape (positions, cranks)."""
