@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from ltca.arrays import FloatArray
-from ltca.errors import DamagedFileError, FaultError
+from ltca.errors import DamagedFileError, FaultError, PlaceError
 from ltca.output.checked_arrays import read_arrays, write_arrays
 from ltca.output.provenance import cache_home
 
@@ -47,7 +47,7 @@ class Pieces:
         with suppress(DamagedFileError, KeyError):
             return np.asarray(read_arrays(path, "a piece of a derivation")["values"])
         found = compute()
-        with suppress(FaultError):
+        with suppress(FaultError, PlaceError):
             write_arrays(path, {"values": found})
         return found
 

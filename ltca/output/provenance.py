@@ -15,7 +15,7 @@ from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
 
-from ltca.errors import FaultError
+from ltca.errors import FaultError, PlaceError
 from ltca.output.files import whole_file
 from ltca.output.regular_files import read_regular
 
@@ -65,7 +65,7 @@ def _package_hash(root: Path) -> str:
         if re.fullmatch("[0-9a-f]{64}", kept):
             return kept
     answer = _hash_of({name: _meaning(name, content) for name, content in sources.items()})
-    with suppress(FaultError, RuntimeError), whole_file(cache_home() / "code" / raw) as part:
+    with suppress(FaultError, PlaceError, RuntimeError), whole_file(cache_home() / "code" / raw) as part:
         part.write_text(answer, encoding="ascii", newline="\n")
     return answer
 
