@@ -78,5 +78,7 @@ def test_gap_and_planes_replace_each_other():
 
 
 def test_a_span_that_discs_outgrow_is_refused():
-    with pytest.raises(DriveError, match=r"^disc.thickness = 14 mm: must be at most 11 mm .*not between the walls at ±13 mm"):
+    with pytest.raises(
+        DriveError, match=r"^disc.thickness = 14 mm: must be at most 11 mm .*not between the walls at ±13 mm"
+    ):
         sleeved({"disc.thickness": 14.0})
