@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ltca.arrays import FloatArray, join_positions, put_positions, take_positions
 from ltca.compliance.response import Response, Start
 from ltca.drive.least_torque import ROUND_OFF, ROUND_OFF_BOUND
-from ltca.equilibrium.reducer import Reducer
+from ltca.equilibrium.reducer import Evaluation, Reducer
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 
@@ -97,12 +97,12 @@ class Search:
 
     def evaluate(
         self, rows: NDArray[np.intp], pose: FloatArray, start: Start | None, *, roughly: bool = False
-    ) -> Response:
+    ) -> Response | Evaluation:
         """Return the contacts of some positions at poses; `roughly` as for `Reducer.respond`."""
         model = self.model if rows.size == self.angle.size else self.model.take(rows)
-        return model.respond(self.angle[rows], pose, start, roughly=roughly)
+        return model.evaluate(self.angle[rows], pose, start, roughly=roughly)
 
-    def scaled(self, rows: NDArray[np.intp], response: Response) -> tuple[FloatArray, FloatArray]:
+    def scaled(self, rows: NDArray[np.intp], response: Response | Evaluation) -> tuple[FloatArray, FloatArray]:
         """Return the scaled gradient and the scaled tangent (forces and lengths only)."""
         lever = self.levers(rows)
         gradient = response.force.copy()
@@ -118,7 +118,7 @@ class Search:
         most: int,
         rows: NDArray[np.intp] | None = None,
         begin: Start | None = None,
-        response: Response | None = None,
+        response: Response | Evaluation | None = None,
     ) -> NDArray[np.intp]:
         """Move positions towards balance; return those of them that do not balance, ascending.
 
@@ -154,7 +154,7 @@ class Search:
                 break
             self.iterations[active] += 1
             step, slope = _damped_step(tangent, gradient, damping[active], bound[active], self.symmetric)
-            taken, response, gradient, tangent, fraction = self.walk(active, step, slope, Start.onward(response))
+            taken, response, gradient, tangent, fraction = self.walk(active, step, slope, _onward(response))
             self.pose[active] = taken
             self.slipped[active] = np.max(np.abs(taken[:, self.rotations]), axis=1) > self.half_pitch
             residual[active] = _left_over(gradient, response)
@@ -207,7 +207,7 @@ class Search:
             if np.max(np.abs(tried[:, self.rotations])) > self.half_pitch:
                 damping *= 10.0
                 continue
-            there = self.evaluate(rows, tried, Start.onward(response))
+            there = self.evaluate(rows, tried, _onward(response))
             left, slopes = self.scaled(rows, there)
             if np.linalg.norm(left) < np.linalg.norm(gradient):
                 pose, response, gradient, tangent, damping = tried, there, left, slopes, max(0.1 * damping, 1e-14)
@@ -252,7 +252,7 @@ class Search:
                 if np.max(np.abs(wall)) < 0.1 * abs(soft @ gradient[0]):
                     break
                 pose = pose - (modes @ ((modes.T @ wall) / np.where(values == 0.0, 1.0, values)))[None] / lever
-                response = self.evaluate(rows, pose, Start.onward(response))
+                response = self.evaluate(rows, pose, _onward(response))
             self.iterations[row] += 1
             slope = float(soft @ gradient[0])
             change = (slope - before) / along if along else float(np.min(np.abs(values)))
@@ -260,16 +260,16 @@ class Search:
             most = 4.0 * abs(along) if along else FIRST_VALLEY_STEP * self.smallest_pin
             along, before, last = float(np.clip(step, -most, most)), slope, soft
             pose = pose + along * soft[None] / lever
-            response = self.evaluate(rows, pose, Start.onward(response))
+            response = self.evaluate(rows, pose, _onward(response))
         return False
 
-    def keep(self, rows: NDArray[np.intp], response: Response, balanced: NDArray[np.bool_]) -> None:
+    def keep(self, rows: NDArray[np.intp], response: Response | Evaluation, balanced: NDArray[np.bool_]) -> None:
         """Remember the contacts of those of some positions that balance."""
-        response = response.kept
+        kept = response.kept
         if balanced.all():
-            self.balanced.append((rows, response))
+            self.balanced.append((rows, kept))
         elif balanced.any():
-            self.balanced.append((rows[balanced], take_positions(response, balanced)))
+            self.balanced.append((rows[balanced], take_positions(kept, balanced)))
 
     def contacts(self) -> tuple[NDArray[np.intp], Response]:
         """Return the positions that balance so far, ascending, and their contacts."""
@@ -279,7 +279,7 @@ class Search:
             self.balanced = [(rows[order], take_positions(join_positions([part for _, part in self.balanced]), order))]
         return self.balanced[0]
 
-    def round_off(self, rows: NDArray[np.intp], response: Response) -> FloatArray:
+    def round_off(self, rows: NDArray[np.intp], response: Response | Evaluation) -> FloatArray:
         """Return what round-off of the approaches makes of the residual, N.
 
         Supports know displacements, not places, so however stiff they are they add nothing.
@@ -288,14 +288,14 @@ class Search:
         stiffness = response.contact_stiffness / self.levers(rows) ** 2
         return np.asarray(ROUND_OFF * size * np.abs(stiffness.sum(axis=1)))
 
-    def accepted(self, rows: NDArray[np.intp], response: Response) -> FloatArray:
+    def accepted(self, rows: NDArray[np.intp], response: Response | Evaluation) -> FloatArray:
         """Return the largest residual that counts as balance, N."""
         round_off, load = self.round_off(rows, response), self.load[rows]
         return np.asarray(np.maximum(TOLERANCE * load, np.minimum(round_off, ROUND_OFF_BOUND * load)))
 
     def walk(
         self, rows: NDArray[np.intp], step: FloatArray, slope: FloatArray, start: Start
-    ) -> tuple[FloatArray, Response, FloatArray, FloatArray, FloatArray]:
+    ) -> tuple[FloatArray, Response | Evaluation, FloatArray, FloatArray, FloatArray]:
         """Walk along the steps until Π stops falling: poses, contacts, gradients, tangents there, parts of the steps."""
         low, high = np.zeros(rows.size), np.ones(rows.size)
         low_slope, high_slope = slope.copy(), np.zeros(rows.size)
@@ -319,7 +319,7 @@ class Search:
             place = np.divide(-low_slope[back], rise, out=np.zeros(back.size), where=rise != 0.0)
             fraction[back] = low[back] + width * place.clip(0.05, 0.9)
             pose[back] = self.pose[rows[back]] + fraction[back, None] * step_pose[back]
-            again = self.evaluate(rows[back], pose[back], take_positions(Start.onward(response), back), roughly=True)
+            again = self.evaluate(rows[back], pose[back], take_positions(_onward(response), back), roughly=True)
             response = put_positions(response, back, again)
             gradient[back], tangent[back] = self.scaled(rows[back], again)
             end[back] = np.einsum("bi,bi->b", gradient[back], step[back])
@@ -328,7 +328,12 @@ class Search:
         return pose, response, gradient, tangent, fraction
 
 
-def _left_over(gradient: FloatArray, response: Response) -> FloatArray:
+def _onward(response: Response | Evaluation) -> Start:
+    """Where other poses of the same positions start."""
+    return response.start if isinstance(response, Evaluation) else Start.onward(response)
+
+
+def _left_over(gradient: FloatArray, response: Response | Evaluation) -> FloatArray:
     """Largest unbalanced force of every position, N, and what contacts and pins that have not settled amount to."""
     left: FloatArray = np.max(np.abs(gradient), axis=1)
     return left if response.left is None else np.maximum(left, response.left)

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields, is_dataclass, replace
+from functools import cached_property
 from typing import Any, Protocol
 
 import numpy as np
@@ -51,7 +52,7 @@ from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.rotation import unit
 from ltca.laws.carrier import far_flange_stiffness
 from ltca.mechanics.answers import disc_response
-from ltca.mechanics.contacts import ContactSystem
+from ltca.mechanics.contacts import ContactSystem, Linearised
 
 POSITIONS_AT_ONCE = 256
 """Positions whose contacts are found at once: few enough for the processor's cache."""
@@ -219,7 +220,7 @@ class Reducer:
             those of settled ones to first order, and `Response.left` tells what is left.
         """
         if self.one_system:
-            return self._respond_together(crank_angle, pose, start, roughly=roughly)
+            return self.evaluate(crank_angle, pose, start, roughly=roughly).kept
         count, coordinates = len(self.discs), self.coordinates
         places = [coordinates.columns(number) for number in range(count)]
         starts = [None] * count if start is None else _split_start(start, count)
@@ -314,49 +315,51 @@ class Reducer:
             force[:, WHEEL_ANGLE] += self.friction.of_wheel(parts, ratio, beside)
         return contact_stiffness
 
-    def _respond_together(
+    def evaluate(
         self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None, *, roughly: bool = False
-    ) -> Response:
-        """The same by one system of all contacts."""
+    ) -> Response | Evaluation:
+        """Return what a search asks for at poses; arguments as for `respond`, which makes a whole response of it."""
+        if not self.one_system:
+            return self.respond(crank_angle, pose, start, roughly=roughly)
         rows = crank_angle.size
         if rows > POSITIONS_AT_ONCE:
-            parts_of = np.array_split(np.arange(rows), -(-rows // POSITIONS_AT_ONCE))
-            found: Response = join_positions(
-                [
-                    self.take(some).respond(*take_positions((crank_angle, pose, start), some), roughly=roughly)
-                    for some in parts_of
-                ]
-            )
-            return found
-        coordinates = self.coordinates
+            blocks = np.array_split(np.arange(rows), -(-rows // POSITIONS_AT_ONCE))
+            each = [
+                self.take(some).evaluate(*take_positions((crank_angle, pose, start), some), roughly=roughly)
+                for some in blocks
+            ]
+            return join_positions(each)
         at = ContactSystem(self).respond(crank_angle, pose, start, roughly=roughly)
-        parts = tuple(disc_response(at, disc) for disc in range(len(self.discs)))
         force, tangent = at.force.copy(), at.tangent.copy()
+        found = _Evaluated(self, at)
         if self.friction is not None:
-            for number, part in enumerate(parts):
-                own, geometry = coordinates.columns(number), self.discs[number].geometry
+            for number, part in enumerate(found.parts):
+                own, geometry = self.coordinates.columns(number), self.discs[number].geometry
                 push = np.abs(bearing_pushes(part.rollers, geometry.placement.cranks))
                 force[:, own] += self.friction.of_bearings(geometry, pose[:, own], push)
-        shifts = at.shifts
-        if shifts is not None and self.pins is not None and self.pins.ring is not None:
-            ring = -self.pins.of_ring(at.members.forces(at.corrected_load))
-            parts = tuple(replace(part, ring=ring) for part in parts)
-        left, follow, inner = at.left, at.following(), at.inner
-        if shifts is not None:
-            shifts = shifts[:, : len(self.discs)]
-        contact_stiffness = self._hold(crank_angle, pose, parts, force, tangent)
-        return Response(
+        needs_parts = self.friction is not None or (self.stage is not None and self._teeth_press)
+        stiffness = self._hold(crank_angle, pose, found.parts if needs_parts else (), force, tangent)
+        origin = np.empty(rows, dtype=object)
+        origin[:] = [(found, row) for row in range(rows)]
+        return Evaluation(
             force=force,
             tangent=tangent,
-            **_contacts_of(parts),
-            warm_start=np.full((crank_angle.size, len(parts)), None, dtype=object),
-            parts=parts,
-            shifts=shifts,
-            ring=parts[0].ring,
-            follow=follow,
-            left=left,
-            inner=inner,
-            contact_stiffness=contact_stiffness,
+            contact_stiffness=stiffness,
+            left=at.left,
+            start=Start(
+                parameter=np.concatenate([each.flank.parameter for each in at.discs], axis=1),
+                share=np.full(at.place.shape, 0.5),
+                warm_start=np.full((rows, len(self.discs)), None, dtype=object),
+                known=KnownPins(
+                    **{
+                        name: np.concatenate([getattr(each.flank, name) for each in at.discs], axis=1)
+                        for name in ("approach", "point", "turning")
+                    }
+                ),
+                follow=at.following(),
+                inner=at.inner,
+            ),
+            origin=origin,
         )
 
     def crank_moments(self, crank_angle: FloatArray, pose: FloatArray, parts: Sequence[DiscResponse]) -> FloatArray:
@@ -501,6 +504,74 @@ class Reducer:
         kinds = ("pins", "outer", "inner", "holes")
         joined: dict[str, Any] = {kind: _beside_kinds([getattr(each, kind) for each in found]) for kind in kinds}
         return ContactPressures(**joined, rigid_shaft_pins=found[0].rigid_shaft_pins)
+
+
+class _Evaluated:
+    """Contacts of some positions as one system found them, and their responses once somebody asks."""
+
+    def __init__(self, model: Reducer, at: Linearised) -> None:
+        self.model, self.at = model, at
+
+    @cached_property
+    def parts(self) -> tuple[DiscResponse, ...]:
+        """Contacts of every disc."""
+        model, at = self.model, self.at
+        parts = tuple(disc_response(at, disc) for disc in range(len(model.discs)))
+        if at.shifts is not None and model.pins is not None and model.pins.ring is not None:
+            ring = -model.pins.of_ring(at.members.forces(at.corrected_load))
+            parts = tuple(replace(part, ring=ring) for part in parts)
+        return parts
+
+
+@dataclass(frozen=True, slots=True)
+class Evaluation:
+    """What a search asks for at the poses of some positions.
+
+    Attributes
+    ----------
+    force, tangent, contact_stiffness, left : array
+        Of `Response`.
+    start : Start
+        Where other poses of the same positions start.
+    origin : array of object, shape (positions,)
+        What was evaluated, and the number of the position in it.
+    """
+
+    force: FloatArray
+    tangent: FloatArray
+    contact_stiffness: FloatArray
+    left: FloatArray
+    start: Start
+    origin: NDArray[np.object_]
+
+    @property
+    def kept(self) -> Response:
+        """The whole response."""
+        blocks: dict[int, tuple[_Evaluated, list[int], list[int]]] = {}
+        for row, (found, own) in enumerate(self.origin):
+            _, rows, numbers = blocks.setdefault(id(found), (found, [], []))
+            rows.append(row)
+            numbers.append(own)
+        order = np.concatenate([np.array(rows, dtype=np.intp) for _, rows, _ in blocks.values()])
+        each = [
+            (take_positions(found.parts, np.array(numbers)), take_positions(found.at.shifts, np.array(numbers)))
+            for found, _, numbers in blocks.values()
+        ]
+        parts, shifts = take_positions(join_positions(each), np.argsort(order))
+        discs = len(parts)
+        return Response(
+            force=self.force,
+            tangent=self.tangent,
+            **_contacts_of(parts),
+            warm_start=self.start.warm_start,
+            parts=parts,
+            shifts=None if shifts is None else shifts[:, :discs],
+            ring=parts[0].ring,
+            follow=self.start.follow,
+            left=self.left,
+            inner=self.start.inner,
+            contact_stiffness=self.contact_stiffness,
+        )
 
 
 def reach_beyond(model: Reducer, other: Reducer) -> FloatArray:

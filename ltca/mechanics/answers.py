@@ -30,6 +30,11 @@ def disc_response(at: Linearised, disc: int) -> DiscResponse:
         at_bore = approach[:, system.pins : system.pins + system.rollers]
         rays, free = each.rays, bores <= 0.0
         resting = np.abs(rays.outermost * rays.direction - each.displacement) - rays.bore_play
+        # A free roller rests on the race where the others have pressed it in.
+        pressed_in = races @ body.race + float(body.coefficients.roller[0, 1]) * bores
+        there = np.abs((rays.outermost - pressed_in) * rays.direction - each.displacement) - rays.bore_play
+        in_bore = at.yielding[disc][0][:, system.pins : system.pins + system.rollers]
+        at_bore = np.where(free, there - in_bore, at_bore)
         inner = at.after[:, 0, kinds[3]] + np.diag(body.race) * races
         rollers = replace(
             rollers,
