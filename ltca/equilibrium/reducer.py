@@ -220,7 +220,8 @@ class Reducer:
             those of settled ones to first order, and `Response.left` tells what is left.
         """
         if self.one_system:
-            return self.evaluate(crank_angle, pose, start, roughly=roughly).kept
+            found = self.evaluate(crank_angle, pose, start, roughly=roughly)
+            return found.whole if isinstance(found, Evaluation) else found
         count, coordinates = len(self.discs), self.coordinates
         places = [coordinates.columns(number) for number in range(count)]
         starts = [None] * count if start is None else _split_start(start, count)
@@ -546,6 +547,11 @@ class Evaluation:
 
     @property
     def kept(self) -> Response:
+        """The whole response, without what a search alone asks for."""
+        return self.whole.kept
+
+    @property
+    def whole(self) -> Response:
         """The whole response."""
         blocks: dict[int, tuple[_Evaluated, list[int], list[int]]] = {}
         for row, (found, own) in enumerate(self.origin):

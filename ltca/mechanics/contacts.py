@@ -648,11 +648,13 @@ class Linearised:
         tangent = tangent - np.matmul(across, solved[..., :-1])
         force = force - np.matmul(across, solved[..., -1:])[..., 0]
         of_rollers = x[..., size:-1].reshape(rows, components * count, rollers * components)
-        moved = np.matmul(of_rollers, solved).reshape(rows, components, count, size + 1)
-        self.de = -(x[..., -1] + moved[..., -1])[:, :, :mine]
-        self.de_by_pose = (x[..., :size] - moved[..., :-1])[:, :, :mine]
         solved = solved.reshape(rows, rollers, components, size + 1)
         self.dx, self.dx_by_pose = self._bounded(-solved[..., -1]), -solved[..., :-1]
+        placed_by = np.concatenate((self.dx_by_pose, self.dx[..., None]), axis=-1)
+        moved = np.matmul(of_rollers, placed_by.reshape(rows, rollers * components, size + 1))
+        moved = moved.reshape(rows, components, count, size + 1)
+        self.de = (moved[..., -1] - x[..., -1])[:, :, :mine]
+        self.de_by_pose = (x[..., :size] + moved[..., :-1])[:, :, :mine]
         if self.sticking is None and system.model.friction is None:
             tangent = 0.5 * (tangent + tangent.swapaxes(1, 2))
         return force, tangent

