@@ -57,6 +57,7 @@ MAX_HALVINGS = 12
 STEEPEST = 0.3
 """Largest slope of the energy at the end of a correction by that at its start."""
 LEFT_WEIGHT = 100.0
+"""What is left of the inner unknowns counts so many times: moments of the cranks are balanced more closely than forces."""
 ROUND_OFF = 1e-13
 """Correction that is nothing but round-off of places, mm."""
 LEAST_TURNING = 1e-9
@@ -76,7 +77,7 @@ class _Disc:
         shifts: ComplexArray | None,
         leans: ComplexArray | None,
     ) -> None:
-        self.geometry, self.angle, self.pose, self.shifts, self.leans = geometry, angle, pose, shifts, leans
+        self.geometry, self.pose, self.shifts, self.leans = geometry, pose, shifts, leans
         pins = geometry.placement.wheel_pin_radii.shape[-1]
         on_pins, on_holes = (None, None) if shifts is None else (shifts[:, :pins], shifts[:, pins:])
         self.flank = geometry.flank(angle, pose, parameter, on_pins, known)
@@ -86,7 +87,6 @@ class _Disc:
         self.displacement = self.bores.each(self.bores.displacement, self.rollers)
         self.total = self.rays.outermost - self.rays.touching_distance(self.displacement)
         self.tilts: tuple[PairTilt, PairTilt] | None = None
-        self.apart: FloatArray | float = 0.0
         if geometry.coordinates_of(pose).leans:
             lean_pins, lean_holes = (None, None) if leans is None else (leans[:, :pins], leans[:, pins:])
             self.tilts = (
@@ -269,11 +269,10 @@ class Linearised:
         self.system, self.angle, self.pose, self.known, self.margin = system, angle, pose, known, margin
         self.row = np.arange(angle.size)[:, None]
         self.half = system.half
-        self.off: Any = None
+        self.off = np.zeros(angle.size)
         self._moved_slices: dict[int, list[SlicedContact]] = {}
         self.held = places is not None
         self.discs = self._placed(state) if places is None else places
-        self._nearby = state
         self._approach(state)
         self._carry(state, roughly)
         self._choose()
@@ -562,16 +561,14 @@ class Linearised:
             if moves and not self._is_near(stiffness):
                 # Far off loads may turn with soft pins more than these hold against.
                 force, tangent = self._eliminate(*given, turning=False)
-        self.gradient, self.chosen_stiffness = g, stiffness
+        self.chosen_stiffness = stiffness
         self.force, self.tangent = force, tangent
         change = _pressed(stiffness, self.de[..., None])[..., 0]
         near = self.deformation[row, :, self.contacts].swapaxes(1, 2)
         deep = np.abs(near).sum(axis=1) + 1e-300
         moved = np.abs(self.de).sum(axis=1)
-        self.off = np.zeros(rows) if self.off is None else self.off
         self.moved = np.max(np.where(stiffness[0] > 0.0, moved, 0.0), axis=1, initial=0.0)
         error = np.abs(change).sum(axis=1) * np.minimum(1.0, moved / deep)
-        # Moments of the cranks are balanced more closely than forces.
         self.left = np.maximum(LEFT_WEIGHT * np.max(error, axis=1, initial=0.0), self.law_left)
         self.change = change
 
@@ -598,7 +595,6 @@ class Linearised:
         system = self.system
         rows, components, count, size = g.shape
         rollers = unbalanced.shape[1]
-        bent = None
         if self.shifts is not None:
             # Loads turn with displaced pins: as if contacts lay along their tangents, without loads. What they turn with the pose
             # is in the tangent already.
@@ -661,9 +657,8 @@ class Linearised:
 
     def _is_near(self, stiffness: FloatArray) -> bool:
         """Whether corrections of deformations are so small that loads follow them linearly."""
-        moved = np.max(np.where(stiffness[0] > 0.0, np.abs(self.de).sum(axis=1), 0.0), axis=1, initial=0.0)
-        deep = np.max(np.abs(self.overlap[:, 0]) * (self.load[:, 0] > 0.0), axis=1, initial=0.0)
-        return bool(np.all(moved <= ROUGHLY_SETTLED * deep + ROUND_OFF))
+        self.moved = np.max(np.where(stiffness[0] > 0.0, np.abs(self.de).sum(axis=1), 0.0), axis=1, initial=0.0)
+        return self.settled(roughly=True)
 
     def _bounded(self, dx: FloatArray) -> FloatArray:
         """Corrections of places and leans that go no farther than half of what is pressed together: beyond, other slices meet
@@ -708,8 +703,7 @@ class Linearised:
         if system.coupled:
             left += np.einsum("bcicj,bcj->bci", whole[:, :, :count, :, :count], load)
         if members is not None and self.shifts is not None and system.model.pins is not None:
-            self.left_shifts = self.shifts + system.model.pins.under(members.forces(self.load))
-            left += members.approaches(self.left_shifts)
+            left += members.approaches(self.shifts + system.model.pins.under(members.forces(self.load)))
             members.add_flexibility(whole)
         return whole, left
 
