@@ -42,8 +42,7 @@ from ltca.compliance.response import (
 from ltca.drive.parts import Drive
 from ltca.equilibrium.external_force import ExternalForce
 from ltca.equilibrium.first_stage import StageMesh
-from ltca.equilibrium.friction.slip import Pairs
-from ltca.equilibrium.friction.turning import Rubbing, TurningFriction
+from ltca.equilibrium.friction.turning import RubbingPins, TurningFriction, rub_disc
 from ltca.equilibrium.pin_displacements import PinDisplacements
 from ltca.equilibrium.supports import Supports
 from ltca.geometry.coordinates import WHEEL_ANGLE, Coordinates
@@ -58,7 +57,7 @@ POSITIONS_AT_ONCE = 256
 """Positions whose contacts are found at once: few enough for the processor's cache."""
 
 
-class JointFriction(Protocol):
+class JointFriction(RubbingPins, Protocol):
     """Friction of the joints at a pose."""
 
     @property
@@ -92,29 +91,6 @@ class JointFriction(Protocol):
 
     def reversed(self) -> JointFriction:
         """Return the friction of the same drive as it turns the other way."""
-        ...
-
-    def of_disc(
-        self, geometry: ContactGeometry, crank_angle: FloatArray, pose: FloatArray, part: DiscResponse, disc: int
-    ) -> Rubbing:
-        """Return what friction does to a disc."""
-        ...
-
-    def along(
-        self,
-        geometry: ContactGeometry,
-        crank_angle: FloatArray,
-        pose: FloatArray,
-        pairs: Pairs,
-        load: FloatArray,
-        stiffness: FloatArray,
-        disc: int,
-    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray | None]:
-        """Return slip by the pose, friction of pins by load, what it has beside, N, and what it grows with slip by, N/mm."""
-        ...
-
-    def of_bearings(self, geometry: ContactGeometry, pose: FloatArray, push: FloatArray) -> FloatArray:
-        """Return what the crank bearings of a disc resist with by the sizes of their forces, N."""
         ...
 
     def of_wheel(
@@ -240,7 +216,7 @@ class Reducer:
                 at = crank_angle, pose[:, own], starts[number], shift, lean, again
                 part = disc.respond(*at, roughly=roughly)
                 if self.friction is not None:
-                    rubbing = self.friction.of_disc(disc.geometry, crank_angle, pose[:, own], part, number)
+                    rubbing = rub_disc(self.friction, disc.geometry, crank_angle, pose[:, own], part, number)
                     force, tangent = part.force + rubbing.force, part.tangent + rubbing.tangent
                     part = replace(part, force=force, tangent=tangent, friction=rubbing.tangential)
                     if coordinates.leans:

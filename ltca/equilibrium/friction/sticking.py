@@ -25,7 +25,6 @@ from ltca.arrays import ComplexArray, FloatArray, by_drive
 from ltca.compliance.response import DiscResponse
 from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.friction.slip import Pairs, Slip
-from ltca.equilibrium.friction.turning import Rubbing
 from ltca.equilibrium.reducer import JointFriction, Reducer
 from ltca.geometry.pairs import ContactGeometry
 
@@ -108,31 +107,6 @@ class StickingFriction:
     def after(self, model: Reducer, found: Equilibrium) -> StickingFriction:
         """Return the friction since a state that was found with this one."""
         return StickingFriction(pin=self.pin, hole=self.hole, **_state(model, found, rubbed=True))
-
-    def of_disc(
-        self, geometry: ContactGeometry, crank_angle: FloatArray, pose: FloatArray, part: DiscResponse, disc: int
-    ) -> Rubbing:
-        """Return what friction does to a disc; arguments as for `ltca.equilibrium.friction.turning.TurningFriction`."""
-        if part.slopes is None:
-            raise AssertionError("friction follows loads by their slopes")
-        slip, pins = Slip.of_disc(geometry, crank_angle, pose, part), part.pin_load.shape[1]
-        load = np.concatenate((part.pin_load, part.hole_load), axis=1)
-        coefficient = np.r_[np.full(pins, self.pin), np.full(load.shape[1] - pins, self.hole)]
-        own = part.slopes.by_approach
-        stiffness = own if own.ndim == 2 else np.diagonal(own, axis1=1, axis2=2)
-        stiffness = np.where(self.closed[:, disc], stiffness, 0.0)
-        moved = np.einsum("bpj,bj->bp", slip.by_pose, pose - self.pose[:, disc])
-        tangential, sticks = stick_or_slip(self.tangential[:, disc], stiffness, moved, coefficient * load)
-        change = np.where(
-            sticks[..., None],
-            stiffness[..., None] * slip.by_pose,
-            (np.sign(tangential) * coefficient)[..., None] * part.slopes.by_pose,
-        )
-        return Rubbing(
-            tangential=tangential,
-            force=np.einsum("bp,bpj->bj", tangential, slip.by_pose),
-            tangent=np.matmul(slip.by_pose.swapaxes(1, 2), change),
-        )
 
     def along(
         self,

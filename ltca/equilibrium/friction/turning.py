@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 
@@ -142,47 +143,6 @@ class TurningFriction:
         """Return the friction of the same drive as it turns the other way."""
         return replace(self, motion=-self.motion)
 
-    def of_disc(
-        self, geometry: ContactGeometry, crank_angle: FloatArray, pose: FloatArray, part: DiscResponse, disc: int
-    ) -> Rubbing:
-        """Return what friction does to a disc.
-
-        Parameters
-        ----------
-        geometry : ContactGeometry
-            Of the disc in its drive.
-        crank_angle : array, shape (positions,)
-            φ_C, rad.
-        pose : array, shape (positions, coordinates)
-            q of the disc.
-        part : DiscResponse
-            Its contacts, with slopes.
-        disc : int
-            Its number.
-
-        Raises
-        ------
-        AssertionError
-            When the contacts come without slopes.
-        """
-        slip, pins = Slip.of_disc(geometry, crank_angle, pose, part), part.pin_load.shape[1]
-        soft = FADING_SLIP * geometry.placement.mean_eccentricity
-        sense = (self.motion * self.strength) * np.clip(slip.by_crank / soft, -1.0, 1.0)
-        sense[:, :pins] *= self.pin
-        sense[:, pins:] *= self.hole
-        tangential = sense * np.concatenate((part.pin_load, part.hole_load), axis=1)
-        force = np.einsum("bp,bpj->bj", tangential, slip.by_pose)
-        if part.slopes is None:
-            raise AssertionError("friction follows loads by their slopes")
-        # F ∂s_q/∂q is left out: approaches are short against the radii about which contacts turn.
-        tangent = np.matmul(slip.by_pose.swapaxes(1, 2), sense[..., None] * part.slopes.by_pose)
-        rolled = self.motion * self.strength * self.rolling
-        push = np.abs(bearing_pushes(part.rollers, geometry.placement.cranks))
-        force[:, DISC_ROTATION] -= rolled * push.sum(axis=1)
-        if twists := geometry.coordinates_of(pose).twist_places:
-            force[:, twists] += rolled * push
-        return Rubbing(tangential=tangential, force=force, tangent=tangent)
-
     def along(
         self,
         geometry: ContactGeometry,
@@ -207,10 +167,10 @@ class TurningFriction:
     def of_bearings(self, geometry: ContactGeometry, pose: FloatArray, push: FloatArray) -> FloatArray:
         """Return what the crank bearings of a disc resist with by the sizes of their forces, N, shape (positions, cranks)."""
         force = np.zeros(pose.shape)
-        rolled = self.motion * self.strength * self.rolling * push
-        force[:, DISC_ROTATION] -= rolled.sum(axis=1)
+        rolled = self.motion * self.strength * self.rolling
+        force[:, DISC_ROTATION] -= rolled * push.sum(axis=1)
         if twists := geometry.coordinates_of(pose).twist_places:
-            force[:, twists] += rolled
+            force[:, twists] += rolled * push
         return force
 
     def of_wheel(
@@ -240,6 +200,61 @@ class TurningFriction:
         reactions = np.maximum(np.abs(carried), self.crank_preload).sum(axis=-1)
         rolled = np.abs(forces).sum(axis=-1)
         return np.asarray(self.motion * self.strength * (self.rolling * rolled + self.support * reactions))
+
+
+class RubbingPins(Protocol):
+    """Friction of pins and crank bearings, of a drive that turns or whose input is locked."""
+
+    def along(
+        self,
+        geometry: ContactGeometry,
+        crank_angle: FloatArray,
+        pose: FloatArray,
+        pairs: Pairs,
+        load: FloatArray,
+        stiffness: FloatArray,
+        disc: int,
+    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray | None]:
+        """Return slip by the pose, friction of pins by load, what it has beside, N, and what it grows with slip by, N/mm."""
+        ...
+
+    def of_bearings(self, geometry: ContactGeometry, pose: FloatArray, push: FloatArray) -> FloatArray:
+        """Return what the crank bearings of a disc resist with by the sizes of their forces, N."""
+        ...
+
+
+def rub_disc(
+    friction: RubbingPins,
+    geometry: ContactGeometry,
+    crank_angle: FloatArray,
+    pose: FloatArray,
+    part: DiscResponse,
+    disc: int,
+) -> Rubbing:
+    """Return what friction does to a disc, by its number, from its contacts with their slopes.
+
+    Raises
+    ------
+    AssertionError
+        When the contacts come without slopes.
+    """
+    if part.slopes is None:
+        raise AssertionError("friction follows loads by their slopes")
+    load, stiffness = np.concatenate((part.pin_load, part.hole_load), axis=1), part.slopes.by_approach
+    if stiffness.ndim > 2:
+        stiffness = np.diagonal(stiffness, axis1=1, axis2=2)
+    slip, by_load, beside, by_slip = friction.along(geometry, crank_angle, pose, part, load, stiffness, disc)
+    tangential = by_load * load + beside
+    # F ∂s_q/∂q is left out: approaches are short against the radii about which contacts turn.
+    change = by_load[..., None] * part.slopes.by_pose
+    if by_slip is not None:
+        change = change + by_slip[..., None] * slip
+    push = np.abs(bearing_pushes(part.rollers, geometry.placement.cranks))
+    return Rubbing(
+        tangential=tangential,
+        force=np.einsum("bp,bpj->bj", tangential, slip) + friction.of_bearings(geometry, pose, push),
+        tangent=np.matmul(slip.swapaxes(1, 2), change),
+    )
 
 
 def _bearing_loads(drive: Drive) -> FloatArray:
