@@ -44,7 +44,7 @@ def disc_response(at: Linearised, disc: int) -> DiscResponse:
     own, every = system.columns[disc], [at.at[disc][kind] for kind in range(4)]
     chosen = np.concatenate([np.arange(part.start, part.stop) for part in every])
     mine = at.force_map[:, :, chosen]
-    loaded = load[at.row, :, at.contacts[:, chosen]].swapaxes(1, 2)
+    loaded = at.of_chosen(load)[:, :, chosen]
     force = np.einsum("bcij,bci->bj", mine, loaded)[:, own]
     friction = None
     if at.rubs:

@@ -413,24 +413,31 @@ class Linearised:
 
     def _choose(self) -> None:
         """Choose the contacts of the linear system: those that carry, and of coupled bodies open ones that may."""
-        system, carries = self.system, np.any(self.stiffness != 0.0, axis=0) | (self.load[:, 0] > 0.0)
-        if system.deforms:
-            carries = carries | self._within()
+        system, rows = self.system, self.row.size
+        self.every = not system.deforms
         self.chosen: list[list[Indices]] = []
-        for disc in range(system.discs):
-            pins, bores, holes, races = (carries[:, kind] for kind in system.of_kind[disc])
-            rollers = _padded(bores | races)
-            self.chosen.append([_padded(pins), rollers, _padded(holes), rollers])
+        if self.every:
+            counts = system.pins, system.rollers, system.holes, system.rollers
+            all_of = [np.broadcast_to(np.arange(count), (rows, count)) for count in counts]
+            self.chosen = [all_of] * system.discs
+        else:
+            carries = np.any(self.stiffness != 0.0, axis=0) | (self.load[:, 0] > 0.0) | self._within()
+            for disc in range(system.discs):
+                pins, bores, holes, races = (carries[:, kind] for kind in system.of_kind[disc])
+                rollers = _padded(bores | races)
+                self.chosen.append([_padded(pins), rollers, _padded(holes), rollers])
         parts = [
             first.start + some
             for kinds, own in zip(system.of_kind, self.chosen, strict=True)
             for first, some in zip(kinds, own, strict=True)
         ]
-        self.contacts: Indices = np.concatenate(parts, axis=1)
-        self.rollers: Indices = np.concatenate(
-            [disc * system.rollers + own[1] for disc, own in enumerate(self.chosen)], axis=1
-        )
+        if not self.every:
+            self.contacts: Indices = np.concatenate(parts, axis=1)
+            self.rollers: Indices = np.concatenate(
+                [disc * system.rollers + own[1] for disc, own in enumerate(self.chosen)], axis=1
+            )
         ends = np.cumsum([0, *(part.shape[1] for part in parts)])
+        self.count = int(ends[-1])
         self.at = [
             [slice(ends[4 * disc + kind], ends[4 * disc + kind + 1]) for kind in range(4)]
             for disc in range(system.discs)
@@ -438,33 +445,60 @@ class Linearised:
         ends = np.cumsum([0, *(own[1].shape[1] for own in self.chosen)])
         self.of_rollers = [slice(first, last) for first, last in pairwise(ends)]
 
+    def of_chosen(self, values: FloatArray) -> FloatArray:
+        """Values of all contacts, shape (…, positions, components, contacts), of the chosen ones."""
+        if self.every:
+            return values
+        return np.asarray(np.take_along_axis(values, self.contacts[:, None], axis=-1))
+
+    def of_all(self, values: FloatArray) -> FloatArray:
+        """Values of the chosen contacts, shape (positions, components, chosen, …), of all: zero of the others."""
+        if self.every:
+            return values
+        found = np.zeros((*values.shape[:2], self.system.contacts, *values.shape[3:]))
+        found[self.row, :, self.contacts] = values.swapaxes(1, 2)
+        return found
+
+    def of_all_rollers(self, values: FloatArray) -> FloatArray:
+        """Values of the chosen rollers, shape (positions, rollers, …), of all: zero of the others."""
+        if self.every:
+            return values
+        found = np.zeros((*self.place.shape, *values.shape[2:]))
+        found[self.row, self.rollers] = values
+        return found
+
+    def picked(self, values: NDArray[Any], some: Indices) -> NDArray[Any]:
+        """Values by contact of a kind, shape (positions, contacts, …), of the chosen ones."""
+        return values if self.every else values[self.row, some]
+
     def _gradients(self) -> tuple[FloatArray, FloatArray]:
         """∂d/∂q of the chosen contacts, shape (positions, components, chosen, coordinates), and how the tangents of the chosen
         rollers in the bores turn with the pose, Im(n̄ ∂), shape (positions, rollers, coordinates).
         """
         system, row = self.system, self.row
         rows, size = self.pose.shape
-        g = np.zeros((rows, system.components, self.contacts.shape[1], size))
-        across = np.zeros((rows, self.rollers.shape[1], size))
+        g = np.zeros((rows, system.components, self.count, size))
+        across = np.zeros((rows, self.of_rollers[-1].stop, size))
         for disc, (at, own) in enumerate(zip(self.discs, system.columns, strict=True)):
             pins, bores, holes, races = self.at[disc]
             some = self.chosen[disc]
             every = slice(None) if system.discs == 1 else own
             by_approach = g[:, 0]
-            by_approach[:, pins, every] = at.flank.gradient[row, some[0]]
-            by_approach[:, holes, every] = at.holes.gradient[row, some[2]]
+            by_approach[:, pins, every] = self.picked(at.flank.gradient, some[0])
+            by_approach[:, holes, every] = self.picked(at.holes.gradient, some[2])
             moved = at.bores.gradient
-            moved = moved if moved.shape[1] == 1 else moved[row, some[1] // (system.rollers // moved.shape[1])]
-            turned = at.outward[row, some[1]].conjugate()[..., None] * moved
+            if moved.shape[1] > 1:
+                moved = moved[row, some[1] // (system.rollers // moved.shape[1])]
+            turned = self.picked(at.outward, some[1]).conjugate()[..., None] * moved
             by_approach[:, bores, every] = -turned.real
             across[:, self.of_rollers[disc], every] = turned.imag
             if at.tilts is None:
                 continue
             half = self.half[..., None] if self.half.ndim else self.half
             by_tilt = g[:, 1]
-            by_tilt[:, pins, every] = half * at.tilts[0].gradient[row, some[0]]
-            by_tilt[:, holes, every] = half * at.tilts[1].gradient[row, some[2]]
-            ray = at.rays.direction[row, some[1]]
+            by_tilt[:, pins, every] = half * self.picked(at.tilts[0].gradient, some[0])
+            by_tilt[:, holes, every] = half * self.picked(at.tilts[1].gradient, some[2])
+            ray = self.picked(at.rays.direction, some[1])
             both = half * np.stack((ray.real, ray.imag), axis=-1)
             lean = own[system.one.lean_place]
             by_tilt[:, bores, lean] = -both
@@ -479,14 +513,13 @@ class Linearised:
         system, row = self.system, self.row
         rows, size = self.pose.shape
         g, across = self._gradients()
-        load = self.load[row, :, self.contacts].swapaxes(1, 2)
-        stiffness = self.stiffness[:, row, self.contacts]
+        load, stiffness = self.of_chosen(self.load), self.of_chosen(self.stiffness.swapaxes(0, 1)).swapaxes(0, 1)
         force_map = self.force_map = self._rub(g)
         out, n = self._of_rollers("outward"), self._rays()
         cosine, slant = dot(out, n), (out.conjugate() * n).imag
         bend = self._picked(self.load[:, 0], "bores") / self._of_rollers("length")
-        components, rollers = system.components, self.rollers.shape[1]
-        self.each = components * self.contacts.shape[1]
+        components, rollers = system.components, out.shape[1]
+        self.each = components * self.count
         tangent = self._bends()
         tangent += np.matmul(across.swapaxes(1, 2), bend[..., None] * across)
         # Directions in which a roller's own place and lean press its two contacts.
@@ -528,9 +561,8 @@ class Linearised:
             self.de_by_pose = None
         else:
             whole, left = self._flexibility(load)
-            self.off_by = np.zeros(self.load.shape)
-            self.off_by[row, :, self.contacts] = left.swapaxes(1, 2)
-            near, wanted = self.deformation[row, 0, self.contacts], np.abs(left).sum(axis=1)
+            self.off_by = self.of_all(left)
+            near, wanted = self.of_chosen(self.deformation)[:, 0], np.abs(left).sum(axis=1)
             expected = near - left[:, 0]
             stiff = stiffness[0][:, bores] + stiffness[0][:, races]
             # An open roller stands in the middle of its play.
@@ -564,7 +596,7 @@ class Linearised:
         self.chosen_stiffness = stiffness
         self.force, self.tangent = force, tangent
         change = _pressed(stiffness, self.de[..., None])[..., 0]
-        near = self.deformation[row, :, self.contacts].swapaxes(1, 2)
+        near = self.of_chosen(self.deformation)
         deep = np.abs(near).sum(axis=1) + 1e-300
         moved = np.abs(self.de).sum(axis=1)
         self.moved = np.max(np.where(stiffness[0] > 0.0, moved, 0.0), axis=1, initial=0.0)
@@ -667,7 +699,7 @@ class Linearised:
         if self.system.components == 1:
             return dx
         each = [0.5 * (np.abs(at.total) + self.half * np.abs(at.at_race - at.at_bore)) for at in self.discs]
-        room = np.concatenate([one[self.row, own[1]] for one, own in zip(each, self.chosen, strict=True)], axis=1)
+        room = np.concatenate([self.picked(one, own[1]) for one, own in zip(each, self.chosen, strict=True)], axis=1)
         long = np.abs(dx).max(axis=-1)
         return np.asarray(dx * np.divide(room, long, out=np.ones(long.shape), where=long > room)[..., None])
 
@@ -698,8 +730,7 @@ class Linearised:
                 whole[:, component, races, component, races] = on_race
                 first, second = np.arange(bores.start, bores.stop), np.arange(races.start, races.stop)
                 whole[:, component, first, component, second] = whole[:, component, second, component, first] = cross
-        deformed = self.deformation[row, :, self.contacts].swapaxes(1, 2)
-        left = deformed - self.overlap[row, :, self.contacts].swapaxes(1, 2)
+        left = self.of_chosen(self.deformation - self.overlap)
         if system.coupled:
             left += np.einsum("bcicj,bcj->bci", whole[:, :, :count, :, :count], load)
         if members is not None and self.shifts is not None and system.model.pins is not None:
@@ -799,12 +830,12 @@ class Linearised:
     def _of_rollers(self, name: str) -> NDArray[Any]:
         """An array of the discs by roller, of the chosen ones."""
         return np.concatenate(
-            [getattr(at, name)[self.row, own[1]] for at, own in zip(self.discs, self.chosen, strict=True)], axis=1
+            [self.picked(getattr(at, name), own[1]) for at, own in zip(self.discs, self.chosen, strict=True)], axis=1
         )
 
     def _rays(self) -> ComplexArray:
         return np.concatenate(
-            [at.rays.direction[self.row, own[1]] for at, own in zip(self.discs, self.chosen, strict=True)], axis=1
+            [self.picked(at.rays.direction, own[1]) for at, own in zip(self.discs, self.chosen, strict=True)], axis=1
         )
 
     def _picked(self, values: FloatArray, kind: str) -> FloatArray:
@@ -812,7 +843,7 @@ class Linearised:
         number = KINDS.index(kind)
         return np.concatenate(
             [
-                values[:, kinds[number]][self.row, own[number]]
+                self.picked(values[:, kinds[number]], own[number])
                 for kinds, own in zip(self.system.of_kind, self.chosen, strict=True)
             ],
             axis=1,
@@ -855,25 +886,17 @@ class Linearised:
     @cached_property
     def after(self) -> FloatArray:
         """Deformations of all contacts after the correction."""
-        found = self.deformation.copy()
-        near = found[self.row, :, self.contacts].swapaxes(1, 2) + self.de
-        found[self.row, :, self.contacts] = near.swapaxes(1, 2)
-        return found
+        return self.deformation + self.of_all(self.de)
 
     @cached_property
     def place_after(self) -> FloatArray:
         """Places of the rollers after the correction, inward of where they only touch the race, mm."""
-        found = self.place.copy()
-        found[self.row, self.rollers] += self.dx[..., 0]
-        return found
+        return self.place + self.of_all_rollers(self.dx)[..., 0]
 
     @cached_property
     def lean_after(self) -> FloatArray:
         """Their leans by half the thickness of the disc, mm."""
-        found = self.lean.copy()
-        if self.system.components > 1:
-            found[self.row, self.rollers] += self.dx[..., 1]
-        return found
+        return self.lean + self.of_all_rollers(self.dx)[..., 1] if self.system.components > 1 else self.lean
 
     def slices_after(self, disc: int) -> list[SlicedContact]:
         """Return the contacts of a disc in slices, by kind, moved along their slopes by the correction."""
@@ -896,8 +919,7 @@ class Linearised:
     @cached_property
     def corrected_load(self) -> FloatArray:
         """Loads of all contacts, to first order in what is left of the inner unknowns."""
-        load = self.load.copy()
-        load[self.row, :, self.contacts] += self.change.swapaxes(1, 2)
+        load = self.load + self.of_all(self.change)
         return np.where(load[:, :1] > 0.0, load, 0.0)
 
     def corrected(self, *, roughly: bool, part: float = 1.0) -> Linearised:
@@ -972,7 +994,7 @@ class Linearised:
             found.append([])
             for component, matrix in enumerate(bodies):
                 load = self.corrected_load[:, component]
-                loaded = np.concatenate([load[:, kinds[kind]][self.row, some[kind]] for kind in range(3)], axis=1)
+                loaded = np.concatenate([self.picked(load[:, kinds[kind]], some[kind]) for kind in range(3)], axis=1)
                 found[disc].append(np.matmul(matrix, loaded[..., None])[..., 0])
         return found
 
@@ -1002,16 +1024,12 @@ class Linearised:
             change = _pressed(self.chosen_stiffness, self.de_by_pose)
             each = []
             for column in range(self.pose.shape[1]):
-                load = np.zeros(self.load.shape)
-                load[self.row, :, self.contacts] = change[..., column].swapaxes(1, 2)
-                each.append(-pins.under(self.members.forces(load)))
+                each.append(-pins.under(self.members.forces(self.of_all(change[..., column]))))
             shifts = np.stack(each, axis=-1)
-        by_pose = np.zeros((*self.place.shape, *self.dx_by_pose.shape[2:]))
-        by_pose[self.row, self.rollers] = self.dx_by_pose
+        by_pose = self.of_all_rollers(self.dx_by_pose)
         by_approach = None
         if self.de_by_pose is not None:
-            by_approach = np.zeros((*self.load.shape, self.pose.shape[1]))
-            by_approach[self.row, :, self.contacts] = self.de_by_pose.swapaxes(1, 2)
+            by_approach = self.of_all(self.de_by_pose)
         return Following(
             pose=self.pose,
             place=state.place,

@@ -61,7 +61,7 @@ class PinMembers:
     def approaches(self, shifts: ComplexArray) -> FloatArray:
         """Return N u of the chosen contacts, shape (positions, components, chosen)."""
         system, at = self.at.system, self.at
-        found = np.zeros((shifts.shape[0], system.components, at.contacts.shape[1]))
+        found = np.zeros((shifts.shape[0], system.components, at.count))
         for disc in range(system.discs):
             by = dot(self.normal[disc], shifts[:, disc])
             each = [by]
@@ -126,7 +126,7 @@ class PinMembers:
         assert held is not None
         row = at.row
         pair, disc_of = np.concatenate((self.pair, self.pair), axis=1), np.concatenate((self.disc, self.disc))
-        place = np.concatenate((self.place, at.contacts.shape[1] + np.arange(self.count)))
+        place = np.concatenate((self.place, at.count + np.arange(self.count)))
 
         def chosen(values: list[ComplexArray], along: list[ComplexArray]) -> ComplexArray:
             first, second = (np.stack(each, axis=1)[row, self.disc, self.pair] for each in (values, along))
