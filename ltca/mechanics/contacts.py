@@ -225,6 +225,43 @@ class _State(NamedTuple):
     near: tuple[FloatArray, ...]
 
 
+class _Pressing(NamedTuple):
+    """What chosen contacts press coordinates with.
+
+    Attributes
+    ----------
+    g : array, shape (positions, components, chosen, coordinates)
+        ∂d/∂q.
+    force_map : array, of the same shape
+        The same with friction along the tangents.
+    load : array, shape (positions, components, chosen)
+        f.
+    stiffness : array, shape (1 or 3, positions, chosen)
+        K.
+    presses : tuple of array, shape (positions, components, rollers)
+        How places and leans of rollers press their contacts in bores and on races.
+    unbalanced : array, shape (positions, rollers, components)
+        What presses the rollers' places.
+    placed : array, shape (positions, rollers, components, coordinates)
+        How that follows the coordinates where contacts do not.
+    own_bend : array, shape (positions, rollers)
+        How it follows the places likewise.
+    force, tangent : array, shapes (positions, coordinates) and (positions, coordinates, coordinates)
+        What presses the coordinates, and how that follows them where loads do not.
+    """
+
+    g: FloatArray
+    force_map: FloatArray
+    load: FloatArray
+    stiffness: FloatArray
+    presses: tuple[FloatArray, FloatArray]
+    unbalanced: FloatArray
+    placed: FloatArray
+    own_bend: FloatArray
+    force: FloatArray
+    tangent: FloatArray
+
+
 class Linearised:
     """Contacts at poses and near-by inner unknowns, and how everything follows the pose to first order.
 
@@ -444,6 +481,9 @@ class Linearised:
         ]
         ends = np.cumsum([0, *(own[1].shape[1] for own in self.chosen)])
         self.of_rollers = [slice(first, last) for first, last in pairwise(ends)]
+        self.local = [
+            [slice(kind.start - own[0].start, kind.stop - own[0].start) for kind in own] for own in self.at
+        ]
 
     def of_chosen(self, values: FloatArray) -> FloatArray:
         """Values of all contacts, shape (…, positions, components, contacts), of the chosen ones."""
@@ -471,130 +511,87 @@ class Linearised:
         """Values by contact of a kind, shape (positions, contacts, …), of the chosen ones."""
         return values if self.every else values[self.row, some]
 
-    def _gradients(self) -> tuple[FloatArray, FloatArray]:
-        """∂d/∂q of the chosen contacts, shape (positions, components, chosen, coordinates), and how the tangents of the chosen
-        rollers in the bores turn with the pose, Im(n̄ ∂), shape (positions, rollers, coordinates).
+    def _gradients(self, disc: int) -> tuple[FloatArray, FloatArray]:
+        """∂d/∂q of the chosen contacts of a disc by its own coordinates, shape (positions, components, chosen, coordinates), and
+        how the tangents of its rollers in the bores turn with the pose, Im(n̄ ∂), shape (positions, rollers, coordinates).
         """
-        system, row = self.system, self.row
-        rows, size = self.pose.shape
-        g = np.zeros((rows, system.components, self.count, size))
-        across = np.zeros((rows, self.of_rollers[-1].stop, size))
-        for disc, (at, own) in enumerate(zip(self.discs, system.columns, strict=True)):
-            pins, bores, holes, races = self.at[disc]
-            some = self.chosen[disc]
-            every = slice(None) if system.discs == 1 else own
-            by_approach = g[:, 0]
-            by_approach[:, pins, every] = self.picked(at.flank.gradient, some[0])
-            by_approach[:, holes, every] = self.picked(at.holes.gradient, some[2])
-            moved = at.bores.gradient
-            if moved.shape[1] > 1:
-                moved = moved[row, some[1] // (system.rollers // moved.shape[1])]
-            turned = self.picked(at.outward, some[1]).conjugate()[..., None] * moved
-            by_approach[:, bores, every] = -turned.real
-            across[:, self.of_rollers[disc], every] = turned.imag
-            if at.tilts is None:
-                continue
-            half = self.half[..., None] if self.half.ndim else self.half
+        system, at, some, row = self.system, self.discs[disc], self.chosen[disc], self.row
+        pins, bores, holes, races = self.local[disc]
+        size = self.system.columns[disc].size
+        g = np.zeros((self.angle.size, system.components, races.stop, size))
+        by_approach = g[:, 0]
+        by_approach[:, pins] = self.picked(at.flank.gradient, some[0])
+        by_approach[:, holes] = self.picked(at.holes.gradient, some[2])
+        moved = at.bores.gradient
+        if moved.shape[1] > 1:
+            moved = moved[row, some[1] // (system.rollers // moved.shape[1])]
+        turned = self.picked(at.outward, some[1]).conjugate()[..., None] * moved
+        np.negative(turned.real, out=by_approach[:, bores])
+        if at.tilts is not None:
+            half = self._thick
             by_tilt = g[:, 1]
-            by_tilt[:, pins, every] = half * self.picked(at.tilts[0].gradient, some[0])
-            by_tilt[:, holes, every] = half * self.picked(at.tilts[1].gradient, some[2])
+            by_tilt[:, pins] = half * self.picked(at.tilts[0].gradient, some[0])
+            by_tilt[:, holes] = half * self.picked(at.tilts[1].gradient, some[2])
             ray = self.picked(at.rays.direction, some[1])
             both = half * np.stack((ray.real, ray.imag), axis=-1)
-            lean = own[system.one.lean_place]
-            by_tilt[:, bores, lean] = -both
+            by_tilt[:, bores, system.one.lean_place] = -both
             crank_of = some[1] // (system.rollers // at.bores.arm.shape[1])
             for crank in range(system.one.cranks):
-                first = own[system.one.crank_lean(crank)]
+                first = system.one.crank_lean(crank)
                 by_tilt[:, races, first : first + 2] = both * (crank_of == crank)[..., None]
-        return g, across
+        return g, turned.imag
+
+    def _pressing(self, disc: int) -> _Pressing:
+        """What the chosen contacts of a disc press its own coordinates with, rollers where they stand."""
+        at, some, (_, bores, _, races) = self.discs[disc], self.chosen[disc], self.local[disc]
+        own = slice(self.at[disc][0].start, self.at[disc][3].stop)
+        g, across = self._gradients(disc)
+        load, stiffness = self.chosen_load[:, :, own], self.chosen_stiffness[:, :, own]
+        out, n = self.picked(at.outward, some[1]), self.picked(at.rays.direction, some[1])
+        slant = (out.conjugate() * n).imag
+        bend = load[:, 0, bores] / self.picked(at.length, some[1])
+        rows, components, _, size = g.shape
+        # Directions in which a roller's own place and lean press its two contacts.
+        outward, inward = np.ones((2, rows, components, out.shape[1]))
+        np.negative(dot(out, n), out=outward[:, 0])
+        inward[:, 1:] = -1.0
+        placed = np.zeros((rows, out.shape[1], components, size))
+        np.multiply((bend * slant)[..., None], across, out=placed[:, :, 0])
+        tangent = self._bends(disc)
+        tangent += np.matmul(across.swapaxes(1, 2), bend[..., None] * across)
+        found = _Pressing(
+            g=g,
+            force_map=self._rub(disc, g),
+            load=load,
+            stiffness=stiffness,
+            presses=(outward, inward),
+            unbalanced=(outward * load[:, :, bores] + inward * load[:, :, races]).swapaxes(1, 2),
+            placed=placed,
+            own_bend=bend * slant**2,
+            force=np.zeros((rows, size)),
+            tangent=tangent,
+        )
+        flat = found.force_map.reshape(rows, -1, size).swapaxes(1, 2)
+        found.force[:] = np.matmul(flat, load.reshape(rows, -1, 1))[..., 0]
+        if self.sticking:
+            by_slip, slip, held = self.sticking[disc]
+            found.force[:] += np.einsum("bpj,bp->bj", slip, held)
+            tangent += np.matmul(slip.swapaxes(1, 2), by_slip[..., None] * slip)
+        return found
 
     def _linearise(self) -> None:
         """Eliminate deformations, displacements of pins and places of rollers."""
-        system, row = self.system, self.row
-        rows, size = self.pose.shape
-        g, across = self._gradients()
-        load, stiffness = self.of_chosen(self.load), self.of_chosen(self.stiffness.swapaxes(0, 1)).swapaxes(0, 1)
-        force_map = self.force_map = self._rub(g)
-        out, n = self._of_rollers("outward"), self._rays()
-        cosine, slant = dot(out, n), (out.conjugate() * n).imag
-        bend = self._picked(self.load[:, 0], "bores") / self._of_rollers("length")
-        components, rollers = system.components, out.shape[1]
-        self.each = components * self.count
-        tangent = self._bends()
-        tangent += np.matmul(across.swapaxes(1, 2), bend[..., None] * across)
-        # Directions in which a roller's own place and lean press its two contacts.
-        outward, inward = np.ones((2, rows, components, rollers))
-        outward[:, 0], inward[:, 1:] = -cosine, -1.0
-        bores, races = self._positions(1), self._positions(3)
-        unbalanced = (outward * load[:, :, bores] + inward * load[:, :, races]).swapaxes(1, 2)
-        placed = np.zeros((rows, rollers, components, size))
-        placed[:, :, 0] = (bend * slant)[..., None] * across
-        own_bend = bend * slant**2
-        force = np.matmul(force_map.reshape(rows, self.each, size).swapaxes(1, 2), load.reshape(rows, self.each, 1))[
-            ..., 0
-        ]
-        if self.sticking is not None:
-            by_slip, slip, held = self.sticking
-            force += np.einsum("bpj,bp->bj", slip, held)
-            tangent += np.matmul(slip.swapaxes(1, 2), by_slip[..., None] * slip)
-        if not system.deforms:
-            pressed = _pressed(stiffness, g)
-            tangent += np.matmul(
-                force_map.reshape(rows, self.each, size).swapaxes(1, 2), pressed.reshape(rows, self.each, size)
-            )
-            of_bores, of_races = stiffness[..., bores], stiffness[..., races]
-            placed += (outward[..., None] * pressed[:, :, bores] + inward[..., None] * pressed[:, :, races]).swapaxes(
-                1, 2
-            )
-            own = _own_stiffness(of_bores, outward) + _own_stiffness(of_races, inward)
-            own[:, :, 0, 0] += own_bend
-            _hold_turning(own)
-            solved = _solved_blocks(own, np.concatenate((placed, unbalanced[..., None]), axis=-1))
-            back = placed.reshape(rows, rollers * components, size).swapaxes(1, 2)
-            flat = solved.reshape(rows, rollers * components, size + 1)
-            tangent -= np.matmul(back, flat[..., :-1])
-            force -= np.matmul(back, flat[..., -1:])[..., 0]
-            self.dx, self.dx_by_pose = self._bounded(-solved[..., -1]), -solved[..., :-1]
-            self.de = np.zeros(load.shape)
-            self.de[:, :, bores] = outward * self.dx.swapaxes(1, 2)
-            self.de[:, :, races] = inward * self.dx.swapaxes(1, 2)
-            self.de_by_pose = None
+        system = self.system
+        self.chosen_load = self.of_chosen(self.load)
+        self.chosen_stiffness = self.of_chosen(self.stiffness.swapaxes(0, 1)).swapaxes(0, 1)
+        self.sticking: list[tuple[FloatArray, FloatArray, FloatArray]] = []
+        self.rubs: list[FloatArray] = []
+        self.pressing = [self._pressing(disc) for disc in range(system.discs)]
+        if system.deforms:
+            self._linearise_coupled()
         else:
-            whole, left = self._flexibility(load)
-            self.off_by = self.of_all(left)
-            near, wanted = self.of_chosen(self.deformation)[:, 0], np.abs(left).sum(axis=1)
-            expected = near - left[:, 0]
-            stiff = stiffness[0][:, bores] + stiffness[0][:, races]
-            # An open roller stands in the middle of its play.
-            free, middle = stiff <= 0.0, 0.5 * (expected[:, bores] + expected[:, races])
-            both = 0.5 * np.abs(left[:, 0, bores] + left[:, 0, races])
-            for places in (bores, races):
-                expected[:, places] = np.where(free, middle, expected[:, places])
-                wanted[:, places] = np.where(free, both, wanted[:, places])
-            matters = (stiffness[0] > 0.0) | (expected > 0.0)
-            self.off = np.max(wanted * matters, axis=1, initial=0.0)
-            apart = np.abs(unbalanced).sum(axis=-1) / np.where(stiff > 0.0, stiff, np.inf)
-            self.off = np.maximum(self.off, np.max(apart, axis=1, initial=0.0))
-            given = (
-                g,
-                force_map,
-                stiffness,
-                whole,
-                left,
-                (outward, inward),
-                unbalanced,
-                placed,
-                own_bend,
-                force,
-                tangent,
-            )
-            moves = self.shifts is not None and not self.held
-            force, tangent = self._eliminate(*given, turning=moves)
-            if moves and not self._is_near(stiffness):
-                # Far off loads may turn with soft pins more than these hold against.
-                force, tangent = self._eliminate(*given, turning=False)
-        self.chosen_stiffness = stiffness
-        self.force, self.tangent = force, tangent
+            self._linearise_alone()
+        stiffness = self.chosen_stiffness
         change = _pressed(stiffness, self.de[..., None])[..., 0]
         near = self.of_chosen(self.deformation)
         deep = np.abs(near).sum(axis=1) + 1e-300
@@ -604,27 +601,113 @@ class Linearised:
         self.left = np.maximum(LEFT_WEIGHT * np.max(error, axis=1, initial=0.0), self.law_left)
         self.change = change
 
+    def _linearise_alone(self) -> None:
+        """The same where nothing deforms but the contacts: disc by disc, roller by roller."""
+        system, (rows, size) = self.system, self.pose.shape
+        force, tangent = np.zeros((rows, size)), np.zeros((rows, size, size))
+        dx, de, by_own = [], [], []
+        for disc, (part, own) in enumerate(zip(self.pressing, system.columns, strict=True)):
+            _, bores, _, races = self.local[disc]
+            outward, inward = part.presses
+            rollers, components, count = part.placed.shape[1:]
+            pressed = _pressed(part.stiffness, part.g)
+            flat = part.force_map.reshape(rows, -1, count)
+            mine = part.tangent + np.matmul(flat.swapaxes(1, 2), pressed.reshape(flat.shape))
+            pushed = outward[..., None] * pressed[:, :, bores] + inward[..., None] * pressed[:, :, races]
+            right = np.empty((rows, rollers, components, count + 1))
+            np.add(part.placed, pushed.swapaxes(1, 2), out=right[..., :-1])
+            right[..., -1] = part.unbalanced
+            held = _own_stiffness(part.stiffness[..., bores], outward)
+            held += _own_stiffness(part.stiffness[..., races], inward)
+            held[:, :, 0, 0] += part.own_bend
+            _hold_turning(held)
+            solved = _solved_blocks(held, right)
+            back = right[..., :-1].reshape(rows, rollers * components, count).swapaxes(1, 2)
+            taken = np.matmul(back, solved.reshape(rows, rollers * components, count + 1))
+            mine -= taken[..., :-1]
+            if system.discs == 1:
+                force, tangent = part.force - taken[..., -1], mine
+            else:
+                force[:, own] += part.force - taken[..., -1]
+                tangent[:, own[:, None], own] += mine
+            dx.append(-solved[..., -1])
+            by_own.append(-solved[..., :-1])
+        self.dx, self.by_own = self._bounded(np.concatenate(dx, axis=1) if len(dx) > 1 else dx[0]), by_own
+        for disc, part in enumerate(self.pressing):
+            _, bores, _, races = self.local[disc]
+            outward, inward = part.presses
+            moved = self.dx[:, self.of_rollers[disc]].swapaxes(1, 2)
+            change = np.zeros(part.load.shape)
+            change[:, :, bores], change[:, :, races] = outward * moved, inward * moved
+            de.append(change)
+        self.de = np.concatenate(de, axis=2) if len(de) > 1 else de[0]
+        self.de_by_pose = None
+        self.force, self.tangent = force, tangent
+
+    def _assembled(self) -> _Pressing:
+        """What contacts of all discs press all coordinates with."""
+        system, (rows, size) = self.system, self.pose.shape
+        if system.discs == 1:
+            return self.pressing[0]
+        components, rollers = system.components, self.of_rollers[-1].stop
+        g, force_map = np.zeros((2, rows, components, self.count, size))
+        placed, force = np.zeros((rows, rollers, components, size)), np.zeros((rows, size))
+        tangent = np.zeros((rows, size, size))
+        for disc, (part, own) in enumerate(zip(self.pressing, system.columns, strict=True)):
+            mine = slice(self.at[disc][0].start, self.at[disc][3].stop)
+            g[:, :, mine, own], force_map[:, :, mine, own] = part.g, part.force_map
+            placed[:, self.of_rollers[disc], :, own] = part.placed
+            force[:, own] += part.force
+            tangent[:, own[:, None], own] += part.tangent
+        outward, inward = (np.concatenate([part.presses[way] for part in self.pressing], axis=2) for way in (0, 1))
+        return _Pressing(
+            g=g,
+            force_map=force_map,
+            load=self.chosen_load,
+            stiffness=self.chosen_stiffness,
+            presses=(outward, inward),
+            unbalanced=np.concatenate([part.unbalanced for part in self.pressing], axis=1),
+            placed=placed,
+            own_bend=np.concatenate([part.own_bend for part in self.pressing], axis=1),
+            force=force,
+            tangent=tangent,
+        )
+
+    def _linearise_coupled(self) -> None:
+        """The same where bodies, beams or a ring deform under the loads of all contacts."""
+        part = self._assembled()
+        stiffness, bores, races = self.chosen_stiffness, self._positions(1), self._positions(3)
+        whole, left = self._flexibility(part.load)
+        self.off_by = self.of_all(left)
+        near, wanted = self.of_chosen(self.deformation)[:, 0], np.abs(left).sum(axis=1)
+        expected = near - left[:, 0]
+        stiff = stiffness[0][:, bores] + stiffness[0][:, races]
+        # An open roller stands in the middle of its play.
+        free, middle = stiff <= 0.0, 0.5 * (expected[:, bores] + expected[:, races])
+        both = 0.5 * np.abs(left[:, 0, bores] + left[:, 0, races])
+        for places in (bores, races):
+            expected[:, places] = np.where(free, middle, expected[:, places])
+            wanted[:, places] = np.where(free, both, wanted[:, places])
+        matters = (stiffness[0] > 0.0) | (expected > 0.0)
+        self.off = np.max(wanted * matters, axis=1, initial=0.0)
+        apart = np.abs(part.unbalanced).sum(axis=-1) / np.where(stiff > 0.0, stiff, np.inf)
+        self.off = np.maximum(self.off, np.max(apart, axis=1, initial=0.0))
+        moves = self.shifts is not None and not self.held
+        self.force, self.tangent = self._eliminate(part, whole, left, turning=moves)
+        if moves and not self._is_near(stiffness):
+            # Far off loads may turn with soft pins more than these hold against.
+            self.force, self.tangent = self._eliminate(part, whole, left, turning=False)
+
     def _eliminate(
-        self,
-        g: FloatArray,
-        force_map: FloatArray,
-        stiffness: FloatArray,
-        whole: FloatArray,
-        left: FloatArray,
-        presses: tuple[FloatArray, FloatArray],
-        unbalanced: FloatArray,
-        placed: FloatArray,
-        own_bend: FloatArray,
-        force: FloatArray,
-        tangent: FloatArray,
-        *,
-        turning: bool,
+        self, part: _Pressing, whole: FloatArray, left: FloatArray, *, turning: bool
     ) -> tuple[FloatArray, FloatArray]:
         """The same where loads deform more than their own contacts: force and tangent of the pose.
 
         Without `turning` loads that turn with displaced pins count where they hold these back alone.
         """
-        system = self.system
+        system, g, force_map, stiffness = self.system, part.g, part.force_map, part.stiffness
+        presses, unbalanced, placed, own_bend = part.presses, part.unbalanced, part.placed, part.own_bend
+        force, tangent = part.force, part.tangent
         rows, components, count, size = g.shape
         rollers = unbalanced.shape[1]
         if self.shifts is not None:
@@ -683,7 +766,7 @@ class Linearised:
         moved = moved.reshape(rows, components, count, size + 1)
         self.de = (moved[..., -1] - x[..., -1])[:, :, :mine]
         self.de_by_pose = (x[..., :size] + moved[..., :-1])[:, :, :mine]
-        if self.sticking is None and system.model.friction is None:
+        if not self.sticking and system.model.friction is None:
             tangent = 0.5 * (tangent + tangent.swapaxes(1, 2))
         return force, tangent
 
@@ -763,91 +846,52 @@ class Linearised:
         on_flank = at.geometry.profile.flank(at.flank.parameter)
         return at.flank.parameter, in_bore, in_hole, on_flank, float(at.geometry.placement.bore_radius)
 
-    def _rub(self, g: FloatArray) -> FloatArray:
-        """What loads press the pose with, G and friction along the tangents of pins and holes."""
-        self.sticking: tuple[FloatArray, FloatArray, FloatArray] | None = None
-        self.rubs: list[FloatArray] = []
+    def _rub(self, disc: int, g: FloatArray) -> FloatArray:
+        """What loads press the coordinates of a disc with, G and friction along the tangents of pins and holes."""
         friction = self.system.model.friction
         if friction is None:
             return g
-        system, found, row = self.system, g.copy(), self.row
-        sticking: list[list[FloatArray]] = []
-        for disc, (at, own) in enumerate(zip(self.discs, system.columns, strict=True)):
-            kinds = system.of_kind[disc][0], system.of_kind[disc][2]
-            load = np.concatenate([self.load[:, 0, kind] for kind in kinds], axis=1)
-            stiffness = np.concatenate([self.stiffness[0][:, kind] for kind in kinds], axis=1)
-            slip, by_load, held, by_slip = friction.along(at.geometry, self.angle, at.pose, at, load, stiffness, disc)
-            self.rubs.append(by_load)
-            pins, _, holes, _ = self.at[disc]
-            some = self.chosen[disc]
-            for where, which in ((pins, some[0]), (holes, system.pins + some[2])):
-                by = by_load[row, which][..., None]
-                first = found[:, 0]
-                first[:, where, own] += by * slip[row, which]
-                if at.tilts is None:
-                    continue
-                motion = at.flank if where is pins else at.holes
-                along = self._thick * by * motion.along[row, which if where is pins else some[2]][..., :2]
-                second = found[:, 1]
-                second[:, where, own[system.one.lean_place]] += along
-                if where is pins and system.one.wheel_leans:
-                    second[:, where, own[system.one.wheel_lean_place]] -= along
-            if by_slip is not None:
-                whole = np.zeros((*load.shape, self.pose.shape[1]))
-                whole[..., own] = slip
-                sticking.append([by_slip, whole, held])
-        if sticking:
-            by_slip, whole, held = (np.concatenate(parts, axis=1) for parts in zip(*sticking, strict=True))
-            self.sticking = by_slip, whole, held
+        system, found, row, at = self.system, g.copy(), self.row, self.discs[disc]
+        kinds = system.of_kind[disc][0], system.of_kind[disc][2]
+        load = np.concatenate([self.load[:, 0, kind] for kind in kinds], axis=1)
+        stiffness = np.concatenate([self.stiffness[0][:, kind] for kind in kinds], axis=1)
+        slip, by_load, held, by_slip = friction.along(at.geometry, self.angle, at.pose, at, load, stiffness, disc)
+        self.rubs.append(by_load)
+        pins, _, holes, _ = self.local[disc]
+        some = self.chosen[disc]
+        for where, which in ((pins, some[0]), (holes, system.pins + some[2])):
+            by = by_load[row, which][..., None]
+            found[:, 0, where] += by * slip[row, which]
+            if at.tilts is None:
+                continue
+            motion = at.flank if where is pins else at.holes
+            along = self._thick * by * motion.along[row, which if where is pins else some[2]][..., :2]
+            second = found[:, 1]
+            second[:, where, system.one.lean_place] += along
+            if where is pins and system.one.wheel_leans:
+                second[:, where, system.one.wheel_lean_place] -= along
+        if by_slip is not None:
+            self.sticking.append((by_slip, slip, held))
         return found
 
     @property
     def _thick(self) -> FloatArray:
         return self.half[..., None] if self.half.ndim else self.half
 
-    def _bends(self) -> FloatArray:
-        """Σ F ∂²d/∂q² of all contacts but what the rollers' places turn."""
-        system = self.system
-        rows, size = self.pose.shape
-        found = np.zeros((rows, size, size))
-        for disc, (at, own) in enumerate(zip(self.discs, system.columns, strict=True)):
-            pins, bores, holes, _ = system.of_kind[disc]
-            mine = at.flank.bend(self.load[:, 0, pins]) + at.holes.bend(self.load[:, 0, holes])
-            if at.tilts is not None:
-                mine += at.flank.bend_leans(self.load[:, 1, pins] * self.half, system.one)
-                mine += at.holes.bend_leans(self.load[:, 1, holes] * self.half, system.one)
-            cranks = at.bores.arm.shape[1]
-            push = (self.load[:, 0, bores] * at.outward).reshape(rows, cranks, -1).sum(axis=2).conjugate()
-            mine[:, DISC_ROTATION, DISC_ROTATION] += (push * at.bores.arm).real.sum(axis=1)
-            if at.bores.twists:
-                mine[:, at.bores.twists, at.bores.twists] -= (push * at.bores.lever).real
-            if system.discs == 1:
-                found += mine
-            else:
-                found[:, own[:, None], own] += mine
-        return found
-
-    def _of_rollers(self, name: str) -> NDArray[Any]:
-        """An array of the discs by roller, of the chosen ones."""
-        return np.concatenate(
-            [self.picked(getattr(at, name), own[1]) for at, own in zip(self.discs, self.chosen, strict=True)], axis=1
-        )
-
-    def _rays(self) -> ComplexArray:
-        return np.concatenate(
-            [self.picked(at.rays.direction, own[1]) for at, own in zip(self.discs, self.chosen, strict=True)], axis=1
-        )
-
-    def _picked(self, values: FloatArray, kind: str) -> FloatArray:
-        """Values of all contacts, of the chosen ones of a kind."""
-        number = KINDS.index(kind)
-        return np.concatenate(
-            [
-                self.picked(values[:, kinds[number]], own[number])
-                for kinds, own in zip(self.system.of_kind, self.chosen, strict=True)
-            ],
-            axis=1,
-        )
+    def _bends(self, disc: int) -> FloatArray:
+        """Σ F ∂²d/∂q² of the contacts of a disc by its own coordinates but what the rollers' places turn."""
+        system, at = self.system, self.discs[disc]
+        pins, bores, holes, _ = system.of_kind[disc]
+        found = at.flank.bend(self.load[:, 0, pins]) + at.holes.bend(self.load[:, 0, holes])
+        if at.tilts is not None:
+            found += at.flank.bend_leans(self.load[:, 1, pins] * self.half, system.one)
+            found += at.holes.bend_leans(self.load[:, 1, holes] * self.half, system.one)
+        cranks = at.bores.arm.shape[1]
+        push = (self.load[:, 0, bores] * at.outward).reshape(found.shape[0], cranks, -1).sum(axis=2).conjugate()
+        found[:, DISC_ROTATION, DISC_ROTATION] += (push * at.bores.arm).real.sum(axis=1)
+        if at.bores.twists:
+            found[:, at.bores.twists, at.bores.twists] -= (push * at.bores.lever).real
+        return np.asarray(found)
 
     def _positions(self, number: int) -> Indices:
         """Where the contacts of a kind stand among the chosen."""
@@ -1022,14 +1066,14 @@ class Linearised:
             pins = self.system.model.pins
             assert pins is not None
             change = _pressed(self.chosen_stiffness, self.de_by_pose)
-            each = []
-            for column in range(self.pose.shape[1]):
-                each.append(-pins.under(self.members.forces(self.of_all(change[..., column]))))
-            shifts = np.stack(each, axis=-1)
-        by_pose = self.of_all_rollers(self.dx_by_pose)
-        by_approach = None
-        if self.de_by_pose is not None:
-            by_approach = self.of_all(self.de_by_pose)
+            each = np.moveaxis(change, -1, 0)
+            shifts = np.stack([-pins.under(self.members.forces(self.of_all(one))) for one in each], axis=-1)
+        if self.system.deforms:
+            by_pose, columns = self.of_all_rollers(self.dx_by_pose), ()
+        else:
+            by_pose = np.concatenate(self.by_own, axis=1) if len(self.by_own) > 1 else self.by_own[0]
+            columns = () if len(self.by_own) == 1 else tuple(tuple(own.tolist()) for own in self.system.columns)
+        by_approach = None if self.de_by_pose is None else self.of_all(self.de_by_pose)
         return Following(
             pose=self.pose,
             place=state.place,
@@ -1039,6 +1083,7 @@ class Linearised:
             by_pose=by_pose,
             approach_by_pose=by_approach,
             shifts_by_pose=shifts,
+            columns=columns,
         )
 
 
