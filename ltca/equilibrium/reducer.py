@@ -294,20 +294,31 @@ class Reducer:
         return contact_stiffness
 
     def evaluate(
-        self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None, *, roughly: bool = False
+        self,
+        crank_angle: FloatArray,
+        pose: FloatArray,
+        start: Start | None = None,
+        *,
+        roughly: bool = False,
+        everything: bool = False,
     ) -> Response | Evaluation:
-        """Return what a search asks for at poses; arguments as for `respond`, which makes a whole response of it."""
+        """Return what a search asks for at poses; arguments as for `respond`, which makes a whole response of it.
+
+        `everything` takes all contacts of coupled bodies as candidates to carry (`Evaluation.overlooks`).
+        """
         if not self.one_system:
             return self.respond(crank_angle, pose, start, roughly=roughly)
         rows = crank_angle.size
         if rows > POSITIONS_AT_ONCE:
             blocks = np.array_split(np.arange(rows), -(-rows // POSITIONS_AT_ONCE))
             each = [
-                self.take(some).evaluate(*take_positions((crank_angle, pose, start), some), roughly=roughly)
+                self.take(some).evaluate(
+                    *take_positions((crank_angle, pose, start), some), roughly=roughly, everything=everything
+                )
                 for some in blocks
             ]
             return join_positions(each)
-        at = ContactSystem(self).respond(crank_angle, pose, start, roughly=roughly)
+        at = ContactSystem(self).respond(crank_angle, pose, start, roughly=roughly, everything=everything)
         force, tangent = at.force.copy(), at.tangent.copy()
         found = _Evaluated(self, at)
         if self.friction is not None:
@@ -542,6 +553,11 @@ class Evaluation:
         if len(each) == 1:
             return each[0]
         return take_positions(join_positions(each), np.argsort(np.concatenate(order)))
+
+    @property
+    def overlooks(self) -> NDArray[np.bool_]:
+        """Positions where a contact was left out that is pressed together after all."""
+        return self._gathered(lambda found: found.at.leaves_out)
 
     @property
     def start(self) -> Start:

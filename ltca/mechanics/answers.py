@@ -83,7 +83,7 @@ def _approaches(at: Linearised, disc: int) -> FloatArray:
     found = overlap - at.yielding[disc][0]
     walls = np.concatenate((some[0], system.pins + some[1], system.pins + system.rollers + some[2]), axis=1)
     own = np.arange(walls.shape[1])
-    diagonal = at.bodies[disc][0][at.row, walls, own]
+    diagonal = at.bodies[disc][0].among[:, own, own]
     near = np.concatenate([at.after[:, 0, kinds[kind]][at.row, some[kind]] for kind in range(3)], axis=1)
     load = np.concatenate([at.corrected_load[:, 0, kinds[kind]][at.row, some[kind]] for kind in range(3)], axis=1)
     found[at.row, walls] = near + diagonal * load

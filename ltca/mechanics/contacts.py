@@ -32,6 +32,7 @@ from numpy.typing import NDArray
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance import sliced
 from ltca.compliance.contact_laws import ContactLaws
+from ltca.compliance.coupled import BodyFlexibility
 from ltca.compliance.inner_unknowns import Following, Inner
 from ltca.compliance.response import Start
 from ltca.errors import ConvergenceError
@@ -146,36 +147,44 @@ class ContactSystem:
         """Half the thickness of the discs, by which tilts are measured, mm, shape (…,) of one number or (positions, 1)."""
         return np.asarray(self.geometries[0].half_width, dtype=float)
 
-    def respond(self, angle: FloatArray, pose: FloatArray, start: Start | None, *, roughly: bool) -> Linearised:
-        """Return contacts at poses, found to first order in what is left of the inner unknowns."""
+    def respond(
+        self, angle: FloatArray, pose: FloatArray, start: Start | None, *, roughly: bool, everything: bool = False
+    ) -> Linearised:
+        """Return contacts at poses, found to first order in what is left of the inner unknowns.
+
+        Contacts of coupled bodies that are far from touching are left out of the linear system unless `everything` is asked for;
+        `Linearised.leaves_out` tells where one of them is pressed after all, which is looked at here unless `roughly`.
+        """
         state = self._begin(pose, start)
         known = None if start is None or self.deforms or self.components > 1 else start.known
-        for margin in (CANDIDATE_MARGIN, np.inf):
-            at = Linearised(self, angle, pose, state, known, roughly=roughly, margin=margin)
-            if self.deforms and not at.settled(roughly=True):
-                # What was expected may be farther off than nothing at all.
-                anew = Linearised(
-                    self,
-                    angle,
-                    pose,
-                    state._replace(approach=None, shifts=state.shifts * 0.0 if state.shifts is not None else None),
-                    known,
-                    roughly=roughly,
-                    margin=margin,
-                )
-                if np.max(anew.off) < np.max(at.off):
-                    at = anew
-            history = [float(np.max(at.moved, initial=0.0))]
-            while not at.settled(roughly):
-                if len(history) > MAX_CORRECTIONS:
-                    raise ConvergenceError("deformations of contacts do not settle; largest correction in mm", history)
-                # Contacts that take turns as pins move are met half way.
-                turns = len(history) > 4 and history[-1] > 0.5 * history[-3]
-                at = at.corrected(roughly=roughly, part=0.5 if turns else 1.0)
-                history.append(float(np.max(at.moved, initial=0.0)))
-            if not at.leaves_out:
-                return at
-        raise AssertionError("all contacts are taken, none is left out")
+        for margin in (np.inf,) if everything else (CANDIDATE_MARGIN, np.inf):
+            at = self._settle(Linearised(self, angle, pose, state, known, roughly=roughly, margin=margin), state)
+            if roughly or not at.leaves_out.any():
+                break
+        return at
+
+    def _settle(self, at: Linearised, begin: _State) -> Linearised:
+        """Correct the inner unknowns, each position for itself, until they have settled."""
+        if self.deforms and not at.settled(roughly=True).all():
+            # What was expected may be farther off than nothing at all.
+            shifts = None if begin.shifts is None else begin.shifts * 0.0
+            anew = at.again(begin._replace(approach=None, shifts=shifts))
+            better = (anew.off < at.off) & ~at.settled(roughly=True)
+            if better.all():
+                at = anew
+            elif better.any():
+                at = at.again(_mixed(at.here, anew.here, better))
+        history = [at.moved]
+        while not (settled := at.settled(at.roughly)).all():
+            if len(history) > MAX_CORRECTIONS:
+                largest = [float(np.max(moved)) for moved in history]
+                raise ConvergenceError("deformations of contacts do not settle; largest correction in mm", largest)
+            part = np.where(settled, 0.0, 1.0)
+            if len(history) > 4:  # contacts that take turns as pins move are met half way
+                part = np.where(history[-1] > 0.5 * history[-3], 0.5 * part, part)
+            at = at.corrected(part)
+            history.append(at.moved)
+        return at
 
     def _begin(self, pose: FloatArray, start: Start | None) -> _State:
         """Inner unknowns to start from; NaN where nothing is known."""
@@ -225,6 +234,19 @@ class _State(NamedTuple):
     near: tuple[FloatArray, ...]
 
 
+def _mixed(first: _State, second: _State, rows: NDArray[np.bool_]) -> _State:
+    """Inner unknowns of the first but for some positions, which have those of the second."""
+
+    def of_both(mine: Any, other: Any) -> Any:
+        if mine is None or other is None:
+            return mine
+        if isinstance(mine, tuple):
+            return tuple(of_both(*each) for each in zip(mine, other, strict=True))
+        return np.where(rows.reshape(-1, *(1,) * (mine.ndim - 1)), other, mine)
+
+    return _State(*(of_both(*each) for each in zip(first, second, strict=True)))
+
+
 class _Pressing(NamedTuple):
     """What chosen contacts press coordinates with.
 
@@ -262,6 +284,19 @@ class _Pressing(NamedTuple):
     tangent: FloatArray
 
 
+class _Eliminated(NamedTuple):
+    """Force and tangent of the pose with everything else eliminated, corrections of places and deformations, and how these follow
+    the pose.
+    """
+
+    force: FloatArray
+    tangent: FloatArray
+    dx: FloatArray
+    dx_by_pose: FloatArray
+    de: FloatArray
+    de_by_pose: FloatArray
+
+
 class Linearised:
     """Contacts at poses and near-by inner unknowns, and how everything follows the pose to first order.
 
@@ -279,8 +314,8 @@ class Linearised:
         Pins that cannot touch are left out by.
     roughly : bool
         Whether laws that iterate may come as close as a search needs.
-    places : list of _Disc, optional
-        Places of the contacts, where only the inner unknowns have changed.
+    before : Linearised, optional
+        The same contacts at the same places, where only the inner unknowns have changed.
     margin : float
         Gap by the largest overlap within which open contacts of coupled bodies are taken.
 
@@ -300,20 +335,22 @@ class Linearised:
         known: KnownPins | None,
         *,
         roughly: bool,
-        places: list[_Disc] | None = None,
+        before: Linearised | None = None,
         margin: float = CANDIDATE_MARGIN,
     ) -> None:
+        self.before, self.roughly = before, roughly
         self.system, self.angle, self.pose, self.known, self.margin = system, angle, pose, known, margin
         self.row = np.arange(angle.size)[:, None]
         self.half = system.half
         self.off = np.zeros(angle.size)
         self._moved_slices: dict[int, list[SlicedContact]] = {}
-        self.held = places is not None
-        self.discs = self._placed(state) if places is None else places
+        self.held = before is not None
+        self.discs = self._placed(state) if before is None else before.discs
         self._approach(state)
         self._carry(state, roughly)
         self._choose()
         self._linearise()
+        self.before = None
 
     def _placed(self, state: _State) -> list[_Disc]:
         """Places of the contacts of every disc with the pins displaced as the state says."""
@@ -394,7 +431,7 @@ class Linearised:
                 e = e.copy()
                 e[:, 0] *= np.where(e[:, 0] > 0.0, 0.5, 1.0)
         else:
-            e = np.where(self._within()[:, None], e, self.overlap)
+            e = np.where((self._within() | (e[:, 0] > 0.0))[:, None], e, self.overlap)
         if not system.coupled and system.deforms:  # nothing but the two contacts of a roller deforms
             e = e.copy()
             for _, bores, _, races in system.of_kind:
@@ -693,14 +730,17 @@ class Linearised:
         apart = np.abs(part.unbalanced).sum(axis=-1) / np.where(stiff > 0.0, stiff, np.inf)
         self.off = np.maximum(self.off, np.max(apart, axis=1, initial=0.0))
         moves = self.shifts is not None and not self.held
-        self.force, self.tangent = self._eliminate(part, whole, left, turning=moves)
-        if moves and not self._is_near(stiffness):
+        found = self._eliminate(part, whole, left, turning=moves)
+        if moves and not (near := self._is_near(found.de, stiffness)).all():
             # Far off loads may turn with soft pins more than these hold against.
-            self.force, self.tangent = self._eliminate(part, whole, left, turning=False)
+            still = self._eliminate(part, whole, left, turning=False)
+            rows = [near.reshape(-1, *(1,) * (values.ndim - 1)) for values in found]
+            found = _Eliminated(*(np.where(*each) for each in zip(rows, found, still, strict=True)))
+        self.force, self.tangent, self.dx, self.dx_by_pose, self.de, self.de_by_pose = found
 
     def _eliminate(
         self, part: _Pressing, whole: FloatArray, left: FloatArray, *, turning: bool
-    ) -> tuple[FloatArray, FloatArray]:
+    ) -> _Eliminated:
         """The same where loads deform more than their own contacts: force and tangent of the pose.
 
         Without `turning` loads that turn with displaced pins count where they hold these back alone.
@@ -760,20 +800,25 @@ class Linearised:
         force = force - np.matmul(across, solved[..., -1:])[..., 0]
         of_rollers = x[..., size:-1].reshape(rows, components * count, rollers * components)
         solved = solved.reshape(rows, rollers, components, size + 1)
-        self.dx, self.dx_by_pose = self._bounded(-solved[..., -1]), -solved[..., :-1]
-        placed_by = np.concatenate((self.dx_by_pose, self.dx[..., None]), axis=-1)
+        dx, dx_by_pose = self._bounded(-solved[..., -1]), -solved[..., :-1]
+        placed_by = np.concatenate((dx_by_pose, dx[..., None]), axis=-1)
         moved = np.matmul(of_rollers, placed_by.reshape(rows, rollers * components, size + 1))
         moved = moved.reshape(rows, components, count, size + 1)
-        self.de = (moved[..., -1] - x[..., -1])[:, :, :mine]
-        self.de_by_pose = (x[..., :size] + moved[..., :-1])[:, :, :mine]
         if not self.sticking and system.model.friction is None:
             tangent = 0.5 * (tangent + tangent.swapaxes(1, 2))
-        return force, tangent
+        return _Eliminated(
+            force=force,
+            tangent=tangent,
+            dx=dx,
+            dx_by_pose=dx_by_pose,
+            de=(moved[..., -1] - x[..., -1])[:, :, :mine],
+            de_by_pose=(x[..., :size] + moved[..., :-1])[:, :, :mine],
+        )
 
-    def _is_near(self, stiffness: FloatArray) -> bool:
-        """Whether corrections of deformations are so small that loads follow them linearly."""
-        self.moved = np.max(np.where(stiffness[0] > 0.0, np.abs(self.de).sum(axis=1), 0.0), axis=1, initial=0.0)
-        return self.settled(roughly=True)
+    def _is_near(self, de: FloatArray, stiffness: FloatArray) -> NDArray[np.bool_]:
+        """Positions where corrections of deformations are so small that loads follow them linearly."""
+        moved = np.max(np.where(stiffness[0] > 0.0, np.abs(de).sum(axis=1), 0.0), axis=1, initial=0.0)
+        return self._are_small(moved, ROUGHLY_SETTLED)
 
     def _bounded(self, dx: FloatArray) -> FloatArray:
         """Corrections of places and leans that go no farther than half of what is pressed together: beyond, other slices meet
@@ -797,22 +842,16 @@ class Linearised:
             members = self.members = PinMembers(self)
         entries = count + (0 if members is None else members.count)
         whole = np.zeros((rows, components, entries, components, entries))
-        self.bodies: list[list[FloatArray]] = []
-        for disc, model in enumerate(system.bodies):
-            self.bodies.append([])
-            if model.coefficients is None:
-                continue
-            places, some = self._body_places(disc), self.chosen[disc][:3]
+        self._find_bodies()
+        for disc, bodies in enumerate(self.bodies):
             pins, bores, holes, races = self.at[disc]
             among = np.r_[pins, bores, holes]
-            for component, (matrix, race, cross) in enumerate(model.body_flexibility(places, some)):
-                self.bodies[disc].append(matrix)
-                walls = np.concatenate((some[0], system.pins + some[1], system.pins + system.rollers + some[2]), axis=1)
-                whole[:, component, among[:, None], component, among] = matrix[row, walls]
-                on_race = race[some[1][:, :, None], some[1][:, None, :]]
-                whole[:, component, races, component, races] = on_race
-                first, second = np.arange(bores.start, bores.stop), np.arange(races.start, races.stop)
-                whole[:, component, first, component, second] = whole[:, component, second, component, first] = cross
+            first, second = np.arange(bores.start, bores.stop), np.arange(races.start, races.stop)
+            for component, body in enumerate(bodies):
+                mine = whole[:, component, :, component]
+                mine[:, among[:, None], among] = body.among
+                mine[:, races, races] = body.on_race
+                mine[:, first, second] = mine[:, second, first] = body.across_roller
         left = self.of_chosen(self.deformation - self.overlap)
         if system.coupled:
             left += np.einsum("bcicj,bcj->bci", whole[:, :, :count, :, :count], load)
@@ -820,6 +859,21 @@ class Linearised:
             left += members.approaches(self.shifts + system.model.pins.under(members.forces(self.load)))
             members.add_flexibility(whole)
         return whole, left
+
+    def _find_bodies(self) -> None:
+        """Find what bodies yield between the chosen contacts: what was found before, where neither places nor choice changed."""
+        before = self.before
+        if before is not None and all(
+            first is second or np.array_equal(first, second)
+            for mine, theirs in zip(self.chosen, before.chosen, strict=True)
+            for first, second in zip(mine, theirs, strict=True)
+        ):
+            self.bodies: list[list[BodyFlexibility]] = before.bodies
+            return
+        self.bodies = [
+            [] if model.coefficients is None else model.body_flexibility(self._body_places(disc), self.chosen[disc][:3])
+            for disc, model in enumerate(self.system.bodies)
+        ]
 
     @property
     def inner(self) -> Inner:
@@ -897,11 +951,25 @@ class Linearised:
         """Where the contacts of a kind stand among the chosen."""
         return np.concatenate([np.arange(own[number].start, own[number].stop) for own in self.at])
 
-    def settled(self, roughly: bool) -> bool:
-        """Whether the inner unknowns are close enough for a step of the pose, or for an answer."""
+    def settled(self, roughly: bool) -> NDArray[np.bool_]:
+        """Positions whose inner unknowns are close enough for a step of the pose, or for an answer."""
+        return self._are_small(self.moved, ROUGHLY_SETTLED if roughly else SETTLED)
+
+    def _are_small(self, moved: FloatArray, part: float) -> NDArray[np.bool_]:
+        """Positions where corrections, mm, are a small part of the largest approach."""
         deep = np.max(np.abs(self.overlap[:, 0]) * (self.load[:, 0] > 0.0), axis=1, initial=0.0)
-        part = ROUGHLY_SETTLED if roughly else SETTLED
-        return bool(np.all(self.moved <= part * deep + ROUND_OFF))
+        return np.asarray(moved <= part * deep + ROUND_OFF)
+
+    def again(self, state: _State) -> Linearised:
+        """Return the contacts at the same poses with other inner unknowns."""
+        return Linearised(
+            self.system, self.angle, self.pose, state, self.known, roughly=self.roughly, margin=self.margin
+        )
+
+    @property
+    def here(self) -> _State:
+        """Inner unknowns without the correction."""
+        return self._state(np.zeros(self.angle.size))
 
     def _state(self, fraction: FloatArray | None = None) -> _State:
         """Inner unknowns after the correction."""
@@ -966,28 +1034,31 @@ class Linearised:
         load = self.load + self.of_all(self.change)
         return np.where(load[:, :1] > 0.0, load, 0.0)
 
-    def corrected(self, *, roughly: bool, part: float = 1.0) -> Linearised:
-        """Return the contacts at the same poses with the inner unknowns corrected.
+    def corrected(self, part: FloatArray) -> Linearised:
+        """Return the contacts at the same poses with the inner unknowns corrected, of each position by a part of the way: zero
+        where they stay.
 
         Deformations are found for pins that stand where they stand, and gaps taken as linear in what displaces these, a convex
         problem; then the pins are put where the loads press them, or a part of the way there.
         """
-        at = self._stepped(roughly=roughly)
+        moves = part > 0.0
+        at = self._stepped(moves)
         if self.shifts is None:
             return at
         for _ in range(MAX_CORRECTIONS):
-            if at.settled(roughly=True):
+            going = moves & ~at.settled(roughly=True)
+            if not going.any():
                 break
-            at = at._stepped(roughly=roughly)
+            at = at._stepped(going)
         state = at._state()
-        if part < 1.0 and state.shifts is not None:
-            state = state._replace(shifts=self.shifts + part * (state.shifts - self.shifts))
-        return Linearised(self.system, self.angle, self.pose, state, self.known, roughly=roughly, margin=self.margin)
+        if state.shifts is not None:
+            state = state._replace(shifts=self.shifts + part[:, None, None] * (state.shifts - self.shifts))
+        return self.again(state if moves.all() else _mixed(self.here, state, moves))
 
-    def _stepped(self, *, roughly: bool) -> Linearised:
-        """The contacts a step of the deformations on, or where the energy along it has nearly ceased to fall."""
+    def _stepped(self, moves: NDArray[np.bool_]) -> Linearised:
+        """The contacts with deformations of some positions a step on, or where the energy along it has nearly ceased to fall."""
         rows = self.angle.size
-        fraction, low, high = np.ones(rows), np.zeros(rows), np.ones(rows)
+        fraction, low, high = moves.astype(float), np.zeros(rows), np.ones(rows)
         start = self.along(self.step)
         low_slope, high_slope = start.copy(), np.zeros(rows)
         for _ in range(MAX_HALVINGS):
@@ -997,15 +1068,15 @@ class Linearised:
                 self.pose,
                 self._state(fraction),
                 self.known,
-                roughly=roughly,
-                places=self.discs,
+                roughly=self.roughly,
+                before=self,
                 margin=self.margin,
             )
             if not self.system.deforms:
                 break
             end = found.along(self.step)
             far = found.off > self.off if self.system.coupled else end > STEEPEST * np.abs(start)
-            far = far & (found.off > 0.5 * self.off) & (found.off > ROUND_OFF * 100.0)
+            far = far & moves & (found.off > 0.5 * self.off) & (found.off > ROUND_OFF * 100.0)
             if not far.any():
                 break
             high, high_slope = np.where(far, fraction, high), np.where(far, end, high_slope)
@@ -1036,17 +1107,18 @@ class Linearised:
         for disc, bodies in enumerate(self.bodies if self.system.coupled else []):
             some, kinds = self.chosen[disc], self.system.of_kind[disc]
             found.append([])
-            for component, matrix in enumerate(bodies):
+            for component, body in enumerate(bodies):
                 load = self.corrected_load[:, component]
                 loaded = np.concatenate([self.picked(load[:, kinds[kind]], some[kind]) for kind in range(3)], axis=1)
-                found[disc].append(np.matmul(matrix, loaded[..., None])[..., 0])
+                found[disc].append(body.taken(loaded))
         return found
 
-    @property
-    def leaves_out(self) -> bool:
-        """Whether a contact of coupled bodies that was left out is pressed together after all."""
+    @cached_property
+    def leaves_out(self) -> NDArray[np.bool_]:
+        """Positions where a contact of coupled bodies that was left out is pressed together after all, shape (positions,)."""
+        found = np.zeros(self.angle.size, dtype=bool)
         if not self.system.coupled or not np.isfinite(self.margin):
-            return False
+            return found
         for disc, yielding in enumerate(self.yielding):
             some, kinds = self.chosen[disc], self.system.of_kind[disc]
             for kind, part in enumerate(
@@ -1054,9 +1126,8 @@ class Linearised:
             ):
                 pressed = self.overlap[:, 0, kinds[kind]] - part > 0.0
                 pressed[self.row, some[kind]] = False
-                if pressed.any():
-                    return True
-        return False
+                found |= pressed.any(axis=1)
+        return found
 
     def following(self) -> Following:
         """Return how the inner unknowns follow the pose."""
