@@ -136,7 +136,7 @@ class Reducer:
     friction: JointFriction | None = None
     stage: StageMesh | None = None
     external: ExternalForce | None = None
-    one_system: bool = False
+    one_system: bool = True
     _by_position: bool | None = field(init=False, repr=False, compare=False, default=None)
 
     @classmethod
@@ -151,6 +151,11 @@ class Reducer:
             stage=StageMesh.of_drive(drive),
             external=ExternalForce.of_drive(drive),
         )
+
+    @property
+    def _on_contacts(self) -> bool:
+        """Whether the one system of contacts answers."""
+        return self.one_system and hasattr(self.discs[0], "contact_laws")
 
     def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Reducer:
         """Return the model of some positions: itself where no two differ, neither in their drives nor in their friction."""
@@ -196,7 +201,7 @@ class Reducer:
             Whether contacts in slices and displacements of pins that have nearly settled will do: force and tangent are then
             those of settled ones to first order, and `Response.left` tells what is left.
         """
-        if self.one_system:
+        if self._on_contacts:
             found = self.evaluate(crank_angle, pose, start, roughly=roughly)
             return found.whole if isinstance(found, Evaluation) else found
         count, coordinates = len(self.discs), self.coordinates
@@ -306,7 +311,7 @@ class Reducer:
 
         `everything` takes all contacts of coupled bodies as candidates to carry (`Evaluation.overlooks`).
         """
-        if not self.one_system:
+        if not self._on_contacts:
             return self.respond(crank_angle, pose, start, roughly=roughly)
         rows = crank_angle.size
         if rows > POSITIONS_AT_ONCE:

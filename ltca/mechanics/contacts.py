@@ -39,7 +39,7 @@ from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_ROTATION, X, Y
 from ltca.geometry.pair_motion import KnownPins, PairTilt, dot
 from ltca.geometry.pairs import ContactGeometry
-from ltca.mechanics.displaced_pins import PinMembers
+from ltca.mechanics.displaced_pins import PinBlocks, PinMembers
 
 if TYPE_CHECKING:
     from ltca.laws.sliced_contact import SlicedContact
@@ -488,7 +488,7 @@ class Linearised:
     def _choose(self) -> None:
         """Choose the contacts of the linear system: those that carry, and of coupled bodies open ones that may."""
         system, rows = self.system, self.row.size
-        self.every = not system.deforms
+        self.every = not system.coupled
         self.chosen: list[list[Indices]] = []
         if self.every:
             counts = system.pins, system.rollers, system.holes, system.rollers
@@ -624,7 +624,7 @@ class Linearised:
         self.sticking: list[tuple[FloatArray, FloatArray, FloatArray]] = []
         self.rubs: list[FloatArray] = []
         self.pressing = [self._pressing(disc) for disc in range(system.discs)]
-        if system.deforms:
+        if system.coupled:
             self._linearise_coupled()
         else:
             self._linearise_alone()
@@ -642,14 +642,19 @@ class Linearised:
         """The same where nothing deforms but the contacts: disc by disc, roller by roller."""
         system, (rows, size) = self.system, self.pose.shape
         force, tangent = np.zeros((rows, size)), np.zeros((rows, size, size))
-        dx, de, by_own = [], [], []
+        dx, by_own = [], []
+        on_pins = None if system.model.pins is None else self._on_displaced_pins()
         for disc, (part, own) in enumerate(zip(self.pressing, system.columns, strict=True)):
             _, bores, _, races = self.local[disc]
             outward, inward = part.presses
             rollers, components, count = part.placed.shape[1:]
             pressed = _pressed(part.stiffness, part.g)
-            flat = part.force_map.reshape(rows, -1, count)
-            mine = part.tangent + np.matmul(flat.swapaxes(1, 2), pressed.reshape(flat.shape))
+            if on_pins is None:
+                mine = part.force_map, pressed
+            else:  # those of pins and holes are found together
+                mine = tuple(np.concatenate((each[:, :, bores], each[:, :, races]), 2) for each in (part.g, pressed))
+            flat, along = (each.reshape(rows, -1, count) for each in mine)
+            held_by = part.tangent + np.matmul(flat.swapaxes(1, 2), along)
             pushed = outward[..., None] * pressed[:, :, bores] + inward[..., None] * pressed[:, :, races]
             right = np.empty((rows, rollers, components, count + 1))
             np.add(part.placed, pushed.swapaxes(1, 2), out=right[..., :-1])
@@ -661,25 +666,72 @@ class Linearised:
             solved = _solved_blocks(held, right)
             back = right[..., :-1].reshape(rows, rollers * components, count).swapaxes(1, 2)
             taken = np.matmul(back, solved.reshape(rows, rollers * components, count + 1))
-            mine -= taken[..., :-1]
+            held_by -= taken[..., :-1]
             if system.discs == 1:
-                force, tangent = part.force - taken[..., -1], mine
+                force, tangent = part.force - taken[..., -1], held_by
             else:
                 force[:, own] += part.force - taken[..., -1]
-                tangent[:, own[:, None], own] += mine
+                tangent[:, own[:, None], own] += held_by
             dx.append(-solved[..., -1])
             by_own.append(-solved[..., :-1])
         self.dx, self.by_own = self._bounded(np.concatenate(dx, axis=1) if len(dx) > 1 else dx[0]), by_own
+        self.de, self.de_by_pose = np.zeros(self.load.shape), None
+        if on_pins is not None:
+            self.de_by_pose = np.zeros((*self.load.shape, size))
+            force, tangent = force + on_pins[0], tangent + on_pins[1]
+            if not self.sticking and system.model.friction is None:
+                tangent = 0.5 * (tangent + tangent.swapaxes(1, 2))
         for disc, part in enumerate(self.pressing):
-            _, bores, _, races = self.local[disc]
+            pins, bores, holes, races = system.of_kind[disc]
             outward, inward = part.presses
             moved = self.dx[:, self.of_rollers[disc]].swapaxes(1, 2)
-            change = np.zeros(part.load.shape)
-            change[:, :, bores], change[:, :, races] = outward * moved, inward * moved
-            de.append(change)
-        self.de = np.concatenate(de, axis=2) if len(de) > 1 else de[0]
-        self.de_by_pose = None
+            self.de[:, :, bores], self.de[:, :, races] = outward * moved, inward * moved
+            if on_pins is None or self.de_by_pose is None:
+                continue
+            own = system.columns[disc]
+            _, at_bores, _, at_races = self.local[disc]
+            by_place = by_own[disc].swapaxes(1, 2)
+            for kind, local, press in ((bores, at_bores, outward), (races, at_races, inward)):
+                self.de_by_pose[:, :, kind, own] = part.g[:, :, local] + press[..., None] * by_place
+            for kind, some in ((pins, slice(0, system.pins)), (holes, slice(system.pins, None))):
+                self.de[:, :, kind] = on_pins[2][:, :, disc, some]
+                self.de_by_pose[:, :, kind] = on_pins[3][:, :, disc, some]
         self.force, self.tangent = force, tangent
+
+    def _on_displaced_pins(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Force and tangent that contacts on displaced pins add, and corrections of their deformations at the pose and by it."""
+        pins, shifts = self.system.model.pins, self.shifts
+        assert pins is not None
+        assert shifts is not None
+        members = self.members = PinMembers(self)
+        left = self.deformation - self.overlap
+        left += members.approaches(shifts + pins.under(members.forces(self.load)))
+        self.off_by = left
+        wanted = np.abs(left).sum(axis=1)
+        matters = (self.stiffness[0] > 0.0) | (self.deformation[:, 0] - left[:, 0] > 0.0)
+        self.off = np.max(wanted * matters, axis=1, initial=0.0)
+        for disc, part in enumerate(self.pressing):
+            _, bores, _, races = self.local[disc]
+            stiff = part.stiffness[0][:, bores] + part.stiffness[0][:, races]
+            apart = np.abs(part.unbalanced).sum(axis=-1) / np.where(stiff > 0.0, stiff, np.inf)
+            self.off = np.maximum(self.off, np.max(apart, axis=1, initial=0.0))
+        blocks, moves = PinBlocks(members), not self.held
+        found = blocks.eliminated(self.pressing, left, turning=moves)
+        if moves:
+            change = np.zeros(self.load.shape)
+            for disc, kinds in enumerate(self.system.of_kind):
+                change[:, :, kinds[0]] = found[2][:, :, disc, : self.system.pins]
+                change[:, :, kinds[2]] = found[2][:, :, disc, self.system.pins :]
+            near = self._is_near(change, self.stiffness)
+            if not near.all():
+                # Far off loads may turn with soft pins more than these hold against.
+                still = blocks.eliminated(self.pressing, left, turning=False)
+                mixed = [
+                    np.where(near.reshape(-1, *(1,) * (first.ndim - 1)), first, second)
+                    for first, second in zip(found, still, strict=True)
+                ]
+                found = mixed[0], mixed[1], mixed[2], mixed[3]
+        return found
 
     def _assembled(self) -> _Pressing:
         """What contacts of all discs press all coordinates with."""
@@ -835,7 +887,7 @@ class Linearised:
         """W among the chosen contacts, shape (positions, components, chosen, components, chosen), and what is left of their
         deformations, r.
         """
-        system, row = self.system, self.row
+        system = self.system
         rows, components, count = load.shape
         members = None
         if self.shifts is not None:
@@ -1139,7 +1191,7 @@ class Linearised:
             change = _pressed(self.chosen_stiffness, self.de_by_pose)
             each = np.moveaxis(change, -1, 0)
             shifts = np.stack([-pins.under(self.members.forces(self.of_all(one))) for one in each], axis=-1)
-        if self.system.deforms:
+        if self.system.coupled:
             by_pose, columns = self.of_all_rollers(self.dx_by_pose), ()
         else:
             by_pose = np.concatenate(self.by_own, axis=1) if len(self.by_own) > 1 else self.by_own[0]
