@@ -343,7 +343,9 @@ class CoupledCompliance:
             from ltca.compliance.coupled_slices import stored_by_bodies
 
             return stored_by_bodies(self, crank_angle, pose, response)
-        laws, near, rollers = self.near_field, np.stack(list(response.warm_start)), response.rollers
+        assert response.deformation is not None
+        near = response.deformation[:, 0, : -self.inner_radius.size]
+        laws, rollers = self.near_field, response.rollers
         pins, last = response.pin_load.shape[1], response.pin_load.shape[1] + self.outer_radius.size
         inner, _ = laws.inner.approach_at_load(rollers.inner_load, self.inner_radius)
         alone = StoredEnergy.of_laws(
@@ -386,7 +388,8 @@ class CoupledCompliance:
             modulus = getattr(at_hole, "contact", at_hole).contact_modulus
             kinds = replace(laws.kinds, holes=replace(laws.kinds.holes, contact_modulus=modulus))
             return pressures_in_slices(response, kinds, place, has_ends=laws.has_ends, rigid_shaft_pins=rigid)
-        near = np.stack(list(response.warm_start))
+        assert response.deformation is not None
+        near = response.deformation[:, 0]
         pins, rollers = response.pin_load.shape[1], self.outer_radius.size
         inner, _ = laws.inner.approach_at_load(response.rollers.inner_load, self.inner_radius)
         hole, _ = laws.hole.approach_at_load(response.hole_load, self.hole_radius)

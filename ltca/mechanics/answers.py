@@ -72,6 +72,7 @@ def disc_response(at: Linearised, disc: int) -> DiscResponse:
         friction=friction,
         leaning_pins=leaning[0],
         leaning_holes=leaning[1],
+        deformation=at.after[:, :, kinds[0].start : kinds[3].stop] if system.coupled else None,
     )
 
 
