@@ -805,15 +805,16 @@ class Linearised:
         if self.shifts is not None:
             # Loads turn with displaced pins: as if contacts lay along their tangents, without loads. What they turn with the pose
             # is in the tangent already.
-            bent, along = self.members.turned_loads(size)
+            bent, along, turn = self.members.turned_loads(size)
             if not turning:
                 bent[0] = 0.0 if self.held else np.maximum(bent[0], 0.0)
-                bent[1:] = 0.0
+                bent[1:], turn = 0.0, turn * 0.0
             held = _pressed(bent, along)
             shape = rows, components * along.shape[2], size
             tangent = tangent - np.matmul(along.reshape(shape).swapaxes(1, 2), held.reshape(shape))
             g, force_map = np.concatenate((g, along), axis=2), np.concatenate((force_map, along), axis=2)
             left = np.concatenate((left, np.zeros(along.shape[:3])), axis=2)
+            turn = np.concatenate((np.zeros(part.g.shape), turn), axis=2).reshape(rows, -1, size)
             stiffness = np.concatenate((_filled(stiffness, bent.shape[0]), bent), axis=2)
         mine, count = count, g.shape[2]
         each = components * count
@@ -823,7 +824,10 @@ class Linearised:
             for component in range(components):
                 t[:, component, places, own, component] = press[:, component]
         flat = t.reshape(rows, components * count, rollers * components)
-        right = np.concatenate((g.reshape(rows, each, size), flat, left.reshape(rows, each, 1)), axis=-1)
+        moved_by = g.reshape(rows, each, size)
+        if self.shifts is not None:
+            moved_by = moved_by - np.matmul(whole.reshape(rows, each, each), turn)
+        right = np.concatenate((moved_by, flat, left.reshape(rows, each, 1)), axis=-1)
         system_matrix = _pressed(
             stiffness, whole.reshape(rows, components * count, components, count).transpose(0, 2, 3, 1)
         )
@@ -835,6 +839,11 @@ class Linearised:
         kx = _pressed(stiffness, x).reshape(rows, components * count, right.shape[-1])
         back = np.concatenate((force_map.reshape(rows, each, size), flat), axis=-1)
         products = np.matmul(back.swapaxes(1, 2), kx)
+        if self.shifts is not None:
+            # What turns with the pose: what is taken of it by pins and by the places of rollers.
+            slipped = found.copy()
+            slipped[..., :size] -= g.reshape(rows, each, size)
+            products[:, :size] += np.matmul(turn.swapaxes(1, 2), slipped)
         tangent = tangent + products[:, :size, :size]
         force = force - products[:, :size, -1]
         block = products[:, size:, size:-1].copy()

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ltca.arrays import ComplexArray, FloatArray
-from ltca.geometry.coordinates import DISC_PLACE, WHEEL_ANGLE
+from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.pair_motion import dot
 from ltca.geometry.rotation import unit
 
@@ -88,15 +88,17 @@ class PinMembers:
         self.place, self.pair, self.disc = np.concatenate(places), np.concatenate(pairs, axis=1), np.concatenate(discs)
         self.count = self.place.size
 
-    def turned_loads(self, size: int) -> tuple[FloatArray, FloatArray]:
-        """Return what loads on pins that move along their contacts resist with, and the slip by the pose.
+    def turned_loads(self, size: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return what loads on pins that move along their contacts resist with, the slip by the pose, and by how much loads turn
+        with the pose against the pins.
 
         They are entries of the linear system behind the chosen contacts: stiffnesses F κ and, in slices, M κ between place and
-        lean, shape (1 or 3, positions, entries), and slips, shape (positions, components, entries, coordinates).
+        lean, shape (1 or 3, positions, entries), slips, shape (positions, components, entries, coordinates), and loads times
+        the angle by which the wheel turns against the disc, of that shape: wheel pins are displaced in the turning wheel.
         """
         at, system = self.at, self.at.system
         rows, each = at.pose.shape[0], []
-        slip = np.zeros((rows, system.components, self.count, size))
+        slip, turn = np.zeros((2, rows, system.components, self.count, size))
         last = 0
         for disc, own in enumerate(system.columns):
             of_disc = at.discs[disc]
@@ -108,6 +110,11 @@ class PinMembers:
                 # bend = np.maximum(bend, 0.0)
                 parts = [bend * load[:, component][at.row, some] for component in range(system.components)]
                 each.append(np.stack([*parts, np.zeros(bend.shape)]) if system.components > 1 else np.stack(parts))
+                if kind == 0:
+                    for component, part in enumerate(load.swapaxes(0, 1)):
+                        turning = turn[:, component, first:last]
+                        turning[..., own[DISC_ROTATION]] -= part[at.row, some]
+                        turning[..., own[WHEEL_ANGLE]] += part[at.row, some]
                 along = motion.along[at.row, some]
                 by_place = slip[:, 0]
                 by_place[:, first:last, own] = along
@@ -117,7 +124,7 @@ class PinMembers:
                     by_lean[:, first:last, own[system.one.lean_place]] = half * along[..., DISC_PLACE]
                     if kind == 0 and system.one.wheel_leans:
                         by_lean[:, first:last, own[system.one.wheel_lean_place]] = -half * along[..., DISC_PLACE]
-        return np.concatenate(each, axis=2), slip
+        return np.concatenate(each, axis=2), slip, turn
 
     def add_flexibility(self, whole: FloatArray) -> None:
         """Add N S Lᵀ to W, in place: of the chosen contacts, and behind these of what slips along them (`turned_loads`)."""
@@ -254,6 +261,24 @@ class PinBlocks:
                         found[:, :, :, a, :, :, b] += beam[:, :, None, :, None] * dot(left, right)
         return found.reshape(rows, pairs, self.entries, self.entries)
 
+    def _on_seats(self, vectors: list[list[ComplexArray]]) -> FloatArray:
+        """Derivatives by the displacements of the seats in the ring, shape (positions, seats, entries, 2)."""
+        each = np.stack([one[0] for one in vectors], axis=3)[:, : self.pins]
+        each = each.reshape(each.shape[0], self.pins, self.entries)
+        return np.stack((each.real, each.imag), axis=-1)
+
+    def _through_ring(
+        self, by: list[list[ComplexArray]], onto: list[list[ComplexArray]], force: FloatArray
+    ) -> FloatArray:
+        """What entries are moved by through the ring under forces on them."""
+        ring, rows, columns = self.system.model.pins.ring, force.shape[0], force.shape[-1]
+        loads = np.matmul(self._on_seats(onto).swapaxes(2, 3), force[:, : self.pins])
+        matrix = (ring if ring.ndim > 4 else ring[None]).reshape(-1, 2 * self.pins, 2 * self.pins)
+        moved = np.matmul(matrix, loads.reshape(rows, -1, columns)).reshape(rows, self.pins, 2, columns)
+        found = np.zeros(force.shape)
+        found[:, : self.pins] = np.matmul(self._on_seats(by), moved)
+        return found
+
     def eliminated(
         self, parts: Any, left: FloatArray, *, turning: bool
     ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
@@ -271,12 +296,12 @@ class PinBlocks:
         """
         system, at, size = self.system, self.at, self.at.pose.shape[1]
         rows, components = at.pose.shape[0], system.components
-        bent, along = self.members.turned_loads(size)
-        along = along.reshape(rows, components, self.discs, self.pairs, size)
+        bent, along, turn = self.members.turned_loads(size)
+        along, turn = (each.reshape(rows, components, self.discs, self.pairs, size) for each in (along, turn))
         bent = np.moveaxis(bent.reshape(bent.shape[0], rows, self.discs, self.pairs), 2, 3)
         if not turning:
             bent[0] = 0.0 if at.held else np.maximum(bent[0], 0.0)
-            bent[1:] = 0.0
+            bent[1:], turn = 0.0, np.zeros(turn.shape)
 
         def whole(values: FloatArray, own: Any) -> FloatArray:
             if self.discs == 1:
@@ -310,13 +335,17 @@ class PinBlocks:
         flexible = self.flexibility(by, onto)
         held = system.model.pins
         seats = self.pins if held.ring is not None else 0
-        right = np.concatenate((g, short), axis=-1)
+        nothing = [np.zeros((rows, components, self.pairs, size))] * self.discs
+        turn = self.of_contacts(nothing, turn)
+        moved_by = g - np.matmul(flexible, turn)
+        if held.ring is not None:
+            moved_by = moved_by - self._through_ring(by, onto, turn)
+        right = np.concatenate((moved_by, short), axis=-1)
         if seats:
             units = np.zeros((rows, self.pairs, self.entries, 2))
             press = np.zeros((rows, seats, self.entries, 2))
             for values, vectors in ((units, by), (press, onto)):
-                each = np.stack([one[0] for one in vectors], axis=3)[:, :seats].reshape(rows, seats, self.entries)
-                values[:, :seats, :, 0], values[:, :seats, :, 1] = each.real, each.imag
+                values[:, :seats] = self._on_seats(vectors)
             right = np.concatenate((right, units), axis=-1)
         system_matrix = self.pressed(stiffness, flexible.swapaxes(2, 3)).swapaxes(2, 3)
         itself = np.arange(self.entries)
@@ -342,7 +371,11 @@ class PinBlocks:
         turned[:, :, 1] = slips
         turned = turned.reshape(g.shape)
         resting = self.pressed(stiffness, turned).reshape(rows, -1, size)
-        tangent = taken[..., :-1] - np.matmul(turned.reshape(rows, -1, size).swapaxes(1, 2), resting)
+        slipped = x.copy()
+        slipped[..., :-1] -= g
+        taken += np.matmul(turn.reshape(rows, -1, size).swapaxes(1, 2), slipped.reshape(rows, -1, size + 1))
+        tangent = taken[..., :-1]
+        tangent = tangent - np.matmul(turned.reshape(rows, -1, size).swapaxes(1, 2), resting)
         found = self.to_contacts(x)
         return -taken[..., -1], tangent, -found[..., -1], found[..., :-1]
 
