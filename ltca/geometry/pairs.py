@@ -32,6 +32,8 @@ from ltca.geometry.rotation import unit
 
 MAX_EXTRAPOLATION = 0.1
 """Largest change of θ by which a first guess is extrapolated, rad, times the tooth number."""
+TOGETHER = 256
+"""Pins of all positions up to which all are found: to leave some out costs more than it saves."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -244,6 +246,9 @@ class ContactGeometry:
         pins = self._pins(crank_angle, pose, shifts)
         if start is None:
             start = self.nominal_parameter(crank_angle) + pose[:, WHEEL_ANGLE, None] - pose[:, DISC_ROTATION, None]
+        if known is not None and start.size <= TOGETHER:
+            most = MAX_EXTRAPOLATION / abs(self.profile.reduction_ratio)
+            start, known = start + dot(known.turning, pins.point - known.point).clip(-most, most), None
         if known is None:
             return self._touching(self.profile, pins, start, self.coordinates_of(pose))
         return self._touching_some(pins, start, known.may_touch(pins.point), known, self.coordinates_of(pose))

@@ -14,6 +14,10 @@ friction. Newton's step solves for all of them at once: with K = ∂f/∂e and W
 e and u are eliminated contact by contact, then x roller by roller; what is left is a force and a tangent of the pose alone. The
 derivatives of C and of the radii of curvature by the pose are left out, which keeps the tangent symmetric.
 
+A run in time asks for the crank angle as one more coordinate behind the pose, with which the cages turn and discs and wheel go
+along as they nominally do (`by_crank`). Its tangent is Σ k g gᵀ of contacts with their rollers and bodies alone: without what
+forces add as they turn.
+
 Contacts are numbered disc after disc: wheel pins, rollers in the bores, shaft pins in their holes, rollers on the races. Arrays
 have the shape (positions, components, contacts), with the approach and, in slices, the tilt times half the thickness of the disc
 as components.
@@ -35,7 +39,7 @@ from ltca.compliance.contact_laws import ContactLaws
 from ltca.compliance.inner_unknowns import Following, Inner
 from ltca.compliance.response import Start
 from ltca.errors import ConvergenceError
-from ltca.geometry.coordinates import DISC_ROTATION, X, Y
+from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, X, Y
 from ltca.geometry.pair_motion import KnownPins, PairTilt, dot
 from ltca.geometry.pairs import ContactGeometry
 from ltca.mechanics.displaced_pins import PinMembers
@@ -77,7 +81,7 @@ class _Disc:
         shifts: ComplexArray | None,
         leans: ComplexArray | None,
     ) -> None:
-        self.geometry, self.pose, self.shifts, self.leans = geometry, pose, shifts, leans
+        self.geometry, self.angle, self.pose, self.shifts, self.leans = geometry, angle, pose, shifts, leans
         pins = geometry.placement.wheel_pin_radii.shape[-1]
         on_pins, on_holes = (None, None) if shifts is None else (shifts[:, :pins], shifts[:, pins:])
         self.flank = geometry.flank(angle, pose, parameter, on_pins, known)
@@ -95,6 +99,25 @@ class _Disc:
             )
             journals = self.bores.each(geometry.journal_leans(pose), self.rollers)
             self.at_race, self.at_bore = (dot(self.rays.direction, lean) for lean in (journals, geometry.lean(pose)))
+
+    @cached_property
+    def nominal(self) -> FloatArray:
+        """Nominal motion of disc and wheel by the crank angle, mm and rad, shape (positions, coordinates, 1)."""
+        place, found = self.geometry.placement, np.zeros((*self.pose.shape, 1))
+        velocity = place.race_velocity(self.angle)
+        found[:, X, 0], found[:, Y, 0], found[:, WHEEL_ANGLE, 0] = (
+            velocity.real,
+            velocity.imag,
+            1.0 / place.reduction_ratio,
+        )
+        return found
+
+    @cached_property
+    def seen_from_cages(self) -> ComplexArray:
+        """Motion of the bores against the cages by the crank angle, mm/rad, shape (positions, cranks, 1)."""
+        place, bores = self.geometry.placement, self.bores
+        velocity = place.race_velocity(self.angle)[:, None]
+        return np.asarray((velocity - 1j * (bores.lever + place.cage_speed * bores.displacement))[..., None])
 
     def place_rollers(self, inward: FloatArray) -> None:
         """Put the rollers inward of where they only touch the race, mm."""
@@ -140,18 +163,30 @@ class ContactSystem:
         ]
         self.columns = [self.coordinates.columns(disc) for disc in range(self.discs)]
         self.one = replace(self.coordinates, discs=1)
+        self.cage_speed = place.cage_speed
 
     @property
     def half(self) -> FloatArray:
         """Half the thickness of the discs, by which tilts are measured, mm, shape (…,) of one number or (positions, 1)."""
         return np.asarray(self.geometries[0].half_width, dtype=float)
 
-    def respond(self, angle: FloatArray, pose: FloatArray, start: Start | None, *, roughly: bool) -> Linearised:
-        """Return contacts at poses, found to first order in what is left of the inner unknowns."""
-        state = self._begin(pose, start)
-        known = None if start is None or self.deforms or self.components > 1 else start.known
+    def respond(
+        self,
+        angle: FloatArray,
+        pose: FloatArray,
+        start: Start | ContactStart | None,
+        *,
+        roughly: bool,
+        by_crank: bool = False,
+    ) -> Linearised:
+        """Return contacts at poses, found to first order in what is left of the inner unknowns.
+
+        With `by_crank` the crank angle is a coordinate behind the pose.
+        """
+        state = self._begin(with_crank(pose, angle) if by_crank else pose, start)
+        known = None if start is None or (not by_crank and (self.deforms or self.components > 1)) else start.known
         for margin in (CANDIDATE_MARGIN, np.inf):
-            at = Linearised(self, angle, pose, state, known, roughly=roughly, margin=margin)
+            at = Linearised(self, angle, pose, state, known, roughly=roughly, margin=margin, by_crank=by_crank)
             if self.deforms and not at.settled(roughly=True):
                 # What was expected may be farther off than nothing at all.
                 anew = Linearised(
@@ -162,6 +197,7 @@ class ContactSystem:
                     known,
                     roughly=roughly,
                     margin=margin,
+                    by_crank=by_crank,
                 )
                 if np.max(anew.off) < np.max(at.off):
                     at = anew
@@ -177,7 +213,7 @@ class ContactSystem:
                 return at
         raise AssertionError("all contacts are taken, none is left out")
 
-    def _begin(self, pose: FloatArray, start: Start | None) -> _State:
+    def _begin(self, pose: FloatArray, start: Start | ContactStart | None) -> _State:
         """Inner unknowns to start from; NaN where nothing is known."""
         rows, rollers = pose.shape[0], self.discs * self.rollers
         unknown = np.full((rows, rollers), np.nan)
@@ -225,6 +261,16 @@ class _State(NamedTuple):
     near: tuple[FloatArray, ...]
 
 
+class ContactStart(NamedTuple):
+    """Inner unknowns of a neighbouring position, to start from."""
+
+    parameter: FloatArray
+    share: FloatArray
+    known: KnownPins
+    follow: Following
+    inner: Inner
+
+
 class Linearised:
     """Contacts at poses and near-by inner unknowns, and how everything follows the pose to first order.
 
@@ -246,6 +292,8 @@ class Linearised:
         Places of the contacts, where only the inner unknowns have changed.
     margin : float
         Gap by the largest overlap within which open contacts of coupled bodies are taken.
+    by_crank : bool
+        Whether the crank angle is a coordinate behind the pose.
 
     Notes
     -----
@@ -265,8 +313,10 @@ class Linearised:
         roughly: bool,
         places: list[_Disc] | None = None,
         margin: float = CANDIDATE_MARGIN,
+        by_crank: bool = False,
     ) -> None:
         self.system, self.angle, self.pose, self.known, self.margin = system, angle, pose, known, margin
+        self.by_crank, self.size = by_crank, pose.shape[1] + by_crank
         self.row = np.arange(angle.size)[:, None]
         self.half = system.half
         self.off = np.zeros(angle.size)
@@ -443,17 +493,19 @@ class Linearised:
         rollers in the bores turn with the pose, Im(n̄ ∂), shape (positions, rollers, coordinates).
         """
         system, row = self.system, self.row
-        rows, size = self.pose.shape
+        rows, size = self.pose.shape[0], self.size
         g = np.zeros((rows, system.components, self.contacts.shape[1], size))
         across = np.zeros((rows, self.rollers.shape[1], size))
         for disc, (at, own) in enumerate(zip(self.discs, system.columns, strict=True)):
             pins, bores, holes, races = self.at[disc]
             some = self.chosen[disc]
-            every = slice(None) if system.discs == 1 else own
+            every = slice(None) if system.discs == 1 else np.append(own, size - 1) if self.by_crank else own
             by_approach = g[:, 0]
-            by_approach[:, pins, every] = at.flank.gradient[row, some[0]]
-            by_approach[:, holes, every] = at.holes.gradient[row, some[2]]
+            by_approach[:, pins, every] = self._with_crank(at, at.flank.gradient[row, some[0]])
+            by_approach[:, holes, every] = self._with_crank(at, at.holes.gradient[row, some[2]])
             moved = at.bores.gradient
+            if self.by_crank:
+                moved = np.concatenate((moved, at.seen_from_cages), axis=-1)
             moved = moved if moved.shape[1] == 1 else moved[row, some[1] // (system.rollers // moved.shape[1])]
             turned = at.outward[row, some[1]].conjugate()[..., None] * moved
             by_approach[:, bores, every] = -turned.real
@@ -462,8 +514,8 @@ class Linearised:
                 continue
             half = self.half[..., None] if self.half.ndim else self.half
             by_tilt = g[:, 1]
-            by_tilt[:, pins, every] = half * at.tilts[0].gradient[row, some[0]]
-            by_tilt[:, holes, every] = half * at.tilts[1].gradient[row, some[2]]
+            by_tilt[:, pins, every] = half * self._with_crank(at, at.tilts[0].gradient[row, some[0]])
+            by_tilt[:, holes, every] = half * self._with_crank(at, at.tilts[1].gradient[row, some[2]])
             ray = at.rays.direction[row, some[1]]
             both = half * np.stack((ray.real, ray.imag), axis=-1)
             lean = own[system.one.lean_place]
@@ -472,12 +524,23 @@ class Linearised:
             for crank in range(system.one.cranks):
                 first = own[system.one.crank_lean(crank)]
                 by_tilt[:, races, first : first + 2] = both * (crank_of == crank)[..., None]
+            if self.by_crank:  # rays turn with the cages
+                turned = 1j * at.geometry.placement.cage_speed * ray
+                disc_lean = at.geometry.lean(at.pose)
+                journals = at.bores.each(at.geometry.journal_leans(at.pose), system.rollers)
+                journal = np.broadcast_to(journals, at.total.shape)[row, some[1]]
+                by_tilt[:, bores, -1] = -self.half * dot(turned, disc_lean)
+                by_tilt[:, races, -1] = self.half * dot(turned, journal)
         return g, across
+
+    def _with_crank(self, at: _Disc, gradient: FloatArray) -> FloatArray:
+        """Derivatives of pins by the pose of a disc, and by the crank angle where that is a coordinate."""
+        return np.concatenate((gradient, np.matmul(gradient, at.nominal)), axis=-1) if self.by_crank else gradient
 
     def _linearise(self) -> None:
         """Eliminate deformations, displacements of pins and places of rollers."""
         system, row = self.system, self.row
-        rows, size = self.pose.shape
+        rows, size = self.pose.shape[0], self.size
         g, across = self._gradients()
         load = self.load[row, :, self.contacts].swapaxes(1, 2)
         stiffness = self.stiffness[:, row, self.contacts]
@@ -485,10 +548,17 @@ class Linearised:
         out, n = self._of_rollers("outward"), self._rays()
         cosine, slant = dot(out, n), (out.conjugate() * n).imag
         bend = self._picked(self.load[:, 0], "bores") / self._of_rollers("length")
+        if self.by_crank:
+            bend = np.zeros(bend.shape)
         components, rollers = system.components, self.rollers.shape[1]
         self.each = components * self.contacts.shape[1]
         tangent = self._bends()
         tangent += np.matmul(across.swapaxes(1, 2), bend[..., None] * across)
+        if self.by_crank:  # forces of the bearings turn with the cages, which the stiffness of rollers on turning rays counts
+            pushed = self._picked(self.load[:, 0], "bores") * system.cage_speed
+            turned = np.matmul(pushed[:, None], across[..., :-1])[:, 0]
+            tangent[:, :-1, -1] -= turned
+            tangent[:, -1, :-1] -= turned
         # Directions in which a roller's own place and lean press its two contacts.
         outward, inward = np.ones((2, rows, components, rollers))
         outward[:, 0], inward[:, 1:] = -cosine, -1.0
@@ -687,7 +757,7 @@ class Linearised:
             self.bodies.append([])
             if model.coefficients is None:
                 continue
-            places, some = self._body_places(disc), self.chosen[disc][:3]
+            places, some = self.body_places(disc), self.chosen[disc][:3]
             pins, bores, holes, races = self.at[disc]
             among = np.r_[pins, bores, holes]
             for component, (matrix, race, cross) in enumerate(model.body_flexibility(places, some)):
@@ -708,6 +778,39 @@ class Linearised:
         return whole, left
 
     @property
+    def onward(self) -> ContactStart:
+        """Where the contacts of a position start that is nearby in pose and crank angle: no pin is left out."""
+        motions = [each.flank for each in self.discs]
+        return ContactStart(
+            parameter=_beside([motion.parameter for motion in motions]),
+            share=np.full(self.place.shape, 0.5),
+            known=KnownPins(
+                approach=np.full((self.angle.size, self.system.pins * len(motions)), np.inf),
+                point=_beside([motion.point for motion in motions]),
+                turning=_beside([motion.turning for motion in motions]),
+            ),
+            follow=self.following(),
+            inner=self.inner,
+        )
+
+    def pin_loads(self, disc: int) -> FloatArray:
+        """Return loads of wheel pins and shaft pins, and in slices their moments by half the thickness of the disc, N, shape
+        (positions, components, pairs).
+        """
+        pins, _, holes, _ = self.system.of_kind[disc]
+        return _beside([self.corrected_load[..., pins], self.corrected_load[..., holes]], axis=-1)
+
+    def pushes(self, disc: int) -> ComplexArray:
+        """Return the force of every crank bearing on a disc in the fixed frame, N, shape (positions, cranks)."""
+        at, bores = self.discs[disc], self.system.of_kind[disc][1]
+        return _by_crank(self.corrected_load[:, 0, bores] * at.outward, at.bores.arm.shape[1])
+
+    def bearing_moments(self, disc: int) -> ComplexArray:
+        """Return what every crank bearing presses the lean of a disc with, in slices, N·mm, shape (positions, cranks)."""
+        at, bores = self.discs[disc], self.system.of_kind[disc][1]
+        return _by_crank(self.half * self.corrected_load[:, 1, bores] * at.rays.direction, at.bores.arm.shape[1])
+
+    @property
     def inner(self) -> Inner:
         """Inner unknowns beside the pose, to start from elsewhere."""
         state = self._state()
@@ -723,7 +826,7 @@ class Linearised:
             each += [None if at.leans is None else at.leans * self.half for at in self.discs]
         return np.stack([one for one in each if one is not None], axis=1)
 
-    def _body_places(self, disc: int) -> tuple[FloatArray, FloatArray, FloatArray, ComplexArray, float]:
+    def body_places(self, disc: int) -> tuple[FloatArray, FloatArray, FloatArray, ComplexArray, float]:
         """Where the contacts of a disc lie on its body: θ on the flank, polar angles in bores and holes, places of the first."""
         at = self.discs[disc]
         turn, holes = at.pose[:, DISC_ROTATION, None], at.holes.gradient
@@ -777,8 +880,10 @@ class Linearised:
     def _bends(self) -> FloatArray:
         """Σ F ∂²d/∂q² of all contacts but what the rollers' places turn."""
         system = self.system
-        rows, size = self.pose.shape
+        rows, size = self.pose.shape[0], self.size
         found = np.zeros((rows, size, size))
+        if self.by_crank:
+            return found
         for disc, (at, own) in enumerate(zip(self.discs, system.columns, strict=True)):
             pins, bores, holes, _ = system.of_kind[disc]
             mine = at.flank.bend(self.load[:, 0, pins]) + at.holes.bend(self.load[:, 0, holes])
@@ -916,7 +1021,16 @@ class Linearised:
         state = at._state()
         if part < 1.0 and state.shifts is not None:
             state = state._replace(shifts=self.shifts + part * (state.shifts - self.shifts))
-        return Linearised(self.system, self.angle, self.pose, state, self.known, roughly=roughly, margin=self.margin)
+        return Linearised(
+            self.system,
+            self.angle,
+            self.pose,
+            state,
+            None,
+            roughly=roughly,
+            margin=self.margin,
+            by_crank=self.by_crank,
+        )
 
     def _stepped(self, *, roughly: bool) -> Linearised:
         """The contacts a step of the deformations on, or where the energy along it has nearly ceased to fall."""
@@ -934,6 +1048,7 @@ class Linearised:
                 roughly=roughly,
                 places=self.discs,
                 margin=self.margin,
+                by_crank=self.by_crank,
             )
             if not self.system.deforms:
                 break
@@ -1001,7 +1116,7 @@ class Linearised:
             assert pins is not None
             change = _pressed(self.chosen_stiffness, self.de_by_pose)
             each = []
-            for column in range(self.pose.shape[1]):
+            for column in range(self.size):
                 load = np.zeros(self.load.shape)
                 load[self.row, :, self.contacts] = change[..., column].swapaxes(1, 2)
                 each.append(-pins.under(self.members.forces(load)))
@@ -1010,10 +1125,10 @@ class Linearised:
         by_pose[self.row, self.rollers] = self.dx_by_pose
         by_approach = None
         if self.de_by_pose is not None:
-            by_approach = np.zeros((*self.load.shape, self.pose.shape[1]))
+            by_approach = np.zeros((*self.load.shape, self.size))
             by_approach[self.row, :, self.contacts] = self.de_by_pose.swapaxes(1, 2)
         return Following(
-            pose=self.pose,
+            pose=with_crank(self.pose, self.angle) if self.by_crank else self.pose,
             place=state.place,
             lean=state.lean,
             approach=state.approach,
@@ -1022,6 +1137,21 @@ class Linearised:
             approach_by_pose=by_approach,
             shifts_by_pose=shifts,
         )
+
+
+def _beside(values: list[Any], axis: int = 1) -> Any:
+    """Arrays side by side: itself where there is one."""
+    return values[0] if len(values) == 1 else np.concatenate(values, axis=axis)
+
+
+def _by_crank(values: ComplexArray, cranks: int) -> ComplexArray:
+    """Sums over the rollers of every crank."""
+    return np.asarray(values.reshape(values.shape[0], cranks, -1).sum(axis=2))
+
+
+def with_crank(pose: FloatArray, angle: FloatArray) -> FloatArray:
+    """Return poses with the crank angle as one more coordinate behind them."""
+    return np.concatenate((pose, angle[:, None]), axis=1)
 
 
 def _padded(mask: NDArray[np.bool_]) -> Indices:

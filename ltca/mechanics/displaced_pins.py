@@ -111,6 +111,8 @@ class PinMembers:
                 along = motion.along[at.row, some]
                 by_place = slip[:, 0]
                 by_place[:, first:last, own] = along
+                if at.by_crank:
+                    by_place[:, first:last, -1] = np.matmul(along, of_disc.nominal)[..., 0]
                 if system.components > 1:
                     half = at.half[..., None] if at.half.ndim else at.half
                     by_lean = slip[:, 1]

@@ -23,7 +23,6 @@ from ltca.compliance.grids import GridCompliance
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.single_discs import single_discs
 from ltca.dynamics.contact_forces import ContactForces
-from ltca.dynamics.disc_forces import DiscContacts
 from ltca.dynamics.kinetic_energy import KineticEnergy
 from ltca.dynamics.kinetics import Motion, mass_matrix, moving_bodies
 from ltca.dynamics.masses import CRANKS, DISCS, drive_masses
