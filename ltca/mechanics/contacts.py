@@ -42,6 +42,7 @@ from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, X, Y
 from ltca.geometry.pair_motion import KnownPins, PairTilt, dot
 from ltca.geometry.pairs import ContactGeometry
+from ltca.laws.line_contact import LineContactLaw
 from ltca.mechanics.displaced_pins import PinMembers
 
 if TYPE_CHECKING:
@@ -164,11 +165,37 @@ class ContactSystem:
         self.columns = [self.coordinates.columns(disc) for disc in range(self.discs)]
         self.one = replace(self.coordinates, discs=1)
         self.cage_speed = place.cage_speed
+        self.plain = not self.deforms and self.components == 1 and model.friction is None
+        self.law_groups = _law_groups(self) if self.components == 1 else []
 
     @property
     def half(self) -> FloatArray:
         """Half the thickness of the discs, by which tilts are measured, mm, shape (…,) of one number or (positions, 1)."""
         return np.asarray(self.geometries[0].half_width, dtype=float)
+
+    def places_of(self, chosen: list[list[Indices]]) -> tuple[Indices, Indices, list[list[slice]], list[slice]]:
+        """Return numbers of chosen contacts and rollers, shape (positions, chosen), and where those of each disc and kind, and
+        the rollers of each disc, stand among them.
+        """
+        parts = [
+            first.start + some
+            for kinds, own in zip(self.of_kind, chosen, strict=True)
+            for first, some in zip(kinds, own, strict=True)
+        ]
+        rollers = np.concatenate([disc * self.rollers + own[1] for disc, own in enumerate(chosen)], axis=1)
+        ends = np.cumsum([0, *(part.shape[1] for part in parts)])
+        at = [
+            [slice(ends[4 * disc + kind], ends[4 * disc + kind + 1]) for kind in range(4)] for disc in range(self.discs)
+        ]
+        ends = np.cumsum([0, *(own[1].shape[1] for own in chosen)])
+        return np.concatenate(parts, axis=1), rollers, at, [slice(first, last) for first, last in pairwise(ends)]
+
+    @cached_property
+    def every_contact(self) -> tuple[list[list[Indices]], Indices, Indices, list[list[slice]], list[slice]]:
+        """All contacts of every disc and kind as chosen ones, of one position for all, and `places_of` them."""
+        sizes = self.pins, self.rollers, self.holes, self.rollers
+        chosen = [[np.arange(size)[None] for size in sizes] for _ in range(self.discs)]
+        return chosen, *self.places_of(chosen)
 
     def respond(
         self,
@@ -324,9 +351,16 @@ class Linearised:
         self.held = places is not None
         self.discs = self._placed(state) if places is None else places
         self._approach(state)
-        self._carry(state, roughly)
-        self._choose()
-        self._linearise()
+        if system.components == 1:
+            self._carry_in_plane()
+        else:
+            self._carry(state, roughly)
+        if system.plain:
+            self.chosen, self.contacts, self.rollers, self.at, self.of_rollers = system.every_contact
+            self._linearise_plain()
+        else:
+            self._choose()
+            self._linearise()
 
     def _placed(self, state: _State) -> list[_Disc]:
         """Places of the contacts of every disc with the pins displaced as the state says."""
@@ -422,29 +456,39 @@ class Linearised:
         most = np.max(reach, axis=1, initial=0.0)[:, None]
         return np.asarray((reach > 0.0) | (reach > -self.margin * most))
 
-    def _carry(self, state: _State, roughly: bool) -> None:
-        """Loads of all contacts at their deformations, and their derivatives."""
-        system, e = self.system, self.deformation
-        self.load = np.zeros(e.shape)
-        count = 1 if system.components == 1 else 3
-        self.stiffness = np.zeros((count, e.shape[0], e.shape[2]))
+    def _carry_in_plane(self) -> None:
+        """Loads of all contacts at their deformations, and their derivatives: laws are asked about closed contacts alone."""
+        system, e = self.system, self.deformation[:, 0]
+        self.load, self.stiffness = np.zeros(self.deformation.shape), np.zeros((1, *e.shape))
         self.sliced: list[list[SlicedContact]] = []
         self.law_left = np.zeros(e.shape[0])
-        exactness = None if system.components == 1 else (sliced.ROUGH if roughly else sliced.EXACT)
+        radius = np.empty(e.shape)
+        for at, laws, kinds in zip(self.discs, system.laws, system.of_kind, strict=True):
+            radii = at.flank.effective_radius, laws.outer_radius, laws.hole_radius, laws.inner_radius
+            for kind, each in zip(kinds, radii, strict=True):
+                radius[:, kind] = each
+        closed = e > 0.0
+        for law, columns in system.law_groups:
+            row, places = np.nonzero(closed[:, columns])
+            contacts = columns[places]
+            law = law.take((e.shape[0], columns.size), (row, places))
+            self.load[row, 0, contacts], self.stiffness[0, row, contacts] = law.load_and_stiffness(
+                e[row, contacts], radius[row, contacts]
+            )
+
+    def _carry(self, state: _State, roughly: bool) -> None:
+        """The same with tilts, moments and their derivatives."""
+        system, e = self.system, self.deformation
+        self.load = np.zeros(e.shape)
+        self.stiffness = np.zeros((3, e.shape[0], e.shape[2]))
+        self.sliced = []
+        self.law_left = np.zeros(e.shape[0])
+        exactness = sliced.ROUGH if roughly else sliced.EXACT
         for disc, (at, laws) in enumerate(zip(self.discs, system.laws, strict=True)):
             radii = at.flank.effective_radius, laws.outer_radius, laws.hole_radius, laws.inner_radius
             found = []
             for number, (kind, law, radius) in enumerate(zip(system.of_kind[disc], laws.laws, radii, strict=True)):
-                if kind.start == kind.stop and system.components == 1:
-                    continue
                 pressed = e[:, 0, kind]
-                if system.components == 1:
-                    closed = pressed > 0.0
-                    some = law.take(closed.shape, closed).load_and_stiffness(
-                        pressed[closed], np.broadcast_to(radius, closed.shape)[closed]
-                    )
-                    self.load[:, 0, kind][closed], self.stiffness[0][:, kind][closed] = some
-                    continue
                 near = state.near[4 * disc + number] if state.near else None
                 one = law.respond(
                     pressed, e[:, 1, kind] / self.half, np.broadcast_to(radius, pressed.shape), near, exactness
@@ -471,22 +515,7 @@ class Linearised:
             pins, bores, holes, races = (carries[:, kind] for kind in system.of_kind[disc])
             rollers = _padded(bores | races)
             self.chosen.append([_padded(pins), rollers, _padded(holes), rollers])
-        parts = [
-            first.start + some
-            for kinds, own in zip(system.of_kind, self.chosen, strict=True)
-            for first, some in zip(kinds, own, strict=True)
-        ]
-        self.contacts: Indices = np.concatenate(parts, axis=1)
-        self.rollers: Indices = np.concatenate(
-            [disc * system.rollers + own[1] for disc, own in enumerate(self.chosen)], axis=1
-        )
-        ends = np.cumsum([0, *(part.shape[1] for part in parts)])
-        self.at = [
-            [slice(ends[4 * disc + kind], ends[4 * disc + kind + 1]) for kind in range(4)]
-            for disc in range(system.discs)
-        ]
-        ends = np.cumsum([0, *(own[1].shape[1] for own in self.chosen)])
-        self.of_rollers = [slice(first, last) for first, last in pairwise(ends)]
+        self.contacts, self.rollers, self.at, self.of_rollers = system.places_of(self.chosen)
 
     def _gradients(self) -> tuple[FloatArray, FloatArray]:
         """∂d/∂q of the chosen contacts, shape (positions, components, chosen, coordinates), and how the tangents of the chosen
@@ -503,9 +532,7 @@ class Linearised:
             by_approach = g[:, 0]
             by_approach[:, pins, every] = self._with_crank(at, at.flank.gradient[row, some[0]])
             by_approach[:, holes, every] = self._with_crank(at, at.holes.gradient[row, some[2]])
-            moved = at.bores.gradient
-            if self.by_crank:
-                moved = np.concatenate((moved, at.seen_from_cages), axis=-1)
+            moved = self._bores_moved(at)
             moved = moved if moved.shape[1] == 1 else moved[row, some[1] // (system.rollers // moved.shape[1])]
             turned = at.outward[row, some[1]].conjugate()[..., None] * moved
             by_approach[:, bores, every] = -turned.real
@@ -537,6 +564,87 @@ class Linearised:
         """Derivatives of pins by the pose of a disc, and by the crank angle where that is a coordinate."""
         return np.concatenate((gradient, np.matmul(gradient, at.nominal)), axis=-1) if self.by_crank else gradient
 
+    def _linearise_plain(self) -> None:
+        """Force and tangent where nothing deforms but the contacts, in the plane: each roller is condensed by itself.
+
+        With the stiffnesses k of its two contacts, the cosine c between ray and normal in the bore, g = ∂d/∂q there, and the
+        turning a of this normal under its load, a place has the stiffness k_i + c² k_o, up to what turns.
+        """
+        system, (rows, size) = self.system, (self.pose.shape[0], self.size)
+        load, stiffness = self.load[:, 0], self.stiffness[0]
+        self.sticking, self.rubs = None, []
+        self.force, self.tangent, every = np.zeros((rows, size)), self._bends(), slice(None)
+        self.de, self.change = np.zeros(self.load.shape), np.zeros(self.load.shape)
+        self.dx = np.zeros((rows, system.discs * system.rollers, 1))
+        self.dx_by_pose = np.zeros((*self.dx.shape, size))
+        for disc, (at, own) in enumerate(zip(self.discs, system.columns, strict=True)):
+            pins, bores, holes, races = system.of_kind[disc]
+            turned = at.outward.conjugate()[..., None] * at.bores.each(self._bores_moved(at), system.rollers)
+            cosine, k, carried = at.cosine, stiffness[:, bores], load[:, bores]
+            held = k * cosine
+            by_place = stiffness[:, races] + held * cosine
+            unbalanced = load[:, races] - cosine * carried
+            g = -turned.real
+            parts = [self._with_crank(at, at.flank.gradient), self._with_crank(at, at.holes.gradient), g]
+            if self.by_crank:
+                by_place = np.where(by_place != 0.0, by_place, np.inf)
+            else:
+                slant, across = (at.outward.conjugate() * at.rays.direction).imag, turned.imag
+                bend = carried / at.length
+                slanted = bend * slant
+                by_place = by_place + slanted * slant
+                by_place = np.where(by_place != 0.0, by_place, np.inf)
+                parts.append(across)
+            share, step = held / by_place, unbalanced / by_place
+            loads = [load[:, pins], load[:, holes], carried + held * step]
+            stiff = [stiffness[:, pins], stiffness[:, holes], k - held * share]
+            follow = share[..., None] * g
+            if not self.by_crank:
+                loads.append(-slanted * step)
+                stiff.append(bend - slanted * slanted / by_place)
+                follow -= (slanted / by_place)[..., None] * across
+            gradient = np.concatenate(parts, axis=1)
+            pressed = np.concatenate(stiff, axis=1)[..., None] * gradient
+            if not self.by_crank:
+                mixed = (share * slanted)[..., None]
+                pressed[:, -2 * system.rollers : -system.rollers] += mixed * across
+                pressed[:, -system.rollers :] += mixed * g
+            back = gradient.swapaxes(1, 2)
+            force = np.matmul(back, np.concatenate(loads, axis=1)[..., None])[..., 0]
+            tangent = np.matmul(back, pressed)
+            if (
+                self.by_crank
+            ):  # forces of the bearings turn with the cages, which the stiffness of rollers on turning rays counts
+                pushed = np.matmul((system.cage_speed * carried)[:, None], turned.imag[..., :-1])[:, 0]
+                tangent[:, :-1, -1] -= pushed
+                tangent[:, -1, :-1] -= pushed
+            of_rollers = slice(disc * system.rollers, (disc + 1) * system.rollers)
+            if system.discs > 1:
+                every = np.append(own, size - 1) if self.by_crank else own
+                self.force[:, every] += force
+                self.tangent[:, every[:, None], every] += tangent
+            else:
+                self.force += force
+                self.tangent += tangent
+            self.dx[:, of_rollers, 0], self.dx_by_pose[:, of_rollers, 0, every] = -step, follow
+            self.de[:, 0, bores], self.de[:, 0, races] = cosine * step, -step
+            self.change[:, 0, bores], self.change[:, 0, races] = held * step, -stiffness[:, races] * step
+        self.de_by_pose = None
+        self.moved = np.max(np.abs(self.dx[..., 0]), axis=1, initial=0.0)
+
+    def _bores_moved(self, at: _Disc) -> ComplexArray:
+        """Derivatives of the displacements of the bores by the pose of a disc, and by the crank angle where that is one."""
+        return np.concatenate((at.bores.gradient, at.seen_from_cages), axis=-1) if self.by_crank else at.bores.gradient
+
+    @cached_property
+    def left(self) -> FloatArray:
+        """Force that the second order may amount to, N, shape (positions,)."""
+        near = self.deformation[self.row, :, self.contacts].swapaxes(1, 2)
+        deep = np.abs(near).sum(axis=1) + 1e-300
+        moved = np.abs(self.de).sum(axis=1)
+        error = np.abs(self.change).sum(axis=1) * np.minimum(1.0, moved / deep)
+        return np.asarray(np.maximum(LEFT_WEIGHT * np.max(error, axis=1, initial=0.0), self.law_left))
+
     def _linearise(self) -> None:
         """Eliminate deformations, displacements of pins and places of rollers."""
         system, row = self.system, self.row
@@ -554,7 +662,9 @@ class Linearised:
         self.each = components * self.contacts.shape[1]
         tangent = self._bends()
         tangent += np.matmul(across.swapaxes(1, 2), bend[..., None] * across)
-        if self.by_crank:  # forces of the bearings turn with the cages, which the stiffness of rollers on turning rays counts
+        if (
+            self.by_crank
+        ):  # forces of the bearings turn with the cages, which the stiffness of rollers on turning rays counts
             pushed = self._picked(self.load[:, 0], "bores") * system.cage_speed
             turned = np.matmul(pushed[:, None], across[..., :-1])[:, 0]
             tangent[:, :-1, -1] -= turned
@@ -634,12 +744,8 @@ class Linearised:
         self.chosen_stiffness = stiffness
         self.force, self.tangent = force, tangent
         change = _pressed(stiffness, self.de[..., None])[..., 0]
-        near = self.deformation[row, :, self.contacts].swapaxes(1, 2)
-        deep = np.abs(near).sum(axis=1) + 1e-300
         moved = np.abs(self.de).sum(axis=1)
         self.moved = np.max(np.where(stiffness[0] > 0.0, moved, 0.0), axis=1, initial=0.0)
-        error = np.abs(change).sum(axis=1) * np.minimum(1.0, moved / deep)
-        self.left = np.maximum(LEFT_WEIGHT * np.max(error, axis=1, initial=0.0), self.law_left)
         self.change = change
 
     def _eliminate(
@@ -835,6 +941,11 @@ class Linearised:
         on_flank = at.geometry.profile.flank(at.flank.parameter)
         return at.flank.parameter, in_bore, in_hole, on_flank, float(at.geometry.placement.bore_radius)
 
+    @cached_property
+    def force_map(self) -> FloatArray:
+        """What the loads of chosen contacts press the pose with, shape (positions, components, chosen, coordinates)."""
+        return self._gradients()[0]
+
     def _rub(self, g: FloatArray) -> FloatArray:
         """What loads press the pose with, G and friction along the tangents of pins and holes."""
         self.sticking: tuple[FloatArray, FloatArray, FloatArray] | None = None
@@ -960,6 +1071,8 @@ class Linearised:
     @cached_property
     def after(self) -> FloatArray:
         """Deformations of all contacts after the correction."""
+        if self.system.plain:
+            return self.deformation + self.de
         found = self.deformation.copy()
         near = found[self.row, :, self.contacts].swapaxes(1, 2) + self.de
         found[self.row, :, self.contacts] = near.swapaxes(1, 2)
@@ -968,6 +1081,8 @@ class Linearised:
     @cached_property
     def place_after(self) -> FloatArray:
         """Places of the rollers after the correction, inward of where they only touch the race, mm."""
+        if self.system.plain:
+            return np.asarray(self.place + self.dx[..., 0])
         found = self.place.copy()
         found[self.row, self.rollers] += self.dx[..., 0]
         return found
@@ -1001,8 +1116,11 @@ class Linearised:
     @cached_property
     def corrected_load(self) -> FloatArray:
         """Loads of all contacts, to first order in what is left of the inner unknowns."""
-        load = self.load.copy()
-        load[self.row, :, self.contacts] += self.change.swapaxes(1, 2)
+        if self.system.plain:
+            load = self.load + self.change
+        else:
+            load = self.load.copy()
+            load[self.row, :, self.contacts] += self.change.swapaxes(1, 2)
         return np.where(load[:, :1] > 0.0, load, 0.0)
 
     def corrected(self, *, roughly: bool, part: float = 1.0) -> Linearised:
@@ -1121,8 +1239,10 @@ class Linearised:
                 load[self.row, :, self.contacts] = change[..., column].swapaxes(1, 2)
                 each.append(-pins.under(self.members.forces(load)))
             shifts = np.stack(each, axis=-1)
-        by_pose = np.zeros((*self.place.shape, *self.dx_by_pose.shape[2:]))
-        by_pose[self.row, self.rollers] = self.dx_by_pose
+        by_pose = self.dx_by_pose
+        if not self.system.plain:
+            by_pose = np.zeros((*self.place.shape, *self.dx_by_pose.shape[2:]))
+            by_pose[self.row, self.rollers] = self.dx_by_pose
         by_approach = None
         if self.de_by_pose is not None:
             by_approach = np.zeros((*self.load.shape, self.size))
@@ -1137,6 +1257,26 @@ class Linearised:
             approach_by_pose=by_approach,
             shifts_by_pose=shifts,
         )
+
+
+def _law_groups(system: ContactSystem) -> list[tuple[Any, Indices]]:
+    """Laws of all discs in the plane with the numbers of their contacts: those that read one table are one law."""
+    groups: list[tuple[Any, Indices]] = []
+    lines: dict[int, list[tuple[LineContactLaw, Indices]]] = {}
+    for laws, kinds in zip(system.laws, system.of_kind, strict=True):
+        for law, kind in zip(laws.laws, kinds, strict=True):
+            contacts = np.arange(kind.start, kind.stop)
+            if type(law) is LineContactLaw:
+                lines.setdefault(id(law.table), []).append((law, contacts))
+            elif contacts.size:
+                groups.append((law, contacts))
+    for same in lines.values():
+        counts = [contacts.size for _, contacts in same]
+        length, modulus = (
+            np.repeat([getattr(law, name) for law, _ in same], counts) for name in ("length", "contact_modulus")
+        )
+        groups.append((LineContactLaw(length, modulus, same[0][0].table), np.concatenate([each for _, each in same])))
+    return groups
 
 
 def _beside(values: list[Any], axis: int = 1) -> Any:
