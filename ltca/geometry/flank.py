@@ -32,8 +32,12 @@ SETTLED = 1e-8
 """Last step of Newton's method, rad: convergence is quadratic, the error that is left is below round-off."""
 MAX_ITERATIONS = 100
 """Newton steps to a contact point."""
+NEARLY = 1e-11
+"""Step, rad, over which the curve is followed to first order: its curvature is off by 1e-9 of the least radius."""
+BRACKETED = 6
+"""Steps after which the points that are left are bracketed."""
 ROUND_OFF = 1e-13
-"""Step within round-off, rad: the curve before it is that after it."""
+"""Step within round-off, rad: the direction before it is that after it."""
 
 
 class CurvePoints(NamedTuple):
@@ -288,7 +292,7 @@ class FlankProfile:
         ConvergenceError
             When a point does not settle; the history holds the largest steps.
         """
-        theta = np.array(np.broadcast_to(start, np.shape(point)), dtype=float)
+        theta = start if start.shape == point.shape else np.broadcast_to(start, point.shape)
         return self.nearer_side(point, self._settle(point, theta))
 
     def _settle(self, point: ComplexArray, start: FloatArray) -> NearestPoint:
@@ -300,8 +304,7 @@ class FlankProfile:
         flank, theta, direction = self, start, unit(start)
         every, settled, left = theta, direction, np.arange(theta.size)
         bound = 0.4 * np.pi / self.reduction_ratio
-        low, high = np.full(theta.shape, -np.inf), np.full(theta.shape, np.inf)
-        last = slope_before = np.zeros(theta.shape)
+        low = high = last = slope_before = np.zeros(0)
         history: list[float] = []
         for iteration in range(MAX_ITERATIONS):
             curve = flank.contact_curve(direction)
@@ -317,7 +320,9 @@ class FlankProfile:
                 bend = np.divide(slope_before - slope, last, out=np.zeros(theta.shape), where=last != 0.0)
                 step /= 1.0 - (0.5 * step * bend / safe).clip(-0.5, 0.5)
             step = step.clip(-bound, bound)
-            if iteration > 5:  # nearly every point has converged by now: only slow ones need a bracket
+            if iteration == BRACKETED:
+                low, high = np.full(theta.shape, -np.inf), np.full(theta.shape, np.inf)
+            if iteration >= BRACKETED:  # nearly every point has converged by now: only slow ones need a bracket
                 low, high = np.where(value < 0.0, theta, low), np.where(value > 0.0, theta, high)
                 # A step starts at one end. One nearly to the other end counts as outside: it could go back and forth forever.
                 outside = np.abs(step) > 0.95 * (high - low)
@@ -325,11 +330,15 @@ class FlankProfile:
             theta = theta - step
             slope_before, last = slope, step
             moved = np.abs(step)
-            history.append(float(np.max(moved, initial=0.0)))
+            history.append(float(moved.max(initial=0.0)))
+            if history[-1] <= NEARLY and theta.size == every.size:
+                # The curve to first order: its third derivative is left out of the second.
+                point, tangent, second = curve
+                return NearestPoint(theta, CurvePoints(point - tangent * step, tangent - second * step, second))
             if history[-1] > ROUND_OFF:
                 direction = direction * small_turn(-step)
             if history[-1] <= SETTLED and theta.size == every.size:
-                return NearestPoint(theta, self.contact_curve(direction) if history[-1] > ROUND_OFF else curve)
+                return NearestPoint(theta, self.contact_curve(direction))
             going = moved > SETTLED
             if 2 * np.count_nonzero(going) < going.size:
                 every, settled = _with_places(every, left, theta), _with_places(settled, left, direction)
@@ -337,9 +346,11 @@ class FlankProfile:
                 if left.size == 0:
                     return NearestPoint(every, self.contact_curve(settled))
                 flank = flank.of_points(np.nonzero(going)[0])
-                theta, direction, point, low, high, last, slope_before = _picked(
-                    going, theta, direction, point, low, high, last, slope_before
+                theta, direction, point, last, slope_before = _picked(
+                    going, theta, direction, point, last, slope_before
                 )
+                if iteration >= BRACKETED:
+                    low, high = _picked(going, low, high)
         raise ConvergenceError("contact points on the flank not found; largest step in rad", history)
 
     @property

@@ -27,7 +27,7 @@ from ltca.geometry.pair_motion import (
     cross,
     dot,
 )
-from ltca.geometry.placement import Placement
+from ltca.geometry.placement import Placement, Races
 from ltca.geometry.rotation import unit
 
 MAX_EXTRAPOLATION = 0.1
@@ -227,6 +227,7 @@ class ContactGeometry:
         start: FloatArray | None = None,
         shifts: ComplexArray | None = None,
         known: KnownPins | None = None,
+        races: Races | None = None,
     ) -> FlankMotion:
         """Return the pairs of wheel pin and flank (Eq. 60–64).
 
@@ -242,8 +243,10 @@ class ContactGeometry:
             Displacements of the pins in the turning wheel, mm.
         known : KnownPins, optional
             Of the same drives: pins that cannot touch the flank are left out, see `complete_flank`.
+        races : Races, optional
+            Of the crank angles, where they are known.
         """
-        pins = self._pins(crank_angle, pose, shifts)
+        pins = self._pins(crank_angle, pose, shifts, races)
         if start is None:
             start = self.nominal_parameter(crank_angle) + pose[:, WHEEL_ANGLE, None] - pose[:, DISC_ROTATION, None]
         if known is not None and start.size <= TOGETHER:
@@ -292,9 +295,11 @@ class ContactGeometry:
         """Distance from the nominal centre of a wheel pin to where it touches: its radius less the play in its seat, mm."""
         return self.placement.wheel_pin_radii - self.placement.wheel_pin_plays
 
-    def _pins(self, crank_angle: FloatArray, pose: FloatArray, shifts: ComplexArray | None) -> _Pins:
+    def _pins(
+        self, crank_angle: FloatArray, pose: FloatArray, shifts: ComplexArray | None, races: Races | None = None
+    ) -> _Pins:
         place, coordinates = self.placement, self.coordinates_of(pose)
-        disc_centre = (place.race_centre(crank_angle) + pose[:, X] + 1j * pose[:, Y])[:, None]
+        disc_centre = self._disc_centre(crank_angle, pose, races)[:, None]
         if coordinates.wheel:  # a displacement of the wheel is one of the disc in the opposite direction
             wheel = coordinates.wheel_place
             disc_centre = disc_centre - (pose[:, wheel.start] + 1j * pose[:, wheel.start + 1])[:, None]
@@ -354,12 +359,12 @@ class ContactGeometry:
         """Pairs of pins and flank, all of the same shape."""
         point, arm = pins.point, pins.arm
         parameter, curve = profile.nearest_point(point, start)
-        tangent, second = curve.tangent, curve.second
+        tangent = curve.tangent
         square = tangent.real**2 + tangent.imag**2
         speed = np.sqrt(square)
-        normal = -1j * tangent / speed
+        normal = tangent * (-1j / speed)
         distance = dot(normal, point - curve.point)
-        curvature = cross(tangent, second) / (square * speed)
+        curvature = cross(tangent, curve.second) / (square * speed)
         spread = 1.0 + curvature * distance
         offset = profile.contact_offset
         flank_curvature = curvature / (1.0 - offset * curvature)
@@ -368,10 +373,12 @@ class ContactGeometry:
         # parallel curve through the pin centre; ∂point = (−1, −i, −i arm, i pin) in the fixed frame.
         outward = normal * pins.turn
         gradient, along = (np.zeros((*point.shape, coordinates.size)) for _ in range(2))
+        inward = outward.conjugate()
+        by_disc, by_wheel = arm * inward, pins.centre * inward  # scalar and, negative, vector products
         gradient[..., X], gradient[..., Y] = outward.real, outward.imag
-        gradient[..., DISC_ROTATION], gradient[..., WHEEL_ANGLE] = cross(arm, outward), -cross(pins.centre, outward)
+        gradient[..., DISC_ROTATION], gradient[..., WHEEL_ANGLE] = -by_disc.imag, by_wheel.imag
         along[..., X], along[..., Y] = outward.imag, -outward.real
-        along[..., DISC_ROTATION], along[..., WHEEL_ANGLE] = -dot(outward, arm), dot(outward, pins.centre)
+        along[..., DISC_ROTATION], along[..., WHEEL_ANGLE] = -by_disc.real, by_wheel.real
         if coordinates.wheel:
             wheel = coordinates.wheel_place
             gradient[..., wheel], along[..., wheel] = -gradient[..., DISC_PLACE], -along[..., DISC_PLACE]
@@ -391,10 +398,21 @@ class ContactGeometry:
             left_out=np.zeros(point.shape, dtype=bool),
         )
 
-    def holes(self, crank_angle: FloatArray, pose: FloatArray, shifts: ComplexArray | None = None) -> PairMotion:
+    def _disc_centre(self, crank_angle: FloatArray, pose: FloatArray, races: Races | None) -> ComplexArray:
+        """Centre of the disc in the fixed frame, mm, shape (positions,)."""
+        middle = (races or self.placement.races(crank_angle)).middle
+        return np.asarray(middle + pose[:, X] + 1j * pose[:, Y])
+
+    def holes(
+        self,
+        crank_angle: FloatArray,
+        pose: FloatArray,
+        shifts: ComplexArray | None = None,
+        races: Races | None = None,
+    ) -> PairMotion:
         """Return the pairs of shaft pin and hole (Eq. 59, 78–81); arguments as for `flank`."""
         place = self.placement
-        disc_centre = (place.race_centre(crank_angle) + pose[:, X] + 1j * pose[:, Y])[:, None]
+        disc_centre = self._disc_centre(crank_angle, pose, races)[:, None]
         arm = place.hole_centres * unit(pose[:, DISC_ROTATION, None])
         play = place.shaft_pin_centres - disc_centre - arm
         coordinates = self.coordinates_of(pose)
@@ -406,10 +424,9 @@ class ContactGeometry:
         distance = np.sqrt(play.real**2 + play.imag**2)
         direction = play / distance
         gradient, along = (np.zeros((*distance.shape, coordinates.size)) for _ in range(2))
-        gradient[..., X], gradient[..., Y] = -direction.real, -direction.imag
-        gradient[..., DISC_ROTATION] = -cross(arm, direction)
-        along[..., X], along[..., Y] = -direction.imag, direction.real
-        along[..., DISC_ROTATION] = dot(direction, arm)
+        turned = arm * direction.conjugate()  # scalar and, negative, vector product
+        gradient[..., X], gradient[..., Y], gradient[..., DISC_ROTATION] = -direction.real, -direction.imag, turned.imag
+        along[..., X], along[..., Y], along[..., DISC_ROTATION] = gradient[..., Y], direction.real, turned.real
         if by_ring is not None:
             gradient[..., coordinates.ring_place] = dot(direction[..., None], by_ring)
             along[..., coordinates.ring_place] = cross(by_ring, direction[..., None])
@@ -481,11 +498,12 @@ class ContactGeometry:
         turned = -dot(1j * normal, lean) * dot(1j * normal, bores.each(bores.gradient, count)) / length[..., None]
         return PairTilt(tilt=dot(normal, lean)[..., 0], gradient=dot(normal, by_lean) + turned)
 
-    def bores(self, crank_angle: FloatArray, pose: FloatArray) -> BoreMotion:
+    def bores(self, crank_angle: FloatArray, pose: FloatArray, races: Races | None = None) -> BoreMotion:
         """Return the displacements of the bores; arguments as for `flank`."""
         place, coordinates = self.placement, self.coordinates_of(pose)
+        races = races or place.races(crank_angle)
         arm = place.bore_centres * unit(pose[:, DISC_ROTATION, None])
-        moved = place.race_centre(crank_angle)[:, None] - place.race_centres(crank_angle) + arm
+        moved = races.middle[:, None] - races.centre + arm
         moved = moved + (pose[:, X] + 1j * pose[:, Y])[:, None]
         gradient = np.zeros((*moved.shape, coordinates.size), dtype=complex)
         gradient[..., X], gradient[..., Y], gradient[..., DISC_ROTATION] = 1.0, 1j, 1j * arm
@@ -497,7 +515,7 @@ class ContactGeometry:
             by_ring = self.cranks_by_ring
             moved = moved - _moved(pose[:, coordinates.ring_place], by_ring)
             gradient[..., coordinates.ring_place] = -by_ring
-        lever, twists = place.race_centres(crank_angle) - place.crank_axes, coordinates.twist_places
+        lever, twists = races.lever, coordinates.twist_places
         if twists:
             straight = lever
             lever = straight * unit(pose[:, twists])

@@ -115,7 +115,8 @@ class LineContactLaw(ContactLaw):
         """Return the law of some contacts of a batch."""
         if np.ndim(self.length) == 0:
             return self
-        length, modulus = (np.broadcast_to(each, shape)[places] for each in (self.length, self.contact_modulus))
+        columns = places[-1] if isinstance(places, tuple) else np.nonzero(places)[-1]
+        length, modulus = (np.asarray(each)[columns] for each in (self.length, self.contact_modulus))
         return LineContactLaw(length, modulus, self.table)
 
     def _closed(self, pressed: FloatArray, product: FloatArray) -> tuple[FloatArray, FloatArray]:

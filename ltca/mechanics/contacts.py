@@ -85,9 +85,10 @@ class _Disc:
         self.geometry, self.angle, self.pose, self.shifts, self.leans = geometry, angle, pose, shifts, leans
         pins = geometry.placement.wheel_pin_radii.shape[-1]
         on_pins, on_holes = (None, None) if shifts is None else (shifts[:, :pins], shifts[:, pins:])
-        self.flank = geometry.flank(angle, pose, parameter, on_pins, known)
-        self.holes = geometry.holes(angle, pose, on_holes)
-        self.bores, self.rays = geometry.bores(angle, pose), geometry.rollers(angle)
+        self.races = geometry.placement.races(angle)
+        self.flank = geometry.flank(angle, pose, parameter, on_pins, known, self.races)
+        self.holes = geometry.holes(angle, pose, on_holes, self.races)
+        self.bores, self.rays = geometry.bores(angle, pose, self.races), geometry.rollers(angle)
         self.rollers = self.rays.direction.shape[1]
         self.displacement = self.bores.each(self.bores.displacement, self.rollers)
         self.total = self.rays.outermost - self.rays.touching_distance(self.displacement)
@@ -105,7 +106,7 @@ class _Disc:
     def nominal(self) -> FloatArray:
         """Nominal motion of disc and wheel by the crank angle, mm and rad, shape (positions, coordinates, 1)."""
         place, found = self.geometry.placement, np.zeros((*self.pose.shape, 1))
-        velocity = place.race_velocity(self.angle)
+        velocity = self.races.velocity
         found[:, X, 0], found[:, Y, 0], found[:, WHEEL_ANGLE, 0] = (
             velocity.real,
             velocity.imag,
@@ -117,7 +118,7 @@ class _Disc:
     def seen_from_cages(self) -> ComplexArray:
         """Motion of the bores against the cages by the crank angle, mm/rad, shape (positions, cranks, 1)."""
         place, bores = self.geometry.placement, self.bores
-        velocity = place.race_velocity(self.angle)[:, None]
+        velocity = self.races.velocity[:, None]
         return np.asarray((velocity - 1j * (bores.lever + place.cage_speed * bores.displacement))[..., None])
 
     def place_rollers(self, inward: FloatArray) -> None:
@@ -167,6 +168,7 @@ class ContactSystem:
         self.cage_speed = place.cage_speed
         self.plain = not self.deforms and self.components == 1 and model.friction is None
         self.law_groups = _law_groups(self) if self.components == 1 else []
+        self.radii = _radii(self)
 
     @property
     def half(self) -> FloatArray:
@@ -457,24 +459,18 @@ class Linearised:
         return np.asarray((reach > 0.0) | (reach > -self.margin * most))
 
     def _carry_in_plane(self) -> None:
-        """Loads of all contacts at their deformations, and their derivatives: laws are asked about closed contacts alone."""
+        """Loads of all contacts at their deformations, and their derivatives."""
         system, e = self.system, self.deformation[:, 0]
         self.load, self.stiffness = np.zeros(self.deformation.shape), np.zeros((1, *e.shape))
         self.sliced: list[list[SlicedContact]] = []
         self.law_left = np.zeros(e.shape[0])
         radius = np.empty(e.shape)
-        for at, laws, kinds in zip(self.discs, system.laws, system.of_kind, strict=True):
-            radii = at.flank.effective_radius, laws.outer_radius, laws.hole_radius, laws.inner_radius
-            for kind, each in zip(kinds, radii, strict=True):
-                radius[:, kind] = each
-        closed = e > 0.0
-        for law, columns in system.law_groups:
-            row, places = np.nonzero(closed[:, columns])
-            contacts = columns[places]
-            law = law.take((e.shape[0], columns.size), (row, places))
-            self.load[row, 0, contacts], self.stiffness[0, row, contacts] = law.load_and_stiffness(
-                e[row, contacts], radius[row, contacts]
-            )
+        radius[...] = system.radii
+        for at, kinds in zip(self.discs, system.of_kind, strict=True):
+            radius[:, kinds[0]] = at.flank.effective_radius
+        for law, contacts in system.law_groups:
+            load, stiffness = law.load_and_stiffness(e[:, contacts], radius[:, contacts])
+            self.load[:, 0, contacts], self.stiffness[0][:, contacts] = load, stiffness
 
     def _carry(self, state: _State, roughly: bool) -> None:
         """The same with tilts, moments and their derivatives."""
@@ -579,38 +575,52 @@ class Linearised:
         self.dx_by_pose = np.zeros((*self.dx.shape, size))
         for disc, (at, own) in enumerate(zip(self.discs, system.columns, strict=True)):
             pins, bores, holes, races = system.of_kind[disc]
+            behind = slice(pins.start, holes.stop)
+            of_pins, of_bores = slice(0, system.pins), slice(system.pins, system.pins + system.rollers)
+            last = behind.stop - behind.start
             turned = at.outward.conjugate()[..., None] * at.bores.each(self._bores_moved(at), system.rollers)
-            cosine, k, carried = at.cosine, stiffness[:, bores], load[:, bores]
-            held = k * cosine
+            cosine, carried, effective, stiff = (
+                at.cosine,
+                load[:, bores],
+                load[:, behind].copy(),
+                stiffness[:, behind].copy(),
+            )
+            held = stiff[:, of_bores] * cosine
             by_place = stiffness[:, races] + held * cosine
             unbalanced = load[:, races] - cosine * carried
-            g = -turned.real
-            parts = [self._with_crank(at, at.flank.gradient), self._with_crank(at, at.holes.gradient), g]
+            gradient = np.zeros((rows, last + (0 if self.by_crank else system.rollers), turned.shape[-1]))
+            size_of_pose = at.pose.shape[1]
+            gradient[:, of_pins, :size_of_pose] = at.flank.gradient
+            gradient[:, of_bores.stop : last, :size_of_pose] = at.holes.gradient
+            if self.by_crank:
+                gradient[:, :last, -1:] = np.matmul(gradient[:, :last, :-1], at.nominal)
+            np.negative(turned.real, out=gradient[:, of_bores])
+            g = gradient[:, of_bores]
             if self.by_crank:
                 by_place = np.where(by_place != 0.0, by_place, np.inf)
             else:
                 slant, across = (at.outward.conjugate() * at.rays.direction).imag, turned.imag
+                gradient[:, last:] = across
                 bend = carried / at.length
                 slanted = bend * slant
                 by_place = by_place + slanted * slant
                 by_place = np.where(by_place != 0.0, by_place, np.inf)
-                parts.append(across)
             share, step = held / by_place, unbalanced / by_place
-            loads = [load[:, pins], load[:, holes], carried + held * step]
-            stiff = [stiffness[:, pins], stiffness[:, holes], k - held * share]
+            push = held * step
+            effective[:, of_bores] += push
+            stiff[:, of_bores] -= held * share
             follow = share[..., None] * g
             if not self.by_crank:
-                loads.append(-slanted * step)
-                stiff.append(bend - slanted * slanted / by_place)
+                effective = np.concatenate((effective, -slanted * step), axis=1)
+                stiff = np.concatenate((stiff, bend - slanted * slanted / by_place), axis=1)
                 follow -= (slanted / by_place)[..., None] * across
-            gradient = np.concatenate(parts, axis=1)
-            pressed = np.concatenate(stiff, axis=1)[..., None] * gradient
+            pressed = stiff[..., None] * gradient
             if not self.by_crank:
                 mixed = (share * slanted)[..., None]
-                pressed[:, -2 * system.rollers : -system.rollers] += mixed * across
-                pressed[:, -system.rollers :] += mixed * g
+                pressed[:, of_bores] += mixed * across
+                pressed[:, last:] += mixed * g
             back = gradient.swapaxes(1, 2)
-            force = np.matmul(back, np.concatenate(loads, axis=1)[..., None])[..., 0]
+            force = np.matmul(back, effective[..., None])[..., 0]
             tangent = np.matmul(back, pressed)
             if (
                 self.by_crank
@@ -628,7 +638,7 @@ class Linearised:
                 self.tangent += tangent
             self.dx[:, of_rollers, 0], self.dx_by_pose[:, of_rollers, 0, every] = -step, follow
             self.de[:, 0, bores], self.de[:, 0, races] = cosine * step, -step
-            self.change[:, 0, bores], self.change[:, 0, races] = held * step, -stiffness[:, races] * step
+            self.change[:, 0, bores], self.change[:, 0, races] = push, -stiffness[:, races] * step
         self.de_by_pose = None
         self.moved = np.max(np.abs(self.dx[..., 0]), axis=1, initial=0.0)
 
@@ -1259,24 +1269,35 @@ class Linearised:
         )
 
 
-def _law_groups(system: ContactSystem) -> list[tuple[Any, Indices]]:
-    """Laws of all discs in the plane with the numbers of their contacts: those that read one table are one law."""
-    groups: list[tuple[Any, Indices]] = []
-    lines: dict[int, list[tuple[LineContactLaw, Indices]]] = {}
+def _law_groups(system: ContactSystem) -> list[tuple[Any, slice | Indices]]:
+    """Laws of all discs in the plane with their contacts: those that read one table are one law."""
+    groups: list[tuple[Any, slice | Indices]] = []
+    lines: dict[int, list[tuple[LineContactLaw, slice]]] = {}
     for laws, kinds in zip(system.laws, system.of_kind, strict=True):
         for law, kind in zip(laws.laws, kinds, strict=True):
-            contacts = np.arange(kind.start, kind.stop)
             if type(law) is LineContactLaw:
-                lines.setdefault(id(law.table), []).append((law, contacts))
-            elif contacts.size:
-                groups.append((law, contacts))
+                lines.setdefault(id(law.table), []).append((law, kind))
+            elif kind.start < kind.stop:
+                groups.append((law, kind))
     for same in lines.values():
-        counts = [contacts.size for _, contacts in same]
+        counts = [kind.stop - kind.start for _, kind in same]
         length, modulus = (
             np.repeat([getattr(law, name) for law, _ in same], counts) for name in ("length", "contact_modulus")
         )
-        groups.append((LineContactLaw(length, modulus, same[0][0].table), np.concatenate([each for _, each in same])))
+        contacts = np.concatenate([np.arange(kind.start, kind.stop) for _, kind in same])
+        groups.append((LineContactLaw(length, modulus, same[0][0].table), contacts))
     return groups
+
+
+def _radii(system: ContactSystem) -> FloatArray:
+    """Effective radii of all contacts, mm, shape (1 or positions, contacts); those of wheel pins are not known yet."""
+    every = [(laws.outer_radius, laws.hole_radius, laws.inner_radius) for laws in system.laws]
+    rows = max(np.atleast_2d(each).shape[0] for radii in every for each in radii)
+    found = np.ones((rows, system.contacts))
+    for kinds, radii in zip(system.of_kind, every, strict=True):
+        for kind, radius in zip(kinds[1:], radii, strict=True):
+            found[:, kind] = radius
+    return found
 
 
 def _beside(values: list[Any], axis: int = 1) -> Any:
