@@ -32,8 +32,9 @@ SETTLED = 1e-8
 """Last step of Newton's method, rad: convergence is quadratic, the error that is left is below round-off."""
 MAX_ITERATIONS = 100
 """Newton steps to a contact point."""
-NEARLY = 1e-11
-"""Step, rad, over which the curve is followed to first order: its curvature is off by 1e-9 of the least radius."""
+NEARLY = 1e-7
+"""Last step, rad, over which the curve is followed by its derivatives: what they leave out is 1e-11 of the least radius, and what
+Newton's method leaves of θ is of the square of the step."""
 BRACKETED = 6
 """Steps after which the points that are left are bracketed."""
 ROUND_OFF = 1e-13
@@ -331,10 +332,8 @@ class FlankProfile:
             slope_before, last = slope, step
             moved = np.abs(step)
             history.append(float(moved.max(initial=0.0)))
-            if history[-1] <= NEARLY and theta.size == every.size:
-                # The curve to first order: its third derivative is left out of the second.
-                point, tangent, second = curve
-                return NearestPoint(theta, CurvePoints(point - tangent * step, tangent - second * step, second))
+            if history[-1] <= (NEARLY if self.deviation is None else ROUND_OFF) and theta.size == every.size:
+                return NearestPoint(theta, self._moved(curve, step))
             if history[-1] > ROUND_OFF:
                 direction = direction * small_turn(-step)
             if history[-1] <= SETTLED and theta.size == every.size:
@@ -352,6 +351,16 @@ class FlankProfile:
                 if iteration >= BRACKETED:
                     low, high = _picked(going, low, high)
         raise ConvergenceError("contact points on the flank not found; largest step in rad", history)
+
+    def _moved(self, curve: CurvePoints, step: FloatArray) -> CurvePoints:
+        """Curve of a flank as designed a small step back, its derivatives to second order: c‴ = i (u + 1) c″ + u c′."""
+        point, tangent, second = curve
+        u = self.reduction_ratio
+        change = (u * tangent + 1j * (u + 1.0) * second) * step
+        half = 0.5 * step
+        return CurvePoints(
+            point - step * (tangent - half * second), tangent - step * second + half * change, second - change
+        )
 
     @property
     def has_cusps(self) -> BoolArray:
@@ -374,10 +383,12 @@ class FlankProfile:
         of curvature there has a nearest point on either side.
         """
         u = self.reduction_ratio
-        bend = np.asarray(self.eccentricity * u * u - self.generating_radius)
-        if np.all(bend <= 0.0):
+        bend = self.eccentricity * u * u - self.generating_radius
+        if isinstance(bend, np.ndarray):
+            bend = np.where(bend > 0.0, bend, np.nan)
+        elif bend <= 0.0:
             return found
-        sharp = (self.generating_radius - self.eccentricity * u) ** 2 / np.where(bend > 0.0, bend, np.nan)
+        sharp = (self.generating_radius - self.eccentricity * u) ** 2 / bend
         theta = found.parameter
         away = self._off_path(point, found)
         pitch = 2.0 * np.pi / (u - 1.0)

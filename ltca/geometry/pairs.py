@@ -8,6 +8,7 @@ together.
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,6 +33,7 @@ from ltca.geometry.rotation import unit
 
 MAX_EXTRAPOLATION = 0.1
 """Largest change of θ by which a first guess is extrapolated, rad, times the tooth number."""
+_RIGID_MEMBERS = Coordinates()
 TOGETHER = 256
 """Pins of all positions up to which all are found: to leave some out costs more than it saves."""
 
@@ -69,6 +71,24 @@ class _Pins:
             radius=np.broadcast_to(self.radius, self.point.shape).take(places)[:, None],
             reach=np.broadcast_to(self.reach, self.point.shape).take(places)[:, None],
         )
+
+
+class DiscPlace(NamedTuple):
+    """Where a disc stands.
+
+    Attributes
+    ----------
+    races : Races
+        Inner races of its crank angles.
+    centre : array of complex, shape (positions, 1)
+        Of the disc in the fixed frame, mm.
+    turn : array of complex, shape (positions, 1)
+        Unit vector of its rotation.
+    """
+
+    races: Races
+    centre: ComplexArray
+    turn: ComplexArray
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -211,7 +231,7 @@ class ContactGeometry:
 
     def coordinates_of(self, pose: FloatArray) -> Coordinates:
         """Return the coordinates of a pose: those of rigid members where it has no more than four."""
-        return Coordinates() if pose.shape[-1] == RIGID else self.coordinates
+        return _RIGID_MEMBERS if pose.shape[-1] == RIGID else self.coordinates
 
     def nominal_parameter(self, crank_angle: FloatArray) -> FloatArray:
         """Return θ of each pin's contact at the nominal pose, rad: (φ_C + 2πi)/z_P for Δz = 1 on a flank that is not turned."""
@@ -227,7 +247,7 @@ class ContactGeometry:
         start: FloatArray | None = None,
         shifts: ComplexArray | None = None,
         known: KnownPins | None = None,
-        races: Races | None = None,
+        at: DiscPlace | None = None,
     ) -> FlankMotion:
         """Return the pairs of wheel pin and flank (Eq. 60–64).
 
@@ -243,10 +263,10 @@ class ContactGeometry:
             Displacements of the pins in the turning wheel, mm.
         known : KnownPins, optional
             Of the same drives: pins that cannot touch the flank are left out, see `complete_flank`.
-        races : Races, optional
-            Of the crank angles, where they are known.
+        at : DiscPlace, optional
+            Where the disc stands, if it is known.
         """
-        pins = self._pins(crank_angle, pose, shifts, races)
+        pins = self._pins(crank_angle, pose, shifts, at)
         if start is None:
             start = self.nominal_parameter(crank_angle) + pose[:, WHEEL_ANGLE, None] - pose[:, DISC_ROTATION, None]
         if known is not None and start.size <= TOGETHER:
@@ -296,10 +316,11 @@ class ContactGeometry:
         return self.placement.wheel_pin_radii - self.placement.wheel_pin_plays
 
     def _pins(
-        self, crank_angle: FloatArray, pose: FloatArray, shifts: ComplexArray | None, races: Races | None = None
+        self, crank_angle: FloatArray, pose: FloatArray, shifts: ComplexArray | None, at: DiscPlace | None = None
     ) -> _Pins:
         place, coordinates = self.placement, self.coordinates_of(pose)
-        disc_centre = self._disc_centre(crank_angle, pose, races)[:, None]
+        disc = at or self.disc_place(crank_angle, pose)
+        disc_centre = disc.centre
         if coordinates.wheel:  # a displacement of the wheel is one of the disc in the opposite direction
             wheel = coordinates.wheel_place
             disc_centre = disc_centre - (pose[:, wheel.start] + 1j * pose[:, wheel.start + 1])[:, None]
@@ -308,12 +329,12 @@ class ContactGeometry:
         turned = place.wheel_rotation(crank_angle)[:, None] + pose[:, WHEEL_ANGLE, None]
         centres = place.wheel_pin_centres if shifts is None else place.wheel_pin_centres + shifts
         pin = centres * unit(turned)
-        arm, turn = place.wheel_axis + pin - disc_centre, unit(pose[:, DISC_ROTATION, None])
+        arm = place.wheel_axis + pin - disc_centre
         return _Pins(
             centre=pin,
             arm=arm,
-            turn=turn,
-            point=arm * turn.conjugate(),
+            turn=disc.turn,
+            point=arm * disc.turn.conjugate(),
             radius=place.wheel_pin_radii,
             reach=self._pin_reaches,
         )
@@ -398,23 +419,24 @@ class ContactGeometry:
             left_out=np.zeros(point.shape, dtype=bool),
         )
 
-    def _disc_centre(self, crank_angle: FloatArray, pose: FloatArray, races: Races | None) -> ComplexArray:
-        """Centre of the disc in the fixed frame, mm, shape (positions,)."""
-        middle = (races or self.placement.races(crank_angle)).middle
-        return np.asarray(middle + pose[:, X] + 1j * pose[:, Y])
+    def disc_place(self, crank_angle: FloatArray, pose: FloatArray) -> DiscPlace:
+        """Return where the disc stands; arguments as for `flank`."""
+        races = self.placement.races(crank_angle)
+        centre = (races.middle + pose[:, X] + 1j * pose[:, Y])[:, None]
+        return DiscPlace(races, centre, unit(pose[:, DISC_ROTATION, None]))
 
     def holes(
         self,
         crank_angle: FloatArray,
         pose: FloatArray,
         shifts: ComplexArray | None = None,
-        races: Races | None = None,
+        at: DiscPlace | None = None,
     ) -> PairMotion:
         """Return the pairs of shaft pin and hole (Eq. 59, 78–81); arguments as for `flank`."""
         place = self.placement
-        disc_centre = self._disc_centre(crank_angle, pose, races)[:, None]
-        arm = place.hole_centres * unit(pose[:, DISC_ROTATION, None])
-        play = place.shaft_pin_centres - disc_centre - arm
+        disc = at or self.disc_place(crank_angle, pose)
+        arm = place.hole_centres * disc.turn
+        play = place.shaft_pin_centres - disc.centre - arm
         coordinates = self.coordinates_of(pose)
         by_ring = self._by_ring if coordinates.ring else None
         if by_ring is not None:
@@ -498,11 +520,11 @@ class ContactGeometry:
         turned = -dot(1j * normal, lean) * dot(1j * normal, bores.each(bores.gradient, count)) / length[..., None]
         return PairTilt(tilt=dot(normal, lean)[..., 0], gradient=dot(normal, by_lean) + turned)
 
-    def bores(self, crank_angle: FloatArray, pose: FloatArray, races: Races | None = None) -> BoreMotion:
+    def bores(self, crank_angle: FloatArray, pose: FloatArray, at: DiscPlace | None = None) -> BoreMotion:
         """Return the displacements of the bores; arguments as for `flank`."""
         place, coordinates = self.placement, self.coordinates_of(pose)
-        races = races or place.races(crank_angle)
-        arm = place.bore_centres * unit(pose[:, DISC_ROTATION, None])
+        disc = at or self.disc_place(crank_angle, pose)
+        races, arm = disc.races, place.bore_centres * disc.turn
         moved = races.middle[:, None] - races.centre + arm
         moved = moved + (pose[:, X] + 1j * pose[:, Y])[:, None]
         gradient = np.zeros((*moved.shape, coordinates.size), dtype=complex)

@@ -85,10 +85,11 @@ class _Disc:
         self.geometry, self.angle, self.pose, self.shifts, self.leans = geometry, angle, pose, shifts, leans
         pins = geometry.placement.wheel_pin_radii.shape[-1]
         on_pins, on_holes = (None, None) if shifts is None else (shifts[:, :pins], shifts[:, pins:])
-        self.races = geometry.placement.races(angle)
-        self.flank = geometry.flank(angle, pose, parameter, on_pins, known, self.races)
-        self.holes = geometry.holes(angle, pose, on_holes, self.races)
-        self.bores, self.rays = geometry.bores(angle, pose, self.races), geometry.rollers(angle)
+        at = geometry.disc_place(angle, pose)
+        self.races = at.races
+        self.flank = geometry.flank(angle, pose, parameter, on_pins, known, at)
+        self.holes = geometry.holes(angle, pose, on_holes, at)
+        self.bores, self.rays = geometry.bores(angle, pose, at), geometry.rollers(angle)
         self.rollers = self.rays.direction.shape[1]
         self.displacement = self.bores.each(self.bores.displacement, self.rollers)
         self.total = self.rays.outermost - self.rays.touching_distance(self.displacement)
@@ -245,35 +246,25 @@ class ContactSystem:
     def _begin(self, pose: FloatArray, start: Start | ContactStart | None) -> _State:
         """Inner unknowns to start from; NaN where nothing is known."""
         rows, rollers = pose.shape[0], self.discs * self.rollers
-        unknown = np.full((rows, rollers), np.nan)
-        state = _State(
-            parameter=None,
-            place=unknown,
-            share=np.full((rows, rollers), 0.5),
-            lean=unknown,
-            approach=None,
-            shifts=None,
-            near=(),
-        )
-        if self.model.pins is not None:
-            state = state._replace(shifts=self.model.pins.unmoved(rows))
-        if start is None:
-            return state
-        state = state._replace(parameter=start.parameter, share=start.share)
-        if start.inner is not None:
-            state = state._replace(approach=start.inner.approach, near=start.inner.near)
-            if self.components > 1 and start.inner.lean.shape == unknown.shape:
-                state = state._replace(lean=start.inner.lean)
-            if not self.deforms or (
-                state.approach is not None and state.approach.shape[1:] != (self.components, self.contacts)
-            ):
-                state = state._replace(approach=None)
-            if self.components == 1:
-                state = state._replace(near=())
-        if start.follow is not None:
-            place, lean, approach, shifts = start.follow.at(pose)
-            state = state._replace(place=place, lean=lean, approach=approach, shifts=shifts)
-        return state
+        place = lean = None
+        parameter = approach = None
+        share, near = np.full((rows, rollers), 0.5), ()
+        shifts = None if self.model.pins is None else self.model.pins.unmoved(rows)
+        if start is not None:
+            parameter, share = start.parameter, start.share
+            if start.inner is not None:
+                if self.deforms and start.inner.approach is not None:
+                    fits = start.inner.approach.shape[1:] == (self.components, self.contacts)
+                    approach = start.inner.approach if fits else None
+                if self.components > 1:
+                    near = start.inner.near
+                    lean = start.inner.lean if start.inner.lean.shape == (rows, rollers) else None
+            if start.follow is not None:
+                place, lean, approach, shifts = start.follow.at(pose)
+        if place is None or lean is None:
+            unknown = np.full((rows, rollers), np.nan)
+            place, lean = unknown if place is None else place, unknown if lean is None else lean
+        return _State(parameter, place, share, lean, approach, shifts, near)
 
 
 class _State(NamedTuple):
@@ -929,7 +920,7 @@ class Linearised:
     @property
     def inner(self) -> Inner:
         """Inner unknowns beside the pose, to start from elsewhere."""
-        state = self._state()
+        state = self._whole_state
         return Inner(lean=state.lean, approach=state.approach, near=state.near)
 
     @cached_property
@@ -1054,6 +1045,11 @@ class Linearised:
         part = ROUGHLY_SETTLED if roughly else SETTLED
         return bool(np.all(self.moved <= part * deep + ROUND_OFF))
 
+    @cached_property
+    def _whole_state(self) -> _State:
+        """Inner unknowns after the whole correction."""
+        return self._state()
+
     def _state(self, fraction: FloatArray | None = None) -> _State:
         """Inner unknowns after the correction."""
         system, approach = self.system, None
@@ -1069,7 +1065,7 @@ class Linearised:
         if fraction is not None and shifts is not None and self.shifts is not None:
             shifts = self.shifts + fraction[:, None, None] * (shifts - self.shifts)
         return _State(
-            parameter=np.concatenate([at.flank.parameter for at in self.discs], axis=1),
+            parameter=_beside([at.flank.parameter for at in self.discs]),
             place=place,
             share=np.full(self.place.shape, 0.5),
             lean=lean,
@@ -1237,7 +1233,7 @@ class Linearised:
 
     def following(self) -> Following:
         """Return how the inner unknowns follow the pose."""
-        state = self._state()
+        state = self._whole_state
         shifts = None
         if self.shifts is not None and self.de_by_pose is not None:
             pins = self.system.model.pins
