@@ -116,11 +116,11 @@ class _Disc:
         return found
 
     @cached_property
-    def seen_from_cages(self) -> ComplexArray:
-        """Motion of the bores against the cages by the crank angle, mm/rad, shape (positions, cranks, 1)."""
+    def seen_from_cages(self) -> FloatArray:
+        """Motion of the bores against the cages by the crank angle, x and y, mm/rad, shape (positions, cranks, 2)."""
         place, bores = self.geometry.placement, self.bores
-        velocity = self.races.velocity[:, None]
-        return np.asarray((velocity - 1j * (bores.lever + place.cage_speed * bores.displacement))[..., None])
+        seen = self.races.velocity[:, None] - 1j * (bores.lever + place.cage_speed * bores.displacement)
+        return np.asarray(seen.view(float).reshape(*seen.shape, 2))
 
     def place_rollers(self, inward: FloatArray) -> None:
         """Put the rollers inward of where they only touch the race, mm."""
@@ -520,6 +520,7 @@ class Linearised:
             by_approach[:, pins, every] = self._with_crank(at, at.flank.gradient[row, some[0]])
             by_approach[:, holes, every] = self._with_crank(at, at.holes.gradient[row, some[2]])
             moved = self._bores_moved(at)
+            moved = moved[:, :, 0] + 1j * moved[:, :, 1]
             moved = moved if moved.shape[1] == 1 else moved[row, some[1] // (system.rollers // moved.shape[1])]
             turned = at.outward[row, some[1]].conjugate()[..., None] * moved
             by_approach[:, bores, every] = -turned.real
@@ -554,88 +555,87 @@ class Linearised:
     def _linearise_plain(self) -> None:
         """Force and tangent where nothing deforms but the contacts, in the plane: each roller is condensed by itself.
 
-        With the stiffnesses k of its two contacts, the cosine c between ray and normal in the bore, g = ∂d/∂q there, and the
-        turning a of this normal under its load, a place has the stiffness k_i + c² k_o, up to what turns.
+        With the stiffnesses k of its two contacts, the cosine c between ray and normal n in the bore, and the load F there, which
+        turns by its place as s (n across the ray), a roller yields along its ray with k_i + c² k_o + F s²/l. The rollers of a
+        crank are one spring then between bore and race, Σ a n nᵀ + b t tᵀ + m (n tᵀ + t nᵀ).
         """
         system, (rows, size) = self.system, (self.pose.shape[0], self.size)
         load, stiffness = self.load[:, 0], self.stiffness[0]
         self.sticking, self.rubs = None, []
-        self.force, self.tangent, every = np.zeros((rows, size)), self._bends(), slice(None)
+        self.force, self.tangent = np.zeros((rows, size)), self._bends()
         self.de, self.change = np.zeros(self.load.shape), np.zeros(self.load.shape)
         self.dx = np.zeros((rows, system.discs * system.rollers, 1))
         self.dx_by_pose = np.zeros((*self.dx.shape, size))
         for disc, (at, own) in enumerate(zip(self.discs, system.columns, strict=True)):
             pins, bores, holes, races = system.of_kind[disc]
-            behind = slice(pins.start, holes.stop)
-            of_pins, of_bores = slice(0, system.pins), slice(system.pins, system.pins + system.rollers)
-            last = behind.stop - behind.start
-            turned = at.outward.conjugate()[..., None] * at.bores.each(self._bores_moved(at), system.rollers)
-            cosine, carried, effective, stiff = (
-                at.cosine,
-                load[:, bores],
-                load[:, behind].copy(),
-                stiffness[:, behind].copy(),
-            )
-            held = stiff[:, of_bores] * cosine
-            by_place = stiffness[:, races] + held * cosine
-            unbalanced = load[:, races] - cosine * carried
-            gradient = np.zeros((rows, last + (0 if self.by_crank else system.rollers), turned.shape[-1]))
-            size_of_pose = at.pose.shape[1]
-            gradient[:, of_pins, :size_of_pose] = at.flank.gradient
-            gradient[:, of_bores.stop : last, :size_of_pose] = at.holes.gradient
-            if self.by_crank:
-                gradient[:, :last, -1:] = np.matmul(gradient[:, :last, :-1], at.nominal)
-            np.negative(turned.real, out=gradient[:, of_bores])
-            g = gradient[:, of_bores]
-            if self.by_crank:
-                by_place = np.where(by_place != 0.0, by_place, np.inf)
-            else:
-                slant, across = (at.outward.conjugate() * at.rays.direction).imag, turned.imag
-                gradient[:, last:] = across
+            n, carried, k_bore, k_race = at.outward, load[:, bores], stiffness[:, bores], stiffness[:, races]
+            held = k_bore * at.cosine
+            by_place, unbalanced = k_race + held * at.cosine, load[:, races] - at.cosine * carried
+            if not self.by_crank:
                 bend = carried / at.length
+                slant = (n.conjugate() * at.rays.direction).imag
                 slanted = bend * slant
                 by_place = by_place + slanted * slant
-                by_place = np.where(by_place != 0.0, by_place, np.inf)
+            by_place = np.where(by_place != 0.0, by_place, np.inf)
             share, step = held / by_place, unbalanced / by_place
-            push = held * step
-            effective[:, of_bores] += push
-            stiff[:, of_bores] -= held * share
-            follow = share[..., None] * g
+            added, cranks = held * step, at.bores.arm.shape[1]
+            shape = rows, cranks, -1, 1
+            normal = n.view(float).reshape(rows, cranks, -1, 2)
+            basis, pressed = normal, (k_bore - held * share).reshape(shape) * normal
+            loads, follow = (carried + added).reshape(shape), share.reshape(shape) * normal
             if not self.by_crank:
-                effective = np.concatenate((effective, -slanted * step), axis=1)
-                stiff = np.concatenate((stiff, bend - slanted * slanted / by_place), axis=1)
-                follow -= (slanted / by_place)[..., None] * across
-            pressed = stiff[..., None] * gradient
-            if not self.by_crank:
-                mixed = (share * slanted)[..., None]
-                pressed[:, of_bores] += mixed * across
-                pressed[:, last:] += mixed * g
-            back = gradient.swapaxes(1, 2)
-            force = np.matmul(back, effective[..., None])[..., 0]
+                across, aside = (1j * n).view(float).reshape(normal.shape), slanted / by_place
+                mixed, turning = (held * aside).reshape(shape), (bend - slanted * aside).reshape(shape)
+                basis = np.concatenate((normal, across), axis=2)
+                pressed = np.concatenate((pressed - mixed * across, turning * across - mixed * normal), axis=2)
+                loads = np.concatenate((loads, (slanted * step).reshape(shape)), axis=2)
+                follow = follow + aside.reshape(shape) * across
+            moved = self._bores_moved(at)
+            springs, pushes = (np.matmul(basis.swapaxes(2, 3), each) for each in (pressed, loads))
+            gradient = self._with_crank(at, np.concatenate((at.flank.gradient, at.holes.gradient), axis=1))
+            of_bores = moved.reshape(rows, 2 * cranks, -1)
+            back = np.concatenate((gradient, of_bores), axis=1).swapaxes(1, 2)
+            stiff = np.concatenate((stiffness[:, pins], stiffness[:, holes]), axis=1)[..., None]
+            pressed = np.concatenate((stiff * gradient, np.matmul(springs, moved).reshape(of_bores.shape)), axis=1)
+            pushes = -pushes.reshape(rows, -1)
+            force = np.matmul(back, np.concatenate((load[:, pins], load[:, holes], pushes), axis=1)[..., None])[..., 0]
             tangent = np.matmul(back, pressed)
             if (
                 self.by_crank
             ):  # forces of the bearings turn with the cages, which the stiffness of rollers on turning rays counts
-                pushed = np.matmul((system.cage_speed * carried)[:, None], turned.imag[..., :-1])[:, 0]
-                tangent[:, :-1, -1] -= pushed
-                tangent[:, -1, :-1] -= pushed
+                turned = system.cage_speed * (pushes.view(complex) * -1j).view(float)
+                turned = np.matmul(turned[:, None], of_bores[..., :-1])[:, 0]
+                tangent[:, :-1, -1] -= turned
+                tangent[:, -1, :-1] -= turned
             of_rollers = slice(disc * system.rollers, (disc + 1) * system.rollers)
+            followed = np.matmul(-follow.view(float).reshape(rows, cranks, -1, 2), moved).reshape(
+                rows, system.rollers, -1
+            )
             if system.discs > 1:
                 every = np.append(own, size - 1) if self.by_crank else own
                 self.force[:, every] += force
                 self.tangent[:, every[:, None], every] += tangent
+                self.dx_by_pose[:, of_rollers, 0, every] = followed
             else:
                 self.force += force
                 self.tangent += tangent
-            self.dx[:, of_rollers, 0], self.dx_by_pose[:, of_rollers, 0, every] = -step, follow
-            self.de[:, 0, bores], self.de[:, 0, races] = cosine * step, -step
-            self.change[:, 0, bores], self.change[:, 0, races] = push, -stiffness[:, races] * step
+                self.dx_by_pose[:, :, 0] = followed
+            self.dx[:, of_rollers, 0] = -step
+            self.de[:, 0, bores], self.de[:, 0, races] = at.cosine * step, -step
+            self.change[:, 0, bores], self.change[:, 0, races] = added, -k_race * step
         self.de_by_pose = None
-        self.moved = np.max(np.abs(self.dx[..., 0]), axis=1, initial=0.0)
+        self.moved = np.abs(self.dx[..., 0]).max(axis=1, initial=0.0)
 
-    def _bores_moved(self, at: _Disc) -> ComplexArray:
-        """Derivatives of the displacements of the bores by the pose of a disc, and by the crank angle where that is one."""
-        return np.concatenate((at.bores.gradient, at.seen_from_cages), axis=-1) if self.by_crank else at.bores.gradient
+    def _bores_moved(self, at: _Disc) -> FloatArray:
+        """Displacements of the bores, x and y, by the pose of a disc, and by the crank angle where that is a coordinate, shape
+        (positions, cranks, 2, coordinates).
+        """
+        by_pose = at.bores.gradient
+        found = np.empty((*by_pose.shape[:2], 2, by_pose.shape[2] + self.by_crank))
+        found[:, :, 0, : by_pose.shape[2]], found[:, :, 1, : by_pose.shape[2]] = by_pose.real, by_pose.imag
+        if self.by_crank:
+            found[..., -1] = at.seen_from_cages
+        return found
 
     @cached_property
     def left(self) -> FloatArray:
@@ -1301,7 +1301,7 @@ def _beside(values: list[Any], axis: int = 1) -> Any:
     return values[0] if len(values) == 1 else np.concatenate(values, axis=axis)
 
 
-def _by_crank(values: ComplexArray, cranks: int) -> ComplexArray:
+def _by_crank(values: NDArray[Any], cranks: int) -> NDArray[Any]:
     """Sums over the rollers of every crank."""
     return np.asarray(values.reshape(values.shape[0], cranks, -1).sum(axis=2))
 
