@@ -309,18 +309,19 @@ class FlankProfile:
         history: list[float] = []
         for iteration in range(MAX_ITERATIONS):
             curve = flank.contact_curve(direction)
-            away = curve.point - point
-            tangent = curve.tangent
+            away, tangent = (curve.point - point).conjugate(), curve.tangent
             speed = tangent.real**2 + tangent.imag**2
-            value = tangent.real * away.real + tangent.imag * away.imag
-            slope = speed + curve.second.real * away.real + curve.second.imag * away.imag
+            value = (tangent * away).real
+            slope = speed + (curve.second * away).real
             # Beyond a centre of curvature the slope is negative, near a maximum of the distance: step away from it.
             safe = np.maximum(np.abs(slope), 1e-3 * speed)
             step = value / safe
             if iteration:  # Halley's correction, the bend of g from the last two slopes
                 bend = np.divide(slope_before - slope, last, out=np.zeros(theta.shape), where=last != 0.0)
                 step /= 1.0 - (0.5 * step * bend / safe).clip(-0.5, 0.5)
-            step = step.clip(-bound, bound)
+            moved = np.abs(step)
+            if (furthest := float(moved.max(initial=0.0))) > bound:
+                step = step.clip(-bound, bound)
             if iteration == BRACKETED:
                 low, high = np.full(theta.shape, -np.inf), np.full(theta.shape, np.inf)
             if iteration >= BRACKETED:  # nearly every point has converged by now: only slow ones need a bracket
@@ -328,10 +329,12 @@ class FlankProfile:
                 # A step starts at one end. One nearly to the other end counts as outside: it could go back and forth forever.
                 outside = np.abs(step) > 0.95 * (high - low)
                 step[outside] = theta[outside] - 0.5 * (low[outside] + high[outside])
+            if furthest > bound or iteration >= BRACKETED:
+                moved = np.abs(step)
+                furthest = float(moved.max(initial=0.0))
             theta = theta - step
             slope_before, last = slope, step
-            moved = np.abs(step)
-            history.append(float(moved.max(initial=0.0)))
+            history.append(furthest)
             if history[-1] <= (NEARLY if self.deviation is None else ROUND_OFF) and theta.size == every.size:
                 return NearestPoint(theta, self._moved(curve, step))
             if history[-1] > ROUND_OFF:

@@ -57,6 +57,8 @@ ROUGHLY_SETTLED = 0.02
 """Largest correction of a deformation, by the largest approach, with which a step of the pose is judged."""
 SETTLED = 1e-6
 """The same of an answer: loads are corrected to first order, and the error left is of its square."""
+SETTLED_IN_MOTION = 1e-5
+"""The same of a run in time, whose step leaves a hundred times as much as the 1e-11 of loads that these leave."""
 MAX_CORRECTIONS = 60
 MAX_HALVINGS = 12
 STEEPEST = 0.3
@@ -170,6 +172,7 @@ class ContactSystem:
         self.plain = not self.deforms and self.components == 1 and model.friction is None
         self.law_groups = _law_groups(self) if self.components == 1 else []
         self.radii = _radii(self)
+        self.never_left_out = np.full((1, self.discs * self.pins), np.inf)
 
     @property
     def half(self) -> FloatArray:
@@ -248,7 +251,8 @@ class ContactSystem:
         rows, rollers = pose.shape[0], self.discs * self.rollers
         place = lean = None
         parameter = approach = None
-        share, near = np.full((rows, rollers), 0.5), ()
+        share: FloatArray | None = None
+        near: tuple[FloatArray, ...] = ()
         shifts = None if self.model.pins is None else self.model.pins.unmoved(rows)
         if start is not None:
             parameter, share = start.parameter, start.share
@@ -264,6 +268,8 @@ class ContactSystem:
         if place is None or lean is None:
             unknown = np.full((rows, rollers), np.nan)
             place, lean = unknown if place is None else place, unknown if lean is None else lean
+        if share is None:
+            share = np.full((rows, rollers), 0.5)
         return _State(parameter, place, share, lean, approach, shifts, near)
 
 
@@ -381,7 +387,8 @@ class Linearised:
         system, (rows,) = self.system, self.angle.shape
         shape = (rows, system.components, system.contacts)
         self.overlap, e = np.zeros(shape), state.approach
-        self.place, self.lean = state.place.copy(), state.lean.copy()
+        self.place, self.share = state.place.copy(), state.share
+        self.lean = np.zeros(self.place.shape) if system.components == 1 else state.lean.copy()
         given = system.deforms and e is not None
         e = e.copy() if given and e is not None else None
         for disc, at in enumerate(self.discs):
@@ -391,10 +398,8 @@ class Linearised:
             unplaced = np.isnan(place)
             if unplaced.any():
                 place = np.where(unplaced, state.share[:, own] * at.total, place)
-            at_race = at_bore = middle = np.zeros(())
-            if at.tilts is None:
-                lean = np.zeros(place.shape)
-            else:
+            at_race = at_bore = middle = lean
+            if at.tilts is not None:
                 at_race, at_bore = self.half * at.at_race, self.half * at.at_bore
                 middle = 0.5 * (at_race + at_bore)
                 lean = np.where(np.isnan(lean), middle, lean)
@@ -419,7 +424,9 @@ class Linearised:
                 if at.tilts is not None:
                     lean = np.where(loose, middle, lean)
             at.place_rollers(place)
-            self.place[:, own], self.lean[:, own] = place, lean
+            self.place[:, own] = place
+            if at.tilts is not None:
+                self.lean[:, own] = lean
             for kind, values in zip(
                 system.of_kind[disc], (at.flank.approach, at.outer, at.holes.approach, place), strict=True
             ):
@@ -890,9 +897,9 @@ class Linearised:
         motions = [each.flank for each in self.discs]
         return ContactStart(
             parameter=_beside([motion.parameter for motion in motions]),
-            share=np.full(self.place.shape, 0.5),
+            share=self.share,
             known=KnownPins(
-                approach=np.full((self.angle.size, self.system.pins * len(motions)), np.inf),
+                approach=np.repeat(self.system.never_left_out, self.angle.size, axis=0),
                 point=_beside([motion.point for motion in motions]),
                 turning=_beside([motion.turning for motion in motions]),
             ),
@@ -1041,9 +1048,9 @@ class Linearised:
 
     def settled(self, roughly: bool) -> bool:
         """Whether the inner unknowns are close enough for a step of the pose, or for an answer."""
-        deep = np.max(np.abs(self.overlap[:, 0]) * (self.load[:, 0] > 0.0), axis=1, initial=0.0)
-        part = ROUGHLY_SETTLED if roughly else SETTLED
-        return bool(np.all(self.moved <= part * deep + ROUND_OFF))
+        deep = (np.abs(self.overlap[:, 0]) * (self.load[:, 0] > 0.0)).max(axis=1, initial=0.0)
+        part = ROUGHLY_SETTLED if roughly else SETTLED_IN_MOTION if self.by_crank else SETTLED
+        return bool((self.moved <= part * deep + ROUND_OFF).all())
 
     @cached_property
     def _whole_state(self) -> _State:
@@ -1067,7 +1074,7 @@ class Linearised:
         return _State(
             parameter=_beside([at.flank.parameter for at in self.discs]),
             place=place,
-            share=np.full(self.place.shape, 0.5),
+            share=self.share,
             lean=lean,
             approach=approach,
             shifts=shifts,
