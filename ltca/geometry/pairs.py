@@ -267,14 +267,16 @@ class ContactGeometry:
             Where the disc stands, if it is known.
         """
         pins = self._pins(crank_angle, pose, shifts, at)
+        coordinates = self.coordinates_of(pose)
+        if start is not None and known is not None and start.size <= TOGETHER:
+            turned = dot(known.turning, pins.point - known.point)
+            near = np.abs(turned).max(initial=0.0) <= MAX_EXTRAPOLATION / abs(self.profile.reduction_ratio)
+            start, known = start + turned if near else None, None
         if start is None:
             start = self.nominal_parameter(crank_angle) + pose[:, WHEEL_ANGLE, None] - pose[:, DISC_ROTATION, None]
-        if known is not None and start.size <= TOGETHER:
-            most = MAX_EXTRAPOLATION / abs(self.profile.reduction_ratio)
-            start, known = start + dot(known.turning, pins.point - known.point).clip(-most, most), None
         if known is None:
-            return self._touching(self.profile, pins, start, self.coordinates_of(pose))
-        return self._touching_some(pins, start, known.may_touch(pins.point), known, self.coordinates_of(pose))
+            return self._touching(self.profile, pins, start, coordinates)
+        return self._touching_some(pins, start, known.may_touch(pins.point), known, coordinates)
 
     def complete_flank(
         self, crank_angle: FloatArray, pose: FloatArray, motion: FlankMotion, shifts: ComplexArray | None = None

@@ -354,6 +354,9 @@ class Linearised:
             self._carry_in_plane()
         else:
             self._carry(state, roughly)
+        self.sticking: tuple[FloatArray, FloatArray, FloatArray] | None = None
+        self.rubs: list[FloatArray] = []
+        self.chosen: list[list[Indices]] = []
         if system.plain:
             self.chosen, self.contacts, self.rollers, self.at, self.of_rollers = system.every_contact
             self._linearise_plain()
@@ -504,7 +507,6 @@ class Linearised:
         system, carries = self.system, np.any(self.stiffness != 0.0, axis=0) | (self.load[:, 0] > 0.0)
         if system.deforms:
             carries = carries | self._within()
-        self.chosen: list[list[Indices]] = []
         for disc in range(system.discs):
             pins, bores, holes, races = (carries[:, kind] for kind in system.of_kind[disc])
             rollers = _padded(bores | races)
@@ -568,7 +570,6 @@ class Linearised:
         """
         system, (rows, size) = self.system, (self.pose.shape[0], self.size)
         load, stiffness = self.load[:, 0], self.stiffness[0]
-        self.sticking, self.rubs = None, []
         self.force, self.tangent = np.zeros((rows, size)), self._bends()
         self.de, self.change = np.zeros(self.load.shape), np.zeros(self.load.shape)
         self.dx = np.zeros((rows, system.discs * system.rollers, 1))
@@ -912,7 +913,7 @@ class Linearised:
         (positions, components, pairs).
         """
         pins, _, holes, _ = self.system.of_kind[disc]
-        return _beside([self.corrected_load[..., pins], self.corrected_load[..., holes]], axis=-1)
+        return np.concatenate((self.corrected_load[..., pins], self.corrected_load[..., holes]), axis=-1)
 
     def pushes(self, disc: int) -> ComplexArray:
         """Return the force of every crank bearing on a disc in the fixed frame, N, shape (positions, cranks)."""
@@ -956,8 +957,6 @@ class Linearised:
 
     def _rub(self, g: FloatArray) -> FloatArray:
         """What loads press the pose with, G and friction along the tangents of pins and holes."""
-        self.sticking: tuple[FloatArray, FloatArray, FloatArray] | None = None
-        self.rubs: list[FloatArray] = []
         friction = self.system.model.friction
         if friction is None:
             return g
@@ -1303,9 +1302,9 @@ def _radii(system: ContactSystem) -> FloatArray:
     return found
 
 
-def _beside(values: list[Any], axis: int = 1) -> Any:
-    """Arrays side by side: itself where there is one."""
-    return values[0] if len(values) == 1 else np.concatenate(values, axis=axis)
+def _beside(values: list[Any]) -> Any:
+    """Arrays of discs side by side: itself where there is one."""
+    return values[0] if len(values) == 1 else np.concatenate(values, axis=1)
 
 
 def _by_crank(values: NDArray[Any], cranks: int) -> NDArray[Any]:

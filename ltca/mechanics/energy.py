@@ -35,13 +35,13 @@ def _of_disc(at: Linearised, disc: int) -> StoredEnergy:
     radii = at.discs[disc].flank.effective_radius, laws.outer_radius, laws.hole_radius, laws.inner_radius
     deformation = [at.after[:, 0, kind] for kind in kinds]
     if system.components == 1:
-        pins, *others = zip(laws.laws, deformation, radii, strict=True)
-        found = StoredEnergy.of_laws(pins, others)
+        plane = list(zip(laws.laws, deformation, radii, strict=True))
+        found = StoredEnergy.of_laws(plane[0], plane[1:])
     else:
         tilts = [at.after[:, 1, kind] / at.half for kind in kinds]
         near: list[Any] = [one.near for one in at.slices_after(disc)]
-        pins, *others = zip(laws.laws, deformation, tilts, radii, near, strict=True)
-        found = StoredEnergy.of_slices(pins, others)
+        sliced = list(zip(laws.laws, deformation, tilts, radii, near, strict=True))
+        found = StoredEnergy.of_slices(sliced[0], sliced[1:])
     body = system.bodies[disc]
     if body.coefficients is None:
         return found
