@@ -45,7 +45,6 @@ from ltca.compliance.response import (
     split_shifts,
 )
 from ltca.compliance.rollers import RollerState
-from ltca.compliance.stored_energy import StoredEnergy
 from ltca.compliance.undeformed import UndeformedBodies
 from ltca.contact.tracked_grid import ContactKind
 from ltca.drive.hole_contact import shaft_pins_yield
@@ -336,35 +335,6 @@ class CoupledCompliance:
         rows, columns = np.arange(chosen.shape[0])[:, None], np.arange(chosen.shape[1])
         found[rows, chosen, columns] += np.repeat(own, [part.shape[1] for part in loaded])
         return found
-
-    def stored(self, crank_angle: FloatArray, pose: FloatArray, response: DiscResponse) -> StoredEnergy:
-        """Return what all contacts store at a response of this model, its angles and poses given."""
-        if response.leaning_pins is not None:
-            from ltca.compliance.coupled_slices import stored_by_bodies
-
-            return stored_by_bodies(self, crank_angle, pose, response)
-        assert response.deformation is not None
-        near = response.deformation[:, 0, : -self.inner_radius.size]
-        laws, rollers = self.near_field, response.rollers
-        pins, last = response.pin_load.shape[1], response.pin_load.shape[1] + self.outer_radius.size
-        inner, _ = laws.inner.approach_at_load(rollers.inner_load, self.inner_radius)
-        alone = StoredEnergy.of_laws(
-            (laws.pin, near[:, :pins], response.flank.effective_radius),
-            [
-                (laws.outer, near[:, pins:last], self.outer_radius),
-                (self.hole_law, near[:, last:], self.hole_radius),
-                (laws.inner, inner, self.inner_radius),
-            ],
-        )
-        load = np.concatenate((response.pin_load, rollers.outer_load, response.hole_load), axis=1)
-        bodies = UndeformedBodies(self.geometry, crank_angle, pose, (response.flank, response.holes, response.shifts))
-        every = [np.tile(np.arange(kind.shape[1]), (load.shape[0], 1)) for kind in np.split(near, (pins, last), axis=1)]
-        matrix = self.body_matrix(bodies, every)
-        yields = 0.5 * np.einsum("bi,bij,bj->b", load, matrix, load)
-        on_race = rollers.inner_load
-        yields += 0.5 * np.einsum("bi,ij,bj->b", on_race, self.race, on_race)
-        yields += self.coefficients.roller[0, 1] * (on_race * rollers.outer_load).sum(axis=1)
-        return replace(alone, energy=alone.energy + yields, load=load, coefficients=matrix)
 
     def _solve(self, bodies: UndeformedBodies, start: Start | None, rows: NDArray[np.intp]) -> DiscResponse:
         guess = bodies.geometric * np.where(bodies.geometric > 0.0, 0.5, 1.0)  # a fair share of a rigid overlap

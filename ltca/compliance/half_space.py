@@ -12,9 +12,8 @@ from ltca.arrays import FloatArray
 from ltca.compliance import sliced
 from ltca.compliance.contact_laws import ContactLaws
 from ltca.compliance.pressures import pressures_of_law
-from ltca.compliance.response import DiscResponse, KindPressures
+from ltca.compliance.response import KindPressures
 from ltca.compliance.rollers import RollerLaws
-from ltca.compliance.stored_energy import StoredEnergy
 from ltca.compliance.uncoupled import PairLaws, UncoupledContacts
 from ltca.contact.tracked_grid import ContactKind, ContactKinds
 from ltca.drive.hole_contact import hole_modulus, shaft_pins_yield
@@ -177,21 +176,6 @@ class HalfSpaceCompliance(UncoupledContacts[ContactLaw]):
     def laws(self, flank: FlankMotion, warm_start: NDArray[np.object_] | None) -> PairLaws[ContactLaw]:
         """Return the tabulated laws, alike at every pose."""
         return PairLaws(pins=self.pin_law, rollers=self.roller_laws)
-
-    def stored(self, crank_angle: FloatArray, pose: FloatArray, response: DiscResponse) -> StoredEnergy:
-        """Return what all contacts store at a response of this model, its angles and poses given."""
-        place, flank, rollers, laws = self.geometry.placement, response.flank, response.rollers, self.roller_laws
-        if response.leaning_pins is not None:
-            of_holes: Any = self.hole_law
-            return sliced.stored_in_slices(response, (self.pin_law, of_holes), laws, place.hole_effective_radii)
-        return StoredEnergy.of_laws(
-            (self.pin_law, flank.approach, flank.effective_radius),
-            [
-                (self.hole_law, response.holes.approach, place.hole_effective_radii),
-                (laws.inner, rollers.inner_approach, laws.inner_radius),
-                (laws.outer, rollers.outer_approach, laws.outer_radius),
-            ],
-        )
 
     def read_pressures(
         self, law: ContactLaw, kind: ContactKind, approach: FloatArray, effective_radius: FloatArray

@@ -9,7 +9,6 @@ stiffness         Stiffness about balanced positions over the same coordinates
 modes             Eigenfrequencies and modes, and what moves in them
 harmonic_balance  Motion on a stiffness that pulses over the turn: Hill's equation, parametric resonance
 kinetic_energy    Kinetic energy over the crank angle, and the inertia forces of a motion
-disc_forces       Contacts of one disc at one instant, without a batch axis
 teeth             Teeth of a first stage on cranks, flange and wheel at one instant
 contact_forces    Forces of contacts, supports and friction of a drive at one instant
 massless          Parts that yield and have no mass, which follow all others

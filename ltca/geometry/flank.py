@@ -32,8 +32,13 @@ SETTLED = 1e-8
 """Last step of Newton's method, rad: convergence is quadratic, the error that is left is below round-off."""
 MAX_ITERATIONS = 100
 """Newton steps to a contact point."""
+NEARLY = 1e-7
+"""Last step, rad, over which the curve is followed by its derivatives: what they leave out is 1e-11 of the least radius, and what
+Newton's method leaves of θ is of the square of the step."""
+BRACKETED = 6
+"""Steps after which the points that are left are bracketed."""
 ROUND_OFF = 1e-13
-"""Step within round-off, rad: the curve before it is that after it."""
+"""Step within round-off, rad: the direction before it is that after it."""
 
 
 class CurvePoints(NamedTuple):
@@ -288,7 +293,7 @@ class FlankProfile:
         ConvergenceError
             When a point does not settle; the history holds the largest steps.
         """
-        theta = np.array(np.broadcast_to(start, np.shape(point)), dtype=float)
+        theta = start if start.shape == point.shape else np.broadcast_to(start, point.shape)
         return self.nearer_side(point, self._settle(point, theta))
 
     def _settle(self, point: ComplexArray, start: FloatArray) -> NearestPoint:
@@ -300,36 +305,42 @@ class FlankProfile:
         flank, theta, direction = self, start, unit(start)
         every, settled, left = theta, direction, np.arange(theta.size)
         bound = 0.4 * np.pi / self.reduction_ratio
-        low, high = np.full(theta.shape, -np.inf), np.full(theta.shape, np.inf)
-        last = slope_before = np.zeros(theta.shape)
+        low = high = last = slope_before = np.zeros(0)
         history: list[float] = []
         for iteration in range(MAX_ITERATIONS):
             curve = flank.contact_curve(direction)
-            away = curve.point - point
-            tangent = curve.tangent
+            away, tangent = (curve.point - point).conjugate(), curve.tangent
             speed = tangent.real**2 + tangent.imag**2
-            value = tangent.real * away.real + tangent.imag * away.imag
-            slope = speed + curve.second.real * away.real + curve.second.imag * away.imag
+            value = (tangent * away).real
+            slope = speed + (curve.second * away).real
             # Beyond a centre of curvature the slope is negative, near a maximum of the distance: step away from it.
             safe = np.maximum(np.abs(slope), 1e-3 * speed)
             step = value / safe
             if iteration:  # Halley's correction, the bend of g from the last two slopes
                 bend = np.divide(slope_before - slope, last, out=np.zeros(theta.shape), where=last != 0.0)
                 step /= 1.0 - (0.5 * step * bend / safe).clip(-0.5, 0.5)
-            step = step.clip(-bound, bound)
-            if iteration > 5:  # nearly every point has converged by now: only slow ones need a bracket
+            moved = np.abs(step)
+            if (furthest := float(moved.max(initial=0.0))) > bound:
+                step = step.clip(-bound, bound)
+            if iteration == BRACKETED:
+                low, high = np.full(theta.shape, -np.inf), np.full(theta.shape, np.inf)
+            if iteration >= BRACKETED:  # nearly every point has converged by now: only slow ones need a bracket
                 low, high = np.where(value < 0.0, theta, low), np.where(value > 0.0, theta, high)
                 # A step starts at one end. One nearly to the other end counts as outside: it could go back and forth forever.
                 outside = np.abs(step) > 0.95 * (high - low)
                 step[outside] = theta[outside] - 0.5 * (low[outside] + high[outside])
+            if furthest > bound or iteration >= BRACKETED:
+                moved = np.abs(step)
+                furthest = float(moved.max(initial=0.0))
             theta = theta - step
             slope_before, last = slope, step
-            moved = np.abs(step)
-            history.append(float(np.max(moved, initial=0.0)))
+            history.append(furthest)
+            if history[-1] <= (NEARLY if self.deviation is None else ROUND_OFF) and theta.size == every.size:
+                return NearestPoint(theta, self._moved(curve, step))
             if history[-1] > ROUND_OFF:
                 direction = direction * small_turn(-step)
             if history[-1] <= SETTLED and theta.size == every.size:
-                return NearestPoint(theta, self.contact_curve(direction) if history[-1] > ROUND_OFF else curve)
+                return NearestPoint(theta, self.contact_curve(direction))
             going = moved > SETTLED
             if 2 * np.count_nonzero(going) < going.size:
                 every, settled = _with_places(every, left, theta), _with_places(settled, left, direction)
@@ -337,10 +348,22 @@ class FlankProfile:
                 if left.size == 0:
                     return NearestPoint(every, self.contact_curve(settled))
                 flank = flank.of_points(np.nonzero(going)[0])
-                theta, direction, point, low, high, last, slope_before = _picked(
-                    going, theta, direction, point, low, high, last, slope_before
+                theta, direction, point, last, slope_before = _picked(
+                    going, theta, direction, point, last, slope_before
                 )
+                if iteration >= BRACKETED:
+                    low, high = _picked(going, low, high)
         raise ConvergenceError("contact points on the flank not found; largest step in rad", history)
+
+    def _moved(self, curve: CurvePoints, step: FloatArray) -> CurvePoints:
+        """Curve of a flank as designed a small step back, its derivatives to second order: c‴ = i (u + 1) c″ + u c′."""
+        point, tangent, second = curve
+        u = self.reduction_ratio
+        change = (u * tangent + 1j * (u + 1.0) * second) * step
+        half = 0.5 * step
+        return CurvePoints(
+            point - step * (tangent - half * second), tangent - step * second + half * change, second - change
+        )
 
     @property
     def has_cusps(self) -> BoolArray:
@@ -363,10 +386,12 @@ class FlankProfile:
         of curvature there has a nearest point on either side.
         """
         u = self.reduction_ratio
-        bend = np.asarray(self.eccentricity * u * u - self.generating_radius)
-        if np.all(bend <= 0.0):
+        bend = self.eccentricity * u * u - self.generating_radius
+        if isinstance(bend, np.ndarray):
+            bend = np.where(bend > 0.0, bend, np.nan)
+        elif bend <= 0.0:
             return found
-        sharp = (self.generating_radius - self.eccentricity * u) ** 2 / np.where(bend > 0.0, bend, np.nan)
+        sharp = (self.generating_radius - self.eccentricity * u) ** 2 / bend
         theta = found.parameter
         away = self._off_path(point, found)
         pitch = 2.0 * np.pi / (u - 1.0)

@@ -8,6 +8,7 @@ together.
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,11 +28,14 @@ from ltca.geometry.pair_motion import (
     cross,
     dot,
 )
-from ltca.geometry.placement import Placement
+from ltca.geometry.placement import Placement, Races
 from ltca.geometry.rotation import unit
 
 MAX_EXTRAPOLATION = 0.1
 """Largest change of θ by which a first guess is extrapolated, rad, times the tooth number."""
+_RIGID_MEMBERS = Coordinates()
+TOGETHER = 256
+"""Pins of all positions up to which all are found: to leave some out costs more than it saves."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -67,6 +71,24 @@ class _Pins:
             radius=np.broadcast_to(self.radius, self.point.shape).take(places)[:, None],
             reach=np.broadcast_to(self.reach, self.point.shape).take(places)[:, None],
         )
+
+
+class DiscPlace(NamedTuple):
+    """Where a disc stands.
+
+    Attributes
+    ----------
+    races : Races
+        Inner races of its crank angles.
+    centre : array of complex, shape (positions, 1)
+        Of the disc in the fixed frame, mm.
+    turn : array of complex, shape (positions, 1)
+        Unit vector of its rotation.
+    """
+
+    races: Races
+    centre: ComplexArray
+    turn: ComplexArray
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -209,7 +231,7 @@ class ContactGeometry:
 
     def coordinates_of(self, pose: FloatArray) -> Coordinates:
         """Return the coordinates of a pose: those of rigid members where it has no more than four."""
-        return Coordinates() if pose.shape[-1] == RIGID else self.coordinates
+        return _RIGID_MEMBERS if pose.shape[-1] == RIGID else self.coordinates
 
     def nominal_parameter(self, crank_angle: FloatArray) -> FloatArray:
         """Return θ of each pin's contact at the nominal pose, rad: (φ_C + 2πi)/z_P for Δz = 1 on a flank that is not turned."""
@@ -225,6 +247,7 @@ class ContactGeometry:
         start: FloatArray | None = None,
         shifts: ComplexArray | None = None,
         known: KnownPins | None = None,
+        at: DiscPlace | None = None,
     ) -> FlankMotion:
         """Return the pairs of wheel pin and flank (Eq. 60–64).
 
@@ -240,13 +263,20 @@ class ContactGeometry:
             Displacements of the pins in the turning wheel, mm.
         known : KnownPins, optional
             Of the same drives: pins that cannot touch the flank are left out, see `complete_flank`.
+        at : DiscPlace, optional
+            Where the disc stands, if it is known.
         """
-        pins = self._pins(crank_angle, pose, shifts)
+        pins = self._pins(crank_angle, pose, shifts, at)
+        coordinates = self.coordinates_of(pose)
+        if start is not None and known is not None and start.size <= TOGETHER:
+            turned = dot(known.turning, pins.point - known.point)
+            near = np.abs(turned).max(initial=0.0) <= MAX_EXTRAPOLATION / abs(self.profile.reduction_ratio)
+            start, known = start + turned if near else None, None
         if start is None:
             start = self.nominal_parameter(crank_angle) + pose[:, WHEEL_ANGLE, None] - pose[:, DISC_ROTATION, None]
         if known is None:
-            return self._touching(self.profile, pins, start, self.coordinates_of(pose))
-        return self._touching_some(pins, start, known.may_touch(pins.point), known, self.coordinates_of(pose))
+            return self._touching(self.profile, pins, start, coordinates)
+        return self._touching_some(pins, start, known.may_touch(pins.point), known, coordinates)
 
     def complete_flank(
         self, crank_angle: FloatArray, pose: FloatArray, motion: FlankMotion, shifts: ComplexArray | None = None
@@ -287,9 +317,12 @@ class ContactGeometry:
         """Distance from the nominal centre of a wheel pin to where it touches: its radius less the play in its seat, mm."""
         return self.placement.wheel_pin_radii - self.placement.wheel_pin_plays
 
-    def _pins(self, crank_angle: FloatArray, pose: FloatArray, shifts: ComplexArray | None) -> _Pins:
+    def _pins(
+        self, crank_angle: FloatArray, pose: FloatArray, shifts: ComplexArray | None, at: DiscPlace | None = None
+    ) -> _Pins:
         place, coordinates = self.placement, self.coordinates_of(pose)
-        disc_centre = (place.race_centre(crank_angle) + pose[:, X] + 1j * pose[:, Y])[:, None]
+        disc = at or self.disc_place(crank_angle, pose)
+        disc_centre = disc.centre
         if coordinates.wheel:  # a displacement of the wheel is one of the disc in the opposite direction
             wheel = coordinates.wheel_place
             disc_centre = disc_centre - (pose[:, wheel.start] + 1j * pose[:, wheel.start + 1])[:, None]
@@ -298,12 +331,12 @@ class ContactGeometry:
         turned = place.wheel_rotation(crank_angle)[:, None] + pose[:, WHEEL_ANGLE, None]
         centres = place.wheel_pin_centres if shifts is None else place.wheel_pin_centres + shifts
         pin = centres * unit(turned)
-        arm, turn = place.wheel_axis + pin - disc_centre, unit(pose[:, DISC_ROTATION, None])
+        arm = place.wheel_axis + pin - disc_centre
         return _Pins(
             centre=pin,
             arm=arm,
-            turn=turn,
-            point=arm * turn.conjugate(),
+            turn=disc.turn,
+            point=arm * disc.turn.conjugate(),
             radius=place.wheel_pin_radii,
             reach=self._pin_reaches,
         )
@@ -349,12 +382,12 @@ class ContactGeometry:
         """Pairs of pins and flank, all of the same shape."""
         point, arm = pins.point, pins.arm
         parameter, curve = profile.nearest_point(point, start)
-        tangent, second = curve.tangent, curve.second
+        tangent = curve.tangent
         square = tangent.real**2 + tangent.imag**2
         speed = np.sqrt(square)
-        normal = -1j * tangent / speed
+        normal = tangent * (-1j / speed)
         distance = dot(normal, point - curve.point)
-        curvature = cross(tangent, second) / (square * speed)
+        curvature = cross(tangent, curve.second) / (square * speed)
         spread = 1.0 + curvature * distance
         offset = profile.contact_offset
         flank_curvature = curvature / (1.0 - offset * curvature)
@@ -363,10 +396,12 @@ class ContactGeometry:
         # parallel curve through the pin centre; ∂point = (−1, −i, −i arm, i pin) in the fixed frame.
         outward = normal * pins.turn
         gradient, along = (np.zeros((*point.shape, coordinates.size)) for _ in range(2))
+        inward = outward.conjugate()
+        by_disc, by_wheel = arm * inward, pins.centre * inward  # scalar and, negative, vector products
         gradient[..., X], gradient[..., Y] = outward.real, outward.imag
-        gradient[..., DISC_ROTATION], gradient[..., WHEEL_ANGLE] = cross(arm, outward), -cross(pins.centre, outward)
+        gradient[..., DISC_ROTATION], gradient[..., WHEEL_ANGLE] = -by_disc.imag, by_wheel.imag
         along[..., X], along[..., Y] = outward.imag, -outward.real
-        along[..., DISC_ROTATION], along[..., WHEEL_ANGLE] = -dot(outward, arm), dot(outward, pins.centre)
+        along[..., DISC_ROTATION], along[..., WHEEL_ANGLE] = -by_disc.real, by_wheel.real
         if coordinates.wheel:
             wheel = coordinates.wheel_place
             gradient[..., wheel], along[..., wheel] = -gradient[..., DISC_PLACE], -along[..., DISC_PLACE]
@@ -386,12 +421,24 @@ class ContactGeometry:
             left_out=np.zeros(point.shape, dtype=bool),
         )
 
-    def holes(self, crank_angle: FloatArray, pose: FloatArray, shifts: ComplexArray | None = None) -> PairMotion:
+    def disc_place(self, crank_angle: FloatArray, pose: FloatArray) -> DiscPlace:
+        """Return where the disc stands; arguments as for `flank`."""
+        races = self.placement.races(crank_angle)
+        centre = (races.middle + pose[:, X] + 1j * pose[:, Y])[:, None]
+        return DiscPlace(races, centre, unit(pose[:, DISC_ROTATION, None]))
+
+    def holes(
+        self,
+        crank_angle: FloatArray,
+        pose: FloatArray,
+        shifts: ComplexArray | None = None,
+        at: DiscPlace | None = None,
+    ) -> PairMotion:
         """Return the pairs of shaft pin and hole (Eq. 59, 78–81); arguments as for `flank`."""
         place = self.placement
-        disc_centre = (place.race_centre(crank_angle) + pose[:, X] + 1j * pose[:, Y])[:, None]
-        arm = place.hole_centres * unit(pose[:, DISC_ROTATION, None])
-        play = place.shaft_pin_centres - disc_centre - arm
+        disc = at or self.disc_place(crank_angle, pose)
+        arm = place.hole_centres * disc.turn
+        play = place.shaft_pin_centres - disc.centre - arm
         coordinates = self.coordinates_of(pose)
         by_ring = self._by_ring if coordinates.ring else None
         if by_ring is not None:
@@ -401,10 +448,9 @@ class ContactGeometry:
         distance = np.sqrt(play.real**2 + play.imag**2)
         direction = play / distance
         gradient, along = (np.zeros((*distance.shape, coordinates.size)) for _ in range(2))
-        gradient[..., X], gradient[..., Y] = -direction.real, -direction.imag
-        gradient[..., DISC_ROTATION] = -cross(arm, direction)
-        along[..., X], along[..., Y] = -direction.imag, direction.real
-        along[..., DISC_ROTATION] = dot(direction, arm)
+        turned = arm * direction.conjugate()  # scalar and, negative, vector product
+        gradient[..., X], gradient[..., Y], gradient[..., DISC_ROTATION] = -direction.real, -direction.imag, turned.imag
+        along[..., X], along[..., Y], along[..., DISC_ROTATION] = gradient[..., Y], direction.real, turned.real
         if by_ring is not None:
             gradient[..., coordinates.ring_place] = dot(direction[..., None], by_ring)
             along[..., coordinates.ring_place] = cross(by_ring, direction[..., None])
@@ -476,11 +522,12 @@ class ContactGeometry:
         turned = -dot(1j * normal, lean) * dot(1j * normal, bores.each(bores.gradient, count)) / length[..., None]
         return PairTilt(tilt=dot(normal, lean)[..., 0], gradient=dot(normal, by_lean) + turned)
 
-    def bores(self, crank_angle: FloatArray, pose: FloatArray) -> BoreMotion:
+    def bores(self, crank_angle: FloatArray, pose: FloatArray, at: DiscPlace | None = None) -> BoreMotion:
         """Return the displacements of the bores; arguments as for `flank`."""
         place, coordinates = self.placement, self.coordinates_of(pose)
-        arm = place.bore_centres * unit(pose[:, DISC_ROTATION, None])
-        moved = place.race_centre(crank_angle)[:, None] - place.race_centres(crank_angle) + arm
+        disc = at or self.disc_place(crank_angle, pose)
+        races, arm = disc.races, place.bore_centres * disc.turn
+        moved = races.middle[:, None] - races.centre + arm
         moved = moved + (pose[:, X] + 1j * pose[:, Y])[:, None]
         gradient = np.zeros((*moved.shape, coordinates.size), dtype=complex)
         gradient[..., X], gradient[..., Y], gradient[..., DISC_ROTATION] = 1.0, 1j, 1j * arm
@@ -492,7 +539,7 @@ class ContactGeometry:
             by_ring = self.cranks_by_ring
             moved = moved - _moved(pose[:, coordinates.ring_place], by_ring)
             gradient[..., coordinates.ring_place] = -by_ring
-        lever, twists = place.race_centres(crank_angle) - place.crank_axes, coordinates.twist_places
+        lever, twists = races.lever, coordinates.twist_places
         if twists:
             straight = lever
             lever = straight * unit(pose[:, twists])

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -82,6 +82,29 @@ def _bore_centres(drive: Drive) -> ComplexArray:
         return places
     shift = _filled(errors.radial, count) + 1j * _filled(errors.tangential, count)
     return np.asarray(places + shift * places / np.abs(places))
+
+
+class Races(NamedTuple):
+    """Inner races at crank angles in the fixed frame.
+
+    Attributes
+    ----------
+    lever, centre : array of complex, shape (…, cranks)
+        Centres of the races, and of their cages, from the crank axes and from the origin, mm (Eq. 47).
+    """
+
+    lever: ComplexArray
+    centre: ComplexArray
+
+    @property
+    def middle(self) -> ComplexArray:
+        """Nominal place of the disc, mm: the centre of its inner race, the mean of several, shape (…,)."""
+        return _mean(self.centre)
+
+    @property
+    def velocity(self) -> ComplexArray:
+        """Derivative of `middle` by the crank angle, mm/rad, shape (…,)."""
+        return 1j * _mean(self.lever)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -237,20 +260,25 @@ class Placement:
         phase = self.eccentric_phase.mean(axis=-1)
         return unit(np.asarray(crank_angle) + phase)
 
+    def races(self, crank_angle: FloatArray) -> Races:
+        """Return the inner races at crank angles, rad, shape (…,)."""
+        lever = self.eccentricity * self.eccentric_directions(crank_angle)
+        return Races(lever, self.crank_axes + lever)
+
     def race_centres(self, crank_angle: FloatArray) -> ComplexArray:
         """Return the centres of inner races and cages in the fixed frame, mm, shape (…, cranks) (Eq. 47)."""
-        return np.asarray(self.crank_axes + self.eccentricity * self.eccentric_directions(crank_angle))
+        return self.races(crank_angle).centre
 
     def race_centre(self, crank_angle: FloatArray) -> ComplexArray:
         """Return the nominal place of the disc in the fixed frame, mm: the centre of its inner race, the mean of several.
 
         With one crank it is e·e^{i(φ_C + ζ)} from the crank axis (Eq. 47).
         """
-        return np.asarray(self.race_centres(crank_angle).mean(axis=-1))
+        return self.races(crank_angle).middle
 
     def race_velocity(self, crank_angle: FloatArray) -> ComplexArray:
         """Return the derivative of `race_centre` by the crank angle, mm/rad, shape (…,)."""
-        return np.asarray((1j * self.eccentricity * self.eccentric_directions(crank_angle)).mean(axis=-1))
+        return self.races(crank_angle).velocity
 
     def roller_angles(self, crank_angle: FloatArray) -> FloatArray:
         """Return θ_b,n of all rollers (Eq. 14), rad, shape (…, cranks · n_BR)."""
@@ -264,6 +292,11 @@ class Placement:
     def wheel_rotation(self, crank_angle: FloatArray) -> FloatArray:
         """Return φ_P = φ_C/u, the ideal rotation of the wheel, rad."""
         return np.asarray(crank_angle) / self.reduction_ratio
+
+
+def _mean(values: ComplexArray) -> ComplexArray:
+    """Mean over the cranks."""
+    return values[..., 0] if values.shape[-1] == 1 else np.asarray(values.mean(axis=-1))
 
 
 def _flat(value: complex | FloatArray | ComplexArray) -> complex | FloatArray | ComplexArray:

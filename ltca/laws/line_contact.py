@@ -76,16 +76,16 @@ class LineContactLaw(ContactLaw):
 
     Parameters
     ----------
-    length : float
+    length : float or array, shape (pairs,)
         Length of the line contact, mm.
-    contact_modulus : float
+    contact_modulus : float or array, shape (pairs,)
         E* = 1/((1−ν1²)/E1 + (1−ν2²)/E2), MPa.
     table : LineContactTable, optional
         The dimensionless law; default `line_contact_table`.
     """
 
-    length: float
-    contact_modulus: float
+    length: float | FloatArray
+    contact_modulus: float | FloatArray
     table: LineContactTable = field(default_factory=line_contact_table)
 
     def _place(self, approach: ArrayLike, effective_radius: ArrayLike) -> tuple[FloatArray, FloatArray, BoolArray]:
@@ -108,8 +108,16 @@ class LineContactLaw(ContactLaw):
             return self._closed(delta, product)
         # Most pins of a drive are open: only closed contacts are evaluated.
         load, stiffness = np.zeros(delta.shape), np.zeros(delta.shape)
-        load[closed], stiffness[closed] = self._closed(delta[closed], product[closed])
+        load[closed], stiffness[closed] = self.take(closed.shape, closed)._closed(delta[closed], product[closed])
         return load, stiffness
+
+    def take(self, shape: tuple[int, ...], places: Any) -> LineContactLaw:
+        """Return the law of some contacts of a batch."""
+        if np.ndim(self.length) == 0:
+            return self
+        columns = places[-1] if isinstance(places, tuple) else np.nonzero(places)[-1]
+        length, modulus = (np.asarray(each)[columns] for each in (self.length, self.contact_modulus))
+        return LineContactLaw(length, modulus, self.table)
 
     def _closed(self, pressed: FloatArray, product: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Load and stiffness of contacts that are all closed, from approaches and their products with the radius."""

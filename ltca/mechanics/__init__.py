@@ -4,5 +4,6 @@
 displaced_pins   Contacts on pins that beams and the ring displace: how they follow, and what they press
 contacts         All contacts at poses with everything elastic that couples them, linearised
 answers          What the contacts of a disc answer at poses
+energy           What contacts store, with the bodies and pins behind them
 ===============  ================================================================================================
 """

@@ -14,6 +14,10 @@ friction. Newton's step solves for all of them at once: with K = ∂f/∂e and W
 e and u are eliminated contact by contact, then x roller by roller; what is left is a force and a tangent of the pose alone. The
 derivatives of C and of the radii of curvature by the pose are left out, which keeps the tangent symmetric.
 
+A run in time asks for the crank angle as one more coordinate behind the pose, with which the cages turn and discs and wheel go
+along as they nominally do (`by_crank`). Its tangent is Σ k g gᵀ of contacts with their rollers and bodies alone: without what
+forces add as they turn.
+
 Contacts are numbered disc after disc: wheel pins, rollers in the bores, shaft pins in their holes, rollers on the races. Arrays
 have the shape (positions, components, contacts), with the approach and, in slices, the tilt times half the thickness of the disc
 as components.
@@ -36,9 +40,10 @@ from ltca.compliance.coupled import BodyFlexibility
 from ltca.compliance.inner_unknowns import Following, Inner
 from ltca.compliance.response import Start
 from ltca.errors import ConvergenceError
-from ltca.geometry.coordinates import DISC_ROTATION, X, Y
+from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, X, Y
 from ltca.geometry.pair_motion import KnownPins, PairTilt, dot
 from ltca.geometry.pairs import ContactGeometry
+from ltca.laws.line_contact import LineContactLaw
 from ltca.mechanics.displaced_pins import PinBlocks, PinMembers
 
 if TYPE_CHECKING:
@@ -53,6 +58,8 @@ ROUGHLY_SETTLED = 0.02
 """Largest correction of a deformation, by the largest approach, with which a step of the pose is judged."""
 SETTLED = 1e-6
 """The same of an answer: loads are corrected to first order, and the error left is of its square."""
+SETTLED_IN_MOTION = 1e-5
+"""The same of a run in time, whose step leaves a hundred times as much as the 1e-11 of loads that these leave."""
 MAX_CORRECTIONS = 60
 MAX_HALVINGS = 12
 STEEPEST = 0.3
@@ -78,12 +85,14 @@ class _Disc:
         shifts: ComplexArray | None,
         leans: ComplexArray | None,
     ) -> None:
-        self.geometry, self.pose, self.shifts, self.leans = geometry, pose, shifts, leans
+        self.geometry, self.angle, self.pose, self.shifts, self.leans = geometry, angle, pose, shifts, leans
         pins = geometry.placement.wheel_pin_radii.shape[-1]
         on_pins, on_holes = (None, None) if shifts is None else (shifts[:, :pins], shifts[:, pins:])
-        self.flank = geometry.flank(angle, pose, parameter, on_pins, known)
-        self.holes = geometry.holes(angle, pose, on_holes)
-        self.bores, self.rays = geometry.bores(angle, pose), geometry.rollers(angle)
+        at = geometry.disc_place(angle, pose)
+        self.races = at.races
+        self.flank = geometry.flank(angle, pose, parameter, on_pins, known, at)
+        self.holes = geometry.holes(angle, pose, on_holes, at)
+        self.bores, self.rays = geometry.bores(angle, pose, at), geometry.rollers(angle)
         self.rollers = self.rays.direction.shape[1]
         self.displacement = self.bores.each(self.bores.displacement, self.rollers)
         self.total = self.rays.outermost - self.rays.touching_distance(self.displacement)
@@ -96,6 +105,25 @@ class _Disc:
             )
             journals = self.bores.each(geometry.journal_leans(pose), self.rollers)
             self.at_race, self.at_bore = (dot(self.rays.direction, lean) for lean in (journals, geometry.lean(pose)))
+
+    @cached_property
+    def nominal(self) -> FloatArray:
+        """Nominal motion of disc and wheel by the crank angle, mm and rad, shape (positions, coordinates, 1)."""
+        place, found = self.geometry.placement, np.zeros((*self.pose.shape, 1))
+        velocity = self.races.velocity
+        found[:, X, 0], found[:, Y, 0], found[:, WHEEL_ANGLE, 0] = (
+            velocity.real,
+            velocity.imag,
+            1.0 / place.reduction_ratio,
+        )
+        return found
+
+    @cached_property
+    def seen_from_cages(self) -> FloatArray:
+        """Motion of the bores against the cages by the crank angle, x and y, mm/rad, shape (positions, cranks, 2)."""
+        place, bores = self.geometry.placement, self.bores
+        seen = self.races.velocity[:, None] - 1j * (bores.lever + place.cage_speed * bores.displacement)
+        return np.asarray(seen.view(float).reshape(*seen.shape, 2))
 
     def place_rollers(self, inward: FloatArray) -> None:
         """Put the rollers inward of where they only touch the race, mm."""
@@ -141,6 +169,11 @@ class ContactSystem:
         ]
         self.columns = [self.coordinates.columns(disc) for disc in range(self.discs)]
         self.one = replace(self.coordinates, discs=1)
+        self.cage_speed = place.cage_speed
+        self.plain = not self.deforms and self.components == 1 and model.friction is None
+        self.law_groups = _law_groups(self) if self.components == 1 else []
+        self.radii = _radii(self)
+        self.never_left_out = np.full((1, self.discs * self.pins), np.inf)
 
     @property
     def half(self) -> FloatArray:
@@ -148,17 +181,26 @@ class ContactSystem:
         return np.asarray(self.geometries[0].half_width, dtype=float)
 
     def respond(
-        self, angle: FloatArray, pose: FloatArray, start: Start | None, *, roughly: bool, everything: bool = False
+        self,
+        angle: FloatArray,
+        pose: FloatArray,
+        start: Start | ContactStart | None,
+        *,
+        roughly: bool,
+        everything: bool = False,
+        by_crank: bool = False,
     ) -> Linearised:
         """Return contacts at poses, found to first order in what is left of the inner unknowns.
 
         Contacts of coupled bodies that are far from touching are left out of the linear system unless `everything` is asked for;
-        `Linearised.leaves_out` tells where one of them is pressed after all, which is looked at here unless `roughly`.
+        `Linearised.leaves_out` tells where one of them is pressed after all, which is looked at here unless `roughly`. With
+        `by_crank` the crank angle is a coordinate behind the pose.
         """
-        state = self._begin(pose, start)
-        known = None if start is None or self.deforms or self.components > 1 else start.known
+        state = self._begin(with_crank(pose, angle) if by_crank else pose, start)
+        known = None if start is None or (not by_crank and (self.deforms or self.components > 1)) else start.known
         for margin in (np.inf,) if everything else (CANDIDATE_MARGIN, np.inf):
-            at = self._settle(Linearised(self, angle, pose, state, known, roughly=roughly, margin=margin), state)
+            at = Linearised(self, angle, pose, state, known, roughly=roughly, margin=margin, by_crank=by_crank)
+            at = self._settle(at, state)
             if roughly or not at.leaves_out.any():
                 break
         return at
@@ -186,38 +228,31 @@ class ContactSystem:
             history.append(at.moved)
         return at
 
-    def _begin(self, pose: FloatArray, start: Start | None) -> _State:
+    def _begin(self, pose: FloatArray, start: Start | ContactStart | None) -> _State:
         """Inner unknowns to start from; NaN where nothing is known."""
         rows, rollers = pose.shape[0], self.discs * self.rollers
-        unknown = np.full((rows, rollers), np.nan)
-        state = _State(
-            parameter=None,
-            place=unknown,
-            share=np.full((rows, rollers), 0.5),
-            lean=unknown,
-            approach=None,
-            shifts=None,
-            near=(),
-        )
-        if self.model.pins is not None:
-            state = state._replace(shifts=self.model.pins.unmoved(rows))
-        if start is None:
-            return state
-        state = state._replace(parameter=start.parameter, share=start.share)
-        if start.inner is not None:
-            state = state._replace(approach=start.inner.approach, near=start.inner.near)
-            if self.components > 1 and start.inner.lean.shape == unknown.shape:
-                state = state._replace(lean=start.inner.lean)
-            if not self.deforms or (
-                state.approach is not None and state.approach.shape[1:] != (self.components, self.contacts)
-            ):
-                state = state._replace(approach=None)
-            if self.components == 1:
-                state = state._replace(near=())
-        if start.follow is not None:
-            place, lean, approach, shifts = start.follow.at(pose)
-            state = state._replace(place=place, lean=lean, approach=approach, shifts=shifts)
-        return state
+        place = lean = None
+        parameter = approach = None
+        share: FloatArray | None = None
+        near: tuple[FloatArray, ...] = ()
+        shifts = None if self.model.pins is None else self.model.pins.unmoved(rows)
+        if start is not None:
+            parameter, share = start.parameter, start.share
+            if start.inner is not None:
+                if self.deforms and start.inner.approach is not None:
+                    fits = start.inner.approach.shape[1:] == (self.components, self.contacts)
+                    approach = start.inner.approach if fits else None
+                if self.components > 1:
+                    near = start.inner.near
+                    lean = start.inner.lean if start.inner.lean.shape == (rows, rollers) else None
+            if start.follow is not None:
+                place, lean, approach, shifts = start.follow.at(pose)
+        if place is None or lean is None:
+            unknown = np.full((rows, rollers), np.nan)
+            place, lean = unknown if place is None else place, unknown if lean is None else lean
+        if share is None:
+            share = np.full((rows, rollers), 0.5)
+        return _State(parameter, place, share, lean, approach, shifts, near)
 
 
 class _State(NamedTuple):
@@ -232,6 +267,16 @@ class _State(NamedTuple):
     approach: FloatArray | None
     shifts: ComplexArray | None
     near: tuple[FloatArray, ...]
+
+
+class ContactStart(NamedTuple):
+    """Inner unknowns of a neighbouring position, to start from."""
+
+    parameter: FloatArray
+    share: FloatArray
+    known: KnownPins
+    follow: Following
+    inner: Inner
 
 
 def _mixed(first: _State, second: _State, rows: NDArray[np.bool_]) -> _State:
@@ -318,6 +363,8 @@ class Linearised:
         The same contacts at the same places, where only the inner unknowns have changed.
     margin : float
         Gap by the largest overlap within which open contacts of coupled bodies are taken.
+    by_crank : bool
+        Whether the crank angle is a coordinate behind the pose.
 
     Notes
     -----
@@ -337,8 +384,10 @@ class Linearised:
         roughly: bool,
         before: Linearised | None = None,
         margin: float = CANDIDATE_MARGIN,
+        by_crank: bool = False,
     ) -> None:
         self.before, self.roughly = before, roughly
+        self.by_crank, self.size = by_crank, pose.shape[1] + by_crank
         self.system, self.angle, self.pose, self.known, self.margin = system, angle, pose, known, margin
         self.row = np.arange(angle.size)[:, None]
         self.half = system.half
@@ -347,9 +396,17 @@ class Linearised:
         self.held = before is not None
         self.discs = self._placed(state) if before is None else before.discs
         self._approach(state)
-        self._carry(state, roughly)
+        if system.components == 1:
+            self._carry_in_plane()
+        else:
+            self._carry(state, roughly)
         self._choose()
-        self._linearise()
+        self.sticking: list[tuple[FloatArray, FloatArray, FloatArray]] = []
+        self.rubs: list[FloatArray] = []
+        if system.plain:
+            self._linearise_plain()
+        else:
+            self._linearise()
         self.before = None
 
     def _placed(self, state: _State) -> list[_Disc]:
@@ -378,7 +435,8 @@ class Linearised:
         system, (rows,) = self.system, self.angle.shape
         shape = (rows, system.components, system.contacts)
         self.overlap, e = np.zeros(shape), state.approach
-        self.place, self.lean = state.place.copy(), state.lean.copy()
+        self.place, self.share = state.place.copy(), state.share
+        self.lean = np.zeros(self.place.shape) if system.components == 1 else state.lean.copy()
         given = system.deforms and e is not None
         e = e.copy() if given and e is not None else None
         for disc, at in enumerate(self.discs):
@@ -388,10 +446,8 @@ class Linearised:
             unplaced = np.isnan(place)
             if unplaced.any():
                 place = np.where(unplaced, state.share[:, own] * at.total, place)
-            at_race = at_bore = middle = np.zeros(())
-            if at.tilts is None:
-                lean = np.zeros(place.shape)
-            else:
+            at_race = at_bore = middle = lean
+            if at.tilts is not None:
                 at_race, at_bore = self.half * at.at_race, self.half * at.at_bore
                 middle = 0.5 * (at_race + at_bore)
                 lean = np.where(np.isnan(lean), middle, lean)
@@ -416,7 +472,9 @@ class Linearised:
                 if at.tilts is not None:
                     lean = np.where(loose, middle, lean)
             at.place_rollers(place)
-            self.place[:, own], self.lean[:, own] = place, lean
+            self.place[:, own] = place
+            if at.tilts is not None:
+                self.lean[:, own] = lean
             for kind, values in zip(
                 system.of_kind[disc], (at.flank.approach, at.outer, at.holes.approach, place), strict=True
             ):
@@ -446,29 +504,33 @@ class Linearised:
         most = np.max(reach, axis=1, initial=0.0)[:, None]
         return np.asarray((reach > 0.0) | (reach > -self.margin * most))
 
-    def _carry(self, state: _State, roughly: bool) -> None:
+    def _carry_in_plane(self) -> None:
         """Loads of all contacts at their deformations, and their derivatives."""
-        system, e = self.system, self.deformation
-        self.load = np.zeros(e.shape)
-        count = 1 if system.components == 1 else 3
-        self.stiffness = np.zeros((count, e.shape[0], e.shape[2]))
+        system, e = self.system, self.deformation[:, 0]
+        self.load, self.stiffness = np.zeros(self.deformation.shape), np.zeros((1, *e.shape))
         self.sliced: list[list[SlicedContact]] = []
         self.law_left = np.zeros(e.shape[0])
-        exactness = None if system.components == 1 else (sliced.ROUGH if roughly else sliced.EXACT)
+        radius = np.empty(e.shape)
+        radius[...] = system.radii
+        for at, kinds in zip(self.discs, system.of_kind, strict=True):
+            radius[:, kinds[0]] = at.flank.effective_radius
+        for law, contacts in system.law_groups:
+            load, stiffness = law.load_and_stiffness(e[:, contacts], radius[:, contacts])
+            self.load[:, 0, contacts], self.stiffness[0][:, contacts] = load, stiffness
+
+    def _carry(self, state: _State, roughly: bool) -> None:
+        """The same with tilts, moments and their derivatives."""
+        system, e = self.system, self.deformation
+        self.load = np.zeros(e.shape)
+        self.stiffness = np.zeros((3, e.shape[0], e.shape[2]))
+        self.sliced = []
+        self.law_left = np.zeros(e.shape[0])
+        exactness = sliced.ROUGH if roughly else sliced.EXACT
         for disc, (at, laws) in enumerate(zip(self.discs, system.laws, strict=True)):
             radii = at.flank.effective_radius, laws.outer_radius, laws.hole_radius, laws.inner_radius
             found = []
             for number, (kind, law, radius) in enumerate(zip(system.of_kind[disc], laws.laws, radii, strict=True)):
-                if kind.start == kind.stop and system.components == 1:
-                    continue
                 pressed = e[:, 0, kind]
-                if system.components == 1:
-                    closed = pressed > 0.0
-                    some = law.take(closed.shape, closed).load_and_stiffness(
-                        pressed[closed], np.broadcast_to(radius, closed.shape)[closed]
-                    )
-                    self.load[:, 0, kind][closed], self.stiffness[0][:, kind][closed] = some
-                    continue
                 near = state.near[4 * disc + number] if state.near else None
                 one = law.respond(
                     pressed, e[:, 1, kind] / self.half, np.broadcast_to(radius, pressed.shape), near, exactness
@@ -548,18 +610,27 @@ class Linearised:
         """Values by contact of a kind, shape (positions, contacts, …), of the chosen ones."""
         return values if self.every else values[self.row, some]
 
+    @cached_property
+    def columns(self) -> list[Indices]:
+        """Coordinates of each disc, with the crank angle where that is one."""
+        own = self.system.columns
+        return [np.append(each, self.size - 1) for each in own] if self.by_crank else own
+
     def _gradients(self, disc: int) -> tuple[FloatArray, FloatArray]:
         """∂d/∂q of the chosen contacts of a disc by its own coordinates, shape (positions, components, chosen, coordinates), and
         how the tangents of its rollers in the bores turn with the pose, Im(n̄ ∂), shape (positions, rollers, coordinates).
         """
         system, at, some, row = self.system, self.discs[disc], self.chosen[disc], self.row
         pins, bores, holes, races = self.local[disc]
-        size = self.system.columns[disc].size
+        size = self.columns[disc].size
         g = np.zeros((self.angle.size, system.components, races.stop, size))
         by_approach = g[:, 0]
-        by_approach[:, pins] = self.picked(at.flank.gradient, some[0])
-        by_approach[:, holes] = self.picked(at.holes.gradient, some[2])
+        by_approach[:, pins] = self._with_crank(at, self.picked(at.flank.gradient, some[0]))
+        by_approach[:, holes] = self._with_crank(at, self.picked(at.holes.gradient, some[2]))
         moved = at.bores.gradient
+        if self.by_crank:
+            both = self._bores_moved(at)
+            moved = both[:, :, 0] + 1j * both[:, :, 1]
         if moved.shape[1] > 1:
             moved = moved[row, some[1] // (system.rollers // moved.shape[1])]
         turned = self.picked(at.outward, some[1]).conjugate()[..., None] * moved
@@ -567,8 +638,8 @@ class Linearised:
         if at.tilts is not None:
             half = self._thick
             by_tilt = g[:, 1]
-            by_tilt[:, pins] = half * self.picked(at.tilts[0].gradient, some[0])
-            by_tilt[:, holes] = half * self.picked(at.tilts[1].gradient, some[2])
+            by_tilt[:, pins] = half * self._with_crank(at, self.picked(at.tilts[0].gradient, some[0]))
+            by_tilt[:, holes] = half * self._with_crank(at, self.picked(at.tilts[1].gradient, some[2]))
             ray = self.picked(at.rays.direction, some[1])
             both = half * np.stack((ray.real, ray.imag), axis=-1)
             by_tilt[:, bores, system.one.lean_place] = -both
@@ -576,7 +647,112 @@ class Linearised:
             for crank in range(system.one.cranks):
                 first = system.one.crank_lean(crank)
                 by_tilt[:, races, first : first + 2] = both * (crank_of == crank)[..., None]
+            if self.by_crank:  # rays turn with the cages
+                with_cage = 1j * at.geometry.placement.cage_speed * ray
+                journals = at.bores.each(at.geometry.journal_leans(at.pose), system.rollers)
+                journal = self.picked(np.broadcast_to(journals, at.total.shape), some[1])
+                by_tilt[:, bores, -1] = -self.half * dot(with_cage, at.geometry.lean(at.pose))
+                by_tilt[:, races, -1] = self.half * dot(with_cage, journal)
         return g, turned.imag
+
+    def _with_crank(self, at: _Disc, gradient: FloatArray) -> FloatArray:
+        """Derivatives of pins by the pose of a disc, and by the crank angle where that is a coordinate."""
+        return np.concatenate((gradient, np.matmul(gradient, at.nominal)), axis=-1) if self.by_crank else gradient
+
+    def _linearise_plain(self) -> None:
+        """Force and tangent where nothing deforms but the contacts, in the plane: each roller is condensed by itself.
+
+        With the stiffnesses k of its two contacts, the cosine c between ray and normal n in the bore, and the load F there, which
+        turns by its place as s (n across the ray), a roller yields along its ray with k_i + c² k_o + F s²/l. The rollers of a
+        crank are one spring then between bore and race, Σ a n nᵀ + b t tᵀ + m (n tᵀ + t nᵀ).
+        """
+        system, (rows, size) = self.system, (self.pose.shape[0], self.size)
+        load, stiffness = self.load[:, 0], self.stiffness[0]
+        self.force, self.tangent = np.zeros((rows, size)), np.zeros((rows, size, size))
+        self.de, self.change = np.zeros(self.load.shape), np.zeros(self.load.shape)
+        self.dx, self.by_own = np.zeros((rows, system.discs * system.rollers, 1)), []
+        for disc, (at, own) in enumerate(zip(self.discs, self.columns, strict=True)):
+            pins, bores, holes, races = system.of_kind[disc]
+            n, carried, k_bore, k_race = at.outward, load[:, bores], stiffness[:, bores], stiffness[:, races]
+            held = k_bore * at.cosine
+            by_place, unbalanced = k_race + held * at.cosine, load[:, races] - at.cosine * carried
+            if not self.by_crank:
+                bend = carried / at.length
+                slant = (n.conjugate() * at.rays.direction).imag
+                slanted = bend * slant
+                by_place = by_place + slanted * slant
+            by_place = np.where(by_place != 0.0, by_place, np.inf)
+            share, step = held / by_place, unbalanced / by_place
+            added, cranks = held * step, at.bores.arm.shape[1]
+            shape = rows, cranks, -1, 1
+            normal = n.view(float).reshape(rows, cranks, -1, 2)
+            basis, pressed = normal, (k_bore - held * share).reshape(shape) * normal
+            loads, follow = (carried + added).reshape(shape), share.reshape(shape) * normal
+            if not self.by_crank:
+                across, aside = (1j * n).view(float).reshape(normal.shape), slanted / by_place
+                mixed, turning = (held * aside).reshape(shape), (bend - slanted * aside).reshape(shape)
+                basis = np.concatenate((normal, across), axis=2)
+                pressed = np.concatenate((pressed - mixed * across, turning * across - mixed * normal), axis=2)
+                loads = np.concatenate((loads, (slanted * step).reshape(shape)), axis=2)
+                follow = follow + aside.reshape(shape) * across
+            moved = self._bores_moved(at)
+            springs, pushes = (np.matmul(basis.swapaxes(2, 3), each) for each in (pressed, loads))
+            gradient = self._with_crank(at, np.concatenate((at.flank.gradient, at.holes.gradient), axis=1))
+            of_bores = moved.reshape(rows, 2 * cranks, -1)
+            back = np.concatenate((gradient, of_bores), axis=1).swapaxes(1, 2)
+            stiff = np.concatenate((stiffness[:, pins], stiffness[:, holes]), axis=1)[..., None]
+            pressed = np.concatenate((stiff * gradient, np.matmul(springs, moved).reshape(of_bores.shape)), axis=1)
+            pushes = -pushes.reshape(rows, -1)
+            force = np.matmul(back, np.concatenate((load[:, pins], load[:, holes], pushes), axis=1)[..., None])[..., 0]
+            tangent = np.matmul(back, pressed)
+            if not self.by_crank:
+                tangent += self._bends(disc)
+            else:  # forces of the bearings turn with the cages, which the stiffness of rollers on turning rays counts
+                turned = system.cage_speed * (pushes.view(complex) * -1j).view(float)
+                turned = np.matmul(turned[:, None], of_bores[..., :-1])[:, 0]
+                tangent[:, :-1, -1] -= turned
+                tangent[:, -1, :-1] -= turned
+            of_rollers = slice(disc * system.rollers, (disc + 1) * system.rollers)
+            followed = np.matmul(-follow.view(float).reshape(rows, cranks, -1, 2), moved).reshape(
+                rows, system.rollers, -1
+            )
+            if system.discs > 1:
+                self.force[:, own] += force
+                self.tangent[:, own[:, None], own] += tangent
+            else:
+                self.force, self.tangent = force, tangent
+            self.by_own.append(followed[:, :, None])
+            self.dx[:, of_rollers, 0] = -step
+            self.de[:, 0, bores], self.de[:, 0, races] = at.cosine * step, -step
+            self.change[:, 0, bores], self.change[:, 0, races] = added, -k_race * step
+        self.de_by_pose = None
+        self.moved = np.abs(self.dx[..., 0]).max(axis=1, initial=0.0)
+
+    def _bores_moved(self, at: _Disc) -> FloatArray:
+        """Displacements of the bores, x and y, by the pose of a disc, and by the crank angle where that is a coordinate, shape
+        (positions, cranks, 2, coordinates).
+        """
+        by_pose = at.bores.gradient
+        found = np.empty((*by_pose.shape[:2], 2, by_pose.shape[2] + self.by_crank))
+        found[:, :, 0, : by_pose.shape[2]], found[:, :, 1, : by_pose.shape[2]] = by_pose.real, by_pose.imag
+        if self.by_crank:
+            found[..., -1] = at.seen_from_cages
+        return found
+
+    @cached_property
+    def pressing(self) -> list[_Pressing]:
+        """What the chosen contacts of every disc press its coordinates with."""
+        self.chosen_load = self.of_chosen(self.load)
+        self.chosen_stiffness = self.of_chosen(self.stiffness.swapaxes(0, 1)).swapaxes(0, 1)
+        return [self._pressing(disc) for disc in range(self.system.discs)]
+
+    @cached_property
+    def left(self) -> FloatArray:
+        """Force that the second order may amount to, N, shape (positions,)."""
+        deep = np.abs(self.of_chosen(self.deformation)).sum(axis=1) + 1e-300
+        moved = np.abs(self.de).sum(axis=1)
+        error = np.abs(self.change).sum(axis=1) * np.minimum(1.0, moved / deep)
+        return np.asarray(np.maximum(LEFT_WEIGHT * np.max(error, axis=1, initial=0.0), self.law_left))
 
     def _pressing(self, disc: int) -> _Pressing:
         """What the chosen contacts of a disc press its own coordinates with, rollers where they stand."""
@@ -587,6 +763,8 @@ class Linearised:
         out, n = self.picked(at.outward, some[1]), self.picked(at.rays.direction, some[1])
         slant = (out.conjugate() * n).imag
         bend = load[:, 0, bores] / self.picked(at.length, some[1])
+        if self.by_crank:
+            bend = np.zeros(bend.shape)
         rows, components, _, size = g.shape
         # Directions in which a roller's own place and lean press its two contacts.
         outward, inward = np.ones((2, rows, components, out.shape[1]))
@@ -594,8 +772,14 @@ class Linearised:
         inward[:, 1:] = -1.0
         placed = np.zeros((rows, out.shape[1], components, size))
         np.multiply((bend * slant)[..., None], across, out=placed[:, :, 0])
-        tangent = self._bends(disc)
-        tangent += np.matmul(across.swapaxes(1, 2), bend[..., None] * across)
+        if self.by_crank:  # forces of the bearings turn with the cages, which the stiffness of rollers on turning rays counts
+            tangent = np.zeros((rows, size, size))
+            pushed = load[:, 0, bores] * self.system.cage_speed
+            turned = np.matmul(pushed[:, None], across[..., :-1])[:, 0]
+            tangent[:, :-1, -1] -= turned
+            tangent[:, -1, :-1] -= turned
+        else:
+            tangent = self._bends(disc) + np.matmul(across.swapaxes(1, 2), bend[..., None] * across)
         found = _Pressing(
             g=g,
             force_map=self._rub(disc, g),
@@ -618,33 +802,23 @@ class Linearised:
 
     def _linearise(self) -> None:
         """Eliminate deformations, displacements of pins and places of rollers."""
-        system = self.system
-        self.chosen_load = self.of_chosen(self.load)
-        self.chosen_stiffness = self.of_chosen(self.stiffness.swapaxes(0, 1)).swapaxes(0, 1)
-        self.sticking: list[tuple[FloatArray, FloatArray, FloatArray]] = []
-        self.rubs: list[FloatArray] = []
-        self.pressing = [self._pressing(disc) for disc in range(system.discs)]
-        if system.coupled:
+        if self.system.coupled:
             self._linearise_coupled()
         else:
             self._linearise_alone()
         stiffness = self.chosen_stiffness
-        change = _pressed(stiffness, self.de[..., None])[..., 0]
-        near = self.of_chosen(self.deformation)
-        deep = np.abs(near).sum(axis=1) + 1e-300
+        self.change = _pressed(stiffness, self.de[..., None])[..., 0]
         moved = np.abs(self.de).sum(axis=1)
         self.moved = np.max(np.where(stiffness[0] > 0.0, moved, 0.0), axis=1, initial=0.0)
-        error = np.abs(change).sum(axis=1) * np.minimum(1.0, moved / deep)
-        self.left = np.maximum(LEFT_WEIGHT * np.max(error, axis=1, initial=0.0), self.law_left)
-        self.change = change
 
     def _linearise_alone(self) -> None:
         """The same where nothing deforms but the contacts: disc by disc, roller by roller."""
-        system, (rows, size) = self.system, self.pose.shape
+        system, (rows, size) = self.system, (self.pose.shape[0], self.size)
         force, tangent = np.zeros((rows, size)), np.zeros((rows, size, size))
         dx, by_own = [], []
+        pressing = self.pressing
         on_pins = None if system.model.pins is None else self._on_displaced_pins()
-        for disc, (part, own) in enumerate(zip(self.pressing, system.columns, strict=True)):
+        for disc, (part, own) in enumerate(zip(pressing, self.columns, strict=True)):
             _, bores, _, races = self.local[disc]
             outward, inward = part.presses
             rollers, components, count = part.placed.shape[1:]
@@ -681,14 +855,14 @@ class Linearised:
             force, tangent = force + on_pins[0], tangent + on_pins[1]
             if not self.sticking and system.model.friction is None:
                 tangent = 0.5 * (tangent + tangent.swapaxes(1, 2))
-        for disc, part in enumerate(self.pressing):
+        for disc, part in enumerate(pressing):
             pins, bores, holes, races = system.of_kind[disc]
             outward, inward = part.presses
             moved = self.dx[:, self.of_rollers[disc]].swapaxes(1, 2)
             self.de[:, :, bores], self.de[:, :, races] = outward * moved, inward * moved
             if on_pins is None or self.de_by_pose is None:
                 continue
-            own = system.columns[disc]
+            own = self.columns[disc]
             _, at_bores, _, at_races = self.local[disc]
             by_place = by_own[disc].swapaxes(1, 2)
             for kind, local, press in ((bores, at_bores, outward), (races, at_races, inward)):
@@ -735,14 +909,14 @@ class Linearised:
 
     def _assembled(self) -> _Pressing:
         """What contacts of all discs press all coordinates with."""
-        system, (rows, size) = self.system, self.pose.shape
+        system, (rows, size) = self.system, (self.pose.shape[0], self.size)
         if system.discs == 1:
             return self.pressing[0]
         components, rollers = system.components, self.of_rollers[-1].stop
         g, force_map = np.zeros((2, rows, components, self.count, size))
         placed, force = np.zeros((rows, rollers, components, size)), np.zeros((rows, size))
         tangent = np.zeros((rows, size, size))
-        for disc, (part, own) in enumerate(zip(self.pressing, system.columns, strict=True)):
+        for disc, (part, own) in enumerate(zip(self.pressing, self.columns, strict=True)):
             mine = slice(self.at[disc][0].start, self.at[disc][3].stop)
             g[:, :, mine, own], force_map[:, :, mine, own] = part.g, part.force_map
             placed[:, self.of_rollers[disc], :, own] = part.placed
@@ -932,14 +1106,47 @@ class Linearised:
             self.bodies: list[list[BodyFlexibility]] = before.bodies
             return
         self.bodies = [
-            [] if model.coefficients is None else model.body_flexibility(self._body_places(disc), self.chosen[disc][:3])
+            [] if model.coefficients is None else model.body_flexibility(self.body_places(disc), self.chosen[disc][:3])
             for disc, model in enumerate(self.system.bodies)
         ]
 
     @property
+    def onward(self) -> ContactStart:
+        """Where the contacts of a position start that is nearby in pose and crank angle: no pin is left out."""
+        motions = [each.flank for each in self.discs]
+        return ContactStart(
+            parameter=_beside([motion.parameter for motion in motions]),
+            share=self.share,
+            known=KnownPins(
+                approach=np.repeat(self.system.never_left_out, self.angle.size, axis=0),
+                point=_beside([motion.point for motion in motions]),
+                turning=_beside([motion.turning for motion in motions]),
+            ),
+            follow=self.following(),
+            inner=self.inner,
+        )
+
+    def pin_loads(self, disc: int) -> FloatArray:
+        """Return loads of wheel pins and shaft pins, and in slices their moments by half the thickness of the disc, N, shape
+        (positions, components, pairs).
+        """
+        pins, _, holes, _ = self.system.of_kind[disc]
+        return np.concatenate((self.corrected_load[..., pins], self.corrected_load[..., holes]), axis=-1)
+
+    def pushes(self, disc: int) -> ComplexArray:
+        """Return the force of every crank bearing on a disc in the fixed frame, N, shape (positions, cranks)."""
+        at, bores = self.discs[disc], self.system.of_kind[disc][1]
+        return _by_crank(self.corrected_load[:, 0, bores] * at.outward, at.bores.arm.shape[1])
+
+    def bearing_moments(self, disc: int) -> ComplexArray:
+        """Return what every crank bearing presses the lean of a disc with, in slices, N·mm, shape (positions, cranks)."""
+        at, bores = self.discs[disc], self.system.of_kind[disc][1]
+        return _by_crank(self.half * self.corrected_load[:, 1, bores] * at.rays.direction, at.bores.arm.shape[1])
+
+    @property
     def inner(self) -> Inner:
         """Inner unknowns beside the pose, to start from elsewhere."""
-        state = self._state()
+        state = self._whole_state
         return Inner(lean=state.lean, approach=state.approach, near=state.near)
 
     @cached_property
@@ -952,7 +1159,7 @@ class Linearised:
             each += [None if at.leans is None else at.leans * self.half for at in self.discs]
         return np.stack([one for one in each if one is not None], axis=1)
 
-    def _body_places(self, disc: int) -> tuple[FloatArray, FloatArray, FloatArray, ComplexArray, float]:
+    def body_places(self, disc: int) -> tuple[FloatArray, FloatArray, FloatArray, ComplexArray, float]:
         """Where the contacts of a disc lie on its body: θ on the flank, polar angles in bores and holes, places of the first."""
         at = self.discs[disc]
         turn, holes = at.pose[:, DISC_ROTATION, None], at.holes.gradient
@@ -1014,7 +1221,7 @@ class Linearised:
 
     def settled(self, roughly: bool) -> NDArray[np.bool_]:
         """Positions whose inner unknowns are close enough for a step of the pose, or for an answer."""
-        return self._are_small(self.moved, ROUGHLY_SETTLED if roughly else SETTLED)
+        return self._are_small(self.moved, ROUGHLY_SETTLED if roughly else SETTLED_IN_MOTION if self.by_crank else SETTLED)
 
     def _are_small(self, moved: FloatArray, part: float) -> NDArray[np.bool_]:
         """Positions where corrections, mm, are a small part of the largest approach."""
@@ -1024,13 +1231,25 @@ class Linearised:
     def again(self, state: _State) -> Linearised:
         """Return the contacts at the same poses with other inner unknowns."""
         return Linearised(
-            self.system, self.angle, self.pose, state, self.known, roughly=self.roughly, margin=self.margin
+            self.system,
+            self.angle,
+            self.pose,
+            state,
+            None if self.by_crank else self.known,
+            roughly=self.roughly,
+            margin=self.margin,
+            by_crank=self.by_crank,
         )
 
     @property
     def here(self) -> _State:
         """Inner unknowns without the correction."""
         return self._state(np.zeros(self.angle.size))
+
+    @cached_property
+    def _whole_state(self) -> _State:
+        """Inner unknowns after the whole correction."""
+        return self._state()
 
     def _state(self, fraction: FloatArray | None = None) -> _State:
         """Inner unknowns after the correction."""
@@ -1047,9 +1266,9 @@ class Linearised:
         if fraction is not None and shifts is not None and self.shifts is not None:
             shifts = self.shifts + fraction[:, None, None] * (shifts - self.shifts)
         return _State(
-            parameter=np.concatenate([at.flank.parameter for at in self.discs], axis=1),
+            parameter=_beside([at.flank.parameter for at in self.discs]),
             place=place,
-            share=np.full(self.place.shape, 0.5),
+            share=self.share,
             lean=lean,
             approach=approach,
             shifts=shifts,
@@ -1132,6 +1351,7 @@ class Linearised:
                 roughly=self.roughly,
                 before=self,
                 margin=self.margin,
+                by_crank=self.by_crank,
             )
             if not self.system.deforms:
                 break
@@ -1192,7 +1412,7 @@ class Linearised:
 
     def following(self) -> Following:
         """Return how the inner unknowns follow the pose."""
-        state = self._state()
+        state = self._whole_state
         shifts = None
         if self.shifts is not None and self.de_by_pose is not None:
             pins = self.system.model.pins
@@ -1204,10 +1424,10 @@ class Linearised:
             by_pose, columns = self.of_all_rollers(self.dx_by_pose), ()
         else:
             by_pose = np.concatenate(self.by_own, axis=1) if len(self.by_own) > 1 else self.by_own[0]
-            columns = () if len(self.by_own) == 1 else tuple(tuple(own.tolist()) for own in self.system.columns)
+            columns = () if len(self.by_own) == 1 else tuple(tuple(own.tolist()) for own in self.columns)
         by_approach = None if self.de_by_pose is None else self.of_all(self.de_by_pose)
         return Following(
-            pose=self.pose,
+            pose=with_crank(self.pose, self.angle) if self.by_crank else self.pose,
             place=state.place,
             lean=state.lean,
             approach=state.approach,
@@ -1217,6 +1437,52 @@ class Linearised:
             shifts_by_pose=shifts,
             columns=columns,
         )
+
+
+def _law_groups(system: ContactSystem) -> list[tuple[Any, slice | Indices]]:
+    """Laws of all discs in the plane with their contacts: those that read one table are one law."""
+    groups: list[tuple[Any, slice | Indices]] = []
+    lines: dict[int, list[tuple[LineContactLaw, slice]]] = {}
+    for laws, kinds in zip(system.laws, system.of_kind, strict=True):
+        for law, kind in zip(laws.laws, kinds, strict=True):
+            if type(law) is LineContactLaw:
+                lines.setdefault(id(law.table), []).append((law, kind))
+            elif kind.start < kind.stop:
+                groups.append((law, kind))
+    for same in lines.values():
+        counts = [kind.stop - kind.start for _, kind in same]
+        length, modulus = (
+            np.repeat([getattr(law, name) for law, _ in same], counts) for name in ("length", "contact_modulus")
+        )
+        contacts = np.concatenate([np.arange(kind.start, kind.stop) for _, kind in same])
+        groups.append((LineContactLaw(length, modulus, same[0][0].table), contacts))
+    return groups
+
+
+def _radii(system: ContactSystem) -> FloatArray:
+    """Effective radii of all contacts, mm, shape (1 or positions, contacts); those of wheel pins are not known yet."""
+    every = [(laws.outer_radius, laws.hole_radius, laws.inner_radius) for laws in system.laws]
+    rows = max(np.atleast_2d(each).shape[0] for radii in every for each in radii)
+    found = np.ones((rows, system.contacts))
+    for kinds, radii in zip(system.of_kind, every, strict=True):
+        for kind, radius in zip(kinds[1:], radii, strict=True):
+            found[:, kind] = radius
+    return found
+
+
+def _beside(values: list[Any]) -> Any:
+    """Arrays of discs side by side: itself where there is one."""
+    return values[0] if len(values) == 1 else np.concatenate(values, axis=1)
+
+
+def _by_crank(values: NDArray[Any], cranks: int) -> NDArray[Any]:
+    """Sums over the rollers of every crank."""
+    return np.asarray(values.reshape(values.shape[0], cranks, -1).sum(axis=2))
+
+
+def with_crank(pose: FloatArray, angle: FloatArray) -> FloatArray:
+    """Return poses with the crank angle as one more coordinate behind them."""
+    return np.concatenate((pose, angle[:, None]), axis=1)
 
 
 def _padded(mask: NDArray[np.bool_]) -> Indices:

@@ -107,10 +107,9 @@ class PinMembers:
                 last += some.shape[1]
                 bend = sign * motion.bending[at.row, some]
                 load = at.load[:, :, system.of_kind[disc][kind]]
-                # bend = np.maximum(bend, 0.0)
                 parts = [bend * load[:, component][at.row, some] for component in range(system.components)]
                 each.append(np.stack([*parts, np.zeros(bend.shape)]) if system.components > 1 else np.stack(parts))
-                if kind == 0:
+                if kind == 0 and not at.by_crank:
                     for component, part in enumerate(load.swapaxes(0, 1)):
                         turning = turn[:, component, first:last]
                         turning[..., own[DISC_ROTATION]] -= part[at.row, some]
@@ -118,6 +117,8 @@ class PinMembers:
                 along = motion.along[at.row, some]
                 by_place = slip[:, 0]
                 by_place[:, first:last, own] = along
+                if at.by_crank:
+                    by_place[:, first:last, -1] = np.matmul(along, of_disc.nominal)[..., 0]
                 if system.components > 1:
                     half = at.half[..., None] if at.half.ndim else at.half
                     by_lean = slip[:, 1]
@@ -294,7 +295,7 @@ class PinBlocks:
         turning : bool
             Whether loads that turn with displaced pins count beyond what they hold.
         """
-        system, at, size = self.system, self.at, self.at.pose.shape[1]
+        system, at, size = self.system, self.at, self.at.size
         rows, components = at.pose.shape[0], system.components
         bent, along, turn = self.members.turned_loads(size)
         along, turn = (each.reshape(rows, components, self.discs, self.pairs, size) for each in (along, turn))
@@ -315,12 +316,12 @@ class PinBlocks:
             return np.concatenate((values[:, :, pins], values[:, :, holes]), axis=2)
 
         g = self.of_contacts(
-            [whole(on_pins(part.g, disc), system.columns[disc]) for disc, part in enumerate(parts)], along
+            [whole(on_pins(part.g, disc), at.columns[disc]) for disc, part in enumerate(parts)], along
         )
         onto_pose = g
         if at.rubs:
             onto_pose = self.of_contacts(
-                [whole(on_pins(part.force_map, disc), system.columns[disc]) for disc, part in enumerate(parts)], along
+                [whole(on_pins(part.force_map, disc), at.columns[disc]) for disc, part in enumerate(parts)], along
             )
         short = self.of_contacts(
             [
