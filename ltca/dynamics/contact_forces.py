@@ -23,7 +23,6 @@ import numpy as np
 
 from ltca.arrays import FloatArray
 from ltca.compliance.coupled import CoupledCompliance
-from ltca.compliance.grids import GridCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.response import DiscResponse, Response, Start, bearing_pushes
 from ltca.compliance.stored_energy import StoredEnergy
@@ -131,9 +130,9 @@ class ContactForces:
         """Let contact grids begin anew: they have as many cells as they need, which no checkpoint keeps."""
         if not self.has_energy:
             self._start = None
-            for disc in self._model.discs:
-                if isinstance(disc, GridCompliance):
-                    disc.forget()
+            grids: tuple[Any, ...] = self._model.discs
+            for disc in grids:
+                disc.forget()
 
     def at(self, x: FloatArray, rate: FloatArray) -> Instant:
         """Return the forces at coordinates and their rates, each of shape (n,)."""

@@ -135,7 +135,7 @@ class Reducer:
     friction: JointFriction | None = None
     stage: StageMesh | None = None
     external: ExternalForce | None = None
-    one_system: bool = False
+    one_system: bool = True
     _by_position: bool | None = field(init=False, repr=False, compare=False, default=None)
 
     @classmethod

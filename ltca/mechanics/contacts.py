@@ -384,7 +384,8 @@ class Linearised:
         for disc, (at, laws) in enumerate(zip(self.discs, system.laws, strict=True)):
             radii = at.flank.effective_radius, laws.outer_radius, laws.hole_radius, laws.inner_radius
             found = []
-            for number, (kind, law, radius) in enumerate(zip(system.of_kind[disc], laws.laws, radii, strict=True)):
+            here = laws.placed(at.flank)
+            for number, (kind, law, radius) in enumerate(zip(system.of_kind[disc], here, radii, strict=True)):
                 if kind.start == kind.stop and system.components == 1:
                     continue
                 pressed = e[:, 0, kind]
