@@ -24,7 +24,7 @@ from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.pressures import along_width, elastic_hole_pressures, pressures_in_slices
 from ltca.compliance.response import ContactPressures, DiscResponse, KindPressures
 from ltca.contact.end_pressure import largest_pressure
-from ltca.contact.tilted_grid import TiltedPieces, press_tilted
+from ltca.contact.tilted_grid import press_tilted
 from ltca.contact.tracked_grid import CELLS, ContactKind, ContactKinds, Separation
 from ltca.drive.parts import Drive
 from ltca.geometry.flank import FlankProfile
@@ -194,7 +194,7 @@ class GridLaw(ContactLaw):
                 found[(slice(None), *index)] += share * np.array([patch.mid_pressure, largest, patch.half_width])
         return KindPressures(mid=found[0], largest=found[1], half_width=found[2], end_cell=self.kind.end_cell)
 
-    def known(self, index: tuple[int, ...], radius: FloatArray) -> tuple[Separation, TiltedPieces]:
+    def known(self, index: tuple[int, ...], radius: FloatArray) -> tuple[Separation, tuple[Any, ...]]:
         """Return the separation of a contact of an array of effective radii, mm, and the solutions known of it."""
         separation, keys = self.surfaces.separation(index, float(radius[index]))
         return separation, self.kept.start(*keys)
@@ -380,7 +380,7 @@ def _along_grids(
     size = np.broadcast_to(radius, approach.shape)
     heights = slice_heights(law.kind.length, law.slices).mean(axis=1)
 
-    def known(*index: int) -> tuple[Separation, TiltedPieces]:
+    def known(*index: int) -> tuple[Separation, tuple[Any, ...]]:
         return law.known(index, size)
 
     patches = solve_along_width(law.kind, approach, tilt, size, heights, known)

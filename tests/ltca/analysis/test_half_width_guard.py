@@ -17,11 +17,12 @@ from ltca.analysis.half_width_guard import (
     wide_holes_warning,
 )
 from ltca.analysis.loaded_analysis import analyse
-from ltca.compliance.grids import GridCompliance
 from ltca.drive.single_discs import single_discs, without_own
+from ltca.equilibrium.reducer import Reducer
 from ltca.errors import DriveError
 from ltca.reading.changes import with_fields
 from ltca.testing.practical_drives import practical_drive
+from validation.methods.grids import GridCompliance
 
 
 def check(drive, radius, pin=(0.0, 0.0), outer=0.0, inner=0.0):
@@ -104,7 +105,8 @@ def test_direct_has_nothing_to_warn_of():
     loads = direct.full.response.pin_load
     pin = int(re.search(r"wheel pin (\d+)", warning)[1])
     told = float(re.search(r"([\d.]+) % of the largest", warning)[1])
-    grids = GridCompliance.of_drive(drive).respond(tables.full.crank_angle, tables.full.pose).pin_load[0]
+    model = Reducer(discs=(GridCompliance.of_drive(drive),))
+    grids = model.respond(tables.full.crank_angle, tables.full.pose).pin_load[0]
     difference = abs(tables.full.response.pin_load[0, pin] - grids[pin]) / grids.max()
     assert told == pytest.approx(100.0 * difference, rel=0.05)  # two digits are told
     moved = np.max(np.abs(tables.full.response.pin_load - loads)) / np.max(loads)

@@ -9,7 +9,6 @@ import validation.methods.paper_method
 from ltca.analysis.engines import HalfSpace
 from ltca.analysis.loaded_analysis import analyse
 from ltca.commands.program import main
-from ltca.compliance.grids import GridCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.drive.parts import LengthProfile, Material
 from ltca.equilibrium.balance import solve_equilibrium
@@ -17,6 +16,7 @@ from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.placement import position_angles
 from ltca.reading.drive_file import load_drive
+from validation.methods.grids import GridCompliance
 from validation.methods.paper_method import lead_of_pose, pose_of_lead, solve_paper_equilibrium
 
 CASES = load_drive("paper").cases
