@@ -12,6 +12,7 @@ import pytest
 from ltca.analysis.engines import HalfSpace
 from ltca.analysis.half_width_guard import (
     HALF_WIDTH_BOUND,
+    _on_grids,
     check_half_widths,
     unborne_warning,
     wide_holes_warning,
@@ -20,6 +21,7 @@ from ltca.analysis.loaded_analysis import analyse
 from ltca.drive.single_discs import single_discs, without_own
 from ltca.equilibrium.reducer import Reducer
 from ltca.errors import DriveError
+from ltca.geometry.pairs import ContactGeometry
 from ltca.reading.changes import with_fields
 from ltca.testing.practical_drives import practical_drive
 from validation.methods.grids import GridCompliance
@@ -91,6 +93,23 @@ def test_loose_and_bent_pins_are_warned_of_as_well():
     assert re.search(r"the surfaces at wheel pin \d+ depart from the parabola of the tables by [\d.]+ %", told[0])
     assert "--method direct" not in told[0]
     assert analyse(drive, np.array([angle]), 0.01 * torque).warnings == []
+
+
+def test_grids_check_pins_where_a_ring_has_displaced_them(paper_cases):
+    """They stand in the wheel elsewhere than drawn; rollers do not feel it."""
+    drive = paper_cases["CS-1"]
+    found = analyse(drive, np.array([0.4])).full
+    geometry = ContactGeometry.of_drive(drive)
+    moved = np.full(14 + 8, 2e-3 + 1e-3j)
+    on_grids = _on_grids(drive, found.crank_angle, found.pose, moved)
+    expected = geometry.flank(found.crank_angle, found.pose, shifts=moved[None, :14])
+    np.testing.assert_allclose(on_grids.flank.approach, expected.approach, rtol=0.0, atol=1e-12)
+    # By more than a tenth of the largest approach, so that displacements count.
+    still = _on_grids(drive, found.crank_angle, found.pose, None)
+    np.testing.assert_allclose(still.flank.approach, found.response.flank.approach, rtol=0.0, atol=1e-12)
+    changed = np.abs(on_grids.pin_load - still.pin_load).max()
+    assert changed > 0.1 * still.pin_load.max()
+    np.testing.assert_array_equal(on_grids.rollers.outer_load, still.rollers.outer_load)
 
 
 @pytest.mark.slow

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import validation.methods.paper_method
+from ltca.analysis import methods
 from ltca.analysis.engines import HalfSpace
 from ltca.analysis.loaded_analysis import analyse
 from ltca.commands.program import main
@@ -131,6 +132,20 @@ def test_paper_fails_loudly_from_a_floating_start(monkeypatch, tmp_path, capsys)
 
 class _Floating:
     pose = np.zeros((1, 4))
+
+
+@pytest.mark.parametrize(
+    ("engine", "told"),
+    [
+        (HalfSpace(method="direct"), "method = direct on contacts = grids"),
+        (HalfSpace(method="paper", contacts="grids"), "method = paper on contacts = grids"),
+        (HalfSpace(method="paper"), "method = paper"),
+    ],
+)
+def test_methods_without_their_package_are_refused_by_name(engine, told, monkeypatch):
+    monkeypatch.setattr(methods, "entry_points", lambda group: ())
+    with pytest.raises(DriveError, match=f"^{told}: comes with the package validation, which is not installed$"):
+        engine.prepare(CASES["CS-1"])
 
 
 def test_methods_and_contacts_that_contradict_each_other():

@@ -10,10 +10,13 @@ import pytest
 from ltca.analysis.engines import HalfSpace
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.response import Start
+from ltca.contact.tracked_grid import solve_fitted
 from ltca.drive.parts import LengthProfile
 from ltca.equilibrium.balance import solve_equilibrium
 from ltca.equilibrium.reducer import Reducer
-from validation.methods.grids import GridCompliance
+from ltca.geometry.separation import circle_departure, flank_departure
+from validation.methods import pressed_grid
+from validation.methods.grids import KEPT_OF_EACH, KEPT_SEPARATIONS, GridCompliance, KeptPieces
 
 ANGLES = np.array([0.4])
 
@@ -145,3 +148,65 @@ def test_contacts_that_tilt_balance_as_on_tables(paper_cases):
     total = off_grids.along.line_load.mean(axis=-1) * drive.disc.thickness
     np.testing.assert_allclose(total[carrying], direct.parts[0].pin_load[carrying], rtol=1e-9)
     np.testing.assert_allclose(estimate.mid[carrying], off_grids.mid[carrying], rtol=0.01)
+
+
+@pytest.fixture
+def solved(monkeypatch):
+    """Sizes of the contact problems that grids solve, as they are solved."""
+    sizes, solve = [], pressed_grid.solve_unilateral_contact
+
+    def counted(influence, penetration, **options):
+        sizes.append(penetration.size)
+        return solve(influence, penetration, **options)
+
+    monkeypatch.setattr(pressed_grid, "solve_unilateral_contact", counted)
+    return sizes
+
+
+def test_rollers_of_one_radius_were_solved_one_by_one(paper_cases, solved):
+    """Twelve contacts with the same separation and approach are one problem, or two where grids are blended."""
+    laws = GridCompliance.of_drive(paper_cases["CS-4"]).contact_laws
+    approach = np.full((2, 6), 4e-3)
+    load, _ = laws.laws[3].load_and_stiffness(approach, laws.inner_radius[0])
+    assert 1 <= len(solved) <= 2
+    assert load.min() == load.max() > 0.0
+
+
+def test_pins_are_placed_where_they_touch_the_flank(paper_cases, balanced):
+    """A law knew approach and radius alone; the separation of a flank depends on where the pin touches as well."""
+    drive = paper_cases["CS-4"]
+    grids = GridCompliance.of_drive(drive)
+    flank = Reducer(discs=(grids,)).respond(ANGLES, balanced).flank
+    pin = int(np.argmax(flank.approach[0]))
+    (pins, *_) = grids.contact_laws.placed(flank)
+    closed = flank.approach > 0.0
+    loads, _ = pins.take(closed.shape, closed).load_and_stiffness(
+        flank.approach[closed], flank.effective_radius[closed]
+    )
+    # The same contact alone, with the separation at its exact place: stations are 1e-4 of a lobe apart.
+    theta, radius = flank.parameter[0, pin], drive.pin_wheel.pin_radius
+    alone = solve_fitted(
+        grids.kinds.pins,
+        float(flank.approach[0, pin]),
+        float(flank.effective_radius[0, pin]),
+        lambda x: flank_departure(grids.geometry.profile, theta, x) + circle_departure(x, radius),
+    )
+    assert loads.max() == pytest.approx(alone.load, rel=2e-4)  # of another grid: cells differ (1e-4 of the load)
+
+
+def test_what_grids_keep_grew_with_every_place():
+    """A run in time passes a new station of the flank every few steps."""
+    kept = KeptPieces()
+    for place in range(KEPT_SEPARATIONS + 10):
+        kept.keep((5.0, float(place)), (object(),))
+    assert len(kept) == KEPT_SEPARATIONS
+    assert kept.start((5.0, 0.0)) == ()
+    for _ in range(2 * KEPT_OF_EACH):
+        kept.keep((5.0, 20.0), (object(),))
+    latest = object()
+    kept.keep((5.0, 20.0), (latest,))
+    kept.keep((5.0, 20.0), (latest,))
+    start = kept.start((5.0, 20.0))
+    assert len(start) == KEPT_OF_EACH
+    assert start[-1] is latest
+    assert start[-2] is not latest
