@@ -171,7 +171,8 @@ class ContactSystem:
         self.one = replace(self.coordinates, discs=1)
         self.cage_speed = place.cage_speed
         self.plain = not self.deforms and self.components == 1 and model.friction is None
-        self.law_groups = _law_groups(self) if self.components == 1 else []
+        alike = all(type(laws) is ContactLaws for laws in self.laws)
+        self.law_groups = _law_groups(self) if self.components == 1 and alike else []
         self.radii = _radii(self)
         self.never_left_out = np.full((1, self.discs * self.pins), np.inf)
 
@@ -517,6 +518,14 @@ class Linearised:
         for law, contacts in system.law_groups:
             load, stiffness = law.load_and_stiffness(e[:, contacts], radius[:, contacts])
             self.load[:, 0, contacts], self.stiffness[0][:, contacts] = load, stiffness
+        if system.law_groups:
+            return
+        # Laws that know where on the flank a pin touches are asked for closed contacts alone.
+        for at, laws, kinds in zip(self.discs, system.laws, system.of_kind, strict=True):
+            for law, kind in zip(laws.placed(at.flank), kinds, strict=True):
+                closed = e[:, kind] > 0.0
+                found = law.take(closed.shape, closed).load_and_stiffness(e[:, kind][closed], radius[:, kind][closed])
+                self.load[:, 0, kind][closed], self.stiffness[0][:, kind][closed] = found
 
     def _carry(self, state: _State, roughly: bool) -> None:
         """The same with tilts, moments and their derivatives."""
@@ -529,7 +538,8 @@ class Linearised:
         for disc, (at, laws) in enumerate(zip(self.discs, system.laws, strict=True)):
             radii = at.flank.effective_radius, laws.outer_radius, laws.hole_radius, laws.inner_radius
             found = []
-            for number, (kind, law, radius) in enumerate(zip(system.of_kind[disc], laws.laws, radii, strict=True)):
+            here = laws.placed(at.flank)
+            for number, (kind, law, radius) in enumerate(zip(system.of_kind[disc], here, radii, strict=True)):
                 pressed = e[:, 0, kind]
                 near = state.near[4 * disc + number] if state.near else None
                 one = law.respond(
