@@ -1116,7 +1116,9 @@ class Linearised:
             self.bodies: list[list[BodyFlexibility]] = before.bodies
             return
         self.bodies = [
-            [] if model.coefficients is None else model.body_flexibility(self.body_places(disc), self.chosen[disc][:3])
+            []
+            if model.coefficients is None
+            else model.body_flexibility(self.body_places(disc), self.chosen[disc][:3])[: self.system.components]
             for disc, model in enumerate(self.system.bodies)
         ]
 
@@ -1266,7 +1268,7 @@ class Linearised:
         system, approach = self.system, None
         if system.deforms:
             approach = self.after
-        shifts = None if self.shifts is None else self._moved_shifts()
+        shifts = self.shifts_after
         place, lean = self.place_after, self.lean_after
         if fraction is not None and not np.all(fraction == 1.0):
             part = fraction[:, None]
@@ -1312,8 +1314,12 @@ class Linearised:
             self._moved_slices[disc] = found
         return self._moved_slices[disc]
 
+    @cached_property
+    def shifts_after(self) -> ComplexArray | None:
+        """Displacements of the pins after the correction: those that the loads press."""
+        return None if self.shifts is None else self._moved_shifts()
+
     def _moved_shifts(self) -> ComplexArray:
-        """Displacements of the pins after the correction."""
         pins = self.system.model.pins
         assert pins is not None
         return np.asarray(-pins.under(self.members.forces(self.corrected_load)))
