@@ -106,6 +106,11 @@ class _Disc:
             journals = self.bores.each(geometry.journal_leans(pose), self.rollers)
             self.at_race, self.at_bore = (dot(self.rays.direction, lean) for lean in (journals, geometry.lean(pose)))
 
+    @property
+    def room(self) -> FloatArray:
+        """How far rollers are pressed together, or stand apart, where bore and race do not tilt against each other, mm."""
+        return np.abs(self.total)
+
     @cached_property
     def nominal(self) -> FloatArray:
         """Nominal motion of disc and wheel by the crank angle, mm and rad, shape (positions, coordinates, 1)."""
@@ -451,7 +456,9 @@ class Linearised:
             if at.tilts is not None:
                 at_race, at_bore = self.half * at.at_race, self.half * at.at_bore
                 middle = 0.5 * (at_race + at_bore)
-                lean = np.where(np.isnan(lean), middle, lean)
+                # Moments in both contacts press the same way: a roller leans between race and bore, or little beside.
+                room = 0.5 * (np.abs(at_race - at_bore) + at.room)
+                lean = np.where(np.isnan(lean), middle, np.clip(lean, middle - room, middle + room))
             if e is not None and system.coupled:
                 reach = e[:, 0] + (np.abs(e[:, 1]) if at.tilts is not None else 0.0)
                 loose = (reach[:, bores] <= 0.0) | (reach[:, races] <= 0.0)
@@ -1071,7 +1078,7 @@ class Linearised:
         """
         if self.system.components == 1:
             return dx
-        each = [0.5 * (np.abs(at.total) + self.half * np.abs(at.at_race - at.at_bore)) for at in self.discs]
+        each = [0.5 * (at.room + self.half * np.abs(at.at_race - at.at_bore)) for at in self.discs]
         room = np.concatenate([self.picked(one, own[1]) for one, own in zip(each, self.chosen, strict=True)], axis=1)
         long = np.abs(dx).max(axis=-1)
         return np.asarray(dx * np.divide(room, long, out=np.ones(long.shape), where=long > room)[..., None])
