@@ -10,6 +10,7 @@ from dataclasses import dataclass, field, fields, replace
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.coefficients import InfluenceCoefficients
@@ -213,6 +214,16 @@ class Response(DiscResponse):
     def of_disc(cls, part: DiscResponse) -> Response:
         """Return the contacts of one disc as those of a reducer that has no other."""
         return cls(**{item.name: getattr(part, item.name) for item in fields(DiscResponse)}, parts=(part,))
+
+    @property
+    def start(self) -> Start:
+        """Where other poses of the same positions start."""
+        return Start.onward(self)
+
+    @property
+    def overlooks(self) -> NDArray[np.bool_]:
+        """Positions where a contact was left out that is pressed together after all: none of an answer."""
+        return np.zeros(self.force.shape[0], dtype=bool)
 
     @property
     def kept(self) -> Response:

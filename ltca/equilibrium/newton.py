@@ -108,7 +108,7 @@ class Search:
         model = self.model if rows.size == self.angle.size else self.model.take(rows)
         return model.evaluate(self.angle[rows], pose, start, roughly=roughly, everything=everything)
 
-    def scaled(self, rows: NDArray[np.intp], response: Evaluation) -> tuple[FloatArray, FloatArray]:
+    def scaled(self, rows: NDArray[np.intp], response: Response | Evaluation) -> tuple[FloatArray, FloatArray]:
         """Return the scaled gradient and the scaled tangent (forces and lengths only)."""
         lever = self.levers(rows)
         gradient = response.force.copy()
@@ -124,7 +124,7 @@ class Search:
         most: int,
         rows: NDArray[np.intp] | None = None,
         begin: Start | None = None,
-        response: Evaluation | None = None,
+        response: Response | Evaluation | None = None,
     ) -> NDArray[np.intp]:
         """Move positions towards balance; return those of them that do not balance, ascending.
 
@@ -280,7 +280,7 @@ class Search:
             response = self.evaluate(rows, pose, response.start)
         return False
 
-    def keep(self, rows: NDArray[np.intp], response: Evaluation, balanced: NDArray[np.bool_]) -> None:
+    def keep(self, rows: NDArray[np.intp], response: Response | Evaluation, balanced: NDArray[np.bool_]) -> None:
         """Remember the contacts of those of some positions that balance."""
         kept = response.kept
         if balanced.all():
@@ -296,7 +296,7 @@ class Search:
             self.balanced = [(rows[order], take_positions(join_positions([part for _, part in self.balanced]), order))]
         return self.balanced[0]
 
-    def round_off(self, rows: NDArray[np.intp], response: Evaluation) -> FloatArray:
+    def round_off(self, rows: NDArray[np.intp], response: Response | Evaluation) -> FloatArray:
         """Return what round-off of the approaches makes of the residual, N.
 
         Supports know displacements, not places, so however stiff they are they add nothing.
@@ -305,7 +305,7 @@ class Search:
         stiffness = response.contact_stiffness / self.levers(rows) ** 2
         return np.asarray(ROUND_OFF * size * np.abs(stiffness.sum(axis=1)))
 
-    def accepted(self, rows: NDArray[np.intp], response: Evaluation) -> FloatArray:
+    def accepted(self, rows: NDArray[np.intp], response: Response | Evaluation) -> FloatArray:
         """Return the largest residual that counts as balance, N."""
         round_off, load = self.round_off(rows, response), self.load[rows]
         return np.asarray(np.maximum(TOLERANCE * load, np.minimum(round_off, ROUND_OFF_BOUND * load)))
@@ -345,10 +345,10 @@ class Search:
         return pose, response, gradient, tangent, fraction
 
 
-def _left_over(gradient: FloatArray, response: Evaluation) -> FloatArray:
+def _left_over(gradient: FloatArray, response: Response | Evaluation) -> FloatArray:
     """Largest unbalanced force of every position, N, and what contacts and pins that have not settled amount to."""
     left: FloatArray = np.max(np.abs(gradient), axis=1)
-    return np.asarray(np.maximum(left, response.left))
+    return left if response.left is None else np.maximum(left, response.left)
 
 
 def _damped_step(

@@ -400,13 +400,14 @@ class Linearised:
         self.off = np.zeros(angle.size)
         self._moved_slices: dict[int, list[SlicedContact]] = {}
         self.held = before is not None
-        self.discs = self._placed(state) if before is None else before.discs
+        self.discs: list[_Disc] = self._placed(state) if before is None else before.discs
         self._approach(state)
         if system.components == 1:
             self._carry_in_plane()
         else:
             self._carry(state, roughly)
         self._choose()
+        self.de_by_pose: FloatArray | None = None
         self.sticking: list[tuple[FloatArray, FloatArray, FloatArray]] = []
         self.rubs: list[FloatArray] = []
         if system.plain:
@@ -597,9 +598,7 @@ class Linearised:
         ]
         ends = np.cumsum([0, *(own[1].shape[1] for own in self.chosen)])
         self.of_rollers = [slice(first, last) for first, last in pairwise(ends)]
-        self.local = [
-            [slice(kind.start - own[0].start, kind.stop - own[0].start) for kind in own] for own in self.at
-        ]
+        self.local = [[slice(kind.start - own[0].start, kind.stop - own[0].start) for kind in own] for own in self.at]
 
     def of_chosen(self, values: FloatArray) -> FloatArray:
         """Values of all contacts, shape (…, positions, components, contacts), of the chosen ones."""
@@ -742,7 +741,6 @@ class Linearised:
             self.dx[:, of_rollers, 0] = -step
             self.de[:, 0, bores], self.de[:, 0, races] = at.cosine * step, -step
             self.change[:, 0, bores], self.change[:, 0, races] = added, -k_race * step
-        self.de_by_pose = None
         self.moved = np.abs(self.dx[..., 0]).max(axis=1, initial=0.0)
 
     def _bores_moved(self, at: _Disc) -> FloatArray:
@@ -789,7 +787,9 @@ class Linearised:
         inward[:, 1:] = -1.0
         placed = np.zeros((rows, out.shape[1], components, size))
         np.multiply((bend * slant)[..., None], across, out=placed[:, :, 0])
-        if self.by_crank:  # forces of the bearings turn with the cages, which the stiffness of rollers on turning rays counts
+        if (
+            self.by_crank
+        ):  # forces of the bearings turn with the cages, which the stiffness of rollers on turning rays counts
             tangent = np.zeros((rows, size, size))
             pushed = load[:, 0, bores] * self.system.cage_speed
             turned = np.matmul(pushed[:, None], across[..., :-1])[:, 0]
@@ -841,9 +841,9 @@ class Linearised:
             rollers, components, count = part.placed.shape[1:]
             pressed = _pressed(part.stiffness, part.g)
             if on_pins is None:
-                mine = part.force_map, pressed
+                mine = [part.force_map, pressed]
             else:  # those of pins and holes are found together
-                mine = tuple(np.concatenate((each[:, :, bores], each[:, :, races]), 2) for each in (part.g, pressed))
+                mine = [np.concatenate((each[:, :, bores], each[:, :, races]), axis=2) for each in (part.g, pressed)]
             flat, along = (each.reshape(rows, -1, count) for each in mine)
             held_by = part.tangent + np.matmul(flat.swapaxes(1, 2), along)
             pushed = outward[..., None] * pressed[:, :, bores] + inward[..., None] * pressed[:, :, races]
@@ -866,7 +866,7 @@ class Linearised:
             dx.append(-solved[..., -1])
             by_own.append(-solved[..., :-1])
         self.dx, self.by_own = self._bounded(np.concatenate(dx, axis=1) if len(dx) > 1 else dx[0]), by_own
-        self.de, self.de_by_pose = np.zeros(self.load.shape), None
+        self.de = np.zeros(self.load.shape)
         if on_pins is not None:
             self.de_by_pose = np.zeros((*self.load.shape, size))
             force, tangent = force + on_pins[0], tangent + on_pins[1]
@@ -974,16 +974,14 @@ class Linearised:
         self.off = np.maximum(self.off, np.max(apart, axis=1, initial=0.0))
         moves = self.shifts is not None and not self.held
         found = self._eliminate(part, whole, left, turning=moves)
-        if moves and not (near := self._is_near(found.de, stiffness)).all():
+        if moves and not (close := self._is_near(found.de, stiffness)).all():
             # Far off loads may turn with soft pins more than these hold against.
             still = self._eliminate(part, whole, left, turning=False)
-            rows = [near.reshape(-1, *(1,) * (values.ndim - 1)) for values in found]
+            rows = [close.reshape(-1, *(1,) * (values.ndim - 1)) for values in found]
             found = _Eliminated(*(np.where(*each) for each in zip(rows, found, still, strict=True)))
         self.force, self.tangent, self.dx, self.dx_by_pose, self.de, self.de_by_pose = found
 
-    def _eliminate(
-        self, part: _Pressing, whole: FloatArray, left: FloatArray, *, turning: bool
-    ) -> _Eliminated:
+    def _eliminate(self, part: _Pressing, whole: FloatArray, left: FloatArray, *, turning: bool) -> _Eliminated:
         """The same where loads deform more than their own contacts: force and tangent of the pose.
 
         Without `turning` loads that turn with displaced pins count where they hold these back alone.
@@ -1240,7 +1238,9 @@ class Linearised:
 
     def settled(self, roughly: bool) -> NDArray[np.bool_]:
         """Positions whose inner unknowns are close enough for a step of the pose, or for an answer."""
-        return self._are_small(self.moved, ROUGHLY_SETTLED if roughly else SETTLED_IN_MOTION if self.by_crank else SETTLED)
+        return self._are_small(
+            self.moved, ROUGHLY_SETTLED if roughly else SETTLED_IN_MOTION if self.by_crank else SETTLED
+        )
 
     def _are_small(self, moved: FloatArray, part: float) -> NDArray[np.bool_]:
         """Positions where corrections, mm, are a small part of the largest approach."""
@@ -1443,11 +1443,13 @@ class Linearised:
             change = _pressed(self.chosen_stiffness, self.de_by_pose)
             each = np.moveaxis(change, -1, 0)
             shifts = np.stack([-pins.under(self.members.forces(self.of_all(one))) for one in each], axis=-1)
+        columns: tuple[tuple[int, ...], ...] = ()
         if self.system.coupled:
-            by_pose, columns = self.of_all_rollers(self.dx_by_pose), ()
+            by_pose = self.of_all_rollers(self.dx_by_pose)
         else:
             by_pose = np.concatenate(self.by_own, axis=1) if len(self.by_own) > 1 else self.by_own[0]
-            columns = () if len(self.by_own) == 1 else tuple(tuple(own.tolist()) for own in self.columns)
+            if len(self.by_own) > 1:
+                columns = tuple(tuple(own.tolist()) for own in self.columns)
         by_approach = None if self.de_by_pose is None else self.of_all(self.de_by_pose)
         return Following(
             pose=with_crank(self.pose, self.angle) if self.by_crank else self.pose,
