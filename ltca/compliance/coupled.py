@@ -203,7 +203,7 @@ class CoupledCompliance:
         body = coefficients.placed_in(drive).with_roller_length(drive.roller_length)
         stiffness = shaft_pin_stiffness(drive)
         slices, width = drive.contact.slices, drive.disc.thickness
-        # In slices a beam bends behind its contact, under the forces of all discs (`ltca.equilibrium.pin_displacements`).
+        # In slices a beam bends behind its contact, under the forces of all discs (`ltca.compliance.pin_flexibility`).
         bends_behind = slices > 1 and shaft_pin_beam(drive) is not None
         at_hole: Any = laws.hole
         if not hole_near_field and not bends_behind:

@@ -5,8 +5,6 @@ Modules in the order data passes:
 ===============  ============================================================
 reducer          A reducer of several discs: every disc a member with its own joints to wheel, crank and pin shaft, one wheel
                  for all
-pin_displacements  Pins displaced by beams under several discs and by the ring of the wheel: discs find them where all forces
-                 have moved them
 friction         Friction of the joints: what slips, and the forces that follow
 first_stage      First stage: forces of the sun on the planets of the cranks, and what its teeth add to the angle of the output
 external_force   Forces and moments from outside on the output

@@ -1,6 +1,6 @@
 """Check of an equilibrium by its potential energy, independently of the code that finds it.
 
-Independent of `ltca.geometry`, `ltca.compliance.rollers` and `ltca.equilibrium.balance`: all places come from the definition of
+Independent of `ltca.geometry`, `ltca.mechanics` and `ltca.equilibrium.balance`: all places come from the definition of
 the drive with its deviations, distances from the flank from a search over points of the deviated flank, places of rollers from a
 search on their energy. Shared are only the definition of the drive and the energies ∫F dδ of the contact laws, crown and
 relief included. At an equilibrium the potential Π has a minimum: no small displacement lowers it, and its slope by

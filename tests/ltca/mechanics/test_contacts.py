@@ -1,0 +1,125 @@
+"""All contacts in one system: a position answers alike whatever stands beside it, and the tangent is that of the force."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ltca.analysis.engines import HalfSpace
+from ltca.arrays import take_positions
+from ltca.compliance.coefficients import load_coefficients
+from ltca.compliance.coupled import CoupledCompliance
+from ltca.compliance.response import Start
+from ltca.drive.members.temperatures import warm_drive
+from ltca.drive.single_discs import single_discs
+from ltca.equilibrium import reducer
+from ltca.equilibrium.balance import lever_arms
+from ltca.equilibrium.output_torque import solve_at_output
+from ltca.equilibrium.reducer import Reducer
+from ltca.reading.drive_file import load_drive
+from ltca.testing.closed_form_bodies import closed_form_coefficients
+
+ANGLES = 0.05 + 2.0 * np.pi * np.arange(6) / 6.0
+IN_SLICES = {"contact.slices": 5, "disc.lead_slope": 1e-4}
+RING = {"ring.inner_radius": 88.0, "ring.outer_radius": 120.0, "ring.width": 30.0}
+
+
+def on_bodies(drive, folder: Path, field):
+    """The drive on closed-form bodies that couple its contacts."""
+    discs = []
+    for number, single in enumerate(single_discs(drive)):
+        path = folder / f"{number}.nc"
+        closed_form_coefficients(single, half_width=0.02, depth=300.0).to_netcdf(path, engine="h5netcdf")
+        discs.append(CoupledCompliance.of_drive(single, load_coefficients(path, single), field))
+    return Reducer.of_drive(drive, discs)
+
+
+def prepared(name, folder):
+    """A drive and its model: a shipped one, in slices, on a ring or on bodies that couple its contacts."""
+    source, _, more = name.partition(", ")
+    drive = next(iter(load_drive(source).cases.values()))
+    drive = warm_drive(drive.with_fields({"slices": IN_SLICES, "ring": RING}.get(more, {})))
+    if more == "hybrid":
+        return drive, on_bodies(drive, folder, "half-space")
+    return drive, HalfSpace().prepare(drive).model
+
+
+def loads(response):
+    """Loads of all contacts, shape (positions, contacts)."""
+    rollers = response.rollers
+    return np.concatenate((response.pin_load, response.hole_load, rollers.outer_load, rollers.inner_load), axis=1)
+
+
+def round_off(name):
+    """Of loads by the largest: on coupled bodies approaches of 1e-14 mm by stiffnesses of 1e6 N/mm, as systems are padded."""
+    return 5e-12 if "hybrid" in name else 1e-12
+
+
+KINDS = ["paper", "rv", "sleeved", "paper, ring", "paper, hybrid", "paper, slices", "sleeved, hybrid", "rv, slices"]
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_a_position_answers_alike_in_any_block_and_order(name, tmp_path, monkeypatch):
+    """Far from balance, with nothing to start from: deformations are corrected until those of the slowest position have settled,
+    and a position beside slower ones went on where alone it had ended.
+    """
+    drive, model = prepared(name, tmp_path)
+    pose = solve_at_output(model, [drive], ANGLES, drive.load.torque).pose
+    pose[:, 0] += 1e-3 * np.cos(7.0 * ANGLES)  # mm
+    pose[:, -1] *= 1.0 + 0.3 * np.sin(5.0 * ANGLES)
+    together = loads(model.respond(ANGLES, pose))
+    largest = together.max()
+    order = np.array([4, 1, 5, 0, 3, 2])
+    np.testing.assert_allclose(
+        loads(model.respond(ANGLES[order], pose[order])), together[order], rtol=0.0, atol=round_off(name) * largest
+    )
+    monkeypatch.setattr(reducer, "POSITIONS_AT_ONCE", 2)
+    np.testing.assert_allclose(loads(model.respond(ANGLES, pose)), together, rtol=0.0, atol=round_off(name) * largest)
+
+
+@pytest.mark.parametrize("name", ["paper", "sleeved", "paper, hybrid", "paper, slices"])
+def test_a_search_in_blocks_is_the_search(name, tmp_path, monkeypatch):
+    drive, model = prepared(name, tmp_path)
+    one = solve_at_output(model, [drive], ANGLES, drive.load.torque)
+    monkeypatch.setattr(reducer, "POSITIONS_AT_ONCE", 2)
+    other = solve_at_output(model, [drive], ANGLES, drive.load.torque)
+    first, second = loads(one.response), loads(other.response)
+    np.testing.assert_allclose(second, first, rtol=0.0, atol=round_off(name) * first.max())
+
+
+@pytest.mark.parametrize("name", ["paper", "rv", "sleeved", "paper, ring", "paper, hybrid", "paper, slices"])
+def test_the_tangent_of_the_search_is_near_that_of_the_force(name, tmp_path):
+    """Symmetric, and within 2e-3 of differences of the force: derivatives of radii of curvature and of coefficients of bodies by
+    the pose are not in it.
+    """
+    drive, model = prepared(name, tmp_path)
+    found = solve_at_output(model, [drive], ANGLES[:1], drive.load.torque)
+    start, arms = Start.after(found.response), lever_arms(model)
+    tangent = model.respond(ANGLES[:1], found.pose, start).tangent[0] / np.outer(arms, arms)
+    numeric = np.empty_like(tangent)
+    for column, arm in enumerate(arms):
+        ends = []
+        for side in (1.0, -1.0):
+            pose = found.pose.copy()
+            pose[0, column] += side * 1e-6 / arm
+            ends.append(model.respond(ANGLES[:1], pose, start).force[0] / arms)
+        numeric[:, column] = (ends[0] - ends[1]) / 2e-6
+    largest = np.max(np.abs(tangent))
+    np.testing.assert_allclose(tangent, tangent.T, rtol=0.0, atol=1e-12 * largest)
+    np.testing.assert_allclose(tangent, numeric, rtol=0.0, atol=2e-3 * largest)
+
+
+def test_a_contact_left_out_that_is_pressed_after_all_is_found(tmp_path, monkeypatch):
+    """With no open contact among the unknowns some are pressed as bodies yield under others: they are told and taken."""
+    from ltca.mechanics import contacts
+
+    drive, model = prepared("paper, hybrid", tmp_path)
+    found = solve_at_output(model, [drive], ANGLES, drive.load.torque)
+    monkeypatch.setattr(contacts, "CANDIDATE_MARGIN", -0.5)  # not even all that overlap
+    start = take_positions(Start.after(found.response), np.arange(ANGLES.size))
+    again = solve_at_output(model, [drive], ANGLES, drive.load.torque)
+    assert model.evaluate(ANGLES, found.pose, None, roughly=True).overlooks.any()
+    np.testing.assert_allclose(
+        loads(again.response), loads(found.response), rtol=0.0, atol=1e-8 * found.response.pin_load.max()
+    )
+    assert start.inner is not None
