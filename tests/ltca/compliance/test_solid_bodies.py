@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.linalg import block_diag
 
-from ltca.compliance.coefficients import InfluenceCoefficients, _coefficients_of_dataset
+from ltca.compliance.coefficients import _coefficients_of_dataset
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.coupled_slices import _Bodies, _settled
 from ltca.compliance.in_slices import ContactsInSlices, stacked
@@ -167,26 +167,13 @@ def test_the_plane_model_takes_the_even_part_alone(kind):
         np.testing.assert_allclose(found.pose, flat.pose, rtol=0.0, atol=1e-13)
 
 
-def held_matrices(monkeypatch):
-    """Coefficients that follow the pose, 1e-3 of the tangent in the plane, are held at those of the first call."""
-    whole, held = InfluenceCoefficients.disc_matrix, {}
-
-    def first(self, *places):
-        key = self.tilting is None
-        if key not in held:
-            held[key] = whole(self, *places)
-        return held[key]
-
-    monkeypatch.setattr(InfluenceCoefficients, "disc_matrix", first)
-
-
 @pytest.mark.parametrize("kind", NEAR_FIELDS)
-def test_the_tangent_is_that_of_the_force(kind, monkeypatch):
+def test_the_tangent_is_that_of_the_force(kind, hold_coefficients):
     """Differences of the force against the tangent, as for plane bodies: 2e-4 of its largest entry, symmetric to round-off."""
     drive = drive_for(kind)
     model, found = balanced(drive, CoupledCompliance.of_drive(drive, solid(drive), kind))
     pose, start = found.pose, Start.after(found.response)
-    held_matrices(monkeypatch)
+    hold_coefficients()
     tangent = model.respond(ANGLES, pose, start).tangent[0]
     disc = drive.disc.thickness
     lever = np.array([1.0, 1.0, drive.pin_shaft.pin_circle_radius, disc, disc, drive.pin_wheel.pin_circle_radius])
