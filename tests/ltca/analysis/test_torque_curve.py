@@ -31,27 +31,16 @@ class Prepared:
         return self
 
 
-@dataclass(frozen=True)
-class SpringsWithPlay:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SpringsWithPlay(Reducer):
     """The wheel on two springs, one for each sense, with play between them; the disc on springs of its own."""
 
-    real: HalfSpaceCompliance
     ccw: float
     clockwise: float
     play: float
 
-    @property
-    def geometry(self):
-        return self.real.geometry
-
-    coefficients = None
-    grids_can_check = False
-
-    def take(self, rows):
-        return self
-
-    def respond(self, crank_angle, pose, start=None, shifts=None, *_, **__):
-        response = self.real.respond(crank_angle, pose, start)
+    def evaluate(self, crank_angle, pose, start=None, **how):
+        found = Reducer.evaluate(self, crank_angle, pose, start, **how)
         wheel = pose[:, WHEEL_ANGLE]
         beyond = np.sign(wheel) * np.maximum(np.abs(wheel) - 0.5 * self.play, 0.0)
         stiffness = np.where(wheel > 0.0, self.ccw, self.clockwise)
@@ -59,15 +48,17 @@ class SpringsWithPlay:
         force[:, WHEEL_ANGLE] = stiffness * beyond
         tangent = np.tile(1e5 * np.eye(4), (len(pose), 1, 1))
         tangent[:, WHEEL_ANGLE, WHEEL_ANGLE] = np.where(beyond == 0.0, 0.0, stiffness)
-        return replace(response, force=force, tangent=tangent)
+        held = np.einsum("bii->bi", tangent)
+        return replace(found, force=force, tangent=tangent, contact_stiffness=held, left=np.zeros(len(pose)))
 
 
 def test_springs_with_play(paper_cases):
     """θ = ±(play/2 + |T|/k): every figure of the curve in closed form, the two senses apart."""
     drive = paper_cases["CS-1"]
     rated, ccw, clockwise, play = 377_300.0, 6e8, 4e8, 3e-3
-    springs = SpringsWithPlay(HalfSpaceCompliance.of_drive(drive), ccw, clockwise, play)
-    found = torque_curve(drive, ANGLES, points=2, engine=Prepared(Reducer(discs=(springs,))))
+    discs = (HalfSpaceCompliance.of_drive(drive),)
+    springs = SpringsWithPlay(discs=discs, ccw=ccw, clockwise=clockwise, play=play)
+    found = torque_curve(drive, ANGLES, points=2, engine=Prepared(springs))
     expected = np.where(found.torque > 0.0, 0.5 * play + found.torque / ccw, -0.5 * play + found.torque / clockwise)
     # the balance closes to 1e-9 of the load: 1e-12 rad here
     np.testing.assert_allclose(found.wheel_angle, np.tile(expected, (2, 1)), rtol=0.0, atol=1e-11)

@@ -8,7 +8,6 @@ import pytest
 from fem.coefficients.dataset import derive_coefficients
 from ltca.analysis.engines import Hybrid
 from ltca.analysis.loaded_analysis import analyse
-from ltca.compliance import coupled
 from ltca.compliance.coefficients import load_coefficients, without_coupling
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
@@ -17,6 +16,8 @@ from ltca.equilibrium.reducer import Reducer
 from ltca.errors import DriveError
 from ltca.geometry.boundary_stations import Boundary
 from ltca.geometry.pairs import ContactGeometry
+from ltca.mechanics.answers import disc_response
+from ltca.mechanics.contacts import CANDIDATE_MARGIN, ContactSystem, Linearised
 
 ANGLES = np.array([0.0, 0.5, 1.7, 4.0])
 
@@ -48,9 +49,9 @@ def test_without_coupling_it_is_the_half_space(paper_cases):
 @pytest.mark.parametrize("near_field", ["plane-strain", "half-space"])
 def test_tangent_and_approaches_of_the_real_bodies(paper_cases, derived, near_field):
     drive = paper_cases["CS-3"]
-    model = CoupledCompliance.of_drive(drive, load_coefficients(derived, drive), near_field)
+    model = Reducer(discs=(CoupledCompliance.of_drive(drive, load_coefficients(derived, drive), near_field),))
     angle = np.array([0.5])
-    pose = solve_equilibrium(Reducer(discs=(model,)), angle, drive.wheel_moment()).pose
+    pose = solve_equilibrium(model, angle, drive.wheel_moment()).pose
     response = model.respond(angle, pose)
     step = np.array([1e-6, 1e-6, 1e-8, 1e-8])
     numeric = np.empty((4, 4))
@@ -154,24 +155,32 @@ def test_interpolation_is_exact_for_low_harmonics():
 def test_contacts_that_are_left_out_change_nothing(paper_cases, closed_form, monkeypatch, near_field):
     """Only contacts near to closing are unknowns; the answer is that of all of them, whichever were left out."""
     drive = paper_cases["CS-6"]
-    model = CoupledCompliance.of_drive(drive, closed_form(drive), near_field)
-    pose = solve_equilibrium(Reducer(discs=(model,)), ANGLES, drive.wheel_moment()).pose
-    few = model.respond(ANGLES, pose)
-    monkeypatch.setattr(coupled, "CANDIDATE_MARGIN", np.inf)
-    everything = model.respond(ANGLES, pose)
-    within = coupled.UndeformedBodies.within
-    asked = []
+    model = Reducer(discs=(CoupledCompliance.of_drive(drive, closed_form(drive), near_field),))
+    pose = solve_equilibrium(model, ANGLES, drive.wheel_moment()).pose
+    system = ContactSystem(model)
+    near, every = (system.respond(ANGLES, pose, None, roughly=False, everything=all_) for all_ in (False, True))
+    assert near.count < every.count == system.contacts
+    few, everything = (disc_response(at, 0) for at in (near, every))
+    loads = np.abs(every.corrected_load[:, 0])
+    approach, within, asked = Linearised._approach, Linearised._within, []
 
-    def blind(bodies, margin):
-        """Leaves out what carries most: found out, and made good."""
-        asked.append(margin)
-        found = within(bodies, np.inf)
-        return found if len(asked) > 1 else [np.sort(np.argsort(loads, axis=1)[:, :2], axis=1) for loads in carried]
+    def overlooked(at):
+        """What carries most, where contacts are left out at all."""
+        found = np.zeros(loads.shape, dtype=bool)
+        for kind in system.of_kind[0] if np.isfinite(at.margin) else ():
+            found[:, kind] = loads[:, kind] > 0.5 * loads[:, kind].max(axis=1, keepdims=True)
+        return found
 
-    carried = (everything.pin_load, everything.rollers.outer_load, everything.hole_load)
-    monkeypatch.setattr(coupled.UndeformedBodies, "within", blind)
+    def blind(at, state):
+        """Leaves them out as if they were open: found out, and made good."""
+        approach(at, state)
+        asked.append(at.margin)
+        at.deformation = np.where(overlooked(at)[:, None], -1.0, at.deformation)
+
+    monkeypatch.setattr(Linearised, "_approach", blind)
+    monkeypatch.setattr(Linearised, "_within", lambda at: within(at) & ~overlooked(at))
     mended = model.respond(ANGLES, pose)
-    assert len(asked) == 2
+    assert list(dict.fromkeys(asked)) == [CANDIDATE_MARGIN, np.inf]
     for other in (few, mended):
         # Near fields settle to 1e-13 mm, at some 1e6 N/mm.
         for name in ("pin_load", "hole_load"):

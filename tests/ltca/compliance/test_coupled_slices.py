@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.response import Start
 from ltca.drive.materials import Material
@@ -84,7 +83,7 @@ def test_loads_on_seats_balance_in_six_directions(seats, closed_form, monkeypatc
 @pytest.mark.family(quick=1)
 @pytest.mark.parametrize("near_field", ["plane-strain", "half-space"])
 @pytest.mark.parametrize("seats", [None, "loose pins"])
-def test_the_tangent_is_that_of_the_force_of_coupled_slices(near_field, seats, closed_form, monkeypatch):
+def test_the_tangent_is_that_of_the_force_of_coupled_slices(near_field, seats, closed_form, hold_coefficients):
     """Differences of the force against the tangent, leans included, 2e-4 of its largest entry, all by levers of the coordinates.
 
     The effective radius that follows the pose is 1e-4, as in the plane; coefficients that follow it, 1e-3 there, are held.
@@ -93,13 +92,7 @@ def test_the_tangent_is_that_of_the_force_of_coupled_slices(near_field, seats, c
     drive = load_drive("paper").cases["CS-3"].with_fields(tilted) if seats is None else seated(seats, SLICES)
     model, found = balanced(drive, closed_form, near_field)
     pose, start = found.pose, Start.after(found.response)
-    whole, held = InfluenceCoefficients.disc_matrix, []
-
-    def first(self, *places):
-        held.append(whole(self, *places) if not held else held[0])
-        return held[-1]
-
-    monkeypatch.setattr(InfluenceCoefficients, "disc_matrix", first)
+    hold_coefficients()
     tangent = model.respond(ANGLES, pose, start).tangent[0]
     disc = drive.disc.thickness
     lever = np.array([1.0, 1.0, drive.pin_shaft.pin_circle_radius, disc, disc, drive.pin_wheel.pin_circle_radius])

@@ -11,6 +11,7 @@ import pytest
 from ltca.arrays import stack_drives, take_rows
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.response import Start
+from ltca.equilibrium.reducer import Reducer
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
@@ -33,6 +34,11 @@ class PowerLaw:
     def energy(self, approach, effective_radius):
         pressed = np.maximum(approach, 0.0) + 0.0 * effective_radius
         return self.factor * pressed ** (self.exponent + 1.0) / (self.exponent + 1.0)
+
+
+def contacts_of(drive):
+    """The contacts of a drive of one disc on tables."""
+    return Reducer(discs=(HalfSpaceCompliance.of_drive(drive),))
 
 
 def energy_of(model, response):
@@ -64,8 +70,9 @@ def test_force_is_the_gradient_of_the_energy_and_tangent_its_hessian(drives):
         model = HalfSpaceCompliance.of_drive(drive)
         law = PowerLaw(1.5e4 * drive.disc.thickness**1.1)
         model = replace(model, pin_law=law, roller_laws=replace(model.roller_laws, inner=law, outer=law))
+        contacts = Reducer(discs=(model,))
         angles, poses, lever = pressed_poses(drive, 6, 1)
-        here = model.respond(angles, poses)
+        here = contacts.respond(angles, poses)
         assert (here.pin_load > 0).any()
         assert (here.hole_load > 0).any()
         assert (here.rollers.outer_load > 0).any()
@@ -78,7 +85,7 @@ def test_force_is_the_gradient_of_the_energy_and_tangent_its_hessian(drives):
         for column in range(4):
             move = np.zeros(4)
             move[column] = h / lever[column]
-            ahead, behind = model.respond(angles, poses + move), model.respond(angles, poses - move)
+            ahead, behind = contacts.respond(angles, poses + move), contacts.respond(angles, poses - move)
             slope = (energy_of(model, ahead) - energy_of(model, behind)) / (2.0 * h)
             # h²/δ² for pairs pressed by 30 µm ~ 1e-3 … 1e-2 of their part: 1e-6; round-off R·1e-16·F/h ~ 1e-8
             error = (slope - here.force[:, column] / lever[column])[clear] / force_size
@@ -93,7 +100,7 @@ def test_force_is_the_gradient_of_the_energy_and_tangent_its_hessian(drives):
 def test_tangent_of_the_half_space_laws(drives):
     """The change of ρ with the place of the contact is left out of it: some 1e-4 of the stiffness at most."""
     for drive in drives:
-        model = HalfSpaceCompliance.of_drive(drive)
+        model = contacts_of(drive)
         angles, poses, lever = pressed_poses(drive, 4, 2)
         here = model.respond(angles, poses)
         h = 1e-7 * drive.pin_wheel.pin_circle_radius / 88.0
@@ -109,7 +116,7 @@ def test_tangent_of_the_half_space_laws(drives):
 
 def test_tangent_is_symmetric(drives):
     for drive in drives:
-        model = HalfSpaceCompliance.of_drive(drive)
+        model = contacts_of(drive)
         angles, poses, lever = pressed_poses(drive, 6, 3)
         tangent = model.respond(angles, poses).tangent / lever[:, None] / lever
         np.testing.assert_allclose(tangent, tangent.swapaxes(1, 2), atol=1e-13 * np.abs(tangent).max())
@@ -118,7 +125,7 @@ def test_tangent_is_symmetric(drives):
 def test_wheel_feels_pins_alone(drives):
     """The fourth force is the moment of the pin loads; holes and rollers do not reach the wheel."""
     for drive in drives:
-        model = HalfSpaceCompliance.of_drive(drive)
+        model = contacts_of(drive)
         angles, poses, _ = pressed_poses(drive, 6, 4)
         response = model.respond(angles, poses)
         moment = (response.pin_load * response.flank.gradient[..., WHEEL_ANGLE]).sum(axis=1)
@@ -127,18 +134,17 @@ def test_wheel_feels_pins_alone(drives):
 
 def test_start_does_not_matter(drives):
     drive = drives[0]
-    model = HalfSpaceCompliance.of_drive(drive)
+    model = contacts_of(drive)
     angles, poses, _ = pressed_poses(drive, 4, 5)
     plain = model.respond(angles, poses)
-    start = replace(
-        Start.after(plain), parameter=plain.flank.parameter + 0.01, share=np.full_like(plain.rollers.share, 0.9)
-    )
+    parameter, share = plain.flank.parameter + 0.01, np.full_like(plain.rollers.share, 0.9)
+    start = replace(Start.after(plain), parameter=parameter, share=share, follow=None, inner=None)
     other = model.respond(angles, poses, start)
     np.testing.assert_allclose(other.force, plain.force, atol=1e-8 * np.abs(plain.force).max())
 
 
 def test_positions_of_a_batch_do_not_feel_each_other(drives):
-    model = HalfSpaceCompliance.of_drive(drives[0])
+    model = contacts_of(drives[0])
     angles, poses, _ = pressed_poses(drives[0], 5, 6)
     batch = model.respond(angles, poses)
     for row in range(5):
@@ -149,20 +155,20 @@ def test_positions_of_a_batch_do_not_feel_each_other(drives):
 def test_stiffness_scales_with_modulus_and_shaft_spring(vary):
     """Each law takes the modulus of its own two bodies."""
     angles, poses = np.array([0.4]), np.array([[0.01, 0.02, 1e-4, -2e-3]])
-    base = HalfSpaceCompliance.of_drive(vary()).respond(angles, poses)
+    base = contacts_of(vary()).respond(angles, poses)
     soft = {"youngs_modulus": 103_000.0, "poisson_ratio": 0.3}
     # E* of a steel body on one half as stiff is 2/3 of steel on steel
-    pins = HalfSpaceCompliance.of_drive(vary(materials={"wheel_pin": soft})).respond(angles, poses)
+    pins = contacts_of(vary(materials={"wheel_pin": soft})).respond(angles, poses)
     np.testing.assert_allclose(pins.pin_load, base.pin_load * 2.0 / 3.0, rtol=1e-12)
     np.testing.assert_array_equal(pins.rollers.outer_load, base.rollers.outer_load)
     # a soft roller softens both of its contacts alike: same balance, 2/3 of the load
-    rollers = HalfSpaceCompliance.of_drive(vary(materials={"roller": soft})).respond(angles, poses)
+    rollers = contacts_of(vary(materials={"roller": soft})).respond(angles, poses)
     np.testing.assert_allclose(rollers.rollers.outer_load, base.rollers.outer_load * 2.0 / 3.0, rtol=1e-9)
     np.testing.assert_array_equal(rollers.pin_load, base.pin_load)
-    race = HalfSpaceCompliance.of_drive(vary(materials={"inner_race": soft})).respond(angles, poses)
+    race = contacts_of(vary(materials={"inner_race": soft})).respond(angles, poses)
     loaded = base.rollers.outer_load > 0.0
     assert np.all(race.rollers.inner_approach[loaded] > base.rollers.inner_approach[loaded])
-    holes = HalfSpaceCompliance.of_drive(vary(pin_shaft={"stiffness": 2.0e6})).respond(angles, poses)
+    holes = contacts_of(vary(pin_shaft={"stiffness": 2.0e6})).respond(angles, poses)
     np.testing.assert_allclose(holes.hole_load, 2.0 * base.hole_load, rtol=1e-14)
     np.testing.assert_allclose(base.hole_load, 1e6 * np.maximum(base.holes.approach, 0.0), rtol=1e-14)
 
@@ -176,10 +182,10 @@ def test_crowned_pins_on_deviated_flanks_are_a_batch(paper_cases, coarse_tables)
     batch = stack_drives([HalfSpaceCompliance.of_drive(each, in_batch=True) for each in drives], 1)
     pose = np.zeros((2, 4))
     pose[:, 3] = -0.003  # wound up beyond the backlash, so that pins carry
-    together = batch.respond(np.full(2, 0.3), pose)
+    together = Reducer(discs=(batch,)).respond(np.full(2, 0.3), pose)
     assert together.pin_load.max() > 100.0
     for row, drive in enumerate(drives):
-        alone = HalfSpaceCompliance.of_drive(drive).respond(np.array([0.3]), pose[:1])
+        alone = contacts_of(drive).respond(np.array([0.3]), pose[:1])
         # Tables on a ladder of radii and tables of one drive: their interpolation differs.
         np.testing.assert_allclose(together.pin_load[row], alone.pin_load[0], rtol=2e-3, atol=1e-6)
 

@@ -5,20 +5,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.integrate import quad
-from scipy.linalg import block_diag
 
-from ltca.compliance.coefficients import InfluenceCoefficients, _coefficients_of_dataset
+from ltca.compliance.coefficients import _coefficients_of_dataset
 from ltca.compliance.coupled import CoupledCompliance
-from ltca.compliance.coupled_slices import _Bodies, _settled
-from ltca.compliance.in_slices import ContactsInSlices, stacked
 from ltca.compliance.near_field import projected_on_half_space
 from ltca.compliance.response import Start
-from ltca.compliance.rollers import RollerLaws
 from ltca.contact.free_end import FreeEnds, guilbault_factor
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.reducer import Reducer
+from ltca.geometry.pair_motion import dot
+from ltca.mechanics.contacts import ContactSystem
+from ltca.mechanics.energy import stored_by_disc
 from ltca.reading.drive_file import load_drive
 from ltca.testing.closed_form_bodies import CROSS_SHARE, closed_form_coefficients
 from ltca.testing.slice_law import _kernel
@@ -167,26 +166,13 @@ def test_the_plane_model_takes_the_even_part_alone(kind):
         np.testing.assert_allclose(found.pose, flat.pose, rtol=0.0, atol=1e-13)
 
 
-def held_matrices(monkeypatch):
-    """Coefficients that follow the pose, 1e-3 of the tangent in the plane, are held at those of the first call."""
-    whole, held = InfluenceCoefficients.disc_matrix, {}
-
-    def first(self, *places):
-        key = self.tilting is None
-        if key not in held:
-            held[key] = whole(self, *places)
-        return held[key]
-
-    monkeypatch.setattr(InfluenceCoefficients, "disc_matrix", first)
-
-
 @pytest.mark.parametrize("kind", NEAR_FIELDS)
-def test_the_tangent_is_that_of_the_force(kind, monkeypatch):
+def test_the_tangent_is_that_of_the_force(kind, hold_coefficients):
     """Differences of the force against the tangent, as for plane bodies: 2e-4 of its largest entry, symmetric to round-off."""
     drive = drive_for(kind)
     model, found = balanced(drive, CoupledCompliance.of_drive(drive, solid(drive), kind))
     pose, start = found.pose, Start.after(found.response)
-    held_matrices(monkeypatch)
+    hold_coefficients()
     tangent = model.respond(ANGLES, pose, start).tangent[0]
     disc = drive.disc.thickness
     lever = np.array([1.0, 1.0, drive.pin_shaft.pin_circle_radius, disc, disc, drive.pin_wheel.pin_circle_radius])
@@ -204,41 +190,46 @@ def test_the_tangent_is_that_of_the_force(kind, monkeypatch):
     np.testing.assert_allclose(tangent / scale, (tangent / scale).T, atol=1e-12 * largest)
 
 
-def test_loads_and_moments_are_slopes_of_one_energy():
-    """∂E/∂δ = F and ∂E/∂θ = M to 1e-8, so that M follows δ as F follows θ (Maxwell), and the slopes say so.
+def displaced(model, pin, approach, tilt):
+    """The same drive with one wheel pin pressed further into the flank, mm, and leaning further along its normal, rad."""
+    (disc,) = model.discs
+    place = disc.geometry.placement
+    centres, leans = place.wheel_pin_centres.copy(), place.wheel_pin_leans.copy()
+    centres[pin] += approach
+    leans[pin] += tilt
+    moved = replace(place, wheel_pin_centres=centres, wheel_pin_leans=leans)
+    return replace(model, discs=(replace(disc, geometry=replace(disc.geometry, placement=moved)),))
 
-    E is that of contacts and bodies, Σ E(contact) + (F·C F + M·C′ M)/2. Differences of fourth order with steps of 1e-3 of the
-    approach leave 1e-10 by curvature and 1e-9 by what is not settled, 1e-13 mm; second ones leave 1e-7 of the largest.
+
+def test_loads_and_moments_are_slopes_of_one_energy(hold_coefficients):
+    """∂E/∂δ = F and ∂E/∂θ = M to 1e-8, so that M follows δ as F follows θ (Maxwell), at a held pose.
+
+    E is that of contacts and bodies, Σ E(contact) + (F·C F + M·C′ M)/2. A pin moves along its normal, or leans along it.
+    Differences of fourth order with steps of 1e-3 of the approach leave 1e-10 by curvature and 1e-9 by what is not settled, 1e-13
+    mm; second ones leave 1e-7 of the largest. Deformations follow the pose as their contacts say to 2e-4 of the largest, as
+    forces do, coefficients held.
     """
     drive = drive_for("half-space")
-    disc = CoupledCompliance.of_drive(drive, solid(drive), "half-space")
-    _, found = balanced(drive, disc)
-    flank = disc.geometry.flank(ANGLES, found.pose, None, None)
-    here = ContactsInSlices(disc.geometry, ANGLES, found.pose, flank, None, None)
-    bodies, motions, tilts = _Bodies(disc, here, found.pose), here.motions, here.tilts
-    near = stacked(found.response.parts[0].warm_start)
-    middle = _settled(bodies, near[-1], near)
-    loaded, count = np.argsort(middle.pairs[0].contact.load[0])[-3:], bodies.pins
+    model, found = balanced(drive, CoupledCompliance.of_drive(drive, solid(drive), "half-space"))
+    (part,) = found.response.parts
+    contact, half = part.leaning_pins.contact, 0.5 * drive.disc.thickness
+    loaded, count = np.argsort(contact.load[0])[-3:], contact.load.shape[1]
+    # Normals into the pins, in the turning wheel: a disc that moves along them presses further.
+    turned = np.exp(-1j * (model.discs[0].geometry.placement.wheel_rotation(ANGLES) + found.pose[:, -1]))
+    normal = (part.flank.gradient[0, :, 0] + 1j * part.flank.gradient[0, :, 1]) * turned
 
     def at(pin, approach, tilt):
-        """State and energy with one pin pressed and tilted by so much more."""
-        one = np.zeros((1, count))
-        one[0, pin] = 1.0
-        here.motions = replace(motions[0], approach=motions[0].approach + approach * one), motions[1]
-        here.tilts = replace(tilts[0], tilt=tilts[0].tilt + tilt * one), tilts[1]
-        state = _settled(bodies, middle.given, middle.near)
-        contact = state.pairs[0].contact
-        energy = disc.near_field.pin.energy(contact, motions[0].effective_radius).sum()
-        load, moment = contact.load[0], contact.moment[0] / bodies.half
-        energy += 0.5 * load @ bodies.parts[0][0, :count, :count] @ load
-        energy += 0.5 * moment @ bodies.parts[1][0, :count, :count] @ moment
-        return np.concatenate(([energy], load, contact.moment[0]))
+        """Energy, loads and moments with one pin pressed and tilted by so much more."""
+        here = displaced(model, pin, -approach * normal[pin], -tilt * normal[pin])
+        state = ContactSystem(here).respond(ANGLES, found.pose, None, roughly=False)
+        (stored,) = stored_by_disc(state)
+        load, moment = state.corrected_load[0, :, :count]
+        return np.concatenate((stored.energy, load, moment * half))
 
     def slope(pin, approach, tilt):
         ends = [at(pin, side * approach, side * tilt) for side in (1.0, -1.0, 2.0, -2.0)]
         return (8.0 * (ends[0] - ends[1]) - (ends[2] - ends[3])) / (12.0 * max(approach, tilt))
 
-    contact = middle.pairs[0].contact
     by_shift, by_tilt = [slope(pin, 4e-6, 0.0) for pin in loaded], [slope(pin, 0.0, 8e-7) for pin in loaded]
     for pin, one, other in zip(loaded, by_shift, by_tilt, strict=True):
         assert one[0] == pytest.approx(contact.load[0, pin], rel=1e-8)
@@ -249,45 +240,74 @@ def test_loads_and_moments_are_slopes_of_one_energy():
     )
     assert np.max(np.abs(loads[~np.eye(3, dtype=bool)])) > 1e-2 * np.max(np.abs(loads))
     np.testing.assert_allclose(moments, loads.T, atol=1e-7 * np.max(np.abs(loads)))
-    stiffness = bodies.stiffness(middle)
-    whole = np.linalg.solve(bodies.system(stiffness), block_diag(*[part[0] for part in bodies.parts])[None])
-    slopes = bodies._slopes(here.slopes(middle.pairs), stiffness, whole, np.zeros((*bodies.shape, found.pose.shape[1])))
-    assert slopes is not None
-    np.testing.assert_allclose(slopes.by_tilt[0][np.ix_(loaded, loaded)], loads.T, atol=1e-6 * np.max(np.abs(loads)))
+    hold_coefficients()
+    system, pose = ContactSystem(model), found.pose
+    follow = system.respond(ANGLES, pose, None, roughly=False).following().approach_by_pose[0]
+    carries = system.respond(ANGLES, pose, None, roughly=False).corrected_load[0, 0] > 0.0
+    for coordinate, step in enumerate((1e-6, 1e-6, 2e-8, 1e-7, 1e-7, 2e-8)):
+        ends = []
+        for side in (step, -step):
+            there = pose.copy()
+            there[0, coordinate] += side
+            ends.append(system.respond(ANGLES, there, None, roughly=False).after[0])
+        numeric = (ends[0] - ends[1])[:, carries] / (2.0 * step)
+        told = follow[:, carries, coordinate]
+        np.testing.assert_allclose(numeric, told, atol=2e-4 * np.max(np.abs(told)))
 
 
 @pytest.mark.slow
 def test_twice_the_tilts_by_an_iteration_of_its_own():
-    """With C' doubled, loads and moments at a pose are those of a damped fixed point outside: no tangent, no Newton.
+    """With C' doubled, loads and moments at a pose are those of a damped fixed point outside: no tangent, no Newton over all.
 
-    1e-6 of the largest: coefficients of the bore are taken where rollers at rest touch it, here where they do, 1e-6 of a
-    coefficient.
+    It asks the laws alone, and moves every roller by its own stiffness against its place and lean. 1e-6 of the largest:
+    coefficients of the bore are taken where rollers at rest touch it, here where they do, 1e-6 of a coefficient.
     """
     drive = drive_for("half-space")
     disc = tilting_scaled(CoupledCompliance.of_drive(drive, solid(drive), "half-space"), 2.0)
     _, found = balanced(drive, disc)
-    response = found.response.parts[0]
-    flank = disc.geometry.flank(ANGLES, found.pose, None, None)
-    here = ContactsInSlices(disc.geometry, ANGLES, found.pose, flank, None, None)
-    laws = RollerLaws(
-        inner=disc.near_field.inner, outer=disc.near_field.outer,
-        inner_radius=disc.inner_radius, outer_radius=disc.outer_radius,
-    )  # fmt: skip
+    response, pose = found.response.parts[0], found.pose
+    geometry, laws = disc.geometry, disc.near_field
+    flank, holes = geometry.flank(ANGLES, pose), geometry.holes(ANGLES, pose)
+    tilts = geometry.flank_tilt(ANGLES, pose, flank).tilt, geometry.hole_tilt(pose, holes).tilt
+    bores, rays = geometry.bores(ANGLES, pose), geometry.rollers(ANGLES)
+    count = rays.direction.shape[1]
+    displacement = bores.each(bores.displacement, count)
+    at_race, at_bore = (
+        dot(rays.direction, leans) for leans in (bores.each(geometry.journal_leans(pose), count), geometry.lean(pose))
+    )
+    inward = 0.5 * (rays.outermost - rays.touching_distance(displacement))
+    lean = 0.5 * (at_race + at_bore)
     taken = taken_of(drive, scale=2.0)
     y = t = tuple(np.zeros(one.shape) for one in split_loads(response)[0])
+
+    def carried(law, approach, tilt, radius):
+        return law.respond(approach, tilt, np.broadcast_to(radius, approach.shape))
+
     for _ in range(400):
-        pins = here.pair(0, disc.near_field.pin, None, y[0], t[0])
-        holes = here.pair(1, disc.hole_law, None, y[2], t[2])
-        rollers = here.rollers(laws, None, (y[1], y[3]), (t[1], t[3]))
-        loads = pins.contact.load, rollers.outer_load, holes.contact.load, rollers.inner_load
-        moments = pins.contact.moment, rollers.outer_moment, holes.contact.moment, rollers.inner_moment
-        found_y, found_t = taken(disc, found.pose[0], response, loads, moments)
+        arm = (rays.outermost - inward) * rays.direction - displacement
+        cosine = dot(arm, rays.direction) / np.abs(arm)
+        pins = carried(laws.pin, flank.approach - y[0], tilts[0] - t[0], flank.effective_radius)
+        outer = carried(laws.outer, np.abs(arm) - rays.bore_play - y[1], lean - at_bore - t[1], disc.outer_radius)
+        on_holes = carried(disc.hole_law, holes.approach - y[2], tilts[1] - t[2], disc.hole_radius)
+        inner = carried(laws.inner, inward - y[3], at_race - lean - t[3], disc.inner_radius)
+        contacts = pins, outer, on_holes, inner
+        loads, moments = (tuple(getattr(one, name) for one in contacts) for name in ("load", "moment"))
+        # What turns and moves a roller inward, and how that grows as it does.
+        short = np.stack((cosine * outer.load - inner.load, inner.moment - outer.moment), axis=-1)
+        mixed = -inner.by_tilt - cosine * outer.by_tilt
+        held = np.stack((inner.by_approach + cosine**2 * outer.by_approach, mixed, mixed,
+                         inner.moment_by_tilt + outer.moment_by_tilt), axis=-1).reshape(*mixed.shape, 2, 2)  # fmt: skip
+        free = held[..., 0, 0] == 0.0
+        held[free] = np.eye(2)
+        moved = np.linalg.solve(held, short[..., None])[..., 0]
+        inward, lean = inward + 0.3 * moved[..., 0], lean + 0.3 * moved[..., 1]
+        found_y, found_t = taken(disc, pose[0], response, loads, moments)
         change = max(np.max(np.abs(a - b)) for a, b in zip((*y, *t), (*found_y, *found_t), strict=True))
         y, t = (
             tuple(old + 0.3 * (new - old) for old, new in zip(before, now, strict=True))
             for before, now in ((y, found_y), (t, found_t))
         )
-        if change < 1e-14:
+        if max(change, np.max(np.abs(moved))) < 1e-14:
             break
     expected, turning = split_loads(response)
     for one, other in zip((*loads, *moments), (*expected, *turning), strict=True):

@@ -152,9 +152,9 @@ def test_a_batch_is_bounded_drive_by_drive(paper_cases):
 
 def test_balance_without_gaps_is_the_balance_with_them(paper_cases):
     drive = paper_cases["CS-3"]
-    model, angle = HalfSpaceCompliance.of_drive(drive), np.linspace(0.0, 6.0, 30)
-    found = solve_equilibrium(Reducer(discs=(model,)), angle, drive.wheel_moment())
-    without = solve_equilibrium(Reducer(discs=(model,)), angle, drive.wheel_moment(), gaps=False)
+    model, angle = Reducer(discs=(HalfSpaceCompliance.of_drive(drive),)), np.linspace(0.0, 6.0, 30)
+    found = solve_equilibrium(model, angle, drive.wheel_moment())
+    without = solve_equilibrium(model, angle, drive.wheel_moment(), gaps=False)
     np.testing.assert_array_equal(found.pose, without.pose)
     np.testing.assert_array_equal(found.response.pin_load, without.response.pin_load)
     assert np.mean(without.response.flank.left_out) > 0.3
