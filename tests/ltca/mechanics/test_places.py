@@ -1,8 +1,4 @@
-<<<<<<<< HEAD:tests/ltca/mechanics/test_places.py
-"""Where contacts lie on the disc, as an observer on the disc sees them."""
-========
 """Where contacts lie on the body of the disc, as an observer on the disc sees them."""
->>>>>>>> tst:tests/ltca/mechanics/test_places_on_bodies.py
 
 from __future__ import annotations
 
@@ -15,19 +11,6 @@ from ltca.mechanics.contacts import ContactSystem
 
 def test_places_turn_with_the_disc(paper_cases):
     """Rollers and shaft pins stand still, the disc is turned by a tenth: on it they are found a tenth further back."""
-<<<<<<<< HEAD:tests/ltca/mechanics/test_places.py
-    model = Reducer(discs=(HalfSpaceCompliance.of_drive(paper_cases["CS-6"]),))
-    geometry = model.geometries[0]
-    place, angle = geometry.placement, np.array([0.0, 0.7, 4.0])
-    pose = np.array([[0.02, -0.01, turn, 0.0] for turn in (0.0, 0.1, -0.1)])
-    at = ContactSystem(model).respond(angle, pose, None, roughly=False)
-    on_flank, in_bore, in_hole, *_ = at.body_places(0)
-    np.testing.assert_array_equal(on_flank, geometry.flank(angle, pose).parameter)
-    centre = place.race_centre(angle) + pose[:, 0] + 1j * pose[:, 1]
-    back = np.exp(-1j * pose[:, 2, None])
-    # Rollers touch the inner race; seen from the disc's centre, in its own frame.
-    rollers = place.race_centre(angle)[:, None] + at.discs[0].rays.outermost * at.discs[0].rays.direction
-========
     model = HalfSpaceCompliance.of_drive(paper_cases["CS-6"])
     place, angle = model.geometry.placement, np.array([0.0, 0.7, 4.0])
     pose = np.array([[0.02, -0.01, turn, 0.0] for turn in (0.0, 0.1, -0.1)])
@@ -38,7 +21,6 @@ def test_places_turn_with_the_disc(paper_cases):
     # Rollers touch the inner race; seen from the disc's centre, in its own frame.
     rays = model.geometry.rollers(angle)
     rollers = place.race_centre(angle)[:, None] + rays.outermost * rays.direction
->>>>>>>> tst:tests/ltca/mechanics/test_places_on_bodies.py
     bore = np.angle((rollers - centre[:, None]) * back)
     np.testing.assert_allclose(np.exp(1j * in_bore), np.exp(1j * bore), atol=1e-12)
     # A shaft pin presses on the wall of its hole on the side to which it is off the hole's centre, again in the disc's frame.
