@@ -122,6 +122,7 @@ class ContactForces:
         rubs = motion.drive.friction
         self._drag = 0.0 if rubs is None else rubs.no_load_torque
         self._springs = _springs(motion)
+        self._sprung = bool(self._springs.any())
         self._system = ContactSystem(self._model)
         self._start: ContactStart | None = None
         self._latest: Linearised | None = None
@@ -160,8 +161,10 @@ class ContactForces:
         pose, angle = x[: motion.pose.size], x[motion.crank : motion.crank + 1]
         contacts = self._system.respond(angle, pose[None], self._start, roughly=False, by_crank=True)
         self._start, self._latest = contacts.onward, contacts
-        stiffness = self._springs.copy()
-        force = stiffness @ x
+        if self._sprung:
+            stiffness, force = self._springs.copy(), self._springs @ x
+        else:
+            stiffness, force = np.zeros((size, size)), np.zeros(size)
         # The crank angle stands behind the pose.
         force[: contacts.size] += contacts.force[0]
         stiffness[: contacts.size, : contacts.size] += contacts.tangent[0]

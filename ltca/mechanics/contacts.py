@@ -94,7 +94,9 @@ class _Disc:
         self.bores, self.rays = geometry.bores(angle, pose, at), geometry.rollers(angle)
         self.rollers = self.rays.direction.shape[1]
         self.displacement = self.bores.each(self.bores.displacement, self.rollers)
-        self.total = self.rays.outermost - self.rays.touching_distance(self.displacement)
+        # Along and across the rays.
+        self.displaced = self.rays.direction.conjugate() * self.displacement
+        self.total = self.rays.outermost - self.rays.touching(self.displaced)
         self.tilts: tuple[PairTilt, PairTilt] | None = None
         if geometry.coordinates_of(pose).leans:
             lean_pins, lean_holes = (None, None) if leans is None else (leans[:, :pins], leans[:, pins:])
@@ -128,13 +130,12 @@ class _Disc:
         """Put the rollers inward of where they only touch the race, mm."""
         rays = self.rays
         place = rays.outermost - inward
-        arm = place * rays.direction - self.displacement
+        arm = place - self.displaced
         self.length = np.abs(arm)
-        self.outward = arm / self.length
-        self.cosine = dot(self.outward, rays.direction)
+        turn = arm / self.length
+        self.outward, self.cosine, self.slant = turn * rays.direction, turn.real, -turn.imag
         # |s n − d| less the bore play as a product: no cancellation for rollers that barely touch.
-        along = dot(rays.direction, self.displacement)
-        beyond = place + (rays.outermost - self.total) - 2.0 * along
+        beyond = place + (rays.outermost - self.total) - 2.0 * self.displaced.real
         self.inward, self.outer = inward, (self.total - inward) * beyond / (self.length + rays.bore_play)
 
 
@@ -571,7 +572,6 @@ class Linearised:
         system, (rows, size) = self.system, (self.pose.shape[0], self.size)
         load, stiffness = self.load[:, 0], self.stiffness[0]
         self.force, self.tangent = np.zeros((rows, size)), self._bends()
-        self.de, self.change = np.zeros(self.load.shape), np.zeros(self.load.shape)
         self.dx = np.zeros((rows, system.discs * system.rollers, 1))
         self.dx_by_pose = np.zeros((*self.dx.shape, size))
         for disc, (at, own) in enumerate(zip(self.discs, system.columns, strict=True)):
@@ -581,16 +581,15 @@ class Linearised:
             by_place, unbalanced = k_race + held * at.cosine, load[:, races] - at.cosine * carried
             if not self.by_crank:
                 bend = carried / at.length
-                slant = (n.conjugate() * at.rays.direction).imag
-                slanted = bend * slant
-                by_place = by_place + slanted * slant
+                slanted = bend * at.slant
+                by_place = by_place + slanted * at.slant
             by_place = np.where(by_place != 0.0, by_place, np.inf)
             share, step = held / by_place, unbalanced / by_place
-            added, cranks = held * step, at.bores.arm.shape[1]
+            cranks = at.bores.arm.shape[1]
             shape = rows, cranks, -1, 1
             normal = n.view(float).reshape(rows, cranks, -1, 2)
             basis, pressed = normal, (k_bore - held * share).reshape(shape) * normal
-            loads, follow = (carried + added).reshape(shape), share.reshape(shape) * normal
+            loads, follow = (carried + held * step).reshape(shape), share.reshape(shape) * normal
             if not self.by_crank:
                 across, aside = (1j * n).view(float).reshape(normal.shape), slanted / by_place
                 mixed, turning = (held * aside).reshape(shape), (bend - slanted * aside).reshape(shape)
@@ -629,8 +628,6 @@ class Linearised:
                 self.tangent += tangent
                 self.dx_by_pose[:, :, 0] = followed
             self.dx[:, of_rollers, 0] = -step
-            self.de[:, 0, bores], self.de[:, 0, races] = at.cosine * step, -step
-            self.change[:, 0, bores], self.change[:, 0, races] = added, -k_race * step
         self.de_by_pose = None
         self.moved = np.abs(self.dx[..., 0]).max(axis=1, initial=0.0)
 
@@ -644,6 +641,20 @@ class Linearised:
         if self.by_crank:
             found[..., -1] = at.seen_from_cages
         return found
+
+    @cached_property
+    def de(self) -> FloatArray:
+        """Corrections of the deformations of the chosen contacts, mm, shape (positions, components, chosen)."""
+        found = np.zeros(self.load.shape)
+        for disc, (at, (_, bores, _, races)) in enumerate(zip(self.discs, self.system.of_kind, strict=True)):
+            step = self.dx[:, disc * self.system.rollers : (disc + 1) * self.system.rollers, 0]
+            found[:, 0, bores], found[:, 0, races] = -at.cosine * step, step
+        return found
+
+    @cached_property
+    def change(self) -> FloatArray:
+        """Corrections of their loads, N."""
+        return self.stiffness[0][:, None] * self.de
 
     @cached_property
     def left(self) -> FloatArray:
@@ -900,7 +911,7 @@ class Linearised:
             parameter=_beside([motion.parameter for motion in motions]),
             share=self.share,
             known=KnownPins(
-                approach=np.repeat(self.system.never_left_out, self.angle.size, axis=0),
+                approach=self.system.never_left_out.repeat(self.angle.size, axis=0),
                 point=_beside([motion.point for motion in motions]),
                 turning=_beside([motion.turning for motion in motions]),
             ),
