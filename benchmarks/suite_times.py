@@ -1,11 +1,12 @@
-"""Processor time of every test: totals of the quick, the full and the nightly set, and the fifty slowest.
+"""Processor time of every test: totals of the quick, the full and the nightly set, and what takes longer than quick tests may.
 
     python benchmarks/suite_times.py [--only "not slow"] [--processes 2] [--write]
     python benchmarks/suite_times.py --write-nightly
 
 The processor time of a test includes the programs that it starts; fixtures count for the first test that uses them.
-``--write`` writes the totals and the fifty slowest tests to ``tests/budget.toml``, for reviews; they are not asserted. Arguments
-after ``--`` are passed to pytest (files, ``-k``). ``--write-nightly`` runs nothing: it writes there, under ``[nightly]``, the
+``--write`` writes the totals and the seconds of these tests to ``tests/budget.toml``, by which they are slow or nightly
+(``tests/conftest.py``); tests that did not run keep what is known of them. Arguments after ``--`` are passed to pytest (files,
+``-k``). ``--write-nightly`` runs nothing: it writes there, under ``[nightly]``, the
 seconds of each file of the nightly set as the shards kept them under ``build/nightly`` (``pytest -m nightly --shard 1/4``), by
 which they are dealt.
 """
@@ -19,6 +20,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import tomllib
 from collections import Counter, defaultdict
 from collections.abc import Generator
 from pathlib import Path
@@ -28,7 +30,9 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 BUDGET = ROOT / "tests" / "budget.toml"
-LISTED = 50
+QUICK_SECONDS, FULL_SECONDS = 0.2, 1.5
+"""Longest tests of the quick and of the full set, s of processor time."""
+SHOWN = 30
 FOLDER = "CYCLO_SUITE_TIMES"
 """Environment variable with the folder for the times; it activates the plugin."""
 
@@ -96,8 +100,8 @@ def measure(only: str, processes: int, words: list[str]) -> Measured:
     return Measured(tests=tests, clock=lasted, processor=spent, status=status)
 
 
-def text_of(run: Measured) -> str:
-    """Return totals and the slowest tests as TOML."""
+def text_of(run: Measured, known: dict[str, float]) -> str:
+    """Return totals and the seconds of tests that are not quick as TOML; `known` are those of tests that may not have run."""
     seconds: defaultdict[str, float] = defaultdict(float)
     count: Counter[str] = Counter()
     for _, spent, marks in run.tests:
@@ -105,7 +109,10 @@ def text_of(run: Measured) -> str:
         count[set_of(marks)] += 1
     lines = [
         "# Processor seconds of the tests; made by python benchmarks/suite_times.py --write, compared by eye in a review.",
-        "# The budget: quick set 60 s and full set 360 s on two cores, so 120 and 720 s of processor time.",
+        "# The budget: quick set 60 s and full set 360 s on two cores, so 120 and 720 s of processor time. What takes longer",
+        "# than quick_seconds is slow, longer than full_seconds nightly (tests/conftest.py), whatever its marks.",
+        f"quick_seconds = {QUICK_SECONDS}",
+        f"full_seconds = {FULL_SECONDS}",
         f"clock_seconds = {run.clock:.0f}",
         f"processor_seconds = {run.processor:.0f}",
     ]
@@ -114,8 +121,10 @@ def text_of(run: Measured) -> str:
         for name in ("quick", "slow", "nightly")
         if count[name]
     ]
-    lines += ["", "[slowest]"]
-    lines += [f"{json.dumps(name)} = {spent:.1f}" for name, spent, _ in run.tests[:LISTED]]
+    lasted = known | {name: spent for name, spent, _ in run.tests}
+    slowest = sorted(lasted.items(), key=lambda item: -item[1])
+    lines += ["", "[seconds]"]
+    lines += [f"{json.dumps(name)} = {spent:.2f}" for name, spent in slowest if spent > QUICK_SECONDS]
     return "\n".join(lines) + "\n"
 
 
@@ -149,13 +158,14 @@ def main() -> int:
     )
     parser.add_argument("words", nargs="*", help="further arguments of pytest, after --")
     arguments = parser.parse_args()
-    slowest, _, nightly = BUDGET.read_text(encoding="utf-8").partition(NIGHTLY)
+    budget = BUDGET.read_text(encoding="utf-8")
+    slowest, _, nightly = budget.partition(NIGHTLY)
     if arguments.write_nightly:
         BUDGET.write_text(slowest + nightly_text(ROOT / "build" / "nightly"), encoding="utf-8")
         return 0
     run = measure(arguments.only, arguments.processes, arguments.words)
-    text = text_of(run)
-    print(text)
+    text = text_of(run, tomllib.loads(budget)["seconds"])
+    print("\n".join(text.splitlines()[: text.splitlines().index("[seconds]") + SHOWN]))
     if run.status not in (0, 1):  # interrupted, or no tests found: the times are incomplete
         print(f"pytest ended with status {run.status}: the times are incomplete", file=sys.stderr)
         return 2

@@ -58,6 +58,7 @@ def pytest_collection_finish() -> None:
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Skip what is nightly, unless the expression of `-m` names it; what is nightly is slow, too."""
     named = "nightly" in config.option.markexpr
+    _mark_by_seconds(items)
     _mark_families(items)
     for item in items:
         if item.get_closest_marker("nightly"):
@@ -68,11 +69,21 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         _longest_first(items)
 
 
-DEAR_EXAMPLES = (
-    "fem/reducer/solution.py::fem.reducer.solution.solve_reducer", "fem/coefficients/dataset.py::",
-    "ltca/analysis/stiffness_by_part.py::",
-)  # fmt: skip
-"""Examples of docstrings that solve a drive at length: slow, as a docstring has no mark of its own."""
+@cache
+def _budget() -> dict[str, Any]:
+    """What tests took (``benchmarks/suite_times.py``), and how long those of the quick and of the full set may take, s."""
+    return tomllib.loads((Path(__file__).parent / "budget.toml").read_text(encoding="utf-8"))
+
+
+def _mark_by_seconds(items: list[pytest.Item]) -> None:
+    """Mark tests that take longer than those of the quick and of the full set may."""
+    budget = _budget()
+    for item in items:
+        seconds = budget["seconds"].get(item.nodeid, 0.0)
+        if seconds > budget["quick_seconds"]:
+            item.add_marker("slow")
+        if seconds > budget["full_seconds"]:
+            item.add_marker("nightly")
 
 
 def _mark_families(items: list[pytest.Item]) -> None:
@@ -80,8 +91,6 @@ def _mark_families(items: list[pytest.Item]) -> None:
     quick: Counter[str] = Counter()
     full: Counter[str] = Counter()
     for item in items:
-        if item.nodeid.startswith(DEAR_EXAMPLES):
-            item.add_marker("slow")
         family = item.get_closest_marker("family")
         if family is None or item.get_closest_marker("nightly"):
             continue
@@ -100,9 +109,10 @@ def _mark_families(items: list[pytest.Item]) -> None:
 def _longest_first(items: list[pytest.Item]) -> None:
     """Put the files with the slowest tests first: a worker that begins one at the end leaves the others without work."""
     seconds: Counter[str] = Counter()
-    known = tomllib.loads((Path(__file__).parent / "budget.toml").read_text(encoding="utf-8"))["slowest"]
-    for name, spent in known.items():
-        seconds[name.partition("::")[0]] += spent
+    budget = _budget()
+    for name, spent in budget["seconds"].items():
+        if spent <= budget["full_seconds"]:
+            seconds[name.partition("::")[0]] += spent
     items.sort(key=lambda item: -seconds[item.nodeid.partition("::")[0]])
 
 

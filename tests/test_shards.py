@@ -38,8 +38,10 @@ def test_every_known_file_is_there():
 def test_a_test_among_the_slowest_had_got_parameters_and_another_name():
     """Every test listed is there, and named with parameters where its function is parametrized."""
     gone = []
-    for name in tomllib.loads((ROOT / "tests" / "budget.toml").read_text(encoding="utf-8"))["slowest"]:
+    for name in tomllib.loads((ROOT / "tests" / "budget.toml").read_text(encoding="utf-8"))["seconds"]:
         file, _, test = name.partition("::")
+        if not file.startswith("tests/"):  # an example of a docstring
+            continue
         function, bracket, _ = test.partition("[")
         tree = ast.parse((ROOT / file).read_text(encoding="utf-8")) if (ROOT / file).is_file() else ast.Module()
         nodes = {node.name: node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)}

@@ -184,6 +184,8 @@ class InfluenceCoefficients:
         flank_places: NDArray[np.complex128],
         radius: float,
         loaded: Sequence[NDArray[np.intp]] | None = None,
+        *,
+        among: bool = False,
     ) -> FloatArray:
         """Return the coefficients between contacts of the disc, the logarithm of a contact on itself left out.
 
@@ -198,6 +200,8 @@ class InfluenceCoefficients:
             Of the bores, mm.
         loaded : sequence of three arrays of int, shape (positions, chosen), optional
             Pins, rollers and holes whose loads are asked for; all of them by default.
+        among : bool
+            Whether only the approaches of these are wanted.
 
         Returns
         -------
@@ -212,11 +216,17 @@ class InfluenceCoefficients:
             loaded = [np.tile(np.arange(count), (positions, 1)) for count in (pins, rollers, holes.shape[1])]
         on_flank, in_bore, in_holes = loaded
         columns = np.concatenate((on_flank, pins + in_bore, pins + rollers + in_holes), axis=1)
+        if among:
+            stations, weights = (np.take_along_axis(values, columns[..., None], axis=1) for values in (stations, weights))
+            columns = np.broadcast_to(np.arange(columns.shape[1]), columns.shape)
         matrix = self._interpolated(stations, weights, columns)
         split = on_flank.shape[1]
-        self._add_logarithm(matrix[:, :pins, :split], flank_places, on_flank)
-        around, block = radius * np.exp(1j * bore), matrix[:, pins : pins + rollers, split : split + in_bore.shape[1]]
-        self._add_logarithm(block, around, in_bore, len(self.bores))
+        first, last = (0, split) if among else (0, pins)
+        self._add_logarithm(matrix[:, first:last, :split], flank_places, on_flank, among=among)
+        around = radius * np.exp(1j * bore)
+        first, last = last, last + (in_bore.shape[1] if among else rollers)
+        block = matrix[:, first:last, split : split + in_bore.shape[1]]
+        self._add_logarithm(block, around, in_bore, len(self.bores), among=among)
         return matrix
 
     def _interpolated(self, stations: NDArray[np.intp], weights: FloatArray, columns: NDArray[np.intp]) -> FloatArray:
@@ -234,15 +244,24 @@ class InfluenceCoefficients:
         return np.asarray(np.einsum("bkna,bna->bnk", near, weights))
 
     def _add_logarithm(
-        self, block: FloatArray, places: NDArray[np.complex128], columns: NDArray[np.intp], walls: int = 1
+        self,
+        block: FloatArray,
+        places: NDArray[np.complex128],
+        columns: NDArray[np.intp],
+        walls: int = 1,
+        *,
+        among: bool = False,
     ) -> None:
-        """Take off κ ln(distance) between all places and those of the columns on one wall, a place and itself left out."""
-        apart = places[:, :, None] - np.take_along_axis(places, columns, axis=1)[:, None, :]
+        """Take off κ ln(distance) between all places, or `among` those of the columns, and those of the columns on one wall, a
+        place and itself left out.
+        """
+        chosen, each = np.take_along_axis(places, columns, axis=1), places.shape[1] // walls
+        rows = columns if among else np.arange(places.shape[1])[None]
+        apart = (chosen if among else places)[:, :, None] - chosen[:, None, :]
         square = apart.real**2 + apart.imag**2
-        rows, each = np.arange(places.shape[1]), places.shape[1] // walls
-        same = rows[None, :, None] == columns[:, None, :]
+        same = rows[:, :, None] == columns[:, None, :]
         if walls > 1:
-            same |= (rows // each)[None, :, None] != (columns // each)[:, None, :]
+            same |= (rows // each)[:, :, None] != (columns // each)[:, None, :]
         block -= 0.5 * self.disc_logarithm * np.log(np.where(same, 1.0, square))
 
     def race_matrix(self, angles: FloatArray, radius: float) -> FloatArray:

@@ -22,6 +22,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
@@ -66,6 +67,73 @@ POSITIONS_PER_CHUNK = 256
 """Positions solved at once: the matrices of more would not fit into the processor's cache."""
 CANDIDATE_MARGIN = 0.25
 """Gap within which an open contact is taken for a candidate to carry, relative to the largest overlap at its position."""
+
+
+@dataclass(frozen=True)
+class BodyFlexibility:
+    """What bodies yield at the contacts of a disc under the loads of some of them, or by moments at half the width.
+
+    Attributes
+    ----------
+    coefficients : InfluenceCoefficients
+        Of the bodies.
+    own : OwnParts
+        What each contact's own body parts add to its own.
+    race : array, shape (rollers, rollers)
+        Between the rollers on the races.
+    behind : float
+        What stands behind shaft pins in their holes, mm/N.
+    unit : float
+        Of what is taken and of the loads, by mm/N.
+    places : tuple
+        Of the contacts (`InfluenceCoefficients.disc_matrix`).
+    loaded : tuple of array of int, shape (positions, chosen)
+        Wheel pins, rollers and holes that carry.
+    """
+
+    coefficients: InfluenceCoefficients
+    own: Any
+    race: FloatArray
+    behind: float
+    unit: float
+    places: tuple[Any, ...]
+    loaded: tuple[NDArray[np.intp], ...]
+
+    @cached_property
+    def among(self) -> FloatArray:
+        """What loaded pins, rollers in the bores and holes take by each other's loads, shape (positions, n, n), mm/N."""
+        flank, bore, holes, on_flank, radius = self.places
+        found = self.coefficients.disc_matrix(flank, bore, holes, on_flank, radius, self.loaded, among=True)
+        place = np.arange(found.shape[1])
+        found[:, place, place] += self.diagonal
+        return self.unit * found if self.unit != 1.0 else found
+
+    @property
+    def diagonal(self) -> FloatArray:
+        """What is added of each loaded contact alone."""
+        own = self.own.pin, self.own.outer, self.own.hole + self.behind
+        return np.repeat(own, [some.shape[1] for some in self.loaded])
+
+    @property
+    def on_race(self) -> FloatArray:
+        """What rollers take on the races by each other's loads there, shape (positions, rollers, rollers)."""
+        some = self.loaded[1]
+        return np.asarray(self.unit * self.race[some[:, :, None], some[:, None, :]])
+
+    @property
+    def across_roller(self) -> float:
+        """What a roller yields at one of its contacts under the load of the other."""
+        return self.unit * float(self.coefficients.roller[0, 1])
+
+    def taken(self, load: FloatArray) -> FloatArray:
+        """What all pins, rollers in the bores and holes take by the loads of the chosen ones, shape (positions, n)."""
+        flank, bore, holes, on_flank, radius = self.places
+        matrix = self.coefficients.disc_matrix(flank, bore, holes, on_flank, radius, self.loaded)
+        found = np.matmul(matrix, load[..., None])[..., 0]
+        first = np.cumsum((0, flank.shape[1], bore.shape[1]))
+        chosen = np.concatenate([at + some for at, some in zip(first, self.loaded, strict=True)], axis=1)
+        found[np.arange(found.shape[0])[:, None], chosen] += self.diagonal * load
+        return np.asarray(self.unit * found)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -242,28 +310,18 @@ class CoupledCompliance:
             (near.pin, near.outer, self.hole_law, near.inner), self.outer_radius, self.hole_radius, self.inner_radius
         )
 
-    def body_flexibility(
-        self, places: tuple[Any, ...], loaded: Sequence[NDArray[np.intp]]
-    ) -> list[tuple[FloatArray, FloatArray, float]]:
-        """Return the body parts of approaches by loads and, of solid bodies in slices, of tilts by moments at half the width.
+    def body_flexibility(self, places: tuple[Any, ...], loaded: Sequence[NDArray[np.intp]]) -> list[BodyFlexibility]:
+        """Return what the bodies of a disc yield of approaches by loads and, of solid bodies in slices, of tilts by moments.
 
-        Each is the matrix of wheel pins, bores and holes by the loads of some of them, shape (positions, contacts, loaded), that
-        between the rollers on the races, and what a roller yields at one contact under the load of the other, mm/N.
+        `places` are those that `InfluenceCoefficients.disc_matrix` takes, `loaded` the wheel pins, rollers and holes that carry.
         """
-        parts = [(self.coefficients, self.own, self.race, self.hole_spring, 1.0)]
-        tilting, own = self.coefficients.tilting, self.own.tilting
+        whole = self.coefficients
+        found = [BodyFlexibility(whole, self.own, self.race, self.hole_spring, 1.0, places, tuple(loaded))]
+        tilting, own = whole.tilting, self.own.tilting
         if self.race_tilting is not None and tilting is not None and own is not None:
             # What a pin stands on behind its contact is rigid against moments.
-            parts.append((tilting, own, self.race_tilting, 0.0, (0.5 * self.coefficients.thickness) ** 2))
-        first = np.cumsum((0, *(each.shape[1] for each in places[:2])))
-        chosen = np.concatenate([at + some for at, some in zip(first, loaded, strict=True)], axis=1)
-        found = []
-        for body, diagonal, race, spring, unit in parts:
-            flank, bore, holes, on_flank, radius = places
-            matrix = body.disc_matrix(flank, bore, holes, on_flank, radius, loaded)
-            each = np.repeat((diagonal.pin, diagonal.outer, diagonal.hole + spring), [some.shape[1] for some in loaded])
-            matrix[np.arange(chosen.shape[0])[:, None], chosen, np.arange(chosen.shape[1])] += each
-            found.append((unit * matrix, unit * race, unit * float(body.roller[0, 1])))
+            unit = (0.5 * whole.thickness) ** 2
+            found.append(BodyFlexibility(tilting, own, self.race_tilting, 0.0, unit, places, tuple(loaded)))
         return found
 
     def body_matrix(self, bodies: UndeformedBodies, loaded: Sequence[NDArray[np.intp]]) -> FloatArray:
@@ -300,7 +358,8 @@ class CoupledCompliance:
             modulus = getattr(at_hole, "contact", at_hole).contact_modulus
             kinds = replace(laws.kinds, holes=replace(laws.kinds.holes, contact_modulus=modulus))
             return pressures_in_slices(response, kinds, place, has_ends=laws.has_ends, rigid_shaft_pins=rigid)
-        near = np.stack(list(response.warm_start))
+        assert response.deformation is not None
+        near = response.deformation[:, 0]
         pins, rollers = response.pin_load.shape[1], self.outer_radius.size
         inner, _ = laws.inner.approach_at_load(response.rollers.inner_load, self.inner_radius)
         hole, _ = laws.hole.approach_at_load(response.hole_load, self.hole_radius)

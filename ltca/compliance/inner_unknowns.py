@@ -44,6 +44,8 @@ class Following:
         u, mm.
     by_pose, approach_by_pose, shifts_by_pose : array
         Derivatives by the pose.
+    columns : tuple of tuple of int
+        Coordinates by which `by_pose` has the derivatives of the rollers of each disc; empty for all.
     """
 
     pose: FloatArray
@@ -54,6 +56,7 @@ class Following:
     by_pose: FloatArray | None
     approach_by_pose: FloatArray | None
     shifts_by_pose: ComplexArray | None
+    columns: tuple[tuple[int, ...], ...] = ()
 
     @property
     def kept(self) -> Following:
@@ -66,7 +69,11 @@ class Following:
         if self.by_pose is None:
             return place, lean, approach, shifts
         moved = (pose - self.pose)[:, None, :, None]
-        change = np.matmul(self.by_pose, moved)[..., 0]
+        if self.columns:
+            rollers = zip(np.split(self.by_pose, len(self.columns), axis=1), self.columns, strict=True)
+            change = np.concatenate([np.matmul(part, moved[:, :, own])[..., 0] for part, own in rollers], axis=1)
+        else:
+            change = np.matmul(self.by_pose, moved)[..., 0]
         place = place + change[..., 0]
         if change.shape[-1] > 1:
             lean = lean + change[..., 1]

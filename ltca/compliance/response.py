@@ -133,6 +133,9 @@ class DiscResponse:
         Force that contacts, or displacements of pins, which have not settled amount to, N; None where all have.
     inner : Inner or None
         Inner unknowns of the one system of all contacts (`ltca.mechanics.contacts`).
+    deformation : array, shape (positions, components, contacts), or None
+        Of contacts that bodies couple, what their own laws take of the approaches and, in slices, of the tilts at half the
+        thickness of the disc, mm: wheel pins, rollers in the bores, holes, rollers on the races.
     """
 
     force: FloatArray
@@ -153,6 +156,7 @@ class DiscResponse:
     leaning_holes: LeaningPairs | None = None
     left: FloatArray | None = None
     inner: Inner | None = None
+    deformation: FloatArray | None = None
 
     @property
     def kept(self) -> DiscResponse:

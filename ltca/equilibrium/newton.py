@@ -96,11 +96,17 @@ class Search:
         return self.lever[rows] if self.lever.ndim > 1 else self.lever
 
     def evaluate(
-        self, rows: NDArray[np.intp], pose: FloatArray, start: Start | None, *, roughly: bool = False
+        self,
+        rows: NDArray[np.intp],
+        pose: FloatArray,
+        start: Start | None,
+        *,
+        roughly: bool = False,
+        everything: bool = False,
     ) -> Response | Evaluation:
-        """Return the contacts of some positions at poses; `roughly` as for `Reducer.respond`."""
+        """Return the contacts of some positions at poses; `roughly` and `everything` as for `Reducer.evaluate`."""
         model = self.model if rows.size == self.angle.size else self.model.take(rows)
-        return model.evaluate(self.angle[rows], pose, start, roughly=roughly)
+        return model.evaluate(self.angle[rows], pose, start, roughly=roughly, everything=everything)
 
     def scaled(self, rows: NDArray[np.intp], response: Response | Evaluation) -> tuple[FloatArray, FloatArray]:
         """Return the scaled gradient and the scaled tangent (forces and lengths only)."""
@@ -145,6 +151,17 @@ class Search:
             self.history.append(residual.copy())
             # A residual that is no number does not balance either.
             balanced = residual[active] <= self.accepted(active, response)
+            looked_at = np.nonzero(balanced)[0]
+            if isinstance(response, Evaluation) and looked_at.size:
+                overlooked = looked_at[take_positions(response, looked_at).overlooks]
+                if overlooked.size:
+                    mine = active[overlooked]
+                    begin = take_positions(response.start, overlooked)
+                    again = self.evaluate(mine, self.pose[mine], begin, roughly=True, everything=True)
+                    response = put_positions(response, overlooked, again)
+                    gradient, tangent = self.scaled(active, response)
+                    residual[active] = _left_over(gradient, response)
+                    balanced = residual[active] <= self.accepted(active, response)
             going = ~(balanced | self.slipped[active])
             if not going.all():
                 self.keep(active, response, balanced & ~self.slipped[active])

@@ -8,7 +8,7 @@ Pairs are numbered disc after disc: of n discs array axes for pairs are n times 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, fields, is_dataclass, replace
 from functools import cached_property
 from typing import Any, Protocol
@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from ltca.arrays import (
     ComplexArray,
     FloatArray,
+    Result,
     by_drive,
     has_rows,
     join_positions,
@@ -53,7 +54,7 @@ from ltca.laws.carrier import far_flange_stiffness
 from ltca.mechanics.answers import disc_response
 from ltca.mechanics.contacts import ContactSystem, Linearised
 
-POSITIONS_AT_ONCE = 256
+POSITIONS_AT_ONCE = 512
 """Positions whose contacts are found at once: few enough for the processor's cache."""
 
 
@@ -151,6 +152,11 @@ class Reducer:
             external=ExternalForce.of_drive(drive),
         )
 
+    @property
+    def _on_contacts(self) -> bool:
+        """Whether the one system of contacts answers."""
+        return self.one_system and hasattr(self.discs[0], "contact_laws")
+
     def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Reducer:
         """Return the model of some positions: itself where no two differ, neither in their drives nor in their friction."""
         if self._by_position is None:  # looked up once, and only for models that are solved
@@ -195,7 +201,7 @@ class Reducer:
             Whether contacts in slices and displacements of pins that have nearly settled will do: force and tangent are then
             those of settled ones to first order, and `Response.left` tells what is left.
         """
-        if self.one_system:
+        if self._on_contacts:
             found = self.evaluate(crank_angle, pose, start, roughly=roughly)
             return found.whole if isinstance(found, Evaluation) else found
         count, coordinates = len(self.discs), self.coordinates
@@ -293,20 +299,31 @@ class Reducer:
         return contact_stiffness
 
     def evaluate(
-        self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None, *, roughly: bool = False
+        self,
+        crank_angle: FloatArray,
+        pose: FloatArray,
+        start: Start | None = None,
+        *,
+        roughly: bool = False,
+        everything: bool = False,
     ) -> Response | Evaluation:
-        """Return what a search asks for at poses; arguments as for `respond`, which makes a whole response of it."""
-        if not self.one_system:
+        """Return what a search asks for at poses; arguments as for `respond`, which makes a whole response of it.
+
+        `everything` takes all contacts of coupled bodies as candidates to carry (`Evaluation.overlooks`).
+        """
+        if not self._on_contacts:
             return self.respond(crank_angle, pose, start, roughly=roughly)
         rows = crank_angle.size
         if rows > POSITIONS_AT_ONCE:
             blocks = np.array_split(np.arange(rows), -(-rows // POSITIONS_AT_ONCE))
             each = [
-                self.take(some).evaluate(*take_positions((crank_angle, pose, start), some), roughly=roughly)
+                self.take(some).evaluate(
+                    *take_positions((crank_angle, pose, start), some), roughly=roughly, everything=everything
+                )
                 for some in blocks
             ]
             return join_positions(each)
-        at = ContactSystem(self).respond(crank_angle, pose, start, roughly=roughly)
+        at = ContactSystem(self).respond(crank_angle, pose, start, roughly=roughly, everything=everything)
         force, tangent = at.force.copy(), at.tangent.copy()
         found = _Evaluated(self, at)
         if self.friction is not None:
@@ -316,27 +333,13 @@ class Reducer:
                 force[:, own] += self.friction.of_bearings(geometry, pose[:, own], push)
         needs_parts = self.friction is not None or (self.stage is not None and self._teeth_press)
         stiffness = self._hold(crank_angle, pose, found.parts if needs_parts else (), force, tangent)
-        origin = np.empty(rows, dtype=object)
-        origin[:] = [(found, row) for row in range(rows)]
         return Evaluation(
             force=force,
             tangent=tangent,
             contact_stiffness=stiffness,
             left=at.left,
-            start=Start(
-                parameter=np.concatenate([each.flank.parameter for each in at.discs], axis=1),
-                share=np.full(at.place.shape, 0.5),
-                warm_start=np.full((rows, len(self.discs)), None, dtype=object),
-                known=KnownPins(
-                    **{
-                        name: np.concatenate([getattr(each.flank, name) for each in at.discs], axis=1)
-                        for name in ("approach", "point", "turning")
-                    }
-                ),
-                follow=at.following(),
-                inner=at.inner,
-            ),
-            origin=origin,
+            block=np.full(rows, found, dtype=object),
+            row=np.arange(rows),
         )
 
     def crank_moments(self, crank_angle: FloatArray, pose: FloatArray, parts: Sequence[DiscResponse]) -> FloatArray:
@@ -499,6 +502,21 @@ class _Evaluated:
             parts = tuple(replace(part, ring=ring) for part in parts)
         return parts
 
+    @cached_property
+    def start(self) -> Start:
+        """Where other poses of the same positions start."""
+        at = self.at
+        flanks = [each.flank for each in at.discs]
+        known = {name: _beside([getattr(flank, name) for flank in flanks]) for name in ("approach", "point", "turning")}
+        return Start(
+            parameter=_beside([flank.parameter for flank in flanks]),
+            share=np.full(at.place.shape, 0.5),
+            warm_start=np.full((at.angle.size, len(flanks)), None, dtype=object),
+            known=KnownPins(**known),
+            follow=at.following(),
+            inner=at.inner,
+        )
+
 
 @dataclass(frozen=True, slots=True)
 class Evaluation:
@@ -508,18 +526,48 @@ class Evaluation:
     ----------
     force, tangent, contact_stiffness, left : array
         Of `Response`.
-    start : Start
-        Where other poses of the same positions start.
-    origin : array of object, shape (positions,)
-        What was evaluated, and the number of the position in it.
+    block : array of object, shape (positions,)
+        What each position was evaluated with.
+    row : array of int, shape (positions,)
+        Its number there.
     """
 
     force: FloatArray
     tangent: FloatArray
     contact_stiffness: FloatArray
     left: FloatArray
-    start: Start
-    origin: NDArray[np.object_]
+    block: NDArray[np.object_]
+    row: NDArray[np.intp]
+
+    def _gathered(self, of_block: Callable[[_Evaluated], Result]) -> Result:
+        """What blocks have, of the positions in their order."""
+        order: list[NDArray[np.intp]] = []
+        each: list[Result] = []
+        numbers = np.arange(self.row.size)
+        left = np.ones(self.row.size, dtype=bool)
+        while left.any():
+            found = self.block[np.argmax(left)]
+            mine = numbers[self.block == found]
+            left[mine] = False
+            rows = self.row[mine]
+            values = of_block(found)
+            if rows.size != found.at.angle.size or np.any(rows != np.arange(rows.size)):
+                values = take_positions(values, rows)
+            order.append(mine)
+            each.append(values)
+        if len(each) == 1:
+            return each[0]
+        return take_positions(join_positions(each), np.argsort(np.concatenate(order)))
+
+    @property
+    def overlooks(self) -> NDArray[np.bool_]:
+        """Positions where a contact was left out that is pressed together after all."""
+        return self._gathered(lambda found: found.at.leaves_out)
+
+    @property
+    def start(self) -> Start:
+        """Where other poses of the same positions start."""
+        return self._gathered(lambda found: found.start)
 
     @property
     def kept(self) -> Response:
@@ -529,29 +577,18 @@ class Evaluation:
     @property
     def whole(self) -> Response:
         """The whole response."""
-        blocks: dict[int, tuple[_Evaluated, list[int], list[int]]] = {}
-        for row, (found, own) in enumerate(self.origin):
-            _, rows, numbers = blocks.setdefault(id(found), (found, [], []))
-            rows.append(row)
-            numbers.append(own)
-        order = np.concatenate([np.array(rows, dtype=np.intp) for _, rows, _ in blocks.values()])
-        each = [
-            (take_positions(found.parts, np.array(numbers)), take_positions(found.at.shifts, np.array(numbers)))
-            for found, _, numbers in blocks.values()
-        ]
-        parts, shifts = take_positions(join_positions(each), np.argsort(order))
-        discs = len(parts)
+        parts, shifts, start = self._gathered(lambda found: (found.parts, found.at.shifts, found.start))
         return Response(
             force=self.force,
             tangent=self.tangent,
             **_contacts_of(parts),
-            warm_start=self.start.warm_start,
+            warm_start=start.warm_start,
             parts=parts,
-            shifts=None if shifts is None else shifts[:, :discs],
+            shifts=None if shifts is None else shifts[:, : len(parts)],
             ring=parts[0].ring,
-            follow=self.start.follow,
+            follow=start.follow,
             left=self.left,
-            inner=self.start.inner,
+            inner=start.inner,
             contact_stiffness=self.contact_stiffness,
         )
 

@@ -41,26 +41,16 @@ def disc_response(at: Linearised, disc: int) -> DiscResponse:
             inner_approach=np.where(free, 0.0, inner),
             outer_approach=np.where(free, np.minimum(resting, at_bore), at_bore),
         )
-    own, every = system.columns[disc], [at.at[disc][kind] for kind in range(4)]
-    chosen = np.concatenate([np.arange(part.start, part.stop) for part in every])
-    mine = at.force_map[:, :, chosen]
-    loaded = load[at.row, :, at.contacts[:, chosen]].swapaxes(1, 2)
-    force = np.einsum("bcij,bci->bj", mine, loaded)[:, own]
+    own, part = system.columns[disc], at.pressing[disc]
+    loaded = at.of_chosen(load)[:, :, at.at[disc][0].start : at.at[disc][3].stop]
+    force = np.einsum("bcij,bci->bj", part.force_map, loaded)
     friction = None
     if at.rubs:
-        both = np.concatenate((pins, holes), axis=1)
-        friction = at.rubs[disc] * both
-        if at.sticking is not None:
-            pairs = both.shape[1]
-            friction = friction + at.sticking[2][:, disc * pairs : (disc + 1) * pairs]
-            force = (
-                force
-                + np.einsum(
-                    "bpj,bp->bj",
-                    at.sticking[1][:, disc * pairs : (disc + 1) * pairs],
-                    at.sticking[2][:, disc * pairs : (disc + 1) * pairs],
-                )[:, own]
-            )
+        friction = at.rubs[disc] * np.concatenate((pins, holes), axis=1)
+        if at.sticking:
+            _, slip, held = at.sticking[disc]
+            friction = friction + held
+            force += np.einsum("bpj,bp->bj", slip, held)
     leaning: tuple[Any, ...] = (None, None)
     if each.tilts is not None:
         found = at.slices_after(disc)
@@ -82,6 +72,7 @@ def disc_response(at: Linearised, disc: int) -> DiscResponse:
         friction=friction,
         leaning_pins=leaning[0],
         leaning_holes=leaning[1],
+        deformation=at.after[:, :, kinds[0].start : kinds[3].stop] if system.coupled else None,
     )
 
 
@@ -93,7 +84,7 @@ def _approaches(at: Linearised, disc: int) -> FloatArray:
     found = overlap - at.yielding[disc][0]
     walls = np.concatenate((some[0], system.pins + some[1], system.pins + system.rollers + some[2]), axis=1)
     own = np.arange(walls.shape[1])
-    diagonal = at.bodies[disc][0][at.row, walls, own]
+    diagonal = at.bodies[disc][0].among[:, own, own]
     near = np.concatenate([at.after[:, 0, kinds[kind]][at.row, some[kind]] for kind in range(3)], axis=1)
     load = np.concatenate([at.corrected_load[:, 0, kinds[kind]][at.row, some[kind]] for kind in range(3)], axis=1)
     found[at.row, walls] = near + diagonal * load

@@ -36,6 +36,7 @@ from numpy.typing import NDArray
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance import sliced
 from ltca.compliance.contact_laws import ContactLaws
+from ltca.compliance.coupled import BodyFlexibility
 from ltca.compliance.inner_unknowns import Following, Inner
 from ltca.compliance.response import Start
 from ltca.errors import ConvergenceError
@@ -43,7 +44,7 @@ from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, X, Y
 from ltca.geometry.pair_motion import KnownPins, PairTilt, dot
 from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.line_contact import LineContactLaw
-from ltca.mechanics.displaced_pins import PinMembers
+from ltca.mechanics.displaced_pins import PinBlocks, PinMembers
 
 if TYPE_CHECKING:
     from ltca.laws.sliced_contact import SlicedContact
@@ -180,29 +181,12 @@ class ContactSystem:
         """Half the thickness of the discs, by which tilts are measured, mm, shape (…,) of one number or (positions, 1)."""
         return np.asarray(self.geometries[0].half_width, dtype=float)
 
-    def places_of(self, chosen: list[list[Indices]]) -> tuple[Indices, Indices, list[list[slice]], list[slice]]:
-        """Return numbers of chosen contacts and rollers, shape (positions, chosen), and where those of each disc and kind, and
-        the rollers of each disc, stand among them.
-        """
-        parts = [
-            first.start + some
-            for kinds, own in zip(self.of_kind, chosen, strict=True)
-            for first, some in zip(kinds, own, strict=True)
-        ]
-        rollers = np.concatenate([disc * self.rollers + own[1] for disc, own in enumerate(chosen)], axis=1)
-        ends = np.cumsum([0, *(part.shape[1] for part in parts)])
-        at = [
-            [slice(ends[4 * disc + kind], ends[4 * disc + kind + 1]) for kind in range(4)] for disc in range(self.discs)
-        ]
-        ends = np.cumsum([0, *(own[1].shape[1] for own in chosen)])
-        return np.concatenate(parts, axis=1), rollers, at, [slice(first, last) for first, last in pairwise(ends)]
-
     @cached_property
-    def every_contact(self) -> tuple[list[list[Indices]], Indices, Indices, list[list[slice]], list[slice]]:
-        """All contacts of every disc and kind as chosen ones, of one position for all, and `places_of` them."""
+    def every_contact(self) -> tuple[list[list[Indices]], list[list[slice]], list[slice], list[list[slice]]]:
+        """All contacts of every disc and kind as chosen ones, of one position for all, and `_places_of` them."""
         sizes = self.pins, self.rollers, self.holes, self.rollers
         chosen = [[np.arange(size)[None] for size in sizes] for _ in range(self.discs)]
-        return chosen, *self.places_of(chosen)
+        return chosen, *_places_of(chosen)
 
     def respond(
         self,
@@ -211,41 +195,46 @@ class ContactSystem:
         start: Start | ContactStart | None,
         *,
         roughly: bool,
+        everything: bool = False,
         by_crank: bool = False,
     ) -> Linearised:
         """Return contacts at poses, found to first order in what is left of the inner unknowns.
 
-        With `by_crank` the crank angle is a coordinate behind the pose.
+        Contacts of coupled bodies that are far from touching are left out of the linear system unless `everything` is asked for;
+        `Linearised.leaves_out` tells where one of them is pressed after all, which is looked at here unless `roughly`. With
+        `by_crank` the crank angle is a coordinate behind the pose.
         """
         state = self._begin(with_crank(pose, angle) if by_crank else pose, start)
         known = None if start is None or (not by_crank and (self.deforms or self.components > 1)) else start.known
-        for margin in (CANDIDATE_MARGIN, np.inf):
+        for margin in (np.inf,) if everything else (CANDIDATE_MARGIN, np.inf):
             at = Linearised(self, angle, pose, state, known, roughly=roughly, margin=margin, by_crank=by_crank)
-            if self.deforms and not at.settled(roughly=True):
-                # What was expected may be farther off than nothing at all.
-                anew = Linearised(
-                    self,
-                    angle,
-                    pose,
-                    state._replace(approach=None, shifts=state.shifts * 0.0 if state.shifts is not None else None),
-                    known,
-                    roughly=roughly,
-                    margin=margin,
-                    by_crank=by_crank,
-                )
-                if np.max(anew.off) < np.max(at.off):
-                    at = anew
-            history = [float(np.max(at.moved, initial=0.0))]
-            while not at.settled(roughly):
-                if len(history) > MAX_CORRECTIONS:
-                    raise ConvergenceError("deformations of contacts do not settle; largest correction in mm", history)
-                # Contacts that take turns as pins move are met half way.
-                turns = len(history) > 4 and history[-1] > 0.5 * history[-3]
-                at = at.corrected(roughly=roughly, part=0.5 if turns else 1.0)
-                history.append(float(np.max(at.moved, initial=0.0)))
-            if not at.leaves_out:
-                return at
-        raise AssertionError("all contacts are taken, none is left out")
+            at = self._settle(at, state)
+            if roughly or not at.leaves_out.any():
+                break
+        return at
+
+    def _settle(self, at: Linearised, begin: _State) -> Linearised:
+        """Correct the inner unknowns, each position for itself, until they have settled."""
+        if self.deforms and not at.settled(roughly=True).all():
+            # What was expected may be farther off than nothing at all.
+            shifts = None if begin.shifts is None else begin.shifts * 0.0
+            anew = at.again(begin._replace(approach=None, shifts=shifts))
+            better = (anew.off < at.off) & ~at.settled(roughly=True)
+            if better.all():
+                at = anew
+            elif better.any():
+                at = at.again(_mixed(at.here, anew.here, better))
+        history = [at.moved]
+        while not (settled := at.settled(at.roughly)).all():
+            if len(history) > MAX_CORRECTIONS:
+                largest = [float(np.max(moved)) for moved in history]
+                raise ConvergenceError("deformations of contacts do not settle; largest correction in mm", largest)
+            part = np.where(settled, 0.0, 1.0)
+            if len(history) > 4:  # contacts that take turns as pins move are met half way
+                part = np.where(history[-1] > 0.5 * history[-3], 0.5 * part, part)
+            at = at.corrected(part)
+            history.append(at.moved)
+        return at
 
     def _begin(self, pose: FloatArray, start: Start | ContactStart | None) -> _State:
         """Inner unknowns to start from; NaN where nothing is known."""
@@ -288,6 +277,69 @@ class _State(NamedTuple):
     near: tuple[FloatArray, ...]
 
 
+def _mixed(first: _State, second: _State, rows: NDArray[np.bool_]) -> _State:
+    """Inner unknowns of the first but for some positions, which have those of the second."""
+
+    def of_both(mine: Any, other: Any) -> Any:
+        if mine is None or other is None:
+            return mine
+        if isinstance(mine, tuple):
+            return tuple(of_both(*each) for each in zip(mine, other, strict=True))
+        return np.where(rows.reshape(-1, *(1,) * (mine.ndim - 1)), other, mine)
+
+    return _State(*(of_both(*each) for each in zip(first, second, strict=True)))
+
+
+class _Pressing(NamedTuple):
+    """What chosen contacts press coordinates with.
+
+    Attributes
+    ----------
+    g : array, shape (positions, components, chosen, coordinates)
+        ∂d/∂q.
+    force_map : array, of the same shape
+        The same with friction along the tangents.
+    load : array, shape (positions, components, chosen)
+        f.
+    stiffness : array, shape (1 or 3, positions, chosen)
+        K.
+    presses : tuple of array, shape (positions, components, rollers)
+        How places and leans of rollers press their contacts in bores and on races.
+    unbalanced : array, shape (positions, rollers, components)
+        What presses the rollers' places.
+    placed : array, shape (positions, rollers, components, coordinates)
+        How that follows the coordinates where contacts do not.
+    own_bend : array, shape (positions, rollers)
+        How it follows the places likewise.
+    force, tangent : array, shapes (positions, coordinates) and (positions, coordinates, coordinates)
+        What presses the coordinates, and how that follows them where loads do not.
+    """
+
+    g: FloatArray
+    force_map: FloatArray
+    load: FloatArray
+    stiffness: FloatArray
+    presses: tuple[FloatArray, FloatArray]
+    unbalanced: FloatArray
+    placed: FloatArray
+    own_bend: FloatArray
+    force: FloatArray
+    tangent: FloatArray
+
+
+class _Eliminated(NamedTuple):
+    """Force and tangent of the pose with everything else eliminated, corrections of places and deformations, and how these follow
+    the pose.
+    """
+
+    force: FloatArray
+    tangent: FloatArray
+    dx: FloatArray
+    dx_by_pose: FloatArray
+    de: FloatArray
+    de_by_pose: FloatArray
+
+
 class ContactStart(NamedTuple):
     """Inner unknowns of a neighbouring position, to start from."""
 
@@ -315,8 +367,8 @@ class Linearised:
         Pins that cannot touch are left out by.
     roughly : bool
         Whether laws that iterate may come as close as a search needs.
-    places : list of _Disc, optional
-        Places of the contacts, where only the inner unknowns have changed.
+    before : Linearised, optional
+        The same contacts at the same places, where only the inner unknowns have changed.
     margin : float
         Gap by the largest overlap within which open contacts of coupled bodies are taken.
     by_crank : bool
@@ -338,32 +390,34 @@ class Linearised:
         known: KnownPins | None,
         *,
         roughly: bool,
-        places: list[_Disc] | None = None,
+        before: Linearised | None = None,
         margin: float = CANDIDATE_MARGIN,
         by_crank: bool = False,
     ) -> None:
+        self.before, self.roughly = before, roughly
         self.system, self.angle, self.pose, self.known, self.margin = system, angle, pose, known, margin
         self.by_crank, self.size = by_crank, pose.shape[1] + by_crank
+        self.columns = [np.append(own, self.size - 1) for own in system.columns] if by_crank else system.columns
         self.row = np.arange(angle.size)[:, None]
         self.half = system.half
         self.off = np.zeros(angle.size)
         self._moved_slices: dict[int, list[SlicedContact]] = {}
-        self.held = places is not None
-        self.discs = self._placed(state) if places is None else places
+        self.held = before is not None
+        self.discs: list[_Disc] = self._placed(state) if before is None else before.discs
         self._approach(state)
         if system.components == 1:
             self._carry_in_plane()
         else:
             self._carry(state, roughly)
-        self.sticking: tuple[FloatArray, FloatArray, FloatArray] | None = None
+        self.sticking: list[tuple[FloatArray, FloatArray, FloatArray]] = []
         self.rubs: list[FloatArray] = []
-        self.chosen: list[list[Indices]] = []
+        self.de_by_pose: FloatArray | None = None
+        self._choose()
         if system.plain:
-            self.chosen, self.contacts, self.rollers, self.at, self.of_rollers = system.every_contact
             self._linearise_plain()
         else:
-            self._choose()
             self._linearise()
+        self.before = None
 
     def _placed(self, state: _State) -> list[_Disc]:
         """Places of the contacts of every disc with the pins displaced as the state says."""
@@ -445,7 +499,7 @@ class Linearised:
                 e = e.copy()
                 e[:, 0] *= np.where(e[:, 0] > 0.0, 0.5, 1.0)
         else:
-            e = np.where(self._within()[:, None], e, self.overlap)
+            e = np.where((self._within() | (e[:, 0] > 0.0))[:, None], e, self.overlap)
         if not system.coupled and system.deforms:  # nothing but the two contacts of a roller deforms
             e = e.copy()
             for _, bores, _, races in system.of_kind:
@@ -505,62 +559,151 @@ class Linearised:
 
     def _choose(self) -> None:
         """Choose the contacts of the linear system: those that carry, and of coupled bodies open ones that may."""
-        system, carries = self.system, np.any(self.stiffness != 0.0, axis=0) | (self.load[:, 0] > 0.0)
-        if system.deforms:
-            carries = carries | self._within()
+        system = self.system
+        self.every = not system.coupled
+        if self.every:
+            self.chosen, self.at, self.of_rollers, self.local = system.every_contact
+            self.count = system.contacts
+            return
+        carries = np.any(self.stiffness != 0.0, axis=0) | (self.load[:, 0] > 0.0) | self._within()
+        self.chosen = []
         for disc in range(system.discs):
             pins, bores, holes, races = (carries[:, kind] for kind in system.of_kind[disc])
             rollers = _padded(bores | races)
             self.chosen.append([_padded(pins), rollers, _padded(holes), rollers])
-        self.contacts, self.rollers, self.at, self.of_rollers = system.places_of(self.chosen)
+        parts = [
+            first.start + some
+            for kinds, own in zip(system.of_kind, self.chosen, strict=True)
+            for first, some in zip(kinds, own, strict=True)
+        ]
+        self.contacts: Indices = np.concatenate(parts, axis=1)
+        self.rollers: Indices = np.concatenate(
+            [disc * system.rollers + own[1] for disc, own in enumerate(self.chosen)], axis=1
+        )
+        self.count = self.contacts.shape[1]
+        self.at, self.of_rollers, self.local = _places_of(self.chosen)
 
-    def _gradients(self) -> tuple[FloatArray, FloatArray]:
-        """∂d/∂q of the chosen contacts, shape (positions, components, chosen, coordinates), and how the tangents of the chosen
-        rollers in the bores turn with the pose, Im(n̄ ∂), shape (positions, rollers, coordinates).
+    def of_chosen(self, values: FloatArray) -> FloatArray:
+        """Values of all contacts, shape (…, positions, components, contacts), of the chosen ones."""
+        if self.every:
+            return values
+        return np.asarray(np.take_along_axis(values, self.contacts[:, None], axis=-1))
+
+    def of_all(self, values: FloatArray) -> FloatArray:
+        """Values of the chosen contacts, shape (positions, components, chosen, …), of all: zero of the others."""
+        if self.every:
+            return values
+        found = np.zeros((*values.shape[:2], self.system.contacts, *values.shape[3:]))
+        found[self.row, :, self.contacts] = values.swapaxes(1, 2)
+        return found
+
+    def of_all_rollers(self, values: FloatArray) -> FloatArray:
+        """Values of the chosen rollers, shape (positions, rollers, …), of all: zero of the others."""
+        if self.every:
+            return values
+        found = np.zeros((*self.place.shape, *values.shape[2:]))
+        found[self.row, self.rollers] = values
+        return found
+
+    def picked(self, values: NDArray[Any], some: Indices) -> NDArray[Any]:
+        """Values by contact of a kind, shape (positions, contacts, …), of the chosen ones."""
+        return values if self.every else values[self.row, some]
+
+    def _gradients(self, disc: int) -> tuple[FloatArray, FloatArray]:
+        """∂d/∂q of the chosen contacts of a disc by its own coordinates, shape (positions, components, chosen, coordinates), and
+        how the tangents of its rollers in the bores turn with the pose, Im(n̄ ∂), shape (positions, rollers, coordinates).
         """
-        system, row = self.system, self.row
-        rows, size = self.pose.shape[0], self.size
-        g = np.zeros((rows, system.components, self.contacts.shape[1], size))
-        across = np.zeros((rows, self.rollers.shape[1], size))
-        for disc, (at, own) in enumerate(zip(self.discs, system.columns, strict=True)):
-            pins, bores, holes, races = self.at[disc]
-            some = self.chosen[disc]
-            every = slice(None) if system.discs == 1 else np.append(own, size - 1) if self.by_crank else own
-            by_approach = g[:, 0]
-            by_approach[:, pins, every] = self._with_crank(at, at.flank.gradient[row, some[0]])
-            by_approach[:, holes, every] = self._with_crank(at, at.holes.gradient[row, some[2]])
-            moved = self._bores_moved(at)
-            moved = moved[:, :, 0] + 1j * moved[:, :, 1]
-            moved = moved if moved.shape[1] == 1 else moved[row, some[1] // (system.rollers // moved.shape[1])]
-            turned = at.outward[row, some[1]].conjugate()[..., None] * moved
-            by_approach[:, bores, every] = -turned.real
-            across[:, self.of_rollers[disc], every] = turned.imag
-            if at.tilts is None:
-                continue
-            half = self.half[..., None] if self.half.ndim else self.half
+        system, at, some, row = self.system, self.discs[disc], self.chosen[disc], self.row
+        pins, bores, holes, races = self.local[disc]
+        size = self.columns[disc].size
+        g = np.zeros((self.angle.size, system.components, races.stop, size))
+        by_approach = g[:, 0]
+        by_approach[:, pins] = self._with_crank(at, self.picked(at.flank.gradient, some[0]))
+        by_approach[:, holes] = self._with_crank(at, self.picked(at.holes.gradient, some[2]))
+        moved = self._bores_moved(at)
+        moved = moved[:, :, 0] + 1j * moved[:, :, 1]
+        if moved.shape[1] > 1:
+            moved = moved[row, some[1] // (system.rollers // moved.shape[1])]
+        turned = self.picked(at.outward, some[1]).conjugate()[..., None] * moved
+        np.negative(turned.real, out=by_approach[:, bores])
+        if at.tilts is not None:
+            half = self._thick
             by_tilt = g[:, 1]
-            by_tilt[:, pins, every] = half * self._with_crank(at, at.tilts[0].gradient[row, some[0]])
-            by_tilt[:, holes, every] = half * self._with_crank(at, at.tilts[1].gradient[row, some[2]])
-            ray = at.rays.direction[row, some[1]]
+            by_tilt[:, pins] = half * self._with_crank(at, self.picked(at.tilts[0].gradient, some[0]))
+            by_tilt[:, holes] = half * self._with_crank(at, self.picked(at.tilts[1].gradient, some[2]))
+            ray = self.picked(at.rays.direction, some[1])
             both = half * np.stack((ray.real, ray.imag), axis=-1)
-            lean = own[system.one.lean_place]
-            by_tilt[:, bores, lean] = -both
+            by_tilt[:, bores, system.one.lean_place] = -both
             crank_of = some[1] // (system.rollers // at.bores.arm.shape[1])
             for crank in range(system.one.cranks):
-                first = own[system.one.crank_lean(crank)]
+                first = system.one.crank_lean(crank)
                 by_tilt[:, races, first : first + 2] = both * (crank_of == crank)[..., None]
             if self.by_crank:  # rays turn with the cages
-                turned = 1j * at.geometry.placement.cage_speed * ray
-                disc_lean = at.geometry.lean(at.pose)
+                turning = 1j * system.cage_speed * ray
                 journals = at.bores.each(at.geometry.journal_leans(at.pose), system.rollers)
-                journal = np.broadcast_to(journals, at.total.shape)[row, some[1]]
-                by_tilt[:, bores, -1] = -self.half * dot(turned, disc_lean)
-                by_tilt[:, races, -1] = self.half * dot(turned, journal)
-        return g, across
+                journal = self.picked(np.broadcast_to(journals, at.total.shape), some[1])
+                by_tilt[:, bores, -1] = -self.half * dot(turning, at.geometry.lean(at.pose))
+                by_tilt[:, races, -1] = self.half * dot(turning, journal)
+        return g, turned.imag
 
     def _with_crank(self, at: _Disc, gradient: FloatArray) -> FloatArray:
         """Derivatives of pins by the pose of a disc, and by the crank angle where that is a coordinate."""
         return np.concatenate((gradient, np.matmul(gradient, at.nominal)), axis=-1) if self.by_crank else gradient
+
+    def _bores_moved(self, at: _Disc) -> FloatArray:
+        """Displacements of the bores, x and y, by the pose of a disc, and by the crank angle where that is a coordinate, shape
+        (positions, cranks, 2, coordinates).
+        """
+        by_pose = at.bores.gradient
+        found = np.empty((*by_pose.shape[:2], 2, by_pose.shape[2] + self.by_crank))
+        found[:, :, 0, : by_pose.shape[2]], found[:, :, 1, : by_pose.shape[2]] = by_pose.real, by_pose.imag
+        if self.by_crank:
+            found[..., -1] = at.seen_from_cages
+        return found
+
+    def _pressing(self, disc: int) -> _Pressing:
+        """What the chosen contacts of a disc press its own coordinates with, rollers where they stand."""
+        at, some, (_, bores, _, races) = self.discs[disc], self.chosen[disc], self.local[disc]
+        own = slice(self.at[disc][0].start, self.at[disc][3].stop)
+        g, across = self._gradients(disc)
+        load, stiffness = self.chosen_load[:, :, own], self.chosen_stiffness[:, :, own]
+        out, n = self.picked(at.outward, some[1]), self.picked(at.rays.direction, some[1])
+        slant = (out.conjugate() * n).imag
+        pushed = load[:, 0, bores]
+        bend = np.zeros(pushed.shape) if self.by_crank else pushed / self.picked(at.length, some[1])
+        rows, components, _, size = g.shape
+        # Directions in which a roller's own place and lean press its two contacts.
+        outward, inward = np.ones((2, rows, components, out.shape[1]))
+        np.negative(dot(out, n), out=outward[:, 0])
+        inward[:, 1:] = -1.0
+        placed = np.zeros((rows, out.shape[1], components, size))
+        np.multiply((bend * slant)[..., None], across, out=placed[:, :, 0])
+        tangent = self._bends(disc)
+        tangent += np.matmul(across.swapaxes(1, 2), bend[..., None] * across)
+        if self.by_crank:
+            # Forces of the bearings turn with the cages, which the stiffness of rollers on turning rays counts.
+            turned = np.matmul((self.system.cage_speed * pushed)[:, None], across[..., :-1])[:, 0]
+            tangent[:, :-1, -1] -= turned
+            tangent[:, -1, :-1] -= turned
+        found = _Pressing(
+            g=g,
+            force_map=self._rub(disc, g),
+            load=load,
+            stiffness=stiffness,
+            presses=(outward, inward),
+            unbalanced=(outward * load[:, :, bores] + inward * load[:, :, races]).swapaxes(1, 2),
+            placed=placed,
+            own_bend=bend * slant**2,
+            force=np.zeros((rows, size)),
+            tangent=tangent,
+        )
+        flat = found.force_map.reshape(rows, -1, size).swapaxes(1, 2)
+        found.force[:] = np.matmul(flat, load.reshape(rows, -1, 1))[..., 0]
+        if self.sticking:
+            by_slip, slip, held = self.sticking[disc]
+            found.force[:] += np.einsum("bpj,bp->bj", slip, held)
+            tangent += np.matmul(slip.swapaxes(1, 2), by_slip[..., None] * slip)
+        return found
 
     def _linearise_plain(self) -> None:
         """Force and tangent where nothing deforms but the contacts, in the plane: each roller is condensed by itself.
@@ -569,12 +712,12 @@ class Linearised:
         turns by its place as s (n across the ray), a roller yields along its ray with k_i + c² k_o + F s²/l. The rollers of a
         crank are one spring then between bore and race, Σ a n nᵀ + b t tᵀ + m (n tᵀ + t nᵀ).
         """
-        system, (rows, size) = self.system, (self.pose.shape[0], self.size)
+        system, rows, size = self.system, self.pose.shape[0], self.size
         load, stiffness = self.load[:, 0], self.stiffness[0]
-        self.force, self.tangent = np.zeros((rows, size)), self._bends()
+        self.by_own: list[FloatArray] = []
+        self.force, self.tangent = np.zeros((rows, size)), np.zeros((rows, size, size))
         self.dx = np.zeros((rows, system.discs * system.rollers, 1))
-        self.dx_by_pose = np.zeros((*self.dx.shape, size))
-        for disc, (at, own) in enumerate(zip(self.discs, system.columns, strict=True)):
+        for disc, (at, own) in enumerate(zip(self.discs, self.columns, strict=True)):
             pins, bores, holes, races = system.of_kind[disc]
             n, carried, k_bore, k_race = at.outward, load[:, bores], stiffness[:, bores], stiffness[:, races]
             held = k_bore * at.cosine
@@ -607,40 +750,28 @@ class Linearised:
             pushes = -pushes.reshape(rows, -1)
             force = np.matmul(back, np.concatenate((load[:, pins], load[:, holes], pushes), axis=1)[..., None])[..., 0]
             tangent = np.matmul(back, pressed)
-            if (
-                self.by_crank
-            ):  # forces of the bearings turn with the cages, which the stiffness of rollers on turning rays counts
+            if self.by_crank:
+                # Forces of the bearings turn with the cages, which the stiffness of rollers on turning rays counts.
                 turned = system.cage_speed * (pushes.view(complex) * -1j).view(float)
                 turned = np.matmul(turned[:, None], of_bores[..., :-1])[:, 0]
                 tangent[:, :-1, -1] -= turned
                 tangent[:, -1, :-1] -= turned
-            of_rollers = slice(disc * system.rollers, (disc + 1) * system.rollers)
-            followed = np.matmul(-follow.view(float).reshape(rows, cranks, -1, 2), moved).reshape(
-                rows, system.rollers, -1
-            )
-            if system.discs > 1:
-                every = np.append(own, size - 1) if self.by_crank else own
-                self.force[:, every] += force
-                self.tangent[:, every[:, None], every] += tangent
-                self.dx_by_pose[:, of_rollers, 0, every] = followed
             else:
-                self.force += force
-                self.tangent += tangent
-                self.dx_by_pose[:, :, 0] = followed
-            self.dx[:, of_rollers, 0] = -step
-        self.de_by_pose = None
+                tangent += self._bends(disc)
+            self.by_own.append(-np.matmul(follow, moved).reshape(rows, system.rollers, 1, -1))
+            if system.discs > 1:
+                self.force[:, own] += force
+                self.tangent[:, own[:, None], own] += tangent
+            else:
+                self.force, self.tangent = force, tangent
+            self.dx[:, disc * system.rollers : (disc + 1) * system.rollers, 0] = -step
         self.moved = np.abs(self.dx[..., 0]).max(axis=1, initial=0.0)
 
-    def _bores_moved(self, at: _Disc) -> FloatArray:
-        """Displacements of the bores, x and y, by the pose of a disc, and by the crank angle where that is a coordinate, shape
-        (positions, cranks, 2, coordinates).
-        """
-        by_pose = at.bores.gradient
-        found = np.empty((*by_pose.shape[:2], 2, by_pose.shape[2] + self.by_crank))
-        found[:, :, 0, : by_pose.shape[2]], found[:, :, 1, : by_pose.shape[2]] = by_pose.real, by_pose.imag
-        if self.by_crank:
-            found[..., -1] = at.seen_from_cages
-        return found
+    @cached_property
+    def pressing(self) -> list[_Pressing]:
+        """What contacts of each disc press its coordinates with."""
+        self.chosen_load, self.chosen_stiffness = self.load, self.stiffness
+        return [self._pressing(disc) for disc in range(self.system.discs)]
 
     @cached_property
     def de(self) -> FloatArray:
@@ -654,12 +785,12 @@ class Linearised:
     @cached_property
     def change(self) -> FloatArray:
         """Corrections of their loads, N."""
-        return self.stiffness[0][:, None] * self.de
+        return np.asarray(self.stiffness[0][:, None] * self.de)
 
     @cached_property
     def left(self) -> FloatArray:
         """Force that the second order may amount to, N, shape (positions,)."""
-        near = self.deformation[self.row, :, self.contacts].swapaxes(1, 2)
+        near = self.of_chosen(self.deformation)
         deep = np.abs(near).sum(axis=1) + 1e-300
         moved = np.abs(self.de).sum(axis=1)
         error = np.abs(self.change).sum(axis=1) * np.minimum(1.0, moved / deep)
@@ -667,142 +798,194 @@ class Linearised:
 
     def _linearise(self) -> None:
         """Eliminate deformations, displacements of pins and places of rollers."""
-        system, row = self.system, self.row
-        rows, size = self.pose.shape[0], self.size
-        g, across = self._gradients()
-        load = self.load[row, :, self.contacts].swapaxes(1, 2)
-        stiffness = self.stiffness[:, row, self.contacts]
-        force_map = self.force_map = self._rub(g)
-        out, n = self._of_rollers("outward"), self._rays()
-        cosine, slant = dot(out, n), (out.conjugate() * n).imag
-        bend = self._picked(self.load[:, 0], "bores") / self._of_rollers("length")
-        if self.by_crank:
-            bend = np.zeros(bend.shape)
-        components, rollers = system.components, self.rollers.shape[1]
-        self.each = components * self.contacts.shape[1]
-        tangent = self._bends()
-        tangent += np.matmul(across.swapaxes(1, 2), bend[..., None] * across)
-        if (
-            self.by_crank
-        ):  # forces of the bearings turn with the cages, which the stiffness of rollers on turning rays counts
-            pushed = self._picked(self.load[:, 0], "bores") * system.cage_speed
-            turned = np.matmul(pushed[:, None], across[..., :-1])[:, 0]
-            tangent[:, :-1, -1] -= turned
-            tangent[:, -1, :-1] -= turned
-        # Directions in which a roller's own place and lean press its two contacts.
-        outward, inward = np.ones((2, rows, components, rollers))
-        outward[:, 0], inward[:, 1:] = -cosine, -1.0
-        bores, races = self._positions(1), self._positions(3)
-        unbalanced = (outward * load[:, :, bores] + inward * load[:, :, races]).swapaxes(1, 2)
-        placed = np.zeros((rows, rollers, components, size))
-        placed[:, :, 0] = (bend * slant)[..., None] * across
-        own_bend = bend * slant**2
-        force = np.matmul(force_map.reshape(rows, self.each, size).swapaxes(1, 2), load.reshape(rows, self.each, 1))[
-            ..., 0
-        ]
-        if self.sticking is not None:
-            by_slip, slip, held = self.sticking
-            force += np.einsum("bpj,bp->bj", slip, held)
-            tangent += np.matmul(slip.swapaxes(1, 2), by_slip[..., None] * slip)
-        if not system.deforms:
-            pressed = _pressed(stiffness, g)
-            tangent += np.matmul(
-                force_map.reshape(rows, self.each, size).swapaxes(1, 2), pressed.reshape(rows, self.each, size)
-            )
-            of_bores, of_races = stiffness[..., bores], stiffness[..., races]
-            placed += (outward[..., None] * pressed[:, :, bores] + inward[..., None] * pressed[:, :, races]).swapaxes(
-                1, 2
-            )
-            own = _own_stiffness(of_bores, outward) + _own_stiffness(of_races, inward)
-            own[:, :, 0, 0] += own_bend
-            _hold_turning(own)
-            solved = _solved_blocks(own, np.concatenate((placed, unbalanced[..., None]), axis=-1))
-            back = placed.reshape(rows, rollers * components, size).swapaxes(1, 2)
-            flat = solved.reshape(rows, rollers * components, size + 1)
-            tangent -= np.matmul(back, flat[..., :-1])
-            force -= np.matmul(back, flat[..., -1:])[..., 0]
-            self.dx, self.dx_by_pose = self._bounded(-solved[..., -1]), -solved[..., :-1]
-            self.de = np.zeros(load.shape)
-            self.de[:, :, bores] = outward * self.dx.swapaxes(1, 2)
-            self.de[:, :, races] = inward * self.dx.swapaxes(1, 2)
-            self.de_by_pose = None
+        system = self.system
+        self.chosen_load = self.of_chosen(self.load)
+        self.chosen_stiffness = self.of_chosen(self.stiffness.swapaxes(0, 1)).swapaxes(0, 1)
+        self.pressing = [self._pressing(disc) for disc in range(system.discs)]
+        if system.coupled:
+            self._linearise_coupled()
         else:
-            whole, left = self._flexibility(load)
-            self.off_by = np.zeros(self.load.shape)
-            self.off_by[row, :, self.contacts] = left.swapaxes(1, 2)
-            near, wanted = self.deformation[row, 0, self.contacts], np.abs(left).sum(axis=1)
-            expected = near - left[:, 0]
-            stiff = stiffness[0][:, bores] + stiffness[0][:, races]
-            # An open roller stands in the middle of its play.
-            free, middle = stiff <= 0.0, 0.5 * (expected[:, bores] + expected[:, races])
-            both = 0.5 * np.abs(left[:, 0, bores] + left[:, 0, races])
-            for places in (bores, races):
-                expected[:, places] = np.where(free, middle, expected[:, places])
-                wanted[:, places] = np.where(free, both, wanted[:, places])
-            matters = (stiffness[0] > 0.0) | (expected > 0.0)
-            self.off = np.max(wanted * matters, axis=1, initial=0.0)
-            apart = np.abs(unbalanced).sum(axis=-1) / np.where(stiff > 0.0, stiff, np.inf)
-            self.off = np.maximum(self.off, np.max(apart, axis=1, initial=0.0))
-            given = (
-                g,
-                force_map,
-                stiffness,
-                whole,
-                left,
-                (outward, inward),
-                unbalanced,
-                placed,
-                own_bend,
-                force,
-                tangent,
-            )
-            moves = self.shifts is not None and not self.held
-            force, tangent = self._eliminate(*given, turning=moves)
-            if moves and not self._is_near(stiffness):
-                # Far off loads may turn with soft pins more than these hold against.
-                force, tangent = self._eliminate(*given, turning=False)
-        self.chosen_stiffness = stiffness
-        self.force, self.tangent = force, tangent
-        change = _pressed(stiffness, self.de[..., None])[..., 0]
+            self._linearise_alone()
+        stiffness = self.chosen_stiffness
+        self.change = _pressed(stiffness, self.de[..., None])[..., 0]
         moved = np.abs(self.de).sum(axis=1)
         self.moved = np.max(np.where(stiffness[0] > 0.0, moved, 0.0), axis=1, initial=0.0)
-        self.change = change
 
-    def _eliminate(
-        self,
-        g: FloatArray,
-        force_map: FloatArray,
-        stiffness: FloatArray,
-        whole: FloatArray,
-        left: FloatArray,
-        presses: tuple[FloatArray, FloatArray],
-        unbalanced: FloatArray,
-        placed: FloatArray,
-        own_bend: FloatArray,
-        force: FloatArray,
-        tangent: FloatArray,
-        *,
-        turning: bool,
-    ) -> tuple[FloatArray, FloatArray]:
+    def _linearise_alone(self) -> None:
+        """The same where nothing deforms but the contacts: disc by disc, roller by roller."""
+        system, rows, size = self.system, self.pose.shape[0], self.size
+        force, tangent = np.zeros((rows, size)), np.zeros((rows, size, size))
+        dx, by_own = [], []
+        on_pins = None if system.model.pins is None else self._on_displaced_pins()
+        for disc, (part, own) in enumerate(zip(self.pressing, self.columns, strict=True)):
+            _, bores, _, races = self.local[disc]
+            outward, inward = part.presses
+            rollers, components, count = part.placed.shape[1:]
+            pressed = _pressed(part.stiffness, part.g)
+            if on_pins is None:
+                mine = part.force_map, pressed
+            else:  # those of pins and holes are found together
+                mine = tuple(np.concatenate((each[:, :, bores], each[:, :, races]), 2) for each in (part.g, pressed))
+            flat, along = (each.reshape(rows, -1, count) for each in mine)
+            held_by = part.tangent + np.matmul(flat.swapaxes(1, 2), along)
+            pushed = outward[..., None] * pressed[:, :, bores] + inward[..., None] * pressed[:, :, races]
+            right = np.empty((rows, rollers, components, count + 1))
+            np.add(part.placed, pushed.swapaxes(1, 2), out=right[..., :-1])
+            right[..., -1] = part.unbalanced
+            held = _own_stiffness(part.stiffness[..., bores], outward)
+            held += _own_stiffness(part.stiffness[..., races], inward)
+            held[:, :, 0, 0] += part.own_bend
+            _hold_turning(held)
+            solved = _solved_blocks(held, right)
+            back = right[..., :-1].reshape(rows, rollers * components, count).swapaxes(1, 2)
+            taken = np.matmul(back, solved.reshape(rows, rollers * components, count + 1))
+            held_by -= taken[..., :-1]
+            if system.discs == 1:
+                force, tangent = part.force - taken[..., -1], held_by
+            else:
+                force[:, own] += part.force - taken[..., -1]
+                tangent[:, own[:, None], own] += held_by
+            dx.append(-solved[..., -1])
+            by_own.append(-solved[..., :-1])
+        self.dx, self.by_own = self._bounded(np.concatenate(dx, axis=1) if len(dx) > 1 else dx[0]), by_own
+        self.de = np.zeros(self.load.shape)
+        if on_pins is not None:
+            self.de_by_pose = np.zeros((*self.load.shape, size))
+            force, tangent = force + on_pins[0], tangent + on_pins[1]
+            if not self.sticking and system.model.friction is None:
+                tangent = 0.5 * (tangent + tangent.swapaxes(1, 2))
+        for disc, part in enumerate(self.pressing):
+            pins, bores, holes, races = system.of_kind[disc]
+            outward, inward = part.presses
+            moved = self.dx[:, self.of_rollers[disc]].swapaxes(1, 2)
+            self.de[:, :, bores], self.de[:, :, races] = outward * moved, inward * moved
+            if on_pins is None or self.de_by_pose is None:
+                continue
+            own = self.columns[disc]
+            _, at_bores, _, at_races = self.local[disc]
+            by_place = by_own[disc].swapaxes(1, 2)
+            for kind, local, press in ((bores, at_bores, outward), (races, at_races, inward)):
+                self.de_by_pose[:, :, kind, own] = part.g[:, :, local] + press[..., None] * by_place
+            for kind, some in ((pins, slice(0, system.pins)), (holes, slice(system.pins, None))):
+                self.de[:, :, kind] = on_pins[2][:, :, disc, some]
+                self.de_by_pose[:, :, kind] = on_pins[3][:, :, disc, some]
+        self.force, self.tangent = force, tangent
+
+    def _on_displaced_pins(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Force and tangent that contacts on displaced pins add, and corrections of their deformations at the pose and by it."""
+        pins, shifts = self.system.model.pins, self.shifts
+        assert pins is not None
+        assert shifts is not None
+        members = self.members = PinMembers(self)
+        left = self.deformation - self.overlap
+        left += members.approaches(shifts + pins.under(members.forces(self.load)))
+        self.off_by = left
+        wanted = np.abs(left).sum(axis=1)
+        matters = (self.stiffness[0] > 0.0) | (self.deformation[:, 0] - left[:, 0] > 0.0)
+        self.off = np.max(wanted * matters, axis=1, initial=0.0)
+        for disc, part in enumerate(self.pressing):
+            _, bores, _, races = self.local[disc]
+            stiff = part.stiffness[0][:, bores] + part.stiffness[0][:, races]
+            apart = np.abs(part.unbalanced).sum(axis=-1) / np.where(stiff > 0.0, stiff, np.inf)
+            self.off = np.maximum(self.off, np.max(apart, axis=1, initial=0.0))
+        blocks, moves = PinBlocks(members), not self.held
+        found = blocks.eliminated(self.pressing, left, turning=moves)
+        if moves:
+            change = np.zeros(self.load.shape)
+            for disc, kinds in enumerate(self.system.of_kind):
+                change[:, :, kinds[0]] = found[2][:, :, disc, : self.system.pins]
+                change[:, :, kinds[2]] = found[2][:, :, disc, self.system.pins :]
+            near = self._is_near(change, self.stiffness)
+            if not near.all():
+                # Far off loads may turn with soft pins more than these hold against.
+                still = blocks.eliminated(self.pressing, left, turning=False)
+                mixed = [
+                    np.where(near.reshape(-1, *(1,) * (first.ndim - 1)), first, second)
+                    for first, second in zip(found, still, strict=True)
+                ]
+                found = mixed[0], mixed[1], mixed[2], mixed[3]
+        return found
+
+    def _assembled(self) -> _Pressing:
+        """What contacts of all discs press all coordinates with."""
+        system, rows, size = self.system, self.pose.shape[0], self.size
+        if system.discs == 1:
+            return self.pressing[0]
+        components, rollers = system.components, self.of_rollers[-1].stop
+        g, force_map = np.zeros((2, rows, components, self.count, size))
+        placed, force = np.zeros((rows, rollers, components, size)), np.zeros((rows, size))
+        tangent = np.zeros((rows, size, size))
+        for disc, (part, own) in enumerate(zip(self.pressing, self.columns, strict=True)):
+            mine = slice(self.at[disc][0].start, self.at[disc][3].stop)
+            g[:, :, mine, own], force_map[:, :, mine, own] = part.g, part.force_map
+            placed[:, self.of_rollers[disc], :, own] = part.placed
+            force[:, own] += part.force
+            tangent[:, own[:, None], own] += part.tangent
+        outward, inward = (np.concatenate([part.presses[way] for part in self.pressing], axis=2) for way in (0, 1))
+        return _Pressing(
+            g=g,
+            force_map=force_map,
+            load=self.chosen_load,
+            stiffness=self.chosen_stiffness,
+            presses=(outward, inward),
+            unbalanced=np.concatenate([part.unbalanced for part in self.pressing], axis=1),
+            placed=placed,
+            own_bend=np.concatenate([part.own_bend for part in self.pressing], axis=1),
+            force=force,
+            tangent=tangent,
+        )
+
+    def _linearise_coupled(self) -> None:
+        """The same where bodies, beams or a ring deform under the loads of all contacts."""
+        part = self._assembled()
+        stiffness, bores, races = self.chosen_stiffness, self._positions(1), self._positions(3)
+        whole, left = self._flexibility(part.load)
+        self.off_by = self.of_all(left)
+        near, wanted = self.of_chosen(self.deformation)[:, 0], np.abs(left).sum(axis=1)
+        expected = near - left[:, 0]
+        stiff = stiffness[0][:, bores] + stiffness[0][:, races]
+        # An open roller stands in the middle of its play.
+        free, middle = stiff <= 0.0, 0.5 * (expected[:, bores] + expected[:, races])
+        both = 0.5 * np.abs(left[:, 0, bores] + left[:, 0, races])
+        for places in (bores, races):
+            expected[:, places] = np.where(free, middle, expected[:, places])
+            wanted[:, places] = np.where(free, both, wanted[:, places])
+        matters = (stiffness[0] > 0.0) | (expected > 0.0)
+        self.off = np.max(wanted * matters, axis=1, initial=0.0)
+        apart = np.abs(part.unbalanced).sum(axis=-1) / np.where(stiff > 0.0, stiff, np.inf)
+        self.off = np.maximum(self.off, np.max(apart, axis=1, initial=0.0))
+        moves = self.shifts is not None and not self.held
+        found = self._eliminate(part, whole, left, turning=moves)
+        if moves and not (near := self._is_near(found.de, stiffness)).all():
+            # Far off loads may turn with soft pins more than these hold against.
+            still = self._eliminate(part, whole, left, turning=False)
+            rows = [near.reshape(-1, *(1,) * (values.ndim - 1)) for values in found]
+            found = _Eliminated(*(np.where(*each) for each in zip(rows, found, still, strict=True)))
+        self.force, self.tangent, self.dx, self.dx_by_pose, self.de, self.de_by_pose = found
+
+    def _eliminate(self, part: _Pressing, whole: FloatArray, left: FloatArray, *, turning: bool) -> _Eliminated:
         """The same where loads deform more than their own contacts: force and tangent of the pose.
 
         Without `turning` loads that turn with displaced pins count where they hold these back alone.
         """
-        system = self.system
+        system, g, force_map, stiffness = self.system, part.g, part.force_map, part.stiffness
+        presses, unbalanced, placed, own_bend = part.presses, part.unbalanced, part.placed, part.own_bend
+        force, tangent = part.force, part.tangent
         rows, components, count, size = g.shape
         rollers = unbalanced.shape[1]
         if self.shifts is not None:
             # Loads turn with displaced pins: as if contacts lay along their tangents, without loads. What they turn with the pose
             # is in the tangent already.
-            bent, along = self.members.turned_loads(size)
+            bent, along, turn = self.members.turned_loads(size)
             if not turning:
                 bent[0] = 0.0 if self.held else np.maximum(bent[0], 0.0)
-                bent[1:] = 0.0
+                bent[1:], turn = 0.0, turn * 0.0
             held = _pressed(bent, along)
             shape = rows, components * along.shape[2], size
             tangent = tangent - np.matmul(along.reshape(shape).swapaxes(1, 2), held.reshape(shape))
             g, force_map = np.concatenate((g, along), axis=2), np.concatenate((force_map, along), axis=2)
             left = np.concatenate((left, np.zeros(along.shape[:3])), axis=2)
+            turn = np.concatenate((np.zeros(part.g.shape), turn), axis=2).reshape(rows, -1, size)
             stiffness = np.concatenate((_filled(stiffness, bent.shape[0]), bent), axis=2)
         mine, count = count, g.shape[2]
         each = components * count
@@ -812,7 +995,10 @@ class Linearised:
             for component in range(components):
                 t[:, component, places, own, component] = press[:, component]
         flat = t.reshape(rows, components * count, rollers * components)
-        right = np.concatenate((g.reshape(rows, each, size), flat, left.reshape(rows, each, 1)), axis=-1)
+        moved_by = g.reshape(rows, each, size)
+        if self.shifts is not None:
+            moved_by = moved_by - np.matmul(whole.reshape(rows, each, each), turn)
+        right = np.concatenate((moved_by, flat, left.reshape(rows, each, 1)), axis=-1)
         system_matrix = _pressed(
             stiffness, whole.reshape(rows, components * count, components, count).transpose(0, 2, 3, 1)
         )
@@ -824,6 +1010,11 @@ class Linearised:
         kx = _pressed(stiffness, x).reshape(rows, components * count, right.shape[-1])
         back = np.concatenate((force_map.reshape(rows, each, size), flat), axis=-1)
         products = np.matmul(back.swapaxes(1, 2), kx)
+        if self.shifts is not None:
+            # What turns with the pose: what is taken of it by pins and by the places of rollers.
+            slipped = found.copy()
+            slipped[..., :size] -= g.reshape(rows, each, size)
+            products[:, :size] += np.matmul(turn.swapaxes(1, 2), slipped)
         tangent = tangent + products[:, :size, :size]
         force = force - products[:, :size, -1]
         block = products[:, size:, size:-1].copy()
@@ -841,20 +1032,25 @@ class Linearised:
         force = force - np.matmul(across, solved[..., -1:])[..., 0]
         of_rollers = x[..., size:-1].reshape(rows, components * count, rollers * components)
         solved = solved.reshape(rows, rollers, components, size + 1)
-        self.dx, self.dx_by_pose = self._bounded(-solved[..., -1]), -solved[..., :-1]
-        placed_by = np.concatenate((self.dx_by_pose, self.dx[..., None]), axis=-1)
+        dx, dx_by_pose = self._bounded(-solved[..., -1]), -solved[..., :-1]
+        placed_by = np.concatenate((dx_by_pose, dx[..., None]), axis=-1)
         moved = np.matmul(of_rollers, placed_by.reshape(rows, rollers * components, size + 1))
         moved = moved.reshape(rows, components, count, size + 1)
-        self.de = (moved[..., -1] - x[..., -1])[:, :, :mine]
-        self.de_by_pose = (x[..., :size] + moved[..., :-1])[:, :, :mine]
-        if self.sticking is None and system.model.friction is None:
+        if not self.sticking and system.model.friction is None:
             tangent = 0.5 * (tangent + tangent.swapaxes(1, 2))
-        return force, tangent
+        return _Eliminated(
+            force=force,
+            tangent=tangent,
+            dx=dx,
+            dx_by_pose=dx_by_pose,
+            de=(moved[..., -1] - x[..., -1])[:, :, :mine],
+            de_by_pose=(x[..., :size] + moved[..., :-1])[:, :, :mine],
+        )
 
-    def _is_near(self, stiffness: FloatArray) -> bool:
-        """Whether corrections of deformations are so small that loads follow them linearly."""
-        self.moved = np.max(np.where(stiffness[0] > 0.0, np.abs(self.de).sum(axis=1), 0.0), axis=1, initial=0.0)
-        return self.settled(roughly=True)
+    def _is_near(self, de: FloatArray, stiffness: FloatArray) -> NDArray[np.bool_]:
+        """Positions where corrections of deformations are so small that loads follow them linearly."""
+        moved = np.max(np.where(stiffness[0] > 0.0, np.abs(de).sum(axis=1), 0.0), axis=1, initial=0.0)
+        return self._are_small(moved, ROUGHLY_SETTLED)
 
     def _bounded(self, dx: FloatArray) -> FloatArray:
         """Corrections of places and leans that go no farther than half of what is pressed together: beyond, other slices meet
@@ -863,7 +1059,7 @@ class Linearised:
         if self.system.components == 1:
             return dx
         each = [0.5 * (np.abs(at.total) + self.half * np.abs(at.at_race - at.at_bore)) for at in self.discs]
-        room = np.concatenate([one[self.row, own[1]] for one, own in zip(each, self.chosen, strict=True)], axis=1)
+        room = np.concatenate([self.picked(one, own[1]) for one, own in zip(each, self.chosen, strict=True)], axis=1)
         long = np.abs(dx).max(axis=-1)
         return np.asarray(dx * np.divide(room, long, out=np.ones(long.shape), where=long > room)[..., None])
 
@@ -871,37 +1067,45 @@ class Linearised:
         """W among the chosen contacts, shape (positions, components, chosen, components, chosen), and what is left of their
         deformations, r.
         """
-        system, row = self.system, self.row
+        system = self.system
         rows, components, count = load.shape
         members = None
         if self.shifts is not None:
             members = self.members = PinMembers(self)
         entries = count + (0 if members is None else members.count)
         whole = np.zeros((rows, components, entries, components, entries))
-        self.bodies: list[list[FloatArray]] = []
-        for disc, model in enumerate(system.bodies):
-            self.bodies.append([])
-            if model.coefficients is None:
-                continue
-            places, some = self.body_places(disc), self.chosen[disc][:3]
+        self._find_bodies()
+        for disc, bodies in enumerate(self.bodies):
             pins, bores, holes, races = self.at[disc]
             among = np.r_[pins, bores, holes]
-            for component, (matrix, race, cross) in enumerate(model.body_flexibility(places, some)):
-                self.bodies[disc].append(matrix)
-                walls = np.concatenate((some[0], system.pins + some[1], system.pins + system.rollers + some[2]), axis=1)
-                whole[:, component, among[:, None], component, among] = matrix[row, walls]
-                on_race = race[some[1][:, :, None], some[1][:, None, :]]
-                whole[:, component, races, component, races] = on_race
-                first, second = np.arange(bores.start, bores.stop), np.arange(races.start, races.stop)
-                whole[:, component, first, component, second] = whole[:, component, second, component, first] = cross
-        deformed = self.deformation[row, :, self.contacts].swapaxes(1, 2)
-        left = deformed - self.overlap[row, :, self.contacts].swapaxes(1, 2)
+            first, second = np.arange(bores.start, bores.stop), np.arange(races.start, races.stop)
+            for component, body in enumerate(bodies):
+                mine = whole[:, component, :, component]
+                mine[:, among[:, None], among] = body.among
+                mine[:, races, races] = body.on_race
+                mine[:, first, second] = mine[:, second, first] = body.across_roller
+        left = self.of_chosen(self.deformation - self.overlap)
         if system.coupled:
             left += np.einsum("bcicj,bcj->bci", whole[:, :, :count, :, :count], load)
         if members is not None and self.shifts is not None and system.model.pins is not None:
             left += members.approaches(self.shifts + system.model.pins.under(members.forces(self.load)))
             members.add_flexibility(whole)
         return whole, left
+
+    def _find_bodies(self) -> None:
+        """Find what bodies yield between the chosen contacts: what was found before, where neither places nor choice changed."""
+        before = self.before
+        if before is not None and all(
+            first is second or np.array_equal(first, second)
+            for mine, theirs in zip(self.chosen, before.chosen, strict=True)
+            for first, second in zip(mine, theirs, strict=True)
+        ):
+            self.bodies: list[list[BodyFlexibility]] = before.bodies
+            return
+        self.bodies = [
+            [] if model.coefficients is None else model.body_flexibility(self.body_places(disc), self.chosen[disc][:3])
+            for disc, model in enumerate(self.system.bodies)
+        ]
 
     @property
     def onward(self) -> ContactStart:
@@ -961,106 +1165,87 @@ class Linearised:
         on_flank = at.geometry.profile.flank(at.flank.parameter)
         return at.flank.parameter, in_bore, in_hole, on_flank, float(at.geometry.placement.bore_radius)
 
-    @cached_property
-    def force_map(self) -> FloatArray:
-        """What the loads of chosen contacts press the pose with, shape (positions, components, chosen, coordinates)."""
-        return self._gradients()[0]
-
-    def _rub(self, g: FloatArray) -> FloatArray:
-        """What loads press the pose with, G and friction along the tangents of pins and holes."""
+    def _rub(self, disc: int, g: FloatArray) -> FloatArray:
+        """What loads press the coordinates of a disc with, G and friction along the tangents of pins and holes."""
         friction = self.system.model.friction
         if friction is None:
             return g
-        system, found, row = self.system, g.copy(), self.row
-        sticking: list[list[FloatArray]] = []
-        for disc, (at, own) in enumerate(zip(self.discs, system.columns, strict=True)):
-            kinds = system.of_kind[disc][0], system.of_kind[disc][2]
-            load = np.concatenate([self.load[:, 0, kind] for kind in kinds], axis=1)
-            stiffness = np.concatenate([self.stiffness[0][:, kind] for kind in kinds], axis=1)
-            slip, by_load, held, by_slip = friction.along(at.geometry, self.angle, at.pose, at, load, stiffness, disc)
-            self.rubs.append(by_load)
-            pins, _, holes, _ = self.at[disc]
-            some = self.chosen[disc]
-            for where, which in ((pins, some[0]), (holes, system.pins + some[2])):
-                by = by_load[row, which][..., None]
-                first = found[:, 0]
-                first[:, where, own] += by * slip[row, which]
-                if at.tilts is None:
-                    continue
-                motion = at.flank if where is pins else at.holes
-                along = self._thick * by * motion.along[row, which if where is pins else some[2]][..., :2]
-                second = found[:, 1]
-                second[:, where, own[system.one.lean_place]] += along
-                if where is pins and system.one.wheel_leans:
-                    second[:, where, own[system.one.wheel_lean_place]] -= along
-            if by_slip is not None:
-                whole = np.zeros((*load.shape, self.pose.shape[1]))
-                whole[..., own] = slip
-                sticking.append([by_slip, whole, held])
-        if sticking:
-            by_slip, whole, held = (np.concatenate(parts, axis=1) for parts in zip(*sticking, strict=True))
-            self.sticking = by_slip, whole, held
+        system, found, row, at = self.system, g.copy(), self.row, self.discs[disc]
+        kinds = system.of_kind[disc][0], system.of_kind[disc][2]
+        load = np.concatenate([self.load[:, 0, kind] for kind in kinds], axis=1)
+        stiffness = np.concatenate([self.stiffness[0][:, kind] for kind in kinds], axis=1)
+        slip, by_load, held, by_slip = friction.along(at.geometry, self.angle, at.pose, at, load, stiffness, disc)
+        self.rubs.append(by_load)
+        pins, _, holes, _ = self.local[disc]
+        some = self.chosen[disc]
+        for where, which in ((pins, some[0]), (holes, system.pins + some[2])):
+            by = by_load[row, which][..., None]
+            found[:, 0, where] += by * slip[row, which]
+            if at.tilts is None:
+                continue
+            motion = at.flank if where is pins else at.holes
+            along = self._thick * by * motion.along[row, which if where is pins else some[2]][..., :2]
+            second = found[:, 1]
+            second[:, where, system.one.lean_place] += along
+            if where is pins and system.one.wheel_leans:
+                second[:, where, system.one.wheel_lean_place] -= along
+        if by_slip is not None:
+            self.sticking.append((by_slip, slip, held))
         return found
 
     @property
     def _thick(self) -> FloatArray:
         return self.half[..., None] if self.half.ndim else self.half
 
-    def _bends(self) -> FloatArray:
-        """Σ F ∂²d/∂q² of all contacts but what the rollers' places turn."""
-        system = self.system
-        rows, size = self.pose.shape[0], self.size
-        found = np.zeros((rows, size, size))
+    def _bends(self, disc: int) -> FloatArray:
+        """Σ F ∂²d/∂q² of the contacts of a disc by its own coordinates but what the rollers' places turn."""
+        system, at = self.system, self.discs[disc]
         if self.by_crank:
-            return found
-        for disc, (at, own) in enumerate(zip(self.discs, system.columns, strict=True)):
-            pins, bores, holes, _ = system.of_kind[disc]
-            mine = at.flank.bend(self.load[:, 0, pins]) + at.holes.bend(self.load[:, 0, holes])
-            if at.tilts is not None:
-                mine += at.flank.bend_leans(self.load[:, 1, pins] * self.half, system.one)
-                mine += at.holes.bend_leans(self.load[:, 1, holes] * self.half, system.one)
-            cranks = at.bores.arm.shape[1]
-            push = (self.load[:, 0, bores] * at.outward).reshape(rows, cranks, -1).sum(axis=2).conjugate()
-            mine[:, DISC_ROTATION, DISC_ROTATION] += (push * at.bores.arm).real.sum(axis=1)
-            if at.bores.twists:
-                mine[:, at.bores.twists, at.bores.twists] -= (push * at.bores.lever).real
-            if system.discs == 1:
-                found += mine
-            else:
-                found[:, own[:, None], own] += mine
-        return found
-
-    def _of_rollers(self, name: str) -> NDArray[Any]:
-        """An array of the discs by roller, of the chosen ones."""
-        return np.concatenate(
-            [getattr(at, name)[self.row, own[1]] for at, own in zip(self.discs, self.chosen, strict=True)], axis=1
-        )
-
-    def _rays(self) -> ComplexArray:
-        return np.concatenate(
-            [at.rays.direction[self.row, own[1]] for at, own in zip(self.discs, self.chosen, strict=True)], axis=1
-        )
-
-    def _picked(self, values: FloatArray, kind: str) -> FloatArray:
-        """Values of all contacts, of the chosen ones of a kind."""
-        number = KINDS.index(kind)
-        return np.concatenate(
-            [
-                values[:, kinds[number]][self.row, own[number]]
-                for kinds, own in zip(self.system.of_kind, self.chosen, strict=True)
-            ],
-            axis=1,
-        )
+            return np.zeros((self.angle.size, self.columns[disc].size, self.columns[disc].size))
+        pins, bores, holes, _ = system.of_kind[disc]
+        found = at.flank.bend(self.load[:, 0, pins]) + at.holes.bend(self.load[:, 0, holes])
+        if at.tilts is not None:
+            found += at.flank.bend_leans(self.load[:, 1, pins] * self.half, system.one)
+            found += at.holes.bend_leans(self.load[:, 1, holes] * self.half, system.one)
+        cranks = at.bores.arm.shape[1]
+        push = (self.load[:, 0, bores] * at.outward).reshape(found.shape[0], cranks, -1).sum(axis=2).conjugate()
+        found[:, DISC_ROTATION, DISC_ROTATION] += (push * at.bores.arm).real.sum(axis=1)
+        if at.bores.twists:
+            found[:, at.bores.twists, at.bores.twists] -= (push * at.bores.lever).real
+        return np.asarray(found)
 
     def _positions(self, number: int) -> Indices:
         """Where the contacts of a kind stand among the chosen."""
         return np.concatenate([np.arange(own[number].start, own[number].stop) for own in self.at])
 
-    def settled(self, roughly: bool) -> bool:
-        """Whether the inner unknowns are close enough for a step of the pose, or for an answer."""
-        deep = (np.abs(self.overlap[:, 0]) * (self.load[:, 0] > 0.0)).max(axis=1, initial=0.0)
+    def settled(self, roughly: bool) -> NDArray[np.bool_]:
+        """Positions whose inner unknowns are close enough for a step of the pose, or for an answer."""
         part = ROUGHLY_SETTLED if roughly else SETTLED_IN_MOTION if self.by_crank else SETTLED
-        return bool((self.moved <= part * deep + ROUND_OFF).all())
+        return self._are_small(self.moved, part)
+
+    def _are_small(self, moved: FloatArray, part: float) -> NDArray[np.bool_]:
+        """Positions where corrections, mm, are a small part of the largest approach."""
+        deep = (np.abs(self.overlap[:, 0]) * (self.load[:, 0] > 0.0)).max(axis=1, initial=0.0)
+        return np.asarray(moved <= part * deep + ROUND_OFF)
+
+    def again(self, state: _State) -> Linearised:
+        """Return the contacts at the same poses with other inner unknowns."""
+        known = None if self.by_crank else self.known  # which is for places on the flank of another position
+        return Linearised(
+            self.system,
+            self.angle,
+            self.pose,
+            state,
+            known,
+            roughly=self.roughly,
+            margin=self.margin,
+            by_crank=self.by_crank,
+        )
+
+    @property
+    def here(self) -> _State:
+        """Inner unknowns without the correction."""
+        return self._state(np.zeros(self.angle.size))
 
     @cached_property
     def _whole_state(self) -> _State:
@@ -1094,29 +1279,17 @@ class Linearised:
     @cached_property
     def after(self) -> FloatArray:
         """Deformations of all contacts after the correction."""
-        if self.system.plain:
-            return self.deformation + self.de
-        found = self.deformation.copy()
-        near = found[self.row, :, self.contacts].swapaxes(1, 2) + self.de
-        found[self.row, :, self.contacts] = near.swapaxes(1, 2)
-        return found
+        return self.deformation + self.of_all(self.de)
 
     @cached_property
     def place_after(self) -> FloatArray:
         """Places of the rollers after the correction, inward of where they only touch the race, mm."""
-        if self.system.plain:
-            return np.asarray(self.place + self.dx[..., 0])
-        found = self.place.copy()
-        found[self.row, self.rollers] += self.dx[..., 0]
-        return found
+        return self.place + self.of_all_rollers(self.dx)[..., 0]
 
     @cached_property
     def lean_after(self) -> FloatArray:
         """Their leans by half the thickness of the disc, mm."""
-        found = self.lean.copy()
-        if self.system.components > 1:
-            found[self.row, self.rollers] += self.dx[..., 1]
-        return found
+        return self.lean + self.of_all_rollers(self.dx)[..., 1] if self.system.components > 1 else self.lean
 
     def slices_after(self, disc: int) -> list[SlicedContact]:
         """Return the contacts of a disc in slices, by kind, moved along their slopes by the correction."""
@@ -1139,44 +1312,34 @@ class Linearised:
     @cached_property
     def corrected_load(self) -> FloatArray:
         """Loads of all contacts, to first order in what is left of the inner unknowns."""
-        if self.system.plain:
-            load = self.load + self.change
-        else:
-            load = self.load.copy()
-            load[self.row, :, self.contacts] += self.change.swapaxes(1, 2)
+        load = self.load + self.of_all(self.change)
         return np.where(load[:, :1] > 0.0, load, 0.0)
 
-    def corrected(self, *, roughly: bool, part: float = 1.0) -> Linearised:
-        """Return the contacts at the same poses with the inner unknowns corrected.
+    def corrected(self, part: FloatArray) -> Linearised:
+        """Return the contacts at the same poses with the inner unknowns corrected, of each position by a part of the way: zero
+        where they stay.
 
         Deformations are found for pins that stand where they stand, and gaps taken as linear in what displaces these, a convex
         problem; then the pins are put where the loads press them, or a part of the way there.
         """
-        at = self._stepped(roughly=roughly)
+        moves = part > 0.0
+        at = self._stepped(moves)
         if self.shifts is None:
             return at
         for _ in range(MAX_CORRECTIONS):
-            if at.settled(roughly=True):
+            going = moves & ~at.settled(roughly=True)
+            if not going.any():
                 break
-            at = at._stepped(roughly=roughly)
+            at = at._stepped(going)
         state = at._state()
-        if part < 1.0 and state.shifts is not None:
-            state = state._replace(shifts=self.shifts + part * (state.shifts - self.shifts))
-        return Linearised(
-            self.system,
-            self.angle,
-            self.pose,
-            state,
-            None,
-            roughly=roughly,
-            margin=self.margin,
-            by_crank=self.by_crank,
-        )
+        if state.shifts is not None:
+            state = state._replace(shifts=self.shifts + part[:, None, None] * (state.shifts - self.shifts))
+        return self.again(state if moves.all() else _mixed(self.here, state, moves))
 
-    def _stepped(self, *, roughly: bool) -> Linearised:
-        """The contacts a step of the deformations on, or where the energy along it has nearly ceased to fall."""
+    def _stepped(self, moves: NDArray[np.bool_]) -> Linearised:
+        """The contacts with deformations of some positions a step on, or where the energy along it has nearly ceased to fall."""
         rows = self.angle.size
-        fraction, low, high = np.ones(rows), np.zeros(rows), np.ones(rows)
+        fraction, low, high = moves.astype(float), np.zeros(rows), np.ones(rows)
         start = self.along(self.step)
         low_slope, high_slope = start.copy(), np.zeros(rows)
         for _ in range(MAX_HALVINGS):
@@ -1186,8 +1349,8 @@ class Linearised:
                 self.pose,
                 self._state(fraction),
                 self.known,
-                roughly=roughly,
-                places=self.discs,
+                roughly=self.roughly,
+                before=self,
                 margin=self.margin,
                 by_crank=self.by_crank,
             )
@@ -1195,7 +1358,7 @@ class Linearised:
                 break
             end = found.along(self.step)
             far = found.off > self.off if self.system.coupled else end > STEEPEST * np.abs(start)
-            far = far & (found.off > 0.5 * self.off) & (found.off > ROUND_OFF * 100.0)
+            far = far & moves & (found.off > 0.5 * self.off) & (found.off > ROUND_OFF * 100.0)
             if not far.any():
                 break
             high, high_slope = np.where(far, fraction, high), np.where(far, end, high_slope)
@@ -1226,17 +1389,18 @@ class Linearised:
         for disc, bodies in enumerate(self.bodies if self.system.coupled else []):
             some, kinds = self.chosen[disc], self.system.of_kind[disc]
             found.append([])
-            for component, matrix in enumerate(bodies):
+            for component, body in enumerate(bodies):
                 load = self.corrected_load[:, component]
-                loaded = np.concatenate([load[:, kinds[kind]][self.row, some[kind]] for kind in range(3)], axis=1)
-                found[disc].append(np.matmul(matrix, loaded[..., None])[..., 0])
+                loaded = np.concatenate([self.picked(load[:, kinds[kind]], some[kind]) for kind in range(3)], axis=1)
+                found[disc].append(body.taken(loaded))
         return found
 
-    @property
-    def leaves_out(self) -> bool:
-        """Whether a contact of coupled bodies that was left out is pressed together after all."""
+    @cached_property
+    def leaves_out(self) -> NDArray[np.bool_]:
+        """Positions where a contact of coupled bodies that was left out is pressed together after all, shape (positions,)."""
+        found = np.zeros(self.angle.size, dtype=bool)
         if not self.system.coupled or not np.isfinite(self.margin):
-            return False
+            return found
         for disc, yielding in enumerate(self.yielding):
             some, kinds = self.chosen[disc], self.system.of_kind[disc]
             for kind, part in enumerate(
@@ -1244,9 +1408,8 @@ class Linearised:
             ):
                 pressed = self.overlap[:, 0, kinds[kind]] - part > 0.0
                 pressed[self.row, some[kind]] = False
-                if pressed.any():
-                    return True
-        return False
+                found |= pressed.any(axis=1)
+        return found
 
     def following(self) -> Following:
         """Return how the inner unknowns follow the pose."""
@@ -1256,20 +1419,15 @@ class Linearised:
             pins = self.system.model.pins
             assert pins is not None
             change = _pressed(self.chosen_stiffness, self.de_by_pose)
-            each = []
-            for column in range(self.size):
-                load = np.zeros(self.load.shape)
-                load[self.row, :, self.contacts] = change[..., column].swapaxes(1, 2)
-                each.append(-pins.under(self.members.forces(load)))
-            shifts = np.stack(each, axis=-1)
-        by_pose = self.dx_by_pose
-        if not self.system.plain:
-            by_pose = np.zeros((*self.place.shape, *self.dx_by_pose.shape[2:]))
-            by_pose[self.row, self.rollers] = self.dx_by_pose
-        by_approach = None
-        if self.de_by_pose is not None:
-            by_approach = np.zeros((*self.load.shape, self.size))
-            by_approach[self.row, :, self.contacts] = self.de_by_pose.swapaxes(1, 2)
+            each = np.moveaxis(change, -1, 0)
+            shifts = np.stack([-pins.under(self.members.forces(self.of_all(one))) for one in each], axis=-1)
+        columns: tuple[tuple[int, ...], ...] = ()
+        if self.system.coupled:
+            by_pose = self.of_all_rollers(self.dx_by_pose)
+        else:
+            by_pose = np.concatenate(self.by_own, axis=1) if len(self.by_own) > 1 else self.by_own[0]
+            columns = () if len(self.by_own) == 1 else tuple(tuple(own.tolist()) for own in self.columns)
+        by_approach = None if self.de_by_pose is None else self.of_all(self.de_by_pose)
         return Following(
             pose=with_crank(self.pose, self.angle) if self.by_crank else self.pose,
             place=state.place,
@@ -1279,7 +1437,19 @@ class Linearised:
             by_pose=by_pose,
             approach_by_pose=by_approach,
             shifts_by_pose=shifts,
+            columns=columns,
         )
+
+
+def _places_of(chosen: list[list[Indices]]) -> tuple[list[list[slice]], list[slice], list[list[slice]]]:
+    """Return where chosen contacts of each disc and kind stand among all chosen, the rollers of each disc among these, and the
+    contacts of each kind among those of their disc.
+    """
+    ends = np.cumsum([0, *(some.shape[1] for own in chosen for some in own)])
+    at = [[slice(ends[4 * disc + kind], ends[4 * disc + kind + 1]) for kind in range(4)] for disc in range(len(chosen))]
+    ends = np.cumsum([0, *(own[1].shape[1] for own in chosen)])
+    local = [[slice(kind.start - own[0].start, kind.stop - own[0].start) for kind in own] for own in at]
+    return at, [slice(first, last) for first, last in pairwise(ends)], local
 
 
 def _law_groups(system: ContactSystem) -> list[tuple[Any, slice | Indices]]:

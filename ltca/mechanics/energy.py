@@ -48,16 +48,13 @@ def _of_disc(at: Linearised, disc: int) -> StoredEnergy:
     rows = at.pose.shape[0]
     every = [np.tile(np.arange(kind.stop - kind.start), (rows, 1)) for kind in kinds[:3]]
     energy, loads, matrices = found.energy, [], []
-    for component, (matrix, race, cross) in enumerate(body.body_flexibility(at.body_places(disc), every)):
-        load = at.corrected_load[:, component]
+    for component, bodies in enumerate(body.body_flexibility(at.body_places(disc), every)):
+        load, matrix = at.corrected_load[:, component], bodies.among
         on_walls = np.concatenate([load[:, kind] for kind in kinds[:3]], axis=1)
         in_bores, on_races = load[:, kinds[1]], load[:, kinds[3]]
         energy = energy + 0.5 * np.einsum("bi,bij,bj->b", on_walls, matrix, on_walls)
-        energy = (
-            energy
-            + 0.5 * np.einsum("bi,ij,bj->b", on_races, race, on_races)
-            + cross * (in_bores * on_races).sum(axis=1)
-        )
+        energy = energy + 0.5 * np.einsum("bi,bij,bj->b", on_races, bodies.on_race, on_races)
+        energy = energy + bodies.across_roller * (in_bores * on_races).sum(axis=1)
         loads.append(on_walls)
         matrices.append(matrix)
     # Races and what rollers yield between their contacts are alike everywhere: they do no work as contacts move.

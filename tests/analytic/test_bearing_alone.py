@@ -18,8 +18,15 @@ import pytest
 from scipy.optimize import brentq
 
 from ltca.compliance.half_space import HalfSpaceCompliance
-from ltca.compliance.rollers import balance_rollers
 from ltca.laws.line_contact import LineContactLaw
+from ltca.testing.bearing_alone import bearing_alone
+
+
+def balanced(model, crank, displacement):
+    laws = model.roller_laws
+    rays = model.geometry.rollers(np.array([crank]))
+    radii = laws.outer_radius, laws.inner_radius
+    return bearing_alone(rays, np.array([displacement]), (laws.outer, laws.inner), radii).parts[0].rollers
 
 
 def bearing_force(state):
@@ -48,9 +55,8 @@ def test_discrete_sum_with_our_own_law(vary, clearance):
         return float(law.load_and_stiffness(inner, inner_radius)[0])
 
     for displacement, crank in ((0.02, 0.0), (0.045, 0.7), (0.06, 2.0)):
-        rays = model.geometry.rollers(np.array([crank]))
         toward = 1.1
-        state = balance_rollers(rays, np.array([-displacement * np.exp(1j * toward)]), model.roller_laws)
+        state = balanced(model, crank, -displacement * np.exp(1j * toward))
         force = bearing_force(state)[0]
         # place of the rollers from the convention, independent of the code: cage at r_i/(r_i + r_o) of the crank
         psi = 19.5 / 49.0 * crank + 2.0 * np.pi * np.arange(11) / 11 - toward
@@ -90,7 +96,7 @@ def test_obliquity_is_what_is_left(vary):
             rtol=1e-15,
         )
         total += parts(place)[1] * parts(place)[2]
-    state = balance_rollers(model.geometry.rollers(np.array([crank])), np.array([displacement]), model.roller_laws)
+    state = balanced(model, crank, displacement)
     assert abs(bearing_force(state)[0] - total) < 1e-8 * abs(total)
 
 

@@ -10,7 +10,6 @@ import pytest
 from ltca.analysis.engines import HalfSpace
 from ltca.equilibrium.balance import lever_arms
 from ltca.equilibrium.output_torque import solve_at_output
-from ltca.equilibrium.pin_displacements import DisplacedPins
 from ltca.equilibrium.reducer import Reducer
 from ltca.geometry.coordinates import WHEEL_ANGLE
 
@@ -40,9 +39,10 @@ def stored_energy(model, response, pose, angle=0.0):
     if isinstance(model, Reducer) and model.pins is not None:
         ratio = model.discs[0].geometry.placement.reduction_ratio
         turned = np.exp(1j * (angle / ratio + pose[:, WHEEL_ANGLE]))
-        held = DisplacedPins(model.pins, response.parts, model.coordinates, turned, response.shifts)
-        moved = model.pins.under(held.force)
-        total = total + 0.5 * (held.force.conjugate() * moved).real.sum(axis=(1, 2))
+        for number, part in enumerate(response.parts):
+            force = part.pin_forces.copy()
+            force[:, : part.pin_load.shape[1]] *= turned.conjugate()[:, None]
+            total = total + 0.5 * (force.conjugate() * response.shifts[:, number]).real.sum(axis=1)
     return total, np.concatenate(slopes, axis=1)
 
 
@@ -99,6 +99,9 @@ class HeldRadius:
 
     law: object
     radius: np.ndarray
+
+    def take(self, shape, where):
+        return HeldRadius(self.law.take(shape, where), np.broadcast_to(self.radius, shape)[where])
 
     def load_and_stiffness(self, approach, effective_radius):
         return self.law.load_and_stiffness(approach, self.radius)

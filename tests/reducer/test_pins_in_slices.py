@@ -9,8 +9,8 @@ from ltca.analysis.engines import HalfSpace
 from ltca.compliance.response import Start, bearing_pushes
 from ltca.drive.parts import PlacementErrors, ShaftPinBeam, WheelPinBeam
 from ltca.equilibrium.output_torque import solve_at_output
-from ltca.equilibrium.pin_displacements import LeaningPins
 from ltca.laws.sliced_spring import SlicedSpring
+from ltca.mechanics.contacts import ContactSystem
 from ltca.reading.drive_file import load_drive
 
 SLICES = 9
@@ -232,17 +232,13 @@ def test_a_ring_moves_sloping_pins_as_one_system_of_all_pins_does():
     ring = {"ring.inner_radius": 88.0, "ring.outer_radius": 120.0, "ring.width": 30.0}
     drive = in_slices(shaft={"tip": "tied-pinned"}, wheel={"ends": "supported"}, **ring)
     model, found = balance(drive, ANGLES[:1])
-    response = model.respond(ANGLES[:1], found.pose, Start.after(found.response))
-    coordinates = model.coordinates
-    turned = np.exp(1j * (ANGLES[:1] / 14.0 + found.pose[:, -1]))
-    shifts = np.concatenate((response.shifts, response.parts[0].leans[:, None] * 0.5 * drive.disc.thickness), axis=1)
-    beside = LeaningPins(model.pins, response.parts, coordinates, turned, shifts)
-    at_once = LeaningPins(model.pins, response.parts, coordinates, turned, shifts)
-    at_once.coupled = True
-    one, other = beside.settled(), at_once.settled()
-    assert np.max(np.abs(other.tangent)) > 1e3
-    np.testing.assert_allclose(one.tangent, other.tangent, atol=1e-9 * np.max(np.abs(other.tangent)))
-    np.testing.assert_allclose(one.by_pose, other.by_pose, atol=1e-9 * np.max(np.abs(other.by_pose)))
+    at = ContactSystem(model).respond(ANGLES[:1], found.pose, Start.after(found.response), roughly=False)
+    part = at._assembled()
+    whole, left = at._flexibility(part.load)
+    at_once = at._eliminate(part, whole, left, turning=True)
+    for one, other in ((at.force, at_once.force), (at.tangent, at_once.tangent), (at.de_by_pose, at_once.de_by_pose)):
+        assert np.max(np.abs(other)) > 1e-3
+        np.testing.assert_allclose(one, other, atol=1e-9 * np.max(np.abs(other)))
 
 
 def test_without_tilt_slices_on_a_ring_are_the_plane():

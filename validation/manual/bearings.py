@@ -12,11 +12,11 @@ from ltca.analysis.life.equivalent_load import race_load
 from ltca.analysis.life.laminae import EvenLaminae, edge_factors
 from ltca.analysis.life.ratings import INNER_SHARE, OUTER_SHARE, RollerBearing
 from ltca.arrays import FloatArray
-from ltca.compliance.rollers import RollerLaws, balance_rollers
 from ltca.geometry.length_profile import LogarithmicRelief
 from ltca.geometry.pair_motion import RollerRays
 from ltca.laws.contact_law import ContactLaw
 from ltca.reading.drive_file import load_drive
+from ltca.testing.bearing_alone import bearing_alone
 from validation.manual.case import Case, Figure, Reference, absolute_figure, relative_figure
 
 ROUND_OFF = "round-off"
@@ -61,10 +61,8 @@ def load_zone(epsilon: float, rollers: int) -> tuple[float, float, float]:
         bore_play=np.full(rollers, 24.5 + play),
     )
     radius = np.ones(rollers)
-    laws = RollerLaws(
-        inner=PowerLaw(factor=stiff[0]), outer=PowerLaw(factor=stiff[1]), inner_radius=radius, outer_radius=radius
-    )
-    state = balance_rollers(rays, np.array([[-deflection + 0j]]), laws)
+    laws = PowerLaw(factor=stiff[1]), PowerLaw(factor=stiff[0])
+    state = bearing_alone(rays, np.array([-deflection + 0j]), laws, (radius, radius)).parts[0].rollers
     force = float((state.outer_load * state.outer_direction).sum().real)
     largest = float(sum(k ** (-1.0 / n) for k in stiff) ** -n * (deflection - play) ** n)
     return force / (rollers * largest), largest * rollers / force, float(state.outer_load.max()) / largest
@@ -223,7 +221,7 @@ CASES = (
                 uncertainty="Half a unit of the last printed digit; n = 1.1 (10/9 gives 5e-4 less).",
             ),
         ),
-        model="`ltca.compliance.rollers.balance_rollers` with 2000 rollers, each with two contacts in series.",
+        model="The contacts of a disc (`ltca.mechanics`) whose 2000 rollers alone carry, each with two contacts in series.",
         model_uncertainty="The books sum an integral along rays; normals here are exact.",
         run=_load_zone,
     ),
