@@ -18,12 +18,12 @@ import time
 
 import numpy as np
 
-from ltca.compliance.grids import GridCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.equilibrium.balance import solve_equilibrium
 from ltca.equilibrium.reducer import Reducer
 from ltca.geometry.placement import position_angles
 from ltca.reading.drive_file import load_drive
+from validation.methods.grids import GridCompliance
 
 
 def main() -> None:

@@ -15,6 +15,7 @@ reactions                  What the bearings of cranks and output carry: forces 
 contact_arrays             Arrays of all contacts by their names in the registry
 time_need                  About how long the analysis of a drive takes, told beforehand
 light_torque               The answer of an analysis at its light torque, as an analysis at that torque
+methods                    Methods of other packages: contact grids and the paper's iteration
 half_width_guard           Where half-spaces and the parabolas of tables end: contacts wider than the bodies are curved are
                            refused, by name
 extremes                   Extremes of an analysis between its positions: peak-to-peak values and largest loads that do not

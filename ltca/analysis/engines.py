@@ -8,16 +8,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
-from importlib.metadata import entry_points
 from pathlib import Path
 from typing import Any, ClassVar, Literal, Protocol, Self, TypeAlias, get_args
 
 from ltca.analysis.half_width_guard import check_half_widths
+from ltca.analysis.methods import load_method
 from ltca.arrays import FloatArray
 from ltca.compliance.coefficient_files import find_coefficients
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.compliance.coupled import CoupledCompliance
-from ltca.compliance.grids import GridCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.near_field import NEAR_FIELDS
 from ltca.compliance.response import Start
@@ -40,8 +39,6 @@ Given: TypeAlias = InfluenceCoefficients | Sequence[InfluenceCoefficients] | Pat
 SHARED_BODY = 0.002
 """Relative change of a dimension or an elastic constant up to which a body keeps its coefficients in studies: 0.2 % more of the
 radius of its holes moves single loads of the paper's drive by 0.3 %, of bore and flank by less than 0.1 %."""
-METHODS = "cyclo.methods"
-"""Entry points of methods that other packages bring: ``paper`` prepares the paper's iteration for a drive."""
 
 
 class PreparedEngine(Protocol):
@@ -150,15 +147,6 @@ def _on_tables(
     return Reducer.of_drive(drive, discs, ring_lender(drive, rings))
 
 
-def _method(name: str) -> Callable[[Drive, Reducer, Reducer], PreparedEngine]:
-    """Return what prepares a method that another package brings: of a warm drive, its tables and the model to balance."""
-    found = [entry for entry in entry_points(group=METHODS) if entry.name == name]
-    if not found:
-        raise DriveError([f"method = {name}: comes with the package validation, which is not installed"])
-    prepare: Callable[[Drive, Reducer, Reducer], PreparedEngine] = found[0].load()
-    return prepare
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HalfSpace:
     """Contacts between half-spaces that do not feel each other (the paper's model).
@@ -167,8 +155,8 @@ class HalfSpace:
     ----------
     method : {"tables", "direct", "paper"}
         ``tables``: equilibrium on tabulated laws; ``direct``: contact grids solved inside every iteration, started
-        from the solution on tables; ``paper``: the paper's iteration with held wheel
-        (`validation.methods.paper_method`), started from our solution at 95 % of the torque.
+        from the solution on tables; ``paper``: the paper's iteration with held wheel, started from our solution at 95 %
+        of the torque. Grids and the paper's iteration come with the package `validation` (`ltca.analysis.methods`).
     contacts : {"tables", "grids"}, optional
         What the paper's iteration runs on, tables by default; the other methods have their own.
     rings : tuple of Drive
@@ -240,10 +228,11 @@ class HalfSpace:
         singles = single_discs(drive)
         tables = model = _on_tables(drive, singles, self.rings)
         if self.contacts == "grids":
-            grids = tuple(GridCompliance.of_drive(single) for single in singles)
-            model = replace(tables, discs=grids, friction=None)
+            on_grids = load_method("grids", f"method = {self.method} on contacts = grids")
+            model = replace(tables, discs=tuple(on_grids(single) for single in singles), friction=None)
         if self.method == "paper":
-            return _method("paper")(drive, tables, model)
+            prepare: Callable[[Drive, Reducer, Reducer], PreparedEngine] = load_method("paper", "method = paper")
+            return prepare(drive, tables, model)
         if self.method == "direct":
             return _FromTables(drive=drive, tables=tables, model=model)
         return _OnTables(drive=drive, model=tables)

@@ -13,11 +13,12 @@ roll, directions change by a tenth of a radian; from there on it is told.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from ltca.arrays import FloatArray
-from ltca.compliance.grids import GridCompliance
+from ltca.analysis.methods import load_method
+from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.response import ContactPressures, DiscModel, Response, split_shifts
 from ltca.drive.members.verdict_words import part_words
 from ltca.drive.parts import Drive
@@ -172,9 +173,8 @@ def separation_warning(
         more = "the contact: loads may be a percent off, or more (grids, which would say, know fixed pins alone)"
         return f"{told} {more}" if most >= LARGE_PARABOLA_DEPARTURE else None
     shifts = contacts.parts[0].shifts
-    moved = None if shifts is None else shifts[row : row + 1]
     try:
-        found = GridCompliance.of_drive(drive).respond(angle, pose, shifts=moved)
+        found = _on_grids(drive, angle, pose, None if shifts is None else shifts[row])
     except ConvergenceError:
         return f"contacts are wider at {at} than the flank goes on: the parabola of the tables does not stand for it"
     worst, name = 0.0, ""
@@ -194,6 +194,17 @@ def separation_warning(
         f"at {at} the load of {name} differs by {100.0 * worst:.2g} % of the largest between the parabola of the "
         "tables and the true separation, which is right: take --method direct"
     )
+
+
+def _on_grids(drive: Drive, angle: FloatArray, pose: FloatArray, shifts: ComplexArray | None) -> Response:
+    """Contacts on grids at one position of a drive of one disc, with its pins displaced, mm, shape (pairs,)."""
+    grids = load_method("grids", "contacts = grids")(drive)
+    if shifts is not None:
+        place = grids.geometry.placement
+        centres = place.wheel_pin_centres + shifts[: place.wheel_pin_radii.size]
+        geometry = replace(grids.geometry, placement=replace(place, wheel_pin_centres=centres))
+        grids = replace(grids, geometry=geometry)
+    return Reducer(discs=(grids,)).respond(angle, pose)
 
 
 def _departures(model: DiscModel, contacts: Response, pressures: ContactPressures) -> FloatArray:

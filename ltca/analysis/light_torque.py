@@ -8,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 
 from ltca.analysis.loaded_analysis import LoadedAnalysis
-from ltca.compliance.grids import GridCompliance
 from ltca.compliance.response import ContactPressures, KindPressures
 from ltca.drive.parts import Drive
 from ltca.equilibrium.reducer import bearing_forces
@@ -22,8 +21,7 @@ def at_light_torque(analysis: LoadedAnalysis) -> LoadedAnalysis:
     again, which takes minutes.
     """
     light, model = analysis.light, analysis.model
-    on_grids = any(isinstance(disc, GridCompliance) for disc in model.discs)
-    known = np.all(analysis.balanced_light) and not on_grids
+    known = np.all(analysis.balanced_light) and analysis.engine.options.get("contacts") != "grids"
     push = bearing_forces(model, light.crank_angle, light.response)
     return replace(
         analysis,

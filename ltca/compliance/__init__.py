@@ -19,7 +19,6 @@ in_slices            Contacts of a disc in slices at a pose: how they tilt, what
                      disc
 uncoupled            Contacts that do not feel each other: every load follows from its approach alone
 half_space           Half-space compliance: pairs that do not feel each other (the paper's model)
-grids                Contact grids solved inside every iteration of the equilibrium: the ``direct`` method
 stress_coefficients  Stress along the walls of the disc by the loads on it: reading from the coefficient file, and the
                      stress they give
 coefficients         Influence coefficients of the bodies derived from finite elements: the file, and their values at

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from ltca.arrays import FloatArray
+from ltca.geometry.pair_motion import FlankMotion
 
 
 class ContactLaws(NamedTuple):
@@ -16,3 +17,7 @@ class ContactLaws(NamedTuple):
     outer_radius: FloatArray
     hole_radius: FloatArray
     inner_radius: FloatArray
+
+    def placed(self, flank: FlankMotion) -> tuple[Any, Any, Any, Any]:
+        """Return the laws with the wheel pins where they are on the flank: tabulated laws are the same everywhere."""
+        return self.laws

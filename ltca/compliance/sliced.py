@@ -10,29 +10,27 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from ltca.compliance.in_slices import ContactsInSlices, roller_start, stacked, stored_in_slices, warm_rows
-    from ltca.contact.tilted_grid import press_tilted
     from ltca.laws.sliced_contact import EXACT, ROUGH, Exactness, SlicedContact, slice_heights, slice_means
     from ltca.laws.sliced_line import SlicedLine
     from ltca.laws.sliced_plane import SlicedPlane
     from ltca.laws.sliced_seat import SlicedSeat, back_line
     from ltca.laws.sliced_spring import SlicedSpring
-    from ltca.laws.width_pressure import estimate_along_width, solve_along_width
+    from ltca.laws.width_pressure import estimate_along_width
 
 _HOMES = {
     "ltca.compliance.in_slices": ("ContactsInSlices", "roller_start", "stacked", "stored_in_slices", "warm_rows"),
-    "ltca.contact.tilted_grid": ("press_tilted",),
     "ltca.laws.sliced_contact": ("EXACT", "ROUGH", "Exactness", "SlicedContact", "slice_heights", "slice_means"),
     "ltca.laws.sliced_line": ("SlicedLine",),
     "ltca.laws.sliced_plane": ("SlicedPlane",),
     "ltca.laws.sliced_seat": ("SlicedSeat", "back_line"),
     "ltca.laws.sliced_spring": ("SlicedSpring",),
-    "ltca.laws.width_pressure": ("estimate_along_width", "solve_along_width"),
+    "ltca.laws.width_pressure": ("estimate_along_width",),
 }
 
 __all__ = [
     "EXACT", "ROUGH", "ContactsInSlices", "Exactness", "SlicedContact", "SlicedLine", "SlicedPlane", "SlicedSeat",
-    "SlicedSpring", "back_line", "estimate_along_width", "press_tilted", "roller_start", "slice_heights", "slice_means",
-    "solve_along_width", "stacked", "stored_in_slices", "warm_rows",
+    "SlicedSpring", "back_line", "estimate_along_width", "roller_start", "slice_heights", "slice_means",
+    "stacked", "stored_in_slices", "warm_rows",
 ]  # fmt: skip
 
 

@@ -1,7 +1,6 @@
 """Contacts of a disc that do not feel each other: the load of every pair follows from its approach alone (C = 0).
 
-Both half-space models are this with laws of their own: tables (`ltca.compliance.half_space`) and contact grids
-(`ltca.compliance.grids`).
+Half-spaces on tables are this (`ltca.compliance.half_space`).
 """
 
 from __future__ import annotations

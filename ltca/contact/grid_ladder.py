@@ -1,8 +1,7 @@
-"""Shapes of the contact grids, in steps of half-width and reach, and which of them a contact is solved on.
+"""Shapes of the contact grids, in steps of half-width and reach.
 
 Half-width and reach of a contact are rounded to steps of 5 % (rungs), so one small set of influence matrices serves all
-contacts. The rung follows from the half-width *expected* at the approach, never from earlier solutions; near the
-boundary of two rungs the load is a weighted mean of both grids, so that it is continuous with its slope.
+contacts. The rung follows from the half-width *expected* at the approach, never from earlier solutions.
 """
 
 from __future__ import annotations
@@ -20,8 +19,8 @@ from ltca.geometry.length_profile import SummedProfile
 RUNG = 0.05
 """Step of the ladder in ln(half-width)."""
 BLEND = 0.05
-"""Part of a rung about each boundary over which the grids on both sides are blended: their loads differ by 1e-4, so
-blending adds 1 % to the slope, and one contact in twenty costs two grids."""
+"""Part of a rung about each boundary over which the grids on both sides are blended for a load that is continuous with its slope:
+their loads differ by 1e-4, so blending adds 1 % to the slope, and one contact in twenty costs two grids."""
 SHADES = 5
 """Steps per rung of the half-width by which initial contact cells of cylinders are cached."""
 
@@ -64,43 +63,6 @@ def smooth_step(part: float) -> float:
     """Return 0 below 0, 1 above 1, and 3 t² − 2 t³ between."""
     part = min(max(part, 0.0), 1.0)
     return part * part * (3.0 - 2.0 * part)
-
-
-def find_shares(
-    length: float, generator: SummedProfile | None, effective_radius: float, approach: float
-) -> dict[GridRung, float]:
-    """Return the grids of a contact and the share of each in its load, for ρ and δ in mm and a contact line of `length`, mm.
-
-    Mostly there is one grid; two near a boundary of rungs, four at most. Shares and their slopes are continuous.
-    """
-    reach_place = find_reach_place(length, generator, approach)
-    reach = int(np.floor(reach_place))
-    # A patch a little too long only has idle cells, one too short would cut the contact off: the longer one is left
-    # only when the shorter has enough room.
-    over = smooth_step((reach_place - reach) / BLEND) if reach > 0 else 1.0
-    found: dict[GridRung, float] = {}
-    for number, part in ((reach, over), (reach - 1, 1.0 - over)):
-        if part > 0.0:
-            place = find_width_place(length, number, effective_radius, approach)
-            below = int(np.floor(place))
-            above = smooth_step((place - below - 0.5) / BLEND + 0.5)
-            if above < 1.0:
-                found[GridRung(below, number)] = part * (1.0 - above)
-            if above > 0.0:
-                found[GridRung(below + 1, number)] = part * above
-    return found
-
-
-def find_share_slopes(
-    length: float, generator: SummedProfile | None, effective_radius: float, approach: float
-) -> dict[GridRung, float]:
-    """Return the derivatives of the shares by the approach, 1/mm, for the arguments of `find_shares`.
-
-    They multiply differences of 1e-4, so a difference quotient is accurate enough.
-    """
-    step = 1e-6 * approach
-    before, after = (find_shares(length, generator, effective_radius, approach + sign * step) for sign in (-1.0, 1.0))
-    return {rung: (after.get(rung, 0.0) - before.get(rung, 0.0)) / (2.0 * step) for rung in before | after}
 
 
 def find_reach_place(length: float, generator: SummedProfile | None, approach: float) -> float:

@@ -1,29 +1,19 @@
-"""Contacts solved on grids at every approach of an equilibrium: load, stiffness, pressures.
+"""Kinds of contacts of a drive, the separation of their surfaces, and the grid that fits a contact: its pressure.
 
 An influence matrix depends on the shape of its grid alone, not on its size: grids are cached by shape (cell width
-by patch length, in steps of 5 %) with unit length, and one small set of matrices serves every contact of a drive.
-Where the edge of the contact falls within a cell changes the load on 12 cells per half-width by less than 1e-4 (measured
-in ``tests/ltca/contact/test_tracked_grid.py``).
-
-**A load depends on approach, radius and place alone**, never on earlier solutions. The grids of a contact follow
-from the half-width expected at its approach (`ltca.contact.grid_ladder`); where two are blended the load is continuous
-with its slope, so Newton's method converges. The separation of a flank is interpolated between fixed places.
-
-While the same cells touch, pressure is linear in the approach and in the distance between two such places,
-p = δ A⁻¹1 − A⁻¹h, and needs no further factorisation. A `GridPiece` holds the coefficients. It is a value:
-contacts that start from the pieces of a neighbouring pose solve the same problem, only faster.
+by patch length, in steps of 5 %, `ltca.contact.grid_ladder`) with unit length, and one small set of matrices serves every
+contact of a drive. `validation.methods.grids` balances drives on such grids.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ltca.arrays import BoolArray, FloatArray, freeze
+from ltca.arrays import BoolArray, FloatArray
 from ltca.contact.free_end import FreeEnds, free_ends_of
 from ltca.contact.grid_ladder import (
     RUNG,
@@ -32,8 +22,6 @@ from ltca.contact.grid_ladder import (
     find_cylinder_cells,
     find_patch_length,
     find_reach_place,
-    find_share_slopes,
-    find_shares,
     find_width_place,
     unit_grid,
 )
@@ -212,108 +200,6 @@ class Separation:
         return np.array([1.0 - self.part, self.part]) if self.part > 0.0 else np.ones(1)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class GridPiece:
-    """Coefficients of a contact on one grid with its contact cells held: linear in the approach and the separation.
-
-    Attributes
-    ----------
-    grid : GridRung
-        Shape of the grid.
-    place : int
-        Place of the separation, see `Separation`.
-    active : array of bool, shape (cells,)
-        Contact cells.
-    rate, opening_rate : array, shape (cells,)
-        Pressure by E*, and opening, per approach by patch length.
-    taken, opening_taken : array, shape (cells, places)
-        Both due to the separation at each place, to be subtracted.
-    load_rate : float
-        Sum of `rate` times the areas of the cells.
-    load_taken : array, shape (places,)
-        Sums of `taken` times the areas.
-    """
-
-    grid: GridRung
-    place: int
-    active: BoolArray
-    rate: FloatArray
-    opening_rate: FloatArray
-    taken: FloatArray
-    opening_taken: FloatArray
-    load_rate: float
-    load_taken: FloatArray
-
-    def holds(self, closing: float, weights: FloatArray, slack: float) -> bool:
-        """Return whether the same cells touch at an approach by patch length: no tension inside, no overlap outside."""
-        taken, opening_taken = self.taken, self.opening_taken
-        if weights.size == 1:  # at a place of the ladder, or the only one
-            taken, opening_taken = taken[:, :1], opening_taken[:, :1]
-        elif taken.shape[1] == 1:
-            return False
-        pressure = closing * self.rate - taken @ weights
-        if np.min(pressure) < -1e-11 * np.max(pressure):
-            return False
-        return bool(np.min(closing * self.opening_rate - opening_taken @ weights) >= -slack)
-
-
-Pieces = tuple[GridPiece, ...]
-
-
-class Pressed(NamedTuple):
-    """A pressed contact: load, N, its derivative by the approach at held place, N/mm, and the pieces behind it."""
-
-    load: float
-    stiffness: float
-    pieces: Pieces
-
-
-def press(kind: ContactKind, separation: Separation, approach: float, start: Sequence[GridPiece] = ()) -> Pressed:
-    """Return load and stiffness of a contact at an approach δ, mm, positive.
-
-    `start` are the pieces of a neighbouring pose: they save time and do not change the result.
-    """
-    shares = find_shares(kind.length, kind.generator, separation.effective_radius, approach)
-    slopes = (
-        {}
-        if len(shares) == 1
-        else find_share_slopes(kind.length, kind.generator, separation.effective_radius, approach)
-    )
-    load = stiffness = 0.0
-    pieces = []
-    for rung, share in shares.items():
-        piece = _settle(kind, rung, separation, approach, start)
-        length = find_patch_length(kind.length, rung.reach_rung)
-        scale = kind.contact_modulus * length * _grid(kind, rung).images / np.pi
-        taken = float(piece.load_taken[: separation.weights.size] @ separation.weights)
-        own = scale * length * (approach / length * piece.load_rate - taken)
-        load += share * own
-        stiffness += share * scale * piece.load_rate + slopes.get(rung, 0.0) * own
-        pieces.append(piece)
-    return Pressed(load, stiffness, tuple(pieces))
-
-
-def recover_patches(
-    kind: ContactKind, separation: Separation, approach: float, start: Sequence[GridPiece] = ()
-) -> list[tuple[float, PatchSolution]]:
-    """Return the shares and the pressures of a contact on each of its grids; arguments as for `press`."""
-    patches = []
-    weights = separation.weights
-    for rung, share in find_shares(kind.length, kind.generator, separation.effective_radius, approach).items():
-        piece = _settle(kind, rung, separation, approach, start)
-        closing = approach / find_patch_length(kind.length, rung.reach_rung)
-        solved = UnilateralSolution(
-            pressure=np.maximum(closing * piece.rate - piece.taken[:, : weights.size] @ weights, 0.0),
-            active=piece.active,
-            opening=closing * piece.opening_rate - piece.opening_taken[:, : weights.size] @ weights,
-            rate=piece.rate,
-            history=(),
-        )
-        unit = _unit_separations(kind, rung, separation) @ weights
-        patches.append((share, _patch_solution(kind, rung, unit, approach, solved)))
-    return patches
-
-
 def solve_fitted(kind: ContactKind, approach: float, effective_radius: float, departure: Departure) -> PatchSolution:
     """Return the pressure over a contact on the grid that fits its half-width.
 
@@ -323,81 +209,39 @@ def solve_fitted(kind: ContactKind, approach: float, effective_radius: float, de
     separation = Separation(effective_radius=effective_radius, departure=lambda _, x: departure(x))
     reach = int(np.floor(find_reach_place(kind.length, kind.generator, approach)))
     rung = GridRung(round(find_width_place(kind.length, reach, effective_radius, approach)), reach)
-    patch, active = None, _expected_cells(kind, rung, effective_radius, approach)
+    patch, active = None, expected_cells(kind, rung, effective_radius, approach)
     for _ in range(2):
         if patch is not None:
             place = float(np.log(patch.half_width / find_patch_length(kind.length, rung.reach_rung))) / RUNG
             if patch.half_width <= 0.0 or abs(place - rung.rung) * RUNG <= FIT:
                 break
             rung = GridRung(round(place), reach)
-        unit = _unit_separations(kind, rung, separation)[:, 0]
-        areas = _scaled_areas(kind, rung)
+        unit = unit_separations(kind, rung, separation)[:, 0]
+        areas = scaled_areas(kind, rung)
         solved = solve_unilateral_contact(
-            _grid(kind, rung).influence,
+            rung_grid(kind, rung).influence,
             (approach / find_patch_length(kind.length, rung.reach_rung) - unit) * areas,
             start=active,
             load_direction=areas,
         )
-        patch, active = _patch_solution(kind, rung, unit, approach, solved), solved.active
+        patch, active = patch_solution(kind, rung, unit, approach, solved), solved.active
     assert patch is not None
     return patch
 
 
-def _settle(
-    kind: ContactKind, rung: GridRung, separation: Separation, approach: float, start: Sequence[GridPiece]
-) -> GridPiece:
-    """Return the piece of one grid that holds at an approach: one of `start` if it does, otherwise solved from it."""
-    weights, closing = separation.weights, approach / find_patch_length(kind.length, rung.reach_rung)
-    areas = _scaled_areas(kind, rung)
-    active = None
-    for piece in start:
-        if piece.grid == rung:
-            active = piece.active
-            if piece.place == separation.place and piece.holds(
-                closing, weights, 1e-13 * float(np.max(areas)) * closing
-            ):
-                return piece
-    if active is None:
-        # Grids are scaled with the half-width, so neighbours on the ladder have nearly the same contact cells.
-        near = [piece for piece in start if abs(piece.grid.rung - rung.rung) <= 1]
-        active = near[0].active if near else _expected_cells(kind, rung, separation.effective_radius, approach)
-    units = _unit_separations(kind, rung, separation)
-    influence = _grid(kind, rung).influence
-    found = solve_unilateral_contact(
-        influence,
-        (closing - units @ weights) * areas,
-        start=active,
-        load_direction=np.column_stack([areas, units * areas[:, None]]),
-    )
-    inside = np.nonzero(found.active)[0]
-    opening = influence[:, inside] @ found.rate[inside] - np.column_stack([areas, units * areas[:, None]])
-    opening[inside] = 0.0
-    load = areas @ found.rate
-    piece = GridPiece(
-        grid=rung,
-        place=separation.place,
-        active=found.active,
-        rate=found.rate[:, 0],
-        opening_rate=opening[:, 0],
-        taken=found.rate[:, 1:],
-        opening_taken=opening[:, 1:],
-        load_rate=float(load[0]),
-        load_taken=load[1:],
-    )
-    return freeze(piece)
-
-
-def _grid(kind: ContactKind, rung: GridRung) -> PatchGrid:
+def rung_grid(kind: ContactKind, rung: GridRung) -> PatchGrid:
+    """Return the grid of unit length on a rung for contacts of a kind."""
     return unit_grid(rung.rung, rung.reach_rung, cells=kind.cells, symmetric=kind.symmetric)
 
 
-def _scaled_areas(kind: ContactKind, rung: GridRung) -> FloatArray:
-    return np.asarray(np.pi * _grid(kind, rung).areas.ravel())
+def scaled_areas(kind: ContactKind, rung: GridRung) -> FloatArray:
+    """Return π times the areas of the cells of that grid, by the patch length squared, shape (cells,)."""
+    return np.asarray(np.pi * rung_grid(kind, rung).areas.ravel())
 
 
-def _unit_separations(kind: ContactKind, rung: GridRung, separation: Separation) -> FloatArray:
-    """Mean separation of every cell at the places of a separation, by patch length, shape (cells, places)."""
-    grid, length = _grid(kind, rung), find_patch_length(kind.length, rung.reach_rung)
+def unit_separations(kind: ContactKind, rung: GridRung, separation: Separation) -> FloatArray:
+    """Return the mean separation of every cell at the places of a separation, by patch length, shape (cells, places)."""
+    grid, length = rung_grid(kind, rung), find_patch_length(kind.length, rung.reach_rung)
     points = grid.x_centres[:, None] + 0.5 * np.diff(grid.x_edges)[:, None] * _POINTS
     units = np.empty((*grid.shape, separation.weights.size))
     for number in range(units.shape[2]):
@@ -409,18 +253,18 @@ def _unit_separations(kind: ContactKind, rung: GridRung, separation: Separation)
     return units.reshape(-1, units.shape[2])
 
 
-def _patch_solution(
+def patch_solution(
     kind: ContactKind, rung: GridRung, unit: FloatArray, approach: float, solved: UnilateralSolution
 ) -> PatchSolution:
     """Return a dimensionless solution in mm and MPa."""
-    shape, length = _grid(kind, rung), find_patch_length(kind.length, rung.reach_rung)
+    shape, length = rung_grid(kind, rung), find_patch_length(kind.length, rung.reach_rung)
     grid = PatchGrid(
         x_edges=shape.x_edges * length,
         y_edges=shape.y_edges * length,
         symmetric_x=shape.symmetric_x,
         symmetric_y=shape.symmetric_y,
     )
-    areas, pressure = _scaled_areas(kind, rung), solved.pressure * kind.contact_modulus
+    areas, pressure = scaled_areas(kind, rung), solved.pressure * kind.contact_modulus
     scale = kind.contact_modulus * length * shape.images / np.pi
     return PatchSolution(
         grid=grid,
@@ -433,10 +277,10 @@ def _patch_solution(
     )
 
 
-def _expected_cells(kind: ContactKind, rung: GridRung, radius: float, approach: float) -> BoolArray:
+def expected_cells(kind: ContactKind, rung: GridRung, radius: float, approach: float) -> BoolArray:
     """Return initial contact cells without a neighbouring pose: those of the cylinder of the expected half-width."""
     if kind.generator is None:
         width = round(SHADES * find_width_place(kind.length, rung.reach_rung, radius, approach))
         return find_cylinder_cells(width, rung.rung, kind.cells, kind.symmetric)
-    grid = _grid(kind, rung)
+    grid = rung_grid(kind, rung)
     return np.repeat(np.abs(grid.x_centres) < np.exp(rung.rung * RUNG), grid.shape[1])

@@ -524,7 +524,12 @@ class Linearised:
         radius[...] = system.radii
         for at, kinds in zip(self.discs, system.of_kind, strict=True):
             radius[:, kinds[0]] = at.flank.effective_radius
-        for law, contacts in system.law_groups:
+        on_pins = [
+            (laws.placed(at.flank)[0], kinds[0])
+            for at, laws, kinds in zip(self.discs, system.laws, system.of_kind, strict=True)
+            if _follows_the_flank(laws)
+        ]
+        for law, contacts in (*on_pins, *system.law_groups):
             load, stiffness = law.load_and_stiffness(e[:, contacts], radius[:, contacts])
             self.load[:, 0, contacts], self.stiffness[0][:, contacts] = load, stiffness
 
@@ -539,7 +544,8 @@ class Linearised:
         for disc, (at, laws) in enumerate(zip(self.discs, system.laws, strict=True)):
             radii = at.flank.effective_radius, laws.outer_radius, laws.hole_radius, laws.inner_radius
             found = []
-            for number, (kind, law, radius) in enumerate(zip(system.of_kind[disc], laws.laws, radii, strict=True)):
+            here = laws.placed(at.flank)
+            for number, (kind, law, radius) in enumerate(zip(system.of_kind[disc], here, radii, strict=True)):
                 pressed = e[:, 0, kind]
                 near = state.near[4 * disc + number] if state.near else None
                 one = law.respond(
@@ -1452,12 +1458,21 @@ def _places_of(chosen: list[list[Indices]]) -> tuple[list[list[slice]], list[sli
     return at, [slice(first, last) for first, last in pairwise(ends)], local
 
 
+def _follows_the_flank(laws: ContactLaws) -> bool:
+    """Whether the law of wheel pins depends on where they touch the flank."""
+    return type(laws).placed is not ContactLaws.placed
+
+
 def _law_groups(system: ContactSystem) -> list[tuple[Any, slice | Indices]]:
-    """Laws of all discs in the plane with their contacts: those that read one table are one law."""
+    """Laws of all discs in the plane with their contacts: those that read one table are one law; without those of wheel pins
+    that depend on where these touch the flank.
+    """
     groups: list[tuple[Any, slice | Indices]] = []
     lines: dict[int, list[tuple[LineContactLaw, slice]]] = {}
     for laws, kinds in zip(system.laws, system.of_kind, strict=True):
-        for law, kind in zip(laws.laws, kinds, strict=True):
+        for number, (law, kind) in enumerate(zip(laws.laws, kinds, strict=True)):
+            if number == 0 and _follows_the_flank(laws):
+                continue
             if type(law) is LineContactLaw:
                 lines.setdefault(id(law.table), []).append((law, kind))
             elif kind.start < kind.stop:

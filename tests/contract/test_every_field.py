@@ -26,7 +26,6 @@ from ltca.analysis.reactions import reaction_values
 from ltca.analysis.time_run import Course, prepare_run, run_in_time
 from ltca.analysis.vibration import vibration, vibration_content
 from ltca.compliance.coefficients import load_coefficients
-from ltca.compliance.grids import GridCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.drive.engine_support import require
 from ltca.drive.fields import field_kinds
@@ -51,6 +50,7 @@ from ltca.testing.field_changes import (
     sensible_change,
     with_densities,
 )
+from validation.methods.grids import GridCompliance
 
 ANGLES = np.array([0.5])
 FIELDS = leaf_fields()

@@ -1,8 +1,10 @@
-"""Other methods to balance a drive, from the paper, for comparison.
+"""Other methods to balance a drive, for comparison.
 
 Modules in the order data passes:
 
 ==============  ============================================================
+pressed_grid    Contacts on half-space grids at every approach of an equilibrium: load, stiffness, pressures
+grids           Contact grids solved inside every iteration of the equilibrium: the contacts of the ``direct`` method
 paper_method    The iteration of the paper: wheel held, crank leads, Newton with finite-difference tangents (Eq.
                 43–46, 90–93)
 clearance_free  Loaded tooth contact analysis of a drive without bearing and pin-hole clearance: one linear system

@@ -12,13 +12,13 @@ may fail, above all where a body floats free of contact and the tangent is singu
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ltca.arrays import FloatArray, take_positions
-from ltca.compliance.response import Response, Start
+from ltca.compliance.response import Start
 from ltca.drive.parts import Drive
 from ltca.equilibrium.balance import Equilibrium, lever_arms, solve_equilibrium
 from ltca.equilibrium.newton import TOLERANCE
@@ -141,23 +141,23 @@ def _iterate(
     steps = DIFFERENCE_STEP / np.array([1.0, 1.0, lever[2], reach])
     start: Start | None = None
 
-    def unbalanced(rows: NDArray[np.intp], values: FloatArray, before: Start | None) -> tuple[FloatArray, Response]:
+    def unbalanced(rows: NDArray[np.intp], values: FloatArray, before: Start | None) -> tuple[FloatArray, Start]:
         angle, pose = pose_of_lead(model, wheel_position[rows], values)
-        response = model.respond(angle, pose, before)
-        residual = response.force.copy()
+        found: Any = model.evaluate(angle, pose, before)
+        residual = found.force.copy()
         residual[:, WHEEL_ANGLE] -= wheel_moment[rows]
-        return residual / lever, response
+        return residual / lever, found.start
 
     for _ in range(MAX_ITERATIONS + 1):
         rows = np.nonzero(going)[0]
-        residual, response = unbalanced(rows, guess[rows], start)
+        residual, near = unbalanced(rows, guess[rows], start)
         size = np.max(np.abs(residual), axis=1)
         for row, value in zip(rows, size, strict=True):
             history[row].append(float(value))
         done = size <= TOLERANCE * load[rows]
         converged[rows[done]] = True
         going[rows[done]] = False
-        rows, residual, before = rows[~done], residual[~done], take_positions(Start.after(response), ~done)
+        rows, residual, before = rows[~done], residual[~done], take_positions(near, ~done)
         if rows.size == 0:
             break
         tangent = np.empty((rows.size, 4, 4))

@@ -12,16 +12,19 @@ import pytest
 from ltca.analysis.engines import HalfSpace
 from ltca.analysis.half_width_guard import (
     HALF_WIDTH_BOUND,
+    _on_grids,
     check_half_widths,
     unborne_warning,
     wide_holes_warning,
 )
 from ltca.analysis.loaded_analysis import analyse
-from ltca.compliance.grids import GridCompliance
 from ltca.drive.single_discs import single_discs, without_own
+from ltca.equilibrium.reducer import Reducer
 from ltca.errors import DriveError
+from ltca.geometry.pairs import ContactGeometry
 from ltca.reading.changes import with_fields
 from ltca.testing.practical_drives import practical_drive
+from validation.methods.grids import GridCompliance
 
 
 def check(drive, radius, pin=(0.0, 0.0), outer=0.0, inner=0.0):
@@ -92,6 +95,23 @@ def test_loose_and_bent_pins_are_warned_of_as_well():
     assert analyse(drive, np.array([angle]), 0.01 * torque).warnings == []
 
 
+def test_grids_check_pins_where_a_ring_has_displaced_them(paper_cases):
+    """They stand in the wheel elsewhere than drawn; rollers do not feel it."""
+    drive = paper_cases["CS-1"]
+    found = analyse(drive, np.array([0.4])).full
+    geometry = ContactGeometry.of_drive(drive)
+    moved = np.full(14 + 8, 2e-3 + 1e-3j)
+    on_grids = _on_grids(drive, found.crank_angle, found.pose, moved)
+    expected = geometry.flank(found.crank_angle, found.pose, shifts=moved[None, :14])
+    np.testing.assert_allclose(on_grids.flank.approach, expected.approach, rtol=0.0, atol=1e-12)
+    # By more than a tenth of the largest approach, so that displacements count.
+    still = _on_grids(drive, found.crank_angle, found.pose, None)
+    np.testing.assert_allclose(still.flank.approach, found.response.flank.approach, rtol=0.0, atol=1e-12)
+    changed = np.abs(on_grids.pin_load - still.pin_load).max()
+    assert changed > 0.1 * still.pin_load.max()
+    np.testing.assert_array_equal(on_grids.rollers.outer_load, still.rollers.outer_load)
+
+
 @pytest.mark.slow
 def test_direct_has_nothing_to_warn_of():
     """Solved anew by the true separation the loads move by 0.9 % of the largest, as the warning said to its order."""
@@ -104,7 +124,8 @@ def test_direct_has_nothing_to_warn_of():
     loads = direct.full.response.pin_load
     pin = int(re.search(r"wheel pin (\d+)", warning)[1])
     told = float(re.search(r"([\d.]+) % of the largest", warning)[1])
-    grids = GridCompliance.of_drive(drive).respond(tables.full.crank_angle, tables.full.pose).pin_load[0]
+    model = Reducer(discs=(GridCompliance.of_drive(drive),))
+    grids = model.respond(tables.full.crank_angle, tables.full.pose).pin_load[0]
     difference = abs(tables.full.response.pin_load[0, pin] - grids[pin]) / grids.max()
     assert told == pytest.approx(100.0 * difference, rel=0.05)  # two digits are told
     moved = np.max(np.abs(tables.full.response.pin_load - loads)) / np.max(loads)

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import validation.methods.paper_method
+from ltca.analysis import methods
 from ltca.analysis.engines import HalfSpace
 from ltca.analysis.loaded_analysis import analyse
 from ltca.commands.program import main
-from ltca.compliance.grids import GridCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.drive.parts import LengthProfile, Material
 from ltca.equilibrium.balance import solve_equilibrium
@@ -17,6 +17,7 @@ from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.placement import position_angles
 from ltca.reading.drive_file import load_drive
+from validation.methods.grids import GridCompliance
 from validation.methods.paper_method import lead_of_pose, pose_of_lead, solve_paper_equilibrium
 
 CASES = load_drive("paper").cases
@@ -131,6 +132,20 @@ def test_paper_fails_loudly_from_a_floating_start(monkeypatch, tmp_path, capsys)
 
 class _Floating:
     pose = np.zeros((1, 4))
+
+
+@pytest.mark.parametrize(
+    ("engine", "told"),
+    [
+        (HalfSpace(method="direct"), "method = direct on contacts = grids"),
+        (HalfSpace(method="paper", contacts="grids"), "method = paper on contacts = grids"),
+        (HalfSpace(method="paper"), "method = paper"),
+    ],
+)
+def test_methods_without_their_package_are_refused_by_name(engine, told, monkeypatch):
+    monkeypatch.setattr(methods, "entry_points", lambda group: ())
+    with pytest.raises(DriveError, match=f"^{told}: comes with the package validation, which is not installed$"):
+        engine.prepare(CASES["CS-1"])
 
 
 def test_methods_and_contacts_that_contradict_each_other():

@@ -13,9 +13,9 @@ import fem
 import ltca
 import validation
 from ltca.analysis.loaded_analysis import analyse
-from ltca.compliance.grids import GridCompliance
 from ltca.drive.single_discs import is_single
 from ltca.reading.drive_file import parse_drive, shipped_drive
+from validation.methods.grids import GridCompliance
 
 RUNOUT = 'runout = { amount = 0.005, angle = "30 deg" }'
 ANGLE = np.array([0.0, 1.6 * np.pi])

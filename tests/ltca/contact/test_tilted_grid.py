@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from ltca.contact.tilted_grid import find_patch, press_tilted
-from ltca.contact.tracked_grid import ContactKind, Separation, press
+from ltca.contact.tracked_grid import ContactKind, Separation
 from ltca.geometry.length_profile import CircularCrown, SummedProfile
+from validation.methods.pressed_grid import press
 
 LENGTH, MODULUS, RADIUS = 12.0, 115e3, 3.0
 SEPARATION = Separation(effective_radius=RADIUS, departure=lambda _, x: x**2 / (2.0 * RADIUS))

@@ -19,7 +19,6 @@ from ltca.analysis.engines import HalfSpace, Hybrid, PlaneStrain
 from ltca.analysis.friction.losses import losses
 from ltca.analysis.time_run import Course, Recorder, Samples, prepare_run, run_in_time
 from ltca.compliance.coefficients import load_coefficients
-from ltca.compliance.grids import GridCompliance
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.single_discs import single_discs
 from ltca.dynamics.contact_forces import ContactForces
@@ -35,6 +34,7 @@ from ltca.errors import DamagedFileError, DriveError
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
 from ltca.testing.closed_form_bodies import closed_form_coefficients
+from validation.methods.grids import GridCompliance
 
 ARCSEC = 206264.806
 RUBBING = {"friction.pin": 0.05, "friction.hole": 0.05, "friction.roller": 0.002}

@@ -8,12 +8,15 @@ import numpy as np
 import pytest
 
 from ltca.analysis.engines import HalfSpace
-from ltca.compliance.grids import GridCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.response import Start
+from ltca.contact.tracked_grid import solve_fitted
 from ltca.drive.parts import LengthProfile
 from ltca.equilibrium.balance import solve_equilibrium
 from ltca.equilibrium.reducer import Reducer
+from ltca.geometry.separation import circle_departure, flank_departure
+from validation.methods import pressed_grid
+from validation.methods.grids import KEPT_OF_EACH, KEPT_SEPARATIONS, GridCompliance, KeptPieces
 
 ANGLES = np.array([0.4])
 
@@ -51,17 +54,21 @@ def poses_about(near, count=3, size=1e-3):
     return [near + size * rng.normal(size=near.shape) / np.array([1.0, 1.0, 52.0, 56.0]) for _ in range(count)]
 
 
+def on_grids(drive):
+    """A drive of one disc on contact grids, of which none is solved yet."""
+    return Reducer(discs=(GridCompliance.of_drive(drive),))
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["CS-4", "profiled"])
 def test_loads_follow_from_the_pose_alone(paper_cases, profiled, balanced, name):
     """Loads at one pose differed by 0.26 N of 3,500 with what had been solved before."""
     drive = profiled if name == "profiled" else paper_cases[name]
-    grids = GridCompliance.of_drive(drive)
     poses = poses_about(balanced)
-    # From nothing, and one after the other in two orders, each starting from the last.
-    cold = [grids.respond(ANGLES, pose) for pose in poses]
+    # From nothing, and one after the other in two orders, each starting from what was solved before.
+    cold = [on_grids(drive).respond(ANGLES, pose) for pose in poses]
     for order in ((0, 1, 2), (2, 0, 1)):
-        start = None
+        grids, start = on_grids(drive), None
         for number in order:
             response = grids.respond(ANGLES, poses[number], start)
             start = Start.after(response)
@@ -81,13 +88,12 @@ def test_loads_follow_from_the_pose_alone(paper_cases, profiled, balanced, name)
 
 def test_a_returned_response_never_changes(paper_cases, balanced):
     """The contacts of an earlier answer were pressed again by the next one, and its pressures with them."""
-    drive = paper_cases["CS-4"]
-    grids = GridCompliance.of_drive(drive)
+    grids = on_grids(paper_cases["CS-4"])
     first, *others = poses_about(balanced)
     response = grids.respond(ANGLES, first)
     kept = [array.copy() for array in arrays_of(response)]
     pressures = [array.copy() for array in arrays_of(grids.pressures(response))]
-    assert len(kept) > 40  # the pieces of its contacts among them
+    assert len(kept) > 40
     start = Start.after(response)
     for pose in others:
         start = Start.after(grids.respond(ANGLES, pose, start))
@@ -95,18 +101,18 @@ def test_a_returned_response_never_changes(paper_cases, balanced):
         np.testing.assert_array_equal(array, before)
     for array, before in zip(arrays_of(grids.pressures(response)), pressures, strict=True):
         np.testing.assert_array_equal(array, before)
-    for contacts in response.warm_start:
-        for pieces in (*contacts.pins, *contacts.inner, *contacts.outer):
-            assert not any(array.flags.writeable for array in arrays_of(pieces))
+    (disc,) = grids.discs
+    solved = [piece for kept in disc._kept for pieces in kept._pieces.values() for piece in pieces]
+    assert len(solved) > 10
+    assert not any(array.flags.writeable for array in arrays_of(tuple(solved)))
 
 
 @pytest.mark.slow
 def test_equilibrium_does_not_depend_on_its_start(paper_cases, balanced):
     """From first contact as from the tables: the same pose to the tolerance of the balance."""
     drive = paper_cases["CS-4"]
-    grids = GridCompliance.of_drive(drive)
-    warm = solve_equilibrium(Reducer(discs=(grids,)), ANGLES, drive.wheel_moment(), balanced)
-    cold = solve_equilibrium(Reducer(discs=(grids,)), ANGLES, drive.wheel_moment())
+    warm = solve_equilibrium(on_grids(drive), ANGLES, drive.wheel_moment(), balanced)
+    cold = solve_equilibrium(on_grids(drive), ANGLES, drive.wheel_moment())
     # residuals of 1e-9 of the load on stiffnesses of some load by 10 µm: 1e-11 mm, and the lever arms
     np.testing.assert_allclose(cold.pose, warm.pose, rtol=0.0, atol=1e-11)
     np.testing.assert_allclose(cold.response.pin_load, warm.response.pin_load, rtol=0.0, atol=1e-5)
@@ -142,3 +148,65 @@ def test_contacts_that_tilt_balance_as_on_tables(paper_cases):
     total = off_grids.along.line_load.mean(axis=-1) * drive.disc.thickness
     np.testing.assert_allclose(total[carrying], direct.parts[0].pin_load[carrying], rtol=1e-9)
     np.testing.assert_allclose(estimate.mid[carrying], off_grids.mid[carrying], rtol=0.01)
+
+
+@pytest.fixture
+def solved(monkeypatch):
+    """Sizes of the contact problems that grids solve, as they are solved."""
+    sizes, solve = [], pressed_grid.solve_unilateral_contact
+
+    def counted(influence, penetration, **options):
+        sizes.append(penetration.size)
+        return solve(influence, penetration, **options)
+
+    monkeypatch.setattr(pressed_grid, "solve_unilateral_contact", counted)
+    return sizes
+
+
+def test_rollers_of_one_radius_were_solved_one_by_one(paper_cases, solved):
+    """Twelve contacts with the same separation and approach are one problem, or two where grids are blended."""
+    laws = GridCompliance.of_drive(paper_cases["CS-4"]).contact_laws
+    approach = np.full((2, 6), 4e-3)
+    load, _ = laws.laws[3].load_and_stiffness(approach, laws.inner_radius[0])
+    assert 1 <= len(solved) <= 2
+    assert load.min() == load.max() > 0.0
+
+
+def test_pins_are_placed_where_they_touch_the_flank(paper_cases, balanced):
+    """A law knew approach and radius alone; the separation of a flank depends on where the pin touches as well."""
+    drive = paper_cases["CS-4"]
+    grids = GridCompliance.of_drive(drive)
+    flank = Reducer(discs=(grids,)).respond(ANGLES, balanced).flank
+    pin = int(np.argmax(flank.approach[0]))
+    (pins, *_) = grids.contact_laws.placed(flank)
+    closed = flank.approach > 0.0
+    loads, _ = pins.take(closed.shape, closed).load_and_stiffness(
+        flank.approach[closed], flank.effective_radius[closed]
+    )
+    # The same contact alone, with the separation at its exact place: stations are 1e-4 of a lobe apart.
+    theta, radius = flank.parameter[0, pin], drive.pin_wheel.pin_radius
+    alone = solve_fitted(
+        grids.kinds.pins,
+        float(flank.approach[0, pin]),
+        float(flank.effective_radius[0, pin]),
+        lambda x: flank_departure(grids.geometry.profile, theta, x) + circle_departure(x, radius),
+    )
+    assert loads.max() == pytest.approx(alone.load, rel=2e-4)  # of another grid: cells differ (1e-4 of the load)
+
+
+def test_what_grids_keep_grew_with_every_place():
+    """A run in time passes a new station of the flank every few steps."""
+    kept = KeptPieces()
+    for place in range(KEPT_SEPARATIONS + 10):
+        kept.keep((5.0, float(place)), (object(),))
+    assert len(kept) == KEPT_SEPARATIONS
+    assert kept.start((5.0, 0.0)) == ()
+    for _ in range(2 * KEPT_OF_EACH):
+        kept.keep((5.0, 20.0), (object(),))
+    latest = object()
+    kept.keep((5.0, 20.0), (latest,))
+    kept.keep((5.0, 20.0), (latest,))
+    start = kept.start((5.0, 20.0))
+    assert len(start) == KEPT_OF_EACH
+    assert start[-1] is latest
+    assert start[-2] is not latest
