@@ -577,7 +577,7 @@ class Evaluation:
     @property
     def whole(self) -> Response:
         """The whole response."""
-        parts, shifts, start = self._gathered(lambda found: (found.parts, found.at.shifts, found.start))
+        parts, shifts, start = self._gathered(lambda found: (found.parts, found.at.shifts_after, found.start))
         return Response(
             force=self.force,
             tangent=self.tangent,

@@ -51,6 +51,10 @@ def disc_response(at: Linearised, disc: int) -> DiscResponse:
             _, slip, held = at.sticking[disc]
             friction = friction + held
             force += np.einsum("bpj,bp->bj", slip, held)
+    shifts, leans = None, None
+    if at.shifts_after is not None:
+        shifts = at.shifts_after[:, disc]
+        leans = at.shifts_after[:, system.discs + disc] / at.half if system.components > 1 else None
     leaning: tuple[Any, ...] = (None, None)
     if each.tilts is not None:
         found = at.slices_after(disc)
@@ -67,8 +71,8 @@ def disc_response(at: Linearised, disc: int) -> DiscResponse:
         pin_load=pins,
         hole_load=holes,
         warm_start=np.full(pins.shape[0], None, dtype=object),
-        shifts=each.shifts,
-        leans=each.leans,
+        shifts=shifts,
+        leans=leans,
         friction=friction,
         leaning_pins=leaning[0],
         leaning_holes=leaning[1],

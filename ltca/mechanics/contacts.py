@@ -95,9 +95,7 @@ class _Disc:
         self.bores, self.rays = geometry.bores(angle, pose, at), geometry.rollers(angle)
         self.rollers = self.rays.direction.shape[1]
         self.displacement = self.bores.each(self.bores.displacement, self.rollers)
-        # Along and across the rays.
-        self.displaced = self.rays.direction.conjugate() * self.displacement
-        self.total = self.rays.outermost - self.rays.touching(self.displaced)
+        self.total = self.rays.outermost - self.rays.touching_distance(self.displacement)
         self.tilts: tuple[PairTilt, PairTilt] | None = None
         if geometry.coordinates_of(pose).leans:
             lean_pins, lean_holes = (None, None) if leans is None else (leans[:, :pins], leans[:, pins:])
@@ -131,12 +129,13 @@ class _Disc:
         """Put the rollers inward of where they only touch the race, mm."""
         rays = self.rays
         place = rays.outermost - inward
-        arm = place - self.displaced
+        arm = place * rays.direction - self.displacement
         self.length = np.abs(arm)
-        turn = arm / self.length
-        self.outward, self.cosine, self.slant = turn * rays.direction, turn.real, -turn.imag
+        self.outward = arm / self.length
+        self.cosine = dot(self.outward, rays.direction)
         # |s n − d| less the bore play as a product: no cancellation for rollers that barely touch.
-        beyond = place + (rays.outermost - self.total) - 2.0 * self.displaced.real
+        along = dot(rays.direction, self.displacement)
+        beyond = place + (rays.outermost - self.total) - 2.0 * along
         self.inward, self.outer = inward, (self.total - inward) * beyond / (self.length + rays.bore_play)
 
 
@@ -172,7 +171,8 @@ class ContactSystem:
         self.one = replace(self.coordinates, discs=1)
         self.cage_speed = place.cage_speed
         self.plain = not self.deforms and self.components == 1 and model.friction is None
-        self.law_groups = _law_groups(self) if self.components == 1 else []
+        alike = all(type(laws) is ContactLaws for laws in self.laws)
+        self.law_groups = _law_groups(self) if self.components == 1 and alike else []
         self.radii = _radii(self)
         self.never_left_out = np.full((1, self.discs * self.pins), np.inf)
 
@@ -180,13 +180,6 @@ class ContactSystem:
     def half(self) -> FloatArray:
         """Half the thickness of the discs, by which tilts are measured, mm, shape (…,) of one number or (positions, 1)."""
         return np.asarray(self.geometries[0].half_width, dtype=float)
-
-    @cached_property
-    def every_contact(self) -> tuple[list[list[Indices]], list[list[slice]], list[slice], list[list[slice]]]:
-        """All contacts of every disc and kind as chosen ones, of one position for all, and `_places_of` them."""
-        sizes = self.pins, self.rollers, self.holes, self.rollers
-        chosen = [[np.arange(size)[None] for size in sizes] for _ in range(self.discs)]
-        return chosen, *_places_of(chosen)
 
     def respond(
         self,
@@ -277,6 +270,16 @@ class _State(NamedTuple):
     near: tuple[FloatArray, ...]
 
 
+class ContactStart(NamedTuple):
+    """Inner unknowns of a neighbouring position, to start from."""
+
+    parameter: FloatArray
+    share: FloatArray
+    known: KnownPins
+    follow: Following
+    inner: Inner
+
+
 def _mixed(first: _State, second: _State, rows: NDArray[np.bool_]) -> _State:
     """Inner unknowns of the first but for some positions, which have those of the second."""
 
@@ -340,16 +343,6 @@ class _Eliminated(NamedTuple):
     de_by_pose: FloatArray
 
 
-class ContactStart(NamedTuple):
-    """Inner unknowns of a neighbouring position, to start from."""
-
-    parameter: FloatArray
-    share: FloatArray
-    known: KnownPins
-    follow: Following
-    inner: Inner
-
-
 class Linearised:
     """Contacts at poses and near-by inner unknowns, and how everything follows the pose to first order.
 
@@ -395,24 +388,22 @@ class Linearised:
         by_crank: bool = False,
     ) -> None:
         self.before, self.roughly = before, roughly
-        self.system, self.angle, self.pose, self.known, self.margin = system, angle, pose, known, margin
         self.by_crank, self.size = by_crank, pose.shape[1] + by_crank
-        self.columns = [np.append(own, self.size - 1) for own in system.columns] if by_crank else system.columns
+        self.system, self.angle, self.pose, self.known, self.margin = system, angle, pose, known, margin
         self.row = np.arange(angle.size)[:, None]
         self.half = system.half
         self.off = np.zeros(angle.size)
         self._moved_slices: dict[int, list[SlicedContact]] = {}
         self.held = before is not None
-        self.discs: list[_Disc] = self._placed(state) if before is None else before.discs
+        self.discs = self._placed(state) if before is None else before.discs
         self._approach(state)
         if system.components == 1:
             self._carry_in_plane()
         else:
             self._carry(state, roughly)
+        self._choose()
         self.sticking: list[tuple[FloatArray, FloatArray, FloatArray]] = []
         self.rubs: list[FloatArray] = []
-        self.de_by_pose: FloatArray | None = None
-        self._choose()
         if system.plain:
             self._linearise_plain()
         else:
@@ -524,14 +515,17 @@ class Linearised:
         radius[...] = system.radii
         for at, kinds in zip(self.discs, system.of_kind, strict=True):
             radius[:, kinds[0]] = at.flank.effective_radius
-        on_pins = [
-            (laws.placed(at.flank)[0], kinds[0])
-            for at, laws, kinds in zip(self.discs, system.laws, system.of_kind, strict=True)
-            if _follows_the_flank(laws)
-        ]
-        for law, contacts in (*on_pins, *system.law_groups):
+        for law, contacts in system.law_groups:
             load, stiffness = law.load_and_stiffness(e[:, contacts], radius[:, contacts])
             self.load[:, 0, contacts], self.stiffness[0][:, contacts] = load, stiffness
+        if system.law_groups:
+            return
+        # Laws that know where on the flank a pin touches are asked for closed contacts alone.
+        for at, laws, kinds in zip(self.discs, system.laws, system.of_kind, strict=True):
+            for law, kind in zip(laws.placed(at.flank), kinds, strict=True):
+                closed = e[:, kind] > 0.0
+                found = law.take(closed.shape, closed).load_and_stiffness(e[:, kind][closed], radius[:, kind][closed])
+                self.load[:, 0, kind][closed], self.stiffness[0][:, kind][closed] = found
 
     def _carry(self, state: _State, roughly: bool) -> None:
         """The same with tilts, moments and their derivatives."""
@@ -565,29 +559,40 @@ class Linearised:
 
     def _choose(self) -> None:
         """Choose the contacts of the linear system: those that carry, and of coupled bodies open ones that may."""
-        system = self.system
+        system, rows = self.system, self.row.size
         self.every = not system.coupled
+        self.chosen: list[list[Indices]] = []
         if self.every:
-            self.chosen, self.at, self.of_rollers, self.local = system.every_contact
-            self.count = system.contacts
-            return
-        carries = np.any(self.stiffness != 0.0, axis=0) | (self.load[:, 0] > 0.0) | self._within()
-        self.chosen = []
-        for disc in range(system.discs):
-            pins, bores, holes, races = (carries[:, kind] for kind in system.of_kind[disc])
-            rollers = _padded(bores | races)
-            self.chosen.append([_padded(pins), rollers, _padded(holes), rollers])
+            counts = system.pins, system.rollers, system.holes, system.rollers
+            all_of = [np.broadcast_to(np.arange(count), (rows, count)) for count in counts]
+            self.chosen = [all_of] * system.discs
+        else:
+            carries = np.any(self.stiffness != 0.0, axis=0) | (self.load[:, 0] > 0.0) | self._within()
+            for disc in range(system.discs):
+                pins, bores, holes, races = (carries[:, kind] for kind in system.of_kind[disc])
+                rollers = _padded(bores | races)
+                self.chosen.append([_padded(pins), rollers, _padded(holes), rollers])
         parts = [
             first.start + some
             for kinds, own in zip(system.of_kind, self.chosen, strict=True)
             for first, some in zip(kinds, own, strict=True)
         ]
-        self.contacts: Indices = np.concatenate(parts, axis=1)
-        self.rollers: Indices = np.concatenate(
-            [disc * system.rollers + own[1] for disc, own in enumerate(self.chosen)], axis=1
-        )
-        self.count = self.contacts.shape[1]
-        self.at, self.of_rollers, self.local = _places_of(self.chosen)
+        if not self.every:
+            self.contacts: Indices = np.concatenate(parts, axis=1)
+            self.rollers: Indices = np.concatenate(
+                [disc * system.rollers + own[1] for disc, own in enumerate(self.chosen)], axis=1
+            )
+        ends = np.cumsum([0, *(part.shape[1] for part in parts)])
+        self.count = int(ends[-1])
+        self.at = [
+            [slice(ends[4 * disc + kind], ends[4 * disc + kind + 1]) for kind in range(4)]
+            for disc in range(system.discs)
+        ]
+        ends = np.cumsum([0, *(own[1].shape[1] for own in self.chosen)])
+        self.of_rollers = [slice(first, last) for first, last in pairwise(ends)]
+        self.local = [
+            [slice(kind.start - own[0].start, kind.stop - own[0].start) for kind in own] for own in self.at
+        ]
 
     def of_chosen(self, values: FloatArray) -> FloatArray:
         """Values of all contacts, shape (…, positions, components, contacts), of the chosen ones."""
@@ -615,6 +620,12 @@ class Linearised:
         """Values by contact of a kind, shape (positions, contacts, …), of the chosen ones."""
         return values if self.every else values[self.row, some]
 
+    @cached_property
+    def columns(self) -> list[Indices]:
+        """Coordinates of each disc, with the crank angle where that is one."""
+        own = self.system.columns
+        return [np.append(each, self.size - 1) for each in own] if self.by_crank else own
+
     def _gradients(self, disc: int) -> tuple[FloatArray, FloatArray]:
         """∂d/∂q of the chosen contacts of a disc by its own coordinates, shape (positions, components, chosen, coordinates), and
         how the tangents of its rollers in the bores turn with the pose, Im(n̄ ∂), shape (positions, rollers, coordinates).
@@ -626,8 +637,10 @@ class Linearised:
         by_approach = g[:, 0]
         by_approach[:, pins] = self._with_crank(at, self.picked(at.flank.gradient, some[0]))
         by_approach[:, holes] = self._with_crank(at, self.picked(at.holes.gradient, some[2]))
-        moved = self._bores_moved(at)
-        moved = moved[:, :, 0] + 1j * moved[:, :, 1]
+        moved = at.bores.gradient
+        if self.by_crank:
+            both = self._bores_moved(at)
+            moved = both[:, :, 0] + 1j * both[:, :, 1]
         if moved.shape[1] > 1:
             moved = moved[row, some[1] // (system.rollers // moved.shape[1])]
         turned = self.picked(at.outward, some[1]).conjugate()[..., None] * moved
@@ -645,16 +658,85 @@ class Linearised:
                 first = system.one.crank_lean(crank)
                 by_tilt[:, races, first : first + 2] = both * (crank_of == crank)[..., None]
             if self.by_crank:  # rays turn with the cages
-                turning = 1j * system.cage_speed * ray
+                with_cage = 1j * at.geometry.placement.cage_speed * ray
                 journals = at.bores.each(at.geometry.journal_leans(at.pose), system.rollers)
                 journal = self.picked(np.broadcast_to(journals, at.total.shape), some[1])
-                by_tilt[:, bores, -1] = -self.half * dot(turning, at.geometry.lean(at.pose))
-                by_tilt[:, races, -1] = self.half * dot(turning, journal)
+                by_tilt[:, bores, -1] = -self.half * dot(with_cage, at.geometry.lean(at.pose))
+                by_tilt[:, races, -1] = self.half * dot(with_cage, journal)
         return g, turned.imag
 
     def _with_crank(self, at: _Disc, gradient: FloatArray) -> FloatArray:
         """Derivatives of pins by the pose of a disc, and by the crank angle where that is a coordinate."""
         return np.concatenate((gradient, np.matmul(gradient, at.nominal)), axis=-1) if self.by_crank else gradient
+
+    def _linearise_plain(self) -> None:
+        """Force and tangent where nothing deforms but the contacts, in the plane: each roller is condensed by itself.
+
+        With the stiffnesses k of its two contacts, the cosine c between ray and normal n in the bore, and the load F there, which
+        turns by its place as s (n across the ray), a roller yields along its ray with k_i + c² k_o + F s²/l. The rollers of a
+        crank are one spring then between bore and race, Σ a n nᵀ + b t tᵀ + m (n tᵀ + t nᵀ).
+        """
+        system, (rows, size) = self.system, (self.pose.shape[0], self.size)
+        load, stiffness = self.load[:, 0], self.stiffness[0]
+        self.force, self.tangent = np.zeros((rows, size)), np.zeros((rows, size, size))
+        self.de, self.change = np.zeros(self.load.shape), np.zeros(self.load.shape)
+        self.dx, self.by_own = np.zeros((rows, system.discs * system.rollers, 1)), []
+        for disc, (at, own) in enumerate(zip(self.discs, self.columns, strict=True)):
+            pins, bores, holes, races = system.of_kind[disc]
+            n, carried, k_bore, k_race = at.outward, load[:, bores], stiffness[:, bores], stiffness[:, races]
+            held = k_bore * at.cosine
+            by_place, unbalanced = k_race + held * at.cosine, load[:, races] - at.cosine * carried
+            if not self.by_crank:
+                bend = carried / at.length
+                slant = (n.conjugate() * at.rays.direction).imag
+                slanted = bend * slant
+                by_place = by_place + slanted * slant
+            by_place = np.where(by_place != 0.0, by_place, np.inf)
+            share, step = held / by_place, unbalanced / by_place
+            added, cranks = held * step, at.bores.arm.shape[1]
+            shape = rows, cranks, -1, 1
+            normal = n.view(float).reshape(rows, cranks, -1, 2)
+            basis, pressed = normal, (k_bore - held * share).reshape(shape) * normal
+            loads, follow = (carried + added).reshape(shape), share.reshape(shape) * normal
+            if not self.by_crank:
+                across, aside = (1j * n).view(float).reshape(normal.shape), slanted / by_place
+                mixed, turning = (held * aside).reshape(shape), (bend - slanted * aside).reshape(shape)
+                basis = np.concatenate((normal, across), axis=2)
+                pressed = np.concatenate((pressed - mixed * across, turning * across - mixed * normal), axis=2)
+                loads = np.concatenate((loads, (slanted * step).reshape(shape)), axis=2)
+                follow = follow + aside.reshape(shape) * across
+            moved = self._bores_moved(at)
+            springs, pushes = (np.matmul(basis.swapaxes(2, 3), each) for each in (pressed, loads))
+            gradient = self._with_crank(at, np.concatenate((at.flank.gradient, at.holes.gradient), axis=1))
+            of_bores = moved.reshape(rows, 2 * cranks, -1)
+            back = np.concatenate((gradient, of_bores), axis=1).swapaxes(1, 2)
+            stiff = np.concatenate((stiffness[:, pins], stiffness[:, holes]), axis=1)[..., None]
+            pressed = np.concatenate((stiff * gradient, np.matmul(springs, moved).reshape(of_bores.shape)), axis=1)
+            pushes = -pushes.reshape(rows, -1)
+            force = np.matmul(back, np.concatenate((load[:, pins], load[:, holes], pushes), axis=1)[..., None])[..., 0]
+            tangent = np.matmul(back, pressed)
+            if not self.by_crank:
+                tangent += self._bends(disc)
+            else:  # forces of the bearings turn with the cages, which the stiffness of rollers on turning rays counts
+                turned = system.cage_speed * (pushes.view(complex) * -1j).view(float)
+                turned = np.matmul(turned[:, None], of_bores[..., :-1])[:, 0]
+                tangent[:, :-1, -1] -= turned
+                tangent[:, -1, :-1] -= turned
+            of_rollers = slice(disc * system.rollers, (disc + 1) * system.rollers)
+            followed = np.matmul(-follow.view(float).reshape(rows, cranks, -1, 2), moved).reshape(
+                rows, system.rollers, -1
+            )
+            if system.discs > 1:
+                self.force[:, own] += force
+                self.tangent[:, own[:, None], own] += tangent
+            else:
+                self.force, self.tangent = force, tangent
+            self.by_own.append(followed[:, :, None])
+            self.dx[:, of_rollers, 0] = -step
+            self.de[:, 0, bores], self.de[:, 0, races] = at.cosine * step, -step
+            self.change[:, 0, bores], self.change[:, 0, races] = added, -k_race * step
+        self.de_by_pose = None
+        self.moved = np.abs(self.dx[..., 0]).max(axis=1, initial=0.0)
 
     def _bores_moved(self, at: _Disc) -> FloatArray:
         """Displacements of the bores, x and y, by the pose of a disc, and by the crank angle where that is a coordinate, shape
@@ -667,6 +749,21 @@ class Linearised:
             found[..., -1] = at.seen_from_cages
         return found
 
+    @cached_property
+    def pressing(self) -> list[_Pressing]:
+        """What the chosen contacts of every disc press its coordinates with."""
+        self.chosen_load = self.of_chosen(self.load)
+        self.chosen_stiffness = self.of_chosen(self.stiffness.swapaxes(0, 1)).swapaxes(0, 1)
+        return [self._pressing(disc) for disc in range(self.system.discs)]
+
+    @cached_property
+    def left(self) -> FloatArray:
+        """Force that the second order may amount to, N, shape (positions,)."""
+        deep = np.abs(self.of_chosen(self.deformation)).sum(axis=1) + 1e-300
+        moved = np.abs(self.de).sum(axis=1)
+        error = np.abs(self.change).sum(axis=1) * np.minimum(1.0, moved / deep)
+        return np.asarray(np.maximum(LEFT_WEIGHT * np.max(error, axis=1, initial=0.0), self.law_left))
+
     def _pressing(self, disc: int) -> _Pressing:
         """What the chosen contacts of a disc press its own coordinates with, rollers where they stand."""
         at, some, (_, bores, _, races) = self.discs[disc], self.chosen[disc], self.local[disc]
@@ -675,8 +772,9 @@ class Linearised:
         load, stiffness = self.chosen_load[:, :, own], self.chosen_stiffness[:, :, own]
         out, n = self.picked(at.outward, some[1]), self.picked(at.rays.direction, some[1])
         slant = (out.conjugate() * n).imag
-        pushed = load[:, 0, bores]
-        bend = np.zeros(pushed.shape) if self.by_crank else pushed / self.picked(at.length, some[1])
+        bend = load[:, 0, bores] / self.picked(at.length, some[1])
+        if self.by_crank:
+            bend = np.zeros(bend.shape)
         rows, components, _, size = g.shape
         # Directions in which a roller's own place and lean press its two contacts.
         outward, inward = np.ones((2, rows, components, out.shape[1]))
@@ -684,13 +782,14 @@ class Linearised:
         inward[:, 1:] = -1.0
         placed = np.zeros((rows, out.shape[1], components, size))
         np.multiply((bend * slant)[..., None], across, out=placed[:, :, 0])
-        tangent = self._bends(disc)
-        tangent += np.matmul(across.swapaxes(1, 2), bend[..., None] * across)
-        if self.by_crank:
-            # Forces of the bearings turn with the cages, which the stiffness of rollers on turning rays counts.
-            turned = np.matmul((self.system.cage_speed * pushed)[:, None], across[..., :-1])[:, 0]
+        if self.by_crank:  # forces of the bearings turn with the cages, which the stiffness of rollers on turning rays counts
+            tangent = np.zeros((rows, size, size))
+            pushed = load[:, 0, bores] * self.system.cage_speed
+            turned = np.matmul(pushed[:, None], across[..., :-1])[:, 0]
             tangent[:, :-1, -1] -= turned
             tangent[:, -1, :-1] -= turned
+        else:
+            tangent = self._bends(disc) + np.matmul(across.swapaxes(1, 2), bend[..., None] * across)
         found = _Pressing(
             g=g,
             force_map=self._rub(disc, g),
@@ -711,104 +810,9 @@ class Linearised:
             tangent += np.matmul(slip.swapaxes(1, 2), by_slip[..., None] * slip)
         return found
 
-    def _linearise_plain(self) -> None:
-        """Force and tangent where nothing deforms but the contacts, in the plane: each roller is condensed by itself.
-
-        With the stiffnesses k of its two contacts, the cosine c between ray and normal n in the bore, and the load F there, which
-        turns by its place as s (n across the ray), a roller yields along its ray with k_i + c² k_o + F s²/l. The rollers of a
-        crank are one spring then between bore and race, Σ a n nᵀ + b t tᵀ + m (n tᵀ + t nᵀ).
-        """
-        system, rows, size = self.system, self.pose.shape[0], self.size
-        load, stiffness = self.load[:, 0], self.stiffness[0]
-        self.by_own: list[FloatArray] = []
-        self.force, self.tangent = np.zeros((rows, size)), np.zeros((rows, size, size))
-        self.dx = np.zeros((rows, system.discs * system.rollers, 1))
-        for disc, (at, own) in enumerate(zip(self.discs, self.columns, strict=True)):
-            pins, bores, holes, races = system.of_kind[disc]
-            n, carried, k_bore, k_race = at.outward, load[:, bores], stiffness[:, bores], stiffness[:, races]
-            held = k_bore * at.cosine
-            by_place, unbalanced = k_race + held * at.cosine, load[:, races] - at.cosine * carried
-            if not self.by_crank:
-                bend = carried / at.length
-                slanted = bend * at.slant
-                by_place = by_place + slanted * at.slant
-            by_place = np.where(by_place != 0.0, by_place, np.inf)
-            share, step = held / by_place, unbalanced / by_place
-            cranks = at.bores.arm.shape[1]
-            shape = rows, cranks, -1, 1
-            normal = n.view(float).reshape(rows, cranks, -1, 2)
-            basis, pressed = normal, (k_bore - held * share).reshape(shape) * normal
-            loads, follow = (carried + held * step).reshape(shape), share.reshape(shape) * normal
-            if not self.by_crank:
-                across, aside = (1j * n).view(float).reshape(normal.shape), slanted / by_place
-                mixed, turning = (held * aside).reshape(shape), (bend - slanted * aside).reshape(shape)
-                basis = np.concatenate((normal, across), axis=2)
-                pressed = np.concatenate((pressed - mixed * across, turning * across - mixed * normal), axis=2)
-                loads = np.concatenate((loads, (slanted * step).reshape(shape)), axis=2)
-                follow = follow + aside.reshape(shape) * across
-            moved = self._bores_moved(at)
-            springs, pushes = (np.matmul(basis.swapaxes(2, 3), each) for each in (pressed, loads))
-            gradient = self._with_crank(at, np.concatenate((at.flank.gradient, at.holes.gradient), axis=1))
-            of_bores = moved.reshape(rows, 2 * cranks, -1)
-            back = np.concatenate((gradient, of_bores), axis=1).swapaxes(1, 2)
-            stiff = np.concatenate((stiffness[:, pins], stiffness[:, holes]), axis=1)[..., None]
-            pressed = np.concatenate((stiff * gradient, np.matmul(springs, moved).reshape(of_bores.shape)), axis=1)
-            pushes = -pushes.reshape(rows, -1)
-            force = np.matmul(back, np.concatenate((load[:, pins], load[:, holes], pushes), axis=1)[..., None])[..., 0]
-            tangent = np.matmul(back, pressed)
-            if self.by_crank:
-                # Forces of the bearings turn with the cages, which the stiffness of rollers on turning rays counts.
-                turned = system.cage_speed * (pushes.view(complex) * -1j).view(float)
-                turned = np.matmul(turned[:, None], of_bores[..., :-1])[:, 0]
-                tangent[:, :-1, -1] -= turned
-                tangent[:, -1, :-1] -= turned
-            else:
-                tangent += self._bends(disc)
-            self.by_own.append(-np.matmul(follow, moved).reshape(rows, system.rollers, 1, -1))
-            if system.discs > 1:
-                self.force[:, own] += force
-                self.tangent[:, own[:, None], own] += tangent
-            else:
-                self.force, self.tangent = force, tangent
-            self.dx[:, disc * system.rollers : (disc + 1) * system.rollers, 0] = -step
-        self.moved = np.abs(self.dx[..., 0]).max(axis=1, initial=0.0)
-
-    @cached_property
-    def pressing(self) -> list[_Pressing]:
-        """What contacts of each disc press its coordinates with."""
-        self.chosen_load, self.chosen_stiffness = self.load, self.stiffness
-        return [self._pressing(disc) for disc in range(self.system.discs)]
-
-    @cached_property
-    def de(self) -> FloatArray:
-        """Corrections of the deformations of the chosen contacts, mm, shape (positions, components, chosen)."""
-        found = np.zeros(self.load.shape)
-        for disc, (at, (_, bores, _, races)) in enumerate(zip(self.discs, self.system.of_kind, strict=True)):
-            step = self.dx[:, disc * self.system.rollers : (disc + 1) * self.system.rollers, 0]
-            found[:, 0, bores], found[:, 0, races] = -at.cosine * step, step
-        return found
-
-    @cached_property
-    def change(self) -> FloatArray:
-        """Corrections of their loads, N."""
-        return np.asarray(self.stiffness[0][:, None] * self.de)
-
-    @cached_property
-    def left(self) -> FloatArray:
-        """Force that the second order may amount to, N, shape (positions,)."""
-        near = self.of_chosen(self.deformation)
-        deep = np.abs(near).sum(axis=1) + 1e-300
-        moved = np.abs(self.de).sum(axis=1)
-        error = np.abs(self.change).sum(axis=1) * np.minimum(1.0, moved / deep)
-        return np.asarray(np.maximum(LEFT_WEIGHT * np.max(error, axis=1, initial=0.0), self.law_left))
-
     def _linearise(self) -> None:
         """Eliminate deformations, displacements of pins and places of rollers."""
-        system = self.system
-        self.chosen_load = self.of_chosen(self.load)
-        self.chosen_stiffness = self.of_chosen(self.stiffness.swapaxes(0, 1)).swapaxes(0, 1)
-        self.pressing = [self._pressing(disc) for disc in range(system.discs)]
-        if system.coupled:
+        if self.system.coupled:
             self._linearise_coupled()
         else:
             self._linearise_alone()
@@ -819,11 +823,12 @@ class Linearised:
 
     def _linearise_alone(self) -> None:
         """The same where nothing deforms but the contacts: disc by disc, roller by roller."""
-        system, rows, size = self.system, self.pose.shape[0], self.size
+        system, (rows, size) = self.system, (self.pose.shape[0], self.size)
         force, tangent = np.zeros((rows, size)), np.zeros((rows, size, size))
         dx, by_own = [], []
+        pressing = self.pressing
         on_pins = None if system.model.pins is None else self._on_displaced_pins()
-        for disc, (part, own) in enumerate(zip(self.pressing, self.columns, strict=True)):
+        for disc, (part, own) in enumerate(zip(pressing, self.columns, strict=True)):
             _, bores, _, races = self.local[disc]
             outward, inward = part.presses
             rollers, components, count = part.placed.shape[1:]
@@ -854,13 +859,13 @@ class Linearised:
             dx.append(-solved[..., -1])
             by_own.append(-solved[..., :-1])
         self.dx, self.by_own = self._bounded(np.concatenate(dx, axis=1) if len(dx) > 1 else dx[0]), by_own
-        self.de = np.zeros(self.load.shape)
+        self.de, self.de_by_pose = np.zeros(self.load.shape), None
         if on_pins is not None:
             self.de_by_pose = np.zeros((*self.load.shape, size))
             force, tangent = force + on_pins[0], tangent + on_pins[1]
             if not self.sticking and system.model.friction is None:
                 tangent = 0.5 * (tangent + tangent.swapaxes(1, 2))
-        for disc, part in enumerate(self.pressing):
+        for disc, part in enumerate(pressing):
             pins, bores, holes, races = system.of_kind[disc]
             outward, inward = part.presses
             moved = self.dx[:, self.of_rollers[disc]].swapaxes(1, 2)
@@ -914,7 +919,7 @@ class Linearised:
 
     def _assembled(self) -> _Pressing:
         """What contacts of all discs press all coordinates with."""
-        system, rows, size = self.system, self.pose.shape[0], self.size
+        system, (rows, size) = self.system, (self.pose.shape[0], self.size)
         if system.discs == 1:
             return self.pressing[0]
         components, rollers = system.components, self.of_rollers[-1].stop
@@ -969,7 +974,9 @@ class Linearised:
             found = _Eliminated(*(np.where(*each) for each in zip(rows, found, still, strict=True)))
         self.force, self.tangent, self.dx, self.dx_by_pose, self.de, self.de_by_pose = found
 
-    def _eliminate(self, part: _Pressing, whole: FloatArray, left: FloatArray, *, turning: bool) -> _Eliminated:
+    def _eliminate(
+        self, part: _Pressing, whole: FloatArray, left: FloatArray, *, turning: bool
+    ) -> _Eliminated:
         """The same where loads deform more than their own contacts: force and tangent of the pose.
 
         Without `turning` loads that turn with displaced pins count where they hold these back alone.
@@ -1109,7 +1116,9 @@ class Linearised:
             self.bodies: list[list[BodyFlexibility]] = before.bodies
             return
         self.bodies = [
-            [] if model.coefficients is None else model.body_flexibility(self.body_places(disc), self.chosen[disc][:3])
+            []
+            if model.coefficients is None
+            else model.body_flexibility(self.body_places(disc), self.chosen[disc][:3])[: self.system.components]
             for disc, model in enumerate(self.system.bodies)
         ]
 
@@ -1121,7 +1130,7 @@ class Linearised:
             parameter=_beside([motion.parameter for motion in motions]),
             share=self.share,
             known=KnownPins(
-                approach=self.system.never_left_out.repeat(self.angle.size, axis=0),
+                approach=np.repeat(self.system.never_left_out, self.angle.size, axis=0),
                 point=_beside([motion.point for motion in motions]),
                 turning=_beside([motion.turning for motion in motions]),
             ),
@@ -1206,8 +1215,6 @@ class Linearised:
     def _bends(self, disc: int) -> FloatArray:
         """Σ F ∂²d/∂q² of the contacts of a disc by its own coordinates but what the rollers' places turn."""
         system, at = self.system, self.discs[disc]
-        if self.by_crank:
-            return np.zeros((self.angle.size, self.columns[disc].size, self.columns[disc].size))
         pins, bores, holes, _ = system.of_kind[disc]
         found = at.flank.bend(self.load[:, 0, pins]) + at.holes.bend(self.load[:, 0, holes])
         if at.tilts is not None:
@@ -1226,23 +1233,21 @@ class Linearised:
 
     def settled(self, roughly: bool) -> NDArray[np.bool_]:
         """Positions whose inner unknowns are close enough for a step of the pose, or for an answer."""
-        part = ROUGHLY_SETTLED if roughly else SETTLED_IN_MOTION if self.by_crank else SETTLED
-        return self._are_small(self.moved, part)
+        return self._are_small(self.moved, ROUGHLY_SETTLED if roughly else SETTLED_IN_MOTION if self.by_crank else SETTLED)
 
     def _are_small(self, moved: FloatArray, part: float) -> NDArray[np.bool_]:
         """Positions where corrections, mm, are a small part of the largest approach."""
-        deep = (np.abs(self.overlap[:, 0]) * (self.load[:, 0] > 0.0)).max(axis=1, initial=0.0)
+        deep = np.max(np.abs(self.overlap[:, 0]) * (self.load[:, 0] > 0.0), axis=1, initial=0.0)
         return np.asarray(moved <= part * deep + ROUND_OFF)
 
     def again(self, state: _State) -> Linearised:
         """Return the contacts at the same poses with other inner unknowns."""
-        known = None if self.by_crank else self.known  # which is for places on the flank of another position
         return Linearised(
             self.system,
             self.angle,
             self.pose,
             state,
-            known,
+            None if self.by_crank else self.known,
             roughly=self.roughly,
             margin=self.margin,
             by_crank=self.by_crank,
@@ -1263,7 +1268,7 @@ class Linearised:
         system, approach = self.system, None
         if system.deforms:
             approach = self.after
-        shifts = None if self.shifts is None else self._moved_shifts()
+        shifts = self.shifts_after
         place, lean = self.place_after, self.lean_after
         if fraction is not None and not np.all(fraction == 1.0):
             part = fraction[:, None]
@@ -1309,8 +1314,12 @@ class Linearised:
             self._moved_slices[disc] = found
         return self._moved_slices[disc]
 
+    @cached_property
+    def shifts_after(self) -> ComplexArray | None:
+        """Displacements of the pins after the correction: those that the loads press."""
+        return None if self.shifts is None else self._moved_shifts()
+
     def _moved_shifts(self) -> ComplexArray:
-        """Displacements of the pins after the correction."""
         pins = self.system.model.pins
         assert pins is not None
         return np.asarray(-pins.under(self.members.forces(self.corrected_load)))
@@ -1427,9 +1436,8 @@ class Linearised:
             change = _pressed(self.chosen_stiffness, self.de_by_pose)
             each = np.moveaxis(change, -1, 0)
             shifts = np.stack([-pins.under(self.members.forces(self.of_all(one))) for one in each], axis=-1)
-        columns: tuple[tuple[int, ...], ...] = ()
         if self.system.coupled:
-            by_pose = self.of_all_rollers(self.dx_by_pose)
+            by_pose, columns = self.of_all_rollers(self.dx_by_pose), ()
         else:
             by_pose = np.concatenate(self.by_own, axis=1) if len(self.by_own) > 1 else self.by_own[0]
             columns = () if len(self.by_own) == 1 else tuple(tuple(own.tolist()) for own in self.columns)
@@ -1447,32 +1455,12 @@ class Linearised:
         )
 
 
-def _places_of(chosen: list[list[Indices]]) -> tuple[list[list[slice]], list[slice], list[list[slice]]]:
-    """Return where chosen contacts of each disc and kind stand among all chosen, the rollers of each disc among these, and the
-    contacts of each kind among those of their disc.
-    """
-    ends = np.cumsum([0, *(some.shape[1] for own in chosen for some in own)])
-    at = [[slice(ends[4 * disc + kind], ends[4 * disc + kind + 1]) for kind in range(4)] for disc in range(len(chosen))]
-    ends = np.cumsum([0, *(own[1].shape[1] for own in chosen)])
-    local = [[slice(kind.start - own[0].start, kind.stop - own[0].start) for kind in own] for own in at]
-    return at, [slice(first, last) for first, last in pairwise(ends)], local
-
-
-def _follows_the_flank(laws: ContactLaws) -> bool:
-    """Whether the law of wheel pins depends on where they touch the flank."""
-    return type(laws).placed is not ContactLaws.placed
-
-
 def _law_groups(system: ContactSystem) -> list[tuple[Any, slice | Indices]]:
-    """Laws of all discs in the plane with their contacts: those that read one table are one law; without those of wheel pins
-    that depend on where these touch the flank.
-    """
+    """Laws of all discs in the plane with their contacts: those that read one table are one law."""
     groups: list[tuple[Any, slice | Indices]] = []
     lines: dict[int, list[tuple[LineContactLaw, slice]]] = {}
     for laws, kinds in zip(system.laws, system.of_kind, strict=True):
-        for number, (law, kind) in enumerate(zip(laws.laws, kinds, strict=True)):
-            if number == 0 and _follows_the_flank(laws):
-                continue
+        for law, kind in zip(laws.laws, kinds, strict=True):
             if type(law) is LineContactLaw:
                 lines.setdefault(id(law.table), []).append((law, kind))
             elif kind.start < kind.stop:

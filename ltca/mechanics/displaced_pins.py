@@ -107,16 +107,13 @@ class PinMembers:
                 last += some.shape[1]
                 bend = sign * motion.bending[at.row, some]
                 load = at.load[:, :, system.of_kind[disc][kind]]
-                # bend = np.maximum(bend, 0.0)
                 parts = [bend * load[:, component][at.row, some] for component in range(system.components)]
                 each.append(np.stack([*parts, np.zeros(bend.shape)]) if system.components > 1 else np.stack(parts))
-                if kind == 0:
+                if kind == 0 and not at.by_crank:
                     for component, part in enumerate(load.swapaxes(0, 1)):
                         turning = turn[:, component, first:last]
                         turning[..., own[DISC_ROTATION]] -= part[at.row, some]
                         turning[..., own[WHEEL_ANGLE]] += part[at.row, some]
-                        if at.by_crank:  # the wheel turns with the crank
-                            turning[..., -1] += part[at.row, some] / of_disc.geometry.placement.reduction_ratio
                 along = motion.along[at.row, some]
                 by_place = slip[:, 0]
                 by_place[:, first:last, own] = along
@@ -318,7 +315,9 @@ class PinBlocks:
             pins, _, holes, _ = at.local[disc]
             return np.concatenate((values[:, :, pins], values[:, :, holes]), axis=2)
 
-        g = self.of_contacts([whole(on_pins(part.g, disc), at.columns[disc]) for disc, part in enumerate(parts)], along)
+        g = self.of_contacts(
+            [whole(on_pins(part.g, disc), at.columns[disc]) for disc, part in enumerate(parts)], along
+        )
         onto_pose = g
         if at.rubs:
             onto_pose = self.of_contacts(

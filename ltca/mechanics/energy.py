@@ -42,19 +42,19 @@ def _of_disc(at: Linearised, disc: int) -> StoredEnergy:
         near: list[Any] = [one.near for one in at.slices_after(disc)]
         sliced = list(zip(laws.laws, deformation, tilts, radii, near, strict=True))
         found = StoredEnergy.of_slices(sliced[0], sliced[1:])
-    body = system.bodies[disc]
-    if body.coefficients is None:
+    bodies = system.bodies[disc]
+    if bodies.coefficients is None:
         return found
     rows = at.pose.shape[0]
     every = [np.tile(np.arange(kind.stop - kind.start), (rows, 1)) for kind in kinds[:3]]
     energy, loads, matrices = found.energy, [], []
-    for component, bodies in enumerate(body.body_flexibility(at.body_places(disc), every)):
-        load, matrix = at.corrected_load[:, component], bodies.among
+    for component, body in enumerate(bodies.body_flexibility(at.body_places(disc), every)):
+        load, matrix = at.corrected_load[:, component], body.among
         on_walls = np.concatenate([load[:, kind] for kind in kinds[:3]], axis=1)
         in_bores, on_races = load[:, kinds[1]], load[:, kinds[3]]
         energy = energy + 0.5 * np.einsum("bi,bij,bj->b", on_walls, matrix, on_walls)
-        energy = energy + 0.5 * np.einsum("bi,bij,bj->b", on_races, bodies.on_race, on_races)
-        energy = energy + bodies.across_roller * (in_bores * on_races).sum(axis=1)
+        energy = energy + 0.5 * np.einsum("bi,bij,bj->b", on_races, body.on_race, on_races)
+        energy = energy + body.across_roller * (in_bores * on_races).sum(axis=1)
         loads.append(on_walls)
         matrices.append(matrix)
     # Races and what rollers yield between their contacts are alike everywhere: they do no work as contacts move.
