@@ -217,7 +217,8 @@ class InfluenceCoefficients:
         on_flank, in_bore, in_holes = loaded
         columns = np.concatenate((on_flank, pins + in_bore, pins + rollers + in_holes), axis=1)
         if among:
-            stations, weights = (np.take_along_axis(values, columns[..., None], axis=1) for values in (stations, weights))
+            stations = np.take_along_axis(stations, columns[..., None], axis=1)
+            weights = np.take_along_axis(weights, columns[..., None], axis=1)
             columns = np.broadcast_to(np.arange(columns.shape[1]), columns.shape)
         matrix = self._interpolated(stations, weights, columns)
         split = on_flank.shape[1]

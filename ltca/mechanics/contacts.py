@@ -95,7 +95,9 @@ class _Disc:
         self.bores, self.rays = geometry.bores(angle, pose, at), geometry.rollers(angle)
         self.rollers = self.rays.direction.shape[1]
         self.displacement = self.bores.each(self.bores.displacement, self.rollers)
-        self.total = self.rays.outermost - self.rays.touching_distance(self.displacement)
+        # Along and across the rays.
+        self.displaced = self.rays.direction.conjugate() * self.displacement
+        self.total = self.rays.outermost - self.rays.touching(self.displaced)
         self.tilts: tuple[PairTilt, PairTilt] | None = None
         if geometry.coordinates_of(pose).leans:
             lean_pins, lean_holes = (None, None) if leans is None else (leans[:, :pins], leans[:, pins:])
@@ -129,13 +131,12 @@ class _Disc:
         """Put the rollers inward of where they only touch the race, mm."""
         rays = self.rays
         place = rays.outermost - inward
-        arm = place * rays.direction - self.displacement
+        arm = place - self.displaced
         self.length = np.abs(arm)
-        self.outward = arm / self.length
-        self.cosine = dot(self.outward, rays.direction)
+        turn = arm / self.length
+        self.outward, self.cosine, self.slant = turn * rays.direction, turn.real, -turn.imag
         # |s n − d| less the bore play as a product: no cancellation for rollers that barely touch.
-        along = dot(rays.direction, self.displacement)
-        beyond = place + (rays.outermost - self.total) - 2.0 * along
+        beyond = place + (rays.outermost - self.total) - 2.0 * self.displaced.real
         self.inward, self.outer = inward, (self.total - inward) * beyond / (self.length + rays.bore_play)
 
 
@@ -180,6 +181,13 @@ class ContactSystem:
     def half(self) -> FloatArray:
         """Half the thickness of the discs, by which tilts are measured, mm, shape (…,) of one number or (positions, 1)."""
         return np.asarray(self.geometries[0].half_width, dtype=float)
+
+    @cached_property
+    def every_contact(self) -> tuple[list[list[Indices]], list[list[slice]], list[slice], list[list[slice]]]:
+        """All contacts of every disc and kind as chosen ones, of one position for all, and `_places_of` them."""
+        sizes = self.pins, self.rollers, self.holes, self.rollers
+        chosen = [[np.arange(size)[None] for size in sizes] for _ in range(self.discs)]
+        return chosen, *_places_of(chosen)
 
     def respond(
         self,
@@ -395,7 +403,8 @@ class Linearised:
         self.off = np.zeros(angle.size)
         self._moved_slices: dict[int, list[SlicedContact]] = {}
         self.held = before is not None
-        self.discs = self._placed(state) if before is None else before.discs
+        self.de_by_pose: FloatArray | None = None
+        self.discs: list[_Disc] = self._placed(state) if before is None else before.discs
         self._approach(state)
         if system.components == 1:
             self._carry_in_plane()
@@ -559,40 +568,29 @@ class Linearised:
 
     def _choose(self) -> None:
         """Choose the contacts of the linear system: those that carry, and of coupled bodies open ones that may."""
-        system, rows = self.system, self.row.size
+        system = self.system
         self.every = not system.coupled
-        self.chosen: list[list[Indices]] = []
         if self.every:
-            counts = system.pins, system.rollers, system.holes, system.rollers
-            all_of = [np.broadcast_to(np.arange(count), (rows, count)) for count in counts]
-            self.chosen = [all_of] * system.discs
-        else:
-            carries = np.any(self.stiffness != 0.0, axis=0) | (self.load[:, 0] > 0.0) | self._within()
-            for disc in range(system.discs):
-                pins, bores, holes, races = (carries[:, kind] for kind in system.of_kind[disc])
-                rollers = _padded(bores | races)
-                self.chosen.append([_padded(pins), rollers, _padded(holes), rollers])
+            self.chosen, self.at, self.of_rollers, self.local = system.every_contact
+            self.count = system.contacts
+            return
+        carries = np.any(self.stiffness != 0.0, axis=0) | (self.load[:, 0] > 0.0) | self._within()
+        self.chosen = []
+        for disc in range(system.discs):
+            pins, bores, holes, races = (carries[:, kind] for kind in system.of_kind[disc])
+            rollers = _padded(bores | races)
+            self.chosen.append([_padded(pins), rollers, _padded(holes), rollers])
         parts = [
             first.start + some
             for kinds, own in zip(system.of_kind, self.chosen, strict=True)
             for first, some in zip(kinds, own, strict=True)
         ]
-        if not self.every:
-            self.contacts: Indices = np.concatenate(parts, axis=1)
-            self.rollers: Indices = np.concatenate(
-                [disc * system.rollers + own[1] for disc, own in enumerate(self.chosen)], axis=1
-            )
-        ends = np.cumsum([0, *(part.shape[1] for part in parts)])
-        self.count = int(ends[-1])
-        self.at = [
-            [slice(ends[4 * disc + kind], ends[4 * disc + kind + 1]) for kind in range(4)]
-            for disc in range(system.discs)
-        ]
-        ends = np.cumsum([0, *(own[1].shape[1] for own in self.chosen)])
-        self.of_rollers = [slice(first, last) for first, last in pairwise(ends)]
-        self.local = [
-            [slice(kind.start - own[0].start, kind.stop - own[0].start) for kind in own] for own in self.at
-        ]
+        self.contacts: Indices = np.concatenate(parts, axis=1)
+        self.rollers: Indices = np.concatenate(
+            [disc * system.rollers + own[1] for disc, own in enumerate(self.chosen)], axis=1
+        )
+        self.count = self.contacts.shape[1]
+        self.at, self.of_rollers, self.local = _places_of(self.chosen)
 
     def of_chosen(self, values: FloatArray) -> FloatArray:
         """Values of all contacts, shape (…, positions, components, contacts), of the chosen ones."""
@@ -679,7 +677,6 @@ class Linearised:
         system, (rows, size) = self.system, (self.pose.shape[0], self.size)
         load, stiffness = self.load[:, 0], self.stiffness[0]
         self.force, self.tangent = np.zeros((rows, size)), np.zeros((rows, size, size))
-        self.de, self.change = np.zeros(self.load.shape), np.zeros(self.load.shape)
         self.dx, self.by_own = np.zeros((rows, system.discs * system.rollers, 1)), []
         for disc, (at, own) in enumerate(zip(self.discs, self.columns, strict=True)):
             pins, bores, holes, races = system.of_kind[disc]
@@ -688,16 +685,15 @@ class Linearised:
             by_place, unbalanced = k_race + held * at.cosine, load[:, races] - at.cosine * carried
             if not self.by_crank:
                 bend = carried / at.length
-                slant = (n.conjugate() * at.rays.direction).imag
-                slanted = bend * slant
-                by_place = by_place + slanted * slant
+                slanted = bend * at.slant
+                by_place = by_place + slanted * at.slant
             by_place = np.where(by_place != 0.0, by_place, np.inf)
             share, step = held / by_place, unbalanced / by_place
-            added, cranks = held * step, at.bores.arm.shape[1]
+            cranks = at.bores.arm.shape[1]
             shape = rows, cranks, -1, 1
             normal = n.view(float).reshape(rows, cranks, -1, 2)
             basis, pressed = normal, (k_bore - held * share).reshape(shape) * normal
-            loads, follow = (carried + added).reshape(shape), share.reshape(shape) * normal
+            loads, follow = (carried + held * step).reshape(shape), share.reshape(shape) * normal
             if not self.by_crank:
                 across, aside = (1j * n).view(float).reshape(normal.shape), slanted / by_place
                 mixed, turning = (held * aside).reshape(shape), (bend - slanted * aside).reshape(shape)
@@ -733,9 +729,6 @@ class Linearised:
                 self.force, self.tangent = force, tangent
             self.by_own.append(followed[:, :, None])
             self.dx[:, of_rollers, 0] = -step
-            self.de[:, 0, bores], self.de[:, 0, races] = at.cosine * step, -step
-            self.change[:, 0, bores], self.change[:, 0, races] = added, -k_race * step
-        self.de_by_pose = None
         self.moved = np.abs(self.dx[..., 0]).max(axis=1, initial=0.0)
 
     def _bores_moved(self, at: _Disc) -> FloatArray:
@@ -757,6 +750,20 @@ class Linearised:
         return [self._pressing(disc) for disc in range(self.system.discs)]
 
     @cached_property
+    def de(self) -> FloatArray:
+        """Corrections of the deformations of the chosen contacts, mm, shape (positions, components, chosen)."""
+        found = np.zeros(self.load.shape)
+        for disc, (at, (_, bores, _, races)) in enumerate(zip(self.discs, self.system.of_kind, strict=True)):
+            step = self.dx[:, disc * self.system.rollers : (disc + 1) * self.system.rollers, 0]
+            found[:, 0, bores], found[:, 0, races] = -at.cosine * step, step
+        return found
+
+    @cached_property
+    def change(self) -> FloatArray:
+        """Corrections of their loads, N."""
+        return np.asarray(self.stiffness[0][:, None] * self.de)
+
+    @cached_property
     def left(self) -> FloatArray:
         """Force that the second order may amount to, N, shape (positions,)."""
         deep = np.abs(self.of_chosen(self.deformation)).sum(axis=1) + 1e-300
@@ -770,19 +777,20 @@ class Linearised:
         own = slice(self.at[disc][0].start, self.at[disc][3].stop)
         g, across = self._gradients(disc)
         load, stiffness = self.chosen_load[:, :, own], self.chosen_stiffness[:, :, own]
-        out, n = self.picked(at.outward, some[1]), self.picked(at.rays.direction, some[1])
-        slant = (out.conjugate() * n).imag
+        slant = self.picked(at.slant, some[1])
         bend = load[:, 0, bores] / self.picked(at.length, some[1])
         if self.by_crank:
             bend = np.zeros(bend.shape)
         rows, components, _, size = g.shape
         # Directions in which a roller's own place and lean press its two contacts.
-        outward, inward = np.ones((2, rows, components, out.shape[1]))
-        np.negative(dot(out, n), out=outward[:, 0])
+        outward, inward = np.ones((2, rows, components, slant.shape[1]))
+        np.negative(self.picked(at.cosine, some[1]), out=outward[:, 0])
         inward[:, 1:] = -1.0
-        placed = np.zeros((rows, out.shape[1], components, size))
+        placed = np.zeros((rows, slant.shape[1], components, size))
         np.multiply((bend * slant)[..., None], across, out=placed[:, :, 0])
-        if self.by_crank:  # forces of the bearings turn with the cages, which the stiffness of rollers on turning rays counts
+        if (
+            self.by_crank
+        ):  # forces of the bearings turn with the cages, which the stiffness of rollers on turning rays counts
             tangent = np.zeros((rows, size, size))
             pushed = load[:, 0, bores] * self.system.cage_speed
             turned = np.matmul(pushed[:, None], across[..., :-1])[:, 0]
@@ -836,7 +844,8 @@ class Linearised:
             if on_pins is None:
                 mine = part.force_map, pressed
             else:  # those of pins and holes are found together
-                mine = tuple(np.concatenate((each[:, :, bores], each[:, :, races]), 2) for each in (part.g, pressed))
+                both = [np.concatenate((each[:, :, bores], each[:, :, races]), 2) for each in (part.g, pressed)]
+                mine = both[0], both[1]
             flat, along = (each.reshape(rows, -1, count) for each in mine)
             held_by = part.tangent + np.matmul(flat.swapaxes(1, 2), along)
             pushed = outward[..., None] * pressed[:, :, bores] + inward[..., None] * pressed[:, :, races]
@@ -859,7 +868,7 @@ class Linearised:
             dx.append(-solved[..., -1])
             by_own.append(-solved[..., :-1])
         self.dx, self.by_own = self._bounded(np.concatenate(dx, axis=1) if len(dx) > 1 else dx[0]), by_own
-        self.de, self.de_by_pose = np.zeros(self.load.shape), None
+        self.de = np.zeros(self.load.shape)
         if on_pins is not None:
             self.de_by_pose = np.zeros((*self.load.shape, size))
             force, tangent = force + on_pins[0], tangent + on_pins[1]
@@ -970,13 +979,15 @@ class Linearised:
         if moves and not (near := self._is_near(found.de, stiffness)).all():
             # Far off loads may turn with soft pins more than these hold against.
             still = self._eliminate(part, whole, left, turning=False)
-            rows = [near.reshape(-1, *(1,) * (values.ndim - 1)) for values in found]
-            found = _Eliminated(*(np.where(*each) for each in zip(rows, found, still, strict=True)))
+            found = _Eliminated(
+                *(
+                    np.where(near.reshape(-1, *(1,) * (first.ndim - 1)), first, second)
+                    for first, second in zip(found, still, strict=True)
+                )
+            )
         self.force, self.tangent, self.dx, self.dx_by_pose, self.de, self.de_by_pose = found
 
-    def _eliminate(
-        self, part: _Pressing, whole: FloatArray, left: FloatArray, *, turning: bool
-    ) -> _Eliminated:
+    def _eliminate(self, part: _Pressing, whole: FloatArray, left: FloatArray, *, turning: bool) -> _Eliminated:
         """The same where loads deform more than their own contacts: force and tangent of the pose.
 
         Without `turning` loads that turn with displaced pins count where they hold these back alone.
@@ -1233,7 +1244,9 @@ class Linearised:
 
     def settled(self, roughly: bool) -> NDArray[np.bool_]:
         """Positions whose inner unknowns are close enough for a step of the pose, or for an answer."""
-        return self._are_small(self.moved, ROUGHLY_SETTLED if roughly else SETTLED_IN_MOTION if self.by_crank else SETTLED)
+        return self._are_small(
+            self.moved, ROUGHLY_SETTLED if roughly else SETTLED_IN_MOTION if self.by_crank else SETTLED
+        )
 
     def _are_small(self, moved: FloatArray, part: float) -> NDArray[np.bool_]:
         """Positions where corrections, mm, are a small part of the largest approach."""
@@ -1436,8 +1449,9 @@ class Linearised:
             change = _pressed(self.chosen_stiffness, self.de_by_pose)
             each = np.moveaxis(change, -1, 0)
             shifts = np.stack([-pins.under(self.members.forces(self.of_all(one))) for one in each], axis=-1)
+        columns: tuple[tuple[int, ...], ...] = ()
         if self.system.coupled:
-            by_pose, columns = self.of_all_rollers(self.dx_by_pose), ()
+            by_pose = self.of_all_rollers(self.dx_by_pose)
         else:
             by_pose = np.concatenate(self.by_own, axis=1) if len(self.by_own) > 1 else self.by_own[0]
             columns = () if len(self.by_own) == 1 else tuple(tuple(own.tolist()) for own in self.columns)
@@ -1499,6 +1513,17 @@ def _by_crank(values: NDArray[Any], cranks: int) -> NDArray[Any]:
 def with_crank(pose: FloatArray, angle: FloatArray) -> FloatArray:
     """Return poses with the crank angle as one more coordinate behind them."""
     return np.concatenate((pose, angle[:, None]), axis=1)
+
+
+def _places_of(chosen: list[list[Indices]]) -> tuple[list[list[slice]], list[slice], list[list[slice]]]:
+    """Return where chosen contacts of each disc and kind stand among all chosen, the rollers of each disc among these, and the
+    contacts of each kind among those of their disc.
+    """
+    ends = np.cumsum([0, *(some.shape[1] for own in chosen for some in own)])
+    at = [[slice(ends[4 * disc + kind], ends[4 * disc + kind + 1]) for kind in range(4)] for disc in range(len(chosen))]
+    ends = np.cumsum([0, *(own[1].shape[1] for own in chosen)])
+    local = [[slice(kind.start - own[0].start, kind.stop - own[0].start) for kind in own] for own in at]
+    return at, [slice(first, last) for first, last in pairwise(ends)], local
 
 
 def _padded(mask: NDArray[np.bool_]) -> Indices:

@@ -315,9 +315,7 @@ class PinBlocks:
             pins, _, holes, _ = at.local[disc]
             return np.concatenate((values[:, :, pins], values[:, :, holes]), axis=2)
 
-        g = self.of_contacts(
-            [whole(on_pins(part.g, disc), at.columns[disc]) for disc, part in enumerate(parts)], along
-        )
+        g = self.of_contacts([whole(on_pins(part.g, disc), at.columns[disc]) for disc, part in enumerate(parts)], along)
         onto_pose = g
         if at.rubs:
             onto_pose = self.of_contacts(
