@@ -961,8 +961,8 @@ class Linearised:
         stiffness, bores, races = self.chosen_stiffness, self._positions(1), self._positions(3)
         whole, left = self._flexibility(part.load)
         self.off_by = self.of_all(left)
-        near, wanted = self.of_chosen(self.deformation)[:, 0], np.abs(left).sum(axis=1)
-        expected = near - left[:, 0]
+        wanted = np.abs(left).sum(axis=1)
+        expected = self.of_chosen(self.deformation)[:, 0] - left[:, 0]
         stiff = stiffness[0][:, bores] + stiffness[0][:, races]
         # An open roller stands in the middle of its play.
         free, middle = stiff <= 0.0, 0.5 * (expected[:, bores] + expected[:, races])
