@@ -206,9 +206,13 @@ class ContactForces:
         total, teeth, carried = 0.5 * float(x @ self._springs @ x), self._teeth_now, None
         if teeth is not None:
             total, carried = total + teeth.energy, None if teeth.carried is None else teeth.carried[None]
-        assert self._latest is not None
-        discs = stored_by_disc(self._latest)
-        total += float(stored_by_pins(self._latest)[0])
+        contacts = self._latest
+        assert contacts is not None
+        if contacts.shifts is not None:
+            # Loads are right to second order in what pins have still to move, what beams and ring store is not.
+            contacts = contacts.corrected(np.ones(1))
+        discs = stored_by_disc(contacts)
+        total += float(stored_by_pins(contacts)[0])
         if self._supports is not None:
             total += float(self._supports.energy(pose[None], carried)[0])
         return total + sum(float(disc.energy[0]) for disc in discs), discs
