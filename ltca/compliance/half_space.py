@@ -6,22 +6,18 @@ from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ltca.arrays import FloatArray
+from ltca.arrays import FloatArray, by_drive
 from ltca.compliance import sliced
 from ltca.compliance.contact_laws import ContactLaws
-from ltca.compliance.pressures import pressures_of_law
-from ltca.compliance.response import KindPressures
-from ltca.compliance.rollers import RollerLaws
-from ltca.compliance.uncoupled import PairLaws, UncoupledContacts
+from ltca.compliance.pressures import elastic_hole_pressures, pressures_in_slices, pressures_of_law
+from ltca.compliance.response import ContactPressures, DiscResponse
 from ltca.contact.tracked_grid import ContactKind, ContactKinds
 from ltca.drive.hole_contact import hole_modulus, shaft_pins_yield
 from ltca.drive.parts import Drive, LengthProfile, Material, PinShaft, PinWheel, contact_modulus
 from ltca.drive.pin_beams import shaft_pin_beam
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.length_profile import generator_profile, lead_relief
-from ltca.geometry.pair_motion import FlankMotion
 from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.backed import (
     HALF_SPACE_DATUM,
@@ -46,11 +42,37 @@ sharper than the 180th part of a lobe."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class HalfSpaceCompliance(UncoupledContacts[ContactLaw]):
+class RollerLaws:
+    """Load laws of the two contacts of every roller.
+
+    Attributes
+    ----------
+    inner, outer : ContactLaw
+        Laws on the inner race and in the bore.
+    inner_radius, outer_radius : array, shape (rollers,)
+        Effective radii of curvature, mm.
+    """
+
+    inner: ContactLaw
+    outer: ContactLaw
+    inner_radius: FloatArray = by_drive(1)
+    outer_radius: FloatArray = by_drive(1)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HalfSpaceCompliance:
     """Half-space laws for pins and rollers, springs for the pin holes (the paper's model).
 
     Attributes
     ----------
+    geometry : ContactGeometry
+        The contact geometry of the drive.
+    hole_law : ContactLaw
+        Law of shaft pins and holes: springs of stiffness k_PS in series with the sleeves' seats.
+    kinds : ContactKinds
+        The contacts as grids see them.
+    rigid_shaft_pins : bool
+        Whether shaft pins are rigid where they touch their holes; springs stand for all that yields there otherwise.
     pin_law : ContactLaw
         Law of wheel pin and flank.
     roller_laws : RollerLaws
@@ -58,9 +80,14 @@ class HalfSpaceCompliance(UncoupledContacts[ContactLaw]):
     """
 
     grids_can_check: ClassVar[bool] = True
+    coefficients: ClassVar[None] = None
 
+    geometry: ContactGeometry
+    hole_law: ContactLaw
+    kinds: ContactKinds
+    rigid_shaft_pins: bool = False
     pin_law: ContactLaw
-    roller_laws: RollerLaws[ContactLaw]
+    roller_laws: RollerLaws
 
     @classmethod
     def of_drive(
@@ -173,15 +200,22 @@ class HalfSpaceCompliance(UncoupledContacts[ContactLaw]):
             rollers.inner_radius,
         )
 
-    def laws(self, flank: FlankMotion, warm_start: NDArray[np.object_] | None) -> PairLaws[ContactLaw]:
-        """Return the tabulated laws, alike at every pose."""
-        return PairLaws(pins=self.pin_law, rollers=self.roller_laws)
-
-    def read_pressures(
-        self, law: ContactLaw, kind: ContactKind, approach: FloatArray, effective_radius: FloatArray
-    ) -> KindPressures:
-        """Return pressures and half-widths of contacts of one kind at their approaches, shape (positions, pairs)."""
-        return pressures_of_law(law, kind, approach, effective_radius)
+    def pressures(self, response: DiscResponse) -> ContactPressures:
+        """Return pressures and half-widths from the laws, those of the shaft pins from their loads."""
+        place, kinds, rollers, laws = self.geometry.placement, self.kinds, response.rollers, self.roller_laws
+        if response.leaning_pins is not None:
+            spring = isinstance(getattr(self.hole_law, "contact", self.hole_law), sliced.SlicedSpring)
+            return pressures_in_slices(
+                response, kinds, place, rigid_shaft_pins=self.rigid_shaft_pins, shaft_pins_on_springs=spring
+            )
+        flank = response.flank
+        return ContactPressures(
+            pins=pressures_of_law(self.pin_law, kinds.pins, flank.approach, flank.effective_radius),
+            outer=pressures_of_law(laws.outer, kinds.outer, rollers.outer_approach, laws.outer_radius),
+            inner=pressures_of_law(laws.inner, kinds.inner, rollers.inner_approach, laws.inner_radius),
+            holes=elastic_hole_pressures(kinds.holes, response.hole_load, place),
+            rigid_shaft_pins=self.rigid_shaft_pins,
+        )
 
 
 def _line(

@@ -1,7 +1,7 @@
-"""What the model of a disc answers: loads of all contact pairs at a pose, their generalised force and its tangent.
+"""Contacts at a pose as they are answered: loads of all pairs, their generalised force and its tangent.
 
-The model of a disc answers one question for a batch of positions, `DiscModel.respond`: which generalised force do the
-contacts exert at this pose, and what is its tangent? `ltca.equilibrium.reducer` puts the discs together.
+The model of a disc (`DiscModel`) has its geometry, the laws of its contacts and its bodies; `ltca.mechanics` finds what all discs
+carry together, and `ltca.equilibrium.reducer` adds what holds them.
 """
 
 from __future__ import annotations
@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.coefficients import InfluenceCoefficients
+from ltca.compliance.contact_laws import ContactLaws
 from ltca.compliance.inner_unknowns import Following, Inner
-from ltca.compliance.rollers import RollerState
-from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION, Coordinates, X, Y
-from ltca.geometry.pair_motion import BoreMotion, FlankMotion, KnownPins, PairMotion, PairTilt, RollerRays
+from ltca.geometry.coordinates import DISC_PLACE, X, Y
+from ltca.geometry.pair_motion import FlankMotion, KnownPins, PairMotion, PairTilt, RollerRays
 from ltca.geometry.pairs import ContactGeometry
 
 if TYPE_CHECKING:
@@ -25,52 +25,43 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PairSlopes:
-    """How the loads on pins and holes follow their approaches and the pose, the pins held where they are.
+class RollerState:
+    """Balanced rollers, crank after crank.
 
     Attributes
     ----------
-    by_approach : array, shape (positions, pairs) or (positions, pairs, pairs)
-        ∂F/∂δ of wheel pins and shaft pins, N/mm; a matrix where the contacts of a disc feel each other.
-    by_pose : array, shape (positions, pairs, coordinates)
-        ∂F/∂q, N/mm and N.
-    by_tilt, moment_by_tilt : array, shape (positions, pairs) or (positions, pairs, pairs), or None
-        ∂F/∂θ and ∂M/∂θ of contacts in slices, N/rad and N·mm/rad; None in the plane.
-    moment_by_pose : array, shape (positions, pairs, coordinates), or None
-        ∂M/∂q of contacts in slices, N and N·mm.
+    share : array, shape (positions, rollers)
+        Part of the total interference taken by the inner contact.
+    inner_approach, outer_approach : array, shape (positions, rollers)
+        mm, negative where open; a free roller rests on the inner race.
+    inner_load, outer_load : array, shape (positions, rollers)
+        N.
+    outer_direction : array of complex, shape (positions, rollers)
+        Unit vector from the bore centre to the roller, the direction of the load on the disc.
+    inner_moment, outer_moment : array, shape (positions, rollers), or None
+        In slices about mid-length, N·mm; that on the disc acts along the ray.
+    inner_tilt, outer_tilt : array, shape (positions, rollers), or None
+        Tilts of their contacts, rad, positive presses positive z.
+    inner_slices, outer_slices : array, shape (positions, rollers, slices), or None
+        Loads of their slices, N.
+    inner_lines, outer_lines : array, shape (positions, rollers, slices, points), or None
+        Their line loads at the points of the slices, N/mm.
     """
 
-    by_approach: FloatArray
-    by_pose: FloatArray
-    by_tilt: FloatArray | None = None
-    moment_by_tilt: FloatArray | None = None
-    moment_by_pose: FloatArray | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class FollowingPins:
-    """Displacements of pins at a pose, and how they follow it.
-
-    Attributes
-    ----------
-    shifts : array of complex, shape (positions, discs, pairs)
-        mm; in slices those of slopes follow those of all discs (`ltca.equilibrium.pin_displacements`).
-    by_pose : array of complex, shape (positions, discs, pairs, coordinates), or None
-        mm by mm and rad; None where balanced positions are kept, of which it would be a quarter of the memory.
-    pose : array, shape (positions, coordinates)
-        q.
-    """
-
-    shifts: ComplexArray
-    by_pose: ComplexArray | None
-    pose: FloatArray
-
-    def at(self, pose: FloatArray) -> ComplexArray:
-        """Return the displacements to expect at other poses of the same positions."""
-        if self.by_pose is None:
-            return self.shifts
-        moved: ComplexArray = np.einsum("bdpq,bq->bdp", self.by_pose, pose - self.pose)
-        return self.shifts + moved
+    share: FloatArray
+    inner_approach: FloatArray
+    outer_approach: FloatArray
+    inner_load: FloatArray
+    outer_load: FloatArray
+    outer_direction: ComplexArray
+    inner_moment: FloatArray | None = None
+    outer_moment: FloatArray | None = None
+    inner_tilt: FloatArray | None = None
+    outer_tilt: FloatArray | None = None
+    inner_slices: FloatArray | None = None
+    outer_slices: FloatArray | None = None
+    inner_lines: FloatArray | None = None
+    outer_lines: FloatArray | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -112,19 +103,14 @@ class DiscResponse:
         Balanced rollers.
     pin_load, hole_load : array, shape (positions, pairs)
         N.
-    warm_start : array of object, shape (positions,)
-        What a model wants to find again at the next pose of each position, a value that nothing changes; None where it
-        wants nothing. It saves work and alters no answer.
     shifts : array of complex, shape (positions, pairs), or None
-        Displacements of wheel pins and shaft pins that were given, mm: what the parts that hold them yield.
+        Displacements of wheel pins and shaft pins, mm: what the parts that hold them yield.
     leans : array of complex, shape (positions, pairs), or None
-        Leans of wheel pins and shaft pins at the disc that were given with them in slices, rad.
+        Leans of wheel pins and shaft pins at the disc in slices, rad.
     ring : array of complex, shape (positions, z_P), or None
         What the ring of the wheel moves the wheel pins in the turning wheel, mm, a part of `shifts`; None where it is rigid.
-    follow : FollowingPins or None
-        How the displacements of pins follow the pose, of all discs; None where none are displaced.
-    slopes : PairSlopes or None
-        Where they were given.
+    follow : Following or None
+        How the inner unknowns follow the pose, of all discs.
     friction : array, shape (positions, pairs), or None
         Forces of wheel pins and shaft pins along their tangents, N; None without friction.
     leaning_pins, leaning_holes : LeaningPairs or None
@@ -145,12 +131,10 @@ class DiscResponse:
     rollers: RollerState
     pin_load: FloatArray
     hole_load: FloatArray
-    warm_start: NDArray[np.object_]
     shifts: ComplexArray | None = None
     leans: ComplexArray | None = None
     ring: ComplexArray | None = None
-    follow: Following | FollowingPins | None = None
-    slopes: PairSlopes | None = None
+    follow: Following | None = None
     friction: FloatArray | None = None
     leaning_pins: LeaningPairs | None = None
     leaning_holes: LeaningPairs | None = None
@@ -162,7 +146,7 @@ class DiscResponse:
     def kept(self) -> DiscResponse:
         """The response of balanced positions without what the search alone asks for."""
         pins, holes = (None if one is None else one.kept for one in (self.leaning_pins, self.leaning_holes))
-        return replace(self, slopes=None, rollers=self.rollers.kept, leaning_pins=pins, leaning_holes=holes)
+        return replace(self, leaning_pins=pins, leaning_holes=holes)
 
     @property
     def pin_forces(self) -> ComplexArray:
@@ -212,8 +196,8 @@ class DiscResponse:
 class Response(DiscResponse):
     """Contacts of all discs of a reducer, disc after disc: of n discs array axes for pairs are n times as long.
 
-    Force and tangent are those of the reducer; ``warm_start`` has shape (positions, discs), ``shifts``
-    (positions, discs, pairs), and slopes and friction are those of the parts.
+    Force and tangent are those of the reducer; ``shifts`` has the shape (positions, discs, pairs), and friction is that of the
+    parts.
 
     Attributes
     ----------
@@ -232,13 +216,20 @@ class Response(DiscResponse):
         return cls(**{item.name: getattr(part, item.name) for item in fields(DiscResponse)}, parts=(part,))
 
     @property
+    def start(self) -> Start:
+        """Where other poses of the same positions start."""
+        return Start.onward(self)
+
+    @property
+    def overlooks(self) -> NDArray[np.bool_]:
+        """Positions where a contact was left out that is pressed together after all: none of an answer."""
+        return np.zeros(self.force.shape[0], dtype=bool)
+
+    @property
     def kept(self) -> Response:
         """The response of balanced positions without what the search alone asks for, which is two fifths of one on a ring."""
-        follow = self.follow
-        if follow is not None:
-            follow = replace(follow, by_pose=None) if isinstance(follow, FollowingPins) else follow.kept
-        rollers = self.rollers.kept
-        return replace(self, follow=follow, rollers=rollers, parts=tuple(part.kept for part in self.parts))
+        follow = None if self.follow is None else self.follow.kept
+        return replace(self, follow=follow, parts=tuple(part.kept for part in self.parts))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -335,25 +326,13 @@ class DiscModel(Protocol):
         ...
 
     @property
-    def grids_can_check(self) -> bool:
-        """Whether contact grids, with the true separation of the surfaces, answer the same where separations are parabolas."""
+    def contact_laws(self) -> ContactLaws:
+        """Laws of the contacts."""
         ...
 
-    def respond(
-        self,
-        crank_angle: FloatArray,
-        pose: FloatArray,
-        start: Start | None = None,
-        shifts: ComplexArray | None = None,
-        leans: ComplexArray | None = None,
-        again: DiscResponse | None = None,
-        *,
-        roughly: bool = False,
-    ) -> DiscResponse:
-        """Return the contact forces at the poses of a batch of positions; `shifts` are displacements of the pins, if any, `leans`
-        their leans, and `again` what was answered there with pins displaced otherwise; `roughly` as for `Reducer.respond`, of
-        contacts in slices.
-        """
+    @property
+    def grids_can_check(self) -> bool:
+        """Whether contact grids, with the true separation of the surfaces, answer the same where separations are parabolas."""
         ...
 
     def pressures(self, response: DiscResponse) -> ContactPressures:
@@ -370,13 +349,11 @@ class Start:
     parameter : array, shape (positions, z_P)
         Contact parameters on the flank, rad.
     share : array, shape (positions, n_BR)
-        Shares of `ltca.compliance.rollers`.
-    warm_start : array of object, shape (positions,)
-        Of the model, see `DiscResponse`.
+        Parts of the total interference that the rollers' contacts on the race take.
     known : KnownPins or None
         Approaches of the pins of these drives at other poses, by which a model may leave out pins that cannot touch; None
         where all are asked for.
-    follow : Following, FollowingPins or None
+    follow : Following or None
         How the inner unknowns follow the pose, of the same positions.
     inner : Inner or None
         Inner unknowns of the one system of all contacts.
@@ -384,9 +361,8 @@ class Start:
 
     parameter: FloatArray
     share: FloatArray
-    warm_start: NDArray[np.object_]
     known: KnownPins | None = None
-    follow: Following | FollowingPins | None = None
+    follow: Following | None = None
     inner: Inner | None = None
 
     @classmethod
@@ -395,7 +371,6 @@ class Start:
         return cls(
             parameter=response.flank.parameter,
             share=response.rollers.share,
-            warm_start=response.warm_start,
             follow=response.follow,
             inner=response.inner,
         )
@@ -424,40 +399,6 @@ def split_shifts(
     return shifts[:, :pins], shifts[:, pins:]
 
 
-def resultant(
-    flank: FlankMotion,
-    pin_load: FloatArray,
-    holes: PairMotion,
-    hole_load: FloatArray,
-    rollers: RollerState,
-    bores: BoreMotion,
-) -> FloatArray:
-    """Return the generalised force of all contacts, Σ F ∂δ/∂q, shape (positions, coordinates); N and N·mm."""
-    force = np.einsum("bi,bij->bj", pin_load, flank.gradient)
-    force += np.einsum("bi,bij->bj", hole_load, holes.gradient)
-    force -= np.einsum("bc,bcj->bj", bearing_pushes(rollers, bores.arm.shape[1]).conjugate(), bores.gradient).real
-    return np.asarray(force)
-
-
-def with_tilting_friction(part: DiscResponse, coordinates: Coordinates) -> DiscResponse:
-    """Return contacts in slices whose friction presses the leans as well: it lies along the width as the loads do."""
-    if part.leaning_pins is None or part.leaning_holes is None:
-        return part
-    pins = part.pin_load.shape[1]
-    moment = np.concatenate((part.leaning_pins.contact.moment, part.leaning_holes.contact.moment), axis=1)
-    along = np.concatenate((part.flank.along, part.holes.along), axis=1)[..., DISC_PLACE]
-    force, tangent = part.force.copy(), part.tangent.copy()
-    rubbed = part.rubs[..., None] * along
-    leans = [(coordinates.lean_place, rubbed, slice(None))]
-    if coordinates.wheel_leans:
-        leans.append((coordinates.wheel_lean_place, -rubbed, slice(0, pins)))
-    for place, direction, which in leans:
-        force[:, place] += np.einsum("bp,bpj->bj", moment[:, which], direction[:, which])
-        if part.slopes is not None and part.slopes.moment_by_pose is not None:
-            tangent[:, place] += np.matmul(direction[:, which].swapaxes(1, 2), part.slopes.moment_by_pose[:, which])
-    return replace(part, force=force, tangent=tangent)
-
-
 def bearing_pushes(rollers: RollerState, cranks: int) -> ComplexArray:
     """Return the force of every crank bearing on the disc in the fixed frame, shape (positions, cranks), N."""
     each = rollers.outer_load * rollers.outer_direction
@@ -472,13 +413,3 @@ def bearing_moments(rollers: RollerState, rays: RollerRays, cranks: int) -> Comp
         return np.zeros((rays.direction.shape[0], cranks), dtype=complex)
     each = rollers.outer_moment * rays.direction
     return np.asarray(each.reshape(each.shape[0], cranks, -1).sum(axis=2))
-
-
-def add_bearing_bend(tangent: FloatArray, rollers: RollerState, bores: BoreMotion) -> None:
-    """Add to the tangent what the bearings' forces add because bores off the centre turn with the disc, and eccentrics with
-    their twist, N·mm.
-    """
-    push = bearing_pushes(rollers, bores.arm.shape[1]).conjugate()
-    tangent[:, DISC_ROTATION, DISC_ROTATION] += (push * bores.arm).real.sum(axis=1)
-    if bores.twists:
-        tangent[:, bores.twists, bores.twists] -= (push * bores.lever).real

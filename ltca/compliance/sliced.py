@@ -9,7 +9,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from ltca.compliance.in_slices import ContactsInSlices, roller_start, stacked, stored_in_slices, warm_rows
     from ltca.laws.sliced_contact import EXACT, ROUGH, Exactness, SlicedContact, slice_heights, slice_means
     from ltca.laws.sliced_line import SlicedLine
     from ltca.laws.sliced_plane import SlicedPlane
@@ -18,7 +17,6 @@ if TYPE_CHECKING:
     from ltca.laws.width_pressure import estimate_along_width
 
 _HOMES = {
-    "ltca.compliance.in_slices": ("ContactsInSlices", "roller_start", "stacked", "stored_in_slices", "warm_rows"),
     "ltca.laws.sliced_contact": ("EXACT", "ROUGH", "Exactness", "SlicedContact", "slice_heights", "slice_means"),
     "ltca.laws.sliced_line": ("SlicedLine",),
     "ltca.laws.sliced_plane": ("SlicedPlane",),
@@ -28,9 +26,9 @@ _HOMES = {
 }
 
 __all__ = [
-    "EXACT", "ROUGH", "ContactsInSlices", "Exactness", "SlicedContact", "SlicedLine", "SlicedPlane", "SlicedSeat",
-    "SlicedSpring", "back_line", "estimate_along_width", "roller_start", "slice_heights", "slice_means",
-    "stacked", "stored_in_slices", "warm_rows",
+    "EXACT", "ROUGH", "Exactness", "SlicedContact", "SlicedLine", "SlicedPlane", "SlicedSeat",
+    "SlicedSpring", "back_line", "estimate_along_width", "slice_heights", "slice_means",
+
 ]  # fmt: skip
 
 

@@ -81,7 +81,6 @@ def start_between(angle: FloatArray, known: Start, wanted: FloatArray, ratio: fl
     return Start(
         parameter=along,
         share=between(known.share),
-        warm_start=known.warm_start[nearer],
         inner=take_positions(known.inner, nearer),
     )
 
@@ -94,7 +93,7 @@ def pose_beside(angle: FloatArray, pose: FloatArray, wanted: FloatArray, coordin
 def start_beside(angle: FloatArray, known: Start, wanted: FloatArray, ratio: float) -> Start:
     """Return inner unknowns as seen from the wheel, row by row, from `angle` turned to `wanted`; see `start_between`."""
     along = (known.parameter - angle[:, None] / ratio) + wanted[:, None] / ratio
-    return Start(parameter=along, share=known.share, warm_start=known.warm_start, inner=known.inner)
+    return Start(parameter=along, share=known.share, inner=known.inner)
 
 
 def turned_poses(pose: FloatArray, angle: FloatArray, coordinates: Coordinates) -> FloatArray:

@@ -103,7 +103,7 @@ class Search:
         *,
         roughly: bool = False,
         everything: bool = False,
-    ) -> Response | Evaluation:
+    ) -> Evaluation:
         """Return the contacts of some positions at poses; `roughly` and `everything` as for `Reducer.evaluate`."""
         model = self.model if rows.size == self.angle.size else self.model.take(rows)
         return model.evaluate(self.angle[rows], pose, start, roughly=roughly, everything=everything)
@@ -152,7 +152,7 @@ class Search:
             # A residual that is no number does not balance either.
             balanced = residual[active] <= self.accepted(active, response)
             looked_at = np.nonzero(balanced)[0]
-            if isinstance(response, Evaluation) and looked_at.size:
+            if looked_at.size:
                 overlooked = looked_at[take_positions(response, looked_at).overlooks]
                 if overlooked.size:
                     mine = active[overlooked]
@@ -171,7 +171,7 @@ class Search:
                 break
             self.iterations[active] += 1
             step, slope = _damped_step(tangent, gradient, damping[active], bound[active], self.symmetric)
-            taken, response, gradient, tangent, fraction = self.walk(active, step, slope, _onward(response))
+            taken, response, gradient, tangent, fraction = self.walk(active, step, slope, response.start)
             self.pose[active] = taken
             self.slipped[active] = np.max(np.abs(taken[:, self.rotations]), axis=1) > self.half_pitch
             residual[active] = _left_over(gradient, response)
@@ -224,7 +224,7 @@ class Search:
             if np.max(np.abs(tried[:, self.rotations])) > self.half_pitch:
                 damping *= 10.0
                 continue
-            there = self.evaluate(rows, tried, _onward(response))
+            there = self.evaluate(rows, tried, response.start)
             left, slopes = self.scaled(rows, there)
             if np.linalg.norm(left) < np.linalg.norm(gradient):
                 pose, response, gradient, tangent, damping = tried, there, left, slopes, max(0.1 * damping, 1e-14)
@@ -269,7 +269,7 @@ class Search:
                 if np.max(np.abs(wall)) < 0.1 * abs(soft @ gradient[0]):
                     break
                 pose = pose - (modes @ ((modes.T @ wall) / np.where(values == 0.0, 1.0, values)))[None] / lever
-                response = self.evaluate(rows, pose, _onward(response))
+                response = self.evaluate(rows, pose, response.start)
             self.iterations[row] += 1
             slope = float(soft @ gradient[0])
             change = (slope - before) / along if along else float(np.min(np.abs(values)))
@@ -277,7 +277,7 @@ class Search:
             most = 4.0 * abs(along) if along else FIRST_VALLEY_STEP * self.smallest_pin
             along, before, last = float(np.clip(step, -most, most)), slope, soft
             pose = pose + along * soft[None] / lever
-            response = self.evaluate(rows, pose, _onward(response))
+            response = self.evaluate(rows, pose, response.start)
         return False
 
     def keep(self, rows: NDArray[np.intp], response: Response | Evaluation, balanced: NDArray[np.bool_]) -> None:
@@ -312,7 +312,7 @@ class Search:
 
     def walk(
         self, rows: NDArray[np.intp], step: FloatArray, slope: FloatArray, start: Start
-    ) -> tuple[FloatArray, Response | Evaluation, FloatArray, FloatArray, FloatArray]:
+    ) -> tuple[FloatArray, Evaluation, FloatArray, FloatArray, FloatArray]:
         """Walk along the steps until Π stops falling: poses, contacts, gradients, tangents there, parts of the steps."""
         low, high = np.zeros(rows.size), np.ones(rows.size)
         low_slope, high_slope = slope.copy(), np.zeros(rows.size)
@@ -336,18 +336,13 @@ class Search:
             place = np.divide(-low_slope[back], rise, out=np.zeros(back.size), where=rise != 0.0)
             fraction[back] = low[back] + width * place.clip(0.05, 0.9)
             pose[back] = self.pose[rows[back]] + fraction[back, None] * step_pose[back]
-            again = self.evaluate(rows[back], pose[back], take_positions(_onward(response), back), roughly=True)
+            again = self.evaluate(rows[back], pose[back], take_positions(response.start, back), roughly=True)
             response = put_positions(response, back, again)
             gradient[back], tangent[back] = self.scaled(rows[back], again)
             end[back] = np.einsum("bi,bi->b", gradient[back], step[back])
             near = back[end[back] < 0.0]
             low[near], low_slope[near] = fraction[near], end[near]
         return pose, response, gradient, tangent, fraction
-
-
-def _onward(response: Response | Evaluation) -> Start:
-    """Where other poses of the same positions start."""
-    return response.start if isinstance(response, Evaluation) else Start.onward(response)
 
 
 def _left_over(gradient: FloatArray, response: Response | Evaluation) -> FloatArray:

@@ -27,29 +27,26 @@ from ltca.arrays import (
     take_positions,
     take_rows,
 )
+from ltca.compliance.pin_flexibility import PinDisplacements
 from ltca.compliance.response import (
     ContactPressures,
     DiscModel,
     DiscResponse,
-    FollowingPins,
     KindPressures,
     Response,
     Start,
     bearing_moments,
     bearing_pushes,
     split_shifts,
-    with_tilting_friction,
 )
 from ltca.drive.parts import Drive
 from ltca.equilibrium.external_force import ExternalForce
 from ltca.equilibrium.first_stage import StageMesh
-from ltca.equilibrium.friction.turning import RubbingPins, TurningFriction, rub_disc
-from ltca.equilibrium.pin_displacements import PinDisplacements
+from ltca.equilibrium.friction.turning import RubbingPins, TurningFriction
 from ltca.equilibrium.supports import Supports
 from ltca.geometry.coordinates import WHEEL_ANGLE, Coordinates
 from ltca.geometry.pair_motion import KnownPins
 from ltca.geometry.pairs import ContactGeometry
-from ltca.geometry.rotation import unit
 from ltca.laws.carrier import far_flange_stiffness
 from ltca.mechanics.answers import disc_response
 from ltca.mechanics.contacts import ContactSystem, Linearised
@@ -125,8 +122,6 @@ class Reducer:
         Teeth of the first stage.
     external : ExternalForce or None
         Forces from outside on the output.
-    one_system : bool
-        Whether contacts, displaced pins and rollers are found in one system with the pose (`ltca.mechanics`), not one in another.
     """
 
     discs: tuple[DiscModel, ...]
@@ -136,7 +131,6 @@ class Reducer:
     friction: JointFriction | None = None
     stage: StageMesh | None = None
     external: ExternalForce | None = None
-    one_system: bool = True
     _by_position: bool | None = field(init=False, repr=False, compare=False, default=None)
 
     @classmethod
@@ -151,11 +145,6 @@ class Reducer:
             stage=StageMesh.of_drive(drive),
             external=ExternalForce.of_drive(drive),
         )
-
-    @property
-    def _on_contacts(self) -> bool:
-        """Whether the one system of contacts answers."""
-        return self.one_system and hasattr(self.discs[0], "contact_laws")
 
     def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Reducer:
         """Return the model of some positions: itself where no two differ, neither in their drives nor in their friction."""
@@ -201,70 +190,7 @@ class Reducer:
             Whether contacts in slices and displacements of pins that have nearly settled will do: force and tangent are then
             those of settled ones to first order, and `Response.left` tells what is left.
         """
-        if self._on_contacts:
-            found = self.evaluate(crank_angle, pose, start, roughly=roughly)
-            return found.whole if isinstance(found, Evaluation) else found
-        count, coordinates = len(self.discs), self.coordinates
-        places = [coordinates.columns(number) for number in range(count)]
-        starts = [None] * count if start is None else _split_start(start, count)
-
-        latest: list[DiscResponse] = []
-
-        def respond(moved: ComplexArray | None) -> tuple[DiscResponse, ...]:
-            if moved is None and self.friction is not None:
-                moved = self._unmoved(crank_angle.size)  # friction needs the slopes that come with displacements
-            parts = []
-            for number, (own, disc) in enumerate(zip(places, self.discs, strict=True)):
-                shift = None if moved is None else moved[:, number]
-                lean = again = None
-                if moved is not None and self.pins is not None and self.pins.leans:
-                    lean, again = self.pins.lean(moved, number), latest[number] if latest else None
-                at = crank_angle, pose[:, own], starts[number], shift, lean, again
-                part = disc.respond(*at, roughly=roughly)
-                if self.friction is not None:
-                    rubbing = rub_disc(self.friction, disc.geometry, crank_angle, pose[:, own], part, number)
-                    force, tangent = part.force + rubbing.force, part.tangent + rubbing.tangent
-                    part = replace(part, force=force, tangent=tangent, friction=rubbing.tangential)
-                    if coordinates.leans:
-                        part = with_tilting_friction(part, replace(coordinates, discs=1))
-                parts.append(part)
-            latest[:] = parts
-            return tuple(parts)
-
-        shifts, settled, size = None, None, coordinates.size
-        if self.pins is None:
-            parts = respond(None)
-        else:
-            begin = self.pins.unmoved(crank_angle.size)
-            if start is not None and isinstance(start.follow, FollowingPins):
-                begin = start.follow.at(pose)
-            placement = self.discs[0].geometry.placement
-            turned = unit(placement.wheel_rotation(crank_angle) + pose[:, WHEEL_ANGLE])
-            system = self.pins.settle(respond, coordinates, turned, begin, roughly=roughly)
-            parts, shifts, settled = system.parts, system.shifts[:, : len(self.discs)], system.settled()
-            if self.pins.ring is not None:
-                ring = -self.pins.of_ring(system.force)
-                parts = tuple(replace(part, ring=ring) for part in parts)
-        force, tangent = np.zeros((crank_angle.size, size)), np.zeros((crank_angle.size, size, size))
-        for own, part in zip(places, parts, strict=True):
-            force[:, own] += part.force
-            tangent[:, own[:, None], own] += part.tangent
-        if settled is not None:
-            force += settled.force
-            tangent += settled.tangent
-        contact_stiffness = self._hold(crank_angle, pose, parts, force, tangent)
-        return Response(
-            force=force,
-            tangent=tangent,
-            **_contacts_of(parts),
-            warm_start=np.stack([part.warm_start for part in parts], axis=1),
-            parts=parts,
-            shifts=shifts,
-            ring=parts[0].ring,
-            follow=None if settled is None else FollowingPins(settled.onward, settled.by_pose, pose),
-            left=_largest([*(part.left for part in parts), None if settled is None else settled.left]),
-            contact_stiffness=contact_stiffness,
-        )
+        return self.evaluate(crank_angle, pose, start, roughly=roughly).whole
 
     def _hold(
         self,
@@ -306,13 +232,11 @@ class Reducer:
         *,
         roughly: bool = False,
         everything: bool = False,
-    ) -> Response | Evaluation:
+    ) -> Evaluation:
         """Return what a search asks for at poses; arguments as for `respond`, which makes a whole response of it.
 
         `everything` takes all contacts of coupled bodies as candidates to carry (`Evaluation.overlooks`).
         """
-        if not self._on_contacts:
-            return self.respond(crank_angle, pose, start, roughly=roughly)
         rows = crank_angle.size
         if rows > POSITIONS_AT_ONCE:
             blocks = np.array_split(np.arange(rows), -(-rows // POSITIONS_AT_ONCE))
@@ -472,12 +396,6 @@ class Reducer:
                 slopes[:, crank, own[twist]] -= (bores.lever[:, crank].conjugate() * push[:, crank]).real
         return slopes
 
-    def _unmoved(self, positions: int) -> ComplexArray:
-        """Pins that stand where they stand without load, shape (positions, discs, pairs)."""
-        place = self.discs[0].geometry.placement
-        pairs = place.wheel_pin_radii.shape[-1] + place.hole_radii.shape[-1]
-        return np.zeros((positions, len(self.discs), pairs), dtype=complex)
-
     def pressures(self, response: Response) -> ContactPressures:
         """Return the pressures of all discs behind a response of this model."""
         found = [disc.pressures(part) for disc, part in zip(self.discs, response.parts, strict=True)]
@@ -511,7 +429,6 @@ class _Evaluated:
         return Start(
             parameter=_beside([flank.parameter for flank in flanks]),
             share=np.full(at.place.shape, 0.5),
-            warm_start=np.full((at.angle.size, len(flanks)), None, dtype=object),
             known=KnownPins(**known),
             follow=at.following(),
             inner=at.inner,
@@ -582,7 +499,6 @@ class Evaluation:
             force=self.force,
             tangent=self.tangent,
             **_contacts_of(parts),
-            warm_start=start.warm_start,
             parts=parts,
             shifts=None if shifts is None else shifts[:, : len(parts)],
             ring=parts[0].ring,
@@ -651,29 +567,6 @@ def bearing_forces(model: Reducer, crank_angle: FloatArray, response: Response) 
 def disc_torques(response: Response) -> FloatArray:
     """Return the part of the external moment on the wheel that each disc carries, shape (positions, discs), N·mm."""
     return np.stack([part.force[:, WHEEL_ANGLE] for part in response.parts], axis=1)
-
-
-def _split_start(start: Start, count: int) -> list[Start]:
-    if count == 1:
-        return [replace(start, warm_start=start.warm_start[:, 0], follow=None)]
-
-    def of_each(values: Any) -> list[Any]:
-        return np.split(values, count, axis=1)
-
-    known: list[KnownPins | None] = [None] * count
-    if start.known is not None:
-        pairs = zip(*(of_each(getattr(start.known, item.name)) for item in fields(KnownPins)), strict=True)
-        known = [KnownPins(approach=values[0], point=values[1], turning=values[2]) for values in pairs]
-    columns = zip(of_each(start.parameter), of_each(start.share), start.warm_start.T, known, strict=True)
-    return [
-        Start(parameter=parameter, share=share, warm_start=warm, known=pins) for parameter, share, warm, pins in columns
-    ]
-
-
-def _largest(forces: Sequence[FloatArray | None]) -> FloatArray | None:
-    """Largest of forces that are left over of each position, N."""
-    left = [force for force in forces if force is not None]
-    return np.max(left, axis=0) if left else None
 
 
 def _contacts_of(parts: Sequence[DiscResponse]) -> dict[str, Any]:

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ltca.arrays import FloatArray
-from ltca.compliance.response import DiscResponse, LeaningPairs
-from ltca.compliance.rollers import RollerState
+from ltca.compliance.response import DiscResponse, LeaningPairs, RollerState
 
 if TYPE_CHECKING:
     from ltca.mechanics.contacts import Linearised
@@ -70,7 +69,6 @@ def disc_response(at: Linearised, disc: int) -> DiscResponse:
         rollers=rollers,
         pin_load=pins,
         hole_load=holes,
-        warm_start=np.full(pins.shape[0], None, dtype=object),
         shifts=shifts,
         leans=leans,
         friction=friction,
@@ -113,7 +111,6 @@ def _rollers(at: Linearised, disc: int) -> RollerState:
         inner_load=load[:, 0, races],
         outer_load=load[:, 0, bores],
         outer_direction=np.where(carries, each.outward, arm / rest),
-        tangent=np.zeros((*carries.shape, 2, 2)),
     )
     if each.tilts is None:
         return state
@@ -123,13 +120,10 @@ def _rollers(at: Linearised, disc: int) -> RollerState:
         state,
         inner_moment=inner.moment,
         outer_moment=outer_contact.moment,
-        lean=np.where(carries, at.lean_after[:, own] / at.half, 0.0),
         inner_tilt=np.where(carries, after[:, races] / at.half, 0.0),
         outer_tilt=np.where(carries, after[:, bores] / at.half, 0.0),
         inner_slices=inner.slice_load,
         outer_slices=outer_contact.slice_load,
-        inner_near=inner.near,
-        outer_near=outer_contact.near,
         inner_lines=inner.line_load,
         outer_lines=outer_contact.line_load,
     )

@@ -108,6 +108,11 @@ class _Disc:
             journals = self.bores.each(geometry.journal_leans(pose), self.rollers)
             self.at_race, self.at_bore = (dot(self.rays.direction, lean) for lean in (journals, geometry.lean(pose)))
 
+    @property
+    def room(self) -> FloatArray:
+        """How far rollers are pressed together, or stand apart, where bore and race do not tilt against each other, mm."""
+        return np.abs(self.total)
+
     @cached_property
     def nominal(self) -> FloatArray:
         """Nominal motion of disc and wheel by the crank angle, mm and rad, shape (positions, coordinates, 1)."""
@@ -403,7 +408,6 @@ class Linearised:
         self.off = np.zeros(angle.size)
         self._moved_slices: dict[int, list[SlicedContact]] = {}
         self.held = before is not None
-        self.de_by_pose: FloatArray | None = None
         self.discs: list[_Disc] = self._placed(state) if before is None else before.discs
         self._approach(state)
         if system.components == 1:
@@ -411,6 +415,7 @@ class Linearised:
         else:
             self._carry(state, roughly)
         self._choose()
+        self.de_by_pose: FloatArray | None = None
         self.sticking: list[tuple[FloatArray, FloatArray, FloatArray]] = []
         self.rubs: list[FloatArray] = []
         if system.plain:
@@ -460,7 +465,9 @@ class Linearised:
             if at.tilts is not None:
                 at_race, at_bore = self.half * at.at_race, self.half * at.at_bore
                 middle = 0.5 * (at_race + at_bore)
-                lean = np.where(np.isnan(lean), middle, lean)
+                # Moments in both contacts press the same way: a roller leans between race and bore, or little beside.
+                room = 0.5 * (np.abs(at_race - at_bore) + at.room)
+                lean = np.where(np.isnan(lean), middle, np.clip(lean, middle - room, middle + room))
             if e is not None and system.coupled:
                 reach = e[:, 0] + (np.abs(e[:, 1]) if at.tilts is not None else 0.0)
                 loose = (reach[:, bores] <= 0.0) | (reach[:, races] <= 0.0)
@@ -842,10 +849,9 @@ class Linearised:
             rollers, components, count = part.placed.shape[1:]
             pressed = _pressed(part.stiffness, part.g)
             if on_pins is None:
-                mine = part.force_map, pressed
+                mine = [part.force_map, pressed]
             else:  # those of pins and holes are found together
-                both = [np.concatenate((each[:, :, bores], each[:, :, races]), 2) for each in (part.g, pressed)]
-                mine = both[0], both[1]
+                mine = [np.concatenate((each[:, :, bores], each[:, :, races]), axis=2) for each in (part.g, pressed)]
             flat, along = (each.reshape(rows, -1, count) for each in mine)
             held_by = part.tangent + np.matmul(flat.swapaxes(1, 2), along)
             pushed = outward[..., None] * pressed[:, :, bores] + inward[..., None] * pressed[:, :, races]
@@ -976,15 +982,11 @@ class Linearised:
         self.off = np.maximum(self.off, np.max(apart, axis=1, initial=0.0))
         moves = self.shifts is not None and not self.held
         found = self._eliminate(part, whole, left, turning=moves)
-        if moves and not (near := self._is_near(found.de, stiffness)).all():
+        if moves and not (close := self._is_near(found.de, stiffness)).all():
             # Far off loads may turn with soft pins more than these hold against.
             still = self._eliminate(part, whole, left, turning=False)
-            found = _Eliminated(
-                *(
-                    np.where(near.reshape(-1, *(1,) * (first.ndim - 1)), first, second)
-                    for first, second in zip(found, still, strict=True)
-                )
-            )
+            rows = [close.reshape(-1, *(1,) * (values.ndim - 1)) for values in found]
+            found = _Eliminated(*(np.where(*each) for each in zip(rows, found, still, strict=True)))
         self.force, self.tangent, self.dx, self.dx_by_pose, self.de, self.de_by_pose = found
 
     def _eliminate(self, part: _Pressing, whole: FloatArray, left: FloatArray, *, turning: bool) -> _Eliminated:
@@ -1082,7 +1084,7 @@ class Linearised:
         """
         if self.system.components == 1:
             return dx
-        each = [0.5 * (np.abs(at.total) + self.half * np.abs(at.at_race - at.at_bore)) for at in self.discs]
+        each = [0.5 * (at.room + self.half * np.abs(at.at_race - at.at_bore)) for at in self.discs]
         room = np.concatenate([self.picked(one, own[1]) for one, own in zip(each, self.chosen, strict=True)], axis=1)
         long = np.abs(dx).max(axis=-1)
         return np.asarray(dx * np.divide(room, long, out=np.ones(long.shape), where=long > room)[..., None])
@@ -1454,7 +1456,8 @@ class Linearised:
             by_pose = self.of_all_rollers(self.dx_by_pose)
         else:
             by_pose = np.concatenate(self.by_own, axis=1) if len(self.by_own) > 1 else self.by_own[0]
-            columns = () if len(self.by_own) == 1 else tuple(tuple(own.tolist()) for own in self.columns)
+            if len(self.by_own) > 1:
+                columns = tuple(tuple(own.tolist()) for own in self.columns)
         by_approach = None if self.de_by_pose is None else self.of_all(self.de_by_pose)
         return Following(
             pose=with_crank(self.pose, self.angle) if self.by_crank else self.pose,

@@ -40,10 +40,8 @@ from validation.methods.pressed_grid import press, recover_patches
 STATIONS_PER_WAVE = 4096
 """Stations on the flank, per wave, at which separations are computed; between them they are interpolated,
 which errs by 3e-7 of what the curvature swings ((2π/4096)²/8), the load by a tenth of that."""
-KEPT_SEPARATIONS = 4096
-"""Separations whose solutions are kept; those of a flank need some 25 kB each in the plane."""
-KEPT_OF_EACH = 32
-"""Solutions kept of each: rollers alike share one separation."""
+KEPT_CELLS = 3_000_000
+"""Cells of all solutions that are kept of one kind of contacts: some 50 bytes each, 480 of a pin in the plane."""
 
 Key = tuple[float, ...]
 
@@ -53,6 +51,7 @@ class KeptPieces:
 
     def __init__(self) -> None:
         self._pieces: dict[Key, tuple[Any, ...]] = {}
+        self._cells = 0
 
     def __len__(self) -> int:
         return len(self._pieces)
@@ -62,16 +61,22 @@ class KeptPieces:
         return tuple(piece for key in keys for piece in self._pieces.get(key, ()))
 
     def keep(self, key: Key, pieces: tuple[Any, ...]) -> None:
-        """Keep the pieces of a solved contact that are not kept yet."""
+        """Keep the pieces of a solved contact that are not kept yet; those of the separations not used for longest go."""
         known = self._pieces.pop(key, ())
         new = tuple(piece for piece in pieces if not any(piece is old for old in known))
-        if len(self._pieces) >= KEPT_SEPARATIONS:
-            del self._pieces[next(iter(self._pieces))]
-        self._pieces[key] = (*known, *new)[-KEPT_OF_EACH:]
+        self._pieces[key] = (*known, *new)
+        self._cells += _cells(new)
+        while self._cells > KEPT_CELLS:
+            self._cells -= _cells(self._pieces.pop(next(iter(self._pieces))))
 
     def clear(self) -> None:
         """Forget all of them."""
         self._pieces.clear()
+        self._cells = 0
+
+
+def _cells(pieces: tuple[Any, ...]) -> int:
+    return sum(piece.active.size for piece in pieces)
 
 
 class Surfaces(Protocol):

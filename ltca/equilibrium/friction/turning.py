@@ -19,7 +19,7 @@ import numpy as np
 
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.beam import support_parts
-from ltca.compliance.response import DiscResponse, bearing_pushes
+from ltca.compliance.response import DiscResponse
 from ltca.drive.parts import Drive, PinShaft, PinWheel
 from ltca.equilibrium.friction.slip import Pairs, Slip
 from ltca.equilibrium.supports import crank_laws, wheel_law
@@ -58,25 +58,6 @@ def seat_travel(part: PinWheel | PinShaft) -> float:
     if part.seat.kind != "sleeve":
         return 1.0
     return (part.seat.bore_radius or 0.0) / part.pin_radius
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Rubbing:
-    """What friction does to one disc.
-
-    Attributes
-    ----------
-    tangential : array, shape (positions, pairs)
-        Force of each contact along its tangent, wheel pins before shaft pins, N.
-    force : array, shape (positions, coordinates)
-        Generalised force that has to overcome it, N and N·mm.
-    tangent : array, shape (positions, coordinates, coordinates)
-        Its derivative by the pose, but for what turns with the contacts.
-    """
-
-    tangential: FloatArray
-    force: FloatArray
-    tangent: FloatArray
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -221,40 +202,6 @@ class RubbingPins(Protocol):
     def of_bearings(self, geometry: ContactGeometry, pose: FloatArray, push: FloatArray) -> FloatArray:
         """Return what the crank bearings of a disc resist with by the sizes of their forces, N."""
         ...
-
-
-def rub_disc(
-    friction: RubbingPins,
-    geometry: ContactGeometry,
-    crank_angle: FloatArray,
-    pose: FloatArray,
-    part: DiscResponse,
-    disc: int,
-) -> Rubbing:
-    """Return what friction does to a disc, by its number, from its contacts with their slopes.
-
-    Raises
-    ------
-    AssertionError
-        When the contacts come without slopes.
-    """
-    if part.slopes is None:
-        raise AssertionError("friction follows loads by their slopes")
-    load, stiffness = np.concatenate((part.pin_load, part.hole_load), axis=1), part.slopes.by_approach
-    if stiffness.ndim > 2:
-        stiffness = np.diagonal(stiffness, axis1=1, axis2=2)
-    slip, by_load, beside, by_slip = friction.along(geometry, crank_angle, pose, part, load, stiffness, disc)
-    tangential = by_load * load + beside
-    # F ∂s_q/∂q is left out: approaches are short against the radii about which contacts turn.
-    change = by_load[..., None] * part.slopes.by_pose
-    if by_slip is not None:
-        change = change + by_slip[..., None] * slip
-    push = np.abs(bearing_pushes(part.rollers, geometry.placement.cranks))
-    return Rubbing(
-        tangential=tangential,
-        force=np.einsum("bp,bpj->bj", tangential, slip) + friction.of_bearings(geometry, pose, push),
-        tangent=np.matmul(slip.swapaxes(1, 2), change),
-    )
 
 
 def _bearing_loads(drive: Drive) -> FloatArray:

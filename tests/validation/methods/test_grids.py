@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields, is_dataclass, replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -16,7 +17,7 @@ from ltca.equilibrium.balance import solve_equilibrium
 from ltca.equilibrium.reducer import Reducer
 from ltca.geometry.separation import circle_departure, flank_departure
 from validation.methods import pressed_grid
-from validation.methods.grids import KEPT_OF_EACH, KEPT_SEPARATIONS, GridCompliance, KeptPieces
+from validation.methods.grids import KEPT_CELLS, GridCompliance, KeptPieces
 
 ANGLES = np.array([0.4])
 
@@ -196,17 +197,31 @@ def test_pins_are_placed_where_they_touch_the_flank(paper_cases, balanced):
 
 def test_what_grids_keep_grew_with_every_place():
     """A run in time passes a new station of the flank every few steps."""
-    kept = KeptPieces()
-    for place in range(KEPT_SEPARATIONS + 10):
-        kept.keep((5.0, float(place)), (object(),))
-    assert len(kept) == KEPT_SEPARATIONS
-    assert kept.start((5.0, 0.0)) == ()
-    for _ in range(2 * KEPT_OF_EACH):
-        kept.keep((5.0, 20.0), (object(),))
-    latest = object()
-    kept.keep((5.0, 20.0), (latest,))
-    kept.keep((5.0, 20.0), (latest,))
-    start = kept.start((5.0, 20.0))
-    assert len(start) == KEPT_OF_EACH
-    assert start[-1] is latest
-    assert start[-2] is not latest
+    kept, most = KeptPieces(), 10
+    size = KEPT_CELLS // most
+    for place in range(2 * most):
+        kept.keep((5.0, float(place)), (SimpleNamespace(active=np.ones(size)),))
+        kept.keep((5.0, 0.0), ())  # used all the time
+    assert len(kept) == most
+    assert [len(kept.start((5.0, float(place)))) for place in (0, 1, most, 2 * most - 1)] == [1, 0, 0, 1]
+    (latest,) = kept.start((5.0, 2.0 * most - 1.0))
+    kept.keep((5.0, 2.0 * most - 1.0), (latest,))
+    assert kept.start((5.0, 2.0 * most - 1.0)) == (latest,)
+    # Rollers alike have one separation only: they begin anew.
+    for _ in range(most + 1):
+        kept.keep((5.0, 0.0), (SimpleNamespace(active=np.ones(size)),))
+    assert kept._cells <= KEPT_CELLS
+    kept.clear()
+    assert (len(kept), kept._cells) == (0, 0)
+
+
+def test_rollers_of_a_turn_were_solved_again_and_again(paper_cases, solved):
+    """The last 32 solutions of a separation were kept, fewer than rollers need in turn: 4,346 problems of rollers for 247."""
+    laws = GridCompliance.of_drive(paper_cases["CS-4"]).contact_laws
+    approach, radius = np.linspace(1e-3, 5e-3, 60), laws.inner_radius[0]
+    first, _ = laws.laws[3].load_and_stiffness(approach, radius)
+    count = len(solved)
+    again, _ = laws.laws[3].load_and_stiffness(approach, radius)
+    assert count > 40
+    assert len(solved) == count
+    np.testing.assert_array_equal(again, first)
