@@ -904,7 +904,7 @@ class Linearised:
         assert shifts is not None
         members = self.members = PinMembers(self)
         left = self.deformation - self.overlap
-        left += members.approaches(shifts + pins.under(members.forces(self.load)))
+        left += members.approaches(members.unsettled(shifts))
         self.off_by = left
         wanted = np.abs(left).sum(axis=1)
         matters = (self.stiffness[0] > 0.0) | (self.deformation[:, 0] - left[:, 0] > 0.0)
@@ -1010,7 +1010,8 @@ class Linearised:
             shape = rows, components * along.shape[2], size
             tangent = tangent - np.matmul(along.reshape(shape).swapaxes(1, 2), held.reshape(shape))
             g, force_map = np.concatenate((g, along), axis=2), np.concatenate((force_map, along), axis=2)
-            left = np.concatenate((left, np.zeros(along.shape[:3])), axis=2)
+            slips = self.members.slips(chosen=True) if turning else np.zeros(along.shape[:3])
+            left = np.concatenate((left, slips), axis=2)
             turn = np.concatenate((np.zeros(part.g.shape), turn), axis=2).reshape(rows, -1, size)
             stiffness = np.concatenate((_filled(stiffness, bent.shape[0]), bent), axis=2)
         mine, count = count, g.shape[2]
@@ -1114,7 +1115,7 @@ class Linearised:
         if system.coupled:
             left += np.einsum("bcicj,bcj->bci", whole[:, :, :count, :, :count], load)
         if members is not None and self.shifts is not None and system.model.pins is not None:
-            left += members.approaches(self.shifts + system.model.pins.under(members.forces(self.load)))
+            left += members.approaches(members.unsettled(self.shifts))
             members.add_flexibility(whole)
         return whole, left
 
