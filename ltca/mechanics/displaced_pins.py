@@ -77,7 +77,7 @@ class PinMembers:
 
     def unsettled(self, shifts: ComplexArray) -> ComplexArray:
         """Return how far pins stand from where the loads press them, u + S Lᵀ f, by row of the displacements."""
-        self._left: ComplexArray = shifts + self.at.system.model.pins.under(self.forces(self.at.load))
+        self._left: ComplexArray = np.asarray(shifts + self.at.system.model.pins.under(self.forces(self.at.load)))
         return self._left
 
     def slips(self, chosen: bool = False) -> FloatArray:
