@@ -40,6 +40,8 @@ class RollerState:
         Unit vector from the bore centre to the roller, the direction of the load on the disc.
     inner_moment, outer_moment : array, shape (positions, rollers), or None
         In slices about mid-length, N·mm; that on the disc acts along the ray.
+    lean : array, shape (positions, rollers), or None
+        In slices along their rays, rad.
     inner_tilt, outer_tilt : array, shape (positions, rollers), or None
         Tilts of their contacts, rad, positive presses positive z.
     inner_slices, outer_slices : array, shape (positions, rollers, slices), or None
@@ -56,6 +58,7 @@ class RollerState:
     outer_direction: ComplexArray
     inner_moment: FloatArray | None = None
     outer_moment: FloatArray | None = None
+    lean: FloatArray | None = None
     inner_tilt: FloatArray | None = None
     outer_tilt: FloatArray | None = None
     inner_slices: FloatArray | None = None

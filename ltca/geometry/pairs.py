@@ -35,7 +35,7 @@ MAX_EXTRAPOLATION = 0.1
 """Largest change of θ by which a first guess is extrapolated, rad, times the tooth number."""
 _RIGID_MEMBERS = Coordinates()
 TOGETHER = 256
-"""Pins of all positions up to which all are found: to leave some out costs more than it saves."""
+"""Pins of all positions up to which those that may touch anyway are found at once."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -268,7 +268,7 @@ class ContactGeometry:
         """
         pins = self._pins(crank_angle, pose, shifts, at)
         coordinates = self.coordinates_of(pose)
-        if start is not None and known is not None and start.size <= TOGETHER:
+        if start is not None and known is not None and start.size <= TOGETHER and np.isinf(known.approach).all():
             turned = dot(known.turning, pins.point - known.point)
             near = np.abs(turned).max(initial=0.0) <= MAX_EXTRAPOLATION / abs(self.profile.reduction_ratio)
             start, known = start + turned if near else None, None

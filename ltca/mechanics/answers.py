@@ -120,6 +120,7 @@ def _rollers(at: Linearised, disc: int) -> RollerState:
         state,
         inner_moment=inner.moment,
         outer_moment=outer_contact.moment,
+        lean=np.where(carries, at.lean_after[:, own] / at.half, 0.0),
         inner_tilt=np.where(carries, after[:, races] / at.half, 0.0),
         outer_tilt=np.where(carries, after[:, bores] / at.half, 0.0),
         inner_slices=inner.slice_load,

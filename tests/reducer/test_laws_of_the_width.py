@@ -163,7 +163,7 @@ def test_work_of_a_small_turn_of_the_wheel_is_that_of_its_moment(held):
 
     def energy(pose):
         part, disc = model.respond(ANGLES[:1], pose).parts[0], model.discs[0]
-        on_pins = disc.laws(part.flank, None).pins.energy(part.leaning_pins.contact, part.flank.effective_radius)
+        on_pins = disc.pin_law.energy(part.leaning_pins.contact, part.flank.effective_radius)
         return float(on_pins.sum() + disc.hole_law.energy(part.leaning_holes.contact, 0.0).sum())
 
     ends = []

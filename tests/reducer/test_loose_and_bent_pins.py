@@ -15,11 +15,11 @@ from ltca.analysis.results import build_dataset
 from ltca.analysis.summary import summarise
 from ltca.compliance.coefficients import without_coupling
 from ltca.compliance.coupled import CoupledCompliance
+from ltca.compliance.pin_flexibility import PinDisplacements
 from ltca.drive.parts import CrankSupport, ShaftPinBeam, ShaftPinSeat, WheelPinBeam, WheelPinSeat
 from ltca.drive.pin_beams import from_start, shaft_pin_beam, wheel_pin_beam
 from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.output_torque import solve_at_output
-from ltca.equilibrium.pin_displacements import PinDisplacements
 from ltca.equilibrium.reducer import Reducer
 from ltca.equilibrium.supports import Supports
 from ltca.errors import ConvergenceError, DriveError

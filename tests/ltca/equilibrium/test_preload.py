@@ -52,7 +52,7 @@ def test_oversize_pins_are_pressed_alike_where_nothing_moves(drive):
     """The flank is offset by the overlap everywhere, so every pin is in the same place against it: F(δ, ρ) of each."""
     tight = replace(drive, disc=replace(drive.disc, equidistant_offset=-0.01))
     model = HalfSpaceCompliance.of_drive(tight)
-    response = model.respond(np.array([0.4]), np.zeros((1, 4)))
+    response = Reducer(discs=(model,)).respond(np.array([0.4]), np.zeros((1, 4)))
     np.testing.assert_allclose(response.flank.approach, 0.01, rtol=0.0, atol=1e-12)  # round-off of places
     law = LineContactLaw(length=11.8, contact_modulus=206e3 / (2.0 * (1.0 - 0.3**2)))
     # 1/ρ = 1/r + κ/(1 − r₀ κ), κ of the path z = R e^{iθ} − e e^{iuθ}, r₀ = 6.49 mm that the flank is off it
