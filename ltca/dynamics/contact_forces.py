@@ -122,6 +122,7 @@ class ContactForces:
         rubs = motion.drive.friction
         self._drag = 0.0 if rubs is None else rubs.no_load_torque
         self._springs = _springs(motion)
+        self._sprung = bool(self._springs.any())
         self._system = ContactSystem(self._model)
         self._start: ContactStart | None = None
         self._latest: Linearised | None = None
@@ -160,8 +161,10 @@ class ContactForces:
         pose, angle = x[: motion.pose.size], x[motion.crank : motion.crank + 1]
         contacts = self._system.respond(angle, pose[None], self._start, roughly=False, by_crank=True)
         self._start, self._latest = contacts.onward, contacts
-        stiffness = self._springs.copy()
-        force = stiffness @ x
+        if self._sprung:
+            stiffness, force = self._springs.copy(), self._springs @ x
+        else:
+            stiffness, force = np.zeros((size, size)), np.zeros(size)
         # The crank angle stands behind the pose.
         force[: contacts.size] += contacts.force[0]
         stiffness[: contacts.size, : contacts.size] += contacts.tangent[0]
@@ -203,9 +206,13 @@ class ContactForces:
         total, teeth, carried = 0.5 * float(x @ self._springs @ x), self._teeth_now, None
         if teeth is not None:
             total, carried = total + teeth.energy, None if teeth.carried is None else teeth.carried[None]
-        assert self._latest is not None
-        discs = stored_by_disc(self._latest)
-        total += float(stored_by_pins(self._latest)[0])
+        contacts = self._latest
+        assert contacts is not None
+        if contacts.shifts is not None:
+            # Loads are right to second order in what pins have still to move, what beams and ring store is not.
+            contacts = contacts.corrected(np.ones(1))
+        discs = stored_by_disc(contacts)
+        total += float(stored_by_pins(contacts)[0])
         if self._supports is not None:
             total += float(self._supports.energy(pose[None], carried)[0])
         return total + sum(float(disc.energy[0]) for disc in discs), discs

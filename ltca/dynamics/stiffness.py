@@ -5,8 +5,8 @@ those of the forces on the members, and of the force on that motion, differenced
 first stage and the twist of a carrier are springs on these coordinates. Friction is left out: what it takes from a
 vibration is said by ``[damping]``.
 
-The tangent takes radii of curvature and influence coefficients as they stand, which is 1e-5 of it (`ltca.analysis.derivatives`);
-stiffnesses are made symmetric, which is as much.
+The tangent takes radii of curvature and influence coefficients as they stand, which is 1e-5 to 3e-4 of it, and of frequencies
+half as much (`ltca.analysis.derivatives`); stiffnesses are made symmetric, which is as much: what is left out is no potential's.
 """
 
 from __future__ import annotations

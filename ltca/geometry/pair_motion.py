@@ -284,7 +284,9 @@ class RollerRays:
 
         `displacement` is the bore centre from the inner-race centre, mm, shape (positions, rollers) or (positions, 1).
         """
-        along = dot(self.direction, displacement)
-        across = (self.direction.conjugate() * displacement).imag
+        return self.touching(self.direction.conjugate() * displacement)
+
+    def touching(self, displaced: ComplexArray) -> FloatArray:
+        """Return the same from displacements along and across each ray."""
         # A disc displaced sideways by more than the bore play does not meet the ray: the nearest point instead.
-        return np.asarray(along + np.sqrt(np.maximum(self.bore_play**2 - across**2, 0.0)))
+        return np.asarray(displaced.real + np.sqrt(np.maximum(self.bore_play**2 - displaced.imag**2, 0.0)))

@@ -95,7 +95,9 @@ class _Disc:
         self.bores, self.rays = geometry.bores(angle, pose, at), geometry.rollers(angle)
         self.rollers = self.rays.direction.shape[1]
         self.displacement = self.bores.each(self.bores.displacement, self.rollers)
-        self.total = self.rays.outermost - self.rays.touching_distance(self.displacement)
+        # Along and across the rays.
+        self.displaced = self.rays.direction.conjugate() * self.displacement
+        self.total = self.rays.outermost - self.rays.touching(self.displaced)
         self.tilts: tuple[PairTilt, PairTilt] | None = None
         if geometry.coordinates_of(pose).leans:
             lean_pins, lean_holes = (None, None) if leans is None else (leans[:, :pins], leans[:, pins:])
@@ -134,13 +136,12 @@ class _Disc:
         """Put the rollers inward of where they only touch the race, mm."""
         rays = self.rays
         place = rays.outermost - inward
-        arm = place * rays.direction - self.displacement
+        arm = place - self.displaced
         self.length = np.abs(arm)
-        self.outward = arm / self.length
-        self.cosine = dot(self.outward, rays.direction)
+        turn = arm / self.length
+        self.outward, self.cosine, self.slant = turn * rays.direction, turn.real, -turn.imag
         # |s n − d| less the bore play as a product: no cancellation for rollers that barely touch.
-        along = dot(rays.direction, self.displacement)
-        beyond = place + (rays.outermost - self.total) - 2.0 * along
+        beyond = place + (rays.outermost - self.total) - 2.0 * self.displaced.real
         self.inward, self.outer = inward, (self.total - inward) * beyond / (self.length + rays.bore_play)
 
 
@@ -185,6 +186,13 @@ class ContactSystem:
     def half(self) -> FloatArray:
         """Half the thickness of the discs, by which tilts are measured, mm, shape (…,) of one number or (positions, 1)."""
         return np.asarray(self.geometries[0].half_width, dtype=float)
+
+    @cached_property
+    def every_contact(self) -> tuple[list[list[Indices]], list[list[slice]], list[slice], list[list[slice]]]:
+        """All contacts of every disc and kind as chosen ones, of one position for all, and `_places_of` them."""
+        sizes = self.pins, self.rollers, self.holes, self.rollers
+        chosen = [[np.arange(size)[None] for size in sizes] for _ in range(self.discs)]
+        return chosen, *_places_of(chosen)
 
     def respond(
         self,
@@ -567,38 +575,29 @@ class Linearised:
 
     def _choose(self) -> None:
         """Choose the contacts of the linear system: those that carry, and of coupled bodies open ones that may."""
-        system, rows = self.system, self.row.size
+        system = self.system
         self.every = not system.coupled
-        self.chosen: list[list[Indices]] = []
         if self.every:
-            counts = system.pins, system.rollers, system.holes, system.rollers
-            all_of = [np.broadcast_to(np.arange(count), (rows, count)) for count in counts]
-            self.chosen = [all_of] * system.discs
-        else:
-            carries = np.any(self.stiffness != 0.0, axis=0) | (self.load[:, 0] > 0.0) | self._within()
-            for disc in range(system.discs):
-                pins, bores, holes, races = (carries[:, kind] for kind in system.of_kind[disc])
-                rollers = _padded(bores | races)
-                self.chosen.append([_padded(pins), rollers, _padded(holes), rollers])
+            self.chosen, self.at, self.of_rollers, self.local = system.every_contact
+            self.count = system.contacts
+            return
+        carries = np.any(self.stiffness != 0.0, axis=0) | (self.load[:, 0] > 0.0) | self._within()
+        self.chosen = []
+        for disc in range(system.discs):
+            pins, bores, holes, races = (carries[:, kind] for kind in system.of_kind[disc])
+            rollers = _padded(bores | races)
+            self.chosen.append([_padded(pins), rollers, _padded(holes), rollers])
         parts = [
             first.start + some
             for kinds, own in zip(system.of_kind, self.chosen, strict=True)
             for first, some in zip(kinds, own, strict=True)
         ]
-        if not self.every:
-            self.contacts: Indices = np.concatenate(parts, axis=1)
-            self.rollers: Indices = np.concatenate(
-                [disc * system.rollers + own[1] for disc, own in enumerate(self.chosen)], axis=1
-            )
-        ends = np.cumsum([0, *(part.shape[1] for part in parts)])
-        self.count = int(ends[-1])
-        self.at = [
-            [slice(ends[4 * disc + kind], ends[4 * disc + kind + 1]) for kind in range(4)]
-            for disc in range(system.discs)
-        ]
-        ends = np.cumsum([0, *(own[1].shape[1] for own in self.chosen)])
-        self.of_rollers = [slice(first, last) for first, last in pairwise(ends)]
-        self.local = [[slice(kind.start - own[0].start, kind.stop - own[0].start) for kind in own] for own in self.at]
+        self.contacts: Indices = np.concatenate(parts, axis=1)
+        self.rollers: Indices = np.concatenate(
+            [disc * system.rollers + own[1] for disc, own in enumerate(self.chosen)], axis=1
+        )
+        self.count = self.contacts.shape[1]
+        self.at, self.of_rollers, self.local = _places_of(self.chosen)
 
     def of_chosen(self, values: FloatArray) -> FloatArray:
         """Values of all contacts, shape (…, positions, components, contacts), of the chosen ones."""
@@ -685,7 +684,6 @@ class Linearised:
         system, (rows, size) = self.system, (self.pose.shape[0], self.size)
         load, stiffness = self.load[:, 0], self.stiffness[0]
         self.force, self.tangent = np.zeros((rows, size)), np.zeros((rows, size, size))
-        self.de, self.change = np.zeros(self.load.shape), np.zeros(self.load.shape)
         self.dx, self.by_own = np.zeros((rows, system.discs * system.rollers, 1)), []
         for disc, (at, own) in enumerate(zip(self.discs, self.columns, strict=True)):
             pins, bores, holes, races = system.of_kind[disc]
@@ -694,16 +692,15 @@ class Linearised:
             by_place, unbalanced = k_race + held * at.cosine, load[:, races] - at.cosine * carried
             if not self.by_crank:
                 bend = carried / at.length
-                slant = (n.conjugate() * at.rays.direction).imag
-                slanted = bend * slant
-                by_place = by_place + slanted * slant
+                slanted = bend * at.slant
+                by_place = by_place + slanted * at.slant
             by_place = np.where(by_place != 0.0, by_place, np.inf)
             share, step = held / by_place, unbalanced / by_place
-            added, cranks = held * step, at.bores.arm.shape[1]
+            cranks = at.bores.arm.shape[1]
             shape = rows, cranks, -1, 1
             normal = n.view(float).reshape(rows, cranks, -1, 2)
             basis, pressed = normal, (k_bore - held * share).reshape(shape) * normal
-            loads, follow = (carried + added).reshape(shape), share.reshape(shape) * normal
+            loads, follow = (carried + held * step).reshape(shape), share.reshape(shape) * normal
             if not self.by_crank:
                 across, aside = (1j * n).view(float).reshape(normal.shape), slanted / by_place
                 mixed, turning = (held * aside).reshape(shape), (bend - slanted * aside).reshape(shape)
@@ -739,8 +736,6 @@ class Linearised:
                 self.force, self.tangent = force, tangent
             self.by_own.append(followed[:, :, None])
             self.dx[:, of_rollers, 0] = -step
-            self.de[:, 0, bores], self.de[:, 0, races] = at.cosine * step, -step
-            self.change[:, 0, bores], self.change[:, 0, races] = added, -k_race * step
         self.moved = np.abs(self.dx[..., 0]).max(axis=1, initial=0.0)
 
     def _bores_moved(self, at: _Disc) -> FloatArray:
@@ -762,6 +757,20 @@ class Linearised:
         return [self._pressing(disc) for disc in range(self.system.discs)]
 
     @cached_property
+    def de(self) -> FloatArray:
+        """Corrections of the deformations of the chosen contacts, mm, shape (positions, components, chosen)."""
+        found = np.zeros(self.load.shape)
+        for disc, (at, (_, bores, _, races)) in enumerate(zip(self.discs, self.system.of_kind, strict=True)):
+            step = self.dx[:, disc * self.system.rollers : (disc + 1) * self.system.rollers, 0]
+            found[:, 0, bores], found[:, 0, races] = -at.cosine * step, step
+        return found
+
+    @cached_property
+    def change(self) -> FloatArray:
+        """Corrections of their loads, N."""
+        return np.asarray(self.stiffness[0][:, None] * self.de)
+
+    @cached_property
     def left(self) -> FloatArray:
         """Force that the second order may amount to, N, shape (positions,)."""
         deep = np.abs(self.of_chosen(self.deformation)).sum(axis=1) + 1e-300
@@ -775,17 +784,16 @@ class Linearised:
         own = slice(self.at[disc][0].start, self.at[disc][3].stop)
         g, across = self._gradients(disc)
         load, stiffness = self.chosen_load[:, :, own], self.chosen_stiffness[:, :, own]
-        out, n = self.picked(at.outward, some[1]), self.picked(at.rays.direction, some[1])
-        slant = (out.conjugate() * n).imag
+        slant = self.picked(at.slant, some[1])
         bend = load[:, 0, bores] / self.picked(at.length, some[1])
         if self.by_crank:
             bend = np.zeros(bend.shape)
         rows, components, _, size = g.shape
         # Directions in which a roller's own place and lean press its two contacts.
-        outward, inward = np.ones((2, rows, components, out.shape[1]))
-        np.negative(dot(out, n), out=outward[:, 0])
+        outward, inward = np.ones((2, rows, components, slant.shape[1]))
+        np.negative(self.picked(at.cosine, some[1]), out=outward[:, 0])
         inward[:, 1:] = -1.0
-        placed = np.zeros((rows, out.shape[1], components, size))
+        placed = np.zeros((rows, slant.shape[1], components, size))
         np.multiply((bend * slant)[..., None], across, out=placed[:, :, 0])
         if (
             self.by_crank
@@ -896,7 +904,7 @@ class Linearised:
         assert shifts is not None
         members = self.members = PinMembers(self)
         left = self.deformation - self.overlap
-        left += members.approaches(shifts + pins.under(members.forces(self.load)))
+        left += members.approaches(members.unsettled(shifts))
         self.off_by = left
         wanted = np.abs(left).sum(axis=1)
         matters = (self.stiffness[0] > 0.0) | (self.deformation[:, 0] - left[:, 0] > 0.0)
@@ -959,8 +967,8 @@ class Linearised:
         stiffness, bores, races = self.chosen_stiffness, self._positions(1), self._positions(3)
         whole, left = self._flexibility(part.load)
         self.off_by = self.of_all(left)
-        near, wanted = self.of_chosen(self.deformation)[:, 0], np.abs(left).sum(axis=1)
-        expected = near - left[:, 0]
+        wanted = np.abs(left).sum(axis=1)
+        expected = self.of_chosen(self.deformation)[:, 0] - left[:, 0]
         stiff = stiffness[0][:, bores] + stiffness[0][:, races]
         # An open roller stands in the middle of its play.
         free, middle = stiff <= 0.0, 0.5 * (expected[:, bores] + expected[:, races])
@@ -1002,7 +1010,8 @@ class Linearised:
             shape = rows, components * along.shape[2], size
             tangent = tangent - np.matmul(along.reshape(shape).swapaxes(1, 2), held.reshape(shape))
             g, force_map = np.concatenate((g, along), axis=2), np.concatenate((force_map, along), axis=2)
-            left = np.concatenate((left, np.zeros(along.shape[:3])), axis=2)
+            slips = self.members.slips(chosen=True) if turning else np.zeros(along.shape[:3])
+            left = np.concatenate((left, slips), axis=2)
             turn = np.concatenate((np.zeros(part.g.shape), turn), axis=2).reshape(rows, -1, size)
             stiffness = np.concatenate((_filled(stiffness, bent.shape[0]), bent), axis=2)
         mine, count = count, g.shape[2]
@@ -1106,7 +1115,7 @@ class Linearised:
         if system.coupled:
             left += np.einsum("bcicj,bcj->bci", whole[:, :, :count, :, :count], load)
         if members is not None and self.shifts is not None and system.model.pins is not None:
-            left += members.approaches(self.shifts + system.model.pins.under(members.forces(self.load)))
+            left += members.approaches(members.unsettled(self.shifts))
             members.add_flexibility(whole)
         return whole, left
 
@@ -1508,6 +1517,17 @@ def _by_crank(values: NDArray[Any], cranks: int) -> NDArray[Any]:
 def with_crank(pose: FloatArray, angle: FloatArray) -> FloatArray:
     """Return poses with the crank angle as one more coordinate behind them."""
     return np.concatenate((pose, angle[:, None]), axis=1)
+
+
+def _places_of(chosen: list[list[Indices]]) -> tuple[list[list[slice]], list[slice], list[list[slice]]]:
+    """Return where chosen contacts of each disc and kind stand among all chosen, the rollers of each disc among these, and the
+    contacts of each kind among those of their disc.
+    """
+    ends = np.cumsum([0, *(some.shape[1] for own in chosen for some in own)])
+    at = [[slice(ends[4 * disc + kind], ends[4 * disc + kind + 1]) for kind in range(4)] for disc in range(len(chosen))]
+    ends = np.cumsum([0, *(own[1].shape[1] for own in chosen)])
+    local = [[slice(kind.start - own[0].start, kind.stop - own[0].start) for kind in own] for own in at]
+    return at, [slice(first, last) for first, last in pairwise(ends)], local
 
 
 def _padded(mask: NDArray[np.bool_]) -> Indices:

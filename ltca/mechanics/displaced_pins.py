@@ -75,6 +75,27 @@ class PinMembers:
                     found[:, component, at.at[disc][kind]] = values[at.row, first + some[kind]]
         return found
 
+    def unsettled(self, shifts: ComplexArray) -> ComplexArray:
+        """Return how far pins stand from where the loads press them, u + S Lᵀ f, by row of the displacements."""
+        self._left: ComplexArray = np.asarray(shifts + self.at.system.model.pins.under(self.forces(self.at.load)))
+        return self._left
+
+    def slips(self, chosen: bool = False) -> FloatArray:
+        """Return what pins have still to slip along their contacts, of all pairs, shape (positions, components, discs, pairs), or
+        of the chosen ones as `turned_loads` has them.
+        """
+        found, at, system = [], self.at, self.at.system
+        for disc, along in enumerate(self.along):
+            each = [dot(along, self._left[:, disc])]
+            if self.turning:
+                each.append(dot(along, self._left[:, system.discs + disc]))
+            found.append(np.stack(each, axis=1))
+        if not chosen:
+            return np.stack(found, axis=2)
+        some = [np.concatenate((own[0], system.pins + own[2]), axis=1) for own in at.chosen]
+        picked = [np.take_along_axis(one, own[:, None], axis=2) for one, own in zip(found, some, strict=True)]
+        return np.concatenate(picked, axis=2)
+
     def _chosen(self) -> None:
         """Where the contacts on pins stand among the chosen, and on which pins and discs."""
         at, system = self.at, self.at.system
@@ -109,11 +130,13 @@ class PinMembers:
                 load = at.load[:, :, system.of_kind[disc][kind]]
                 parts = [bend * load[:, component][at.row, some] for component in range(system.components)]
                 each.append(np.stack([*parts, np.zeros(bend.shape)]) if system.components > 1 else np.stack(parts))
-                if kind == 0 and not at.by_crank:
+                if kind == 0:
                     for component, part in enumerate(load.swapaxes(0, 1)):
                         turning = turn[:, component, first:last]
                         turning[..., own[DISC_ROTATION]] -= part[at.row, some]
                         turning[..., own[WHEEL_ANGLE]] += part[at.row, some]
+                        if at.by_crank:  # the wheel turns with the crank
+                            turning[..., -1] += part[at.row, some] / of_disc.geometry.placement.reduction_ratio
                 along = motion.along[at.row, some]
                 by_place = slip[:, 0]
                 by_place[:, first:last, own] = along
@@ -325,7 +348,8 @@ class PinBlocks:
             [
                 np.concatenate((left[:, :, kinds[0]], left[:, :, kinds[2]]), axis=2)[..., None]
                 for kinds in system.of_kind
-            ]
+            ],
+            self.members.slips()[..., None] if turning else None,
         )
         of_discs = [np.concatenate((at.stiffness[..., k[0]], at.stiffness[..., k[2]]), axis=-1) for k in system.of_kind]
         stiffness = np.stack((np.stack(of_discs, axis=-1), np.zeros((at.stiffness.shape[0], *bent.shape[1:]))), axis=3)

@@ -319,6 +319,8 @@ def in_closed_form(drive, folder):
         ("plastic", Hybrid),
         ("bent pins", HalfSpace),
         ("bent pins", Hybrid),
+        ("elastic ring", HalfSpace),
+        ("elastic ring", Hybrid),
     ],
 )
 def test_forces_are_slopes_of_what_is_stored(name, kind, tmp_path):

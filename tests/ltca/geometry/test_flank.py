@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
@@ -189,3 +189,15 @@ def test_the_curvature_of_the_trochoid_was_written_three_times(radius, eccentric
     found = trochoid_curvature(radius, eccentricity, pins, np.array([1.0, -1.0]))
     np.testing.assert_allclose(found, ends, rtol=1e-12)
     np.testing.assert_allclose(trochoid_curvature(radius, 0.0, pins, np.array([0.3])), 1.0 / radius, rtol=1e-15)
+
+
+def test_a_flank_followed_by_its_derivatives_over_the_last_step_is_the_flank_there(drives):
+    """Of turned flanks beside the root as elsewhere: 1e-11 of the least radius of curvature, here of c″ = u² e, as it is said."""
+    theta, step = np.linspace(0.0, 2.0 * np.pi, 41), ltca.geometry.flank.NEARLY
+    for drive in drives:
+        for turn in (1.0, np.exp(0.3j)):
+            flank = replace(FlankProfile.of_drive(drive), turn=turn, deviation=None)
+            moved = flank._moved(flank.contact_curve(np.exp(1j * theta)), np.full(theta.shape, step))
+            there = flank.contact_curve(np.exp(1j * (theta - step)))
+            for found, expected in zip(moved, there, strict=True):
+                assert found == pytest.approx(expected, abs=1e-10 * np.abs(expected).max())

@@ -96,3 +96,20 @@ def test_different_dimensions_collapse_on_the_table(slenderness):
 
 def test_table_is_built_once_in_a_process():
     assert LineContactLaw(1.0, 1.0).table is line_contact_table()
+
+
+def test_contacts_of_several_lengths_and_moduli_together_carry_as_each_alone():
+    """Also where some are open, and some are taken: by a mask, or by numbers."""
+    others = [LAW, LineContactLaw(25.0, 56_000.0), LineContactLaw(3.0, 113_187.0)]
+    together = LineContactLaw(
+        *(np.array([getattr(law, name) for law in others]) for name in ("length", "contact_modulus"))
+    )
+    approach, radius = np.array([[1e-3, -1e-3, 2e-3], [0.0, 5e-4, 1e-4]]), np.array([1.0, 2.0, 30.0])
+    expected = [np.stack(each, 1) for each in zip(*(
+        law.load_and_stiffness(approach[:, place], radius[place]) for place, law in enumerate(others)
+    ), strict=True)]  # fmt: skip
+    np.testing.assert_allclose(together.load_and_stiffness(approach, radius), expected, rtol=1e-14)
+    closed = approach > 0.0
+    for some in (closed, np.nonzero(closed)):
+        found = together.take(closed.shape, some).load_and_stiffness(approach[closed], np.tile(radius, (2, 1))[closed])
+        np.testing.assert_allclose(found, [each[closed] for each in expected], rtol=1e-14)
