@@ -159,7 +159,7 @@ def test_balance_without_gaps_is_the_balance_with_them(paper_cases):
     np.testing.assert_array_equal(found.response.pin_load, without.response.pin_load)
     assert np.mean(without.response.flank.left_out) > 0.3
     assert not found.response.flank.left_out.any()
-    everything = Reducer(discs=(model,)).respond(angle, found.pose, Start.after(found.response))
+    everything = model.respond(angle, found.pose, Start.after(found.response))
     assert_same(found.response.flank, everything.flank, np.ones_like(found.response.flank.left_out))
     # Loads are those of all pins to round-off of places, times the stiffness of some 1e6 N/mm.
     np.testing.assert_allclose(found.response.pin_load, everything.pin_load, rtol=0.0, atol=1e-6)

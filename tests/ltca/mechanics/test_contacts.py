@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from ltca.analysis.engines import HalfSpace
-from ltca.arrays import take_positions
 from ltca.compliance.coefficients import load_coefficients
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.response import Start
@@ -50,10 +49,8 @@ def loads(response):
     return np.concatenate((response.pin_load, response.hole_load, rollers.outer_load, rollers.inner_load), axis=1)
 
 
-def round_off(name):
-    """Of loads by the largest: on coupled bodies approaches of 1e-14 mm by stiffnesses of 1e6 N/mm, as systems are padded."""
-    return 5e-12 if "hybrid" in name else 1e-12
-
+ROUND_OFF = 5e-12
+"""Of loads by the largest: a unit in the last place of coordinates of 88 mm, 1.4e-14 mm, by stiffnesses of 1e6 N/mm."""
 
 KINDS = ["paper", "rv", "sleeved", "paper, ring", "paper, hybrid", "paper, slices", "sleeved, hybrid", "rv, slices"]
 
@@ -71,10 +68,10 @@ def test_a_position_answers_alike_in_any_block_and_order(name, tmp_path, monkeyp
     largest = together.max()
     order = np.array([4, 1, 5, 0, 3, 2])
     np.testing.assert_allclose(
-        loads(model.respond(ANGLES[order], pose[order])), together[order], rtol=0.0, atol=round_off(name) * largest
+        loads(model.respond(ANGLES[order], pose[order])), together[order], rtol=0.0, atol=ROUND_OFF * largest
     )
     monkeypatch.setattr(reducer, "POSITIONS_AT_ONCE", 2)
-    np.testing.assert_allclose(loads(model.respond(ANGLES, pose)), together, rtol=0.0, atol=round_off(name) * largest)
+    np.testing.assert_allclose(loads(model.respond(ANGLES, pose)), together, rtol=0.0, atol=ROUND_OFF * largest)
 
 
 @pytest.mark.parametrize("name", ["paper", "sleeved", "paper, hybrid", "paper, slices"])
@@ -84,7 +81,7 @@ def test_a_search_in_blocks_is_the_search(name, tmp_path, monkeypatch):
     monkeypatch.setattr(reducer, "POSITIONS_AT_ONCE", 2)
     other = solve_at_output(model, [drive], ANGLES, drive.load.torque)
     first, second = loads(one.response), loads(other.response)
-    np.testing.assert_allclose(second, first, rtol=0.0, atol=round_off(name) * first.max())
+    np.testing.assert_allclose(second, first, rtol=0.0, atol=ROUND_OFF * first.max())
 
 
 @pytest.mark.parametrize("name", ["paper", "rv", "sleeved", "paper, ring", "paper, hybrid", "paper, slices"])
@@ -107,19 +104,3 @@ def test_the_tangent_of_the_search_is_near_that_of_the_force(name, tmp_path):
     largest = np.max(np.abs(tangent))
     np.testing.assert_allclose(tangent, tangent.T, rtol=0.0, atol=1e-12 * largest)
     np.testing.assert_allclose(tangent, numeric, rtol=0.0, atol=2e-3 * largest)
-
-
-def test_a_contact_left_out_that_is_pressed_after_all_is_found(tmp_path, monkeypatch):
-    """With no open contact among the unknowns some are pressed as bodies yield under others: they are told and taken."""
-    from ltca.mechanics import contacts
-
-    drive, model = prepared("paper, hybrid", tmp_path)
-    found = solve_at_output(model, [drive], ANGLES, drive.load.torque)
-    monkeypatch.setattr(contacts, "CANDIDATE_MARGIN", -0.5)  # not even all that overlap
-    start = take_positions(Start.after(found.response), np.arange(ANGLES.size))
-    again = solve_at_output(model, [drive], ANGLES, drive.load.torque)
-    assert model.evaluate(ANGLES, found.pose, None, roughly=True).overlooks.any()
-    np.testing.assert_allclose(
-        loads(again.response), loads(found.response), rtol=0.0, atol=1e-8 * found.response.pin_load.max()
-    )
-    assert start.inner is not None
