@@ -5,7 +5,8 @@
 A second table has other reducers on tables: discs, fixed wheel, cranks, supports, slices (time relative to the paper's drive).
 ``fe`` and ``hybrid`` start from the solution on tables as the engines do (included in their time). Without a file of
 ``cyclo derive paper --case CS-1`` closed-form bodies with fewer stations are used (`ltca.testing.closed_form_bodies`).
-Values are the best of several rounds; compare ratios within one run.
+Values are the best of several rounds; compare ratios within one run. Evaluations are those of places, laws and flexibility of
+all contacts of a position, corrections of deformations and displaced pins among them.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -36,6 +38,7 @@ from ltca.equilibrium.balance import Equilibrium, solve_equilibrium
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.reducer import Reducer
 from ltca.geometry.placement import position_angles
+from ltca.mechanics.contacts import Linearised
 from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
 from ltca.testing.closed_form_bodies import closed_form_coefficients
 
@@ -48,6 +51,22 @@ def best(rounds: int, function: Callable[[], Equilibrium]) -> tuple[Equilibrium,
         answer = function()
         seconds = min(seconds, time.process_time() - start)
     return answer, seconds
+
+
+def evaluations(function: Callable[[], Equilibrium]) -> float:
+    """Return how often places, laws and flexibility of contacts were evaluated for each position."""
+    rows, plain = [0], Linearised.__init__
+
+    def counted(self: Linearised, *given: Any, **options: Any) -> None:
+        plain(self, *given, **options)
+        rows[0] += self.angle.size
+
+    Linearised.__init__ = counted  # type: ignore[method-assign]
+    try:
+        found = function()
+    finally:
+        Linearised.__init__ = plain  # type: ignore[method-assign]
+    return rows[0] / found.crank_angle.size
 
 
 def one_evaluation(model: Reducer, angles: np.ndarray, pose: np.ndarray) -> float:
@@ -82,11 +101,15 @@ def other_reducers(paper: Drive) -> dict[str, Drive]:
 
 def measure_others(paper: Drive, angles: np.ndarray, rounds: int, base: float) -> None:
     """Print the second table."""
-    print(f"\n{'':<24}{'equilibria/s':>14}{'iterations':>12}{'time by one disc':>20}")
+    print(f"\n{'':<24}{'equilibria/s':>14}{'iterations':>12}{'evaluations':>13}{'time by one disc':>20}")
     for name, drive in other_reducers(paper).items():
         model = HalfSpace().prepare(drive).model
-        found, seconds = best(rounds, partial(solve_at_output, model, [drive], angles, drive.load.torque))
-        print(f"{name:<24}{angles.size / seconds:>14.0f}{found.iterations.mean():>12.1f}{seconds / base:>20.1f}")
+        solve = partial(solve_at_output, model, [drive], angles, drive.load.torque)
+        found, seconds = best(rounds, solve)
+        print(
+            f"{name:<24}{angles.size / seconds:>14.0f}{found.iterations.mean():>12.1f}{evaluations(solve):>13.1f}"
+            f"{seconds / base:>20.1f}"
+        )
 
 
 def main() -> None:
@@ -106,7 +129,9 @@ def main() -> None:
         coefficients = load_coefficients(path, drive)
     tables = Reducer(discs=(HalfSpaceCompliance.of_drive(drive),))
     print(f"{angles.size} positions of the paper's CS-1, one core, best of {arguments.rounds}")
-    print(f"{'':<12}{'equilibria/s':>14}{'iterations':>12}{'ms/evaluation':>15}{'time by half-space':>20}")
+    print(
+        f"{'':<12}{'equilibria/s':>14}{'iterations':>12}{'evaluations':>13}{'ms/evaluation':>15}{'time by half-space':>20}"
+    )
     near, base = best(arguments.rounds, lambda: solve_equilibrium(tables, angles, moment))
     models: dict[str, Reducer] = {"half-space": tables}
     models |= {
@@ -114,13 +139,15 @@ def main() -> None:
         for name, field in NEAR_FIELDS.items()
     }
     for name, model in models.items():
-        found, seconds = near, base
+        found, seconds, solve = near, base, partial(solve_equilibrium, model, angles, moment)
         if name != "half-space":
-            found, seconds = best(arguments.rounds, partial(solve_equilibrium, model, angles, moment, near.pose))
+            solve = partial(solve_equilibrium, model, angles, moment, near.pose)
+            found, seconds = best(arguments.rounds, solve)
             seconds += base
         each = min(one_evaluation(model, angles, found.pose) for _ in range(arguments.rounds)) / angles.size
         print(
-            f"{name:<12}{angles.size / seconds:>14.0f}{found.iterations.mean():>12.1f}{1e3 * each:>15.3f}"
+            f"{name:<12}{angles.size / seconds:>14.0f}{found.iterations.mean():>12.1f}{evaluations(solve):>13.1f}"
+            f"{1e3 * each:>15.3f}"
             f"{seconds / base:>20.1f}"
         )
     measure_others(drive, angles, arguments.rounds, base)
