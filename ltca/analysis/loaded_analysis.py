@@ -247,12 +247,12 @@ class LoadedAnalysis:
 
     @property
     def transmission_error(self) -> FloatArray:
-        """Deviation of the output at the torque of the run, ccw positive, shape (positions,), rad."""
+        """Deviation of the output at the torque of the run, ccw positive, shape (positions,), rad (Eq. 94)."""
         return np.asarray(self.drive.output_deviation(wheel_angle_of_input(self.model, self.full), self.torque))
 
     @property
     def transmission_error_light(self) -> FloatArray:
-        """The same at the light torque, rad."""
+        """The same at the light torque, rad (Eq. 94)."""
         wheel = wheel_angle_of_input(self.model, self.light)
         return np.asarray(self.drive.output_deviation(wheel, self.drive.load.light_torque))
 

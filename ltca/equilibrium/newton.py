@@ -109,7 +109,7 @@ class Search:
         return model.evaluate(self.angle[rows], pose, start, roughly=roughly, everything=everything)
 
     def scaled(self, rows: NDArray[np.intp], response: Response | Evaluation) -> tuple[FloatArray, FloatArray]:
-        """Return the scaled gradient and the scaled tangent (forces and lengths only)."""
+        """Return the scaled gradient, with the moment on the wheel (Eq. 89), and the scaled tangent: forces and lengths only."""
         lever = self.levers(rows)
         gradient = response.force.copy()
         gradient[:, WHEEL_ANGLE] -= self.moment[rows]
@@ -127,6 +127,8 @@ class Search:
         response: Response | Evaluation | None = None,
     ) -> NDArray[np.intp]:
         """Move positions towards balance; return those of them that do not balance, ascending.
+
+        Damped, with the analytic tangent, it stands in place of the iteration of the paper (Eq. 90–93).
 
         Parameters
         ----------

@@ -556,7 +556,7 @@ def disc_pressures(pressures: ContactPressures, discs: int) -> tuple[ContactPres
 
 
 def bearing_forces(model: Reducer, crank_angle: FloatArray, response: Response) -> NDArray[np.complex128]:
-    """Return the force of each crank bearing on its disc, radial + i tangential, shape (positions, discs, cranks), N."""
+    """Return the forces of crank bearings on discs, shape (positions, discs, cranks), N: radial + i tangential (Eq. 73–74)."""
     forces = []
     for geometry, part in zip(model.geometries, response.parts, strict=True):
         ahead = geometry.placement.eccentric_directions(crank_angle)

@@ -269,7 +269,7 @@ class FlankProfile:
         return self.nearest_point(point, start).parameter
 
     def nearest_point(self, point: ComplexArray, start: FloatArray) -> NearestPoint:
-        """Find the flank point whose normal passes through a point.
+        """Find the flank point whose normal passes through a point (Eq. 61).
 
         Newton's method on g = Re(conj(c′)(c − p)) = 0 with the step bounded to a fifth of a tooth and, when it does not
         converge soon, bracketed between a place with g < 0 and one with g > 0: near a centre of curvature the slope of g

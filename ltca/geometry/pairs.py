@@ -249,7 +249,7 @@ class ContactGeometry:
         known: KnownPins | None = None,
         at: DiscPlace | None = None,
     ) -> FlankMotion:
-        """Return the pairs of wheel pin and flank (Eq. 60–64).
+        """Return the pairs of wheel pin and flank (Eq. 60–64, 85–87, 89).
 
         Parameters
         ----------
@@ -320,6 +320,7 @@ class ContactGeometry:
     def _pins(
         self, crank_angle: FloatArray, pose: FloatArray, shifts: ComplexArray | None, at: DiscPlace | None = None
     ) -> _Pins:
+        """Wheel pins in the fixed frame and in that of the disc (Eq. 49, 60, 62–63)."""
         place, coordinates = self.placement, self.coordinates_of(pose)
         disc = at or self.disc_place(crank_angle, pose)
         disc_centre = disc.centre
@@ -422,7 +423,7 @@ class ContactGeometry:
         )
 
     def disc_place(self, crank_angle: FloatArray, pose: FloatArray) -> DiscPlace:
-        """Return where the disc stands; arguments as for `flank`."""
+        """Return where the disc stands (Eq. 46); arguments as for `flank`."""
         races = self.placement.races(crank_angle)
         centre = (races.middle + pose[:, X] + 1j * pose[:, Y])[:, None]
         return DiscPlace(races, centre, unit(pose[:, DISC_ROTATION, None]))
@@ -434,7 +435,7 @@ class ContactGeometry:
         shifts: ComplexArray | None = None,
         at: DiscPlace | None = None,
     ) -> PairMotion:
-        """Return the pairs of shaft pin and hole (Eq. 59, 78–81); arguments as for `flank`."""
+        """Return the pairs of shaft pin and hole (Eq. 51, 59, 78–83, 88); arguments as for `flank`."""
         place = self.placement
         disc = at or self.disc_place(crank_angle, pose)
         arm = place.hole_centres * disc.turn

@@ -185,7 +185,7 @@ class Placement:
 
     @classmethod
     def of_drive(cls, drive: Drive) -> Placement:
-        """Return the places of the parts of a drive of one disc (`ltca.drive.single_discs`)."""
+        """Return the places of the parts of a drive of one disc, `ltca.drive.single_discs` (Eq. 49–50, 78)."""
         drive.require_warmed()
         wheel, bearing, crank = drive.pin_wheel, drive.crank_bearing, drive.crank
         rollers = bearing.number_of_rollers
@@ -252,7 +252,10 @@ class Placement:
         return np.asarray(1.0 / (1.0 / self.shaft_pin_radii - 1.0 / self.hole_radii))
 
     def eccentric_directions(self, crank_angle: FloatArray) -> ComplexArray:
-        """Return the unit vectors from the crank axes to the centres of inner races and cages, fixed frame, shape (…, cranks)."""
+        """Return the unit vectors from the crank axes to the centres of inner races and cages, fixed frame, shape (…, cranks).
+
+        They are the radial directions of the discs; the tangential ones are these times i (Eq. 75–76).
+        """
         return unit(np.asarray(crank_angle)[..., None] + self.eccentric_phase)
 
     def eccentric_direction(self, crank_angle: FloatArray) -> ComplexArray:
@@ -261,7 +264,7 @@ class Placement:
         return unit(np.asarray(crank_angle) + phase)
 
     def races(self, crank_angle: FloatArray) -> Races:
-        """Return the inner races at crank angles, rad, shape (…,)."""
+        """Return the inner races at crank angles, rad, shape (…,) (Eq. 45, 47)."""
         lever = self.eccentricity * self.eccentric_directions(crank_angle)
         return Races(lever, self.crank_axes + lever)
 

@@ -18,7 +18,7 @@ MAX_ITERATIONS = 40
 
 
 def circle_departure(tangent_distance: FloatArray, radius: float) -> FloatArray:
-    """Return r − √(r² − l²), the departure of a circle from its tangent at the distance l, mm (Eq. 17).
+    """Return r − √(r² − l²), the departure of a circle from its tangent at the distance l, mm (Eq. 17, 53–54).
 
     The radius is negative for the concave side (a bore), whose departure is negative. Computed as l²/(r + √(r² − l²)), without
     cancellation; infinite beyond the radius, where the circle has no points.
@@ -31,7 +31,7 @@ def circle_departure(tangent_distance: FloatArray, radius: float) -> FloatArray:
 
 
 def flank_departure(profile: FlankProfile, parameter: float, tangent_distance: FloatArray) -> FloatArray:
-    """Return h, the departure of the flank from its tangent at the contact point θ, mm, positive into the disc (Eq. 18–19).
+    """Return h, the departure of the flank from its tangent at the contact point θ, mm, positive into the disc (Eq. 18–19, 65).
 
     `parameter` is θ, rad; `tangent_distance` is l along the tangent in the sense of growing θ, mm. ConvergenceError where the
     flank has no point at such a distance next to the contact point.

@@ -98,7 +98,7 @@ class LineContactLaw(ContactLaw):
         return pressed, np.log(np.where(closed, delta, 1.0) * radius / square), closed
 
     def load_and_stiffness(self, approach: ArrayLike, effective_radius: ArrayLike) -> tuple[FloatArray, FloatArray]:
-        """Load and its exact derivative by the approach, N and N/mm."""
+        """Load (Eq. 67–68, 84) and its exact derivative by the approach, N and N/mm."""
         delta = np.asarray(approach, dtype=float)
         product = delta * np.asarray(effective_radius, dtype=float)
         if delta.shape != product.shape:

@@ -19,7 +19,7 @@ class SpringLaw(ContactLaw):
     stiffness: float | FloatArray = by_drive(0)
 
     def load_and_stiffness(self, approach: ArrayLike, effective_radius: ArrayLike) -> tuple[FloatArray, FloatArray]:
-        """Return the load at an approach and its derivative, N and N/mm."""
+        """Return the load at an approach (Eq. 77) and its derivative, N and N/mm."""
         delta = np.asarray(approach, dtype=float)
         return self.stiffness * np.maximum(delta, 0.0), np.where(delta > 0.0, self.stiffness, 0.0)
 

@@ -133,7 +133,7 @@ class _Disc:
         return np.asarray(seen.view(float).reshape(*seen.shape, 2))
 
     def place_rollers(self, inward: FloatArray) -> None:
-        """Put the rollers inward of where they only touch the race, mm."""
+        """Put the rollers inward of where they only touch the race, mm (Eq. 52, 57, 69)."""
         rays = self.rays
         place = rays.outermost - inward
         arm = place - self.displaced
@@ -679,7 +679,8 @@ class Linearised:
 
         With the stiffnesses k of its two contacts, the cosine c between ray and normal n in the bore, and the load F there, which
         turns by its place as s (n across the ray), a roller yields along its ray with k_i + c² k_o + F s²/l. The rollers of a
-        crank are one spring then between bore and race, Σ a n nᵀ + b t tᵀ + m (n tᵀ + t nᵀ).
+        crank are one spring then between bore and race, Σ a n nᵀ + b t tᵀ + m (n tᵀ + t nᵀ). Equations of the paper: balance of
+        the rollers (Eq. 66) and of the disc (Eq. 70–72).
         """
         system, (rows, size) = self.system, (self.pose.shape[0], self.size)
         load, stiffness = self.load[:, 0], self.stiffness[0]
@@ -779,7 +780,7 @@ class Linearised:
         return np.asarray(np.maximum(LEFT_WEIGHT * np.max(error, axis=1, initial=0.0), self.law_left))
 
     def _pressing(self, disc: int) -> _Pressing:
-        """What the chosen contacts of a disc press its own coordinates with, rollers where they stand."""
+        """What the chosen contacts of a disc press its own coordinates with, rollers where they stand (Eq. 66, 70–72)."""
         at, some, (_, bores, _, races) = self.discs[disc], self.chosen[disc], self.local[disc]
         own = slice(self.at[disc][0].start, self.at[disc][3].stop)
         g, across = self._gradients(disc)

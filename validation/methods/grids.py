@@ -104,7 +104,7 @@ class RollerSurfaces:
     race: float
 
     def separation(self, index: tuple[int, ...], effective_radius: float) -> tuple[Separation, tuple[Key, ...]]:
-        """Return the separation, and its key."""
+        """Return the separation (Eq. 55–56, 58), and its key."""
         race, radius = self.race, 1.0 / (1.0 / effective_radius - 1.0 / self.race)
         apart = Separation(
             effective_radius=effective_radius,
@@ -137,7 +137,7 @@ class PinSurfaces:
     radius: FloatArray
 
     def separation(self, index: tuple[int, ...], effective_radius: float) -> tuple[Separation, tuple[Key, ...]]:
-        """Return the separation, and keys of the stations beside it and its own."""
+        """Return the separation (Eq. 65), and keys of the stations beside it and its own."""
         profile, spacing, radius = self.profile, self.spacing, float(self.radius[index])
         number, part = divmod(float(self.parameter[index]), spacing)
         place = int(number)

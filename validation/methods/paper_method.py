@@ -79,7 +79,10 @@ def pose_of_lead(model: Reducer, wheel_position: FloatArray, unknowns: FloatArra
 
 
 def lead_of_pose(model: Reducer, crank_angle: FloatArray, pose: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return held φ_P and the unknowns of the paper of a pose at an actual crank angle: `pose_of_lead` inverted."""
+    """Return held φ_P and the unknowns of the paper of a pose at an actual crank angle: `pose_of_lead` inverted.
+
+    The lead, −u · wheel angle, is the loaded transmission error at the crank (Eq. 94).
+    """
     place = model.discs[0].geometry.placement
     lead = -place.reduction_ratio * pose[:, WHEEL_ANGLE]
     ideal = crank_angle - lead

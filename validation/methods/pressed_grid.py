@@ -138,7 +138,7 @@ class Pressed(NamedTuple):
 
 
 def press(kind: ContactKind, separation: Separation, approach: float, start: Sequence[GridPiece] = ()) -> Pressed:
-    """Return load and stiffness of a contact at an approach δ, mm, positive.
+    """Return load and stiffness of a contact at an approach δ, mm, positive (Eq. 55, 67–68, 84).
 
     `start` are the pieces of a neighbouring pose: they save time and do not change the result.
     """
