@@ -68,6 +68,10 @@ LEFT_WEIGHT = 100.0
 """What is left of the inner unknowns counts so many times: moments of the cranks are balanced more closely than forces."""
 ROUND_OFF = 1e-13
 """Correction that is nothing but round-off of places, mm."""
+LEAST_CHANGE = 1e-13
+"""Change of a load by the largest of its position that is none."""
+LEAST_ROOM = 1e-7
+"""Correction of a roller that is always allowed, mm: one that is hardly pressed would go on by less for ever."""
 LEAST_TURNING = 1e-9
 """Stiffness against leaning by that of the place and the square of half the width: what touches at one end alone turns freely."""
 
@@ -835,7 +839,10 @@ class Linearised:
         stiffness = self.chosen_stiffness
         self.change = _pressed(stiffness, self.de[..., None])[..., 0]
         moved = np.abs(self.de).sum(axis=1)
-        self.moved = np.max(np.where(stiffness[0] > 0.0, moved, 0.0), axis=1, initial=0.0)
+        # A roller that hardly touches may go on for ever in a direction that changes no load.
+        changed = np.abs(self.change).sum(axis=1)
+        matters = changed > LEAST_CHANGE * self.load[:, 0].max(axis=1, initial=0.0)[:, None]
+        self.moved = np.max(np.where(matters & (stiffness[0] > 0.0), moved, 0.0), axis=1, initial=0.0)
 
     def _linearise_alone(self) -> None:
         """The same where nothing deforms but the contacts: disc by disc, roller by roller."""
@@ -1088,6 +1095,7 @@ class Linearised:
             return dx
         each = [0.5 * (at.room + self.half * np.abs(at.at_race - at.at_bore)) for at in self.discs]
         room = np.concatenate([self.picked(one, own[1]) for one, own in zip(each, self.chosen, strict=True)], axis=1)
+        room = np.maximum(room, LEAST_ROOM)
         long = np.abs(dx).max(axis=-1)
         return np.asarray(dx * np.divide(room, long, out=np.ones(long.shape), where=long > room)[..., None])
 
