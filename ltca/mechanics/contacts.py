@@ -56,7 +56,7 @@ CANDIDATE_MARGIN = 0.25
 """Gap within which an open contact of coupled bodies may carry, by the largest overlap of its position."""
 ROUGHLY_SETTLED = 0.02
 """Largest correction of a deformation, by the largest approach, with which a step of the pose is judged."""
-SETTLED = 1e-6
+SETTLED = 1e-7
 """The same of an answer: loads are corrected to first order, and the error left is of its square."""
 SETTLED_IN_MOTION = 1e-5
 """The same of a run in time, whose step leaves a hundred times as much as the 1e-11 of loads that these leave."""

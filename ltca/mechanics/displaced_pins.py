@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import weakref
 from typing import Any
 
 import numpy as np
@@ -25,7 +26,8 @@ class PinMembers:
     """
 
     def __init__(self, at: Any) -> None:
-        self.at, system = at, at.system
+        # Not a circle of references: what a search has evaluated goes as soon as nobody asks for it.
+        self.at, system = weakref.proxy(at), at.system
         place, pins = system.geometries[0].placement, system.pins
         turned = unit(place.wheel_rotation(at.angle) + at.pose[:, WHEEL_ANGLE]).conjugate()[:, None]
         self.normal, self.pressing, self.turning, self.along = [], [], [], []

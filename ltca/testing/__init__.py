@@ -21,5 +21,6 @@ field_changes       A plausible change of every leaf field of a drive, for the t
 malformed           Malformed drive and study files by a seeded generator: wrong values, texts, structures and bytes
 elastic_cylinder    An elastic cylinder between two rigid planes, solved with its true boundary: a reference for half-spaces
 closed_form_bodies  Influence coefficients of bodies in closed form: a coefficient file without finite elements
+bearing_alone       Rollers of a crank bearing with races displaced against each other, while nothing else carries
 ==================  ============================================================
 """
