@@ -781,7 +781,21 @@ class Linearised:
         deep = np.abs(self.of_chosen(self.deformation)).sum(axis=1) + 1e-300
         moved = np.abs(self.de).sum(axis=1)
         error = np.abs(self.change).sum(axis=1) * np.minimum(1.0, moved / deep)
-        return np.asarray(np.maximum(LEFT_WEIGHT * np.max(error, axis=1, initial=0.0), self.law_left))
+        left = np.maximum(LEFT_WEIGHT * np.max(error, axis=1, initial=0.0), self.law_left)
+        return np.asarray(left if self.shifts is None else np.maximum(left, self._left_of_pins))
+
+    @property
+    def _left_of_pins(self) -> FloatArray:
+        """What pins that move along curved contacts alter of gaps in the second order, times the stiffness, N."""
+        found = np.zeros(self.angle.size)
+        assert self.shifts is not None
+        assert self.shifts_after is not None
+        moved = np.abs(self.shifts_after - self.shifts)[:, : self.system.discs] ** 2
+        for disc, (at, kinds) in enumerate(zip(self.discs, self.system.of_kind, strict=True)):
+            curved = np.abs(np.concatenate((at.flank.bending, at.holes.bending), axis=1))
+            stiff = np.concatenate((self.stiffness[0][:, kinds[0]], self.stiffness[0][:, kinds[2]]), axis=1)
+            found = np.maximum(found, np.max(0.5 * stiff * curved * moved[:, disc], axis=1, initial=0.0))
+        return found
 
     def _pressing(self, disc: int) -> _Pressing:
         """What the chosen contacts of a disc press its own coordinates with, rollers where they stand (Eq. 66, 70–72)."""
