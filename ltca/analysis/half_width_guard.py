@@ -175,6 +175,8 @@ def separation_warning(
     shifts = contacts.parts[0].shifts
     try:
         found = _on_grids(drive, angle, pose, None if shifts is None else shifts[row])
+    except DriveError:  # an installation without the package of contact grids is not stopped by a warning
+        return f"contacts are wider at {at} than parabolas stand for surely (grids, which would say, are not installed)"
     except ConvergenceError:
         return f"contacts are wider at {at} than the flank goes on: the parabola of the tables does not stand for it"
     worst, name = 0.0, ""

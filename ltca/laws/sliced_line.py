@@ -366,16 +366,6 @@ class SlicedLine:
         del found["slopes"]
         return SlicedContact(**{name: values.reshape((*shape, *values.shape[1:])) for name, values in found.items()})
 
-    def is_like(self, other: SlicedLine) -> bool:
-        """Tell whether another law says the same of contacts."""
-        numbers = ("length", "contact_modulus", "slices", "sleeve", "overlap")
-        return all(getattr(self, name) == getattr(other, name) for name in numbers) and (
-            self.ends is other.ends
-            and self.free_ends == other.free_ends
-            and self.relief.ndim == 2
-            and np.array_equal(self.relief, other.relief)
-        )
-
     def _sizes(self) -> dict[str, tuple[int, ...]]:
         """Shapes of what is found of each contact."""
         n = self.slices

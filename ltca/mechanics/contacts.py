@@ -25,6 +25,7 @@ as components.
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import replace
 from functools import cached_property
 from itertools import pairwise
@@ -44,7 +45,7 @@ from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, X, Y
 from ltca.geometry.pair_motion import KnownPins, PairTilt, dot
 from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.line_contact import LineContactLaw
-from ltca.mechanics.displaced_pins import PinBlocks, PinMembers
+from ltca.mechanics.displaced_pins import PinBlocks, PinMembers, solved
 
 if TYPE_CHECKING:
     from ltca.laws.sliced_contact import SlicedContact
@@ -412,7 +413,8 @@ class Linearised:
         self.off = np.zeros(angle.size)
         self._moved_slices: dict[int, list[SlicedContact]] = {}
         self.held = before is not None
-        self.discs: list[_Disc] = self._placed(state) if before is None else before.discs
+        # Rollers are placed in them: those of another evaluation stay as they are.
+        self.discs: list[_Disc] = self._placed(state) if before is None else [copy(disc) for disc in before.discs]
         self._approach(state)
         if system.components == 1:
             self._carry_in_plane()
@@ -422,6 +424,7 @@ class Linearised:
         self.de_by_pose: FloatArray | None = None
         self.sticking: list[tuple[FloatArray, FloatArray, FloatArray]] = []
         self.rubs: list[FloatArray] = []
+        self.rubs_leaning: list[FloatArray] = []
         if system.plain:
             self._linearise_plain()
         else:
@@ -985,6 +988,7 @@ class Linearised:
 
     def _linearise_coupled(self) -> None:
         """The same where bodies, beams or a ring deform under the loads of all contacts."""
+        self._find_bodies()
         part = self._assembled()
         stiffness, bores, races = self.chosen_stiffness, self._positions(1), self._positions(3)
         whole, left = self._flexibility(part.load)
@@ -1054,7 +1058,7 @@ class Linearised:
         system_matrix = system_matrix.transpose(0, 3, 1, 2).reshape(rows, components * count, components * count)
         own = np.arange(components * count)
         system_matrix[:, own, own] += 1.0
-        found: FloatArray = np.asarray(np.linalg.solve(system_matrix, right), dtype=float)
+        found = solved(system_matrix, right)
         x = found.reshape(rows, components, count, right.shape[-1])
         kx = _pressed(stiffness, x).reshape(rows, components * count, right.shape[-1])
         back = np.concatenate((force_map.reshape(rows, each, size), flat), axis=-1)
@@ -1076,12 +1080,12 @@ class Linearised:
             diagonal[:, 1::2] += LEAST_TURNING * np.abs(diagonal[:, ::2])
         diagonal += diagonal == 0.0
         short = unbalanced.reshape(rows, rollers * components) - products[:, size:, -1]
-        solved = np.linalg.solve(block, np.concatenate((down, short[..., None]), axis=-1))
-        tangent = tangent - np.matmul(across, solved[..., :-1])
-        force = force - np.matmul(across, solved[..., -1:])[..., 0]
+        placing = solved(block, np.concatenate((down, short[..., None]), axis=-1))
+        tangent = tangent - np.matmul(across, placing[..., :-1])
+        force = force - np.matmul(across, placing[..., -1:])[..., 0]
         of_rollers = x[..., size:-1].reshape(rows, components * count, rollers * components)
-        solved = solved.reshape(rows, rollers, components, size + 1)
-        dx, dx_by_pose = self._bounded(-solved[..., -1]), -solved[..., :-1]
+        placing = placing.reshape(rows, rollers, components, size + 1)
+        dx, dx_by_pose = self._bounded(-placing[..., -1]), -placing[..., :-1]
         placed_by = np.concatenate((dx_by_pose, dx[..., None]), axis=-1)
         moved = np.matmul(of_rollers, placed_by.reshape(rows, rollers * components, size + 1))
         moved = moved.reshape(rows, components, count, size + 1)
@@ -1124,7 +1128,6 @@ class Linearised:
             members = self.members = PinMembers(self)
         entries = count + (0 if members is None else members.count)
         whole = np.zeros((rows, components, entries, components, entries))
-        self._find_bodies()
         for disc, bodies in enumerate(self.bodies):
             pins, bores, holes, races = self.at[disc]
             among = np.r_[pins, bores, holes]
@@ -1226,8 +1229,13 @@ class Linearised:
         kinds = system.of_kind[disc][0], system.of_kind[disc][2]
         load = np.concatenate([self.load[:, 0, kind] for kind in kinds], axis=1)
         stiffness = np.concatenate([self.stiffness[0][:, kind] for kind in kinds], axis=1)
+        if system.coupled and not friction.turns:
+            stiffness = self._through_bodies(disc, stiffness)
         slip, by_load, held, by_slip = friction.along(at.geometry, self.angle, at.pose, at, load, stiffness, disc)
         self.rubs.append(by_load)
+        # Moments on leans rub as loads do, those of contacts that stick by what these hold.
+        by_moment = by_load + np.divide(held, load, out=np.zeros(load.shape), where=load > 0.0)
+        self.rubs_leaning.append(by_moment)
         pins, _, holes, _ = self.local[disc]
         some = self.chosen[disc]
         for where, which in ((pins, some[0]), (holes, system.pins + some[2])):
@@ -1236,13 +1244,35 @@ class Linearised:
             if at.tilts is None:
                 continue
             motion = at.flank if where is pins else at.holes
-            along = self._thick * by * motion.along[row, which if where is pins else some[2]][..., :2]
+            along = (
+                self._thick
+                * by_moment[row, which][..., None]
+                * motion.along[row, which if where is pins else some[2]][..., :2]
+            )
             second = found[:, 1]
             second[:, where, system.one.lean_place] += along
             if where is pins and system.one.wheel_leans:
                 second[:, where, system.one.wheel_lean_place] -= along
         if by_slip is not None:
             self.sticking.append((by_slip, slip, held))
+        return found
+
+    def _through_bodies(self, disc: int, stiffness: FloatArray) -> FloatArray:
+        """Stiffnesses of wheel pins and shaft pins, shape (positions, pairs), with what the bodies yield there: diagonal of
+        K (1 + C K)⁻¹ of the chosen contacts.
+        """
+        pins, _, holes, _ = self.local[disc]
+        first = self.at[disc][0].start
+        own = self.chosen_stiffness[0][:, first : first + holes.stop]
+        matrix = self.bodies[disc][0].among * own[:, None]
+        place = np.arange(own.shape[1])
+        matrix[:, place, place] += 1.0
+        through = own * np.diagonal(
+            solved(matrix, np.broadcast_to(np.eye(own.shape[1]), matrix.shape)), axis1=1, axis2=2
+        )
+        found, some = stiffness.copy(), self.chosen[disc]
+        found[self.row, some[0]] = through[:, pins]
+        found[self.row, self.system.pins + some[2]] = through[:, holes]
         return found
 
     @property
@@ -1451,7 +1481,7 @@ class Linearised:
 
     @cached_property
     def leaves_out(self) -> NDArray[np.bool_]:
-        """Positions where a contact of coupled bodies that was left out is pressed together after all, shape (positions,)."""
+        """Positions where a contact of coupled bodies that was left out is pressed together after all."""
         found = np.zeros(self.angle.size, dtype=bool)
         if not self.system.coupled or not np.isfinite(self.margin):
             return found
@@ -1460,7 +1490,10 @@ class Linearised:
             for kind, part in enumerate(
                 np.split(yielding[0], np.cumsum((self.system.pins, self.system.rollers)), axis=1)
             ):
-                pressed = self.overlap[:, 0, kinds[kind]] - part > 0.0
+                reach = self.overlap[:, 0, kinds[kind]] - part
+                if self.system.components > 1:
+                    reach = reach + np.abs(self.overlap[:, 1, kinds[kind]])
+                pressed = reach > 0.0
                 pressed[self.row, some[kind]] = False
                 found |= pressed.any(axis=1)
         return found
@@ -1474,7 +1507,9 @@ class Linearised:
             assert pins is not None
             change = _pressed(self.chosen_stiffness, self.de_by_pose)
             each = np.moveaxis(change, -1, 0)
-            shifts = np.stack([-pins.under(self.members.forces(self.of_all(one))) for one in each], axis=-1)
+            shifts = np.stack(
+                [-pins.under(self.members.forces(self.of_all(one), changes=True)) for one in each], axis=-1
+            )
         columns: tuple[tuple[int, ...], ...] = ()
         if self.system.coupled:
             by_pose = self.of_all_rollers(self.dx_by_pose)

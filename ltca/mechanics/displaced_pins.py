@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ltca.arrays import ComplexArray, FloatArray
+from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.pair_motion import dot
 from ltca.geometry.rotation import unit
@@ -30,7 +31,7 @@ class PinMembers:
         self.at, system = weakref.proxy(at), at.system
         place, pins = system.geometries[0].placement, system.pins
         turned = unit(place.wheel_rotation(at.angle) + at.pose[:, WHEEL_ANGLE]).conjugate()[:, None]
-        self.normal, self.pressing, self.turning, self.along = [], [], [], []
+        self.normal, self.pressing, self.leaning, self.turning, self.along = [], [], [], [], []
         self._chosen()
         for disc, each in enumerate(at.discs):
             frame = np.where(np.arange(pins + system.holes) < pins, turned, 1.0)
@@ -45,18 +46,23 @@ class PinMembers:
             self.along.append(along)
             self.normal.append(normal)
             self.pressing.append(pressing)
+            self.leaning.append(normal + at.rubs_leaning[disc] * along if at.rubs else normal)
             if each.tilts is not None:
                 self.turning.append(at.half * seen(each.tilts[0].gradient, each.tilts[1].gradient))
 
-    def forces(self, load: FloatArray) -> ComplexArray:
-        """Return Lᵀ f of loads of all contacts, by row of the displacements, shape (positions, rows, pairs)."""
+    def forces(self, load: FloatArray, *, changes: bool = False) -> ComplexArray:
+        """Return Lᵀ f of loads of all contacts, by row of the displacements, shape (positions, rows, pairs), with the friction of
+        contacts that stick unless these are `changes` of loads.
+        """
         system, forces, moments = self.at.system, [], []
         for disc, kinds in enumerate(system.of_kind):
             pressed = np.concatenate((load[..., kinds[0]], load[..., kinds[2]]), axis=-1)
             force = pressed[:, 0] * self.pressing[disc]
             if self.turning:
                 force = force + pressed[:, 1] * self.turning[disc]
-                moments.append(pressed[:, 1] * self.pressing[disc])
+                moments.append(pressed[:, 1] * self.leaning[disc])
+            if self.at.sticking and not changes:
+                force = force + self.at.sticking[disc][2] * self.along[disc]
             forces.append(force)
         return np.stack(forces + moments, axis=1)
 
@@ -385,7 +391,7 @@ class PinBlocks:
             core = core + np.eye(2 * seats)
             loads = np.matmul(press.swapaxes(2, 3), self.pressed(stiffness[:, :, :seats], x[:, :seats]))
             moved = np.matmul(ring.reshape(-1, 2 * seats, 2 * seats), loads.reshape(rows, 2 * seats, -1))
-            back = np.linalg.solve(core, moved).reshape(rows, seats, 2, -1)
+            back = solved(core, moved).reshape(rows, seats, 2, -1)
             x[:, :seats] -= np.matmul(units, back)
         kx = self.pressed(stiffness, x).reshape(rows, self.pairs * self.entries, size + 1)
         flat = onto_pose.reshape(rows, self.pairs * self.entries, size).swapaxes(1, 2)
@@ -408,7 +414,7 @@ class PinBlocks:
 def _solved_each(matrix: FloatArray, right: FloatArray) -> FloatArray:
     """Columns solved block by block, shape (positions, pairs, entries, columns), by Gauss's elimination of all blocks at once.
 
-    Blocks are 1 + W K with symmetric W and K, both positive but for what loads turn: pivots are positive.
+    Blocks are 1 + W K with symmetric K and, without friction, W, both positive but for what loads turn: pivots are positive.
     """
     rows, pairs, size, _ = matrix.shape
     m = np.ascontiguousarray(matrix.reshape(rows * pairs, size, size).transpose(1, 2, 0))
@@ -422,3 +428,17 @@ def _solved_each(matrix: FloatArray, right: FloatArray) -> FloatArray:
             r[place] -= m[place, behind] * r[behind]
         r[place] /= m[place, place]
     return np.ascontiguousarray(r.transpose(2, 0, 1)).reshape(rows, pairs, size, -1)
+
+
+def solved(matrix: FloatArray, right: FloatArray) -> FloatArray:
+    """Columns solved position by position.
+
+    Raises
+    ------
+    ConvergenceError
+        When loads that turn with what they press make a system singular.
+    """
+    try:
+        return np.asarray(np.linalg.solve(matrix, right), dtype=float)
+    except np.linalg.LinAlgError:
+        raise ConvergenceError("contacts at a pose hold nothing: their linear system is singular") from None

@@ -48,7 +48,7 @@ def _of_disc(at: Linearised, disc: int) -> StoredEnergy:
     rows = at.pose.shape[0]
     every = [np.tile(np.arange(kind.stop - kind.start), (rows, 1)) for kind in kinds[:3]]
     energy, loads, matrices = found.energy, [], []
-    for component, body in enumerate(bodies.body_flexibility(at.body_places(disc), every)):
+    for component, body in enumerate(bodies.body_flexibility(at.body_places(disc), every)[: system.components]):
         load, matrix = at.corrected_load[:, component], body.among
         on_walls = np.concatenate([load[:, kind] for kind in kinds[:3]], axis=1)
         in_bores, on_races = load[:, kinds[1]], load[:, kinds[3]]

@@ -19,6 +19,7 @@ from ltca.compliance.pin_flexibility import PinDisplacements
 from ltca.drive.parts import CrankSupport, ShaftPinBeam, ShaftPinSeat, WheelPinBeam, WheelPinSeat
 from ltca.drive.pin_beams import from_start, shaft_pin_beam, wheel_pin_beam
 from ltca.drive.single_discs import single_discs
+from ltca.equilibrium.friction.sticking import StickingFriction
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.reducer import Reducer
 from ltca.equilibrium.supports import Supports
@@ -421,3 +422,26 @@ def test_extremes_between_positions_without_an_answer_cost_no_run(joint, monkeyp
     values = summarise(analyse(joint, position_angles(2)))
     assert values["refined_max_pin_load_N"] is None
     assert values["max_pin_load_N"] > 0.0
+
+
+def test_friction_of_contacts_that_stick_displaced_no_pins(joint):
+    """With the input locked, pins on beams stand where all forces on them press them, those of contacts that stick among them."""
+    drive = with_fields(
+        kind(joint, "bent wheel pins"),
+        {"friction.pin": 0.08, "friction.hole": 0.08, "friction.roller": 0.0, "friction.support_bearing": 0.0},
+    )
+    model = HalfSpace().prepare(drive).model
+    smooth = replace(model, friction=None)
+    found = solve_at_output(smooth, [drive], ANGLES, drive.load.torque)
+    state = StickingFriction.at_rest(model.friction, smooth, found)
+    rubbed = replace(model, friction=state)
+    after = solve_at_output(rubbed, [drive], ANGLES, 0.98 * drive.load.torque, found.pose).response
+    assert max(np.abs(part.friction).max() for part in after.parts) > 1.0
+    parts = after.parts
+    place = model.discs[0].geometry.placement
+    wheel = np.exp(1j * (place.wheel_rotation(ANGLES) + found.pose[:, -1]))[:, None]
+    pins = parts[0].pin_load.shape[1]
+    force = np.stack([part.pin_forces for part in parts], axis=1)
+    force[..., :pins] *= wheel.conjugate()[:, None]
+    # Forces are those of discs on pins, u = S f; the wheel has turned on by some 1e-5 since.
+    np.testing.assert_allclose(after.shifts, model.pins.under(force), rtol=0.0, atol=1e-4 * np.abs(after.shifts).max())

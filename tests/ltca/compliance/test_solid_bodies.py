@@ -460,3 +460,16 @@ def test_other_drives_balance_on_solid_bodies(kind, kinds_of_drives, monkeypatch
         np.concatenate([part.leaning_pins.contact.moment[0] for part in one.response.parts]) for one in (found, again)
     )
     assert np.max(np.abs(moments - turned)) > 1e-3 * np.max(np.abs(moments))
+
+
+def test_what_solid_bodies_store_at_one_slice_asked_for_tilts(paper_cases):
+    """In the plane solid bodies know no tilts: forces are the slopes of what is stored, 1e-4 as radii follow the pose."""
+    drive = paper_cases["CS-3"]
+    model, found = balanced(drive, CoupledCompliance.of_drive(drive, solid(drive), "half-space"))
+    ends = []
+    for side in (1.0, -1.0):
+        pose = found.pose + side * 1e-6 * np.eye(4)[0]
+        ends.append(stored_by_disc(ContactSystem(model).respond(ANGLES, pose, None, roughly=False))[0].energy[0])
+    tangent = found.response.tangent[0, 0, 0]
+    # In balance the slope is nothing of what 1 µm more presses.
+    assert abs(ends[0] - ends[1]) / 2e-6 < 1e-2 * tangent * 1e-3
