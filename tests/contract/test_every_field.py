@@ -158,7 +158,7 @@ def numbers(analysis) -> np.ndarray:
         losses = analysis.losses
         arrays += [losses.watts(losses.total), losses.input_torque, losses.efficiency]
         arrays.append(analysis.losses_back.input_torque)
-    return np.concatenate([relative(arrays), relative(loads, least=1e-3)])
+    return np.concatenate([relative(arrays), relative(loads, least=1e-2)])
 
 
 def direct(drive: Drive) -> np.ndarray:
