@@ -233,6 +233,7 @@ def test_a_ring_moves_sloping_pins_as_one_system_of_all_pins_does():
     drive = in_slices(shaft={"tip": "tied-pinned"}, wheel={"ends": "supported"}, **ring)
     model, found = balance(drive, ANGLES[:1])
     at = ContactSystem(model).respond(ANGLES[:1], found.pose, Start.after(found.response), roughly=False)
+    at._find_bodies()
     part = at._assembled()
     whole, left = at._flexibility(part.load)
     at_once = at._eliminate(part, whole, left, turning=True)
