@@ -32,18 +32,16 @@ class PinDisplacements:
     ----------
     beams : array, shape (pairs, discs, discs) or (positions, pairs, discs, discs)
         Deflection of each pin at disc d under a unit force of disc d', wheel pins before shaft pins, mm/N; zero for d = d', and
-        for pins that do not bend. Where pins lean, those of leans and moments by `half_width` follow, and d = d' is not zero.
+        for pins that do not bend. Where pins lean, those of leans and moments by half the thickness of the discs follow, and
+        d = d' is not zero.
     ring : array, shape (z_P, 2, z_P, 2) or (positions, z_P, 2, z_P, 2), or None
         Displacement (x, y) of the seats of the wheel pins in the wheel under unit forces at the seats, mm/N.
-    half_width : float or array, shape (positions, 1)
-        Half the thickness of the discs, mm.
     leans : bool
         Whether pins lean.
     """
 
     beams: FloatArray = by_drive(3)
     ring: FloatArray | None = by_drive(4, default=None)
-    half_width: float | FloatArray = by_drive(0, default=1.0)
     leans: bool = False
 
     @classmethod
@@ -55,7 +53,7 @@ class PinDisplacements:
         beams, ring = _beams(drive), ring_flexibility(drive, lender)
         if ring is None and not beams.any():
             return None
-        return cls(beams=beams, ring=ring, half_width=0.5 * drive.disc.thickness, leans=drive.contact.slices > 1)
+        return cls(beams=beams, ring=ring, leans=drive.contact.slices > 1)
 
     @property
     def discs(self) -> int:

@@ -52,7 +52,6 @@ if TYPE_CHECKING:
 
 Indices = NDArray[np.intp]
 
-KINDS = ("pins", "bores", "holes", "races")
 CANDIDATE_MARGIN = 0.25
 """Gap within which an open contact of coupled bodies may carry, by the largest overlap of its position."""
 ROUGHLY_SETTLED = 0.02
@@ -306,7 +305,7 @@ def _mixed(first: _State, second: _State, rows: NDArray[np.bool_]) -> _State:
             return mine
         if isinstance(mine, tuple):
             return tuple(of_both(*each) for each in zip(mine, other, strict=True))
-        return np.where(rows.reshape(-1, *(1,) * (mine.ndim - 1)), other, mine)
+        return _by_rows(rows, other, mine)
 
     return _State(*(of_both(*each) for each in zip(first, second, strict=True)))
 
@@ -728,11 +727,9 @@ class Linearised:
             tangent = np.matmul(back, pressed)
             if not self.by_crank:
                 tangent += self._bends(disc)
-            else:  # forces of the bearings turn with the cages, which the stiffness of rollers on turning rays counts
+            else:
                 turned = system.cage_speed * (pushes.view(complex) * -1j).view(float)
-                turned = np.matmul(turned[:, None], of_bores[..., :-1])[:, 0]
-                tangent[:, :-1, -1] -= turned
-                tangent[:, -1, :-1] -= turned
+                _turn_with_cages(tangent, turned, of_bores)
             of_rollers = slice(disc * system.rollers, (disc + 1) * system.rollers)
             followed = np.matmul(-follow.view(float).reshape(rows, cranks, -1, 2), moved).reshape(
                 rows, system.rollers, -1
@@ -817,14 +814,9 @@ class Linearised:
         inward[:, 1:] = -1.0
         placed = np.zeros((rows, slant.shape[1], components, size))
         np.multiply((bend * slant)[..., None], across, out=placed[:, :, 0])
-        if (
-            self.by_crank
-        ):  # forces of the bearings turn with the cages, which the stiffness of rollers on turning rays counts
+        if self.by_crank:
             tangent = np.zeros((rows, size, size))
-            pushed = load[:, 0, bores] * self.system.cage_speed
-            turned = np.matmul(pushed[:, None], across[..., :-1])[:, 0]
-            tangent[:, :-1, -1] -= turned
-            tangent[:, -1, :-1] -= turned
+            _turn_with_cages(tangent, load[:, 0, bores] * self.system.cage_speed, across)
         else:
             tangent = self._bends(disc) + np.matmul(across.swapaxes(1, 2), bend[..., None] * across)
         found = _Pressing(
@@ -887,17 +879,17 @@ class Linearised:
             held += _own_stiffness(part.stiffness[..., races], inward)
             held[:, :, 0, 0] += part.own_bend
             _hold_turning(held)
-            solved = _solved_blocks(held, right)
+            placing = _solved_blocks(held, right)
             back = right[..., :-1].reshape(rows, rollers * components, count).swapaxes(1, 2)
-            taken = np.matmul(back, solved.reshape(rows, rollers * components, count + 1))
+            taken = np.matmul(back, placing.reshape(rows, rollers * components, count + 1))
             held_by -= taken[..., :-1]
             if system.discs == 1:
                 force, tangent = part.force - taken[..., -1], held_by
             else:
                 force[:, own] += part.force - taken[..., -1]
                 tangent[:, own[:, None], own] += held_by
-            dx.append(-solved[..., -1])
-            by_own.append(-solved[..., :-1])
+            dx.append(-placing[..., -1])
+            by_own.append(-placing[..., :-1])
         self.dx, self.by_own = self._bounded(np.concatenate(dx, axis=1) if len(dx) > 1 else dx[0]), by_own
         self.de = np.zeros(self.load.shape)
         if on_pins is not None:
@@ -950,11 +942,8 @@ class Linearised:
             if not near.all():
                 # Far off loads may turn with soft pins more than these hold against.
                 still = blocks.eliminated(self.pressing, left, turning=False)
-                mixed = [
-                    np.where(near.reshape(-1, *(1,) * (first.ndim - 1)), first, second)
-                    for first, second in zip(found, still, strict=True)
-                ]
-                found = mixed[0], mixed[1], mixed[2], mixed[3]
+                force, tangent, de, de_by_pose = (_by_rows(near, *each) for each in zip(found, still, strict=True))
+                found = force, tangent, de, de_by_pose
         return found
 
     def _assembled(self) -> _Pressing:
@@ -987,7 +976,7 @@ class Linearised:
         )
 
     def _linearise_coupled(self) -> None:
-        """The same where bodies, beams or a ring deform under the loads of all contacts."""
+        """The same where bodies deform under the loads of all contacts, and beams and a ring with them."""
         self._find_bodies()
         part = self._assembled()
         stiffness, bores, races = self.chosen_stiffness, self._positions(1), self._positions(3)
@@ -1011,8 +1000,7 @@ class Linearised:
         if moves and not (close := self._is_near(found.de, stiffness)).all():
             # Far off loads may turn with soft pins more than these hold against.
             still = self._eliminate(part, whole, left, turning=False)
-            rows = [close.reshape(-1, *(1,) * (values.ndim - 1)) for values in found]
-            found = _Eliminated(*(np.where(*each) for each in zip(rows, found, still, strict=True)))
+            found = _Eliminated(*(_by_rows(close, *each) for each in zip(found, still, strict=True)))
         self.force, self.tangent, self.dx, self.dx_by_pose, self.de, self.de_by_pose = found
 
     def _eliminate(self, part: _Pressing, whole: FloatArray, left: FloatArray, *, turning: bool) -> _Eliminated:
@@ -1386,12 +1374,8 @@ class Linearised:
     @cached_property
     def shifts_after(self) -> ComplexArray | None:
         """Displacements of the pins after the correction: those that the loads press."""
-        return None if self.shifts is None else self._moved_shifts()
-
-    def _moved_shifts(self) -> ComplexArray:
         pins = self.system.model.pins
-        assert pins is not None
-        return np.asarray(-pins.under(self.members.forces(self.corrected_load)))
+        return None if pins is None else np.asarray(-pins.under(self.members.forces(self.corrected_load)))
 
     @cached_property
     def corrected_load(self) -> FloatArray:
@@ -1400,11 +1384,10 @@ class Linearised:
         return np.where(load[:, :1] > 0.0, load, 0.0)
 
     def corrected(self, part: FloatArray) -> Linearised:
-        """Return the contacts at the same poses with the inner unknowns corrected, of each position by a part of the way: zero
-        where they stay.
+        """Return the contacts at the same poses with the inner unknowns corrected of those positions whose part is not zero.
 
         Deformations are found for pins that stand where they stand, and gaps taken as linear in what displaces these, a convex
-        problem; then the pins are put where the loads press them, or a part of the way there.
+        problem; then the pins are put where the loads press them, or that part of the way there.
         """
         moves = part > 0.0
         at = self._stepped(moves)
@@ -1570,6 +1553,20 @@ def _beside(values: list[Any]) -> Any:
 def _by_crank(values: NDArray[Any], cranks: int) -> NDArray[Any]:
     """Sums over the rollers of every crank."""
     return np.asarray(values.reshape(values.shape[0], cranks, -1).sum(axis=2))
+
+
+def _turn_with_cages(tangent: FloatArray, forces: FloatArray, moved: FloatArray) -> None:
+    """Take from a tangent by the crank angle what forces of bearings turn with the cages, in place: the stiffness of rollers on
+    turning rays counts it.
+    """
+    turned = np.matmul(forces[:, None], moved[..., :-1])[:, 0]
+    tangent[:, :-1, -1] -= turned
+    tangent[:, -1, :-1] -= turned
+
+
+def _by_rows(rows: NDArray[np.bool_], first: NDArray[Any], second: NDArray[Any]) -> NDArray[Any]:
+    """Values of the first of some positions, of the second elsewhere."""
+    return np.where(rows.reshape(-1, *(1,) * (first.ndim - 1)), first, second)
 
 
 def with_crank(pose: FloatArray, angle: FloatArray) -> FloatArray:
