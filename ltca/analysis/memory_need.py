@@ -8,7 +8,7 @@ from pathlib import Path
 from ltca.drive.parts import Drive
 from ltca.output.resources import require_room
 
-MEMORY_PER_PAIR, SEVERAL_DISCS, DISPLACED_PINS = 1300.0, 2.0, 1.65
+MEMORY_PER_PAIR, SEVERAL_DISCS, DISPLACED_PINS = 1300.0, 2.0, 2.2
 """Memory for one pair of contacts at one position of a drive of one disc, bytes, and its factors with several discs and where
 pins are displaced, whose forces and slopes are solved together. At the most: by position and pair 0.6 kB (half-space) and 1.3 kB
 (hybrid) for the paper's drive, 1.6 and 2.6 kB for the joint, 2.3 and 4.1 kB for it on a ring, 4.3 kB with friction. Analyses of
