@@ -348,8 +348,8 @@ class _Pressing(NamedTuple):
 
 
 class _Eliminated(NamedTuple):
-    """Force and tangent of the pose with everything else eliminated, corrections of places and deformations, and how these follow
-    the pose.
+    """Force and tangent of the pose with everything else eliminated, corrections of places and deformations, how these follow the
+    pose, and what loads on displaced pins press aside of the normals as they turn, by the pose and, last, at it.
     """
 
     force: FloatArray
@@ -358,6 +358,7 @@ class _Eliminated(NamedTuple):
     dx_by_pose: FloatArray
     de: FloatArray
     de_by_pose: FloatArray
+    aside: FloatArray | None
 
 
 class Linearised:
@@ -421,6 +422,7 @@ class Linearised:
             self._carry(state, roughly)
         self._choose()
         self.de_by_pose: FloatArray | None = None
+        self.aside: FloatArray | None = None
         self.sticking: list[tuple[FloatArray, FloatArray, FloatArray]] = []
         self.rubs: list[FloatArray] = []
         self.rubs_leaning: list[FloatArray] = []
@@ -895,6 +897,7 @@ class Linearised:
         if on_pins is not None:
             self.de_by_pose = np.zeros((*self.load.shape, size))
             force, tangent = force + on_pins[0], tangent + on_pins[1]
+            self.aside = on_pins[4]
             if not self.sticking and system.model.friction is None:
                 tangent = 0.5 * (tangent + tangent.swapaxes(1, 2))
         for disc, part in enumerate(pressing):
@@ -914,7 +917,7 @@ class Linearised:
                 self.de_by_pose[:, :, kind] = on_pins[3][:, :, disc, some]
         self.force, self.tangent = force, tangent
 
-    def _on_displaced_pins(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    def _on_displaced_pins(self) -> tuple[FloatArray, ...]:
         """Force and tangent that contacts on displaced pins add, and corrections of their deformations at the pose and by it."""
         pins, shifts = self.system.model.pins, self.shifts
         assert pins is not None
@@ -942,8 +945,7 @@ class Linearised:
             if not near.all():
                 # Far off loads may turn with soft pins more than these hold against.
                 still = blocks.eliminated(self.pressing, left, turning=False)
-                force, tangent, de, de_by_pose = (_by_rows(near, *each) for each in zip(found, still, strict=True))
-                found = force, tangent, de, de_by_pose
+                return tuple(_by_rows(near, *each) for each in zip(found, still, strict=True))
         return found
 
     def _assembled(self) -> _Pressing:
@@ -1001,7 +1003,7 @@ class Linearised:
             # Far off loads may turn with soft pins more than these hold against.
             still = self._eliminate(part, whole, left, turning=False)
             found = _Eliminated(*(_by_rows(close, *each) for each in zip(found, still, strict=True)))
-        self.force, self.tangent, self.dx, self.dx_by_pose, self.de, self.de_by_pose = found
+        self.force, self.tangent, self.dx, self.dx_by_pose, self.de, self.de_by_pose, self.aside = found
 
     def _eliminate(self, part: _Pressing, whole: FloatArray, left: FloatArray, *, turning: bool) -> _Eliminated:
         """The same where loads deform more than their own contacts: force and tangent of the pose.
@@ -1018,14 +1020,13 @@ class Linearised:
             # is in the tangent already.
             bent, along, turn = self.members.turned_loads(size)
             if not turning:
-                bent[0] = 0.0 if self.held else np.maximum(bent[0], 0.0)
+                bent[0] = np.maximum(bent[0], 0.0)
                 bent[1:], turn = 0.0, turn * 0.0
             held = _pressed(bent, along)
             shape = rows, components * along.shape[2], size
             tangent = tangent - np.matmul(along.reshape(shape).swapaxes(1, 2), held.reshape(shape))
             g, force_map = np.concatenate((g, along), axis=2), np.concatenate((force_map, along), axis=2)
-            slips = self.members.slips(chosen=True) if turning else np.zeros(along.shape[:3])
-            left = np.concatenate((left, slips), axis=2)
+            left = np.concatenate((left, self.members.slips(chosen=True)), axis=2)
             turn = np.concatenate((np.zeros(part.g.shape), turn), axis=2).reshape(rows, -1, size)
             stiffness = np.concatenate((_filled(stiffness, bent.shape[0]), bent), axis=2)
         mine, count = count, g.shape[2]
@@ -1077,6 +1078,13 @@ class Linearised:
         placed_by = np.concatenate((dx_by_pose, dx[..., None]), axis=-1)
         moved = np.matmul(of_rollers, placed_by.reshape(rows, rollers * components, size + 1))
         moved = moved.reshape(rows, components, count, size + 1)
+        moved[..., :-1] += x[..., :size]
+        moved[..., -1] -= x[..., -1]
+        aside = None
+        if self.shifts is not None:
+            pressed = _pressed(stiffness[:, :, mine:], moved[:, :, mine:])
+            pressed[..., :-1] += turn.reshape(rows, components, count, size)[:, :, mine:]
+            aside = self.members.of_all(pressed)
         if not self.sticking and system.model.friction is None:
             tangent = 0.5 * (tangent + tangent.swapaxes(1, 2))
         return _Eliminated(
@@ -1084,8 +1092,9 @@ class Linearised:
             tangent=tangent,
             dx=dx,
             dx_by_pose=dx_by_pose,
-            de=(moved[..., -1] - x[..., -1])[:, :, :mine],
-            de_by_pose=(x[..., :size] + moved[..., :-1])[:, :, :mine],
+            de=moved[:, :, :mine, -1],
+            de_by_pose=moved[:, :, :mine, :-1],
+            aside=aside,
         )
 
     def _is_near(self, de: FloatArray, stiffness: FloatArray) -> NDArray[np.bool_]:
@@ -1375,7 +1384,10 @@ class Linearised:
     def shifts_after(self) -> ComplexArray | None:
         """Displacements of the pins after the correction: those that the loads press."""
         pins = self.system.model.pins
-        return None if pins is None else np.asarray(-pins.under(self.members.forces(self.corrected_load)))
+        if pins is None:
+            return None
+        aside = None if self.aside is None else self.aside[..., -1]
+        return np.asarray(-pins.under(self.members.forces(self.corrected_load, aside)))
 
     @cached_property
     def corrected_load(self) -> FloatArray:
@@ -1490,8 +1502,13 @@ class Linearised:
             assert pins is not None
             change = _pressed(self.chosen_stiffness, self.de_by_pose)
             each = np.moveaxis(change, -1, 0)
+            aside = [None] * self.size if self.aside is None else np.moveaxis(self.aside[..., :-1], -1, 0)
             shifts = np.stack(
-                [-pins.under(self.members.forces(self.of_all(one), changes=True)) for one in each], axis=-1
+                [
+                    -pins.under(self.members.forces(self.of_all(one), turned, changes=True))
+                    for one, turned in zip(each, aside, strict=True)
+                ],
+                axis=-1,
             )
         columns: tuple[tuple[int, ...], ...] = ()
         if self.system.coupled:
@@ -1564,8 +1581,10 @@ def _turn_with_cages(tangent: FloatArray, forces: FloatArray, moved: FloatArray)
     tangent[:, -1, :-1] -= turned
 
 
-def _by_rows(rows: NDArray[np.bool_], first: NDArray[Any], second: NDArray[Any]) -> NDArray[Any]:
+def _by_rows(rows: NDArray[np.bool_], first: NDArray[Any] | None, second: NDArray[Any] | None) -> Any:
     """Values of the first of some positions, of the second elsewhere."""
+    if first is None or second is None:
+        return None
     return np.where(rows.reshape(-1, *(1,) * (first.ndim - 1)), first, second)
 
 

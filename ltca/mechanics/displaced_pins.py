@@ -50,9 +50,10 @@ class PinMembers:
             if each.tilts is not None:
                 self.turning.append(at.half * seen(each.tilts[0].gradient, each.tilts[1].gradient))
 
-    def forces(self, load: FloatArray, *, changes: bool = False) -> ComplexArray:
+    def forces(self, load: FloatArray, aside: FloatArray | None = None, *, changes: bool = False) -> ComplexArray:
         """Return Lᵀ f of loads of all contacts, by row of the displacements, shape (positions, rows, pairs), with the friction of
-        contacts that stick unless these are `changes` of loads.
+        contacts that stick unless these are `changes` of loads, and what loads press `aside` of the normals as they turn, shape
+        (positions, components, discs, pairs).
         """
         system, forces, moments = self.at.system, [], []
         for disc, kinds in enumerate(system.of_kind):
@@ -60,7 +61,10 @@ class PinMembers:
             force = pressed[:, 0] * self.pressing[disc]
             if self.turning:
                 force = force + pressed[:, 1] * self.turning[disc]
-                moments.append(pressed[:, 1] * self.leaning[disc])
+                moment = pressed[:, 1] * self.leaning[disc]
+                moments.append(moment if aside is None else moment + aside[:, 1, disc] * self.along[disc])
+            if aside is not None:
+                force = force + aside[:, 0, disc] * self.along[disc]
             if self.at.sticking and not changes:
                 force = force + self.at.sticking[disc][2] * self.along[disc]
             forces.append(force)
@@ -116,6 +120,14 @@ class PinMembers:
                 discs.append(np.full(own.stop - own.start, disc))
         self.place, self.pair, self.disc = np.concatenate(places), np.concatenate(pairs, axis=1), np.concatenate(discs)
         self.count = self.place.size
+
+    def of_all(self, values: FloatArray) -> FloatArray:
+        """Values of the chosen contacts on pins, shape (positions, components, entries, columns), by disc and pair."""
+        rows, components, _, columns = values.shape
+        discs, pairs = self.at.system.discs, self.at.system.pins + self.at.system.holes
+        found = np.zeros((rows, components, discs, pairs, columns))
+        found[self.at.row, :, self.disc, self.pair] = values.swapaxes(1, 2)
+        return found
 
     def turned_loads(self, size: int) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return what loads on pins that move along their contacts resist with, the slip by the pose, and by how much loads turn
@@ -244,10 +256,10 @@ class PinBlocks:
         moved = np.moveaxis(both, 4, 1)
         return moved.reshape(moved.shape[0], self.pairs, self.entries, *moved.shape[5:])
 
-    def to_contacts(self, values: FloatArray) -> FloatArray:
-        """The contacts' part of entries, shape (positions, components, discs, pairs, …)."""
+    def to_contacts(self, values: FloatArray, *, slips: bool = False) -> FloatArray:
+        """The contacts' part of entries, or that of what slips, shape (positions, components, discs, pairs, …)."""
         shape = values.shape[0], self.pairs, 2, self.system.components, self.discs, *values.shape[3:]
-        return np.moveaxis(values.reshape(shape)[:, :, 0], 1, 3)
+        return np.moveaxis(values.reshape(shape)[:, :, int(slips)], 1, 3)
 
     def pressed(self, stiffness: FloatArray, moved: FloatArray) -> FloatArray:
         """K of columns of entries, with the stiffness by kind, shape (1 or 3, positions, pairs, 2, discs)."""
@@ -313,9 +325,9 @@ class PinBlocks:
 
     def eliminated(
         self, parts: Any, left: FloatArray, *, turning: bool
-    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """Return force and tangent that these contacts add to those of contacts at rest, and the deformations' corrections at the
-        pose and by it.
+    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Return force and tangent that these contacts add to those of contacts at rest, the deformations' corrections at the
+        pose and by it, and what loads press aside of the normals, by the pose and, last, at it.
 
         Parameters
         ----------
@@ -332,7 +344,7 @@ class PinBlocks:
         along, turn = (each.reshape(rows, components, self.discs, self.pairs, size) for each in (along, turn))
         bent = np.moveaxis(bent.reshape(bent.shape[0], rows, self.discs, self.pairs), 2, 3)
         if not turning:
-            bent[0] = 0.0 if at.held else np.maximum(bent[0], 0.0)
+            bent[0] = np.maximum(bent[0], 0.0)
             bent[1:], turn = 0.0, np.zeros(turn.shape)
 
         def whole(values: FloatArray, own: Any) -> FloatArray:
@@ -357,7 +369,7 @@ class PinBlocks:
                 np.concatenate((left[:, :, kinds[0]], left[:, :, kinds[2]]), axis=2)[..., None]
                 for kinds in system.of_kind
             ],
-            self.members.slips()[..., None] if turning else None,
+            self.members.slips()[..., None],
         )
         of_discs = [np.concatenate((at.stiffness[..., k[0]], at.stiffness[..., k[2]]), axis=-1) for k in system.of_kind]
         stiffness = np.stack((np.stack(of_discs, axis=-1), np.zeros((at.stiffness.shape[0], *bent.shape[1:]))), axis=3)
@@ -407,8 +419,10 @@ class PinBlocks:
         taken += np.matmul(turn.reshape(rows, -1, size).swapaxes(1, 2), slipped.reshape(rows, -1, size + 1))
         tangent = taken[..., :-1]
         tangent = tangent - np.matmul(turned.reshape(rows, -1, size).swapaxes(1, 2), resting)
-        found = self.to_contacts(x)
-        return -taken[..., -1], tangent, -found[..., -1], found[..., :-1]
+        found, pressed = self.to_contacts(x), kx.reshape(x.shape)
+        pressed[..., :-1] += turn
+        pressed[..., -1] *= -1.0
+        return -taken[..., -1], tangent, -found[..., -1], found[..., :-1], self.to_contacts(pressed, slips=True)
 
 
 def _solved_each(matrix: FloatArray, right: FloatArray) -> FloatArray:
