@@ -76,7 +76,7 @@ def test_paper(paper_cases):
     [
         ("paper", "CS-6", {"clearance.bearing": 2e-5}, ONE),
         ("robot-joint", "nominal", {"crank.eccentricity": 1e-5, "pin_shaft.hole_radius": 1e-5}, ONE),
-        ("rv", "nominal", {"disc.equidistant_offset": 2e-6, "crank.support.diameter": 0.003}, ONE + 0.37),
+        ("rv", "nominal", {"disc.equidistant_offset": 2e-6, "crank.support.diameter": 0.03}, ONE + 0.37),
         pytest.param(
             "sleeved",
             "nominal",
