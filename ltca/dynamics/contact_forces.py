@@ -31,7 +31,8 @@ from ltca.equilibrium.friction.slip import Slip
 from ltca.equilibrium.friction.turning import TurningFriction
 from ltca.equilibrium.reducer import Reducer
 from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION, X, Y
-from ltca.mechanics.contacts import ContactStart, ContactSystem, Linearised
+from ltca.mechanics.contacts import ContactSystem, Linearised
+from ltca.mechanics.places import ContactStart
 from ltca.mechanics.energy import stored_by_disc, stored_by_pins
 
 FADING = 1e-2

@@ -42,7 +42,7 @@ def _of_disc(at: Linearised, disc: int) -> StoredEnergy:
         near: list[Any] = [one.near for one in at.slices_after(disc)]
         sliced = list(zip(laws.laws, deformation, tilts, radii, near, strict=True))
         found = StoredEnergy.of_slices(sliced[0], sliced[1:])
-    bodies = system.bodies[disc]
+    bodies = system.model.discs[disc]
     if bodies.coefficients is None:
         return found
     rows = at.pose.shape[0]

@@ -10,7 +10,9 @@ from ltca.compliance.response import Start, bearing_pushes
 from ltca.drive.parts import PlacementErrors, ShaftPinBeam, WheelPinBeam
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.laws.sliced_spring import SlicedSpring
+from ltca.mechanics import elimination
 from ltca.mechanics.contacts import ContactSystem
+from ltca.mechanics.pressing import assembled
 from ltca.reading.drive_file import load_drive
 
 SLICES = 9
@@ -233,11 +235,11 @@ def test_a_ring_moves_sloping_pins_as_one_system_of_all_pins_does():
     drive = in_slices(shaft={"tip": "tied-pinned"}, wheel={"ends": "supported"}, **ring)
     model, found = balance(drive, ANGLES[:1])
     at = ContactSystem(model).respond(ANGLES[:1], found.pose, Start.after(found.response), roughly=False)
-    at._find_bodies()
-    part = at._assembled()
-    whole, left = at._flexibility(part.load)
-    at_once = at._eliminate(part, whole, left, turning=True)
-    for one, other in ((at.force, at_once.force), (at.tangent, at_once.tangent), (at.de_by_pose, at_once.de_by_pose)):
+    elimination._find_bodies(at)
+    part = assembled(at)
+    at_once = elimination._eliminate(at, part, *elimination._flexibility(at, part.load), turning=True)
+    for name in ("force", "tangent", "de_by_pose", "aside"):
+        one, other = (getattr(each, name) for each in (at, at_once))
         assert np.max(np.abs(other)) > 1e-3
         np.testing.assert_allclose(one, other, atol=1e-9 * np.max(np.abs(other)))
 

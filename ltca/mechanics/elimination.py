@@ -1,0 +1,435 @@
+"""Elimination of the inner unknowns from the equations of all contacts at poses: deformations, displacements of pins, and places
+of rollers.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.arrays import FloatArray
+from ltca.mechanics.displaced_pins import PinBlocks, PinMembers, solved
+from ltca.mechanics.places import Indices, by_rows
+from ltca.mechanics.pressing import Pressing, assembled, bends, bores_moved, gradient_with_crank, turn_with_cages
+
+if TYPE_CHECKING:
+    from ltca.mechanics.contacts import Linearised
+
+ROUGHLY_SETTLED = 0.02
+"""Largest correction of a deformation, by the largest approach, with which a step of the pose is judged."""
+LEAST_ROOM = 1e-7
+"""Correction of a roller that is always allowed, mm: one that is hardly pressed would go on by less for ever."""
+LEAST_TURNING = 1e-9
+"""Stiffness against leaning by that of the place and the square of half the width: what touches at one end alone turns freely."""
+
+
+class Eliminated(NamedTuple):
+    """Force and tangent of the pose with everything else eliminated, corrections of places and deformations, how these follow the
+    pose, and what loads on displaced pins press aside of the normals as they turn, by the pose and, last, at it.
+    """
+
+    force: FloatArray
+    tangent: FloatArray
+    dx: FloatArray
+    dx_by_pose: FloatArray
+    de: FloatArray
+    de_by_pose: FloatArray
+    aside: FloatArray | None
+
+
+def eliminate_rollers(at: Linearised) -> None:
+    """Force and tangent where nothing deforms but the contacts, in the plane: each roller is condensed by itself.
+
+    With the stiffnesses k of its two contacts, the cosine c between ray and normal n in the bore, and the load F there, which
+    turns by its place as s (n across the ray), a roller yields along its ray with k_i + c² k_o + F s²/l. The rollers of a
+    crank are one spring then between bore and race, Σ a n nᵀ + b t tᵀ + m (n tᵀ + t nᵀ). Equations of the paper: balance of
+    the rollers (Eq. 66) and of the disc (Eq. 70–72).
+    """
+    system, (rows, size) = at.system, (at.pose.shape[0], at.size)
+    load, stiffness = at.load[:, 0], at.stiffness[0]
+    at.force, at.tangent = np.zeros((rows, size)), np.zeros((rows, size, size))
+    at.dx, at.by_own = np.zeros((rows, system.discs * system.rollers, 1)), []
+    for disc, (places, own) in enumerate(zip(at.discs, at.columns, strict=True)):
+        pins, bores, holes, races = system.of_kind[disc]
+        n, carried, k_bore, k_race = places.outward, load[:, bores], stiffness[:, bores], stiffness[:, races]
+        held = k_bore * places.cosine
+        by_place, unbalanced = k_race + held * places.cosine, load[:, races] - places.cosine * carried
+        if not at.by_crank:
+            bend = carried / places.length
+            slanted = bend * places.slant
+            by_place = by_place + slanted * places.slant
+        by_place = np.where(by_place != 0.0, by_place, np.inf)
+        share, step = held / by_place, unbalanced / by_place
+        cranks = places.bores.arm.shape[1]
+        shape = rows, cranks, -1, 1
+        normal = n.view(float).reshape(rows, cranks, -1, 2)
+        basis, pressed = normal, (k_bore - held * share).reshape(shape) * normal
+        loads, follow = (carried + held * step).reshape(shape), share.reshape(shape) * normal
+        if not at.by_crank:
+            across, aside = (1j * n).view(float).reshape(normal.shape), slanted / by_place
+            mixed, turning = (held * aside).reshape(shape), (bend - slanted * aside).reshape(shape)
+            basis = np.concatenate((normal, across), axis=2)
+            pressed = np.concatenate((pressed - mixed * across, turning * across - mixed * normal), axis=2)
+            loads = np.concatenate((loads, (slanted * step).reshape(shape)), axis=2)
+            follow = follow + aside.reshape(shape) * across
+        moved = bores_moved(at, places)
+        springs, pushes = (np.matmul(basis.swapaxes(2, 3), each) for each in (pressed, loads))
+        gradient = gradient_with_crank(
+            at, places, np.concatenate((places.flank.gradient, places.holes.gradient), axis=1)
+        )
+        of_bores = moved.reshape(rows, 2 * cranks, -1)
+        back = np.concatenate((gradient, of_bores), axis=1).swapaxes(1, 2)
+        stiff = np.concatenate((stiffness[:, pins], stiffness[:, holes]), axis=1)[..., None]
+        pressed = np.concatenate((stiff * gradient, np.matmul(springs, moved).reshape(of_bores.shape)), axis=1)
+        pushes = -pushes.reshape(rows, -1)
+        force = np.matmul(back, np.concatenate((load[:, pins], load[:, holes], pushes), axis=1)[..., None])[..., 0]
+        tangent = np.matmul(back, pressed)
+        if not at.by_crank:
+            tangent += bends(at, disc)
+        else:
+            turned = system.cage_speed * (pushes.view(complex) * -1j).view(float)
+            turn_with_cages(tangent, turned, of_bores)
+        of_rollers = slice(disc * system.rollers, (disc + 1) * system.rollers)
+        followed = np.matmul(-follow.view(float).reshape(rows, cranks, -1, 2), moved).reshape(rows, system.rollers, -1)
+        if system.discs > 1:
+            at.force[:, own] += force
+            at.tangent[:, own[:, None], own] += tangent
+        else:
+            at.force, at.tangent = force, tangent
+        at.by_own.append(followed[:, :, None])
+        at.dx[:, of_rollers, 0] = -step
+    at.moved = np.abs(at.dx[..., 0]).max(axis=1, initial=0.0)
+
+
+def eliminate_by_disc(at: Linearised) -> None:
+    """The same where nothing deforms but the contacts: disc by disc, roller by roller."""
+    system, (rows, size) = at.system, (at.pose.shape[0], at.size)
+    force, tangent = np.zeros((rows, size)), np.zeros((rows, size, size))
+    dx, by_own = [], []
+    pressing = at.pressing
+    on_pins = None if system.model.pins is None else _on_displaced_pins(at)
+    for disc, (part, own) in enumerate(zip(pressing, at.columns, strict=True)):
+        _, bores, _, races = at.local[disc]
+        outward, inward = part.presses
+        rollers, components, count = part.placed.shape[1:]
+        pressed = loads_of(part.stiffness, part.g)
+        if on_pins is None:
+            mine = [part.force_map, pressed]
+        else:  # those of pins and holes are found together
+            mine = [np.concatenate((each[:, :, bores], each[:, :, races]), axis=2) for each in (part.g, pressed)]
+        flat, along = (each.reshape(rows, -1, count) for each in mine)
+        held_by = part.tangent + np.matmul(flat.swapaxes(1, 2), along)
+        pushed = outward[..., None] * pressed[:, :, bores] + inward[..., None] * pressed[:, :, races]
+        right = np.empty((rows, rollers, components, count + 1))
+        np.add(part.placed, pushed.swapaxes(1, 2), out=right[..., :-1])
+        right[..., -1] = part.unbalanced
+        held = _own_stiffness(part.stiffness[..., bores], outward)
+        held += _own_stiffness(part.stiffness[..., races], inward)
+        held[:, :, 0, 0] += part.own_bend
+        _hold_turning(held)
+        placing = _solved_blocks(held, right)
+        back = right[..., :-1].reshape(rows, rollers * components, count).swapaxes(1, 2)
+        taken = np.matmul(back, placing.reshape(rows, rollers * components, count + 1))
+        held_by -= taken[..., :-1]
+        if system.discs == 1:
+            force, tangent = part.force - taken[..., -1], held_by
+        else:
+            force[:, own] += part.force - taken[..., -1]
+            tangent[:, own[:, None], own] += held_by
+        dx.append(-placing[..., -1])
+        by_own.append(-placing[..., :-1])
+    at.dx, at.by_own = _bounded(at, np.concatenate(dx, axis=1) if len(dx) > 1 else dx[0]), by_own
+    at.de = np.zeros(at.load.shape)
+    if on_pins is not None:
+        at.de_by_pose = np.zeros((*at.load.shape, size))
+        force, tangent = force + on_pins[0], tangent + on_pins[1]
+        at.aside = on_pins[4]
+        if not at.sticking and system.model.friction is None:
+            tangent = 0.5 * (tangent + tangent.swapaxes(1, 2))
+    for disc, part in enumerate(pressing):
+        pins, bores, holes, races = system.of_kind[disc]
+        outward, inward = part.presses
+        moved = at.dx[:, at.of_rollers[disc]].swapaxes(1, 2)
+        at.de[:, :, bores], at.de[:, :, races] = outward * moved, inward * moved
+        if on_pins is None or at.de_by_pose is None:
+            continue
+        own = at.columns[disc]
+        _, at_bores, _, at_races = at.local[disc]
+        by_place = by_own[disc].swapaxes(1, 2)
+        for kind, local, press in ((bores, at_bores, outward), (races, at_races, inward)):
+            at.de_by_pose[:, :, kind, own] = part.g[:, :, local] + press[..., None] * by_place
+        for kind, some in ((pins, slice(0, system.pins)), (holes, slice(system.pins, None))):
+            at.de[:, :, kind] = on_pins[2][:, :, disc, some]
+            at.de_by_pose[:, :, kind] = on_pins[3][:, :, disc, some]
+    at.force, at.tangent = force, tangent
+
+
+def _on_displaced_pins(at: Linearised) -> tuple[FloatArray, ...]:
+    """Force and tangent that contacts on displaced pins add, and corrections of their deformations at the pose and by it."""
+    pins, shifts = at.system.model.pins, at.shifts
+    assert pins is not None
+    assert shifts is not None
+    members = at.members = PinMembers(at)
+    left = at.deformation - at.overlap
+    left += members.approaches(members.unsettled(shifts))
+    at.off_by = left
+    wanted = np.abs(left).sum(axis=1)
+    matters = (at.stiffness[0] > 0.0) | (at.deformation[:, 0] - left[:, 0] > 0.0)
+    at.off = np.max(wanted * matters, axis=1, initial=0.0)
+    for disc, part in enumerate(at.pressing):
+        _, bores, _, races = at.local[disc]
+        stiff = part.stiffness[0][:, bores] + part.stiffness[0][:, races]
+        apart = np.abs(part.unbalanced).sum(axis=-1) / np.where(stiff > 0.0, stiff, np.inf)
+        at.off = np.maximum(at.off, np.max(apart, axis=1, initial=0.0))
+    blocks, moves = PinBlocks(members), not at.held
+    found = blocks.eliminated(at.pressing, left, turning=moves)
+    if moves:
+        change = np.zeros(at.load.shape)
+        for disc, kinds in enumerate(at.system.of_kind):
+            change[:, :, kinds[0]] = found[2][:, :, disc, : at.system.pins]
+            change[:, :, kinds[2]] = found[2][:, :, disc, at.system.pins :]
+        near = _is_near(at, change, at.stiffness)
+        if not near.all():
+            # Far off loads may turn with soft pins more than these hold against.
+            still = blocks.eliminated(at.pressing, left, turning=False)
+            return tuple(by_rows(near, *each) for each in zip(found, still, strict=True))
+    return found
+
+
+def eliminate_coupled(at: Linearised) -> None:
+    """The same where bodies deform under the loads of all contacts, and beams and a ring with them."""
+    _find_bodies(at)
+    part = assembled(at)
+    stiffness, bores, races = at.chosen_stiffness, _positions(at, 1), _positions(at, 3)
+    whole, left = _flexibility(at, part.load)
+    at.off_by = at.of_all(left)
+    wanted = np.abs(left).sum(axis=1)
+    expected = at.of_chosen(at.deformation)[:, 0] - left[:, 0]
+    stiff = stiffness[0][:, bores] + stiffness[0][:, races]
+    # An open roller stands in the middle of its play.
+    free, middle = stiff <= 0.0, 0.5 * (expected[:, bores] + expected[:, races])
+    both = 0.5 * np.abs(left[:, 0, bores] + left[:, 0, races])
+    for places in (bores, races):
+        expected[:, places] = np.where(free, middle, expected[:, places])
+        wanted[:, places] = np.where(free, both, wanted[:, places])
+    matters = (stiffness[0] > 0.0) | (expected > 0.0)
+    at.off = np.max(wanted * matters, axis=1, initial=0.0)
+    apart = np.abs(part.unbalanced).sum(axis=-1) / np.where(stiff > 0.0, stiff, np.inf)
+    at.off = np.maximum(at.off, np.max(apart, axis=1, initial=0.0))
+    moves = at.shifts is not None and not at.held
+    found = _eliminate(at, part, whole, left, turning=moves)
+    if moves and not (close := _is_near(at, found.de, stiffness)).all():
+        # Far off loads may turn with soft pins more than these hold against.
+        still = _eliminate(at, part, whole, left, turning=False)
+        found = Eliminated(*(by_rows(close, *each) for each in zip(found, still, strict=True)))
+    at.force, at.tangent, at.dx, at.dx_by_pose, at.de, at.de_by_pose, at.aside = found
+
+
+def _eliminate(at: Linearised, part: Pressing, whole: FloatArray, left: FloatArray, *, turning: bool) -> Eliminated:
+    """The same where loads deform more than their own contacts: force and tangent of the pose.
+
+    Without `turning` loads that turn with displaced pins count where they hold these back alone.
+    """
+    system, g, force_map, stiffness = at.system, part.g, part.force_map, part.stiffness
+    presses, unbalanced, placed, own_bend = part.presses, part.unbalanced, part.placed, part.own_bend
+    force, tangent = part.force, part.tangent
+    rows, components, count, size = g.shape
+    rollers = unbalanced.shape[1]
+    if at.shifts is not None:
+        # Loads turn with displaced pins: as if contacts lay along their tangents, without loads. What they turn with the pose
+        # is in the tangent already.
+        bent, along, turn = at.members.turned_loads(size)
+        if not turning:
+            bent[0] = np.maximum(bent[0], 0.0)
+            bent[1:], turn = 0.0, turn * 0.0
+        held = loads_of(bent, along)
+        shape = rows, components * along.shape[2], size
+        tangent = tangent - np.matmul(along.reshape(shape).swapaxes(1, 2), held.reshape(shape))
+        g, force_map = np.concatenate((g, along), axis=2), np.concatenate((force_map, along), axis=2)
+        left = np.concatenate((left, at.members.slips(chosen=True)), axis=2)
+        turn = np.concatenate((np.zeros(part.g.shape), turn), axis=2).reshape(rows, -1, size)
+        stiffness = np.concatenate((_filled(stiffness, bent.shape[0]), bent), axis=2)
+    mine, count = count, g.shape[2]
+    each = components * count
+    t = np.zeros((rows, components, count, rollers, components))
+    own = np.arange(rollers)
+    for press, places in zip(presses, (_positions(at, 1), _positions(at, 3)), strict=True):
+        for component in range(components):
+            t[:, component, places, own, component] = press[:, component]
+    flat = t.reshape(rows, components * count, rollers * components)
+    moved_by = g.reshape(rows, each, size)
+    if at.shifts is not None:
+        moved_by = moved_by - np.matmul(whole.reshape(rows, each, each), turn)
+    right = np.concatenate((moved_by, flat, left.reshape(rows, each, 1)), axis=-1)
+    system_matrix = loads_of(
+        stiffness, whole.reshape(rows, components * count, components, count).transpose(0, 2, 3, 1)
+    )
+    system_matrix = system_matrix.transpose(0, 3, 1, 2).reshape(rows, components * count, components * count)
+    own = np.arange(components * count)
+    system_matrix[:, own, own] += 1.0
+    found = solved(system_matrix, right)
+    x = found.reshape(rows, components, count, right.shape[-1])
+    kx = loads_of(stiffness, x).reshape(rows, components * count, right.shape[-1])
+    back = np.concatenate((force_map.reshape(rows, each, size), flat), axis=-1)
+    products = np.matmul(back.swapaxes(1, 2), kx)
+    if at.shifts is not None:
+        # What turns with the pose: what is taken of it by pins and by the places of rollers.
+        slipped = found.copy()
+        slipped[..., :size] -= g.reshape(rows, each, size)
+        products[:, :size] += np.matmul(turn.swapaxes(1, 2), slipped)
+    tangent = tangent + products[:, :size, :size]
+    force = force - products[:, :size, -1]
+    block = products[:, size:, size:-1].copy()
+    first = np.arange(rollers) * components
+    block[:, first, first] += own_bend
+    flat_placed = placed.reshape(rows, rollers * components, size)
+    down, across = products[:, size:, :size] + flat_placed, products[:, :size, size:-1] + flat_placed.swapaxes(1, 2)
+    diagonal = np.einsum("bii->bi", block)
+    if components > 1:
+        diagonal[:, 1::2] += LEAST_TURNING * np.abs(diagonal[:, ::2])
+    diagonal += diagonal == 0.0
+    short = unbalanced.reshape(rows, rollers * components) - products[:, size:, -1]
+    placing = solved(block, np.concatenate((down, short[..., None]), axis=-1))
+    tangent = tangent - np.matmul(across, placing[..., :-1])
+    force = force - np.matmul(across, placing[..., -1:])[..., 0]
+    of_rollers = x[..., size:-1].reshape(rows, components * count, rollers * components)
+    placing = placing.reshape(rows, rollers, components, size + 1)
+    dx, dx_by_pose = _bounded(at, -placing[..., -1]), -placing[..., :-1]
+    placed_by = np.concatenate((dx_by_pose, dx[..., None]), axis=-1)
+    moved = np.matmul(of_rollers, placed_by.reshape(rows, rollers * components, size + 1))
+    moved = moved.reshape(rows, components, count, size + 1)
+    moved[..., :-1] += x[..., :size]
+    moved[..., -1] -= x[..., -1]
+    aside = None
+    if at.shifts is not None:
+        pressed = loads_of(stiffness[:, :, mine:], moved[:, :, mine:])
+        pressed[..., :-1] += turn.reshape(rows, components, count, size)[:, :, mine:]
+        aside = at.members.of_all(pressed)
+    if not at.sticking and system.model.friction is None:
+        tangent = 0.5 * (tangent + tangent.swapaxes(1, 2))
+    return Eliminated(
+        force=force,
+        tangent=tangent,
+        dx=dx,
+        dx_by_pose=dx_by_pose,
+        de=moved[:, :, :mine, -1],
+        de_by_pose=moved[:, :, :mine, :-1],
+        aside=aside,
+    )
+
+
+def _is_near(at: Linearised, de: FloatArray, stiffness: FloatArray) -> NDArray[np.bool_]:
+    """Positions where corrections of deformations are so small that loads follow them linearly."""
+    moved = np.max(np.where(stiffness[0] > 0.0, np.abs(de).sum(axis=1), 0.0), axis=1, initial=0.0)
+    return at._are_small(moved, ROUGHLY_SETTLED)
+
+
+def _bounded(at: Linearised, dx: FloatArray) -> FloatArray:
+    """Corrections of places and leans that go no farther than half of what is pressed together: beyond, other slices meet
+    than the slopes know of.
+    """
+    if at.system.components == 1:
+        return dx
+    each = [0.5 * (places.room + at.half * np.abs(places.at_race - places.at_bore)) for places in at.discs]
+    room = np.concatenate([at.picked(one, own[1]) for one, own in zip(each, at.chosen, strict=True)], axis=1)
+    room = np.maximum(room, LEAST_ROOM)
+    long = np.abs(dx).max(axis=-1)
+    return np.asarray(dx * np.divide(room, long, out=np.ones(long.shape), where=long > room)[..., None])
+
+
+def _flexibility(at: Linearised, load: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """W among the chosen contacts, shape (positions, components, chosen, components, chosen), and what is left of their
+    deformations, r.
+    """
+    system = at.system
+    rows, components, count = load.shape
+    members = None
+    if at.shifts is not None:
+        members = at.members = PinMembers(at)
+    entries = count + (0 if members is None else members.count)
+    whole = np.zeros((rows, components, entries, components, entries))
+    for disc, bodies in enumerate(at.bodies):
+        pins, bores, holes, races = at.at[disc]
+        among = np.r_[pins, bores, holes]
+        first, second = np.arange(bores.start, bores.stop), np.arange(races.start, races.stop)
+        for component, body in enumerate(bodies):
+            mine = whole[:, component, :, component]
+            mine[:, among[:, None], among] = body.among
+            mine[:, races, races] = body.on_race
+            mine[:, first, second] = mine[:, second, first] = body.across_roller
+    left = at.of_chosen(at.deformation - at.overlap)
+    if system.coupled:
+        left += np.einsum("bcicj,bcj->bci", whole[:, :, :count, :, :count], load)
+    if members is not None and at.shifts is not None and system.model.pins is not None:
+        left += members.approaches(members.unsettled(at.shifts))
+        members.add_flexibility(whole)
+    return whole, left
+
+
+def _find_bodies(at: Linearised) -> None:
+    """Find what bodies yield between the chosen contacts: what was found before, where neither places nor choice changed."""
+    before = at.before
+    if before is not None and all(
+        first is second or np.array_equal(first, second)
+        for mine, theirs in zip(at.chosen, before.chosen, strict=True)
+        for first, second in zip(mine, theirs, strict=True)
+    ):
+        at.bodies = before.bodies
+        return
+    at.bodies = [
+        []
+        if model.coefficients is None
+        else model.body_flexibility(at.body_places(disc), at.chosen[disc][:3])[: at.system.components]
+        for disc, model in enumerate(at.system.model.discs)
+    ]
+
+
+def _positions(at: Linearised, number: int) -> Indices:
+    """Where the contacts of a kind stand among the chosen."""
+    return np.concatenate([np.arange(own[number].start, own[number].stop) for own in at.at])
+
+
+def loads_of(stiffness: FloatArray, moved: FloatArray) -> FloatArray:
+    """K of columns of deformations, shape (positions, components, contacts, columns)."""
+    if stiffness.shape[0] == 1:
+        return np.asarray(stiffness[0][:, None, :, None] * moved)
+    k, mixed, turning = (each[..., None] for each in stiffness)
+    first, second = moved[:, 0], moved[:, 1]
+    return np.stack((k * first + mixed * second, mixed * first + turning * second), axis=1)
+
+
+def _filled(stiffness: FloatArray, count: int) -> FloatArray:
+    """Stiffnesses with zeros for the parts that they do not have."""
+    if stiffness.shape[0] == count:
+        return stiffness
+    return np.concatenate((stiffness, np.zeros((count - stiffness.shape[0], *stiffness.shape[1:]))))
+
+
+def _own_stiffness(stiffness: FloatArray, press: FloatArray) -> FloatArray:
+    """Stiffness of contacts against the place and lean of their rollers, shape (positions, rollers, components, components)."""
+    if stiffness.shape[0] == 1:
+        return np.asarray((stiffness[0] * press[:, 0] ** 2)[..., None, None])
+    k, mixed, turning = stiffness
+    first, second = press[:, 0], press[:, 1]
+    cross = first * mixed * second
+    return np.stack((np.stack((k * first**2, cross), -1), np.stack((cross, turning * second**2), -1)), -2)
+
+
+def _hold_turning(blocks: FloatArray) -> None:
+    """Let rollers that touch at one end alone turn about it against a little, in place."""
+    if blocks.shape[-1] > 1:
+        blocks[..., 1, 1] += LEAST_TURNING * blocks[..., 0, 0]
+
+
+def _solved_blocks(blocks: FloatArray, right: FloatArray) -> FloatArray:
+    """Columns solved roller by roller; what nothing holds stays where it is."""
+    if blocks.shape[-1] == 1:
+        held = blocks[..., 0, 0]
+        return right / np.where(held != 0.0, held, np.inf)[..., None, None]
+    determinant = blocks[..., 0, 0] * blocks[..., 1, 1] - blocks[..., 0, 1] ** 2
+    inverse = 1.0 / np.where(determinant > 0.0, determinant, np.inf)
+    first, second = right[..., 0, :], right[..., 1, :]
+    a, b, c = (blocks[..., i, j][..., None] for i, j in ((0, 0), (0, 1), (1, 1)))
+    return np.stack((c * first - b * second, a * second - b * first), axis=-2) * inverse[..., None, None]

@@ -1,0 +1,164 @@
+"""Places of the contacts of discs at poses, and the inner unknowns of the one system of all contacts."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.arrays import ComplexArray, FloatArray
+from ltca.compliance.inner_unknowns import Following, Inner
+from ltca.geometry.coordinates import WHEEL_ANGLE, X, Y
+from ltca.geometry.pair_motion import KnownPins, PairTilt, dot
+from ltca.geometry.pairs import ContactGeometry
+
+Indices = NDArray[np.intp]
+
+
+class DiscPlaces:
+    """Places of the contacts of one disc at poses."""
+
+    def __init__(
+        self,
+        geometry: ContactGeometry,
+        angle: FloatArray,
+        pose: FloatArray,
+        parameter: FloatArray | None,
+        known: KnownPins | None,
+        shifts: ComplexArray | None,
+        leans: ComplexArray | None,
+    ) -> None:
+        self.geometry, self.angle, self.pose, self.shifts, self.leans = geometry, angle, pose, shifts, leans
+        pins = geometry.placement.wheel_pin_radii.shape[-1]
+        on_pins, on_holes = (None, None) if shifts is None else (shifts[:, :pins], shifts[:, pins:])
+        at = geometry.disc_place(angle, pose)
+        self.races = at.races
+        self.flank = geometry.flank(angle, pose, parameter, on_pins, known, at)
+        self.holes = geometry.holes(angle, pose, on_holes, at)
+        self.bores, self.rays = geometry.bores(angle, pose, at), geometry.rollers(angle)
+        self.rollers = self.rays.direction.shape[1]
+        self.displacement = self.bores.each(self.bores.displacement, self.rollers)
+        # Along and across the rays.
+        self.displaced = self.rays.direction.conjugate() * self.displacement
+        self.total = self.rays.outermost - self.rays.touching(self.displaced)
+        self.tilts: tuple[PairTilt, PairTilt] | None = None
+        if geometry.coordinates_of(pose).leans:
+            lean_pins, lean_holes = (None, None) if leans is None else (leans[:, :pins], leans[:, pins:])
+            self.tilts = (
+                geometry.flank_tilt(angle, pose, self.flank, lean_pins),
+                geometry.hole_tilt(pose, self.holes, lean_holes),
+            )
+            journals = self.bores.each(geometry.journal_leans(pose), self.rollers)
+            self.at_race, self.at_bore = (dot(self.rays.direction, lean) for lean in (journals, geometry.lean(pose)))
+
+    @property
+    def room(self) -> FloatArray:
+        """How far rollers are pressed together, or stand apart, where bore and race do not tilt against each other, mm."""
+        return np.abs(self.total)
+
+    @cached_property
+    def nominal(self) -> FloatArray:
+        """Nominal motion of disc and wheel by the crank angle, mm and rad, shape (positions, coordinates, 1)."""
+        place, found = self.geometry.placement, np.zeros((*self.pose.shape, 1))
+        velocity = self.races.velocity
+        found[:, X, 0], found[:, Y, 0], found[:, WHEEL_ANGLE, 0] = (
+            velocity.real,
+            velocity.imag,
+            1.0 / place.reduction_ratio,
+        )
+        return found
+
+    @cached_property
+    def seen_from_cages(self) -> FloatArray:
+        """Motion of the bores against the cages by the crank angle, x and y, mm/rad, shape (positions, cranks, 2)."""
+        place, bores = self.geometry.placement, self.bores
+        seen = self.races.velocity[:, None] - 1j * (bores.lever + place.cage_speed * bores.displacement)
+        return np.asarray(seen.view(float).reshape(*seen.shape, 2))
+
+    def place_rollers(self, inward: FloatArray) -> None:
+        """Put the rollers inward of where they only touch the race, mm (Eq. 52, 57, 69)."""
+        rays = self.rays
+        place = rays.outermost - inward
+        arm = place - self.displaced
+        self.length = np.abs(arm)
+        turn = arm / self.length
+        self.outward, self.cosine, self.slant = turn * rays.direction, turn.real, -turn.imag
+        # |s n − d| less the bore play as a product: no cancellation for rollers that barely touch.
+        beyond = place + (rays.outermost - self.total) - 2.0 * self.displaced.real
+        self.inward, self.outer = inward, (self.total - inward) * beyond / (self.length + rays.bore_play)
+
+
+class State(NamedTuple):
+    """Inner unknowns at poses: contact parameters, places and leans of rollers, deformations, displacements of pins, and what
+    laws start from.
+    """
+
+    parameter: FloatArray | None
+    place: FloatArray
+    share: FloatArray
+    lean: FloatArray
+    approach: FloatArray | None
+    shifts: ComplexArray | None
+    near: tuple[FloatArray, ...]
+
+
+class ContactStart(NamedTuple):
+    """Inner unknowns of a neighbouring position, to start from."""
+
+    parameter: FloatArray
+    share: FloatArray
+    known: KnownPins
+    follow: Following
+    inner: Inner
+
+
+def mixed(first: State, second: State, rows: NDArray[np.bool_]) -> State:
+    """Inner unknowns of the first but for some positions, which have those of the second."""
+
+    def of_both(mine: Any, other: Any) -> Any:
+        if mine is None or other is None:
+            return mine
+        if isinstance(mine, tuple):
+            return tuple(of_both(*each) for each in zip(mine, other, strict=True))
+        return by_rows(rows, other, mine)
+
+    return State(*(of_both(*each) for each in zip(first, second, strict=True)))
+
+
+def by_rows(rows: NDArray[np.bool_], first: NDArray[Any] | None, second: NDArray[Any] | None) -> Any:
+    """Values of the first of some positions, of the second elsewhere."""
+    if first is None or second is None:
+        return None
+    return np.where(rows.reshape(-1, *(1,) * (first.ndim - 1)), first, second)
+
+
+def beside(values: list[Any]) -> Any:
+    """Arrays of discs side by side: itself where there is one."""
+    return values[0] if len(values) == 1 else np.concatenate(values, axis=1)
+
+
+def with_crank(pose: FloatArray, angle: FloatArray) -> FloatArray:
+    """Return poses with the crank angle as one more coordinate behind them."""
+    return np.concatenate((pose, angle[:, None]), axis=1)
+
+
+def places_of(chosen: list[list[Indices]]) -> tuple[list[list[slice]], list[slice], list[list[slice]]]:
+    """Return where chosen contacts of each disc and kind stand among all chosen, the rollers of each disc among these, and the
+    contacts of each kind among those of their disc.
+    """
+    ends = np.cumsum([0, *(some.shape[1] for own in chosen for some in own)])
+    at = [[slice(ends[4 * disc + kind], ends[4 * disc + kind + 1]) for kind in range(4)] for disc in range(len(chosen))]
+    ends = np.cumsum([0, *(own[1].shape[1] for own in chosen)])
+    local = [[slice(kind.start - own[0].start, kind.stop - own[0].start) for kind in own] for own in at]
+    return at, [slice(first, last) for first, last in pairwise(ends)], local
+
+
+def padded(mask: NDArray[np.bool_]) -> Indices:
+    """Numbers of what is chosen in each row, ascending, padded to the fullest row with others."""
+    count = int(np.max(np.count_nonzero(mask, axis=1), initial=0))
+    if count == mask.shape[1]:
+        return np.broadcast_to(np.arange(count), mask.shape)
+    return np.sort(np.argsort(~mask, axis=1, kind="stable")[:, :count], axis=1)
