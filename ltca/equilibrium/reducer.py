@@ -237,9 +237,10 @@ class Reducer:
 
         `everything` takes all contacts of coupled bodies as candidates to carry (`Evaluation.overlooks`).
         """
-        rows = crank_angle.size
-        if rows > POSITIONS_AT_ONCE:
-            blocks = np.array_split(np.arange(rows), -(-rows // POSITIONS_AT_ONCE))
+        rows, system = crank_angle.size, ContactSystem(self)
+        most = min(POSITIONS_AT_ONCE, system.positions_at_once)
+        if rows > most:
+            blocks = np.array_split(np.arange(rows), -(-rows // most))
             each = [
                 self.take(some).evaluate(
                     *take_positions((crank_angle, pose, start), some), roughly=roughly, everything=everything
@@ -247,7 +248,7 @@ class Reducer:
                 for some in blocks
             ]
             return join_positions(each)
-        at = ContactSystem(self).respond(crank_angle, pose, start, roughly=roughly, everything=everything)
+        at = system.respond(crank_angle, pose, start, roughly=roughly, everything=everything)
         force, tangent = at.force.copy(), at.tangent.copy()
         found = _Evaluated(self, at)
         if self.friction is not None:

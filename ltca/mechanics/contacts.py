@@ -68,6 +68,8 @@ from ltca.mechanics.pressing import Pressing, pressing_of
 if TYPE_CHECKING:
     from ltca.laws.sliced_contact import SlicedContact
 
+WORKING_MEMORY = 1e8
+"""Memory for the largest array of a block of positions, bytes: the linear system of coupled contacts, of which a few are held."""
 CANDIDATE_MARGIN = 0.25
 """Gap within which an open contact of coupled bodies may carry, by the largest overlap of its position."""
 SETTLED = 1e-7
@@ -124,6 +126,14 @@ class ContactSystem:
     def half(self) -> FloatArray:
         """Half the thickness of the discs, by which tilts are measured, mm, shape (…,) of one number or (positions, 1)."""
         return np.asarray(self.geometries[0].half_width, dtype=float)
+
+    @property
+    def positions_at_once(self) -> int:
+        """Number of positions whose largest array takes `WORKING_MEMORY`."""
+        entries = self.components * self.contacts
+        if self.model.pins is not None:
+            entries += self.components * self.discs * (self.pins + self.holes)
+        return max(1, int(WORKING_MEMORY / (8.0 * entries * (entries if self.coupled else self.coordinates.size))))
 
     @cached_property
     def every_contact(self) -> tuple[list[list[Indices]], list[list[slice]], list[slice], list[list[slice]]]:
