@@ -15,6 +15,8 @@ from ltca.equilibrium import reducer
 from ltca.equilibrium.balance import lever_arms
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.reducer import Reducer
+from ltca.mechanics.contacts import ContactSystem
+from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
 from ltca.testing.closed_form_bodies import closed_form_coefficients
 
@@ -104,3 +106,39 @@ def test_the_tangent_of_the_search_is_near_that_of_the_force(name, tmp_path):
     largest = np.max(np.abs(tangent))
     np.testing.assert_allclose(tangent, tangent.T, rtol=0.0, atol=1e-12 * largest)
     np.testing.assert_allclose(tangent, numeric, rtol=0.0, atol=2e-3 * largest)
+
+
+SOFT = {
+    "ring": {
+        "inner_radius": 60.0,
+        "outer_radius": 66.0,
+        "width": 10.0,
+        "material": {"youngs_modulus": 2600.0, "poisson_ratio": 0.38},
+    },
+    "load.torque": 2e4,
+    "load.light_torque": 600.0,
+}
+"""A plastic ring 6 mm high: 0.1 mm/N, on which loads of 100 N turn with their pins by more than the ring holds against."""
+
+
+@pytest.mark.parametrize("bodies", ["half-space", "hybrid"])
+def test_pins_go_where_the_turned_loads_press_them(bodies, tmp_path):
+    """Put aside by 2 or 1 µm, pins come back to the square of that; they were put where loads pressed them before they turned,
+    and a soft ring was refused.
+    """
+    drive = with_fields(load_drive("robot-joint").cases["nominal"], SOFT)
+    model = HalfSpace().prepare(drive).model
+    balanced = solve_at_output(model, [drive], np.array([1.2]), drive.load.torque)
+    if bodies == "hybrid":
+        model = on_bodies(drive, tmp_path, "half-space")
+    system = ContactSystem(model)
+    at = system.respond(balanced.crank_angle, balanced.pose, Start.after(balanced.response), roughly=False)
+    for _ in range(5):
+        at = at.corrected(np.ones(1))
+    random = np.random.default_rng(1).normal(size=(2, *at.shifts.shape))
+    aside, off = random[0] + 1j * random[1], []
+    for size in (2e-3, 1e-3):
+        state = at.here._replace(shifts=at.shifts + size * aside)
+        off.append(np.max(np.abs(at.again(state).shifts_after - at.shifts)))
+    assert off[0] == pytest.approx(4.0 * off[1], rel=0.3)
+    assert off[1] < 1e-3
