@@ -24,6 +24,7 @@ from ltca.arrays import (
     has_rows,
     join_positions,
     map_arrays,
+    put_positions,
     take_positions,
     take_rows,
 )
@@ -248,7 +249,15 @@ class Reducer:
                 for some in blocks
             ]
             return join_positions(each)
-        at = system.respond(crank_angle, pose, start, roughly=roughly, everything=everything)
+        (_, first), *others = system.in_groups(crank_angle, pose, start, roughly=roughly, everything=everything)
+        found = self._evaluated(first)
+        for some, at in others:
+            found = put_positions(found, some, self.take(some)._evaluated(at))
+        return found
+
+    def _evaluated(self, at: Linearised) -> Evaluation:
+        """What a search asks for of contacts at poses, with supports, friction of bearings and forces from outside."""
+        pose, rows = at.pose, at.angle.size
         force, tangent = at.force.copy(), at.tangent.copy()
         found = _Evaluated(self, at)
         if self.friction is not None:
@@ -257,7 +266,7 @@ class Reducer:
                 push = np.abs(bearing_pushes(part.rollers, geometry.placement.cranks))
                 force[:, own] += self.friction.of_bearings(geometry, pose[:, own], push)
         needs_parts = self.friction is not None or (self.stage is not None and self._teeth_press)
-        stiffness = self._hold(crank_angle, pose, found.parts if needs_parts else (), force, tangent)
+        stiffness = self._hold(at.angle, pose, found.parts if needs_parts else (), force, tangent)
         return Evaluation(
             force=force,
             tangent=tangent,

@@ -34,7 +34,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.arrays import ComplexArray, FloatArray
+from ltca.arrays import ComplexArray, FloatArray, take_positions
 from ltca.compliance import sliced
 from ltca.compliance.contact_laws import ContactLaws
 from ltca.compliance.coupled import BodyFlexibility
@@ -77,6 +77,8 @@ SETTLED = 1e-7
 SETTLED_IN_MOTION = 1e-5
 """The same of a run in time, whose step leaves a hundred times as much as the 1e-11 of loads that these leave."""
 MAX_CORRECTIONS = 60
+TOGETHER = 4
+"""Positions that are corrected together though most of them have settled."""
 MAX_HALVINGS = 12
 STEEPEST = 0.3
 """Largest slope of the energy at the end of a correction by that at its start."""
@@ -158,37 +160,74 @@ class ContactSystem:
         `Linearised.leaves_out` tells where one of them is pressed after all, which is looked at here unless `roughly`. With
         `by_crank` the crank angle is a coordinate behind the pose.
         """
+        groups = self.in_groups(
+            angle, pose, start, roughly=roughly, everything=everything, by_crank=by_crank, apart=False
+        )
+        return groups[0][1]
+
+    def in_groups(
+        self,
+        angle: FloatArray,
+        pose: FloatArray,
+        start: Start | ContactStart | None,
+        *,
+        roughly: bool,
+        everything: bool = False,
+        by_crank: bool = False,
+        apart: bool = True,
+    ) -> list[tuple[Indices, Linearised]]:
+        """Return the same in groups, positions whose inner unknowns take longer to settle `apart` behind the others.
+
+        The first group has all positions; those of each further one stand in place of what the groups before have of them.
+        """
         state = self._begin(with_crank(pose, angle) if by_crank else pose, start)
         known = None if start is None or (not by_crank and (self.deforms or self.components > 1)) else start.known
         for margin in (np.inf,) if everything else (CANDIDATE_MARGIN, np.inf):
             at = Linearised(self, angle, pose, state, known, roughly=roughly, margin=margin, by_crank=by_crank)
-            at = self._settle(at, state)
-            if roughly or not at.leaves_out.any():
+            groups = self._settled(at, state, apart)
+            if roughly or not any(at.leaves_out.any() for _, at in groups):
                 break
-        return at
+        return groups
 
-    def _settle(self, at: Linearised, begin: State) -> Linearised:
-        """Correct the inner unknowns, each position for itself, until they have settled."""
+    def _begun(self, at: Linearised, begin: State) -> Linearised:
+        """Begin anew where what was expected is farther off than nothing at all."""
         if self.deforms and not at.settled(roughly=True).all():
-            # What was expected may be farther off than nothing at all.
             shifts = None if begin.shifts is None else begin.shifts * 0.0
             anew = at.again(begin._replace(approach=None, shifts=shifts))
             better = (anew.off < at.off) & ~at.settled(roughly=True)
             if better.all():
-                at = anew
-            elif better.any():
-                at = at.again(mixed(at.here, anew.here, better))
-        history = [at.moved]
+                return anew
+            if better.any():
+                return at.again(mixed(at.here, anew.here, better))
+        return at
+
+    def _settled(
+        self, at: Linearised, begin: State | None, apart: bool, history: tuple[FloatArray, ...] = ()
+    ) -> list[tuple[Indices, Linearised]]:
+        """Correct the inner unknowns, each position for itself, until they have settled.
+
+        `begin` is what was expected of them, None where it has been compared with nothing at all.
+        """
+        history = (*history, at.moved)
         while not (settled := at.settled(at.roughly)).all():
             if len(history) > MAX_CORRECTIONS:
                 largest = [float(np.max(moved)) for moved in history]
                 raise ConvergenceError("deformations of contacts do not settle; largest correction in mm", largest)
+            if apart and settled.size > TOGETHER and 2 * np.count_nonzero(settled) > settled.size:
+                rows = np.nonzero(~settled)[0]
+                system, mine = ContactSystem(self.model.take(rows)), take_positions((begin, history[:-1]), rows)
+                groups = system._settled(at.of_rows(system, rows), mine[0], apart, mine[1])
+                return [(np.arange(settled.size), at), *((rows[some], group) for some, group in groups)]
+            if begin is not None:
+                at, begin = self._begun(at, begin), None
+                history = (at.moved,)
+                continue
             part = np.where(settled, 0.0, 1.0)
             if len(history) > 4:  # contacts that take turns as pins move are met half way
                 part = np.where(history[-1] > 0.5 * history[-3], 0.5 * part, part)
             at = at.corrected(part)
-            history.append(at.moved)
-        return at
+            history = (*history, at.moved)
+        return [(np.arange(at.angle.size), at)]
 
     def _begin(self, pose: FloatArray, start: Start | ContactStart | None) -> State:
         """Inner unknowns to start from; NaN where nothing is known."""
@@ -648,6 +687,13 @@ class Linearised:
             roughly=self.roughly,
             margin=self.margin,
             by_crank=self.by_crank,
+        )
+
+    def of_rows(self, system: ContactSystem, rows: Indices) -> Linearised:
+        """Return some of the contacts as those of another system, that of these positions."""
+        angle, pose, state, known = take_positions((self.angle, self.pose, self.here, self.known), rows)
+        return Linearised(
+            system, angle, pose, state, known, roughly=self.roughly, margin=self.margin, by_crank=self.by_crank
         )
 
     @property
