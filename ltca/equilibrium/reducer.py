@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, fields, is_dataclass, replace
 from functools import cached_property
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,7 +42,7 @@ from ltca.compliance.response import (
 from ltca.drive.parts import Drive
 from ltca.equilibrium.external_force import ExternalForce
 from ltca.equilibrium.first_stage import StageMesh
-from ltca.equilibrium.friction.turning import RubbingPins, TurningFriction
+from ltca.equilibrium.friction.turning import TurningFriction
 from ltca.equilibrium.supports import Supports
 from ltca.geometry.coordinates import WHEEL_ANGLE, Coordinates
 from ltca.geometry.pair_motion import KnownPins
@@ -53,53 +53,6 @@ from ltca.mechanics.contacts import ContactSystem, Linearised
 
 POSITIONS_AT_ONCE = 512
 """Positions whose contacts are found at once: few enough for the processor's cache."""
-
-
-class JointFriction(RubbingPins, Protocol):
-    """Friction of the joints at a pose."""
-
-    @property
-    def pin(self) -> float:
-        """Coefficient with which wheel pins rub."""
-        ...
-
-    @property
-    def hole(self) -> float:
-        """Coefficient with which shaft pins rub."""
-        ...
-
-    @property
-    def rolling(self) -> float:
-        """Moment between crank and disc by the load of a crank bearing, mm."""
-        ...
-
-    @property
-    def motion(self) -> int:
-        """+1 where the crank turns counter-clockwise, −1 clockwise, 0 where the input is locked."""
-        ...
-
-    @property
-    def turns(self) -> bool:
-        """Whether the drive turns: its friction goes with the loads alone and may be followed from none."""
-        ...
-
-    def scaled(self, strength: float) -> JointFriction:
-        """Return the friction with all coefficients times a factor."""
-        ...
-
-    def reversed(self) -> JointFriction:
-        """Return the friction of the same drive as it turns the other way."""
-        ...
-
-    def of_wheel(
-        self, parts: Sequence[DiscResponse], reduction_ratio: float, external: ComplexArray | float = 0.0
-    ) -> FloatArray:
-        """Return the moment by which the wheel's bearing rubs, N·mm."""
-        ...
-
-    def of_cranks(self, pushes: Sequence[ComplexArray], on_bearings: ComplexArray | None = None) -> FloatArray:
-        """Return the moment that rubbing takes at every crank, N·mm, shape (positions, cranks)."""
-        ...
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -116,7 +69,7 @@ class Reducer:
         What displaces pins: beams under several discs, the ring of the wheel.
     flange : array, shape (3, 3) or (positions, 3, 3), or None
         What of the supports holds the far flange of a carrier (`ltca.laws.carrier`); None without posts.
-    friction : JointFriction or None
+    friction : TurningFriction or None
         What rubs.
     stage : StageMesh or None
         Teeth of the first stage.
@@ -128,7 +81,7 @@ class Reducer:
     supports: Supports | None = None
     pins: PinDisplacements | None = None
     flange: FloatArray | None = by_drive(2, default=None)
-    friction: JointFriction | None = None
+    friction: TurningFriction | None = None
     stage: StageMesh | None = None
     external: ExternalForce | None = None
     _by_position: bool | None = field(init=False, repr=False, compare=False, default=None)
