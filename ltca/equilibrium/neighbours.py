@@ -82,7 +82,9 @@ def start_between(angle: FloatArray, known: Start, wanted: FloatArray, ratio: fl
     return Start(
         parameter=at(known.parameter - angle[:, None] / ratio) + wanted[:, None] / ratio,
         share=at(known.share),
-        inner=take_positions(known.inner, np.where(part < 0.5, before, after)),
+        inner=None
+        if known.inner is None
+        else take_positions(known.inner.elsewhere, np.where(part < 0.5, before, after)),
     )
 
 

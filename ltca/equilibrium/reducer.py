@@ -383,7 +383,6 @@ class _Evaluated:
             parameter=_beside([flank.parameter for flank in flanks]),
             share=np.full(at.place.shape, 0.5),
             known=KnownPins(**known),
-            follow=at.following(),
             inner=at.inner,
         )
 
@@ -455,7 +454,6 @@ class Evaluation:
             parts=parts,
             shifts=None if shifts is None else shifts[:, : len(parts)],
             ring=parts[0].ring,
-            follow=start.follow,
             left=self.left,
             inner=start.inner,
             contact_stiffness=self.contact_stiffness,

@@ -40,7 +40,7 @@ def disc_response(at: Linearised, disc: int) -> DiscResponse:
             inner_approach=np.where(free, 0.0, inner),
             outer_approach=np.where(free, np.minimum(resting, at_bore), at_bore),
         )
-    own, part = system.columns[disc], at.pressing[disc]
+    part = at.pressing[disc]
     loaded = at.of_chosen(load)[:, :, at.at[disc][0].start : at.at[disc][3].stop]
     force = np.einsum("bcij,bci->bj", part.force_map, loaded)
     friction = None
@@ -63,7 +63,6 @@ def disc_response(at: Linearised, disc: int) -> DiscResponse:
         )
     return DiscResponse(
         force=force,
-        tangent=at.tangent[:, own[:, None], own],
         flank=flank,
         holes=in_holes,
         rollers=rollers,

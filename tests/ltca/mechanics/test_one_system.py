@@ -53,7 +53,7 @@ class DiscByItself:
         self.pose = found.pose[:, model.coordinates.columns(number)]
         self.leans = self.geometry.coordinates_of(self.pose).leans
         self.half = np.asarray(self.geometry.half_width, dtype=float)
-        follow, rollers = found.response.follow, self.part.rollers.outer_load.shape[1]
+        follow, rollers = found.response.inner, self.part.rollers.outer_load.shape[1]
         np.testing.assert_allclose(follow.pose, found.pose, rtol=0.0, atol=1e-15)
         own = slice(number * rollers, (number + 1) * rollers)
         self.circle = np.abs(self.geometry.placement.wheel_pin_centres).max()
