@@ -223,13 +223,12 @@ class ContactForces:
         found, motion = np.zeros(self._motion.size), self._motion
         if self._external is None:
             return found, 0j
-        force = complex(self._external.on_wheel(angle)[0])
+        force, tilting = map(complex, self._external.on_wheel(angle)[0])
         if motion.pose.wheel:
             x, y = pose[motion.pose.wheel_place]
             found[motion.pose.wheel_place] = force.real, force.imag
             found += (x * force.imag - y * force.real) * motion.frame_turns
         if motion.pose.wheel_leans:
-            tilting = complex(self._external.tilting(angle)[0])
             x, y = pose[motion.pose.wheel_lean_place]
             found[motion.pose.wheel_lean_place] += tilting.real, tilting.imag
             found += (x * tilting.imag - y * tilting.real) * motion.frame_turns

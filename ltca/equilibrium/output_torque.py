@@ -52,14 +52,10 @@ def unbalanced_moment(
     """
     angle, pose, parts = found.crank_angle, found.pose, found.response.parts
     left = found.wheel_moment + input_per_crank_moment * model.crank_moments(angle, pose, parts).sum(axis=1) + output
-    if model.coordinates.wheel:
-        x, y = pose[:, model.coordinates.wheel_place].T
-        force = model.force_beside_pins(angle, pose, parts)
-        left = left + x * force.imag - y * force.real
-    if model.coordinates.wheel_leans:
-        x, y = pose[:, model.coordinates.wheel_lean_place].T
-        tilting = model.tilting_beside_pins(angle, pose, parts)
-        left = left + x * tilting.imag - y * tilting.real
+    if model.coordinates.wheel or model.coordinates.wheel_leans:
+        for place, pressed in zip(model.wheel_places, model.beside_pins(angle, pose, parts).T, strict=True):
+            x, y = pose[:, place[:1]], pose[:, place[1:]]
+            left = left + (x * pressed.imag[:, None] - y * pressed.real[:, None]).sum(axis=1)
     return np.asarray(left)
 
 

@@ -32,7 +32,6 @@ from ltca.compliance.response import (
     ContactPressures,
     DiscModel,
     DiscResponse,
-    KindPressures,
     Response,
     Start,
     bearing_moments,
@@ -53,6 +52,8 @@ from ltca.mechanics.contacts import ContactSystem, Linearised
 
 POSITIONS_AT_ONCE = 512
 """Positions whose contacts are found at once: few enough for the processor's cache."""
+OF_DISCS = ("flank", "holes", "rollers", "pin_load", "hole_load")
+"""Contacts that a response has disc after disc."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -156,7 +157,6 @@ class Reducer:
         """Add what first stage, supports, forces from outside and friction of bearings do to force and tangent, in place; return
         the diagonal of the tangent of the contacts alone.
         """
-        coordinates = self.coordinates
         contact_stiffness = np.asarray(np.einsum("bii->bi", tangent).copy(), dtype=float)
         beside_discs: tuple[ComplexArray, FloatArray] | tuple[()] = ()
         if self.stage is not None and self._teeth_press:
@@ -165,15 +165,13 @@ class Reducer:
             held, stiffness = self.supports.respond(pose, *beside_discs)
             force += held
             tangent += stiffness
-        if self.external is not None and coordinates.wheel:
-            pressed = self.external.on_wheel(crank_angle)
-            force[:, coordinates.wheel_place] -= np.stack((pressed.real, pressed.imag), axis=-1)
-            if coordinates.wheel_leans:
-                tilting = self.external.tilting(crank_angle)
-                force[:, coordinates.wheel_lean_place] -= np.stack((tilting.real, tilting.imag), axis=-1)
+        if self.external is not None:
+            pressed = self.external.on_wheel(crank_angle).view(float)
+            for number, place in enumerate(self.wheel_places):
+                force[:, place] -= pressed[:, 2 * number : 2 * number + place.size]
         if self.friction is not None:
             ratio = self.discs[0].geometry.placement.reduction_ratio
-            beside = self.force_beside_pins(crank_angle, pose, parts)
+            beside = self.beside_pins(crank_angle, pose, parts)[:, 0]
             force[:, WHEEL_ANGLE] += self.friction.of_wheel(parts, ratio, beside)
         return contact_stiffness
 
@@ -255,29 +253,22 @@ class Reducer:
                 total += ((geometry.lean(own) - geometry.journal_leans(own)).conjugate() * tilting).imag
         return total
 
-    def force_beside_pins(
-        self, crank_angle: FloatArray, pose: FloatArray, parts: Sequence[DiscResponse]
-    ) -> ComplexArray:
-        """Return the force on the wheel relative to the pin shaft from outside and by the teeth of a first stage, N, shape
-        (positions,).
+    def beside_pins(self, crank_angle: FloatArray, pose: FloatArray, parts: Sequence[DiscResponse]) -> ComplexArray:
+        """Return the force on the wheel relative to the pin shaft from outside and by the teeth of a first stage, N, and what
+        they press its lean with, N·mm, shape (positions, 2).
         """
-        total = np.zeros(crank_angle.shape, dtype=complex)
+        total = np.zeros((crank_angle.size, 2), dtype=complex)
         if self.external is not None:
             total = total + self.external.on_wheel(crank_angle)
         if self.stage is not None and self.stage.carried:
             total = total + self.stage.on_wheel(self.crank_moments(crank_angle, pose, parts))[0]
         return total
 
-    def tilting_beside_pins(
-        self, crank_angle: FloatArray, pose: FloatArray, parts: Sequence[DiscResponse]
-    ) -> ComplexArray:
-        """Return what presses the lean of the wheel from outside and by the teeth of a first stage, N·mm, shape (positions,)."""
-        total = np.zeros(crank_angle.shape, dtype=complex)
-        if self.external is not None:
-            total = total + self.external.tilting(crank_angle)
-        if self.stage is not None and self.stage.carried:
-            total = total + self.stage.tilting_on_wheel(self.crank_moments(crank_angle, pose, parts))[0]
-        return total
+    @property
+    def wheel_places(self) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        """Coordinates of the wheel's place and of its lean, none where it has none."""
+        every = np.arange(self.coordinates.size)
+        return every[self.coordinates.wheel_place], every[self.coordinates.wheel_lean_place]
 
     def carried_beside_discs(
         self, crank_angle: FloatArray, pose: FloatArray, parts: Sequence[DiscResponse]
@@ -303,19 +294,14 @@ class Reducer:
 
         Where cranks are rigid, the derivatives of what the planets press on main bearing and flange are left out.
         """
-        coordinates = self.coordinates
         moments = self.crank_moments(crank_angle, pose, parts)
         slopes = self._moment_slopes(crank_angle, pose, parts, tangent)
         on_wheel, by_moments = stage.on_wheel(moments)
-        if coordinates.wheel:
-            force[:, coordinates.wheel_place] -= np.stack((on_wheel.real, on_wheel.imag), axis=-1)
-            moved = np.einsum("pc,pcj->pj", by_moments, slopes)
-            tangent[:, coordinates.wheel_place] -= np.stack((moved.real, moved.imag), axis=1)
-        if coordinates.wheel_leans:
-            tilting, by_moments = stage.tilting_on_wheel(moments)
-            force[:, coordinates.wheel_lean_place] -= np.stack((tilting.real, tilting.imag), axis=-1)
-            moved = np.einsum("pc,pcj->pj", by_moments, slopes)
-            tangent[:, coordinates.wheel_lean_place] -= np.stack((moved.real, moved.imag), axis=1)
+        moved = np.einsum("pkc,pcj->pkj", by_moments, slopes)
+        for number, place in enumerate(self.wheel_places):
+            if place.size:
+                force[:, place] -= np.stack((on_wheel[:, number].real, on_wheel[:, number].imag), axis=-1)
+                tangent[:, place] -= np.stack((moved[:, number].real, moved[:, number].imag), axis=1)
         if not stage.yields:
             return ()
         pressed, by_moment = stage.on_planets(moments)
@@ -351,10 +337,9 @@ class Reducer:
 
     def pressures(self, response: Response) -> ContactPressures:
         """Return the pressures of all discs behind a response of this model."""
-        found = [disc.pressures(part) for disc, part in zip(self.discs, response.parts, strict=True)]
-        kinds = ("pins", "outer", "inner", "holes")
-        joined: dict[str, Any] = {kind: _beside_kinds([getattr(each, kind) for each in found]) for kind in kinds}
-        return ContactPressures(**joined, rigid_shaft_pins=found[0].rigid_shaft_pins)
+        each = zip(self.discs, response.parts, strict=True)
+        found: ContactPressures = _beside([disc.pressures(part) for disc, part in each])
+        return found
 
 
 class _Evaluated:
@@ -450,7 +435,7 @@ class Evaluation:
         return Response(
             force=self.force,
             tangent=self.tangent,
-            **_contacts_of(parts),
+            **{name: _beside([getattr(part, name) for part in parts]) for name in OF_DISCS},
             parts=parts,
             shifts=None if shifts is None else shifts[:, : len(parts)],
             ring=parts[0].ring,
@@ -480,30 +465,12 @@ def complete(model: Reducer, crank_angle: FloatArray, pose: FloatArray, response
 
 def disc_pressures(pressures: ContactPressures, discs: int) -> tuple[ContactPressures, ...]:
     """Return the pressures of each of several discs from those of all."""
-    if discs == 1:
-        return (pressures,)
 
-    def part(kind: KindPressures, number: int) -> KindPressures:
-        each = kind.mid.shape[1] // discs
-        own = slice(number * each, (number + 1) * each)
-        return KindPressures(
-            mid=kind.mid[:, own],
-            largest=kind.largest[:, own],
-            half_width=kind.half_width[:, own],
-            end_cell=kind.end_cell,
-            along=None if kind.along is None else map_arrays(lambda array: array[:, own], kind.along),
-        )
+    def of_disc(number: int) -> ContactPressures:
+        found: ContactPressures = map_arrays(lambda array: np.split(array, discs, axis=1)[number], pressures)
+        return found
 
-    return tuple(
-        ContactPressures(
-            pins=part(pressures.pins, number),
-            outer=part(pressures.outer, number),
-            inner=part(pressures.inner, number),
-            holes=part(pressures.holes, number),
-            rigid_shaft_pins=pressures.rigid_shaft_pins,
-        )
-        for number in range(discs)
-    )
+    return tuple(map(of_disc, range(discs)))
 
 
 def bearing_forces(model: Reducer, crank_angle: FloatArray, response: Response) -> NDArray[np.complex128]:
@@ -520,27 +487,13 @@ def disc_torques(response: Response) -> FloatArray:
     return np.stack([part.force[:, WHEEL_ANGLE] for part in response.parts], axis=1)
 
 
-def _contacts_of(parts: Sequence[DiscResponse]) -> dict[str, Any]:
-    """The contacts of all discs, disc after disc."""
-    names = ("flank", "holes", "rollers", "pin_load", "hole_load")
-    return {name: _beside([getattr(part, name) for part in parts]) for name in names}
-
-
 def _beside(values: Sequence[Any]) -> Any:
-    """Put arrays (positions, pairs, …), or dataclasses of them, of the discs side by side."""
-    if len(values) == 1 or values[0] is None:
+    """Put arrays (positions, pairs, …), or dataclasses of them, of the discs side by side; else the first value is that of all."""
+    if len(values) == 1:
         return values[0]
-    if not is_dataclass(values[0]):
+    if isinstance(values[0], np.ndarray):
         return np.concatenate(values, axis=1)
-    kind: Any = type(values[0])  # FlankMotion, PairMotion, RollerState
+    if not is_dataclass(values[0]):
+        return values[0]
+    kind: Any = type(values[0])  # FlankMotion, PairMotion, RollerState, …
     return kind(**{item.name: _beside([getattr(value, item.name) for value in values]) for item in fields(kind)})
-
-
-def _beside_kinds(kinds: Sequence[KindPressures]) -> KindPressures:
-    return KindPressures(
-        mid=_beside([kind.mid for kind in kinds]),
-        largest=_beside([kind.largest for kind in kinds]),
-        half_width=_beside([kind.half_width for kind in kinds]),
-        end_cell=kinds[0].end_cell,
-        along=_beside([kind.along for kind in kinds]),
-    )
