@@ -488,7 +488,7 @@ def disc_torques(response: Response) -> FloatArray:
 
 
 def _beside(values: Sequence[Any]) -> Any:
-    """Put arrays (positions, pairs, …), or dataclasses of them, of the discs side by side; else the first value is that of all."""
+    """Put arrays (positions, pairs, …), or dataclasses of them, of the discs side by side; else the first."""
     if len(values) == 1:
         return values[0]
     if isinstance(values[0], np.ndarray):
