@@ -101,6 +101,8 @@ class HalfSpaceCompliance:
         that differ little have the same.
         """
         geometry = replace(ContactGeometry.of_drive(drive), tip_share=tip_share(drive), tip_slope=tip_slope(drive))
+        if drive.contact.slices > 1:
+            return cls.in_slices(drive, geometry, kinds)
         place, bearing, parts = geometry.placement, drive.crank_bearing, drive.materials
         inner_radius, outer_radius = place.inner_effective_radii, place.outer_effective_radii
         pin_radii = np.ones(1)
@@ -120,8 +122,6 @@ class HalfSpaceCompliance:
                 on_ladder=in_batch,
             )
 
-        if drive.contact.slices > 1:
-            return cls.in_slices(drive, geometry, kinds)
         on_flank = law_for_profile(
             drive.pin_wheel.pin_profile,
             length=drive.disc.thickness,
@@ -139,7 +139,7 @@ class HalfSpaceCompliance:
                 inner_radius=inner_radius,
                 outer_radius=outer_radius,
             ),
-            hole_law=back_shaft_pins(drive, SpringLaw(stiffness=shaft_pin_stiffness(drive)), place.shaft_pin_plays),
+            hole_law=shaft_pin_springs(drive, place.shaft_pin_plays),
             kinds=ContactKinds.of_drive(drive),
         )
 
@@ -167,8 +167,7 @@ class HalfSpaceCompliance:
         pins: Any = sliced.back_line(flank, wheel_pin_seat(drive), place.wheel_pin_plays)
         rigid = False
         if shaft_pin_beam(drive) is None:
-            spring = sliced.SlicedSpring(stiffness=shaft_pin_stiffness(drive), length=wide, slices=slices)
-            hole: Any = sliced.back_line(spring, shaft_pin_seat(drive), place.shaft_pin_plays)
+            hole: Any = shaft_pin_springs(drive, place.shaft_pin_plays)
         else:
             # A beam bends behind its contact, which says how its load lies along the width.
             rigid = not shaft_pins_yield(drive)
@@ -234,6 +233,15 @@ def _line(
         return found
     twice = sleeve_overlap(drive, part, HALF_SPACE_DATUM * length)
     return replace(found, sleeve=drive.materials.sleeve.plane_strain_compliance * modulus, overlap=twice)
+
+
+def shaft_pin_springs(drive: Drive, play: FloatArray) -> Any:
+    """Return the law of shaft pins on springs that stand for all that yields there, sleeves behind them, with a play, mm."""
+    stiffness, slices = shaft_pin_stiffness(drive), drive.contact.slices
+    if slices == 1:
+        return back_shaft_pins(drive, SpringLaw(stiffness=stiffness), play)
+    spring = sliced.SlicedSpring(stiffness=stiffness, length=drive.disc.thickness, slices=slices)
+    return sliced.back_line(spring, shaft_pin_seat(drive), play)
 
 
 def hole_in_slices(drive: Drive, kind: ContactKind, play: FloatArray) -> Any:

@@ -8,6 +8,7 @@ that part is not in the coefficients, so what they give varies smoothly along th
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -94,14 +95,14 @@ def read_stress_coefficients(data: Labelled, loaded: tuple[Boundary, ...]) -> St
     )
 
 
-def evaluate_wall_stress(coefficients: StressCoefficients, contacts: tuple[WallContacts, ...]) -> FloatArray:
+def evaluate_wall_stress(coefficients: StressCoefficients, contacts: Sequence[WallContacts]) -> FloatArray:
     """Return the stress along the walls at all stress stations, shape (positions, stress stations), MPa.
 
     Parameters
     ----------
     coefficients : StressCoefficients
         Of the disc.
-    contacts : tuple of WallContacts
+    contacts : sequence of WallContacts
         Of flank, each bore and each hole. Loads in equilibrium get one answer whatever balanced the unit loads when the
         coefficients were derived.
     """
