@@ -312,11 +312,18 @@ def _from_stops(search: Search, rows: NDArray[np.intp]) -> NDArray[np.intp]:
     lost = part.iterate(MAX_ITERATIONS)
     search.iterations[rows] += part.iterations
     if lost.size < rows.size:
-        kept, contacts = part.contacts()
-        search.pose[rows[kept]], search.residual[rows[kept]] = part.pose[kept], part.residual[kept]
-        search.slipped[rows[kept]] = False
-        search.keep(rows[kept], contacts, np.ones(kept.size, dtype=bool))
+        _take_over(search, rows, part, np.ones(rows.size, dtype=bool))
     return rows[lost]
+
+
+def _take_over(search: Search, rows: NDArray[np.intp], part: Search, wanted: NDArray[np.bool_]) -> None:
+    """Take over those positions that the search for some of them has balanced and that are wanted."""
+    kept, contacts = part.contacts()
+    own = wanted[kept]
+    there = rows[kept[own]]
+    search.pose[there], search.residual[there] = part.pose[kept[own]], part.residual[kept[own]]
+    search.slipped[there] = False
+    search.keep(rows[kept], contacts, own)
 
 
 def _follow_down(search: Search, rows: NDArray[np.intp]) -> NDArray[np.intp]:
@@ -342,12 +349,8 @@ def _follow_down(search: Search, rows: NDArray[np.intp]) -> NDArray[np.intp]:
         pose[going[found]], level[going[found]] = part.pose[found], target[found]
         ratio[going[found]] = np.minimum(ratio[going[found]] ** 2, TORQUE_RATIO)
         ratio[going[lost]] = np.sqrt(ratio[going[lost]])
-        there = going[found][target[found] == 1.0]
-        if there.size:
-            kept, contacts = part.contacts()
-            own = np.isin(kept, found[target[found] == 1.0])
-            search.pose[rows[there]], search.residual[rows[there]] = pose[there], part.residual[kept[own]]
-            search.keep(rows[going[kept]], contacts, own)
+        if np.any(target[found] == 1.0):
+            _take_over(search, rows[going], part, target == 1.0)
         going = going[(level[going] > 1.0) & (ratio[going] > LEAST_TORQUE_RATIO)]
     return np.asarray(rows[level != 1.0])
 
