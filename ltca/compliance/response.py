@@ -24,6 +24,27 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class LeaningRollers:
+    """Balanced rollers in slices.
+
+    Attributes
+    ----------
+    lean : array, shape (positions, rollers)
+        Along their rays, rad.
+    inner_tilt, outer_tilt : array, shape (positions, rollers)
+        Tilts of their contacts, rad, positive presses positive z.
+    inner, outer : SlicedContact
+        What these carry, moments about mid-length; that on the disc acts along the ray.
+    """
+
+    lean: FloatArray
+    inner_tilt: FloatArray
+    outer_tilt: FloatArray
+    inner: SlicedContact
+    outer: SlicedContact
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class RollerState:
     """Balanced rollers, crank after crank.
 
@@ -37,16 +58,8 @@ class RollerState:
         N.
     outer_direction : array of complex, shape (positions, rollers)
         Unit vector from the bore centre to the roller, the direction of the load on the disc.
-    inner_moment, outer_moment : array, shape (positions, rollers), or None
-        In slices about mid-length, N·mm; that on the disc acts along the ray.
-    lean : array, shape (positions, rollers), or None
-        In slices along their rays, rad.
-    inner_tilt, outer_tilt : array, shape (positions, rollers), or None
-        Tilts of their contacts, rad, positive presses positive z.
-    inner_slices, outer_slices : array, shape (positions, rollers, slices), or None
-        Loads of their slices, N.
-    inner_lines, outer_lines : array, shape (positions, rollers, slices, points), or None
-        Their line loads at the points of the slices, N/mm.
+    leaning : LeaningRollers or None
+        Rollers in slices; None in the plane.
     """
 
     share: FloatArray
@@ -55,15 +68,7 @@ class RollerState:
     inner_load: FloatArray
     outer_load: FloatArray
     outer_direction: ComplexArray
-    inner_moment: FloatArray | None = None
-    outer_moment: FloatArray | None = None
-    lean: FloatArray | None = None
-    inner_tilt: FloatArray | None = None
-    outer_tilt: FloatArray | None = None
-    inner_slices: FloatArray | None = None
-    outer_slices: FloatArray | None = None
-    inner_lines: FloatArray | None = None
-    outer_lines: FloatArray | None = None
+    leaning: LeaningRollers | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -465,7 +470,7 @@ def bearing_moments(rollers: RollerState, rays: RollerRays, cranks: int) -> Comp
     """Return what every crank bearing presses the lean of the disc with, x + iy, shape (positions, cranks), N·mm; zero where
     rollers do not lean.
     """
-    if rollers.outer_moment is None:
+    if rollers.leaning is None:
         return np.zeros((rays.direction.shape[0], cranks), dtype=complex)
-    each = rollers.outer_moment * rays.direction
+    each = rollers.leaning.outer.moment * rays.direction
     return np.asarray(each.reshape(each.shape[0], cranks, -1).sum(axis=2))

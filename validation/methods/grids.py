@@ -359,11 +359,12 @@ class GridCompliance:
                 rigid_shaft_pins=False,
             )
         by_lines = pressures_in_slices(response, kinds, place, shaft_pins_on_springs=True)
-        found = {}
+        found, leaning_rollers = {}, rollers.leaning
+        assert leaning_rollers is not None
         for name, law, approach, tilt, radius in (
             ("pins", pins, flank.approach, leaning.tilt.tilt, flank.effective_radius),
-            ("inner", inner, rollers.inner_approach, rollers.inner_tilt, laws.inner_radius),
-            ("outer", outer, rollers.outer_approach, rollers.outer_tilt, laws.outer_radius),
+            ("inner", inner, rollers.inner_approach, leaning_rollers.inner_tilt, laws.inner_radius),
+            ("outer", outer, rollers.outer_approach, leaning_rollers.outer_tilt, laws.outer_radius),
         ):
             found[name] = _along_grids(law, approach, np.asarray(tilt), radius, getattr(by_lines, name))
         return replace(by_lines, pins=found["pins"], inner=found["inner"], outer=found["outer"])

@@ -319,7 +319,7 @@ def split_loads(response):
     rollers, pins, holes = response.rollers, response.leaning_pins.contact, response.leaning_holes.contact
     return (
         (pins.load, rollers.outer_load, holes.load, rollers.inner_load),
-        (pins.moment, rollers.outer_moment, holes.moment, rollers.inner_moment),
+        (pins.moment, rollers.leaning.outer.moment, holes.moment, rollers.leaning.inner.moment),
     )
 
 

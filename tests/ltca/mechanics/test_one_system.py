@@ -92,7 +92,7 @@ class DiscByItself:
         if not self.leans:
             return loads, None
         pins, holes = part.leaning_pins.contact, part.leaning_holes.contact
-        return loads, (pins.moment, rollers.outer_moment, holes.moment, rollers.inner_moment)
+        return loads, (pins.moment, rollers.leaning.outer.moment, holes.moment, rollers.leaning.inner.moment)
 
     def taken(self, flank, carried):
         """What bodies take of the approaches, and of the tilts by half the thickness."""
