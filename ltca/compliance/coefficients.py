@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.arrays import FloatArray
-from ltca.compliance.stress_coefficients import NO_STRESSES, StressCoefficients, read_stress_coefficients
+from ltca.compliance.stress_coefficients import StressCoefficients, read_stress_coefficients
 from ltca.drive.parts import Bodies, Clearance, Drive, Material
 from ltca.drive.single_discs import nominal_shape
 from ltca.errors import CycloError, DamagedFileError, DriveError
@@ -83,7 +83,7 @@ class InfluenceCoefficients:
         Of the inner race, by the angle between place and load.
     disc_logarithm, pin_logarithm, roller_logarithm, race_logarithm : float
         Factor κ of −ln(distance) in each body, mm/N or rad/(N·mm).
-    stress : StressCoefficients
+    stress : StressCoefficients or None
         Stress along the walls of the disc, where the file has it.
     code_hash : str
         Of the code that derived them, where the file says so.
@@ -108,7 +108,7 @@ class InfluenceCoefficients:
     pin_logarithm: float
     roller_logarithm: float
     race_logarithm: float
-    stress: StressCoefficients = NO_STRESSES
+    stress: StressCoefficients | None = None
     code_hash: str = ""
     warning: str = ""
     tilting: InfluenceCoefficients | None = None
@@ -160,7 +160,7 @@ class InfluenceCoefficients:
         flank, *walls = turned_boundaries((self.flank, *self.bores, *self.holes), **how)
         bores, holes = tuple(walls[:cranks]), tuple(walls[cranks:])
         tilting = None if self.tilting is None else self.tilting.placed_in(drive)
-        placed = self.stress.placed(**how)
+        placed = None if self.stress is None else self.stress.placed(**how)
         return replace(self, flank=flank, bores=bores, holes=holes, stress=placed, tilting=tilting)
 
     def with_roller_length(self, length: float) -> InfluenceCoefficients:

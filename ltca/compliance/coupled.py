@@ -21,11 +21,11 @@ from numpy.typing import NDArray
 
 from ltca.arrays import FloatArray
 from ltca.compliance.coefficients import SOLID, InfluenceCoefficients
-from ltca.compliance.contact_laws import ContactLaws
 from ltca.compliance.half_space import shaft_pin_springs
 from ltca.compliance.near_field import NearField, NearFieldLaws, OwnParts
 from ltca.compliance.pressures import pressures_in_slices, pressures_of_law
 from ltca.compliance.response import (
+    ContactLaws,
     ContactPressures,
     DiscResponse,
     KindPressures,

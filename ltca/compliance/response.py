@@ -7,14 +7,13 @@ carry together, and `ltca.equilibrium.reducer` adds what holds them.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, fields, replace
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.coefficients import InfluenceCoefficients
-from ltca.compliance.contact_laws import ContactLaws
 from ltca.geometry.coordinates import DISC_PLACE, X, Y
 from ltca.geometry.pair_motion import FlankMotion, KnownPins, PairMotion, PairTilt, RollerRays
 from ltca.geometry.pairs import ContactGeometry
@@ -314,6 +313,21 @@ class ContactPressures:
     inner: KindPressures
     holes: KindPressures
     rigid_shaft_pins: bool
+
+
+class ContactLaws(NamedTuple):
+    """Laws of the contacts of a disc: wheel pins, rollers in bores, shaft pins, rollers on races; and effective radii, mm,
+    of those that have one of their own.
+    """
+
+    laws: tuple[Any, Any, Any, Any]
+    outer_radius: FloatArray
+    hole_radius: FloatArray
+    inner_radius: FloatArray
+
+    def placed(self, flank: FlankMotion) -> tuple[Any, Any, Any, Any]:
+        """Return the laws with the wheel pins where they are on the flank: tabulated laws are the same everywhere."""
+        return self.laws
 
 
 class DiscModel(Protocol):

@@ -138,8 +138,7 @@ def wall_profiles(
 
 def _stress_coefficients(model: DiscModel) -> StressCoefficients | None:
     """Return the stress coefficients of a disc; None where it has none, or no body."""
-    coefficients = model.coefficients
-    return coefficients.stress if coefficients is not None and coefficients.stress.available else None
+    return None if model.coefficients is None else model.coefficients.stress
 
 
 def _place_contacts(

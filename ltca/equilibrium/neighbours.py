@@ -64,9 +64,11 @@ def pose_between(
     >>> pose_between(np.array([0.0, np.pi]), known, np.array([0.5 * np.pi]), Coordinates()).round(9)
     array([[0., 1., 0., 1.]])
     """
-    before, after, part = between(angle, wanted) if way is None else way
-    seen = _turned(pose, -angle, coordinates)
-    return _turned(seen[before] + part[:, None] * (seen[after] - seen[before]), wanted, coordinates)
+    before, after, _ = between(angle, wanted) if way is None else way
+    seen, span = _turned(pose, -angle, coordinates), angle[after] - angle[before]
+    slope = (seen[after] - seen[before]) / np.where(span > 0.0, span, 1.0)[:, None]
+    ahead = np.minimum(np.maximum(wanted - angle[before], 0.0), span)
+    return _turned(seen[before] + slope * ahead[:, None], wanted, coordinates)
 
 
 def start_between(angle: FloatArray, known: Start, wanted: FloatArray, ratio: float, way: Way) -> Start:

@@ -44,7 +44,6 @@ from ltca.equilibrium.first_stage import StageMesh
 from ltca.equilibrium.friction.turning import TurningFriction
 from ltca.equilibrium.supports import Supports
 from ltca.geometry.coordinates import WHEEL_ANGLE, Coordinates
-from ltca.geometry.pair_motion import KnownPins
 from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.carrier import far_flange_stiffness
 from ltca.mechanics.answers import disc_response
@@ -361,15 +360,8 @@ class _Evaluated:
     @cached_property
     def start(self) -> Start:
         """Where other poses of the same positions start."""
-        at = self.at
-        flanks = [each.flank for each in at.discs]
-        known = {name: _beside([getattr(flank, name) for flank in flanks]) for name in ("approach", "point", "turning")}
-        return Start(
-            parameter=_beside([flank.parameter for flank in flanks]),
-            share=np.full(at.place.shape, 0.5),
-            known=KnownPins(**known),
-            inner=at.inner,
-        )
+        start, approach = self.at.onward, _beside([each.flank.approach for each in self.at.discs])
+        return replace(start, known=None if start.known is None else replace(start.known, approach=approach))
 
 
 @dataclass(frozen=True, slots=True)

@@ -36,9 +36,8 @@ from numpy.typing import NDArray
 
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance import sliced
-from ltca.compliance.contact_laws import ContactLaws
 from ltca.compliance.coupled import BodyFlexibility
-from ltca.compliance.response import Inner, Start
+from ltca.compliance.response import ContactLaws, Inner, Start
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, X, Y
 from ltca.geometry.pair_motion import KnownPins, PairTilt, dot

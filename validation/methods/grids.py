@@ -19,10 +19,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ltca.arrays import FloatArray
-from ltca.compliance.contact_laws import ContactLaws
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.pressures import along_width, elastic_hole_pressures, pressures_in_slices
-from ltca.compliance.response import ContactPressures, DiscResponse, KindPressures
+from ltca.compliance.response import ContactLaws, ContactPressures, DiscResponse, KindPressures
 from ltca.contact.end_pressure import largest_pressure
 from ltca.contact.tilted_grid import press_tilted
 from ltca.contact.tracked_grid import CELLS, ContactKind, ContactKinds, Separation
