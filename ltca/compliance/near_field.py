@@ -198,7 +198,6 @@ class OwnParts:
         datum: float,
         *,
         elastic_shaft_pins: bool = False,
-        tilts: bool = False,
     ) -> OwnParts:
         """Return the diagonal parts.
 
@@ -216,8 +215,6 @@ class OwnParts:
             D, where a near field in plane strain hands over, mm.
         elastic_shaft_pins : bool
             Whether bare shaft pins yield where the near field of the holes is.
-        tilts : bool
-            Whether coefficients are those of tilts by moments, whose units are 12 by the square of the length.
 
         Notes
         -----
@@ -229,88 +226,94 @@ class OwnParts:
         `projected_on_half_space` of the even and of the linear load, plane strain the same of both, 12/t² κ of the linear one.
         Of a line of one slice, a half-space without images, comes off what leaves an aligned line what it has with many.
         """
-        tilting = None
-        if coefficients.tilting is not None:
-            tilting = cls.of_drive(
-                drive,
-                geometry,
-                coefficients.tilting,
-                near_field,
-                datum,
-                elastic_shaft_pins=elastic_shaft_pins,
-                tilts=True,
-            )
-        parts, bearing, c = drive.materials, drive.crank_bearing, coefficients
-        place = geometry.placement
-        load = 0.5 * abs(drive.wheel_moment()) / (float(place.mean_eccentricity[0]) * place.reduction_ratio)
+        even = _own_parts(drive, geometry, coefficients, near_field, datum, elastic_shaft_pins, tilts=False)
+        if coefficients.tilting is None:
+            return even
+        tilting = _own_parts(drive, geometry, coefficients.tilting, near_field, datum, elastic_shaft_pins, tilts=True)
+        return replace(even, tilting=tilting)
 
-        def unit(material: Material, thickness: float, plane: str = "strain") -> float:
-            return logarithm_factor(material, thickness, plane) * (12.0 / thickness**2 if tilts else 1.0)
 
-        several = drive.contact.slices > 1
+def _own_parts(
+    drive: Drive,
+    geometry: ContactGeometry,
+    coefficients: InfluenceCoefficients,
+    near_field: NearField,
+    datum: float,
+    elastic_shaft_pins: bool,
+    *,
+    tilts: bool,
+) -> OwnParts:
+    """Diagonal parts of approaches by loads, or of tilts by moments, whose units are 12 by the square of the length."""
+    parts, bearing, c = drive.materials, drive.crank_bearing, coefficients
+    place = geometry.placement
+    load = 0.5 * abs(drive.wheel_moment()) / (float(place.mean_eccentricity[0]) * place.reduction_ratio)
 
-        def remove(body: float, material: Material, radius: float, modulus: float, thickness: float) -> float:
-            if body == 0.0:
-                return 0.0
-            joined = -body * np.log(datum)
-            if near_field == "plane-strain":
-                return float(joined)
-            half_width = float(line_half_width(load / thickness, radius, modulus))
-            factor = unit(material, thickness)
-            if c.plane != SOLID:
-                of_length = finite_length_approach(thickness, half_width)
-            else:
-                images = (FreeEnds(reach=1.0, weight=guilbault_factor(material.poisson_ratio)),)
-                of_length = projected_on_half_space(thickness, half_width, images if several else ())[1 if tilts else 0]
-                if not several:
-                    of_length -= redistributed_approach(thickness, half_width)
-                    of_length += redistributed_approach(thickness, half_width, images)
-            held = material.plane_strain_compliance * of_length
-            return float(joined + factor * (np.log(2.0 * datum / half_width) + SELF_ENERGY) - held)
+    def unit(material: Material, thickness: float, plane: str = "strain") -> float:
+        return logarithm_factor(material, thickness, plane) * (12.0 / thickness**2 if tilts else 1.0)
 
-        thickness, length = drive.disc.thickness, drive.roller_length
-        # Where the pitch circle cuts the flank the pins carry most.
-        steep = np.array([0.25 * 2.0 * np.pi / drive.reduction_ratio])
-        at_pin = (
-            float(geometry.profile.effective_radius(steep, drive.pin_wheel.pin_radius)[0]),
-            contact_modulus(parts.disc, drive.flank_pin),
-        )
-        in_bore = (
-            effective_radius(bearing.roller_radius, -drive.bore_radius),
-            contact_modulus(parts.disc, parts.roller),
-        )
-        on_race = (
-            effective_radius(bearing.roller_radius, bearing.inner_race_radius),
-            contact_modulus(parts.inner_race, parts.roller),
-        )
-        shaft = drive.pin_shaft
-        in_hole = (
-            1.0 if shaft is None else effective_radius(shaft.pin_radius, -drive.hole_radius),
-            hole_modulus(drive, rigid_shaft_pins=not elastic_shaft_pins),
-        )
-        sleeved = drive.pin_wheel.seat.kind == "sleeve"  # whose law has all of it (`ltca.laws.backed`)
-        disc, pin, roller, race = c.disc_logarithm, c.pin_logarithm, c.roller_logarithm, c.race_logarithm
-        whole_pin = c.pin + remove(pin, drive.flank_pin, *at_pin, thickness)
-        hole = remove(disc, parts.disc, *in_hole, thickness)
-        if shaft is not None and elastic_shaft_pins and disc > 0.0:  # without coupling there is no body part at all
-            own = unit(parts.shaft_pin, thickness, c.plane)
-            nu = parts.shaft_pin.poisson_ratio
-            hole += own * carried_cylinder(shaft.pin_radius, nu, c.plane)
-            if c.plane == SOLID and shaft.beam is None:
-                # On its spring it ends with the disc; as a beam it goes on.
-                hole += own * free_ends_of_cylinder(shaft.pin_radius, thickness, nu)[1 if tilts else 0]
-            hole += remove(own, parts.shaft_pin, *in_hole, thickness)
-        return cls(
-            pin=remove(disc, parts.disc, *at_pin, thickness) + (0.0 if sleeved else whole_pin),
-            outer=remove(disc, parts.disc, *in_bore, thickness)
-            + float(c.roller[1, 1])
-            + remove(roller, parts.roller, *in_bore, length),
-            inner=remove(race, parts.inner_race, *on_race, thickness)
-            + float(c.roller[0, 0])
-            + remove(roller, parts.roller, *on_race, length),
-            hole=hole,
-            tilting=tilting,
-        )
+    several = drive.contact.slices > 1
+
+    def remove(body: float, material: Material, radius: float, modulus: float, thickness: float) -> float:
+        if body == 0.0:
+            return 0.0
+        joined = -body * np.log(datum)
+        if near_field == "plane-strain":
+            return float(joined)
+        half_width = float(line_half_width(load / thickness, radius, modulus))
+        factor = unit(material, thickness)
+        if c.plane != SOLID:
+            of_length = finite_length_approach(thickness, half_width)
+        else:
+            images = (FreeEnds(reach=1.0, weight=guilbault_factor(material.poisson_ratio)),)
+            of_length = projected_on_half_space(thickness, half_width, images if several else ())[1 if tilts else 0]
+            if not several:
+                of_length -= redistributed_approach(thickness, half_width)
+                of_length += redistributed_approach(thickness, half_width, images)
+        held = material.plane_strain_compliance * of_length
+        return float(joined + factor * (np.log(2.0 * datum / half_width) + SELF_ENERGY) - held)
+
+    thickness, length = drive.disc.thickness, drive.roller_length
+    # Where the pitch circle cuts the flank the pins carry most.
+    steep = np.array([0.25 * 2.0 * np.pi / drive.reduction_ratio])
+    at_pin = (
+        float(geometry.profile.effective_radius(steep, drive.pin_wheel.pin_radius)[0]),
+        contact_modulus(parts.disc, drive.flank_pin),
+    )
+    in_bore = (
+        effective_radius(bearing.roller_radius, -drive.bore_radius),
+        contact_modulus(parts.disc, parts.roller),
+    )
+    on_race = (
+        effective_radius(bearing.roller_radius, bearing.inner_race_radius),
+        contact_modulus(parts.inner_race, parts.roller),
+    )
+    shaft = drive.pin_shaft
+    in_hole = (
+        1.0 if shaft is None else effective_radius(shaft.pin_radius, -drive.hole_radius),
+        hole_modulus(drive, rigid_shaft_pins=not elastic_shaft_pins),
+    )
+    sleeved = drive.pin_wheel.seat.kind == "sleeve"  # whose law has all of it (`ltca.laws.backed`)
+    disc, pin, roller, race = c.disc_logarithm, c.pin_logarithm, c.roller_logarithm, c.race_logarithm
+    whole_pin = c.pin + remove(pin, drive.flank_pin, *at_pin, thickness)
+    hole = remove(disc, parts.disc, *in_hole, thickness)
+    if shaft is not None and elastic_shaft_pins and disc > 0.0:  # without coupling there is no body part at all
+        own = unit(parts.shaft_pin, thickness, c.plane)
+        nu = parts.shaft_pin.poisson_ratio
+        hole += own * carried_cylinder(shaft.pin_radius, nu, c.plane)
+        if c.plane == SOLID and shaft.beam is None:
+            # On its spring it ends with the disc; as a beam it goes on.
+            hole += own * free_ends_of_cylinder(shaft.pin_radius, thickness, nu)[1 if tilts else 0]
+        hole += remove(own, parts.shaft_pin, *in_hole, thickness)
+    return OwnParts(
+        pin=remove(disc, parts.disc, *at_pin, thickness) + (0.0 if sleeved else whole_pin),
+        outer=remove(disc, parts.disc, *in_bore, thickness)
+        + float(c.roller[1, 1])
+        + remove(roller, parts.roller, *in_bore, length),
+        inner=remove(race, parts.inner_race, *on_race, thickness)
+        + float(c.roller[0, 0])
+        + remove(roller, parts.roller, *on_race, length),
+        hole=hole,
+    )
 
 
 def carried_cylinder(radius: float, poisson_ratio: float, plane: str = "strain") -> float:
