@@ -307,7 +307,7 @@ class GridCompliance:
             hole_law=(
                 SpringLaw(stiffness=drive.hole_stiffness)
                 if slices == 1
-                else HalfSpaceCompliance.in_slices(drive, geometry).hole_law
+                else HalfSpaceCompliance.of_drive(drive).hole_law
             ),
             slices=slices,
         )
