@@ -23,7 +23,7 @@ from ltca.drive.parts import Drive
 from ltca.errors import ConvergenceError, DriveError
 from ltca.front.arguments import angles_given, counted, engine_given, require_drive, torque_given
 from ltca.geometry.placement import position_angles
-from ltca.output.threads import on_one_thread
+from ltca.output.threads import on_one_thread, one_thread
 from ltca.quantities import SCALARS, printed, unit_sign
 
 if TYPE_CHECKING:
@@ -294,7 +294,6 @@ class Plots:
         return f"figures: {', '.join(names)}"
 
 
-@on_one_thread
 def analyse(
     drive: Drive,
     positions: int | None = None,
@@ -381,7 +380,8 @@ def analyse(
         bodies=bodies,
     )
     try:
-        return AnalysisResult(case=name, loaded=loaded_analysis.analyse(drive, angles, carried, engine))
+        with one_thread():
+            return AnalysisResult(case=name, loaded=loaded_analysis.analyse(drive, angles, carried, engine))
     except ConvergenceError as error:
         if isinstance(error.partial, LoadedAnalysis):
             error.partial = AnalysisResult(case=name, loaded=error.partial)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,7 +34,7 @@ from ltca.drive.members.temperatures import temperature_words, warm_drive
 from ltca.drive.parts import Drive, Temperature
 from ltca.drive.ring_shape import deep_seats_warning
 from ltca.drive.single_discs import single_discs
-from ltca.drive.unit_mistakes import names_unit_mistakes, unit_warnings
+from ltca.drive.unit_mistakes import names_unit_mistakes, unit_mistakes_named, unit_warnings
 from ltca.drive.units.quantities import ARCMIN
 from ltca.drive.units.table import range_of
 from ltca.equilibrium.balance import Equilibrium, equilibrium_of_disc
@@ -383,7 +384,13 @@ def seizing_words(written: Drive) -> str | None:
 
 
 def analyse(
-    drive: Drive, crank_angle: FloatArray, torque: float | None = None, engine: Engine | None = None
+    drive: Drive,
+    crank_angle: FloatArray,
+    torque: float | None = None,
+    engine: Engine | None = None,
+    near: LoadedAnalysis | None = None,
+    case: _Case | None = None,
+    known: tuple[Equilibrium, Equilibrium] | None = None,
 ) -> LoadedAnalysis:
     """Analyse a drive.
 
@@ -397,6 +404,11 @@ def analyse(
         Output torque, N·mm; the drive's own by default.
     engine : Engine, optional
         What to run on (`ltca.analysis.engines`); the half-space on tables by default.
+    near : LoadedAnalysis, optional
+        Of nearly this drive at these angles: the search starts from its poses.
+    case, known : optional
+        The drive with the engine built for it, and its balanced positions under torque and light torque, where these are there
+        already (`analyse_cases`).
 
     Returns
     -------
@@ -420,7 +432,64 @@ def analyse(
     6738 N
     """
     angle = check_positions(crank_angle)
-    return _analysed(drive, torque, _prepared(drive, torque, engine), angle)
+    case = _prepared(drive, torque, engine) if case is None else case
+    with unit_mistakes_named(drive, torque):
+        prepared, light_torque = case.prepared, case.drive.load.light_torque
+        if case.torque == 0.0:
+            named = "load.torque" if drive.load.torque == 0.0 else "torque"
+            require_preload(prepared.model.geometries, case.drive, angle, named)
+
+        begin = _poses_near(near, prepared.model)
+        balance = partial(balance_what_can_be, prepared.balance, angle)
+        full = balance(case.torque, begin) if known is None else all_balanced(known[0])
+        pressures = prepared.model.pressures(full.found.response)
+        try:
+            check_half_widths([case.drive], full.found.response, pressures, case.torque)
+        except DriveError as error:
+            seized = None if case.written is None else seizing_words(case.written)
+            if seized is None:
+                raise
+            raise DriveError([f"temperature: {seized}; {problem}" for problem in error.problems]) from error
+        start = _poses_near(near, prepared.model, light=True)
+        if start is None:
+            start = np.full((angle.size, full.found.pose.shape[1]), np.nan)
+            start[full.balanced] = full.found.pose
+        light = full
+        if light_torque != case.torque:
+            try:
+                light = balance(light_torque, start) if known is None else all_balanced(known[1])
+            except ConvergenceError as error:
+                light = nothing_balanced(full.found, angle.size, error)
+        back = _turned_back(prepared.model, case.drive, full, angle, case.torque)
+        if light.failure is not None and light is not full:
+            light.failure.add(f"load.light_torque = {light_torque:g} N·mm")
+        push = bearing_forces(prepared.model, angle[full.balanced], full.found.response)
+        walls = _wall_stresses(prepared.model, full.found, pressures)
+        spread = full.spread((full.found, pressures, push.real, push.imag, walls))
+        of_full, of_pressures, radial, tangential, of_walls = freeze(
+            (replace(spread[0], crank_angle=angle), *spread[1:])
+        )
+        analysis = LoadedAnalysis(
+            drive=case.drive,
+            torque=case.torque,
+            engine=case.engine,
+            full=of_full,
+            light=freeze(replace(light.spread(light.found), crank_angle=angle)),
+            model=prepared.model,
+            pressures=of_pressures,
+            bearing_radial=radial,
+            bearing_tangential=tangential,
+            wall_stresses=of_walls,
+            balanced=freeze(full.balanced),
+            balanced_light=freeze(light.balanced),
+            back=None if back is None else freeze(back),
+            written=case.written,
+        )
+        for failure in (full.failure, light.failure):
+            if failure is not None:
+                failure.partial = analysis
+                raise failure
+        return analysis
 
 
 def analyse_cases(
@@ -457,7 +526,7 @@ def analyse_cases(
         prepared = [_prepared(cases[name], torque, engine) for name in part]
         for name, case, known in zip(part, prepared, _balanced_together(prepared, angle, near), strict=True):
             try:
-                yield name, _analysed(cases[name], torque, case, angle, known, near)
+                yield name, analyse(cases[name], angle, torque, engine, near, case, known)
             except ConvergenceError as error:
                 yield name, error
 
@@ -520,77 +589,6 @@ def _balanced_together(
     return found
 
 
-@names_unit_mistakes
-def _analysed(
-    drive: Drive,
-    torque: float | None,
-    case: _Case,
-    angle: FloatArray,
-    known: tuple[Equilibrium, Equilibrium] | None = None,
-    near: LoadedAnalysis | None = None,
-) -> LoadedAnalysis:
-    """The analysis of a case, from its balanced positions where these are known, or from poses near by."""
-    prepared, light_torque = case.prepared, case.drive.load.light_torque
-    if case.torque == 0.0:
-        named = "load.torque" if drive.load.torque == 0.0 else "torque"
-        require_preload(prepared.model.geometries, case.drive, angle, named)
-
-    def at_torque(rows: NDArray[np.intp], start: FloatArray | None) -> Equilibrium:
-        return prepared.balance(angle[rows], case.torque, start)
-
-    def at_light_torque(rows: NDArray[np.intp], start: FloatArray | None) -> Equilibrium:
-        return prepared.balance(angle[rows], light_torque, start)
-
-    begin = _poses_near(near, prepared.model)
-    full = balance_what_can_be(at_torque, angle.size, begin) if known is None else all_balanced(known[0])
-    pressures = prepared.model.pressures(full.found.response)
-    try:
-        check_half_widths([case.drive], full.found.response, pressures, case.torque)
-    except DriveError as error:
-        seized = None if case.written is None else seizing_words(case.written)
-        if seized is None:
-            raise
-        raise DriveError([f"temperature: {seized}; {problem}" for problem in error.problems]) from error
-    start = _poses_near(near, prepared.model, light=True)
-    if start is None:
-        start = np.full((angle.size, full.found.pose.shape[1]), np.nan)
-        start[full.rows] = full.found.pose
-    light = full
-    if light_torque != case.torque:
-        try:
-            light = balance_what_can_be(at_light_torque, angle.size, start) if known is None else all_balanced(known[1])
-        except ConvergenceError as error:
-            light = nothing_balanced(full.found, angle.size, error)
-    back = _turned_back(prepared.model, case.drive, full, angle, case.torque)
-    if light.failure is not None and light is not full:
-        light.failure.add(f"load.light_torque = {light_torque:g} N·mm")
-    push = bearing_forces(prepared.model, angle[full.rows], full.found.response)
-    walls = _wall_stresses(prepared.model, full.found, pressures)
-    spread = full.spread((full.found, pressures, push.real, push.imag, walls))
-    of_full, of_pressures, radial, tangential, of_walls = freeze((replace(spread[0], crank_angle=angle), *spread[1:]))
-    analysis = LoadedAnalysis(
-        drive=case.drive,
-        torque=case.torque,
-        engine=case.engine,
-        full=of_full,
-        light=freeze(replace(light.spread(light.found), crank_angle=angle)),
-        model=prepared.model,
-        pressures=of_pressures,
-        bearing_radial=radial,
-        bearing_tangential=tangential,
-        wall_stresses=of_walls,
-        balanced=freeze(full.balanced),
-        balanced_light=freeze(light.balanced),
-        back=None if back is None else freeze(back),
-        written=case.written,
-    )
-    for failure in (full.failure, light.failure):
-        if failure is not None:
-            failure.partial = analysis
-            raise failure
-    return analysis
-
-
 def analysis_of(
     drive: Drive,
     torque: float,
@@ -629,11 +627,9 @@ def _turned_back(
         return None
     other, near = replace(model, friction=friction.reversed()), full.found
 
-    def at_torque(rows: NDArray[np.intp], start: FloatArray | None) -> Equilibrium:
-        return solve_at_output(other, [drive], near.crank_angle[rows], torque, near.pose[rows])
-
+    balance = partial(solve_at_output, other, [drive])
     try:
-        found = balance_what_can_be(at_torque, near.crank_angle.size)
+        found = balance_what_can_be(balance, near.crank_angle, torque, near.pose)
     except ConvergenceError as error:
         found = nothing_balanced(near, near.crank_angle.size, error)
     of_these: Equilibrium = replace(found.spread(found.found), crank_angle=near.crank_angle)

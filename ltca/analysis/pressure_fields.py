@@ -158,13 +158,13 @@ def loads_of(analysis: LoadedAnalysis, contact: str) -> FloatArray:
 def moment_of(analysis: LoadedAnalysis, contact: str, position: int, pair: int) -> float | None:
     """Return the moment of a contact of one kind of `CONTACTS` in slices of a drive of one disc, N·mm; None in the plane."""
     (part,) = analysis.full.response.parts
-    if part.leaning_pins is None or part.leaning_holes is None:
+    rollers = part.rollers.leaning
+    if part.leaning_pins is None or part.leaning_holes is None or rollers is None:
         return None
-    rollers = part.rollers
     moments = {
         "pin": part.leaning_pins.contact.moment,
-        "roller_outer": rollers.outer_moment,
-        "roller_inner": rollers.inner_moment,
+        "roller_outer": rollers.outer.moment,
+        "roller_inner": rollers.inner.moment,
         "hole": part.leaning_holes.contact.moment,
     }[contact]
     return float(np.asarray(moments)[position, pair])

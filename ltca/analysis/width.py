@@ -39,10 +39,11 @@ def width_values(analysis: LoadedAnalysis) -> dict[str, FloatArray]:
     rollers, flank, in_holes = response.rollers, response.leaning_pins, response.leaning_holes
     assert flank is not None
     assert in_holes is not None
+    assert rollers.leaning is not None
     values = {
         "pin_moment": flank.contact.moment,
-        "roller_moment": np.asarray(rollers.outer_moment),
-        "roller_moment_inner": np.asarray(rollers.inner_moment),
+        "roller_moment": rollers.leaning.outer.moment,
+        "roller_moment_inner": rollers.leaning.inner.moment,
         "pin_shaft_moment": in_holes.contact.moment,
         "pin_line_load": pins.line_load,
         "roller_line_load": outer.line_load,

@@ -5,8 +5,6 @@ Modules in the order data passes:
 ===================  ============================================================
 sliced               What contacts in slices are made of, loaded when a drive has them
 stored_energy        Energy that the contacts of a disc store, and the work of contacts that move over the bodies
-contact_laws         Laws of all contacts of a disc, whatever bodies lie behind them
-inner_unknowns       What is unknown beside the pose: places of rollers, deformations, displacements of pins
 response             Contacts at a pose as they are answered: loads of all pairs, their generalised force and its tangent
 pressures            Pressures behind the loads found: read from the laws of the contacts, for shaft pins from their
                      loads

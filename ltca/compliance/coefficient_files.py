@@ -18,7 +18,7 @@ from concurrent.futures import as_completed
 from contextlib import suppress
 from importlib.metadata import entry_points
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from ltca.compliance.coefficients import InfluenceCoefficients, load_coefficients
 from ltca.compliance.near_field import NEAR_FIELDS, NearField
@@ -37,6 +37,7 @@ from ltca.reading.coefficient_file import require_laws, write_coefficients
 if TYPE_CHECKING:
     import xarray as xr
 
+Content = TypeVar("Content")
 GROUP = "cyclo.derivations"
 DERIVATION = "finite-elements"
 SHIPPED = Path(__file__).parents[1] / "drives" / "coefficients"
@@ -158,11 +159,7 @@ def find_coefficients(
     require(drive, _ENGINES[near_field])
     if files is not None:
         return _load_first_that_fits(files, drive, bodies)[1]
-    found = _kept(drive, bodies)
-    if found is None:
-        _derive_missing({drive.name: drive}, bodies)
-        found = load_coefficients(cached_file(drive, bodies), drive, lawful="quick")
-    return found
+    return _kept_or_derived({drive.name: drive}, bodies)[drive.name]
 
 
 def find_case_coefficients(
@@ -201,6 +198,11 @@ def find_case_coefficients(
     cases = {label: single for name, drive in cases.items() for label, single in _discs(name, drive)}
     if files:
         return _load_each(cases, files, bodies)
+    return _kept_or_derived(cases, bodies)
+
+
+def _kept_or_derived(cases: Mapping[str, Drive], bodies: Bodies) -> dict[str, InfluenceCoefficients]:
+    """Coefficients of drives of one disc by name; those that are not kept are derived, of each shape once."""
     kept = {name: _kept(drive, bodies) for name, drive in cases.items()}
     _derive_missing({name: drive for name, drive in cases.items() if kept[name] is None}, bodies)
     return {
@@ -256,11 +258,16 @@ def _kept(drive: Drive, bodies: Bodies) -> InfluenceCoefficients | None:
     """
     if (path := shipped_file(drive, bodies)) is not None:
         return load_coefficients(path, drive, lawful="quick")
-    path = cached_file(drive, bodies)
+    return read_kept(file_name(drive, bodies), lambda path: load_coefficients(path, drive, lawful="quick"))
+
+
+def read_kept(name: str, read: Callable[[Path], Content]) -> Content | None:
+    """Return what a derived file in the cache holds; None where there is none, or a damaged one, which is made again."""
+    path = kept_file(name)
     if not path.exists():
         return None
     try:
-        return load_coefficients(path, drive, lawful="quick")
+        return read(path)
     except DamagedFileError as error:
         print(f"warning: {error}; derived again", file=sys.stderr)
         with suppress(OSError):

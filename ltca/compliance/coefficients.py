@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.arrays import FloatArray
-from ltca.compliance.stress_coefficients import NO_STRESSES, StressCoefficients, read_stress_coefficients
+from ltca.compliance.stress_coefficients import StressCoefficients, read_stress_coefficients
 from ltca.drive.parts import Bodies, Clearance, Drive, Material
 from ltca.drive.single_discs import nominal_shape
 from ltca.errors import CycloError, DamagedFileError, DriveError
@@ -83,7 +83,7 @@ class InfluenceCoefficients:
         Of the inner race, by the angle between place and load.
     disc_logarithm, pin_logarithm, roller_logarithm, race_logarithm : float
         Factor κ of −ln(distance) in each body, mm/N or rad/(N·mm).
-    stress : StressCoefficients
+    stress : StressCoefficients or None
         Stress along the walls of the disc, where the file has it.
     code_hash : str
         Of the code that derived them, where the file says so.
@@ -108,7 +108,7 @@ class InfluenceCoefficients:
     pin_logarithm: float
     roller_logarithm: float
     race_logarithm: float
-    stress: StressCoefficients = NO_STRESSES
+    stress: StressCoefficients | None = None
     code_hash: str = ""
     warning: str = ""
     tilting: InfluenceCoefficients | None = None
@@ -131,20 +131,16 @@ class InfluenceCoefficients:
         DriveError
             When the numbers of bores or holes differ.
         """
-        if drive.crank.number != len(self.bores):
-            raise DriveError(
-                [
-                    f"crank.number = {drive.crank.number}: must be {len(self.bores)}, that of the drive whose influence "
-                    "coefficients are shared"
-                ]
-            )
-        if drive.number_of_holes != len(self.holes):
-            raise DriveError(
-                [
-                    f"pin_shaft.number_of_pins = {drive.number_of_holes}: must be {len(self.holes)}, that of the "
-                    "drive whose influence coefficients are shared"
-                ]
-            )
+        counts = (
+            ("crank.number", drive.crank.number, self.bores),
+            ("pin_shaft.number_of_pins", drive.number_of_holes, self.holes),
+        )
+        if wrong := [
+            f"{name} = {number}: must be {len(walls)}, that of the drive whose influence coefficients are shared"
+            for name, number, walls in counts
+            if number != len(walls)
+        ]:
+            raise DriveError(wrong[:1])
         fingerprint = drive.shape_fingerprint(self.bodies)
         return replace(self, fingerprint=fingerprint, shared=self.shared or fingerprint != self.fingerprint)
 
@@ -164,7 +160,7 @@ class InfluenceCoefficients:
         flank, *walls = turned_boundaries((self.flank, *self.bores, *self.holes), **how)
         bores, holes = tuple(walls[:cranks]), tuple(walls[cranks:])
         tilting = None if self.tilting is None else self.tilting.placed_in(drive)
-        placed = self.stress.placed(**how)
+        placed = None if self.stress is None else self.stress.placed(**how)
         return replace(self, flank=flank, bores=bores, holes=holes, stress=placed, tilting=tilting)
 
     def with_roller_length(self, length: float) -> InfluenceCoefficients:
@@ -432,8 +428,10 @@ def _smooth_parts(data: Labelled, drive: Drive, *, shared: bool, tilts: bool = F
     pin_logarithm = logarithm(drive.flank_pin, thickness)
     roller_logarithm = logarithm(parts.roller, length)
     race_logarithm = logarithm(parts.inner_race, thickness)
-    own = _self_logarithm(data["pin_half_width"].values)
-    roller = approach("roller") + roller_logarithm * np.diag(_self_logarithm(data["roller_half_width"].values))
+    of_pin, of_roller = (
+        _mean_logarithm(0.0 * b, b, b) for b in (data["pin_half_width"].values, data["roller_half_width"].values)
+    )
+    roller = approach("roller") + roller_logarithm * np.diag(of_roller)
     angle = data["race_angle"].values
     race_half_width = np.full(angle.shape, float(data["race_half_width"].values))
     chord = 2.0 * drive.crank_bearing.inner_race_radius * np.abs(np.sin(0.5 * angle))
@@ -447,7 +445,7 @@ def _smooth_parts(data: Labelled, drive: Drive, *, shared: bool, tilts: bool = F
         bores=tuple(walls[: drive.crank.number]),
         holes=tuple(walls[drive.crank.number :]),
         disc=0.5 * (disc + disc.T),
-        pin=float(approach("pin") + pin_logarithm * own),
+        pin=float(approach("pin") + pin_logarithm * of_pin),
         roller=roller,
         race=race,
         disc_logarithm=disc_logarithm,
@@ -455,10 +453,6 @@ def _smooth_parts(data: Labelled, drive: Drive, *, shared: bool, tilts: bool = F
         roller_logarithm=roller_logarithm,
         race_logarithm=race_logarithm,
     )
-
-
-def _self_logarithm(half_width: FloatArray) -> FloatArray:
-    return np.asarray(np.log(0.5 * half_width) - 0.25)
 
 
 def without_coupling(drive: Drive) -> InfluenceCoefficients:

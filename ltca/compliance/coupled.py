@@ -20,12 +20,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.arrays import FloatArray
-from ltca.compliance import sliced
 from ltca.compliance.coefficients import SOLID, InfluenceCoefficients
-from ltca.compliance.contact_laws import ContactLaws
+from ltca.compliance.half_space import shaft_pin_springs
 from ltca.compliance.near_field import NearField, NearFieldLaws, OwnParts
 from ltca.compliance.pressures import pressures_in_slices, pressures_of_law
 from ltca.compliance.response import (
+    ContactLaws,
     ContactPressures,
     DiscResponse,
     KindPressures,
@@ -38,13 +38,11 @@ from ltca.errors import DriveError
 from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.backed import (
     back_shaft_pins,
-    shaft_pin_seat,
     shaft_pin_stiffness,
     tip_share,
     tip_slope,
 )
 from ltca.laws.contact_law import ContactLaw
-from ltca.laws.spring import SpringLaw
 
 
 @dataclass(frozen=True)
@@ -132,10 +130,6 @@ class CoupledCompliance:
         What the spring of the shaft pin yields behind the near field, mm/N; zero where it is the law.
     race : array, shape (rollers, rollers)
         Coefficients between the inner contacts of the rollers, which feel those on their own race alone, mm/N.
-    outer_radius, inner_radius : array, shape (rollers,)
-        Effective radii of the rollers' contacts, mm.
-    hole_radius : array, shape (z_PS,)
-        Effective radii of shaft pins and holes, mm.
     own : OwnParts
         What each contact's own body parts add to the diagonal of C.
     race_tilting : array, shape (rollers, rollers), or None
@@ -150,9 +144,6 @@ class CoupledCompliance:
     hole_law: ContactLaw
     hole_spring: float
     race: FloatArray
-    outer_radius: FloatArray
-    inner_radius: FloatArray
-    hole_radius: FloatArray
     own: OwnParts
     race_tilting: FloatArray | None = None
 
@@ -201,21 +192,14 @@ class CoupledCompliance:
             solid=coefficients.plane == SOLID,
         )
         body = coefficients.placed_in(drive).with_roller_length(drive.roller_length)
-        stiffness = shaft_pin_stiffness(drive)
-        slices, width = drive.contact.slices, drive.disc.thickness
+        slices = drive.contact.slices
         # In slices a beam bends behind its contact, under the forces of all discs (`ltca.compliance.pin_flexibility`).
         bends_behind = slices > 1 and shaft_pin_beam(drive) is not None
         at_hole: Any = laws.hole
         if not hole_near_field and not bends_behind:
-            at_hole = (
-                SpringLaw(stiffness=stiffness)
-                if slices == 1
-                else sliced.back_line(
-                    sliced.SlicedSpring(stiffness=stiffness, length=width, slices=slices),
-                    shaft_pin_seat(drive),
-                    place.shaft_pin_plays,
-                )
-            )
+            at_hole = shaft_pin_springs(drive, place.shaft_pin_plays)
+        elif slices == 1:
+            at_hole = back_shaft_pins(drive, at_hole, place.shaft_pin_plays, laws.depth)
         # A sleeve's own law has all that it yields (`ltca.laws.backed`).
         bare = drive.pin_shaft is not None and drive.pin_shaft.seat.kind == "fixed"
         own = OwnParts.of_drive(drive, geometry, body, near_field, laws.datum, elastic_shaft_pins=yields and bare)
@@ -227,14 +211,9 @@ class CoupledCompliance:
             geometry=geometry,
             coefficients=body,
             near_field=laws,
-            hole_law=at_hole
-            if slices > 1
-            else back_shaft_pins(drive, at_hole, place.shaft_pin_plays, laws.depth if hole_near_field else None),
-            hole_spring=1.0 / stiffness if hole_near_field and not bends_behind else 0.0,
+            hole_law=at_hole,
+            hole_spring=1.0 / shaft_pin_stiffness(drive) if hole_near_field and not bends_behind else 0.0,
             race=race + own.inner * np.eye(race.shape[0]),
-            outer_radius=place.outer_effective_radii,
-            inner_radius=place.inner_effective_radii,
-            hole_radius=place.hole_effective_radii,
             own=own,
             race_tilting=tilting,
         )
@@ -242,9 +221,12 @@ class CoupledCompliance:
     @property
     def contact_laws(self) -> ContactLaws:
         """Laws of the contacts."""
-        near = self.near_field
+        near, place = self.near_field, self.geometry.placement
         return ContactLaws(
-            (near.pin, near.outer, self.hole_law, near.inner), self.outer_radius, self.hole_radius, self.inner_radius
+            (near.pin, near.outer, self.hole_law, near.inner),
+            place.outer_effective_radii,
+            place.hole_effective_radii,
+            place.inner_effective_radii,
         )
 
     def body_flexibility(self, places: tuple[Any, ...], loaded: Sequence[NDArray[np.intp]]) -> list[BodyFlexibility]:
@@ -263,26 +245,27 @@ class CoupledCompliance:
 
     def pressures(self, response: DiscResponse) -> ContactPressures:
         """Return pressures and half-widths from the near fields, of contacts in slices from their line loads."""
-        laws = self.near_field
+        laws, place = self.near_field, self.geometry.placement
         if response.leaning_pins is not None:
-            place, rigid = self.geometry.placement, laws.rigid_shaft_pins
+            rigid = laws.rigid_shaft_pins
             at_hole: Any = laws.hole
             modulus = getattr(at_hole, "contact", at_hole).contact_modulus
             kinds = replace(laws.kinds, holes=replace(laws.kinds.holes, contact_modulus=modulus))
             return pressures_in_slices(response, kinds, place, has_ends=laws.has_ends, rigid_shaft_pins=rigid)
         assert response.deformation is not None
         near = response.deformation[:, 0]
-        pins, rollers = response.pin_load.shape[1], self.outer_radius.size
-        inner, _ = laws.inner.approach_at_load(response.rollers.inner_load, self.inner_radius)
-        hole, _ = laws.hole.approach_at_load(response.hole_load, self.hole_radius)
+        outer_radius, hole_radius, inner_radius = self.contact_laws[1:]
+        pins, rollers = response.pin_load.shape[1], outer_radius.size
+        inner, _ = laws.inner.approach_at_load(response.rollers.inner_load, inner_radius)
+        hole, _ = laws.hole.approach_at_load(response.hole_load, hole_radius)
 
         def read(law: ContactLaw, kind: ContactKind, approach: FloatArray, radius: FloatArray) -> KindPressures:
             return pressures_of_law(law, kind if laws.has_ends else None, approach, radius)
 
         return ContactPressures(
             pins=read(laws.pin, laws.kinds.pins, near[:, :pins], response.flank.effective_radius),
-            outer=read(laws.outer, laws.kinds.outer, near[:, pins : pins + rollers], self.outer_radius),
-            inner=read(laws.inner, laws.kinds.inner, inner, self.inner_radius),
-            holes=read(laws.hole, laws.kinds.holes, hole, self.hole_radius),
+            outer=read(laws.outer, laws.kinds.outer, near[:, pins : pins + rollers], outer_radius),
+            inner=read(laws.inner, laws.kinds.inner, inner, inner_radius),
+            holes=read(laws.hole, laws.kinds.holes, hole, hole_radius),
             rigid_shaft_pins=laws.rigid_shaft_pins,
         )

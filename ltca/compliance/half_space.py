@@ -9,15 +9,14 @@ import numpy as np
 
 from ltca.arrays import FloatArray, by_drive
 from ltca.compliance import sliced
-from ltca.compliance.contact_laws import ContactLaws
 from ltca.compliance.pressures import elastic_hole_pressures, pressures_in_slices, pressures_of_law
-from ltca.compliance.response import ContactPressures, DiscResponse
+from ltca.compliance.response import ContactLaws, ContactPressures, DiscResponse
 from ltca.contact.tracked_grid import ContactKind, ContactKinds
 from ltca.drive.hole_contact import hole_modulus, shaft_pins_yield
-from ltca.drive.parts import Drive, LengthProfile, Material, PinShaft, PinWheel, contact_modulus
+from ltca.drive.parts import Drive, LengthProfile, PinShaft, PinWheel
 from ltca.drive.pin_beams import shaft_pin_beam
 from ltca.geometry.flank import FlankProfile
-from ltca.geometry.length_profile import generator_profile, lead_relief
+from ltca.geometry.length_profile import lead_relief
 from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.backed import (
     HALF_SPACE_DATUM,
@@ -101,91 +100,56 @@ class HalfSpaceCompliance:
         that differ little have the same.
         """
         geometry = replace(ContactGeometry.of_drive(drive), tip_share=tip_share(drive), tip_slope=tip_slope(drive))
-        place, bearing, parts = geometry.placement, drive.crank_bearing, drive.materials
-        inner_radius, outer_radius = place.inner_effective_radii, place.outer_effective_radii
-        pin_radii = np.ones(1)
-        if not drive.pin_wheel.pin_profile.is_cylinder:
+        place, bearing, wheel, slices = geometry.placement, drive.crank_bearing, drive.pin_wheel, drive.contact.slices
+        kinds, rigid, pin_radii = kinds or ContactKinds.of_drive(drive), False, np.ones(1)
+        if slices == 1 and not wheel.pin_profile.is_cylinder:
             # A flank without deviations has the same radii on every lobe.
-            lobes = 1 if geometry.profile.deviation is None else drive.pin_wheel.number_of_pins
-            turn = np.linspace(0.0, 2.0 * np.pi * lobes / drive.pin_wheel.number_of_pins, SAMPLES_PER_LOBE * lobes + 1)
+            lobes = 1 if geometry.profile.deviation is None else wheel.number_of_pins
+            turn = np.linspace(0.0, 2.0 * np.pi * lobes / wheel.number_of_pins, SAMPLES_PER_LOBE * lobes + 1)
             pin_radii = _effective_radii(geometry.profile, place.wheel_pin_radii, turn)
 
-        def roller_law(race: Material, effective_radii: FloatArray) -> ContactLaw:
+        def law(
+            kind: ContactKind, profile: LengthProfile, radius: float, radii: FloatArray, part: PinWheel | None = None
+        ) -> Any:
+            if slices > 1:
+                return _line(drive, kind, part)
             return law_for_profile(
-                bearing.roller_profile,
-                length=drive.roller_length,
-                radius=bearing.roller_radius,
-                contact_modulus=contact_modulus(race, parts.roller),
-                effective_radii=effective_radii,
+                profile,
+                length=kind.length,
+                radius=radius,
+                contact_modulus=kind.contact_modulus,
+                effective_radii=radii,
                 on_ladder=in_batch,
             )
 
-        if drive.contact.slices > 1:
-            return cls.in_slices(drive, geometry, kinds)
-        on_flank = law_for_profile(
-            drive.pin_wheel.pin_profile,
-            length=drive.disc.thickness,
-            radius=drive.pin_wheel.pin_radius,
-            contact_modulus=contact_modulus(parts.disc, drive.flank_pin),
-            effective_radii=pin_radii,
-            on_ladder=in_batch,
+        inner_radius, outer_radius = place.inner_effective_radii, place.outer_effective_radii
+        rollers = RollerLaws(
+            inner=law(kinds.inner, bearing.roller_profile, bearing.roller_radius, inner_radius),
+            outer=law(kinds.outer, bearing.roller_profile, bearing.roller_radius, outer_radius),
+            inner_radius=inner_radius,
+            outer_radius=outer_radius,
         )
-        return cls(
-            geometry=geometry,
-            pin_law=back_wheel_pins(drive, on_flank, place.wheel_pin_plays),
-            roller_laws=RollerLaws(
-                inner=roller_law(parts.inner_race, inner_radius),
-                outer=roller_law(parts.disc, outer_radius),
-                inner_radius=inner_radius,
-                outer_radius=outer_radius,
-            ),
-            hole_law=back_shaft_pins(drive, SpringLaw(stiffness=shaft_pin_stiffness(drive)), place.shaft_pin_plays),
-            kinds=ContactKinds.of_drive(drive),
-        )
-
-    @classmethod
-    def in_slices(
-        cls, drive: Drive, geometry: ContactGeometry, kinds: ContactKinds | None = None
-    ) -> HalfSpaceCompliance:
-        """Return the model with contacts in slices."""
-        bearing, place, slices = drive.crank_bearing, geometry.placement, drive.contact.slices
-
-        def profile(given: LengthProfile, length: float, radius: float) -> FloatArray | float:
-            found = generator_profile(given, length, radius)
-            return 0.0 if found is None else found.relief(sliced.slice_heights(length, slices))
-
-        kinds = kinds or ContactKinds.of_drive(drive)  # the law has the lead, in which drives of a batch may differ
-        wide, long = drive.disc.thickness, drive.roller_length
-        of_pin = profile(drive.pin_wheel.pin_profile, wide, drive.pin_wheel.pin_radius)
-        of_roller = profile(bearing.roller_profile, long, bearing.roller_radius)
-        flank = _line(
-            drive,
-            kinds.pins,
-            of_pin + lead_relief(drive.disc, sliced.slice_heights(wide, slices)),
-            drive.pin_wheel,
-        )
-        pins: Any = sliced.back_line(flank, wheel_pin_seat(drive), place.wheel_pin_plays)
-        rigid = False
-        if shaft_pin_beam(drive) is None:
-            spring = sliced.SlicedSpring(stiffness=shaft_pin_stiffness(drive), length=wide, slices=slices)
-            hole: Any = sliced.back_line(spring, shaft_pin_seat(drive), place.shaft_pin_plays)
+        pins = law(kinds.pins, wheel.pin_profile, wheel.pin_radius, pin_radii, wheel)
+        if slices == 1:
+            pins = back_wheel_pins(drive, pins, place.wheel_pin_plays)
         else:
+            pins = sliced.back_line(pins, wheel_pin_seat(drive), place.wheel_pin_plays)
+            # The law has the lead, in which drives of a batch may differ.
+            kinds = replace(kinds, pins=replace(kinds.pins, lead=None))
+        if slices > 1 and shaft_pin_beam(drive) is not None:
             # A beam bends behind its contact, which says how its load lies along the width.
             rigid = not shaft_pins_yield(drive)
             modulus = hole_modulus(drive, rigid_shaft_pins=rigid)
             kinds = replace(kinds, holes=replace(kinds.holes, contact_modulus=modulus))
             hole = hole_in_slices(drive, kinds.holes, place.shaft_pin_plays)
+        else:
+            hole = shaft_pin_springs(drive, place.shaft_pin_plays)
         return cls(
             geometry=geometry,
             pin_law=pins,
-            roller_laws=RollerLaws(
-                inner=_line(drive, kinds.inner, of_roller),
-                outer=_line(drive, kinds.outer, of_roller),
-                inner_radius=place.inner_effective_radii,
-                outer_radius=place.outer_effective_radii,
-            ),
+            roller_laws=rollers,
             hole_law=hole,
-            kinds=replace(kinds, pins=replace(kinds.pins, lead=None)),
+            kinds=kinds,
             rigid_shaft_pins=rigid,
         )
 
@@ -218,17 +182,17 @@ class HalfSpaceCompliance:
         )
 
 
-def _line(
-    drive: Drive,
-    kind: ContactKind,
-    relief: FloatArray | float,
-    part: PinWheel | PinShaft | None = None,
-) -> Any:
-    """Law in slices of a kind of contacts with what they fall short by; of pins under sleeves with these."""
+def _line(drive: Drive, kind: ContactKind, part: PinWheel | PinShaft | None = None) -> Any:
+    """Law in slices of a kind of contacts with what they fall short by, wheel pins with the lead of the disc, pins with their
+    sleeves.
+    """
     slices, length, modulus = drive.contact.slices, kind.length, kind.contact_modulus
-    held = np.zeros(sliced.slice_heights(length, slices).shape) + relief
+    heights = sliced.slice_heights(length, slices)
+    relief = np.zeros(heights.shape) + (0.0 if kind.generator is None else kind.generator.relief(heights))
+    if part is drive.pin_wheel:
+        relief = relief + lead_relief(drive.disc, heights)
     found = sliced.SlicedLine(
-        length=length, contact_modulus=modulus, slices=slices, relief=held, free_ends=kind.free_ends
+        length=length, contact_modulus=modulus, slices=slices, relief=relief, free_ends=kind.free_ends
     )
     if part is None or part.seat.kind != "sleeve":
         return found
@@ -236,12 +200,21 @@ def _line(
     return replace(found, sleeve=drive.materials.sleeve.plane_strain_compliance * modulus, overlap=twice)
 
 
+def shaft_pin_springs(drive: Drive, play: FloatArray) -> Any:
+    """Return the law of shaft pins on springs that stand for all that yields there, sleeves behind them, with a play, mm."""
+    stiffness, slices = shaft_pin_stiffness(drive), drive.contact.slices
+    if slices == 1:
+        return back_shaft_pins(drive, SpringLaw(stiffness=stiffness), play)
+    spring = sliced.SlicedSpring(stiffness=stiffness, length=drive.disc.thickness, slices=slices)
+    return sliced.back_line(spring, shaft_pin_seat(drive), play)
+
+
 def hole_in_slices(drive: Drive, kind: ContactKind, play: FloatArray) -> Any:
     """Return the law of shaft pins and holes in slices, a kind of contacts, sleeves behind it.
 
     `play` is that of the sleeves on their pins, mm.
     """
-    line = _line(drive, kind, 0.0, drive.pin_shaft)
+    line = _line(drive, kind, drive.pin_shaft)
     return sliced.back_line(line, shaft_pin_seat(drive), play)
 
 

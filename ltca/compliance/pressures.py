@@ -72,16 +72,16 @@ def pressures_in_slices(
     Slices of springs carry evenly where nothing tilts: their line loads are those of aligned lines times what the springs have of
     the mean.
     """
-    rollers, pins, holes = response.rollers, response.leaning_pins, response.leaning_holes
-    if pins is None or holes is None or rollers.outer_lines is None or rollers.inner_lines is None:
+    rollers, pins, holes = response.rollers.leaning, response.leaning_pins, response.leaning_holes
+    if pins is None or holes is None or rollers is None:
         raise ValueError("contacts have no slices")
     of_holes, radius = holes.contact.line_load, place.hole_effective_radii
     if shaft_pins_on_springs:
         of_holes = _between_ends(kinds.holes, of_holes, holes.contact.load, radius)
     found = (
         _of_slices(kinds.pins, pins.contact.line_load, response.flank.effective_radius, has_ends),
-        _of_slices(kinds.outer, rollers.outer_lines, place.outer_effective_radii, has_ends),
-        _of_slices(kinds.inner, rollers.inner_lines, place.inner_effective_radii, has_ends),
+        _of_slices(kinds.outer, rollers.outer.line_load, place.outer_effective_radii, has_ends),
+        _of_slices(kinds.inner, rollers.inner.line_load, place.inner_effective_radii, has_ends),
         _of_slices(kinds.holes, of_holes, radius, has_ends),
     )
     return ContactPressures(

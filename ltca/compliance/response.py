@@ -7,21 +7,40 @@ carry together, and `ltca.equilibrium.reducer` adds what holds them.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, fields, replace
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.coefficients import InfluenceCoefficients
-from ltca.compliance.contact_laws import ContactLaws
-from ltca.compliance.inner_unknowns import Following, Inner
 from ltca.geometry.coordinates import DISC_PLACE, X, Y
 from ltca.geometry.pair_motion import FlankMotion, KnownPins, PairMotion, PairTilt, RollerRays
 from ltca.geometry.pairs import ContactGeometry
 
 if TYPE_CHECKING:
     from ltca.laws.sliced_contact import SlicedContact
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LeaningRollers:
+    """Balanced rollers in slices.
+
+    Attributes
+    ----------
+    lean : array, shape (positions, rollers)
+        Along their rays, rad.
+    inner_tilt, outer_tilt : array, shape (positions, rollers)
+        Tilts of their contacts, rad, positive presses positive z.
+    inner, outer : SlicedContact
+        What these carry, moments about mid-length; that on the disc acts along the ray.
+    """
+
+    lean: FloatArray
+    inner_tilt: FloatArray
+    outer_tilt: FloatArray
+    inner: SlicedContact
+    outer: SlicedContact
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -38,16 +57,8 @@ class RollerState:
         N.
     outer_direction : array of complex, shape (positions, rollers)
         Unit vector from the bore centre to the roller, the direction of the load on the disc.
-    inner_moment, outer_moment : array, shape (positions, rollers), or None
-        In slices about mid-length, N·mm; that on the disc acts along the ray.
-    lean : array, shape (positions, rollers), or None
-        In slices along their rays, rad.
-    inner_tilt, outer_tilt : array, shape (positions, rollers), or None
-        Tilts of their contacts, rad, positive presses positive z.
-    inner_slices, outer_slices : array, shape (positions, rollers, slices), or None
-        Loads of their slices, N.
-    inner_lines, outer_lines : array, shape (positions, rollers, slices, points), or None
-        Their line loads at the points of the slices, N/mm.
+    leaning : LeaningRollers or None
+        Rollers in slices; None in the plane.
     """
 
     share: FloatArray
@@ -56,15 +67,7 @@ class RollerState:
     inner_load: FloatArray
     outer_load: FloatArray
     outer_direction: ComplexArray
-    inner_moment: FloatArray | None = None
-    outer_moment: FloatArray | None = None
-    lean: FloatArray | None = None
-    inner_tilt: FloatArray | None = None
-    outer_tilt: FloatArray | None = None
-    inner_slices: FloatArray | None = None
-    outer_slices: FloatArray | None = None
-    inner_lines: FloatArray | None = None
-    outer_lines: FloatArray | None = None
+    leaning: LeaningRollers | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -96,8 +99,6 @@ class DiscResponse:
     ----------
     force : array, shape (positions, coordinates)
         Generalised contact force Σ F ∂δ/∂q, of `ltca.geometry.coordinates`: N and N·mm.
-    tangent : array, shape (positions, coordinates, coordinates)
-        Its derivative by the pose.
     flank : FlankMotion
         Kinematics of the wheel pins.
     holes : PairMotion
@@ -112,23 +113,16 @@ class DiscResponse:
         Leans of wheel pins and shaft pins at the disc in slices, rad.
     ring : array of complex, shape (positions, z_P), or None
         What the ring of the wheel moves the wheel pins in the turning wheel, mm, a part of `shifts`; None where it is rigid.
-    follow : Following or None
-        How the inner unknowns follow the pose, of all discs.
     friction : array, shape (positions, pairs), or None
         Forces of wheel pins and shaft pins along their tangents, N; None without friction.
     leaning_pins, leaning_holes : LeaningPairs or None
         Wheel pins and shaft pins in slices; None in the plane.
-    left : array, shape (positions,), or None
-        Force that contacts, or displacements of pins, which have not settled amount to, N; None where all have.
-    inner : Inner or None
-        Inner unknowns of the one system of all contacts (`ltca.mechanics.contacts`).
     deformation : array, shape (positions, components, contacts), or None
         Of contacts that bodies couple, what their own laws take of the approaches and, in slices, of the tilts at half the
         thickness of the disc, mm: wheel pins, rollers in the bores, holes, rollers on the races.
     """
 
     force: FloatArray
-    tangent: FloatArray
     flank: FlankMotion
     holes: PairMotion
     rollers: RollerState
@@ -137,12 +131,9 @@ class DiscResponse:
     shifts: ComplexArray | None = None
     leans: ComplexArray | None = None
     ring: ComplexArray | None = None
-    follow: Following | None = None
     friction: FloatArray | None = None
     leaning_pins: LeaningPairs | None = None
     leaning_holes: LeaningPairs | None = None
-    left: FloatArray | None = None
-    inner: Inner | None = None
     deformation: FloatArray | None = None
 
     @property
@@ -206,12 +197,21 @@ class Response(DiscResponse):
     ----------
     parts : tuple of DiscResponse
         Of each disc, by its own pose.
+    tangent : array, shape (positions, coordinates, coordinates)
+        Derivative of the force by the pose.
     contact_stiffness : array, shape (positions, coordinates)
         Diagonal of the tangent without supports.
+    left : array, shape (positions,)
+        Force that contacts, or displacements of pins, which have not settled amount to, N.
+    inner : Inner or None
+        Inner unknowns beside the pose; None of one disc of several.
     """
 
     parts: tuple[DiscResponse, ...]
+    tangent: FloatArray = field(default_factory=lambda: np.zeros((0, 0, 0)))
     contact_stiffness: FloatArray = field(default_factory=lambda: np.zeros((0, 0)))
+    left: FloatArray = field(default_factory=lambda: np.zeros(0))
+    inner: Inner | None = None
 
     @classmethod
     def of_disc(cls, part: DiscResponse) -> Response:
@@ -231,8 +231,8 @@ class Response(DiscResponse):
     @property
     def kept(self) -> Response:
         """The response of balanced positions without what the search alone asks for, which is two fifths of one on a ring."""
-        follow = None if self.follow is None else self.follow.kept
-        return replace(self, follow=follow, parts=tuple(part.kept for part in self.parts))
+        inner = None if self.inner is None else self.inner.kept
+        return replace(self, inner=inner, parts=tuple(part.kept for part in self.parts))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -315,6 +315,21 @@ class ContactPressures:
     rigid_shaft_pins: bool
 
 
+class ContactLaws(NamedTuple):
+    """Laws of the contacts of a disc: wheel pins, rollers in bores, shaft pins, rollers on races; and effective radii, mm,
+    of those that have one of their own.
+    """
+
+    laws: tuple[Any, Any, Any, Any]
+    outer_radius: FloatArray
+    hole_radius: FloatArray
+    inner_radius: FloatArray
+
+    def placed(self, flank: FlankMotion) -> tuple[Any, Any, Any, Any]:
+        """Return the laws with the wheel pins where they are on the flank: tabulated laws are the same everywhere."""
+        return self.laws
+
+
 class DiscModel(Protocol):
     """How the contacts of one disc yield."""
 
@@ -344,6 +359,71 @@ class DiscModel(Protocol):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Inner:
+    """What is unknown beside the pose, as it was found at some pose, and how it follows the pose to first order.
+
+    Attributes
+    ----------
+    pose : array, shape (positions, coordinates)
+        Where it was found.
+    place, lean : array, shape (positions, rollers)
+        Of the rollers: inward from where they only touch the race, and lean along their rays by half the thickness of the disc,
+        zero in the plane, mm; not a number where they are not known.
+    approach : array, shape (positions, components, contacts), or None
+        Deformations e, mm; None where they are the approaches themselves.
+    shifts : array of complex, shape (positions, rows, pairs), or None
+        Displacements u of the pins, mm; None where none is known.
+    near : tuple of array
+        What the laws of each disc and kind start from nearby (`ltca.laws.sliced_contact.SlicedContact.near`); empty in the plane.
+    by_pose, approach_by_pose, shifts_by_pose : array or None
+        Derivatives by the pose; None where they are not known.
+    columns : tuple of tuple of int
+        Coordinates by which `by_pose` has the derivatives of the rollers of each disc; empty for all.
+    """
+
+    pose: FloatArray
+    place: FloatArray
+    lean: FloatArray
+    approach: FloatArray | None
+    shifts: ComplexArray | None
+    near: tuple[FloatArray, ...]
+    by_pose: FloatArray | None = None
+    approach_by_pose: FloatArray | None = None
+    shifts_by_pose: ComplexArray | None = None
+    columns: tuple[tuple[int, ...], ...] = ()
+
+    @property
+    def kept(self) -> Inner:
+        """The same without derivatives, for balanced positions that are kept."""
+        return replace(self, by_pose=None, approach_by_pose=None, shifts_by_pose=None)
+
+    @property
+    def elsewhere(self) -> Inner:
+        """What other positions have in common with these: neither places of rollers nor displacements of pins."""
+        return replace(self.kept, place=np.full_like(self.place, np.nan), shifts=None)
+
+    def at(self, pose: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray | None, ComplexArray | None]:
+        """Return places and leans of rollers, deformations and displacements of pins to expect at other poses."""
+        place, lean, approach, shifts = self.place, self.lean, self.approach, self.shifts
+        if self.by_pose is None:
+            return place, lean, approach, shifts
+        moved = (pose - self.pose)[:, None, :, None]
+        if self.columns:
+            rollers = zip(np.split(self.by_pose, len(self.columns), axis=1), self.columns, strict=True)
+            change = np.concatenate([np.matmul(part, moved[:, :, own])[..., 0] for part, own in rollers], axis=1)
+        else:
+            change = np.matmul(self.by_pose, moved)[..., 0]
+        place = place + change[..., 0]
+        if change.shape[-1] > 1:
+            lean = lean + change[..., 1]
+        if approach is not None and self.approach_by_pose is not None:
+            approach = approach + np.matmul(self.approach_by_pose, moved)[..., 0]
+        if shifts is not None and self.shifts_by_pose is not None:
+            shifts = shifts + np.matmul(self.shifts_by_pose, moved)[..., 0]
+        return place, lean, approach, shifts
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Start:
     """Inner unknowns of a neighbouring pose, to start from.
 
@@ -356,8 +436,6 @@ class Start:
     known : KnownPins or None
         Approaches of the pins of these drives at other poses, by which a model may leave out pins that cannot touch; None
         where all are asked for.
-    follow : Following or None
-        How the inner unknowns follow the pose, of the same positions.
     inner : Inner or None
         Inner unknowns of the one system of all contacts.
     """
@@ -365,18 +443,12 @@ class Start:
     parameter: FloatArray
     share: FloatArray
     known: KnownPins | None = None
-    follow: Following | None = None
     inner: Inner | None = None
 
     @classmethod
     def after(cls, response: Response) -> Start:
         """Return the start that a response gives for poses near it, also of other drives and angles."""
-        return cls(
-            parameter=response.flank.parameter,
-            share=response.rollers.share,
-            follow=response.follow,
-            inner=response.inner,
-        )
+        return cls(parameter=response.flank.parameter, share=response.rollers.share, inner=response.inner)
 
     @classmethod
     def onward(cls, response: Response) -> Start:
@@ -412,7 +484,7 @@ def bearing_moments(rollers: RollerState, rays: RollerRays, cranks: int) -> Comp
     """Return what every crank bearing presses the lean of the disc with, x + iy, shape (positions, cranks), N·mm; zero where
     rollers do not lean.
     """
-    if rollers.outer_moment is None:
+    if rollers.leaning is None:
         return np.zeros((rays.direction.shape[0], cranks), dtype=complex)
-    each = rollers.outer_moment * rays.direction
+    each = rollers.leaning.outer.moment * rays.direction
     return np.asarray(each.reshape(each.shape[0], cranks, -1).sum(axis=2))

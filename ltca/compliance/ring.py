@@ -14,15 +14,16 @@ the even part of the pressure :math:`p = \sum p_n \cos n\theta` of the unit forc
 from __future__ import annotations
 
 import sys
+from functools import partial
 from math import pi
+from pathlib import Path
 
 import numpy as np
 
 from ltca.arrays import FloatArray
-from ltca.compliance.coefficient_files import cache_folder, derivation, kept_file, require_cache
+from ltca.compliance.coefficient_files import cache_folder, derivation, kept_file, read_kept, require_cache
 from ltca.drive.parts import Drive
 from ltca.drive.ring_shape import has_ring_of_elements, loaded_half_arc, ring_fingerprint, ring_shape
-from ltca.errors import DamagedFileError
 from ltca.laws.backed import SLOT_DATUM
 from ltca.laws.ring_beam import beam_flexibility, beyond_rigid_motions, on_bolts, rigid_motions
 from ltca.output.locks import held
@@ -98,49 +99,30 @@ def derive_beforehand(drive: Drive) -> None:
 
 
 def _known(drive: Drive) -> FloatArray:
-    """The content of the file of a drive's ring, found once in a process."""
-    key = ring_fingerprint(drive)
-    if key not in _KNOWN:
-        while len(_KNOWN) >= MAX_KNOWN:
-            del _KNOWN[next(iter(_KNOWN))]
-        _KNOWN[key] = _found(drive)
-    return _KNOWN[key]
+    """The content of the file of a drive's ring, found once in a process: from the cache, or newly derived and kept there."""
+    key, name = ring_fingerprint(drive), file_name(drive)
+    if key in _KNOWN:
+        return _KNOWN[key]
+    read = partial(_read, drive)
+    if (found := read_kept(name, read)) is None:
+        derive = derivation(DERIVATION)
+        require_cache()
+        with held(cache_folder() / f".{name}.lock", "the cache", "derive", wait=True):
+            if (found := read_kept(name, read)) is None:  # no other process was faster
+                path = cache_folder() / name
+                print(
+                    f"deriving the ring of {drive.name}, once for each shape (some seconds; kept in {path.parent})",
+                    file=sys.stderr,
+                )
+                write_ring(derive(drive), path)
+                found = read(kept_file(name))
+    while len(_KNOWN) >= MAX_KNOWN:
+        del _KNOWN[next(iter(_KNOWN))]
+    _KNOWN[key] = found
+    return found
 
 
-def _found(drive: Drive) -> FloatArray:
-    """The same from the cache, or newly derived and kept there."""
-    name = file_name(drive)
-    if (found := _kept(drive)) is not None:
-        return found
-    derive = derivation(DERIVATION)
-    require_cache()
-    with held(cache_folder() / f".{name}.lock", "the cache", "derive", wait=True):
-        if (found := _kept(drive)) is not None:  # another process was faster
-            return found
-        path = cache_folder() / name
-        print(
-            f"deriving the ring of {drive.name}, once for each shape (some seconds; kept in {path.parent})",
-            file=sys.stderr,
-        )
-        write_ring(derive(drive), path)
-    return _read(drive)
-
-
-def _kept(drive: Drive) -> FloatArray | None:
-    """The flexibility in the cache; None where there is none, or a damaged file, which is made again."""
-    path = kept_file(file_name(drive))
-    if not path.exists():
-        return None
-    try:
-        return _read(drive)
-    except DamagedFileError as error:
-        print(f"warning: {error}; derived again", file=sys.stderr)
-        path.unlink(missing_ok=True)
-        return None
-
-
-def _read(drive: Drive) -> FloatArray:
-    path = kept_file(file_name(drive))
+def _read(drive: Drive, path: Path) -> FloatArray:
     dataset = read_ring(path)
     require_same_ring(dataset, drive, str(path))
     found: FloatArray = dataset["flexibility"].values.astype(float)

@@ -15,42 +15,35 @@ approaches and tilts, F loads and moments, and a law stores what its slices do t
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol, TypeAlias
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ltca.arrays import FloatArray
-from ltca.laws.contact_law import ContactLaw
-
-if TYPE_CHECKING:
-    from ltca.laws.sliced_contact import SlicedContact
 
 RADIUS_STEP = 1e-4
 """Relative step of an effective radius for the derivative of an energy."""
 
-Pressed: TypeAlias = tuple[ContactLaw, FloatArray, FloatArray]
-"""Law of contacts of one kind, their approaches, shape (positions, pairs), and effective radii, mm."""
 
+class Pressed(NamedTuple):
+    """Contacts of one kind: their law, approaches, shape (positions, pairs), and effective radii, mm; in slices tilts, and what
+    they start from (`ltca.laws.sliced_contact.SlicedContact.near`).
+    """
 
-class LawInSlices(Protocol):
-    """Law of contacts in slices that tells what they store."""
+    law: Any
+    approach: FloatArray
+    radius: FloatArray
+    tilt: FloatArray | None = None
+    near: FloatArray | None = None
 
-    def respond(
-        self, approach: FloatArray, tilt: FloatArray, effective_radius: FloatArray, start: FloatArray | None = None
-    ) -> SlicedContact:
-        """Return what contacts carry, as `ltca.laws.sliced_line.SlicedLine.respond`."""
-        ...
-
-    def energy(self, contact: SlicedContact, effective_radius: FloatArray) -> FloatArray:
-        """Return the energy of contacts, N·mm."""
-        ...
-
-
-PressedInSlices: TypeAlias = tuple[LawInSlices, FloatArray, FloatArray, FloatArray, FloatArray | None]
-"""Law of contacts of one kind in slices, their approaches and tilts, shape (positions, pairs), effective radii, mm, and what they
-start from (`ltca.laws.sliced_contact.SlicedContact.near`)."""
+    def energy(self, radius: FloatArray) -> FloatArray:
+        """Return what the contacts store at effective radii, N·mm, shape (positions, pairs)."""
+        if self.tilt is None:
+            return np.asarray(self.law.energy(self.approach, radius))
+        curved = np.broadcast_to(radius, self.approach.shape)
+        return np.asarray(self.law.energy(self.law.respond(self.approach, self.tilt, curved, self.near), curved))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -78,30 +71,11 @@ class StoredEnergy:
     @classmethod
     def of_laws(cls, pins: Pressed, others: Sequence[Pressed]) -> StoredEnergy:
         """Return what the laws store, of wheel pins and of the other kinds: of contacts that do not feel each other."""
-        law, approach, radius = pins
-        energy = sum(other.energy(pressed, curved).sum(axis=-1) for other, pressed, curved in others)
-        return cls._of_kinds(lambda curved: law.energy(approach, curved), radius, energy)
-
-    @classmethod
-    def of_slices(cls, pins: PressedInSlices, others: Sequence[PressedInSlices]) -> StoredEnergy:
-        """Return the same of contacts in slices, each kind at its approaches and tilts."""
-
-        def stored(kind: PressedInSlices, curved: FloatArray) -> FloatArray:
-            law, approach, tilt, _, start = kind
-            return law.energy(law.respond(approach, tilt, curved, start), curved)
-
-        energy = sum(stored(kind, np.broadcast_to(kind[3], kind[1].shape)).sum(axis=-1) for kind in others)
-        return cls._of_kinds(lambda curved: stored(pins, curved), pins[3], energy)
-
-    @classmethod
-    def _of_kinds(
-        cls, on_pins: Callable[[FloatArray], FloatArray], radius: FloatArray, others: FloatArray | float
-    ) -> StoredEnergy:
-        """What wheel pins store by their radii, and what the other kinds do."""
-        low, high = (on_pins(radius * (1.0 + side)) for side in (-RADIUS_STEP, RADIUS_STEP))
-        positions = radius.shape[0]
+        radius, positions = pins.radius, pins.approach.shape[0]
+        low, high = (pins.energy(radius * (1.0 + side)) for side in (-RADIUS_STEP, RADIUS_STEP))
+        energy = sum(kind.energy(kind.radius).sum(axis=-1) for kind in others)
         return cls(
-            energy=np.asarray(on_pins(radius).sum(axis=-1) + others),
+            energy=np.asarray(pins.energy(radius).sum(axis=-1) + energy),
             radius=radius,
             by_radius=(high - low) / (2.0 * RADIUS_STEP * radius),
             load=np.zeros((positions, 0)),

@@ -8,6 +8,7 @@ that part is not in the coefficients, so what they give varies smoothly along th
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -27,7 +28,7 @@ class StressCoefficients:
     Attributes
     ----------
     walls : tuple of Boundary
-        Stress stations of flank, bores and holes; empty where a file has no stresses.
+        Stress stations of flank, bores and holes.
     loaded : tuple of Boundary
         Stations of the loads, in the same order.
     stress : array, shape (stress stations, stations)
@@ -42,20 +43,9 @@ class StressCoefficients:
         """Return the coefficients of the part as it stands in a disc, see `InfluenceCoefficients.placed_in`."""
         walls, loaded = (
             turned_boundaries(boundaries, bores=bores, steps=steps, pattern=pattern, flank_turn=flank_turn)
-            if boundaries
-            else ()
             for boundaries in (self.walls, self.loaded)
         )
         return replace(self, walls=walls, loaded=loaded)
-
-    @property
-    def available(self) -> bool:
-        """Whether there are any."""
-        return bool(self.walls)
-
-
-NO_STRESSES = StressCoefficients(walls=(), loaded=(), stress=np.zeros((0, 0)))
-"""Of a file without stresses."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -74,8 +64,8 @@ class WallContacts:
     load: FloatArray
 
 
-def read_stress_coefficients(data: Labelled, loaded: tuple[Boundary, ...]) -> StressCoefficients:
-    """Return the stress coefficients of a file, `NO_STRESSES` where it has none.
+def read_stress_coefficients(data: Labelled, loaded: tuple[Boundary, ...]) -> StressCoefficients | None:
+    """Return the stress coefficients of a file; None where it has none.
 
     Parameters
     ----------
@@ -85,7 +75,7 @@ def read_stress_coefficients(data: Labelled, loaded: tuple[Boundary, ...]) -> St
         Its stations: flank, bores, holes.
     """
     if "disc_stress" not in data:
-        return NO_STRESSES
+        return None
     flank = loaded[0]
     return StressCoefficients(
         walls=boundaries_of(data["stress_station_boundary"].values.astype(int), flank.teeth, flank.clustering),
@@ -94,14 +84,14 @@ def read_stress_coefficients(data: Labelled, loaded: tuple[Boundary, ...]) -> St
     )
 
 
-def evaluate_wall_stress(coefficients: StressCoefficients, contacts: tuple[WallContacts, ...]) -> FloatArray:
+def evaluate_wall_stress(coefficients: StressCoefficients, contacts: Sequence[WallContacts]) -> FloatArray:
     """Return the stress along the walls at all stress stations, shape (positions, stress stations), MPa.
 
     Parameters
     ----------
     coefficients : StressCoefficients
         Of the disc.
-    contacts : tuple of WallContacts
+    contacts : sequence of WallContacts
         Of flank, each bore and each hole. Loads in equilibrium get one answer whatever balanced the unit loads when the
         coefficients were derived.
     """

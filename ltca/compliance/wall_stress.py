@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.arrays import ComplexArray, FloatArray
+from ltca.arrays import ComplexArray, FloatArray, join_positions, take_positions
 from ltca.compliance.response import ContactPressures, DiscModel, DiscResponse
 from ltca.compliance.stress_coefficients import StressCoefficients, WallContacts, evaluate_wall_stress
 
@@ -92,10 +92,9 @@ class WallStresses:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _PlacedContacts:
+class _PlacedContacts(WallContacts):
     """Contacts of one wall with what decides how near they are."""
 
-    contacts: WallContacts
     points: ComplexArray
     half_width: FloatArray
 
@@ -113,10 +112,10 @@ def wall_stresses(
         return _unknown(response, lobes)
     placed = _place_contacts(model, response, pressures, disc_rotation)
     parts = [
-        _reduce(model, stress, _take(placed, rows), lobes)
+        _reduce(model, stress, take_positions(placed, rows), lobes)
         for rows in np.array_split(np.arange(positions), max(1, -(-positions // POSITIONS_PER_CHUNK)))
     ]
-    return WallStresses(**{name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
+    return join_positions(parts)
 
 
 def wall_profiles(
@@ -139,8 +138,7 @@ def wall_profiles(
 
 def _stress_coefficients(model: DiscModel) -> StressCoefficients | None:
     """Return the stress coefficients of a disc; None where it has none, or no body."""
-    coefficients = model.coefficients
-    return coefficients.stress if coefficients is not None and coefficients.stress.available else None
+    return None if model.coefficients is None else model.coefficients.stress
 
 
 def _place_contacts(
@@ -155,39 +153,18 @@ def _place_contacts(
     toward = -(response.holes.gradient[..., 0] + 1j * response.holes.gradient[..., 1])
     holes = np.angle(toward) - turn
     hole_points = place.hole_centres + place.hole_radii * np.exp(1j * holes)
-    return (
-        _PlacedContacts(
-            contacts=WallContacts(parameter=flank.parameter, load=response.pin_load),
-            points=model.geometry.profile.flank(flank.parameter),
-            half_width=pressures.pins.half_width,
-        ),
-        *(
-            _PlacedContacts(
-                contacts=WallContacts(parameter=bore[:, own], load=rollers.outer_load[:, own]),
-                points=bore_points[:, own],
-                half_width=pressures.outer.half_width[:, own],
-            )
-            for own in np.split(np.arange(bore.shape[1]), place.cranks)
-        ),
-        *(
-            _PlacedContacts(
-                contacts=WallContacts(parameter=holes[:, own], load=response.hole_load[:, own]),
-                points=hole_points[:, own],
-                half_width=pressures.holes.half_width[:, own],
-            )
-            for own in (slice(k, k + 1) for k in range(holes.shape[1]))
-        ),
+    kinds = (
+        (1, flank.parameter, response.pin_load, model.geometry.profile.flank(flank.parameter), pressures.pins),
+        (place.cranks, bore, rollers.outer_load, bore_points, pressures.outer),
+        (holes.shape[1], holes, response.hole_load, hole_points, pressures.holes),
     )
-
-
-def _take(placed: tuple[_PlacedContacts, ...], rows: NDArray[np.intp]) -> tuple[_PlacedContacts, ...]:
     return tuple(
-        _PlacedContacts(
-            contacts=WallContacts(parameter=own.contacts.parameter[rows], load=own.contacts.load[rows]),
-            points=own.points[rows],
-            half_width=own.half_width[rows],
+        _PlacedContacts(parameter=parameter, load=load, points=points, half_width=half_width)
+        for walls, *each, pressed in kinds
+        if walls
+        for parameter, load, points, half_width in zip(
+            *(np.split(one, walls, axis=1) for one in (*each, pressed.half_width)), strict=True
         )
-        for own in placed
     )
 
 
@@ -198,7 +175,7 @@ def _profiles(
     place = model.geometry.placement
     centres = np.concatenate((place.bore_centres, place.hole_centres))
     radii = np.concatenate((np.full(place.cranks, place.bore_radius), place.hole_radii))
-    stress = evaluate_wall_stress(coefficients, tuple(own.contacts for own in placed))
+    stress = evaluate_wall_stress(coefficients, placed)
     profiles = []
     for number, (wall, own) in enumerate(zip(coefficients.walls, placed, strict=True)):
         parameter = wall.parameters(refinement)
@@ -208,7 +185,7 @@ def _profiles(
             points = centres[number - 1] + radii[number - 1] * np.exp(1j * parameter)
         clear = np.ones((stress.shape[0], parameter.size), dtype=bool)
         for contact in range(own.points.shape[1]):
-            reach = np.where(own.contacts.load[:, contact] > 0.0, CLEAR_HALF_WIDTHS * own.half_width[:, contact], -1.0)
+            reach = np.where(own.load[:, contact] > 0.0, CLEAR_HALF_WIDTHS * own.half_width[:, contact], -1.0)
             clear &= np.abs(points - own.points[:, contact, None]) > reach[:, None]
         profiles.append(WallProfile(parameter=parameter, stress=wall.refined(stress, refinement), clear=clear))
     return tuple(profiles), stress
@@ -216,8 +193,8 @@ def _profiles(
 
 def _reduce(
     model: DiscModel, coefficients: StressCoefficients, placed: tuple[_PlacedContacts, ...], lobes: int
-) -> dict[str, FloatArray]:
-    """Return the fields of `WallStresses` of some positions."""
+) -> WallStresses:
+    """Stresses of some positions."""
     profiles, stress = _profiles(model, coefficients, placed, REFINEMENT)
     flank, *round_walls = profiles
     nearest = np.mod(np.rint(flank.parameter * lobes / (2.0 * np.pi)).astype(int), lobes)
@@ -227,20 +204,20 @@ def _reduce(
     worst = np.argmax(np.nan_to_num(values[:, :cranks], nan=-np.inf), axis=1)[:, None]
     under = []
     for wall, own in zip(coefficients.walls, placed, strict=True):
-        stations, weights = wall.weights(own.contacts.parameter)
+        stations, weights = wall.weights(own.parameter)
         rows = np.arange(stress.shape[0])[:, None, None]
         under.append(np.sum(stress[rows, stations] * weights, axis=-1))
-    return {
-        "root": np.stack([value for value, _ in roots], axis=1),
-        "root_parameter": np.stack([parameter for _, parameter in roots], axis=1),
-        "bore": np.take_along_axis(values, worst, axis=1)[:, 0],
-        "bore_parameter": np.take_along_axis(places, worst, axis=1)[:, 0],
-        "hole": values[:, cranks:],
-        "hole_parameter": places[:, cranks:],
-        "pin_contact": under[0],
-        "roller_contact": np.concatenate(under[1 : 1 + cranks], axis=1),
-        "hole_contact": np.concatenate([np.zeros((len(stress), 0)), *under[1 + cranks :]], axis=1),
-    }
+    return WallStresses(
+        root=np.stack([value for value, _ in roots], axis=1),
+        root_parameter=np.stack([parameter for _, parameter in roots], axis=1),
+        bore=np.take_along_axis(values, worst, axis=1)[:, 0],
+        bore_parameter=np.take_along_axis(places, worst, axis=1)[:, 0],
+        hole=values[:, cranks:],
+        hole_parameter=places[:, cranks:],
+        pin_contact=under[0],
+        roller_contact=np.concatenate(under[1 : 1 + cranks], axis=1),
+        hole_contact=np.concatenate([np.zeros((len(stress), 0)), *under[1 + cranks :]], axis=1),
+    )
 
 
 def _unknown(response: DiscResponse, lobes: int) -> WallStresses:

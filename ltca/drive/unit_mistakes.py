@@ -12,6 +12,7 @@ from __future__ import annotations
 import functools
 import inspect
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import fields
 from math import cos, pi, sin, sqrt
 from typing import ParamSpec, TypeVar
@@ -246,6 +247,18 @@ def explain_failure(error: CycloError, drive: Drive, torque: float | None = None
     return DriveError([*found[:-1], f"{found[-1]}{told}"])
 
 
+@contextmanager
+def unit_mistakes_named(drive: Drive, torque: float | None = None) -> Iterator[None]:
+    """Let errors of a block that solves a drive name a likely mistake of units (`explain_failure`)."""
+    try:
+        yield
+    except (ConvergenceError, DriveError) as error:
+        raised = explain_failure(error, drive, torque)
+        if raised is error:
+            raise
+        raise raised from error
+
+
 def names_unit_mistakes(solve: Callable[P, R]) -> Callable[P, R]:
     """Decorate a function with parameters ``drive`` and perhaps ``torque`` so that its errors name a likely mistake of
     units.
@@ -254,14 +267,9 @@ def names_unit_mistakes(solve: Callable[P, R]) -> Callable[P, R]:
 
     @functools.wraps(solve)
     def explained(*args: P.args, **kwargs: P.kwargs) -> R:
-        try:
+        given = signature.bind(*args, **kwargs).arguments
+        with unit_mistakes_named(given["drive"], given.get("torque")):
             return solve(*args, **kwargs)
-        except (ConvergenceError, DriveError) as error:
-            given = signature.bind(*args, **kwargs).arguments
-            raised = explain_failure(error, given["drive"], given.get("torque"))
-            if raised is error:
-                raise
-            raise raised from error
 
     return explained
 

@@ -24,6 +24,7 @@ import numpy as np
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
+from ltca.compliance.response import Start
 from ltca.compliance.stored_energy import StoredEnergy
 from ltca.dynamics.kinetics import Motion
 from ltca.dynamics.teeth import Teeth, TeethForces
@@ -32,7 +33,6 @@ from ltca.equilibrium.friction.turning import TurningFriction
 from ltca.equilibrium.reducer import Reducer
 from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION, X, Y
 from ltca.mechanics.contacts import ContactSystem, Linearised
-from ltca.mechanics.places import ContactStart
 from ltca.mechanics.energy import stored_by_disc, stored_by_pins
 
 FADING = 1e-2
@@ -125,7 +125,7 @@ class ContactForces:
         self._springs = _springs(motion)
         self._sprung = bool(self._springs.any())
         self._system = ContactSystem(self._model)
-        self._start: ContactStart | None = None
+        self._start: Start | None = None
         self._latest: Linearised | None = None
 
     @property
@@ -139,12 +139,12 @@ class ContactForces:
         return all(isinstance(disc, HalfSpaceCompliance | CoupledCompliance) for disc in self._model.discs)
 
     @property
-    def warm_start(self) -> ContactStart | None:
+    def warm_start(self) -> Start | None:
         """Inner unknowns from which the next call starts; None for contact grids, see `forget_grids`."""
         return self._start if self.has_energy else None
 
     @warm_start.setter
-    def warm_start(self, kept: ContactStart | None) -> None:
+    def warm_start(self, kept: Start | None) -> None:
         """Start the next call from these."""
         self._start = kept
 
@@ -223,13 +223,12 @@ class ContactForces:
         found, motion = np.zeros(self._motion.size), self._motion
         if self._external is None:
             return found, 0j
-        force = complex(self._external.on_wheel(angle)[0])
+        force, tilting = map(complex, self._external.on_wheel(angle)[0])
         if motion.pose.wheel:
             x, y = pose[motion.pose.wheel_place]
             found[motion.pose.wheel_place] = force.real, force.imag
             found += (x * force.imag - y * force.real) * motion.frame_turns
         if motion.pose.wheel_leans:
-            tilting = complex(self._external.tilting(angle)[0])
             x, y = pose[motion.pose.wheel_lean_place]
             found[motion.pose.wheel_lean_place] += tilting.real, tilting.imag
             found += (x * tilting.imag - y * tilting.real) * motion.frame_turns

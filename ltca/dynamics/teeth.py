@@ -177,14 +177,9 @@ class Teeth:
 
     def _on_wheel(self, shares: FloatArray) -> FloatArray:
         """Force of the sun on the wheel, and what it presses its lean with, over their coordinates."""
-        motion, found = self._motion, []
-        if motion.pose.wheel:
-            force = complex(self._stage.on_wheel(shares)[0][0])
-            found += [force.real, force.imag]
-        if motion.pose.wheel_leans:
-            tilting = complex(self._stage.tilting_on_wheel(shares)[0][0])
-            found += [tilting.real, tilting.imag]
-        return np.array(found)
+        pose, pressed = self._motion.pose, self._stage.on_wheel(shares)[0][0]
+        there = np.array([pose.wheel, pose.wheel_leans], dtype=bool)
+        return np.asarray(pressed[there].view(float))
 
 
 def _first(supports: Supports, pose: FloatArray, carried: ComplexArray) -> ComplexArray | None:

@@ -8,6 +8,7 @@ down to their own.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -16,13 +17,7 @@ from numpy.typing import NDArray
 from ltca.arrays import FloatArray, take_positions, take_rows
 from ltca.compliance.response import Response, Start
 from ltca.drive.least_torque import ROUND_OFF_BOUND
-from ltca.equilibrium.neighbours import (
-    leading_positions,
-    pose_beside,
-    pose_between,
-    start_beside,
-    start_between,
-)
+from ltca.equilibrium.neighbours import between, leading_positions, pose_between, start_between
 from ltca.equilibrium.newton import Search
 from ltca.equilibrium.reducer import Reducer, complete
 from ltca.errors import ConvergenceError
@@ -161,7 +156,10 @@ def solve_equilibrium(
     angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
     moment = np.broadcast_to(np.asarray(wheel_moment, dtype=float), angle.shape)
     search = _search(model, angle, moment, np.zeros((angle.size, model.coordinates.size)), reference)
-    return _completed(search, _solve_by_neighbours(search, start, inner, series), gaps)
+    left = np.zeros(0, dtype=np.intp)
+    for rows, begin in _stages(search, start, inner, series):
+        left = np.append(left, search.iterate(_most(search), rows, begin))
+    return _completed(search, np.sort(left), gaps)
 
 
 def follow_equilibrium(
@@ -208,86 +206,66 @@ def _completed(search: Search, left: NDArray[np.intp], gaps: bool) -> Equilibriu
     )
 
 
-def _solve_by_neighbours(
+def _stages(
     search: Search, start: FloatArray | None, inner: Start | None, series: int
-) -> NDArray[np.intp]:
-    """Balance leading positions from their starts, then the others from between them; return what does not balance.
+) -> Iterator[tuple[NDArray[np.intp], Start | None]]:
+    """Yield positions to balance together, with inner unknowns to begin from: leading ones, then the others from these.
 
-    Without starts one position of each series leads: what disc and wheel do from first contact on is that of all, seen from
-    the crank.
+    Without starts one position of each series leads, from first contact: what disc and wheel do from there on is that of all,
+    seen from the crank.
     """
-    if start is None:
-        return _solve_beside_leaders(search, series)
-    model, angle, moment, pose = search.model, search.angle, search.moment, search.pose
-    pose[:] = start
-    first = np.arange(angle.size)
-    if series == 1:
-        first = leading_positions(model.discs[0].geometry, angle, moment)
-    left = search.iterate(_most(search), first, take_positions(inner, first))
-    rest = np.setdiff1d(np.arange(angle.size), first, assume_unique=True)
-    if rest.size == 0:
-        return left
-    begin = take_positions(inner, rest)
-    # A start that leads somewhere in a few steps is as good as what lies between neighbours.
-    if np.median(search.iterations[first]) > FEW_ITERATIONS and search.balanced:
-        begin = _place_between(search, rest)
-    return np.sort(np.concatenate([left, search.iterate(_most(search), rest, begin)]))
-
-
-def _place_between(search: Search, rows: NDArray[np.intp]) -> Start:
-    """Place positions between those that balance; return the inner unknowns to start from."""
-    model, angle, pose = search.model, search.angle, search.pose
-    known, contacts = search.contacts()
-    pose[rows] = pose_between(angle[known], pose[known], angle[rows], model.coordinates)
-    return start_between(angle[known], Start.after(contacts), angle[rows], _ratio(model))
-
-
-def _place_beside(search: Search, rows: NDArray[np.intp], leaders: NDArray[np.intp]) -> Start:
-    """Place positions as their leaders stand, numbered among those that balance; return the inner unknowns to start from."""
-    model, angle, pose = search.model, search.angle, search.pose
-    known, contacts = search.contacts()
-    at = known[leaders]
-    pose[rows] = pose_beside(angle[at], pose[at], angle[rows], model.coordinates)
-    return start_beside(angle[at], take_positions(Start.after(contacts), leaders), angle[rows], _ratio(model))
-
-
-def _ratio(model: Reducer) -> float:
-    return model.discs[0].geometry.placement.reduction_ratio
-
-
-def _solve_beside_leaders(search: Search, series: int) -> NDArray[np.intp]:
-    """Balance one position of each series from first contact, then the others from there; return what does not balance."""
-    model, angle, pose, count = search.model, search.angle, search.pose, search.angle.size // series
-    leading = leading_positions(model.discs[0].geometry, angle[:count], search.moment[:count])
-    leaders = np.arange(angle.size)
-    if leading.size < count:
-        leaders = leading[0] + count * np.arange(series)
-    pose[leaders] = _at_first_contact(model.take(leaders), angle[leaders], search.moment[leaders])
-    left = search.iterate(_most(search), leaders)
-    rest = np.setdiff1d(np.arange(angle.size), leaders, assume_unique=True)
-    if rest.size == 0:
-        return left
+    model, angle, moment, pose, count = (
+        search.model,
+        search.angle,
+        search.moment,
+        search.pose,
+        search.angle.size // series,
+    )
+    everything = np.arange(angle.size)
+    leading = leading_positions(model.discs[0].geometry, angle[:count], moment[:count])
+    if start is not None:
+        pose[:] = start
+        first = leading if series == 1 else everything
+        yield first, take_positions(inner, first)
+        rest = np.setdiff1d(everything, first, assume_unique=True)
+        # A start that leads somewhere in a few steps is as good as what lies between neighbours.
+        near = np.median(search.iterations[first]) <= FEW_ITERATIONS or not search.balanced
+        if rest.size:
+            yield rest, take_positions(inner, rest) if near else _place(search, rest)
+        return
+    leaders = everything if leading.size == count else leading[0] + count * np.arange(series)
+    pose[leaders] = _at_first_contact(model.take(leaders), angle[leaders], moment[leaders])
+    yield leaders, None
+    rest = np.setdiff1d(everything, leaders, assume_unique=True)
     led = np.zeros(series, dtype=bool)
     if search.balanced:
-        known = search.contacts()[0]
-        led[known // count] = True
-        beside = rest[led[rest // count]]
-        own = (np.cumsum(led) - 1)[beside // count]
-        # Seen from one of several cranks positions do differ: some beside the leader, and the others from between them.
-        first = (
-            np.isin(beside, leading) if series == 1 and _of_several_cranks(model) else np.ones(beside.size, dtype=bool)
-        )
-        begin = _place_beside(search, beside[first], own[first])
-        left = np.concatenate([left, search.iterate(_most(search), beside[first], begin)])
-        if not first.all():
-            left = np.concatenate(
-                [left, search.iterate(_most(search), beside[~first], _place_between(search, beside[~first]))]
-            )
-    alone = rest[~led[rest // count]]
+        led[search.contacts()[0] // count] = True
+    beside, alone = rest[led[rest // count]], rest[~led[rest // count]]
+    # Seen from one of several cranks positions do differ: some beside the leader, and the others from between them.
+    apart = np.zeros(beside.size, dtype=bool)
+    if series == 1 and model.discs[0].geometry.placement.cranks > 1:
+        apart = ~np.isin(beside, leading)
+    if beside.size:
+        first = beside[~apart]
+        yield first, _place(search, first, (np.cumsum(led) - 1)[first // count])
+    if apart.any():
+        yield beside[apart], _place(search, beside[apart])
     if alone.size:
-        pose[alone] = _at_first_contact(model.take(alone), angle[alone], search.moment[alone])
-        left = np.concatenate([left, search.iterate(_most(search), alone)])
-    return np.sort(left)
+        pose[alone] = _at_first_contact(model.take(alone), angle[alone], moment[alone])
+        yield alone, None
+
+
+def _place(search: Search, rows: NDArray[np.intp], leaders: NDArray[np.intp] | None = None) -> Start:
+    """Place positions between those that balance, or as their leaders stand, numbered among these; return the inner unknowns to
+    begin from.
+    """
+    model, wanted = search.model, search.angle[rows]
+    known, contacts = search.contacts()
+    angle = search.angle[known]
+    way = between(angle, wanted) if leaders is None else (leaders, leaders, np.zeros(rows.size))
+    search.pose[rows] = pose_between(angle, search.pose[known], wanted, model.coordinates, way)
+    ratio = model.discs[0].geometry.placement.reduction_ratio
+    return start_between(angle, Start.after(contacts), wanted, ratio, way)
 
 
 def _at_first_contact(model: Reducer, angle: FloatArray, moment: FloatArray) -> FloatArray:
@@ -308,10 +286,6 @@ def _part(search: Search, rows: NDArray[np.intp], factor: FloatArray, pose: Floa
     model = search.model.take(rows)
     moment, load = factor * search.moment[rows], factor * search.load[rows]
     return Search(model, search.angle[rows], moment, search.levers(rows), load, pose.copy())
-
-
-def _of_several_cranks(model: Reducer) -> bool:
-    return model.discs[0].geometry.placement.cranks > 1
 
 
 def _is_loose(model: Reducer) -> bool:
@@ -338,11 +312,18 @@ def _from_stops(search: Search, rows: NDArray[np.intp]) -> NDArray[np.intp]:
     lost = part.iterate(MAX_ITERATIONS)
     search.iterations[rows] += part.iterations
     if lost.size < rows.size:
-        kept, contacts = part.contacts()
-        search.pose[rows[kept]], search.residual[rows[kept]] = part.pose[kept], part.residual[kept]
-        search.slipped[rows[kept]] = False
-        search.keep(rows[kept], contacts, np.ones(kept.size, dtype=bool))
+        _take_over(search, rows, part, np.ones(rows.size, dtype=bool))
     return rows[lost]
+
+
+def _take_over(search: Search, rows: NDArray[np.intp], part: Search, wanted: NDArray[np.bool_]) -> None:
+    """Take over those positions that the search for some of them has balanced and that are wanted."""
+    kept, contacts = part.contacts()
+    own = wanted[kept]
+    there = rows[kept[own]]
+    search.pose[there], search.residual[there] = part.pose[kept[own]], part.residual[kept[own]]
+    search.slipped[there] = False
+    search.keep(rows[kept], contacts, own)
 
 
 def _follow_down(search: Search, rows: NDArray[np.intp]) -> NDArray[np.intp]:
@@ -368,12 +349,8 @@ def _follow_down(search: Search, rows: NDArray[np.intp]) -> NDArray[np.intp]:
         pose[going[found]], level[going[found]] = part.pose[found], target[found]
         ratio[going[found]] = np.minimum(ratio[going[found]] ** 2, TORQUE_RATIO)
         ratio[going[lost]] = np.sqrt(ratio[going[lost]])
-        there = going[found][target[found] == 1.0]
-        if there.size:
-            kept, contacts = part.contacts()
-            own = np.isin(kept, found[target[found] == 1.0])
-            search.pose[rows[there]], search.residual[rows[there]] = pose[there], part.residual[kept[own]]
-            search.keep(rows[going[kept]], contacts, own)
+        if np.any(target[found] == 1.0):
+            _take_over(search, rows[going], part, target == 1.0)
         going = going[(level[going] > 1.0) & (ratio[going] > LEAST_TORQUE_RATIO)]
     return np.asarray(rows[level != 1.0])
 

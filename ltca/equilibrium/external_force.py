@@ -21,20 +21,17 @@ class ExternalForce:
 
     Attributes
     ----------
-    still : complex
-        At rest in the frame of the pin shaft, x + iy, N.
-    turning : complex
-        Turning with the wheel by φ_C/u, as it stands at φ_C = 0, N.
-    tilting_still, tilting_turning : complex
-        What presses the lean of the wheel, z F − i M of forces at z and moments M = M_x + i M_y, N·mm.
+    still : array of complex, shape (2,)
+        At rest in the frame of the pin shaft, x + iy, N, and what presses the lean of the wheel, z F − i M of forces at z and
+        moments M = M_x + i M_y, N·mm.
+    turning : array of complex, shape (2,)
+        Turning with the wheel by φ_C/u, as they stand at φ_C = 0.
     reduction_ratio : float
         u.
     """
 
     still: ComplexArray = by_drive(1)
     turning: ComplexArray = by_drive(1)
-    tilting_still: ComplexArray = by_drive(1)
-    tilting_turning: ComplexArray = by_drive(1)
     reduction_ratio: float
 
     @classmethod
@@ -43,29 +40,18 @@ class ExternalForce:
         if not drive.load.external:
             return None
         sums = {
-            frame: np.array([sum((_pressing(one) for one in entries_of(drive, frame)), np.zeros(2, dtype=complex))])
+            frame: sum((_pressing(one) for one in entries_of(drive, frame)), np.zeros(2, dtype=complex))
             for frame in ("housing", "output")
         }
         if drive.wheel_is_held:
             still, turning = -sums["output"], -sums["housing"]
         else:
             still, turning = sums["housing"], sums["output"]
-        return cls(
-            still=still[:, 0],
-            turning=turning[:, 0],
-            tilting_still=still[:, 1],
-            tilting_turning=turning[:, 1],
-            reduction_ratio=drive.reduction_ratio,
-        )
+        return cls(still=still, turning=turning, reduction_ratio=drive.reduction_ratio)
 
     def on_wheel(self, crank_angle: FloatArray) -> ComplexArray:
-        """Return the force at crank angles, in the frame of the pin shaft, N, shape (positions,)."""
-        return np.asarray(self.still[..., 0] + self.turning[..., 0] * unit(crank_angle / self.reduction_ratio))
-
-    def tilting(self, crank_angle: FloatArray) -> ComplexArray:
-        """Return what presses the lean of the wheel at crank angles, N·mm, shape (positions,)."""
-        turned = unit(crank_angle / self.reduction_ratio)
-        return np.asarray(self.tilting_still[..., 0] + self.tilting_turning[..., 0] * turned)
+        """Return the force at crank angles, in the frame of the pin shaft, N, and what presses the lean, N·mm, (positions, 2)."""
+        return np.asarray(self.still + self.turning * unit(crank_angle / self.reduction_ratio)[:, None])
 
 
 def _pressing(load: ExternalLoad) -> ComplexArray:

@@ -231,21 +231,19 @@ class StageMesh:
         )
 
     def on_wheel(self, moments: FloatArray) -> tuple[ComplexArray, ComplexArray]:
-        """Return the force of the sun on all planets as one on the wheel relative to the carrier, N, shape (positions,), and its
-        derivatives by the moments of the cranks, 1/mm, shape (positions, cranks); zero where the carrier is held.
-        """
-        sign = -1.0 if self.carried else 0.0
-        return sign * self.forces(moments).in_plane.sum(axis=1), sign * self._slope(np.sign(moments))[0]
-
-    def tilting_on_wheel(self, moments: FloatArray) -> tuple[ComplexArray, ComplexArray]:
-        """Return what the sun presses the lean of the wheel with relative to the carrier, z F − i M, N·mm, shape (positions,),
-        and its derivatives by the moments of the cranks, shape (positions, cranks); zero where the carrier is held.
+        """Return the force of the sun on all planets as one on the wheel relative to the carrier, N, and what it presses the lean
+        of the wheel with, z F − i M, N·mm, shape (positions, 2), and their derivatives by the moments of the cranks, shape
+        (positions, 2, cranks); zero where the carrier is held.
         """
         sign, forces = -1.0 if self.carried else 0.0, self.forces(moments)
-        plane, arm = np.asarray(self.plane)[..., None], self.sun_radius * self.outward
-        found = (plane * forces.in_plane - arm * forces.axial).sum(axis=1)
-        by_moments = plane * self._slope(np.sign(moments))[0] + arm * self.axial / self.pitch_radius
-        return np.asarray(sign * found), np.asarray(sign * by_moments)
+        plane, arm, slope = (
+            np.asarray(self.plane)[..., None],
+            self.sun_radius * self.outward,
+            self._slope(np.sign(moments))[0],
+        )
+        found = forces.in_plane, plane * forces.in_plane - arm * forces.axial
+        by_moments = slope, plane * slope + arm * self.axial / self.pitch_radius
+        return sign * np.stack(found, axis=1).sum(axis=2), sign * np.stack(by_moments, axis=1)
 
     def on_bearings(self, moments: FloatArray) -> ComplexArray:
         """Return what bearings of the cranks carry of the forces of the teeth, N, shape (positions, cranks, supports)."""

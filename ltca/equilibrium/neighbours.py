@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TypeAlias
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -15,6 +17,8 @@ RESOLVED = 4
 WORTH = 2
 """Positions for one leading, below which each might as well lead."""
 MOST = 8
+Way: TypeAlias = tuple[NDArray[np.intp], NDArray[np.intp], FloatArray]
+"""Known positions before and after wanted ones, and the part of the way between them."""
 
 
 def leading_positions(geometry: ContactGeometry, angle: FloatArray, moment: FloatArray) -> NDArray[np.intp]:
@@ -35,10 +39,24 @@ def leading_positions(geometry: ContactGeometry, angle: FloatArray, moment: Floa
     return np.sort(np.append(order[:-1:stride], order[-1]))
 
 
-def pose_between(angle: FloatArray, pose: FloatArray, wanted: FloatArray, coordinates: Coordinates) -> FloatArray:
+def between(angle: FloatArray, wanted: FloatArray) -> Way:
+    """Return the known positions before and after each wanted crank angle, rad, and the part of the way between these.
+
+    Known angles may stand in any order; beyond the first and the last there is nothing but these.
+    """
+    order = np.argsort(angle, kind="stable")
+    behind = np.clip(np.searchsorted(angle[order], wanted), 1, max(angle.size - 1, 1))
+    before, after = order[behind - 1], order[min(angle.size - 1, 1) * behind]
+    span = angle[after] - angle[before]
+    return before, after, np.clip((wanted - angle[before]) / np.where(span > 0.0, span, 1.0), 0.0, 1.0)
+
+
+def pose_between(
+    angle: FloatArray, pose: FloatArray, wanted: FloatArray, coordinates: Coordinates, way: Way | None = None
+) -> FloatArray:
     """Return poses at wanted crank angles between known ones, linearly as seen from the turning crank.
 
-    Known angles, rad, may stand in any order; poses have the shape (positions, coordinates).
+    Known angles, rad, may stand in any order; poses have the shape (positions, coordinates). `way` is `between` by default.
 
     Examples
     --------
@@ -46,68 +64,34 @@ def pose_between(angle: FloatArray, pose: FloatArray, wanted: FloatArray, coordi
     >>> pose_between(np.array([0.0, np.pi]), known, np.array([0.5 * np.pi]), Coordinates()).round(9)
     array([[0., 1., 0., 1.]])
     """
-    order = np.argsort(angle, kind="stable")
-    seen = turned_poses(pose, -angle, coordinates)[order]
-    between = np.stack([np.interp(wanted, angle[order], column) for column in seen.T], axis=1)
-    return turned_poses(between, wanted, coordinates)
+    before, after, _ = between(angle, wanted) if way is None else way
+    seen, span = _turned(pose, -angle, coordinates), angle[after] - angle[before]
+    slope = (seen[after] - seen[before]) / np.where(span > 0.0, span, 1.0)[:, None]
+    ahead = np.minimum(np.maximum(wanted - angle[before], 0.0), span)
+    return _turned(seen[before] + slope * ahead[:, None], wanted, coordinates)
 
 
-def start_between(angle: FloatArray, known: Start, wanted: FloatArray, ratio: float) -> Start:
-    """Return inner unknowns between known ones: places on the flank in line as seen from the wheel, the rest likewise.
+def start_between(angle: FloatArray, known: Start, wanted: FloatArray, ratio: float, way: Way) -> Start:
+    """Return inner unknowns between known ones: places on the flank in line as seen from the wheel, the rest from the nearer.
 
-    Parameters
-    ----------
-    angle : array, shape (positions,)
-        φ_C of the known poses, in any order, rad.
-    known : Start
-        Inner unknowns there.
-    wanted : array
-        φ_C of the poses to start at, rad.
-    ratio : float
-        u: a pin moves along the flank by φ_C/u.
+    Angles, rad, and `way` are those of `between`; a pin moves along the flank by φ_C/u, u the `ratio`.
     """
-    order = np.argsort(angle, kind="stable")
-    at = angle[order]
-    behind = np.clip(np.searchsorted(at, wanted), 1, max(at.size - 1, 1))
-    before, after = order[behind - 1], order[min(at.size - 1, 1) * behind]
-    span = angle[after] - angle[before]
-    part = np.clip((wanted - angle[before]) / np.where(span > 0.0, span, 1.0), 0.0, 1.0)[:, None]
+    before, after, part = way
 
-    def between(values: FloatArray) -> FloatArray:
-        return np.asarray(values[before] + part * (values[after] - values[before]))
+    def at(values: FloatArray) -> FloatArray:
+        return np.asarray(values[before] + part[:, None] * (values[after] - values[before]))
 
-    along = between(known.parameter - angle[:, None] / ratio) + wanted[:, None] / ratio
-    nearer = np.where(part[:, 0] < 0.5, before, after)
     return Start(
-        parameter=along,
-        share=between(known.share),
-        inner=take_positions(known.inner, nearer),
+        parameter=at(known.parameter - angle[:, None] / ratio) + wanted[:, None] / ratio,
+        share=at(known.share),
+        inner=None
+        if known.inner is None
+        else take_positions(known.inner.elsewhere, np.where(part < 0.5, before, after)),
     )
 
 
-def pose_beside(angle: FloatArray, pose: FloatArray, wanted: FloatArray, coordinates: Coordinates) -> FloatArray:
-    """Return poses that look from the turning crank as others do: row by row, from `angle` turned to `wanted`."""
-    return turned_poses(turned_poses(pose, -angle, coordinates), wanted, coordinates)
-
-
-def start_beside(angle: FloatArray, known: Start, wanted: FloatArray, ratio: float) -> Start:
-    """Return inner unknowns as seen from the wheel, row by row, from `angle` turned to `wanted`; see `start_between`."""
-    along = (known.parameter - angle[:, None] / ratio) + wanted[:, None] / ratio
-    return Start(parameter=along, share=known.share, inner=known.inner)
-
-
-def turned_poses(pose: FloatArray, angle: FloatArray, coordinates: Coordinates) -> FloatArray:
-    """Return poses whose displacements are turned by angles, rad; rotations stay.
-
-    Parameters
-    ----------
-    pose : array, shape (positions, coordinates)
-        q.
-    angle : array, shape (positions,)
-        rad.
-    coordinates : Coordinates
-        What they are made of.
-    """
+def _turned(pose: FloatArray, angle: FloatArray, coordinates: Coordinates) -> FloatArray:
+    """Poses whose displacements are turned by angles, rad; rotations stay."""
     turned = pose.copy()
     for x in coordinates.displacements:
         place = (pose[:, x] + 1j * pose[:, x + 1]) * np.exp(1j * angle)

@@ -349,8 +349,7 @@ class Search:
 
 def _left_over(gradient: FloatArray, response: Response | Evaluation) -> FloatArray:
     """Largest unbalanced force of every position, N, and what contacts and pins that have not settled amount to."""
-    left: FloatArray = np.max(np.abs(gradient), axis=1)
-    return left if response.left is None else np.maximum(left, response.left)
+    return np.asarray(np.maximum(np.max(np.abs(gradient), axis=1), response.left))
 
 
 def _damped_step(

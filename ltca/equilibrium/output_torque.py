@@ -16,7 +16,8 @@ The output torque of a drive whose wheel is held differs from the forces' by as 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +35,11 @@ Balance = Callable[[FloatArray, FloatArray, FloatArray | None], Equilibrium]
 MAX_ITERATIONS = 30
 TORQUE_TOLERANCE = 1e-10
 """Unbalanced moment relative to the output torque; the balance of forces leaves more."""
+FIRST_FRICTION_STEP, LEAST_FRICTION_STEP = 0.25, 0.01
+"""First and least step of the continuation in the strength of friction: where a step of the least size fails, the drive jams
+between two hundredths of its friction."""
+JAMMING_LOAD_RATIO = 2.0
+"""Ratio of the loads with and without friction from which the end of the continuation is reported as jamming."""
 
 
 def unbalanced_moment(
@@ -46,22 +52,11 @@ def unbalanced_moment(
     """
     angle, pose, parts = found.crank_angle, found.pose, found.response.parts
     left = found.wheel_moment + input_per_crank_moment * model.crank_moments(angle, pose, parts).sum(axis=1) + output
-    if model.coordinates.wheel:
-        x, y = pose[:, model.coordinates.wheel_place].T
-        force = model.force_beside_pins(angle, pose, parts)
-        left = left + x * force.imag - y * force.real
-    if model.coordinates.wheel_leans:
-        x, y = pose[:, model.coordinates.wheel_lean_place].T
-        tilting = model.tilting_beside_pins(angle, pose, parts)
-        left = left + x * tilting.imag - y * tilting.real
+    if model.coordinates.wheel or model.coordinates.wheel_leans:
+        for place, pressed in zip(model.wheel_places, model.beside_pins(angle, pose, parts).T, strict=True):
+            x, y = pose[:, place[:1]], pose[:, place[1:]]
+            left = left + (x * pressed.imag[:, None] - y * pressed.real[:, None]).sum(axis=1)
     return np.asarray(left)
-
-
-FIRST_FRICTION_STEP, LEAST_FRICTION_STEP = 0.25, 0.01
-"""First and least step of the continuation in the strength of friction: where a step of the least size fails, the drive jams
-between two hundredths of its friction."""
-JAMMING_LOAD_RATIO = 2.0
-"""Ratio of the loads with and without friction from which the end of the continuation is reported as jamming."""
 
 
 def solve_at_output(
@@ -107,45 +102,44 @@ def solve_at_output(
     ConvergenceError
         When a position does not balance.
     """
-    if start is None and np.any(np.asarray(torque) == 0.0):
-        angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
+    angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
+    loads = np.broadcast_to(np.asarray(torque, dtype=float), angle.shape)
+    if start is None and np.any(loads == 0.0):
         light = np.repeat([drive.load.light_torque for drive in drives], angle.size // len(drives))
-        near = solve_at_output(
-            replace(model, friction=None), drives, angle, np.where(torque, torque, light), gaps=False
-        )
+        near = solve_at_output(replace(model, friction=None), drives, angle, np.where(loads, loads, light), gaps=False)
         start, inner = near.pose, Start.after(near.response)
-    friction = model.friction
-    if friction is None or not friction.turns:
-        return _solve(model, drives, crank_angle, torque, start, inner, gaps, wheel_moment)
-    smooth = _solve(replace(model, friction=None), drives, crank_angle, torque, start, inner, gaps=False)
-    try:
-        return _solve(model, drives, crank_angle, torque, smooth.pose, Start.after(smooth.response), gaps)
-    except ConvergenceError as error:
-        failure = error
-    found, reached, lost, step, loads = smooth, 0.0, 1.0, FIRST_FRICTION_STEP, smooth.response.pin_load.sum(axis=1)
-    while reached < 1.0:
-        strength = min(reached + step, 1.0)
+    wanted = _OutputTorque.of_drives(drives, loads)
+    friction, moment = model.friction, wanted.mean
+    rubs = friction is not None and friction.turns
+    if wheel_moment is not None and not rubs:
+        moment = np.where(wanted.held, wheel_moment, moment)
+    # What rubs is taken away first, then all of it is tried at once, then more and more.
+    strength, reached, lost, step = (0.0 if rubs else 1.0), 0.0, 1.0, 1.0
+    failure, carried = None, list[FloatArray]()
+    while True:
+        part = model
+        if friction is not None and strength < 1.0:
+            part = replace(model, friction=friction.scaled(strength) if strength else None)
         try:
-            weakened = replace(model, friction=friction.scaled(strength))
-            found = _solve(weakened, drives, crank_angle, torque, found.pose, Start.after(found.response), gaps)
-        except ConvergenceError:
-            lost = strength
+            found = solve_equilibrium(
+                part, angle, moment, start, inner, gaps and strength > 0.0, len(drives), wanted.reference
+            )
+            found = wanted.balanced(part, found, gaps=gaps and strength > 0.0)
+        except ConvergenceError as error:
+            if not (rubs and strength):
+                raise
+            lost, failure = strength, failure or error
             if step <= LEAST_FRICTION_STEP:
-                raise _jam(
-                    drives,
-                    np.atleast_1d(crank_angle),
-                    reached,
-                    lost,
-                    loads,
-                    found.response.pin_load.sum(axis=1),
-                    failure,
-                ) from None
-            step *= 0.5
-            continue
-        reached = strength
-        if reached >= lost:  # the step was too long, nothing else
-            step = min(2.0 * step, FIRST_FRICTION_STEP)
-    return found
+                raise _jam(drives, angle, reached, lost, carried[0], carried[-1], failure) from None
+            step = min(0.5 * step, FIRST_FRICTION_STEP)
+        else:
+            if strength == 1.0:
+                return found
+            reached, start, inner = strength, found.pose, Start.after(found.response)
+            carried.append(found.response.pin_load.sum(axis=1))
+            if failure and reached >= lost:  # the step was too long, nothing else
+                step = min(2.0 * step, FIRST_FRICTION_STEP)
+        strength = min(reached + step, 1.0)
 
 
 def _jam(
@@ -181,36 +175,88 @@ def _jam(
     return jammed
 
 
-def _solve(
-    model: Reducer,
-    drives: Sequence[Drive],
-    crank_angle: FloatArray,
-    torque: FloatArray | float,
-    start: FloatArray | None,
-    inner: Start | None,
-    gaps: bool,
-    wheel_moment: FloatArray | None = None,
-) -> Equilibrium:
-    """Balance positions at output torques, the way `solve_at_output` says."""
-    angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
-    loads = np.broadcast_to(np.asarray(torque, dtype=float), angle.shape)
-    repeats = angle.size // len(drives)
-    mean = np.repeat([drive.wheel_moment(1.0) for drive in drives], repeats) * loads
-    held = np.repeat([drive.wheel_is_held for drive in drives], repeats)
-    signed = np.repeat([drive.driving_sign for drive in drives], repeats) * loads
-    # What parts that hold each other carry without a torque is balanced as well as under the light one.
-    light = np.where(loads == 0.0, np.repeat([drive.load.light_torque for drive in drives], repeats), 0.0)
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _OutputTorque:
+    """What positions of drives are balanced at, one row for each.
 
-    def follow(rows: NDArray[np.intp], moment: FloatArray, near: Equilibrium) -> Equilibrium:
-        return follow_equilibrium(
-            model if rows.size == angle.size else model.take(rows), near, moment, gaps, light[rows]
+    Attributes
+    ----------
+    signed : array
+        Torque on the output, ccw positive, N·mm.
+    mean : array
+        Moment on the wheel that it is in the mean of a turn, N·mm.
+    held : array of bool
+        Where the wheel is held.
+    input_per_crank_moment : array
+        Moment of the input by that of the cranks.
+    by_wheel : array
+        Mean of the output torque by the moment on the wheel, without sign.
+    reference : array
+        Torque that what is left over is measured by where the output torque is smaller, N·mm.
+    """
+
+    signed: FloatArray
+    mean: FloatArray
+    held: NDArray[np.bool_]
+    input_per_crank_moment: FloatArray
+    by_wheel: FloatArray
+    reference: FloatArray
+
+    @classmethod
+    def of_drives(cls, drives: Sequence[Drive], loads: FloatArray) -> _OutputTorque:
+        """Return the torques, those of drive after drive."""
+
+        def each(value: Callable[[Drive], float]) -> NDArray[Any]:
+            return np.repeat([value(drive) for drive in drives], loads.size // len(drives))
+
+        return cls(
+            signed=each(lambda drive: drive.driving_sign) * loads,
+            mean=each(lambda drive: drive.wheel_moment(1.0)) * loads,
+            held=each(lambda drive: drive.wheel_is_held),
+            input_per_crank_moment=each(lambda drive: drive.input_per_crank_moment),
+            by_wheel=each(lambda drive: 1.0 / abs(drive.output_per_wheel_angle)),
+            # What parts that hold each other carry without a torque is balanced as well as under the light one.
+            reference=np.where(loads == 0.0, each(lambda drive: drive.load.light_torque), 0.0),
         )
 
-    input_per_crank_moment = np.repeat([drive.input_per_crank_moment for drive in drives], repeats)
-    by_wheel = np.repeat([1.0 / abs(drive.output_per_wheel_angle) for drive in drives], repeats)
-    first = mean if wheel_moment is None else np.where(held, wheel_moment, mean)
-    found = solve_equilibrium(model, angle, first, start, inner, gaps, len(drives), light)
-    return _at_output(model, follow, found, signed, held, input_per_crank_moment, by_wheel, light)
+    def balanced(
+        self, model: Reducer, found: Equilibrium, balance: Balance | None = None, *, gaps: bool = True
+    ) -> Equilibrium:
+        """Find the moments on held wheels by secants, from positions balanced at the mean moment of a turn.
+
+        Positions are followed by Newton's method, or solved anew by `balance` from poses near by.
+        """
+        held, moment = self.held, found.wheel_moment.copy()
+        if not np.any(held):
+            return found
+        left = unbalanced_moment(model, found, self.input_per_crank_moment, self.signed)
+        # The cranks carry 1/u of the wheel's moment in the mean, the input its part of that: what is left grows with it.
+        slope, history = self.by_wheel.copy(), []
+        for _ in range(MAX_ITERATIONS):
+            history.append(float(np.max(np.abs(np.where(held, left, 0.0)))))
+            accepted = TORQUE_TOLERANCE * np.maximum(np.abs(self.signed), self.reference)
+            rows = np.nonzero(held & (np.abs(left) > accepted))[0]
+            if rows.size == 0:
+                return found
+            step, whole = -left[rows] / slope[rows], rows.size == moment.size
+            moment[rows] += step
+            near, own = (found, model) if whole else (take_positions(found, rows), model.take(rows))
+            if balance is None:
+                part = follow_equilibrium(own, near, moment[rows], gaps, self.reference[rows])
+            else:
+                part = balance(near.crank_angle, moment[rows], near.pose)
+            part = replace(part, iterations=near.iterations + part.iterations)
+            found, before = part if whole else put_positions(found, rows, part), left[rows]
+            left[rows] = unbalanced_moment(own, part, self.input_per_crank_moment[rows], self.signed[rows])
+            secant = (left[rows] - before) / step
+            # Round-off of both ends makes no slope any more; a wrong one would only cost rounds.
+            slope[rows] = np.where(np.abs(secant / slope[rows] - 1.0) < 0.5, secant, slope[rows])
+        worst = int(np.argmax(np.abs(np.where(held, left, 0.0))))
+        raise ConvergenceError(
+            f"the moment that holds the wheel is not found at crank angle {found.crank_angle[worst]:.6g} rad; moments left "
+            "over in N·mm",
+            history,
+        )
 
 
 def balance_at_output(
@@ -226,63 +272,5 @@ def balance_at_output(
     `balance` takes crank angles, moments on the wheel and poses to start from, and returns balanced positions.
     """
     angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
-    mean = np.full(angle.size, drive.wheel_moment(torque))
-    held = np.full(angle.size, drive.wheel_is_held)
-
-    def follow(rows: NDArray[np.intp], moment: FloatArray, near: Equilibrium) -> Equilibrium:
-        return balance(angle[rows], moment, near.pose)
-
-    input_per_crank_moment = np.full(angle.size, drive.input_per_crank_moment)
-    signed = np.full(angle.size, drive.driving_sign * torque)
-    by_wheel = np.full(angle.size, 1.0 / abs(drive.output_per_wheel_angle))
-    found, light = balance(angle, mean, start), np.zeros(angle.size)
-    return _at_output(model, follow, found, signed, held, input_per_crank_moment, by_wheel, light)
-
-
-def _at_output(
-    model: Reducer,
-    follow: Callable[[NDArray[np.intp], FloatArray, Equilibrium], Equilibrium],
-    found: Equilibrium,
-    signed: FloatArray,
-    held: NDArray[np.bool_],
-    input_per_crank_moment: FloatArray,
-    by_wheel: FloatArray,
-    reference: FloatArray,
-) -> Equilibrium:
-    """Find the moments on held wheels by secants, from positions balanced at the mean moment of a turn.
-
-    `follow` balances some positions under other moments, from what they were balanced under last. `by_wheel` is the mean of
-    the output torque by the moment on the wheel, and `reference` the torque that what is left over is measured by where the
-    output torque is smaller, N·mm.
-    """
-    if not np.any(held):
-        return found
-    angle, mean = found.crank_angle, found.wheel_moment
-    moment = mean.copy()
-    left = unbalanced_moment(model, found, input_per_crank_moment, signed)
-    # The cranks carry 1/u of the wheel's moment in the mean, the input its part of that: what is left grows with the moment.
-    slope = by_wheel.copy()
-    history = []
-    for _ in range(MAX_ITERATIONS):
-        history.append(float(np.max(np.abs(np.where(held, left, 0.0)))))
-        open_rows = np.nonzero(held & (np.abs(left) > TORQUE_TOLERANCE * np.maximum(np.abs(signed), reference)))[0]
-        if open_rows.size == 0:
-            return found
-        step = -left[open_rows] / slope[open_rows]
-        moment[open_rows] += step
-        whole = open_rows.size == angle.size
-        near = found if whole else take_positions(found, open_rows)
-        part = follow(open_rows, moment[open_rows], near)
-        part = replace(part, iterations=near.iterations + part.iterations)
-        found = part if whole else put_positions(found, open_rows, part)
-        before = left[open_rows]
-        model_part = model if whole else model.take(open_rows)
-        left[open_rows] = unbalanced_moment(model_part, part, input_per_crank_moment[open_rows], signed[open_rows])
-        secant = (left[open_rows] - before) / step
-        # Round-off of both ends makes no slope any more; a wrong one would only cost rounds.
-        slope[open_rows] = np.where(np.abs(secant / slope[open_rows] - 1.0) < 0.5, secant, slope[open_rows])
-    worst = int(np.argmax(np.abs(np.where(held, left, 0.0))))
-    raise ConvergenceError(
-        f"the moment that holds the wheel is not found at crank angle {angle[worst]:.6g} rad; moments left over in N·mm",
-        history,
-    )
+    wanted = _OutputTorque.of_drives([drive], np.full(angle.size, torque))
+    return wanted.balanced(model, balance(angle, wanted.mean, start), balance)

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, fields, is_dataclass, replace
 from functools import cached_property
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,7 +33,6 @@ from ltca.compliance.response import (
     ContactPressures,
     DiscModel,
     DiscResponse,
-    KindPressures,
     Response,
     Start,
     bearing_moments,
@@ -43,10 +42,9 @@ from ltca.compliance.response import (
 from ltca.drive.parts import Drive
 from ltca.equilibrium.external_force import ExternalForce
 from ltca.equilibrium.first_stage import StageMesh
-from ltca.equilibrium.friction.turning import RubbingPins, TurningFriction
+from ltca.equilibrium.friction.turning import TurningFriction
 from ltca.equilibrium.supports import Supports
 from ltca.geometry.coordinates import WHEEL_ANGLE, Coordinates
-from ltca.geometry.pair_motion import KnownPins
 from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.carrier import far_flange_stiffness
 from ltca.mechanics.answers import disc_response
@@ -54,53 +52,8 @@ from ltca.mechanics.contacts import ContactSystem, Linearised
 
 POSITIONS_AT_ONCE = 512
 """Positions whose contacts are found at once: few enough for the processor's cache."""
-
-
-class JointFriction(RubbingPins, Protocol):
-    """Friction of the joints at a pose."""
-
-    @property
-    def pin(self) -> float:
-        """Coefficient with which wheel pins rub."""
-        ...
-
-    @property
-    def hole(self) -> float:
-        """Coefficient with which shaft pins rub."""
-        ...
-
-    @property
-    def rolling(self) -> float:
-        """Moment between crank and disc by the load of a crank bearing, mm."""
-        ...
-
-    @property
-    def motion(self) -> int:
-        """+1 where the crank turns counter-clockwise, −1 clockwise, 0 where the input is locked."""
-        ...
-
-    @property
-    def turns(self) -> bool:
-        """Whether the drive turns: its friction goes with the loads alone and may be followed from none."""
-        ...
-
-    def scaled(self, strength: float) -> JointFriction:
-        """Return the friction with all coefficients times a factor."""
-        ...
-
-    def reversed(self) -> JointFriction:
-        """Return the friction of the same drive as it turns the other way."""
-        ...
-
-    def of_wheel(
-        self, parts: Sequence[DiscResponse], reduction_ratio: float, external: ComplexArray | float = 0.0
-    ) -> FloatArray:
-        """Return the moment by which the wheel's bearing rubs, N·mm."""
-        ...
-
-    def of_cranks(self, pushes: Sequence[ComplexArray], on_bearings: ComplexArray | None = None) -> FloatArray:
-        """Return the moment that rubbing takes at every crank, N·mm, shape (positions, cranks)."""
-        ...
+OF_DISCS = ("flank", "holes", "rollers", "pin_load", "hole_load")
+"""Contacts that a response has disc after disc."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -117,7 +70,7 @@ class Reducer:
         What displaces pins: beams under several discs, the ring of the wheel.
     flange : array, shape (3, 3) or (positions, 3, 3), or None
         What of the supports holds the far flange of a carrier (`ltca.laws.carrier`); None without posts.
-    friction : JointFriction or None
+    friction : TurningFriction or None
         What rubs.
     stage : StageMesh or None
         Teeth of the first stage.
@@ -129,7 +82,7 @@ class Reducer:
     supports: Supports | None = None
     pins: PinDisplacements | None = None
     flange: FloatArray | None = by_drive(2, default=None)
-    friction: JointFriction | None = None
+    friction: TurningFriction | None = None
     stage: StageMesh | None = None
     external: ExternalForce | None = None
     _by_position: bool | None = field(init=False, repr=False, compare=False, default=None)
@@ -204,7 +157,6 @@ class Reducer:
         """Add what first stage, supports, forces from outside and friction of bearings do to force and tangent, in place; return
         the diagonal of the tangent of the contacts alone.
         """
-        coordinates = self.coordinates
         contact_stiffness = np.asarray(np.einsum("bii->bi", tangent).copy(), dtype=float)
         beside_discs: tuple[ComplexArray, FloatArray] | tuple[()] = ()
         if self.stage is not None and self._teeth_press:
@@ -213,15 +165,13 @@ class Reducer:
             held, stiffness = self.supports.respond(pose, *beside_discs)
             force += held
             tangent += stiffness
-        if self.external is not None and coordinates.wheel:
-            pressed = self.external.on_wheel(crank_angle)
-            force[:, coordinates.wheel_place] -= np.stack((pressed.real, pressed.imag), axis=-1)
-            if coordinates.wheel_leans:
-                tilting = self.external.tilting(crank_angle)
-                force[:, coordinates.wheel_lean_place] -= np.stack((tilting.real, tilting.imag), axis=-1)
+        if self.external is not None:
+            pressed = self.external.on_wheel(crank_angle).view(float)
+            for number, place in enumerate(self.wheel_places):
+                force[:, place] -= pressed[:, 2 * number : 2 * number + place.size]
         if self.friction is not None:
             ratio = self.discs[0].geometry.placement.reduction_ratio
-            beside = self.force_beside_pins(crank_angle, pose, parts)
+            beside = self.beside_pins(crank_angle, pose, parts)[:, 0]
             force[:, WHEEL_ANGLE] += self.friction.of_wheel(parts, ratio, beside)
         return contact_stiffness
 
@@ -312,29 +262,22 @@ class Reducer:
                 total += ((geometry.lean(own) - geometry.journal_leans(own)).conjugate() * tilting).imag
         return total
 
-    def force_beside_pins(
-        self, crank_angle: FloatArray, pose: FloatArray, parts: Sequence[DiscResponse]
-    ) -> ComplexArray:
-        """Return the force on the wheel relative to the pin shaft from outside and by the teeth of a first stage, N, shape
-        (positions,).
+    def beside_pins(self, crank_angle: FloatArray, pose: FloatArray, parts: Sequence[DiscResponse]) -> ComplexArray:
+        """Return the force on the wheel relative to the pin shaft from outside and by the teeth of a first stage, N, and what
+        they press its lean with, N·mm, shape (positions, 2).
         """
-        total = np.zeros(crank_angle.shape, dtype=complex)
+        total = np.zeros((crank_angle.size, 2), dtype=complex)
         if self.external is not None:
             total = total + self.external.on_wheel(crank_angle)
         if self.stage is not None and self.stage.carried:
             total = total + self.stage.on_wheel(self.crank_moments(crank_angle, pose, parts))[0]
         return total
 
-    def tilting_beside_pins(
-        self, crank_angle: FloatArray, pose: FloatArray, parts: Sequence[DiscResponse]
-    ) -> ComplexArray:
-        """Return what presses the lean of the wheel from outside and by the teeth of a first stage, N·mm, shape (positions,)."""
-        total = np.zeros(crank_angle.shape, dtype=complex)
-        if self.external is not None:
-            total = total + self.external.tilting(crank_angle)
-        if self.stage is not None and self.stage.carried:
-            total = total + self.stage.tilting_on_wheel(self.crank_moments(crank_angle, pose, parts))[0]
-        return total
+    @property
+    def wheel_places(self) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        """Coordinates of the wheel's place and of its lean, none where it has none."""
+        every = np.arange(self.coordinates.size)
+        return every[self.coordinates.wheel_place], every[self.coordinates.wheel_lean_place]
 
     def carried_beside_discs(
         self, crank_angle: FloatArray, pose: FloatArray, parts: Sequence[DiscResponse]
@@ -360,19 +303,14 @@ class Reducer:
 
         Where cranks are rigid, the derivatives of what the planets press on main bearing and flange are left out.
         """
-        coordinates = self.coordinates
         moments = self.crank_moments(crank_angle, pose, parts)
         slopes = self._moment_slopes(crank_angle, pose, parts, tangent)
         on_wheel, by_moments = stage.on_wheel(moments)
-        if coordinates.wheel:
-            force[:, coordinates.wheel_place] -= np.stack((on_wheel.real, on_wheel.imag), axis=-1)
-            moved = np.einsum("pc,pcj->pj", by_moments, slopes)
-            tangent[:, coordinates.wheel_place] -= np.stack((moved.real, moved.imag), axis=1)
-        if coordinates.wheel_leans:
-            tilting, by_moments = stage.tilting_on_wheel(moments)
-            force[:, coordinates.wheel_lean_place] -= np.stack((tilting.real, tilting.imag), axis=-1)
-            moved = np.einsum("pc,pcj->pj", by_moments, slopes)
-            tangent[:, coordinates.wheel_lean_place] -= np.stack((moved.real, moved.imag), axis=1)
+        moved = np.einsum("pkc,pcj->pkj", by_moments, slopes)
+        for number, place in enumerate(self.wheel_places):
+            if place.size:
+                force[:, place] -= np.stack((on_wheel[:, number].real, on_wheel[:, number].imag), axis=-1)
+                tangent[:, place] -= np.stack((moved[:, number].real, moved[:, number].imag), axis=1)
         if not stage.yields:
             return ()
         pressed, by_moment = stage.on_planets(moments)
@@ -408,10 +346,9 @@ class Reducer:
 
     def pressures(self, response: Response) -> ContactPressures:
         """Return the pressures of all discs behind a response of this model."""
-        found = [disc.pressures(part) for disc, part in zip(self.discs, response.parts, strict=True)]
-        kinds = ("pins", "outer", "inner", "holes")
-        joined: dict[str, Any] = {kind: _beside_kinds([getattr(each, kind) for each in found]) for kind in kinds}
-        return ContactPressures(**joined, rigid_shaft_pins=found[0].rigid_shaft_pins)
+        each = zip(self.discs, response.parts, strict=True)
+        found: ContactPressures = _beside([disc.pressures(part) for disc, part in each])
+        return found
 
 
 class _Evaluated:
@@ -433,16 +370,8 @@ class _Evaluated:
     @cached_property
     def start(self) -> Start:
         """Where other poses of the same positions start."""
-        at = self.at
-        flanks = [each.flank for each in at.discs]
-        known = {name: _beside([getattr(flank, name) for flank in flanks]) for name in ("approach", "point", "turning")}
-        return Start(
-            parameter=_beside([flank.parameter for flank in flanks]),
-            share=np.full(at.place.shape, 0.5),
-            known=KnownPins(**known),
-            follow=at.following(),
-            inner=at.inner,
-        )
+        start, approach = self.at.onward, _beside([each.flank.approach for each in self.at.discs])
+        return replace(start, known=None if start.known is None else replace(start.known, approach=approach))
 
 
 @dataclass(frozen=True, slots=True)
@@ -508,11 +437,10 @@ class Evaluation:
         return Response(
             force=self.force,
             tangent=self.tangent,
-            **_contacts_of(parts),
+            **{name: _beside([getattr(part, name) for part in parts]) for name in OF_DISCS},
             parts=parts,
             shifts=None if shifts is None else shifts[:, : len(parts)],
             ring=parts[0].ring,
-            follow=start.follow,
             left=self.left,
             inner=start.inner,
             contact_stiffness=self.contact_stiffness,
@@ -539,30 +467,12 @@ def complete(model: Reducer, crank_angle: FloatArray, pose: FloatArray, response
 
 def disc_pressures(pressures: ContactPressures, discs: int) -> tuple[ContactPressures, ...]:
     """Return the pressures of each of several discs from those of all."""
-    if discs == 1:
-        return (pressures,)
 
-    def part(kind: KindPressures, number: int) -> KindPressures:
-        each = kind.mid.shape[1] // discs
-        own = slice(number * each, (number + 1) * each)
-        return KindPressures(
-            mid=kind.mid[:, own],
-            largest=kind.largest[:, own],
-            half_width=kind.half_width[:, own],
-            end_cell=kind.end_cell,
-            along=None if kind.along is None else map_arrays(lambda array: array[:, own], kind.along),
-        )
+    def of_disc(number: int) -> ContactPressures:
+        found: ContactPressures = map_arrays(lambda array: np.split(array, discs, axis=1)[number], pressures)
+        return found
 
-    return tuple(
-        ContactPressures(
-            pins=part(pressures.pins, number),
-            outer=part(pressures.outer, number),
-            inner=part(pressures.inner, number),
-            holes=part(pressures.holes, number),
-            rigid_shaft_pins=pressures.rigid_shaft_pins,
-        )
-        for number in range(discs)
-    )
+    return tuple(map(of_disc, range(discs)))
 
 
 def bearing_forces(model: Reducer, crank_angle: FloatArray, response: Response) -> NDArray[np.complex128]:
@@ -579,27 +489,13 @@ def disc_torques(response: Response) -> FloatArray:
     return np.stack([part.force[:, WHEEL_ANGLE] for part in response.parts], axis=1)
 
 
-def _contacts_of(parts: Sequence[DiscResponse]) -> dict[str, Any]:
-    """The contacts of all discs, disc after disc."""
-    names = ("flank", "holes", "rollers", "pin_load", "hole_load")
-    return {name: _beside([getattr(part, name) for part in parts]) for name in names}
-
-
 def _beside(values: Sequence[Any]) -> Any:
-    """Put arrays (positions, pairs, …), or dataclasses of them, of the discs side by side."""
-    if len(values) == 1 or values[0] is None:
+    """Put arrays (positions, pairs, …), or dataclasses of them, of the discs side by side; else the first."""
+    if len(values) == 1:
         return values[0]
-    if not is_dataclass(values[0]):
+    if isinstance(values[0], np.ndarray):
         return np.concatenate(values, axis=1)
-    kind: Any = type(values[0])  # FlankMotion, PairMotion, RollerState
+    if not is_dataclass(values[0]):
+        return values[0]
+    kind: Any = type(values[0])  # FlankMotion, PairMotion, RollerState, …
     return kind(**{item.name: _beside([getattr(value, item.name) for value in values]) for item in fields(kind)})
-
-
-def _beside_kinds(kinds: Sequence[KindPressures]) -> KindPressures:
-    return KindPressures(
-        mid=_beside([kind.mid for kind in kinds]),
-        largest=_beside([kind.largest for kind in kinds]),
-        half_width=_beside([kind.half_width for kind in kinds]),
-        end_cell=kinds[0].end_cell,
-        along=_beside([kind.along for kind in kinds]),
-    )

@@ -19,9 +19,10 @@ beside the discs, such as the teeth of a first stage, adds to R what the bearing
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import isfinite, nan
+from typing import Any
 
 import numpy as np
 
@@ -90,8 +91,7 @@ class BearingSupport:
         bearings), and `slopes` its derivatives by the pose, x and y of every bearing in turn, shape (positions, 2·bearings,
         coordinates). These forces act on the planes elsewhere.
         """
-        displaced = self._displaced(pose)
-        given, by_given = self._settle(displaced, beside)
+        displaced, given, by_given = self._settle(pose, beside)
         force = self._forces(displaced, given)
         lost = _both(np.matmul(self.stiffness, self.shares))
         tangent = _both(self.stiffness) - np.matmul(lost, np.matmul(by_given, lost.swapaxes(-1, -2)))
@@ -105,11 +105,9 @@ class BearingSupport:
 
     def energy(self, pose: FloatArray, beside: ComplexArray | None = None) -> FloatArray:
         """Return the stored energy, N·mm, shape (positions,); `beside` as for `respond`."""
-        displaced = self._displaced(pose)
-        given, _ = self._settle(displaced, beside)
+        displaced, given, _ = self._settle(pose, beside)
         rest = displaced - _times(self.shares, given)
-        size = np.abs(given)
-        lifted = np.where(self.beyond > 0.0, size, 0.0)
+        lifted = np.where(self.beyond > 0.0, np.abs(given), 0.0)
         softer = lifted * (self.lift_off + 0.5 * lifted / np.where(self.beyond > 0.0, self.beyond, 1.0))
         return np.asarray(0.5 * (rest.conj() * _times(self.stiffness, rest)).real.sum(axis=1) + softer.sum(axis=1))
 
@@ -117,29 +115,26 @@ class BearingSupport:
         """Return the force of each bearing on shaft or wheel, x + iy, N, shape (positions, bearings); `beside` as for
         `respond`.
         """
-        displaced = self._displaced(pose)
-        given, _ = self._settle(displaced, beside)
+        displaced, given, _ = self._settle(pose, beside)
         carried = _times(self.shares.swapaxes(-1, -2), self._forces(displaced, given))
         return -carried if beside is None else -(carried + beside)
 
     def given(self, pose: FloatArray, beside: ComplexArray | None = None) -> ComplexArray:
         """Return the displacement w in each bearing, x + iy, mm, shape (positions, bearings); `beside` as for `respond`."""
-        return self._settle(self._displaced(pose), beside)[0]
-
-    def _displaced(self, pose: FloatArray) -> ComplexArray:
-        both = np.matmul(self.by_pose, pose[..., None])[..., 0]
-        return np.asarray(both[:, ::2] + 1j * both[:, 1::2])
+        return self._settle(pose, beside)[1]
 
     def _forces(self, displaced: ComplexArray, given: ComplexArray) -> ComplexArray:
         return _times(self.stiffness, displaced - _times(self.shares, given))
 
-    def _settle(self, displaced: ComplexArray, beside: ComplexArray | None = None) -> tuple[ComplexArray, FloatArray]:
-        """w of every bearing, mm, complex, and its derivative by Lᵀ K u, real and imaginary parts in turn.
+    def _settle(self, pose: FloatArray, beside: ComplexArray | None) -> tuple[ComplexArray, ComplexArray, FloatArray]:
+        """u of every plane, w of every bearing, mm, complex, and its derivative by Lᵀ K u, real and imaginary parts in turn.
 
         Bearing by bearing w is a function of what its reaction is without it (`_given`); several are brought together by
         Newton's method on these functions, which are piecewise smooth, with a sweep bearing by bearing before every step:
         sweeps alone never raise the energy, and find the right pieces.
         """
+        both = np.matmul(self.by_pose, pose[..., None])[..., 0]
+        displaced = both[:, ::2] + 1j * both[:, 1::2]
         lost = np.matmul(self.stiffness, self.shares)
         matrix = np.matmul(self.shares.swapaxes(-1, -2), lost)
         push = _times(lost.swapaxes(-1, -2), displaced)
@@ -153,7 +148,7 @@ class BearingSupport:
         given = np.zeros(push.shape, dtype=complex)
         if count == 1:
             given, slope = self._given(push, own)
-            return given, _blocks(slope)
+            return displaced, given, _blocks(slope)
         for _ in range(MAX_ITERATIONS):
             for bearing in range(count):
                 given[:, bearing] = self._given(push - _times(coupled, given), own)[0][:, bearing]
@@ -164,7 +159,7 @@ class BearingSupport:
             # A shaft that floats has no one w: the least change serves.
             solved = np.linalg.pinv(system, rcond=1e-11)
             if np.all(np.abs(left) <= SETTLED * size):
-                return given, np.matmul(solved, blocks)
+                return displaced, given, np.matmul(solved, blocks)
             step = np.matmul(solved, np.stack((left.real, left.imag), axis=-1).reshape(-1, 2 * count, 1))[..., 0]
             given = given + step[:, ::2] + 1j * step[:, 1::2]
         raise ConvergenceError(
@@ -231,13 +226,16 @@ class Supports:
         of_wheel = np.eye(coordinates.size)[coordinates.wheel_place]
         of_lean = np.eye(coordinates.size)[coordinates.wheel_lean_place]
         rows = wheel_rows(drive)
-        if drive.wheel_tilts and rows:
-            bearings += _tilting_rows(drive, rows, of_wheel, of_lean, matrix)
-        elif isinstance(wheel, SideLaw):
-            held, whole = np.array([[wheel.stiffness]]), np.ones((1, 1))
-            bearings.append(BearingSupport.of_laws(of_wheel, held, whole, (wheel,)))
+        held: list[tuple[FloatArray, SideLaw | float]] = []
+        if drive.wheel_tilts and rows:  # each at its pressure centre
+            held = [(of_wheel + row.pressure_centre * of_lean, _side_law(drive, [row])) for row in rows]
         elif wheel is not None:
-            matrix += wheel * of_wheel.T @ of_wheel
+            held = [(of_wheel, wheel)]
+        for at, law in held:
+            if isinstance(law, SideLaw):
+                bearings.append(BearingSupport.of_laws(at, np.array([[law.stiffness]]), np.ones((1, 1)), (law,)))
+            else:
+                matrix += law * at.T @ at
         if drive.wheel_tilts and not rows and drive.main_bearing is not None:
             matrix += (drive.main_bearing.tilt_stiffness or 0.0) * of_lean.T @ of_lean
         if flange is not None:
@@ -255,15 +253,20 @@ class Supports:
         `beside` and `slopes` are those of `BearingSupport.respond` for every crank, on axis 1.
         """
         force, tangent = np.matmul(self.matrix, pose[..., None])[..., 0], self.matrix
-        for number, support in enumerate(self.bearings):
-            of_crank = beside is not None and number < self.cranks
-            pushed, stiff = support.respond(
-                pose,
-                beside[:, number] if of_crank and beside is not None else None,
-                slopes[:, number] if of_crank and slopes is not None else None,
-            )
+        for support, carried, changes in self._each(beside, slopes):
+            pushed, stiff = support.respond(pose, carried, changes)
             force, tangent = force + pushed, tangent + stiff
         return force, tangent
+
+    def _each(
+        self, beside: ComplexArray | None, slopes: FloatArray | None = None
+    ) -> Iterator[tuple[BearingSupport, Any, Any]]:
+        """Bearings with what presses those of cranks beside the discs."""
+        for number, support in enumerate(self.bearings):
+            carried, changes = (
+                None if each is None or number >= self.cranks else each[:, number] for each in (beside, slopes)
+            )
+            yield support, carried, changes
 
     def given(self, pose: FloatArray, beside: ComplexArray) -> ComplexArray | None:
         """Return the displacement in the two bearings of every crank, x + iy, mm, shape (positions, cranks, 2); None where these
@@ -271,16 +274,13 @@ class Supports:
         """
         if not self.cranks:
             return None
-        each = enumerate(self.bearings[: self.cranks])
-        return np.stack([support.given(pose, beside[:, number]) for number, support in each], axis=1)
+        each = [support.given(pose, carried) for support, carried, _ in self._each(beside)]
+        return np.stack(each[: self.cranks], axis=1)
 
     def energy(self, pose: FloatArray, beside: ComplexArray | None = None) -> FloatArray:
         """Return the energy stored at poses, N·mm, shape (positions,); `beside` as for `respond`."""
         total: FloatArray = 0.5 * (pose * np.matmul(self.matrix, pose[..., None])[..., 0]).sum(axis=1)
-        for number, support in enumerate(self.bearings):
-            of_crank = beside is not None and number < self.cranks
-            total = total + support.energy(pose, beside[:, number] if of_crank and beside is not None else None)
-        return total
+        return sum((support.energy(pose, carried) for support, carried, _ in self._each(beside)), total)
 
 
 def crank_stiffness(drive: Drive) -> FloatArray | None:
@@ -398,40 +398,23 @@ def wheel_law(drive: Drive) -> SideLaw | float | None:
     bearing = drive.main_bearing
     if bearing is None:
         return drive.pin_wheel.support_stiffness
-    rows = wheel_rows(drive)
-    stiffness = (
-        sum(row.radial for row in rows) if rows else bearing.radial_stiffness or drive.pin_wheel.support_stiffness
-    )
+    if rows := wheel_rows(drive):
+        return _side_law(drive, rows)
+    stiffness = bearing.radial_stiffness or drive.pin_wheel.support_stiffness
     if stiffness is None:
         raise AssertionError("a main bearing has a stiffness")
     if bearing.clearance is not None:
         return SideLaw.of_clearance(stiffness, bearing.clearance)
-    if not rows:
-        held = bearing.preload
-        return stiffness if held is None else SideLaw.of_preload(stiffness, held.force, held.displacement)
+    held = bearing.preload
+    return stiffness if held is None else SideLaw.of_preload(stiffness, held.force, held.displacement)
+
+
+def _side_law(drive: Drive, rows: Sequence[RollingRow]) -> SideLaw | float:
+    """How rows of the main bearing hold the wheel radially: their stiffness, N/mm, or their law with clearance or preload."""
+    stiffness = sum(row.radial for row in rows)
+    if drive.main_bearing is not None and drive.main_bearing.clearance is not None:
+        return SideLaw.of_clearance(stiffness, drive.main_bearing.clearance)
     return SideLaw.of_rows(rows) if any(isfinite(row.reach) for row in rows) else stiffness
-
-
-def _tilting_rows(
-    drive: Drive, rows: Sequence[RollingRow], of_wheel: FloatArray, of_lean: FloatArray, matrix: FloatArray
-) -> list[BearingSupport]:
-    """Rows of a main bearing that yields in tilt, each at its pressure centre: springs are added to the matrix, those with
-    clearance or preload are returned.
-    """
-    found = []
-    for row in rows:
-        at_row = of_wheel + row.pressure_centre * of_lean
-        clearance = None if drive.main_bearing is None else drive.main_bearing.clearance
-        law = None
-        if clearance is not None:
-            law = SideLaw.of_clearance(row.radial, clearance)
-        elif isfinite(row.reach):
-            law = SideLaw.of_rows([row])
-        if law is None:
-            matrix += row.radial * at_row.T @ at_row
-        else:
-            found.append(BearingSupport.of_laws(at_row, np.array([[law.stiffness]]), np.ones((1, 1)), (law,)))
-    return found
 
 
 def wheel_axial_stiffness(drive: Drive) -> float | None:

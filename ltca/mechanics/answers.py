@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ltca.arrays import FloatArray
-from ltca.compliance.response import DiscResponse, LeaningPairs, RollerState
+from ltca.compliance.response import DiscResponse, LeaningPairs, LeaningRollers, RollerState
 
 if TYPE_CHECKING:
     from ltca.mechanics.contacts import Linearised
@@ -40,7 +40,7 @@ def disc_response(at: Linearised, disc: int) -> DiscResponse:
             inner_approach=np.where(free, 0.0, inner),
             outer_approach=np.where(free, np.minimum(resting, at_bore), at_bore),
         )
-    own, part = system.columns[disc], at.pressing[disc]
+    part = at.pressing[disc]
     loaded = at.of_chosen(load)[:, :, at.at[disc][0].start : at.at[disc][3].stop]
     force = np.einsum("bcij,bci->bj", part.force_map, loaded)
     friction = None
@@ -63,7 +63,6 @@ def disc_response(at: Linearised, disc: int) -> DiscResponse:
         )
     return DiscResponse(
         force=force,
-        tangent=at.tangent[:, own[:, None], own],
         flank=flank,
         holes=in_holes,
         rollers=rollers,
@@ -114,17 +113,12 @@ def _rollers(at: Linearised, disc: int) -> RollerState:
     )
     if each.tilts is None:
         return state
-    inner, outer_contact = at.slices_after(disc)[3], at.slices_after(disc)[1]
-    after = at.after[:, 1]
-    return replace(
-        state,
-        inner_moment=inner.moment,
-        outer_moment=outer_contact.moment,
+    contacts, after = at.slices_after(disc), at.after[:, 1]
+    leaning = LeaningRollers(
         lean=np.where(carries, at.lean_after[:, own] / at.half, 0.0),
         inner_tilt=np.where(carries, after[:, races] / at.half, 0.0),
         outer_tilt=np.where(carries, after[:, bores] / at.half, 0.0),
-        inner_slices=inner.slice_load,
-        outer_slices=outer_contact.slice_load,
-        inner_lines=inner.line_load,
-        outer_lines=outer_contact.line_load,
+        inner=contacts[3].kept,
+        outer=contacts[1].kept,
     )
+    return replace(state, leaning=leaning)

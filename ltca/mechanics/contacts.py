@@ -36,10 +36,8 @@ from numpy.typing import NDArray
 
 from ltca.arrays import ComplexArray, FloatArray, take_positions
 from ltca.compliance import sliced
-from ltca.compliance.contact_laws import ContactLaws
 from ltca.compliance.coupled import BodyFlexibility
-from ltca.compliance.inner_unknowns import Following, Inner
-from ltca.compliance.response import Start
+from ltca.compliance.response import ContactLaws, Inner, Start
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_ROTATION, X, Y
 from ltca.geometry.pair_motion import KnownPins
@@ -53,7 +51,6 @@ from ltca.mechanics.elimination import (
     loads_of,
 )
 from ltca.mechanics.places import (
-    ContactStart,
     DiscPlaces,
     Indices,
     State,
@@ -148,7 +145,7 @@ class ContactSystem:
         self,
         angle: FloatArray,
         pose: FloatArray,
-        start: Start | ContactStart | None,
+        start: Start | None,
         *,
         roughly: bool,
         everything: bool = False,
@@ -169,7 +166,7 @@ class ContactSystem:
         self,
         angle: FloatArray,
         pose: FloatArray,
-        start: Start | ContactStart | None,
+        start: Start | None,
         *,
         roughly: bool,
         everything: bool = False,
@@ -229,7 +226,7 @@ class ContactSystem:
             history = (*history, at.moved)
         return [(np.arange(at.angle.size), at)]
 
-    def _begin(self, pose: FloatArray, start: Start | ContactStart | None) -> State:
+    def _begin(self, pose: FloatArray, start: Start | None) -> State:
         """Inner unknowns to start from; NaN where nothing is known."""
         rows, rollers = pose.shape[0], self.discs * self.rollers
         place = lean = None
@@ -240,14 +237,9 @@ class ContactSystem:
         if start is not None:
             parameter, share = start.parameter, start.share
             if start.inner is not None:
-                if self.deforms and start.inner.approach is not None:
-                    fits = start.inner.approach.shape[1:] == (self.components, self.contacts)
-                    approach = start.inner.approach if fits else None
-                if self.components > 1:
-                    near = start.inner.near
-                    lean = start.inner.lean if start.inner.lean.shape == (rows, rollers) else None
-            if start.follow is not None:
-                place, lean, approach, shifts = start.follow.at(pose)
+                near = start.inner.near
+                place, lean, approach, expected = start.inner.at(pose)
+                shifts = shifts if expected is None else expected
         if place is None or lean is None:
             unknown = np.full((rows, rollers), np.nan)
             place, lean = unknown if place is None else place, unknown if lean is None else lean
@@ -604,10 +596,10 @@ class Linearised:
         self.moved = np.max(np.where(matters & (stiffness[0] > 0.0), moved, 0.0), axis=1, initial=0.0)
 
     @property
-    def onward(self) -> ContactStart:
+    def onward(self) -> Start:
         """Where the contacts of a position start that is nearby in pose and crank angle: no pin is left out."""
         motions = [each.flank for each in self.discs]
-        return ContactStart(
+        return Start(
             parameter=beside([motion.parameter for motion in motions]),
             share=self.share,
             known=KnownPins(
@@ -615,7 +607,6 @@ class Linearised:
                 point=beside([motion.point for motion in motions]),
                 turning=beside([motion.turning for motion in motions]),
             ),
-            follow=self.following(),
             inner=self.inner,
         )
 
@@ -635,12 +626,6 @@ class Linearised:
         """Return what every crank bearing presses the lean of a disc with, in slices, N·mm, shape (positions, cranks)."""
         at, bores = self.discs[disc], self.system.of_kind[disc][1]
         return _by_crank(self.half * self.corrected_load[:, 1, bores] * at.rays.direction, at.bores.arm.shape[1])
-
-    @property
-    def inner(self) -> Inner:
-        """Inner unknowns beside the pose, to start from elsewhere."""
-        state = self._whole_state
-        return Inner(lean=state.lean, approach=state.approach, near=state.near)
 
     @cached_property
     def shifts(self) -> ComplexArray | None:
@@ -870,8 +855,9 @@ class Linearised:
                 found |= pressed.any(axis=1)
         return found
 
-    def following(self) -> Following:
-        """Return how the inner unknowns follow the pose."""
+    @property
+    def inner(self) -> Inner:
+        """Inner unknowns beside the pose, and how they follow it."""
         state = self._whole_state
         shifts = None
         if self.shifts is not None and self.de_by_pose is not None:
@@ -895,12 +881,13 @@ class Linearised:
             if len(self.by_own) > 1:
                 columns = tuple(tuple(own.tolist()) for own in self.columns)
         by_approach = None if self.de_by_pose is None else self.of_all(self.de_by_pose)
-        return Following(
+        return Inner(
             pose=with_crank(self.pose, self.angle) if self.by_crank else self.pose,
             place=state.place,
             lean=state.lean,
             approach=state.approach,
             shifts=state.shifts,
+            near=state.near,
             by_pose=by_pose,
             approach_by_pose=by_approach,
             shifts_by_pose=shifts,

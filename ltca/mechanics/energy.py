@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ltca.arrays import FloatArray
-from ltca.compliance.stored_energy import StoredEnergy
+from ltca.compliance.stored_energy import Pressed, StoredEnergy
 
 if TYPE_CHECKING:
     from ltca.mechanics.contacts import Linearised
@@ -34,14 +34,13 @@ def _of_disc(at: Linearised, disc: int) -> StoredEnergy:
     laws = system.laws[disc]
     radii = at.discs[disc].flank.effective_radius, laws.outer_radius, laws.hole_radius, laws.inner_radius
     deformation = [at.after[:, 0, kind] for kind in kinds]
-    if system.components == 1:
-        plane = list(zip(laws.laws, deformation, radii, strict=True))
-        found = StoredEnergy.of_laws(plane[0], plane[1:])
-    else:
+    tilts: list[Any] = [None] * len(kinds)
+    near: list[Any] = [None] * len(kinds)
+    if system.components > 1:
         tilts = [at.after[:, 1, kind] / at.half for kind in kinds]
-        near: list[Any] = [one.near for one in at.slices_after(disc)]
-        sliced = list(zip(laws.laws, deformation, tilts, radii, near, strict=True))
-        found = StoredEnergy.of_slices(sliced[0], sliced[1:])
+        near = [one.near for one in at.slices_after(disc)]
+    pins, *others = map(Pressed, laws.laws, deformation, radii, tilts, near)
+    found = StoredEnergy.of_laws(pins, others)
     bodies = system.model.discs[disc]
     if bodies.coefficients is None:
         return found

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.arrays import ComplexArray, FloatArray
-from ltca.compliance.inner_unknowns import Following, Inner
 from ltca.geometry.coordinates import WHEEL_ANGLE, X, Y
 from ltca.geometry.pair_motion import KnownPins, PairTilt, dot
 from ltca.geometry.pairs import ContactGeometry
@@ -103,16 +102,6 @@ class State(NamedTuple):
     approach: FloatArray | None
     shifts: ComplexArray | None
     near: tuple[FloatArray, ...]
-
-
-class ContactStart(NamedTuple):
-    """Inner unknowns of a neighbouring position, to start from."""
-
-    parameter: FloatArray
-    share: FloatArray
-    known: KnownPins
-    follow: Following
-    inner: Inner
 
 
 def mixed(first: State, second: State, rows: NDArray[np.bool_]) -> State:

@@ -8,7 +8,8 @@ from __future__ import annotations
 import functools
 import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import ParamSpec, TypeVar
 
 P = ParamSpec("P")
@@ -28,15 +29,22 @@ def use_one_thread() -> None:
         threadpool_limits(limits=1, user_api="blas")
 
 
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """Give linear algebra one thread within a block whose results come from it."""
+    import scipy.linalg  # noqa: F401  # has a library of its own, which must be there to be limited
+    from threadpoolctl import threadpool_limits
+
+    with threadpool_limits(limits=1, user_api="blas"):
+        yield
+
+
 def on_one_thread(function: Callable[P, R]) -> Callable[P, R]:
     """Decorate a function whose results come from linear algebra: it has one thread until the function returns."""
 
     @functools.wraps(function)
     def limited(*args: P.args, **kwargs: P.kwargs) -> R:
-        import scipy.linalg  # noqa: F401  # has a library of its own, which must be there to be limited
-        from threadpoolctl import threadpool_limits
-
-        with threadpool_limits(limits=1, user_api="blas"):
+        with one_thread():
             return function(*args, **kwargs)
 
     return limited

@@ -89,5 +89,5 @@ def bearing_alone(
     pose[:, X], pose[:, Y] = displacement.real, displacement.imag
     start = None
     if share is not None:
-        start = replace(Start.after(model.respond(angle, pose)), share=share, follow=None, inner=None)
+        start = replace(Start.after(model.respond(angle, pose)), share=share, inner=None)
     return model.respond(angle, pose, start)

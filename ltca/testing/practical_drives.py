@@ -393,8 +393,8 @@ def _pressed(model: Reducer, loaded: Equilibrium) -> float:
         if own.shifts is not None:
             for kind, moved in enumerate(split_shifts(own.shifts, disc)):
                 found[kind] = found[kind] + (0.0 if moved is None else np.abs(moved))
-        if pins is not None and holes is not None:
-            leant = pins.tilt.tilt, holes.tilt.tilt, np.asarray(rollers.inner_tilt) + np.asarray(rollers.outer_tilt)
+        if pins is not None and holes is not None and (leaning := rollers.leaning) is not None:
+            leant = pins.tilt.tilt, holes.tilt.tilt, leaning.inner_tilt + leaning.outer_tilt
             arms = disc.half_width, disc.half_width, disc.roller_half_length
             found = [each + np.abs(tilt) * arm for each, tilt, arm in zip(found, leant, arms, strict=True)]
         approaches += found

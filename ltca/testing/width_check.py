@@ -279,7 +279,8 @@ class Disc:
         found: dict[str, Any] = {"gap": [], "radius": [], "load": [], "left": [], "force": [], "couple": []}
         found["left out"] = found["crank"] = 0.0
         turning, each = 0.0, ray.size
-        inner_slices, outer_slices = (np.asarray(one[row]) for one in (state.inner_slices, state.outer_slices))
+        leaning = state.leaning
+        inner_slices, outer_slices = leaning.inner.slice_load[row], leaning.outer.slice_load[row]
         for crank in range(cranks):
             own = slice(crank * each, (crank + 1) * each)
             eccentric = self.parts.eccentrics[crank] * (np.exp(1j * self.twist[crank]) - 1.0)
@@ -288,7 +289,7 @@ class Disc:
             race_lean = self.sloped[crank] + _lean(drive.crank.inclination)
             in_bore = self.centre + self.parts.bores[crank] * self.turn
             place = inner_race + radii - state.inner_approach[row, own]
-            lean = np.where(state.outer_load[row, own] > 0.0, state.lean[row, own], 0.0)
+            lean = np.where(state.outer_load[row, own] > 0.0, leaning.lean[row, own], 0.0)
             arm = race + place * ray - in_bore
             normal = arm / np.abs(arm)
             pressed_inner = state.inner_approach[row, own][:, None] - np.outer(
@@ -314,10 +315,10 @@ class Disc:
             found["load"].append((inner_slices[own], outer_slices[own]))
             inner, outer = inner_slices[own].sum(axis=1), outer_slices[own].sum(axis=1)
             middle = inner - outer * (np.conj(ray) * normal).real
-            found["left"].append((middle, state.inner_moment[row, own] - state.outer_moment[row, own]))
+            found["left"].append((middle, leaning.inner.moment[row, own] - leaning.outer.moment[row, own]))
             # Rollers lean along their rays in the model, and so do the couples that belong to their gaps.
             force = (outer * normal).sum()
-            couple = (state.outer_moment[row, own] * ray).sum()
+            couple = (leaning.outer.moment[row, own] * ray).sum()
             found["force"].append(force)
             found["couple"].append(couple)
             # By the angle of the crank the race moves and the cage turns with its rays.
@@ -325,9 +326,9 @@ class Disc:
             turned = 1j * self.parts.eccentrics[crank] * np.exp(1j * self.twist[crank]) + speed * 1j * place * ray
             found["crank"] += float((outer * (np.conj(normal) * turned).real).sum())
             seen = (np.conj(1j * ray) * (race_lean - self.lean)).real
-            found["crank"] += float(speed * (state.outer_moment[row, own] * seen).sum())
+            found["crank"] += float(speed * (leaning.outer.moment[row, own] * seen).sum())
             # In the bore they press along its normals.
-            found["left out"] += float((np.abs(state.outer_moment[row, own]) * np.abs(normal - ray)).sum())
+            found["left out"] += float((np.abs(leaning.outer.moment[row, own]) * np.abs(normal - ray)).sum())
             turning += float((np.conj(self.parts.bores[crank] * self.turn) * force).imag)
         found["turning"] = turning
         return found

@@ -63,7 +63,7 @@ def work_left_over(drive, angle):
     centre = solve_at_output(model, [drive], angle, drive.load.torque)
     crank = model.crank_moments(angle, centre.pose, centre.response.parts).sum(axis=1)
     slope = stored_energy(model, centre.response, centre.pose, angle)[1]
-    beside = model.force_beside_pins(angle, centre.pose, centre.response.parts)
+    beside = model.beside_pins(angle, centre.pose, centre.response.parts)[:, 0]
 
     def places(angle, found):
         turned = angle / drive.reduction_ratio + found.pose[:, WHEEL_ANGLE]

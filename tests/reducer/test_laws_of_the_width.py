@@ -35,9 +35,10 @@ def balance(drive, angles=ANGLES):
 
 def kinds(found):
     part = found.response.parts[0]
-    pins, holes, rollers = part.leaning_pins.contact, part.leaning_holes.contact, part.rollers
+    pins, holes, rollers = part.leaning_pins.contact, part.leaning_holes.contact, part.rollers.leaning
     return {
-        "pins": pins.slice_load, "holes": holes.slice_load, "outer": rollers.outer_slices, "inner": rollers.inner_slices,
+        "pins": pins.slice_load, "holes": holes.slice_load, "outer": rollers.outer.slice_load,
+        "inner": rollers.inner.slice_load,
     }  # fmt: skip
 
 

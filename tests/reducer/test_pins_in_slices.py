@@ -112,7 +112,7 @@ def test_half_a_turn_with_the_mirror_takes_one_disc_to_the_other():
             1e-3 * largest if name == "leaning_pins" else 0.0
         )
     # Rollers are counted from the eccentric of their disc.
-    one, other = (part.rollers.outer_slices for part in (first, second))
+    one, other = (part.rollers.leaning.outer.slice_load for part in (first, second))
     np.testing.assert_allclose(one, other[..., ::-1], atol=1e-9 * np.max(one))
     places = [model.coordinates.columns(number)[model.coordinates.lean_place] for number in (0, 1)]
     leans = [found.pose[:, place] for place in places]

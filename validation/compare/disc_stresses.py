@@ -140,7 +140,7 @@ def stresses_of(analysis: LoadedAnalysis) -> list[DiscStressAnswer]:
     """Return the stress of an analysis of one disc position by position; none where its model gives no stress in the disc."""
     model, full = analysis.model.discs[0], analysis.full
     coefficients = model.coefficients
-    if len(analysis.model.discs) > 1 or coefficients is None or not coefficients.stress.available:
+    if len(analysis.model.discs) > 1 or coefficients is None or coefficients.stress is None:
         return []
     rotation = full.pose[:, 2]
     profiles = wall_profiles(model, full.response, analysis.pressures, rotation, refinement=1)

@@ -110,7 +110,8 @@ def pair_approaches(
     model = CoupledCompliance.of_drive(drive, coefficients, near_field)
     angle = np.array([crank_angle])
     flank = model.geometry.flank(angle, np.zeros((1, 4)))
-    rollers, holes = model.outer_radius.size, model.hole_radius.size
+    place = model.geometry.placement
+    rollers, holes = place.outer_effective_radii.size, place.hole_effective_radii.size
     matrix = coefficients.disc_matrix(
         flank.parameter,
         np.linspace(0.0, 2.0 * np.pi, rollers, endpoint=False)[None, :],

@@ -19,10 +19,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ltca.arrays import FloatArray
-from ltca.compliance.contact_laws import ContactLaws
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.pressures import along_width, elastic_hole_pressures, pressures_in_slices
-from ltca.compliance.response import ContactPressures, DiscResponse, KindPressures
+from ltca.compliance.response import ContactLaws, ContactPressures, DiscResponse, KindPressures
 from ltca.contact.end_pressure import largest_pressure
 from ltca.contact.tilted_grid import press_tilted
 from ltca.contact.tracked_grid import CELLS, ContactKind, ContactKinds, Separation
@@ -308,7 +307,7 @@ class GridCompliance:
             hole_law=(
                 SpringLaw(stiffness=drive.hole_stiffness)
                 if slices == 1
-                else HalfSpaceCompliance.in_slices(drive, geometry).hole_law
+                else HalfSpaceCompliance.of_drive(drive).hole_law
             ),
             slices=slices,
         )
@@ -359,11 +358,12 @@ class GridCompliance:
                 rigid_shaft_pins=False,
             )
         by_lines = pressures_in_slices(response, kinds, place, shaft_pins_on_springs=True)
-        found = {}
+        found, leaning_rollers = {}, rollers.leaning
+        assert leaning_rollers is not None
         for name, law, approach, tilt, radius in (
             ("pins", pins, flank.approach, leaning.tilt.tilt, flank.effective_radius),
-            ("inner", inner, rollers.inner_approach, rollers.inner_tilt, laws.inner_radius),
-            ("outer", outer, rollers.outer_approach, rollers.outer_tilt, laws.outer_radius),
+            ("inner", inner, rollers.inner_approach, leaning_rollers.inner_tilt, laws.inner_radius),
+            ("outer", outer, rollers.outer_approach, leaning_rollers.outer_tilt, laws.outer_radius),
         ):
             found[name] = _along_grids(law, approach, np.asarray(tilt), radius, getattr(by_lines, name))
         return replace(by_lines, pins=found["pins"], inner=found["inner"], outer=found["outer"])

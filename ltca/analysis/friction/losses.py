@@ -175,7 +175,7 @@ def losses(model: Reducer, drives: Sequence[Drive], found: Equilibrium, torque: 
         on_bearings = model.stage.on_bearings(smooth)
     at_cranks = np.abs(friction.of_cranks(pushes, on_bearings)).sum(axis=1) - rolled
     ratio = drives[0].reduction_ratio  # that of all: their parts are as many
-    beside = model.force_beside_pins(angle, found.pose, parts)
+    beside = model.beside_pins(angle, found.pose, parts)[:, 0]
     at_wheel = np.abs(friction.of_wheel(parts, ratio, beside) / ratio)
     input_turns = by_position([1.0 / drive.crank_turns_per_input for drive in drives])
     no_load = by_position([rubs.no_load_torque for rubs in coefficients])

@@ -72,6 +72,7 @@ def roller_passages(analysis: LoadedAnalysis) -> RollerPassages:
     turned = [single.full.pose[:, DISC_ROTATION, None] for single in analysis.discs]
     places = [model.geometry.placement.roller_angles(angle) for model in analysis.model.discs]
     force = np.hypot(analysis.bearing_radial, analysis.bearing_tangential)
+    leaning = [each.leaning for each in rollers]
     return RollerPassages(
         drive=analysis.drive,
         torque=analysis.torque,
@@ -84,8 +85,8 @@ def roller_passages(analysis: LoadedAnalysis) -> RollerPassages:
         ),
         largest_force=force.max(axis=0),
         laminae=laminae_of(analysis),
-        inner_slices=_beside([each.inner_slices for each in rollers]),
-        outer_slices=_beside([each.outer_slices for each in rollers]),
+        inner_slices=_beside([None if one is None else one.inner.slice_load for one in leaning]),
+        outer_slices=_beside([None if one is None else one.outer.slice_load for one in leaning]),
     )
 
 

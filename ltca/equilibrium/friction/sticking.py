@@ -14,18 +14,17 @@ elastically, and nothing is counted for them.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.arrays import ComplexArray, FloatArray, by_drive
-from ltca.compliance.response import DiscResponse
+from ltca.arrays import FloatArray, by_drive
 from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.friction.slip import Pairs, Slip
-from ltca.equilibrium.reducer import JointFriction, Reducer
+from ltca.equilibrium.friction.turning import TurningFriction
+from ltca.equilibrium.reducer import Reducer
 from ltca.geometry.pairs import ContactGeometry
 
 
@@ -55,13 +54,11 @@ def stick_or_slip(
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class StickingFriction:
-    """Friction of a drive whose input is locked, since a balanced state.
+class StickingFriction(TurningFriction):
+    """Friction of a drive whose input is locked, since a balanced state: that of its pins, bearings resist elastically.
 
     Attributes
     ----------
-    pin, hole : float
-        Coefficients with which wheel pins and shaft pins rub.
     pose : array, shape (positions, discs, coordinates of one)
         q of each disc in that state.
     tangential : array, shape (positions, discs, pairs)
@@ -70,43 +67,20 @@ class StickingFriction:
         Contacts that carried there.
     """
 
-    pin: float
-    hole: float
     pose: FloatArray = by_drive(2)
     tangential: FloatArray = by_drive(2)
     closed: NDArray[np.bool_] = by_drive(2)
 
-    @property
-    def turns(self) -> bool:
-        """Whether the drive turns: its input is locked."""
-        return False
-
-    @property
-    def motion(self) -> int:
-        """Sense of the crank: it is locked."""
-        return 0
-
-    @property
-    def rolling(self) -> float:
-        """Moment of the crank bearings by their load: none, they resist elastically."""
-        return 0.0
-
-    def scaled(self, strength: float) -> StickingFriction:
-        """Return the friction with both coefficients times a factor."""
-        return replace(self, pin=strength * self.pin, hole=strength * self.hole)
-
-    def reversed(self) -> StickingFriction:
-        """Return the friction itself: contacts stick alike in both senses."""
-        return self
-
     @classmethod
-    def at_rest(cls, friction: JointFriction, model: Reducer, found: Equilibrium) -> StickingFriction:
+    def at_rest(cls, friction: TurningFriction, model: Reducer, found: Equilibrium) -> StickingFriction:
         """Return the friction since a balance without friction, with the coefficients of the drive that turns."""
-        return cls(pin=friction.pin, hole=friction.hole, **_state(model, found, rubbed=False))
+        kept = {item.name: getattr(friction, item.name) for item in fields(TurningFriction)}
+        none = {"rolling": 0.0, "support": 0.0, "motion": 0}
+        return cls(**kept | none | _state(model, found, rubbed=False))
 
     def after(self, model: Reducer, found: Equilibrium) -> StickingFriction:
         """Return the friction since a state that was found with this one."""
-        return StickingFriction(pin=self.pin, hole=self.hole, **_state(model, found, rubbed=True))
+        return replace(self, **_state(model, found, rubbed=True))
 
     def along(
         self,
@@ -131,20 +105,6 @@ class StickingFriction:
             np.where(sticks, tangential, 0.0),
             np.where(sticks, stiffness, 0.0),
         )
-
-    def of_bearings(self, geometry: ContactGeometry, pose: FloatArray, push: FloatArray) -> FloatArray:
-        """Return what the crank bearings of a disc resist with: nothing."""
-        return np.zeros(pose.shape)
-
-    def of_wheel(
-        self, parts: Sequence[DiscResponse], reduction_ratio: float, external: ComplexArray | float = 0.0
-    ) -> FloatArray:
-        """Return the moment by which the wheel's bearing rubs: none."""
-        return np.zeros(parts[0].pin_load.shape[0])
-
-    def of_cranks(self, pushes: Sequence[ComplexArray], on_bearings: ComplexArray | None = None) -> FloatArray:
-        """Return the moment that rubbing takes at every crank: none."""
-        return np.zeros(pushes[0].shape)
 
 
 def _state(model: Reducer, found: Equilibrium, *, rubbed: bool) -> dict[str, Any]:

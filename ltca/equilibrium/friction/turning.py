@@ -13,7 +13,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Protocol
 
 import numpy as np
 
@@ -79,7 +78,7 @@ class TurningFriction:
     crank_preload : array, shape (bearings,)
         The same of the bearings of a crank, N.
     motion : int
-        +1 where the crank turns counter-clockwise, −1 clockwise.
+        +1 where the crank turns counter-clockwise, −1 clockwise, 0 where the input is locked.
     strength : float
         Part of all coefficients that counts, for continuation.
     """
@@ -113,8 +112,8 @@ class TurningFriction:
 
     @property
     def turns(self) -> bool:
-        """Whether the drive turns."""
-        return True
+        """Whether the drive turns: its friction goes with the loads alone and may be followed from none."""
+        return self.motion != 0
 
     def scaled(self, strength: float) -> TurningFriction:
         """Return a part of this friction."""
@@ -181,27 +180,6 @@ class TurningFriction:
         reactions = np.maximum(np.abs(carried), self.crank_preload).sum(axis=-1)
         rolled = np.abs(forces).sum(axis=-1)
         return np.asarray(self.motion * self.strength * (self.rolling * rolled + self.support * reactions))
-
-
-class RubbingPins(Protocol):
-    """Friction of pins and crank bearings, of a drive that turns or whose input is locked."""
-
-    def along(
-        self,
-        geometry: ContactGeometry,
-        crank_angle: FloatArray,
-        pose: FloatArray,
-        pairs: Pairs,
-        load: FloatArray,
-        stiffness: FloatArray,
-        disc: int,
-    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray | None]:
-        """Return slip by the pose, friction of pins by load, what it has beside, N, and what it grows with slip by, N/mm."""
-        ...
-
-    def of_bearings(self, geometry: ContactGeometry, pose: FloatArray, push: FloatArray) -> FloatArray:
-        """Return what the crank bearings of a disc resist with by the sizes of their forces, N."""
-        ...
 
 
 def _bearing_loads(drive: Drive) -> FloatArray:

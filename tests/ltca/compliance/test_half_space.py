@@ -138,7 +138,7 @@ def test_start_does_not_matter(drives):
     angles, poses, _ = pressed_poses(drive, 4, 5)
     plain = model.respond(angles, poses)
     parameter, share = plain.flank.parameter + 0.01, np.full_like(plain.rollers.share, 0.9)
-    start = replace(Start.after(plain), parameter=parameter, share=share, follow=None, inner=None)
+    start = replace(Start.after(plain), parameter=parameter, share=share, inner=None)
     other = model.respond(angles, poses, start)
     np.testing.assert_allclose(other.force, plain.force, atol=1e-8 * np.abs(plain.force).max())
 

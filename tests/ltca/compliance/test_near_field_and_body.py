@@ -73,12 +73,21 @@ def pair_approaches(model, drive):
     A roller's two loads push it from both ends: each end yields to the other's load as well.
     """
     response = solve_equilibrium(Reducer(discs=(model,)), ANGLES, drive.wheel_moment()).response
+    place = model.geometry.placement
     rollers, scale = response.rollers, 1.0 / (np.pi * plane_modulus("roller") * drive.crank_bearing.roller_length)
     across = 2.0 * CROSS_SHARE * scale
     kinds = {
         "pin": (response.pin_load, response.flank.approach, response.flank.effective_radius),
-        "outer": (rollers.outer_load, rollers.outer_approach + across * rollers.inner_load, model.outer_radius),
-        "inner": (rollers.inner_load, rollers.inner_approach + across * rollers.outer_load, model.inner_radius),
+        "outer": (
+            rollers.outer_load,
+            rollers.outer_approach + across * rollers.inner_load,
+            place.outer_effective_radii,
+        ),
+        "inner": (
+            rollers.inner_load,
+            rollers.inner_approach + across * rollers.outer_load,
+            place.inner_effective_radii,
+        ),
     }
     found = {}
     for kind, (load, approach, radius) in kinds.items():

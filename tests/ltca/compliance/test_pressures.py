@@ -139,7 +139,7 @@ def test_a_shaft_pin_yields_as_one_approach_at_one_load(drive, closed_form):
     """At the loads found, an elastic pin's approach is more than a rigid one's by the closed form of the whole contact."""
     coefficients, own = closed_form(drive), with_fields(drive, ELASTIC)
     rigid, soft = (CoupledCompliance.of_drive(one, coefficients, "plane-strain") for one in (drive, own))
-    load, radius = np.array([[2000.0]]), float(soft.hole_radius[0])
+    load, radius = np.array([[2000.0]]), float(soft.geometry.placement.hole_effective_radii[0])
     nu, modulus = STEEL[1], STEEL[0]
     share = 2.0 * (1.0 - nu**2) / (np.pi * modulus * drive.disc.thickness)
     yielding = [

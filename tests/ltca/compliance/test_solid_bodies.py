@@ -287,9 +287,16 @@ def test_twice_the_tilts_by_an_iteration_of_its_own():
         arm = (rays.outermost - inward) * rays.direction - displacement
         cosine = dot(arm, rays.direction) / np.abs(arm)
         pins = carried(laws.pin, flank.approach - y[0], tilts[0] - t[0], flank.effective_radius)
-        outer = carried(laws.outer, np.abs(arm) - rays.bore_play - y[1], lean - at_bore - t[1], disc.outer_radius)
-        on_holes = carried(disc.hole_law, holes.approach - y[2], tilts[1] - t[2], disc.hole_radius)
-        inner = carried(laws.inner, inward - y[3], at_race - lean - t[3], disc.inner_radius)
+        outer = carried(
+            laws.outer,
+            np.abs(arm) - rays.bore_play - y[1],
+            lean - at_bore - t[1],
+            disc.geometry.placement.outer_effective_radii,
+        )
+        on_holes = carried(
+            disc.hole_law, holes.approach - y[2], tilts[1] - t[2], disc.geometry.placement.hole_effective_radii
+        )
+        inner = carried(laws.inner, inward - y[3], at_race - lean - t[3], disc.geometry.placement.inner_effective_radii)
         contacts = pins, outer, on_holes, inner
         loads, moments = (tuple(getattr(one, name) for one in contacts) for name in ("load", "moment"))
         # What turns and moves a roller inward, and how that grows as it does.
@@ -319,7 +326,7 @@ def split_loads(response):
     rollers, pins, holes = response.rollers, response.leaning_pins.contact, response.leaning_holes.contact
     return (
         (pins.load, rollers.outer_load, holes.load, rollers.inner_load),
-        (pins.moment, rollers.outer_moment, holes.moment, rollers.inner_moment),
+        (pins.moment, rollers.leaning.outer.moment, holes.moment, rollers.leaning.inner.moment),
     )
 
 

@@ -53,7 +53,7 @@ class DiscByItself:
         self.pose = found.pose[:, model.coordinates.columns(number)]
         self.leans = self.geometry.coordinates_of(self.pose).leans
         self.half = np.asarray(self.geometry.half_width, dtype=float)
-        follow, rollers = found.response.follow, self.part.rollers.outer_load.shape[1]
+        follow, rollers = found.response.inner, self.part.rollers.outer_load.shape[1]
         np.testing.assert_allclose(follow.pose, found.pose, rtol=0.0, atol=1e-15)
         own = slice(number * rollers, (number + 1) * rollers)
         self.circle = np.abs(self.geometry.placement.wheel_pin_centres).max()
@@ -92,7 +92,7 @@ class DiscByItself:
         if not self.leans:
             return loads, None
         pins, holes = part.leaning_pins.contact, part.leaning_holes.contact
-        return loads, (pins.moment, rollers.outer_moment, holes.moment, rollers.inner_moment)
+        return loads, (pins.moment, rollers.leaning.outer.moment, holes.moment, rollers.leaning.inner.moment)
 
     def taken(self, flank, carried):
         """What bodies take of the approaches, and of the tilts by half the thickness."""
