@@ -508,7 +508,7 @@ def prepare_run(drive: Drive, engine: Engine, course: Course) -> PreparedRun:
     def balanced(crank_angle: FloatArray) -> FloatArray:
         """Balanced without friction, y of each position, shape (positions, m + k)."""
         smooth = replace(model, friction=None)
-        found = solve_at_output(smooth, [warm], crank_angle, at_first, gaps=False)
+        found = solve_at_output(smooth, [warm], crank_angle, at_first)
         places = np.zeros((crank_angle.size, motion.size))
         places[:, : motion.pose.size] = found.pose
         if motion.sun is not None:

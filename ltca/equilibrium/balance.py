@@ -24,7 +24,7 @@ from ltca.equilibrium.neighbours import (
     start_between,
 )
 from ltca.equilibrium.newton import Search
-from ltca.equilibrium.reducer import Reducer, complete
+from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.first_contact import turn_to_contact
@@ -122,7 +122,6 @@ def solve_equilibrium(
     wheel_moment: FloatArray | float,
     start: FloatArray | None = None,
     inner: Start | None = None,
-    gaps: bool = True,
     series: int = 1,
     reference: FloatArray | float = 0.0,
 ) -> Equilibrium:
@@ -140,8 +139,6 @@ def solve_equilibrium(
         Poses to start from; by default the discs on the inner-race centres and the wheel turned to first contact.
     inner : Start, optional
         Inner unknowns near the poses to start from.
-    gaps : bool
-        Whether the pairs of pins that do not touch are wanted, which balance does not need (`FlankMotion.left_out`).
     series : int
         Number of series of equally many positions, one after the other: turns of different drives or under different torques.
     reference : float or array, shape (positions,)
@@ -161,21 +158,18 @@ def solve_equilibrium(
     angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
     moment = np.broadcast_to(np.asarray(wheel_moment, dtype=float), angle.shape)
     search = _search(model, angle, moment, np.zeros((angle.size, model.coordinates.size)), reference)
-    return _completed(search, _solve_by_neighbours(search, start, inner, series), gaps)
+    return _completed(search, _solve_by_neighbours(search, start, inner, series))
 
 
 def follow_equilibrium(
     model: Reducer,
     found: Equilibrium,
     wheel_moment: FloatArray,
-    gaps: bool = True,
     reference: FloatArray | float = 0.0,
 ) -> Equilibrium:
-    """Balance positions under other moments, N·mm, from what this model answered; `gaps` and `reference` as for
-    `solve_equilibrium`.
-    """
+    """Balance positions under other moments, N·mm, from what this model answered; `reference` as for `solve_equilibrium`."""
     search = _search(model, found.crank_angle, wheel_moment, found.pose.copy(), reference)
-    return _completed(search, search.iterate(_most(search), response=found.response), gaps)
+    return _completed(search, search.iterate(_most(search), response=found.response))
 
 
 def _search(
@@ -186,7 +180,7 @@ def _search(
     return Search(model, angle, moment, lever, load, pose)
 
 
-def _completed(search: Search, left: NDArray[np.intp], gaps: bool) -> Equilibrium:
+def _completed(search: Search, left: NDArray[np.intp]) -> Equilibrium:
     """Balance what Newton's method has left over by other means, and return all positions."""
     model, angle = search.model, search.angle
     creeping = search.follow_valley if search.symmetric else search.reduce_residual
@@ -197,12 +191,11 @@ def _completed(search: Search, left: NDArray[np.intp], gaps: bool) -> Equilibriu
         left = _follow_down(search, left)
     if left.size:
         raise _failure(search, left)
-    response = search.contacts()[1]
     return Equilibrium(
         crank_angle=angle,
         wheel_moment=np.array(search.moment),
         pose=search.pose,
-        response=complete(model, angle, search.pose, response) if gaps else response,
+        response=search.contacts()[1],
         residual=search.residual,
         iterations=search.iterations,
     )

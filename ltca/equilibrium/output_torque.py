@@ -71,7 +71,6 @@ def solve_at_output(
     torque: FloatArray | float,
     start: FloatArray | None = None,
     inner: Start | None = None,
-    gaps: bool = True,
     wheel_moment: FloatArray | None = None,
 ) -> Equilibrium:
     """Balance positions at output torques.
@@ -93,8 +92,6 @@ def solve_at_output(
         Poses to start from, first contact by default.
     inner : Start, optional
         Inner unknowns near those poses.
-    gaps : bool
-        As for `ltca.equilibrium.balance.solve_equilibrium`.
     wheel_moment : array, shape (positions,), optional
         Moments on the wheel to start from, N·mm; those of the mean of a turn by default.
 
@@ -110,16 +107,14 @@ def solve_at_output(
     if start is None and np.any(np.asarray(torque) == 0.0):
         angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
         light = np.repeat([drive.load.light_torque for drive in drives], angle.size // len(drives))
-        near = solve_at_output(
-            replace(model, friction=None), drives, angle, np.where(torque, torque, light), gaps=False
-        )
+        near = solve_at_output(replace(model, friction=None), drives, angle, np.where(torque, torque, light))
         start, inner = near.pose, Start.after(near.response)
     friction = model.friction
     if friction is None or not friction.turns:
-        return _solve(model, drives, crank_angle, torque, start, inner, gaps, wheel_moment)
-    smooth = _solve(replace(model, friction=None), drives, crank_angle, torque, start, inner, gaps=False)
+        return _solve(model, drives, crank_angle, torque, start, inner, wheel_moment)
+    smooth = _solve(replace(model, friction=None), drives, crank_angle, torque, start, inner)
     try:
-        return _solve(model, drives, crank_angle, torque, smooth.pose, Start.after(smooth.response), gaps)
+        return _solve(model, drives, crank_angle, torque, smooth.pose, Start.after(smooth.response))
     except ConvergenceError as error:
         failure = error
     found, reached, lost, step, loads = smooth, 0.0, 1.0, FIRST_FRICTION_STEP, smooth.response.pin_load.sum(axis=1)
@@ -127,7 +122,7 @@ def solve_at_output(
         strength = min(reached + step, 1.0)
         try:
             weakened = replace(model, friction=friction.scaled(strength))
-            found = _solve(weakened, drives, crank_angle, torque, found.pose, Start.after(found.response), gaps)
+            found = _solve(weakened, drives, crank_angle, torque, found.pose, Start.after(found.response))
         except ConvergenceError:
             lost = strength
             if step <= LEAST_FRICTION_STEP:
@@ -188,7 +183,6 @@ def _solve(
     torque: FloatArray | float,
     start: FloatArray | None,
     inner: Start | None,
-    gaps: bool,
     wheel_moment: FloatArray | None = None,
 ) -> Equilibrium:
     """Balance positions at output torques, the way `solve_at_output` says."""
@@ -202,14 +196,12 @@ def _solve(
     light = np.where(loads == 0.0, np.repeat([drive.load.light_torque for drive in drives], repeats), 0.0)
 
     def follow(rows: NDArray[np.intp], moment: FloatArray, near: Equilibrium) -> Equilibrium:
-        return follow_equilibrium(
-            model if rows.size == angle.size else model.take(rows), near, moment, gaps, light[rows]
-        )
+        return follow_equilibrium(model if rows.size == angle.size else model.take(rows), near, moment, light[rows])
 
     input_per_crank_moment = np.repeat([drive.input_per_crank_moment for drive in drives], repeats)
     by_wheel = np.repeat([1.0 / abs(drive.output_per_wheel_angle) for drive in drives], repeats)
     first = mean if wheel_moment is None else np.where(held, wheel_moment, mean)
-    found = solve_equilibrium(model, angle, first, start, inner, gaps, len(drives), light)
+    found = solve_equilibrium(model, angle, first, start, inner, len(drives), light)
     return _at_output(model, follow, found, signed, held, input_per_crank_moment, by_wheel, light)
 
 

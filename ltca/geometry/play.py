@@ -33,11 +33,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.arrays import BoolArray, FloatArray, stack_drives, take_positions, take_rows
+from ltca.arrays import BoolArray, FloatArray, stack_drives, take_rows
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_ROTATION, RIGID, WHEEL_ANGLE, Coordinates
 from ltca.geometry.length_profile import ACROSS
-from ltca.geometry.pair_motion import KnownPins, PairTilt
+from ltca.geometry.pair_motion import PairTilt
 from ltca.geometry.pairs import ContactGeometry
 
 Rows = NDArray[np.intp]
@@ -361,8 +361,7 @@ class _Programme:
         smallest = np.minimum(place.wheel_pin_radii.min(axis=-1), place.eccentricity.min(axis=-1))
         self.bound = np.broadcast_to(MAX_STEP * smallest, angle.shape)
         self.pitch, self.size = np.pi / place.reduction_ratio, RIGID + 2 * leans
-        motion = geometry.flank(angle, np.zeros((angle.size, RIGID)))
-        self.known, self.parameter = KnownPins.of(motion), motion.parameter
+        self.parameter = geometry.flank(angle, np.zeros((angle.size, RIGID))).parameter
 
     def gaps(self, rows: Rows, pose: FloatArray) -> tuple[FloatArray, FloatArray, int]:
         """Exact gaps of all pairs with the room, mm, their derivatives by scaled coordinates, and the number of arcs, which
@@ -382,9 +381,7 @@ class _Programme:
         moved = (arm / length).conjugate()[..., None] * bores.each(bores.gradient, count)
         holes = geometry.holes(angle, pose)
         turned = pose[:, WHEEL_ANGLE, None] - pose[:, DISC_ROTATION, None]
-        # A pin that is open in the middle may touch at its end: none is left out where discs lean.
-        known = None if self.heights else take_positions(self.known, rows)
-        flank = geometry.flank(angle, pose, self.parameter[rows] + turned, known=known)
+        flank = geometry.flank(angle, pose, self.parameter[rows] + turned)
         gaps = [rays.bore_play - length, -holes.approach, -flank.approach]
         slopes = [moved.real, -holes.gradient, -flank.gradient]
         if self.heights:

@@ -184,7 +184,6 @@ class ContactSystem:
         alike = all(type(laws) is ContactLaws for laws in self.laws)
         self.law_groups = _law_groups(self) if self.components == 1 and alike else []
         self.radii = _radii(self)
-        self.never_left_out = np.full((1, self.discs * self.pins), np.inf)
 
     @property
     def half(self) -> FloatArray:
@@ -215,7 +214,7 @@ class ContactSystem:
         `by_crank` the crank angle is a coordinate behind the pose.
         """
         state = self._begin(with_crank(pose, angle) if by_crank else pose, start)
-        known = None if start is None or (not by_crank and (self.deforms or self.components > 1)) else start.known
+        known = None if start is None else start.known
         for margin in (np.inf,) if everything else (CANDIDATE_MARGIN, np.inf):
             at = Linearised(self, angle, pose, state, known, roughly=roughly, margin=margin, by_crank=by_crank)
             at = self._settle(at, state)
@@ -437,11 +436,7 @@ class Linearised:
             first, last = disc * system.pins, (disc + 1) * system.pins
             known = self.known
             if known is not None:
-                known = KnownPins(
-                    approach=known.approach[:, first:last],
-                    point=known.point[:, first:last],
-                    turning=known.turning[:, first:last],
-                )
+                known = KnownPins(point=known.point[:, first:last], turning=known.turning[:, first:last])
             shifts = leans = None
             if state.shifts is not None:
                 shifts = state.shifts[:, disc]
@@ -1152,13 +1147,12 @@ class Linearised:
 
     @property
     def onward(self) -> ContactStart:
-        """Where the contacts of a position start that is nearby in pose and crank angle: no pin is left out."""
+        """Where the contacts of a position start that is nearby in pose and crank angle."""
         motions = [each.flank for each in self.discs]
         return ContactStart(
             parameter=_beside([motion.parameter for motion in motions]),
             share=self.share,
             known=KnownPins(
-                approach=np.repeat(self.system.never_left_out, self.angle.size, axis=0),
                 point=_beside([motion.point for motion in motions]),
                 turning=_beside([motion.turning for motion in motions]),
             ),
