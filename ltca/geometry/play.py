@@ -65,12 +65,8 @@ SHRINK_AFTER = 12
 """Programmes after which steps are shortened."""
 MAX_PIVOTS = 400
 """Pivots of one programme of four unknowns; of more in proportion."""
-LEAST_PIVOT = 1e-8
-"""Least pivot of a programme of many unknowns: unit normals beside unit normals."""
-LOST = 1e-30
-"""Determinant of the unit normals of a corner of many unknowns below which it is none."""
-KEPT_INVERSE = 20
-"""Pivots of a programme of many unknowns for which the inverse of its basis is updated."""
+LEAST_PIVOT = 1e-9
+"""Least pivot of a programme: unit normals beside unit normals."""
 KEPT_PROGRAMMES = 8
 """Number of last programmes of which the tangents of arcs are kept."""
 DEGENERATE = 1e-9
@@ -640,51 +636,32 @@ def _farthest(
     basis = _as_good_as_first(matrix, objective, first, first if start is None else start + fixed)
     answer, stopping = np.zeros((rows, size + 1)), basis.copy()
     # Rows that have reached their optimum stay in the batch until gathering the others pays.
-    going, whole, pivots, many = np.arange(rows), (matrix, limit), 0, size > RIGID
-    inverse = np.zeros((rows, size + 1, size + 1))
-    most = MAX_PIVOTS * size // RIGID
-    while pivots < most:
+    going = np.arange(rows)
+    for _ in range(MAX_PIVOTS * size // RIGID):
         each = np.arange(going.size)[:, None]
-        fresh = not many or pivots % KEPT_INVERSE == 0
-        if fresh:
-            if many:  # rounding may have led to rows that depend on each other: those start again
-                lost = np.abs(np.linalg.det(matrix[each, basis])) < LOST
-                basis[lost] = first[going[lost]]
-            inverse = np.linalg.inv(matrix[each, basis])
+        inverse = np.linalg.inv(matrix[each, basis])
         point = np.matmul(inverse, limit[each, basis][..., None])
         beyond = np.matmul(matrix, point)[..., 0] - limit
         beyond[each, basis] = 0.0
         entering = np.argmax(beyond, axis=1)
         over = beyond[each[:, 0], entering] > 1e-13
         answer[going], stopping[going] = point[..., 0], basis
-        if not over.any() and fresh:
-            break
         if not over.any():
-            pivots += KEPT_INVERSE - pivots % KEPT_INVERSE
-            continue
+            break
         if over.mean() < GATHER_BELOW:
             going, matrix, limit, objective = going[over], matrix[over], limit[over], objective[over]
             basis, inverse, entering, each = basis[over], inverse[over], entering[over], each[: over.sum()]
             over = over[over]
         price = np.matmul(objective[:, None], inverse)[:, 0]
         share = np.matmul(matrix[each, entering[:, None]], inverse)[:, 0]
-        rises = share > (LEAST_PIVOT if many else 1e-11)
+        rises = share > LEAST_PIVOT
         ratio = np.where(rises, np.maximum(price, 0.0) / np.where(rises, share, 1.0), np.inf)
         leaving, changed = np.argmin(ratio, axis=1)[over], each[over, 0]
         basis[changed, leaving] = entering[over]
-        if many:  # the inverse of a basis with one row replaced
-            along = share[changed]
-            column = inverse[changed, :, leaving] / along[np.arange(changed.size), leaving][:, None]
-            inverse[changed] -= column[:, :, None] * along[:, None, :]
-            inverse[changed, :, leaving] = column
-        pivots += 1
     else:
-        if not many:
-            raise ConvergenceError("a linear programme of the play takes too many pivots", [float(going.size)])
-        stopping[going] = _by_library(objective, matrix, limit)
-    if many:
-        each = np.arange(rows)[:, None]
-        answer = np.linalg.solve(whole[0][each, stopping], whole[1][each, stopping][..., None])[..., 0]
+        stopping[going] = basis = _by_library(objective, matrix, limit)
+        each = np.arange(going.size)[:, None]
+        answer[going] = np.linalg.solve(matrix[each, basis], limit[each, basis][..., None])[..., 0]
     return answer[:, :size], answer[:, size], stopping - fixed
 
 
