@@ -47,8 +47,8 @@ CLOSED = 1e-9
 """Overlap treated as none, mm: a thousandth of the least clearance that counts as one."""
 RELIEF = 2e-11
 """Overlap that is always allowed, mm, so that parts without any clearance have a feasible pose."""
-LEAST_GAIN = 1e-7
-"""Displacement of the wheel at e z_P, mm, that a programme must promise to be followed: some 1e-5 arcmin."""
+LEAST_GAIN = 1e-9
+"""Displacement of the wheel at e z_P, mm, that a programme must promise to be followed: some 1e-7 arcmin."""
 PENALTY = 1e6
 """Cost of overlap relative to displacement of the wheel: wedges of arcs gain some thousand mm per mm of overlap."""
 STRAIGHT = 1e-12
@@ -251,7 +251,7 @@ def free_play(discs: Sequence[ContactGeometry], crank_angle: FloatArray, *, over
             preloaded[pressed] = True
         forward, backward = np.minimum(forward, turned[0]), np.maximum(backward, turned[1])
     # Discs may each be free without any angle common to all.
-    preloaded |= (backward - forward) * np.maximum.reduce([_reach(disc) for disc in discs]) > LEAST_GAIN
+    preloaded |= (backward - forward) * np.maximum.reduce([_reach(disc) for disc in discs]) > 100.0 * LEAST_GAIN
     shut = forward < backward
     middle = 0.5 * (forward + backward)
     return Play(forward=np.where(shut, middle, forward), backward=np.where(shut, middle, backward), preloaded=preloaded)
