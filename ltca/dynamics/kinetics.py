@@ -111,6 +111,14 @@ class Motion:
         return self.pose.size + 1 + bool(self.mesh_compliance)
 
     @property
+    def springs(self) -> FloatArray:
+        """Stiffness of the carrier against its twist, shape (n, n)."""
+        found, carrier = np.zeros((self.size, self.size)), self.drive.carrier
+        if self.twist is not None and carrier is not None:
+            found[self.twist, self.twist] = carrier.stiffness_torsion or 0.0
+        return found
+
+    @property
     def size(self) -> int:
         """Number of coordinates."""
         return self.pose.size + 1 + bool(self.mesh_compliance) + (self.twist is not None)

@@ -457,7 +457,10 @@ def _cranks(drive: Drive) -> Iterator[Solid]:
         taken.append(ends)
         axes = place.crank_axes.tolist()
         for crank, centre in enumerate(place.race_centres(np.zeros(1))[0].tolist()):
-            section, name = circle_section(place.inner_race_radius, centre), f"eccentric {disc} of crank {crank}"
+            section, name = (
+                circle_section(single.crank_bearing.inner_race_radius, centre),
+                f"eccentric {disc} of crank {crank}",
+            )
             yield _cylinder(name, CRANKS, material, density, section, ends, disc=disc, crank=crank)
     support = drive.crank.support
     if support is None:

@@ -258,14 +258,10 @@ class RollerRays:
     outermost: FloatArray
     bore_play: FloatArray
 
-    def touching_distance(self, displacement: ComplexArray) -> FloatArray:
+    def touching(self, displaced: ComplexArray) -> FloatArray:
         """Return the distance s at which each roller just touches the bore, mm, shape (positions, rollers).
 
-        `displacement` is the bore centre from the inner-race centre, mm, shape (positions, rollers) or (positions, 1).
+        `displaced` is the bore centre from the inner-race centre, along and across each ray, mm.
         """
-        return self.touching(self.direction.conjugate() * displacement)
-
-    def touching(self, displaced: ComplexArray) -> FloatArray:
-        """Return the same from displacements along and across each ray."""
         # A disc displaced sideways by more than the bore play does not meet the ray: the nearest point instead.
         return np.asarray(displaced.real + np.sqrt(np.maximum(self.bore_play**2 - displaced.imag**2, 0.0)))

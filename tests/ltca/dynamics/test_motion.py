@@ -512,7 +512,7 @@ class OneContact:
         slope = 1.5 * self.stiffness * np.sqrt(pressed)
         force = np.array([self.stiffness * pressed**1.5])
         return SimpleNamespace(
-            force=force, friction=self.damping * rate, outside=np.zeros(1), stiffness=np.array([[slope]]), discs=()
+            force=force, friction=self.damping * rate, outside=np.zeros(1), stiffness=np.array([[slope]]), loads={}
         )
 
 
